@@ -1,0 +1,25 @@
+// PLY files that MeshLab, CloudCompare and Blender open. Positions in m.
+
+#pragma once
+
+#include <iosfwd>
+
+#include "exporters/marker_shape.h"
+#include "reconstruct/model.h"
+
+namespace velamap {
+
+enum class PlyFormat { kBinaryLittleEndian, kAscii };
+
+// Vertices: every corner and centre with double x y z, float nx ny nz (the marker's normal; zero
+// where the marker is not whole), uchar red green blue (of the model's points; the centre gets the
+// mean of its corners), int marker_id, int corner.
+void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyFormat format,
+                    std::ostream& out);
+
+// One quadrilateral a whole marker, seen from the front counter-clockwise, so that its normal is the
+// marker's outward one: four vertices with double x y z, float nx ny nz, int marker_id, int corner,
+// and faces with vertex_indices and int marker_id.
+void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out);
+
+}  // namespace velamap

@@ -1,0 +1,37 @@
+// How good a shape is by itself (thesis section 4.3.2) and against a reference.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "exporters/marker_shape.h"
+#include "importer/layout.h"
+#include "reconstruct/statistics.h"
+
+namespace velamap {
+
+struct ShapeMetrics {
+  Statistics area_error_mm2;      // |reconstructed - printed area| of whole markers
+  Statistics area_error_percent;  // of the printed area
+  Statistics side_error_mm;       // |reconstructed - printed side|, four a marker
+  int num_markers = 0;            // whole markers
+  std::optional<int> num_layout_markers;
+  std::optional<double> reconstruction_ratio;  // of the markers that the layout names
+  std::vector<int> missing_marker_ids;         // named by the layout, not whole
+};
+
+// Markers are judged against their printed sides in `layout`.
+ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout);
+
+struct ShapeComparison {
+  int num_points = 0;
+  Statistics distance_m;      // after rigid alignment without scale, points that both shapes have
+  double scale = 1.0;         // this shape / reference, from the alignment with scale
+  Statistics distance_after_scaling_m;
+};
+
+// Aligns common corners (not centres) by least squares. Throws DataError with fewer than three.
+ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference);
+
+}  // namespace velamap

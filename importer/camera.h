@@ -1,0 +1,58 @@
+// COLMAP camera models and the projection between the cam and image frames.
+//
+// Frames: cam is x right, y down, z forward; image is COLMAP's, in px, with (0,0) at the top-left
+// corner of the image and the first pixel's centre at (0.5, 0.5). Parameters are ordered as in
+// COLMAP 3.8 (src/base/camera_models.h); the distortion polynomials are Brown-Conrady's, the
+// rational extension of OpenCV, and the equidistant fisheye of OpenCV's fisheye module.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace velamap {
+
+// Values are COLMAP's model ids.
+enum class CameraModel {
+  kSimplePinhole = 0,  // f, cx, cy
+  kPinhole = 1,        // fx, fy, cx, cy
+  kSimpleRadial = 2,   // f, cx, cy, k1
+  kRadial = 3,         // f, cx, cy, k1, k2
+  kOpenCV = 4,         // fx, fy, cx, cy, k1, k2, p1, p2
+  kOpenCVFisheye = 5,  // fx, fy, cx, cy, k1, k2, k3, k4
+  kFullOpenCV = 6,     // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, k5, k6
+};
+
+struct Camera {
+  CameraModel model = CameraModel::kPinhole;
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<double> params;
+
+  friend bool operator==(const Camera& a, const Camera& b) {
+    return a.model == b.model && a.width_px == b.width_px && a.height_px == b.height_px &&
+           a.params == b.params;
+  }
+};
+
+// COLMAP's upper-case name, and back. An unknown name or id gives nothing.
+std::string CameraModelName(CameraModel model);
+std::optional<CameraModel> CameraModelFromName(const std::string& name);
+std::optional<CameraModel> CameraModelFromId(int model_id);
+int NumCameraParams(CameraModel model);
+
+// Mean of the focal lengths in x and y, px.
+double MeanFocalLength(const Camera& camera);
+
+// Image position (px) of a point in the cam frame; nothing for a point not in front of the camera.
+std::optional<Eigen::Vector2d> ImageFromCam(const Camera& camera, const Eigen::Vector3d& x_in_cam);
+
+// Undistorted ray of an image position: (x/z, y/z) in the cam frame, by Newton's method on the
+// distortion to 1e-12. Nothing where the distortion cannot be inverted (far outside the image).
+std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
+                                            const Eigen::Vector2d& x_in_image_px);
+
+}  // namespace velamap

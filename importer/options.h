@@ -1,0 +1,38 @@
+// Options of detection and of reading a video, free of OpenCV so that every room may hold them.
+
+#pragma once
+
+#include <string>
+
+namespace velamap {
+
+enum class CornerRefinement {
+  kNone,    // corners of the detector's polygon
+  kSubpix,  // cv::cornerSubPix with a window that fits the marker's cells
+  kEdge,    // fitted blurred edges, corner_refinement.h
+};
+
+CornerRefinement CornerRefinementFromName(const std::string& name);  // throws InputError
+std::string CornerRefinementName(CornerRefinement refinement);
+
+struct ArucoDetectionOptions {
+  CornerRefinement corner_refinement = CornerRefinement::kEdge;
+  // Smallest marker perimeter as a fraction of the larger image side. OpenCV's 0.03 loses a third
+  // of a sail's markers at 4K.
+  double min_marker_perimeter_rate = 0.01;
+  // Fraction of the dictionary's error correction that is used. OpenCV's 0.6 lets false ids in.
+  double error_correction_rate = 0.3;
+  bool inverted = false;  // white marker on black ground
+
+  void Check() const;  // throws InputError that names the option
+};
+
+struct VideoOptions {
+  int first_frame = 0;  // zero-based
+  int last_frame = -1;  // -1: to the end
+  int frame_step = 1;   // every k-th frame
+
+  void Check() const;  // throws InputError that names the option
+};
+
+}  // namespace velamap

@@ -1,0 +1,63 @@
+// A COLMAP model: cameras, posed images with their 2D points, 3D points with tracks.
+
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/camera.h"
+#include "importer/ids.h"
+#include "reconstruct/rigid3.h"
+
+namespace velamap {
+
+struct Point2D {
+  Eigen::Vector2d x_in_image_px = Eigen::Vector2d::Zero();
+  Point3DId point3D_id = kInvalidPoint3DId;
+};
+
+struct ModelImage {
+  ImageId image_id = 0;
+  CameraId camera_id = 0;
+  std::string name;
+  Rigid3 cam_from_world;
+  std::vector<Point2D> points2D;  // by keypoint_idx of the database
+};
+
+struct TrackElement {
+  ImageId image_id = 0;
+  std::uint32_t point2D_idx = 0;
+};
+
+struct Point3D {
+  Eigen::Vector3d x_in_world = Eigen::Vector3d::Zero();
+  Rgb color{};
+  double mean_error_px = 0.0;  // mean reprojection error over the track
+  std::vector<TrackElement> track;
+};
+
+// The order of `images` matters: COLMAP fixes the gauge by the first two (reconstruct/gauge.h).
+struct Model {
+  std::map<CameraId, Camera> cameras;
+  std::vector<ModelImage> images;
+  std::map<Point3DId, Point3D> points3D;
+
+  // Null where there is no such image.
+  const ModelImage* FindImage(ImageId image_id) const;
+};
+
+// Throws std::logic_error unless ids are unique, every 2D point and track element refer to each
+// other, every image has its camera, and all numbers are finite.
+void CheckModel(const Model& model);
+
+// Takes one observation out of the track and the image. A point that loses its last observation
+// stays until RemoveShortTracks.
+void RemoveObservation(Model* model, Point3DId point3D_id, const TrackElement& element);
+
+// Removes points with fewer than `min_track_length` observations, and the references to them.
+void RemoveShortTracks(Model* model, int min_track_length);
+
+}  // namespace velamap
