@@ -39,8 +39,9 @@ class ColmapDatabase {
   enum class Mode { kReadOnly, kReadWriteCreate };
 
   // Opens or creates the file. Throws InputError, naming the path, if it is missing (read only), no
-  // SQLite file, lacks COLMAP's tables, has an unknown layout, is locked, or cannot be written.
-  ColmapDatabase(const std::string& path, Mode mode);
+  // SQLite file, lacks COLMAP's tables, has an unknown layout, is locked for longer than
+  // `busy_timeout_ms`, or cannot be written.
+  ColmapDatabase(const std::string& path, Mode mode, int busy_timeout_ms = 5000);
   ~ColmapDatabase();
 
   // All statements between Begin() and Commit() are written or none is.

@@ -19,6 +19,7 @@ struct MarkerDetection {
   int marker_id = 0;
   std::array<Eigen::Vector2d, kNumCorners> corners_in_image_px;
   std::array<Rgb, kNumCorners> colors{};  // of the image at the corners
+  std::string part{};                     // of the layout that names it; empty without a layout
 };
 
 struct RejectedDetection {

@@ -30,8 +30,8 @@ class FrameSource {
 
   // Decoding of an image file can be left to the thread that uses it; a video is sequential.
   // For images Next() hands out frames without pixels and Load() fills them; thread-safe. False,
-  // with a warning, if the file is no whole image.
-  virtual bool Load(Frame* frame) const = 0;
+  // with a warning and the reason, if the file is no whole image.
+  virtual bool Load(Frame* frame, std::string* reason) const = 0;
 
   virtual bool IsVideo() const = 0;
 

@@ -1,0 +1,107 @@
+#include "importer/dictionary_hint.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "importer/marker_detector.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kMaxNumSamples = 12;
+constexpr int kMinNumMarkers = 2;
+constexpr int kConvincingNumMarkers = 20;
+constexpr std::size_t kMaxNumHints = 3;
+
+// Dictionaries that hold no other; those below 1000 are the first markers of the one with 1000.
+constexpr std::array<const char*, 9> kFamilies = {
+    "DICT_4X4_1000",      "DICT_5X5_1000",       "DICT_6X6_1000",
+    "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5",
+    "DICT_APRILTAG_25h9", "DICT_APRILTAG_36h10", "DICT_APRILTAG_36h11"};
+
+std::string SmallestOfFamily(const std::string& family, int max_id) {
+  const std::string largest = "_1000";
+  const std::size_t end = family.size() - largest.size();
+  if (family.compare(end, largest.size(), largest) != 0) return family;
+  for (const int size : {50, 100, 250}) {
+    if (max_id < size) return family.substr(0, end) + "_" + std::to_string(size);
+  }
+  return family;
+}
+
+struct Found {
+  int num_markers = 0;
+  int max_id = 0;
+};
+
+}  // namespace
+
+std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray_images,
+                                                int border_bits,
+                                                const ArucoDetectionOptions& options) {
+  ArucoDetectionOptions strict = options;
+  strict.error_correction_rate = 0.0;
+  strict.corner_refinement = CornerRefinement::kNone;
+  std::map<std::pair<std::string, bool>, Found> found_by_choice;
+  bool convinced = false;
+  int num_images = 0;
+  for (; num_images < static_cast<int>(gray_images.size()) && !convinced; ++num_images) {
+    const cv::Mat& gray = gray_images[static_cast<std::size_t>(num_images)];
+    for (const char* family : kFamilies) {
+      const Dictionary dictionary = LoadDictionary(family);
+      for (const bool inverted : {false, true}) {
+        strict.inverted = inverted;
+        Found& found = found_by_choice[{family, inverted}];
+        for (const MarkerDetection& marker : DetectMarkers(gray, dictionary, border_bits, strict)) {
+          ++found.num_markers;
+          found.max_id = std::max(found.max_id, marker.marker_id);
+        }
+        convinced |= found.num_markers >= kConvincingNumMarkers;
+      }
+    }
+  }
+  std::vector<DictionaryHint> hints;
+  for (const auto& [choice, found] : found_by_choice) {
+    if (found.num_markers < kMinNumMarkers) continue;
+    hints.push_back({SmallestOfFamily(choice.first, found.max_id), choice.second, found.num_markers,
+                     num_images});
+  }
+  std::stable_sort(hints.begin(), hints.end(),
+                   [](const DictionaryHint& a, const DictionaryHint& b) {
+                     return a.num_markers > b.num_markers;
+                   });
+  if (hints.size() > kMaxNumHints) hints.resize(kMaxNumHints);
+  return hints;
+}
+
+std::string DescribeHints(const std::vector<DictionaryHint>& hints) {
+  std::string text;
+  for (const DictionaryHint& hint : hints) {
+    if (!text.empty()) text += ", or ";
+    text += fmt::format("--dictionary {} --ArucoDetection.inverted {} ({} markers in {} images)",
+                        hint.dictionary, hint.inverted ? 1 : 0, hint.num_markers, hint.num_images);
+  }
+  return text;
+}
+
+void ImageSample::Add(int idx, const cv::Mat& gray) {
+  if (!Wants(idx)) return;
+  images_.emplace_back(idx, gray);
+  while (images_.size() > kMaxNumSamples) {
+    stride_ *= 2;
+    images_.erase(std::remove_if(images_.begin(), images_.end(),
+                                 [&](const auto& image) { return !Wants(image.first); }),
+                  images_.end());
+  }
+}
+
+std::vector<cv::Mat> ImageSample::Images() const {
+  std::vector<cv::Mat> images;
+  for (const auto& [idx, gray] : images_) images.push_back(gray);
+  return images;
+}
+
+}  // namespace velamap

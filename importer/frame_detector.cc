@@ -1,0 +1,89 @@
+#include "importer/frame_detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "importer/duplicates.h"
+#include "importer/marker_detector.h"
+
+namespace velamap {
+namespace {
+
+// FNV-1a, 64 bit: short, and the same on every machine.
+std::uint64_t Hash(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+// The pixel in which an image position lies.
+Rgb ColorAt(const cv::Mat& color, const Eigen::Vector2d& x_in_image_px) {
+  const int x = std::clamp(static_cast<int>(std::floor(x_in_image_px.x())), 0, color.cols - 1);
+  const int y = std::clamp(static_cast<int>(std::floor(x_in_image_px.y())), 0, color.rows - 1);
+  const cv::Vec3b& bgr = color.at<cv::Vec3b>(y, x);
+  return {bgr[2], bgr[1], bgr[0]};
+}
+
+}  // namespace
+
+FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options) {
+  FrameDetector detector{options,
+                         LoadDictionary(layout.dictionary),
+                         layout.border_bits,
+                         BuildAdjacencyGraph(layout),
+                         {}};
+  for (const int id : MarkerIds(layout)) detector.part_of_id[id] = PartOfMarker(layout, id);
+  return detector;
+}
+
+std::string DescribeDetector(const FrameDetector& detector) {
+  std::string known;
+  const cv::Mat& bytes = detector.dictionary.aruco->bytesList;
+  known.append(reinterpret_cast<const char*>(bytes.data), bytes.total() * bytes.elemSize());
+  for (const auto& [id, part] : detector.part_of_id) known += fmt::format("|{} {}", id, part);
+  for (const auto& [id, neighbors] : detector.graph) {
+    known += fmt::format("|{}: {}", id, fmt::join(neighbors, " "));
+  }
+  return fmt::format(
+      "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
+      "error_correction_rate={} inverted={} dictionary_and_layout={:016x}",
+      detector.dictionary.name, detector.border_bits,
+      CornerRefinementName(detector.options.corner_refinement),
+      detector.options.min_marker_perimeter_rate, detector.options.error_correction_rate,
+      detector.options.inverted ? 1 : 0, Hash(known));
+}
+
+FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
+                              const cv::Mat& gray) {
+  FrameDetections detections;
+  detections.image_name = frame.image_name;
+  detections.frame_number = frame.frame_number;
+  detections.time_s = frame.time_s;
+  std::vector<MarkerDetection> candidates;
+  for (MarkerDetection& marker :
+       DetectMarkers(gray, detector.dictionary, detector.border_bits, detector.options)) {
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      marker.colors[i] = ColorAt(frame.color, marker.corners_in_image_px[i]);
+    }
+    const auto part = detector.part_of_id.find(marker.marker_id);
+    if (part != detector.part_of_id.end()) marker.part = part->second;
+    if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {
+      candidates.push_back(marker);
+    } else {
+      detections.rejected.push_back({marker, kNotInLayout});
+    }
+  }
+  ResolvedDetections resolved = ResolveDuplicates(std::move(candidates), detector.graph);
+  detections.markers = std::move(resolved.markers);
+  std::move(resolved.rejected.begin(), resolved.rejected.end(),
+            std::back_inserter(detections.rejected));
+  return detections;
+}
+
+}  // namespace velamap

@@ -1,0 +1,41 @@
+// Everything that is done to one frame: detection, colours, the layout's filter, duplicates.
+
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "importer/detection.h"
+#include "importer/dictionary.h"
+#include "importer/frame_source.h"
+#include "importer/layout.h"
+#include "importer/options.h"
+
+namespace velamap {
+
+// Why an id that the layout does not name is left out.
+inline constexpr char kNotInLayout[] = "not in layout";
+
+// What every thread reads and none changes.
+struct FrameDetector {
+  ArucoDetectionOptions options;
+  Dictionary dictionary;
+  int border_bits = 1;
+  AdjacencyGraph graph;
+  std::map<int, std::string> part_of_id;  // empty: every id is welcome
+};
+
+// Throws InputError for a dictionary that does not exist or has wrong bits.
+FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options);
+
+// One line on everything that decides which detections a frame yields, so that one database never
+// mixes two ways. The dictionary's codes and the layout's parts and neighbours go in as a checksum.
+std::string DescribeDetector(const FrameDetector& detector);
+
+// `gray` is the frame in grey. Thread-safe.
+FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
+                              const cv::Mat& gray);
+
+}  // namespace velamap

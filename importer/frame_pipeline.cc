@@ -1,0 +1,135 @@
+#include "importer/frame_pipeline.h"
+
+#include <exception>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "importer/bounded_queue.h"
+#include "importer/error.h"
+
+namespace velamap {
+namespace {
+
+struct Job {
+  int frame_idx = 0;
+  Frame frame;
+};
+
+struct Done {
+  int frame_idx = 0;
+  FrameResult result;
+};
+
+// Frames run in parallel; threads within a frame would only compete with them.
+class SingleThreadedOpenCv {
+ public:
+  SingleThreadedOpenCv() : num_threads_(cv::getNumThreads()) { cv::setNumThreads(1); }
+  ~SingleThreadedOpenCv() { cv::setNumThreads(num_threads_); }
+  SingleThreadedOpenCv(const SingleThreadedOpenCv&) = delete;
+  SingleThreadedOpenCv& operator=(const SingleThreadedOpenCv&) = delete;
+
+ private:
+  int num_threads_;
+};
+
+// The threads and what they share; ends and joins them whatever happens.
+class Pipeline {
+ public:
+  Pipeline(FrameSource* source, int num_threads,
+           const std::function<FrameResult(int, Frame*)>& process)
+      : source_(source), process_(process), num_working_(num_threads) {
+    threads_.emplace_back([this] { Run([this] { ReadFrames(); }); });
+    for (int i = 0; i < num_threads; ++i) {
+      threads_.emplace_back([this] {
+        Run([this] { ProcessFrames(); });
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (--num_working_ == 0) done_.Close();
+      });
+    }
+  }
+
+  ~Pipeline() {
+    jobs_.Abort();
+    done_.Abort();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  // Nothing at the end. Throws what a thread has thrown.
+  std::optional<Done> NextDone() {
+    std::optional<Done> done = done_.Pop();
+    if (!done) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (failure_) std::rethrow_exception(failure_);
+    }
+    return done;
+  }
+
+ private:
+  template <typename Function>
+  void Run(const Function& function) {
+    try {
+      function();
+    } catch (...) {
+      {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (!failure_) failure_ = std::current_exception();
+      }
+      jobs_.Abort();
+      done_.Abort();
+    }
+  }
+
+  void ReadFrames() {
+    for (int frame_idx = 0;; ++frame_idx) {
+      std::optional<Frame> frame = source_->Next();
+      if (!frame || !jobs_.Push({frame_idx, std::move(*frame)})) break;
+    }
+    jobs_.Close();
+  }
+
+  void ProcessFrames() {
+    while (std::optional<Job> job = jobs_.Pop()) {
+      Done done{job->frame_idx, process_(job->frame_idx, &job->frame)};
+      job.reset();
+      if (!done_.Push(std::move(done))) break;
+    }
+  }
+
+  // One frame is in the reader's hands and one waits; each worker holds one more.
+  BoundedQueue<Job> jobs_{1};
+  // Results hold no pixels, so their number need not be bounded tightly.
+  BoundedQueue<Done> done_{1000};
+  FrameSource* source_;
+  const std::function<FrameResult(int, Frame*)>& process_;
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+  int num_working_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace
+
+void RunFramePipeline(FrameSource* source, int num_threads,
+                      const std::function<FrameResult(int, Frame*)>& process,
+                      const std::function<void(int, FrameResult)>& consume) {
+  VELAMAP_CHECK(num_threads >= 1);
+  const SingleThreadedOpenCv single_threaded;
+  Pipeline pipeline(source, num_threads, process);
+  std::map<int, FrameResult> early;  // done before a frame that precedes them
+  int next_idx = 0;
+  while (std::optional<Done> done = pipeline.NextDone()) {
+    early.emplace(done->frame_idx, std::move(done->result));
+    for (auto it = early.begin(); it != early.end() && it->first == next_idx; ++next_idx) {
+      consume(next_idx, std::move(it->second));
+      it = early.erase(it);
+    }
+  }
+}
+
+}  // namespace velamap

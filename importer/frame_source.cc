@@ -1,0 +1,232 @@
+#include "importer/frame_source.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "importer/error.h"
+#include "importer/image_file.h"
+#include "importer/natural_order.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Our one line about a broken file shall stand alone. FFmpeg reads the variable when OpenCV first
+// uses it; -8 is its AV_LOG_QUIET. What the user has set stays.
+void SilenceDecoders() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
+  });
+}
+
+bool IsHidden(const fs::path& path) { return path.filename().string().rfind('.', 0) == 0; }
+
+// Names relative to the folder, in natural order; files that are no images by name are told of.
+std::vector<std::string> ListImages(const fs::path& folder) {
+  std::vector<std::string> names, others;
+  std::error_code error;
+  const auto flags = fs::directory_options::follow_directory_symlink;
+  fs::recursive_directory_iterator it(folder, flags, error);
+  if (error) {
+    throw InputError(
+        fmt::format("{}: the folder cannot be read: {}", folder.string(), error.message()));
+  }
+  for (; it != fs::recursive_directory_iterator(); it.increment(error)) {
+    if (IsHidden(it->path())) {
+      it.disable_recursion_pending();
+    } else if (it->is_regular_file(error)) {
+      const std::string name = it->path().lexically_relative(folder).generic_string();
+      (HasImageExtension(name) ? names : others).push_back(name);
+    }
+  }
+  if (error) {
+    throw InputError(
+        fmt::format("{}: the folder cannot be read: {}", folder.string(), error.message()));
+  }
+  std::sort(names.begin(), names.end(), NaturalLess);
+  std::sort(others.begin(), others.end(), NaturalLess);
+  if (names.empty()) {
+    throw InputError(
+        fmt::format("{}: the folder holds no images (.jpg, .png, .tif ...); give a "
+                    "folder of images or a video file",
+                    folder.string()));
+  }
+  if (!others.empty()) {
+    spdlog::warn("{}: left out, no images by their names: {}, such as {}", folder.string(),
+                 others.size(), others.front());
+  }
+  return names;
+}
+
+class ImageFolder : public FrameSource {
+ public:
+  ImageFolder(fs::path folder, std::vector<std::string> names)
+      : folder_(std::move(folder)), names_(std::move(names)) {}
+
+  std::optional<Frame> Next() override {
+    if (next_idx_ == names_.size()) return std::nullopt;
+    Frame frame;
+    frame.image_name = names_[next_idx_++];
+    return frame;
+  }
+
+  bool Load(Frame* frame, std::string* reason) const override {
+    const fs::path path = folder_ / frame->image_name;
+    frame->color = DecodeImageFile(path.string(), reason);
+    if (!frame->color.empty()) return true;
+    spdlog::warn("{}: skipped: {}", path.string(), *reason);
+    return false;
+  }
+
+  bool IsVideo() const override { return false; }
+  int NumFrames() const override { return static_cast<int>(names_.size()); }
+
+ private:
+  fs::path folder_;
+  std::vector<std::string> names_;
+  std::size_t next_idx_ = 0;
+};
+
+std::string VideoFrameName(int frame_number) {
+  return fmt::format("frame_{:06}.jpg", frame_number);
+}
+
+class VideoFile : public FrameSource {
+ public:
+  VideoFile(const std::string& path, const VideoOptions& options,
+            const std::vector<std::string>& known_names)
+      : path_(path), options_(options), known_names_(known_names.begin(), known_names.end()) {
+    if (!capture_.open(path, cv::CAP_FFMPEG)) {
+      throw InputError(
+          fmt::format("{}: no video that can be read, or cut off before its index; "
+                      "give a folder of images or a whole video file",
+                      path));
+    }
+    capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
+    const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+    if (count > 0 && count < 1e9) num_container_frames_ = static_cast<int>(count);
+    const double rate = capture_.get(cv::CAP_PROP_FPS);
+    if (rate > 0 && std::isfinite(rate)) frames_per_second_ = rate;
+  }
+
+  std::optional<Frame> Next() override {
+    while (!ended_ && (options_.last_frame < 0 || num_grabbed_ <= options_.last_frame)) {
+      if (!capture_.grab()) {
+        End();
+        break;
+      }
+      const int number = num_grabbed_++;
+      const bool wanted = number >= options_.first_frame &&
+                          (number - options_.first_frame) % options_.frame_step == 0;
+      if (!wanted || known_names_.count(VideoFrameName(number)) > 0) continue;
+      Frame frame;
+      if (!capture_.retrieve(frame.color) || frame.color.empty()) {
+        spdlog::warn("{}: frame {} cannot be decoded and is skipped", path_, number);
+        continue;
+      }
+      frame.image_name = VideoFrameName(number);
+      frame.frame_number = number;
+      frame.time_s = Time(number);
+      return frame;
+    }
+    return std::nullopt;
+  }
+
+  bool Load(Frame* frame, std::string*) const override { return !frame->color.empty(); }
+
+  bool IsVideo() const override { return true; }
+
+  int NumFrames() const override {
+    if (num_container_frames_ == 0 && options_.last_frame < 0) return 0;
+    int end = num_container_frames_;
+    if (options_.last_frame >= 0 && (end == 0 || options_.last_frame < end)) {
+      end = options_.last_frame + 1;
+    }
+    const int num_frames = end - options_.first_frame;
+    if (num_frames <= 0) return 0;
+    const int num_wanted = (num_frames + options_.frame_step - 1) / options_.frame_step;
+    return std::max(0, num_wanted - NumKnownBefore(end));
+  }
+
+ private:
+  int NumKnownBefore(int end) const {
+    int num_known = 0;
+    for (int i = options_.first_frame; i < end; i += options_.frame_step) {
+      num_known += known_names_.count(VideoFrameName(i)) > 0;
+    }
+    return num_known;
+  }
+
+  std::optional<double> Time(int number) const {
+    const double time_ms = capture_.get(cv::CAP_PROP_POS_MSEC);
+    if (std::isfinite(time_ms) && (time_ms > 0 || number == 0)) return 1e-3 * time_ms;
+    if (frames_per_second_ > 0) return number / frames_per_second_;
+    return std::nullopt;
+  }
+
+  void End() {
+    ended_ = true;
+    if (num_grabbed_ <= options_.first_frame) {
+      throw InputError(
+          fmt::format("{}: the video has {} frames, none at or after "
+                      "--Video.first_frame {}",
+                      path_, num_grabbed_, options_.first_frame));
+    }
+    // Counts that a container derives from its duration are off by a frame or so.
+    const int tolerance = std::max(2, num_container_frames_ / 100);
+    if (num_grabbed_ < num_container_frames_ - tolerance) {
+      spdlog::warn("{}: the video breaks off after {} of {} frames; what is there is used", path_,
+                   num_grabbed_, num_container_frames_);
+    }
+  }
+
+  std::string path_;
+  VideoOptions options_;
+  std::set<std::string> known_names_;
+  cv::VideoCapture capture_;
+  int num_container_frames_ = 0;
+  double frames_per_second_ = 0.0;
+  int num_grabbed_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const VideoOptions& options,
+                                             const std::vector<std::string>& known_names) {
+  options.Check();
+  SilenceDecoders();
+  std::error_code error;
+  if (path.empty() || !fs::exists(path, error)) {
+    throw InputError(fmt::format("--image_path '{}': there is no such folder or video", path));
+  }
+  if (!fs::is_directory(path, error)) {
+    if (fs::file_size(path, error) == 0) throw InputError(path + ": the file is empty");
+    if (HasImageExtension(path)) {
+      throw InputError(path + ": a single image; give the folder that holds the images");
+    }
+    return std::make_unique<VideoFile>(path, options, known_names);
+  }
+  std::vector<std::string> names = ListImages(path);
+  const std::set<std::string> known(known_names.begin(), known_names.end());
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [&](const std::string& name) { return known.count(name) > 0; }),
+              names.end());
+  return std::make_unique<ImageFolder>(path, std::move(names));
+}
+
+}  // namespace velamap

@@ -1,0 +1,320 @@
+#include "importer/marker_importer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "importer/atomic_output.h"
+#include "importer/calibration.h"
+#include "importer/colmap_database.h"
+#include "importer/correspondence.h"
+#include "importer/dictionary_hint.h"
+#include "importer/error.h"
+#include "importer/frame_detector.h"
+#include "importer/frame_pipeline.h"
+#include "importer/frame_source.h"
+#include "importer/natural_order.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBatchSize = 50;  // images a transaction
+constexpr int kJpegQuality = 92;
+
+void WriteJpeg(const fs::path& path, const cv::Mat& color) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".jpg", color, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  WriteFileAtomically(path, [&](std::ostream& stream) {
+    stream.write(reinterpret_cast<const char*>(bytes.data()),
+                 static_cast<std::streamsize>(bytes.size()));
+  });
+}
+
+// A database that this run creates goes again if the run fails.
+class NewDatabaseGuard {
+ public:
+  explicit NewDatabaseGuard(const std::string& path) : path_(path), is_new_(!fs::exists(path)) {}
+  ~NewDatabaseGuard() {
+    if (!is_new_) return;
+    std::error_code ignored;
+    for (const char* suffix : {"", "-journal"}) fs::remove(path_ + suffix, ignored);
+  }
+  NewDatabaseGuard(const NewDatabaseGuard&) = delete;
+  NewDatabaseGuard& operator=(const NewDatabaseGuard&) = delete;
+
+  void Keep() { is_new_ = false; }
+
+ private:
+  std::string path_;
+  bool is_new_;
+};
+
+// The writing side: one transaction a batch.
+class DatabaseWriter {
+ public:
+  DatabaseWriter(std::string detector, ColmapDatabase* database)
+      : detector_(std::move(detector)), database_(database) {}
+
+  void Add(const FrameDetections& detections, const Camera& camera) {
+    if (!transaction_) transaction_.emplace(database_);
+    database_->AddImage(database_->AddCamera(camera), detections, detector_);
+    if (++num_in_batch_ == kBatchSize) Commit();
+  }
+
+  void Commit() {
+    if (transaction_) transaction_->Commit();
+    transaction_.reset();
+    num_in_batch_ = 0;
+  }
+
+ private:
+  std::string detector_;
+  ColmapDatabase* database_;
+  std::optional<ColmapDatabase::Transaction> transaction_;
+  int num_in_batch_ = 0;
+};
+
+// Refuses to add to a database that was made in another way.
+void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
+                   const ColmapDatabase& database) {
+  const std::string remedy = "delete it or give a new --database_path";
+  const std::optional<std::string> known_detector = database.ReadDetector();
+  const std::map<std::string, ImageId> names = database.ReadImageIdsByName();
+  if (!known_detector) {
+    if (names.empty()) return;
+    throw InputError(fmt::format("{}: holds images that velamap has not imported, such as {}; {}",
+                                 options.database_path, names.begin()->first, remedy));
+  }
+  if (*known_detector != detector) {
+    throw InputError(
+        fmt::format("{}: was made with other detection options or another layout "
+                    "({}; now {}); {}",
+                    options.database_path, *known_detector, detector, remedy));
+  }
+  for (const auto& [camera_id, camera] : database.ReadCameras()) {
+    const Camera expected =
+        ScaleToImageSize(options.camera, camera.width_px, camera.height_px, options.camera_path);
+    if (!(expected == camera)) {
+      throw InputError(fmt::format("{}: was made with another calibration than {}; {}",
+                                   options.database_path, options.camera_path, remedy));
+    }
+  }
+}
+
+// Matches every pair that is worth it and has none yet; returns the number of pairs with matches.
+int WriteAllMatches(ColmapDatabase* database) {
+  std::vector<DatabaseImage> images = database->ReadImages();
+  std::sort(images.begin(), images.end(), [](const DatabaseImage& a, const DatabaseImage& b) {
+    return NaturalLess(a.detections.image_name, b.detections.image_name);
+  });
+  const std::vector<std::pair<int, int>> pairs = PairsToMatch(static_cast<int>(images.size()));
+  int num_pairs = 0;
+  ColmapDatabase::Transaction transaction(database);
+  for (const auto& [first_idx, second_idx] : pairs) {
+    const DatabaseImage& first = images[static_cast<std::size_t>(first_idx)];
+    const DatabaseImage& second = images[static_cast<std::size_t>(second_idx)];
+    const FeatureMatches matches = MatchByMarkerId(first.detections, second.detections);
+    if (matches.empty()) continue;
+    ++num_pairs;
+    if (!database->HasMatches(first.image_id, second.image_id)) {
+      database->WriteMatches(first.image_id, second.image_id, matches);
+    }
+  }
+  transaction.Commit();
+  return num_pairs;
+}
+
+// Fewer markers a frame than this are as good as none: false ones turn up in any picture.
+constexpr double kFewMarkersPerFrame = 0.5;
+
+// What another dictionary or polarity has to find more a frame to be the right one instead.
+constexpr double kConvincingRatio = 10.0;
+
+// Throws if the frames hold no marker, or hardly any while another dictionary finds many.
+void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,
+                       const ImageSample& sample, const ImportReport& report) {
+  if (report.num_markers == 0 && !report.ids_not_in_layout.empty()) {
+    throw DataError(
+        fmt::format("{}: no marker of the layout found, only other ids: {}; check the "
+                    "layout's dictionary and markers",
+                    options.image_path, fmt::join(report.ids_not_in_layout, " ")));
+  }
+  if (report.num_markers == 0 && report.num_rejected > 0) {
+    throw DataError(
+        fmt::format("{}: only markers whose id is there more than once; give a layout "
+                    "(--layout_path) that tells them apart",
+                    options.image_path));
+  }
+  const std::vector<DictionaryHint> hints =
+      SuggestDictionaries(sample.Images(), options.layout.border_bits, options.detection);
+  if (report.num_markers > 0) {
+    if (hints.empty()) return;
+    const double hinted_rate =
+        static_cast<double>(hints.front().num_markers) / hints.front().num_images;
+    const double rate = static_cast<double>(report.num_markers) / report.num_frames_read;
+    if (hinted_rate < kConvincingRatio * rate) return;
+  }
+  throw DataError(fmt::format(
+      "{}: {} marker of {}{} found in {} frames; {}", options.image_path,
+      report.num_markers > 0 ? "hardly any" : "no", dictionary_name,
+      options.detection.inverted ? " (inverted)" : "", report.num_frames_read,
+      hints.empty()
+          ? "no predefined dictionary finds any: check focus, size and border of the markers"
+          : "found with " + DescribeHints(hints)));
+}
+
+int NumThreads(int num_threads) {
+  if (num_threads < 0) {
+    throw InputError(
+        fmt::format("--num_threads: {} is negative; give 0 for one a core", num_threads));
+  }
+  if (num_threads > 0) return num_threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::string ProgressLine(const FrameResult& result) {
+  const FrameDetections& detections = result.detections;
+  if (!result.skipped_because.empty()) return detections.image_name + ": skipped";
+  return fmt::format("{}: {} markers", detections.image_name, detections.markers.size());
+}
+
+bool HoldsMarkers(const ColmapDatabase& database) {
+  if (!database.ReadDetector()) return false;
+  const std::vector<DatabaseImage> images = database.ReadImages();
+  return std::any_of(images.begin(), images.end(),
+                     [](const DatabaseImage& image) { return !image.detections.markers.empty(); });
+}
+
+// One run over all frames. Process() is called on many threads, Consume() on one, in order.
+class ImportRun {
+ public:
+  ImportRun(const MarkerImporterOptions& options, const FrameDetector& detector,
+            ColmapDatabase* database, FrameSource* source)
+      : options_(options),
+        detector_(detector),
+        source_(source),
+        writer_(DescribeDetector(detector), database),
+        held_markers_(HoldsMarkers(*database)),
+        few_found_(!held_markers_) {}
+
+  FrameResult Process(Frame* frame) {
+    FrameResult result;
+    result.detections.image_name = frame->image_name;
+    if (frame->color.empty() && !source_->Load(frame, &result.skipped_because)) return result;
+    result.camera = CameraOfFrame(*frame);
+    cv::Mat gray;
+    cv::cvtColor(frame->color, gray, cv::COLOR_BGR2GRAY);
+    result.detections = DetectInFrame(detector_, *frame, gray);
+    if (source_->IsVideo() && !options_.frame_output_path.empty() &&
+        !result.detections.markers.empty()) {
+      WriteJpeg(fs::path(options_.frame_output_path) / frame->image_name, frame->color);
+    }
+    if (few_found_) result.gray = gray;
+    return result;
+  }
+
+  void Consume(int frame_idx, const FrameResult& result) {
+    const FrameDetections& detections = result.detections;
+    if (!result.skipped_because.empty()) {
+      report_.skipped.push_back({detections.image_name, result.skipped_because});
+      return;
+    }
+    ++report_.num_frames_read;
+    report_.num_markers += static_cast<int>(detections.markers.size());
+    report_.num_rejected += static_cast<int>(detections.rejected.size());
+    report_.num_images_without_markers += detections.markers.empty();
+    for (const RejectedDetection& rejected : detections.rejected) {
+      if (rejected.reason == kNotInLayout) ids_not_in_layout_.insert(rejected.detection.marker_id);
+    }
+    few_found_ =
+        !held_markers_ && report_.num_markers < kFewMarkersPerFrame * report_.num_frames_read;
+    if (!few_found_) {
+      sample_.Clear();
+    } else if (!result.gray.empty()) {
+      sample_.Add(frame_idx, result.gray);
+    }
+    // A video has frames enough; a photograph without markers is still one that the user gave.
+    if (source_->IsVideo() && detections.markers.empty()) return;
+    writer_.Add(detections, result.camera);
+    ++report_.num_images_added;
+  }
+
+  // Writes what is left. Throws if the run found nothing.
+  ImportReport Finish() {
+    report_.ids_not_in_layout.assign(ids_not_in_layout_.begin(), ids_not_in_layout_.end());
+    if (report_.num_frames_read == 0 && !report_.skipped.empty() && !held_markers_) {
+      throw InputError(fmt::format("{}: none of {} images can be read; the first: {}: {}",
+                                   options_.image_path, report_.skipped.size(),
+                                   report_.skipped.front().image_name,
+                                   report_.skipped.front().reason));
+    }
+    if (few_found_) CheckMarkersFound(options_, detector_.dictionary.name, sample_, report_);
+    writer_.Commit();
+    return report_;
+  }
+
+ private:
+  Camera CameraOfFrame(const Frame& frame) const {
+    try {
+      return ScaleToImageSize(options_.camera, frame.color.cols, frame.color.rows,
+                              options_.camera_path);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{} (image {})", error.what(), frame.image_name));
+    }
+  }
+
+  const MarkerImporterOptions& options_;
+  const FrameDetector& detector_;
+  FrameSource* source_;
+  DatabaseWriter writer_;
+  bool held_markers_;            // before this run
+  std::atomic<bool> few_found_;  // so far, so that frames are sampled for a hint
+  ImageSample sample_;
+  ImportReport report_;
+  std::set<int> ids_not_in_layout_;
+};
+
+}  // namespace
+
+ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressCallback& progress) {
+  options.detection.Check();
+  options.video.Check();
+  const int num_threads = NumThreads(options.num_threads);
+  const FrameDetector detector = MakeFrameDetector(options.layout, options.detection);
+
+  NewDatabaseGuard guard(options.database_path);
+  ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
+  CheckExisting(options, DescribeDetector(detector), database);
+  std::vector<std::string> known_names;
+  for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
+  const std::unique_ptr<FrameSource> source =
+      OpenFrameSource(options.image_path, options.video, known_names);
+
+  ImportRun run(options, detector, &database, source.get());
+  RunFramePipeline(
+      source.get(), num_threads, [&](int, Frame* frame) { return run.Process(frame); },
+      [&](int frame_idx, const FrameResult& result) {
+        run.Consume(frame_idx, result);
+        if (progress) progress(frame_idx + 1, source->NumFrames(), ProgressLine(result));
+      });
+  ImportReport report = run.Finish();
+  report.num_images_present = static_cast<int>(known_names.size());
+  report.num_pairs = WriteAllMatches(&database);
+  guard.Keep();
+  return report;
+}
+
+}  // namespace velamap
