@@ -17,8 +17,9 @@ struct BundleAdjustmentOptions {
   bool refine_extra_params = false;
   int max_num_iterations = 100;
   double function_tolerance = 1e-6;
-  // COLMAP's adjustment has no robust loss, so observations are cleaned between rounds: those
-  // beyond outlier_ratio robust sigmas of all residuals, but never below min_outlier_error_px.
+  // COLMAP's adjustment has no robust loss, so observations are judged between rounds: those beyond
+  // outlier_ratio robust sigmas of all residuals are left out, but never below
+  // min_outlier_error_px; one left out that has come to fit returns.
   int max_num_rounds = 4;
   double outlier_ratio = 6.0;
   double min_outlier_error_px = 0.5;
@@ -30,9 +31,9 @@ struct BundleAdjustmentOptions {
 };
 
 struct RemovedObservation {
-  ImageId image_id = 0;
-  CornerId corner;
-  double error_px = 0.0;
+  Point3DId point3D_id = 0;
+  TrackElement element;
+  double error_px = 0.0;  // when it was removed; infinite for a point behind the camera
 };
 
 struct BundleAdjustmentSummary {
@@ -40,13 +41,18 @@ struct BundleAdjustmentSummary {
   Statistics error_before_px;
   Statistics error_after_px;
   std::vector<RemovedObservation> removed;  // outliers, in the order of their removal
+  std::vector<ImageId> removed_images;      // left with too few observations to fix their pose
 };
 
-// Adjusts the model in rounds: COLMAP's bundle_adjuster, then removal of outliers, until none is
-// left. The model is ordered for the gauge first and has the same image order, true point errors
-// and (up to removed ones) the same points after. Throws ExternalToolError if COLMAP fails or its
-// result is implausible (images or points lost, numbers not finite, error grown), DataError when
-// the mean error stays above max_mean_error_px or nothing is left. `log_path` gets COLMAP's output.
+// Adjusts the model in rounds: COLMAP's bundle_adjuster, then judgement of the observations, until
+// nothing changes. The first image of `model` gives the world frame. Its images come back ordered
+// for the gauge, less the removed ones, its points less those with too short a track, with true
+// point errors; the scale is arbitrary. Cameras change only where options say so.
+//
+// Throws ExternalToolError if COLMAP fails or its result is implausible (images, points or
+// observations lost, numbers not finite, error grown), DataError when the mean error stays above
+// max_mean_error_px or too little is left to adjust; `model` is untouched then. `log_path` gets
+// COLMAP's output.
 BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
                                          const std::string& log_path, Model* model);
 

@@ -49,8 +49,13 @@ struct Model {
   const ModelImage* FindImage(ImageId image_id) const;
 };
 
-// Throws std::logic_error unless ids are unique, every 2D point and track element refer to each
-// other, every image has its camera, and all numbers are finite.
+// What is wrong with the model, in a line that names the ids; empty for a sound one. Ids must be
+// unique, every 2D point and track element refer to each other, every image have its camera, every
+// rotation unit length, and all numbers be finite (but mean_error_px, which a point behind its
+// camera makes infinite).
+std::string FindModelFault(const Model& model);
+
+// Throws std::logic_error for a model with a fault.
 void CheckModel(const Model& model);
 
 // Takes one observation out of the track and the image. A point that loses its last observation

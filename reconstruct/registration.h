@@ -1,0 +1,84 @@
+// Registers frames to a central frame and averages their markers: the first guess of the surface
+// (thesis sections 3.4 and 3.5).
+//
+// A video is searched in time order as the thesis does. Photographs have no time order: there the
+// central frame is the one that has most markers in common with the others, and images are added
+// one after another to the growing mean shape, so that those that share nothing with the central
+// frame are reached through others.
+
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "importer/camera.h"
+#include "importer/colmap_database.h"
+#include "importer/layout.h"
+#include "reconstruct/frame_alignment.h"
+#include "reconstruct/frame_shape.h"
+#include "reconstruct/shape_averaging.h"
+
+namespace velamap {
+
+enum class FrameOrder {
+  kAuto,       // time where all images carry frame numbers, else none
+  kTime,       // thesis search around the central frame
+  kUnordered,  // growing from the central frame
+};
+
+struct RegistrationOptions {
+  FrameOrder frame_order = FrameOrder::kAuto;
+  std::string central_frame;       // image name or frame number; empty: the best one is chosen
+  int num_frames = 20;             // n, frames on each side of the central one (time order)
+  int skip = 10;                   // s, frames between selected ones (time order)
+  int neighborhood = 5;            // m, frames on each side of the skip that compete (time order)
+  double ransac_max_error_m = 0.0; // 0: the marker's side (the thesis's 100 mm)
+  int min_num_inliers = 2;         // fewest shared markers that agree for a frame to be registered
+  double frequency_threshold = 0.3; // beta, part of the selected frames that see a marker (time)
+  int min_num_frames = 2;          // fewest frames that see a marker
+  int num_mean_iterations = 30;
+  double mean_sigma_m = 0.6;
+  int random_seed = 0;
+
+  void Check() const;  // throws InputError that names the option
+};
+
+struct RegisteredFrame {
+  ImageId image_id = 0;
+  std::string image_name;
+  std::optional<Rigid3> cam_from_shape;  // none: left out, see `reason`
+  std::vector<int> marker_ids;           // markers that stay in this frame, ascending
+  std::vector<int> outlier_ids;          // markers that do not fit their place in the shape
+  double rms_error_m = 0.0;              // of the alignment with the mean shape
+  std::string reason;                    // why it was left out, empty for a registered frame
+};
+
+struct DroppedMarker {
+  int marker_id = 0;
+  int num_frames = 0;
+  std::string reason;
+};
+
+// The shape frame is the cam frame of the central image, m by the nominal marker side.
+struct Registration {
+  ImageId central_image_id = 0;
+  std::string central_image_name;
+  std::string central_reason;           // why this frame is the central one
+  std::vector<RegisteredFrame> frames;  // all images with markers, in order
+  ShapePoints shape;                    // mean points by marker id
+  std::vector<DroppedMarker> dropped_markers;
+  std::vector<std::string> notes;       // parameters that had to be fitted to the data, one a line
+
+  int NumRegistered() const;
+};
+
+// Throws DataError with the reason when there are fewer than two images with markers, or none can
+// be registered with the central one; InputError for an unknown central frame. The order of
+// `images` and their ids do not matter.
+Registration RegisterFrames(const std::vector<DatabaseImage>& images,
+                            const std::map<CameraId, Camera>& cameras, const Layout& layout,
+                            const RegistrationOptions& options);
+
+}  // namespace velamap

@@ -1,0 +1,27 @@
+// From a registration to the COLMAP model that the bundle adjustment starts from.
+
+#pragma once
+
+#include <iosfwd>
+#include <map>
+#include <vector>
+
+#include "importer/colmap_database.h"
+#include "reconstruct/model.h"
+#include "reconstruct/registration.h"
+
+namespace velamap {
+
+// Every registered image with all keypoints of the database, every corner of the mean shape as point
+// 10*k + c with its complete track, coloured by the mean over the track. The central image comes
+// first (it is the origin) and the others in the order that reconstruct/gauge.h explains. Images
+// left with fewer than two markers, and points with fewer than two observations, stay out.
+// Throws DataError when fewer than two images are left.
+Model MakeSeedModel(const Registration& registration, const std::vector<DatabaseImage>& images,
+                    const std::map<CameraId, Camera>& cameras);
+
+// One row an image with markers: image_name, registered, num_markers, num_outliers, rms_error_mm,
+// reason.
+void WriteRegistrationCsv(const Registration& registration, std::ostream& out);
+
+}  // namespace velamap
