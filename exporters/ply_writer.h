@@ -17,9 +17,9 @@ enum class PlyFormat { kBinaryLittleEndian, kAscii };
 void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyFormat format,
                     std::ostream& out);
 
-// One quadrilateral a whole marker, seen from the front counter-clockwise, so that its normal is the
-// marker's outward one: four vertices with double x y z, float nx ny nz, int marker_id, int corner,
-// and faces with vertex_indices and int marker_id.
+// One quadrilateral a whole marker, seen from the front counter-clockwise, so that its normal is
+// the marker's outward one: four vertices with double x y z, float nx ny nz, int marker_id, int
+// corner, and faces with vertex_indices and int marker_id.
 void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out);
 
 }  // namespace velamap

@@ -24,9 +24,11 @@ struct ShapeExportReport {
   Statistics reprojection_error_px;
 };
 
-// Writes shape.csv, shape.ply (points) and markers.ply (squares) into shape_output_path and the
-// metric COLMAP model, each folder to a temporary sibling that is renamed when whole.
-// Throws DataError (no marker gives a scale), InputError (unwritable output).
+// Writes shape.csv, shape.ply (points), markers.ply (squares) and scale.csv into shape_output_path,
+// and the metric COLMAP model with true point errors, each folder to a temporary sibling that is
+// renamed when whole. A folder that exists is replaced if it holds nothing but files of these
+// names. Throws DataError (no marker gives a scale), InputError (unwritable output, a folder with
+// other files, one folder inside the other).
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
                               const ShapeExporterOptions& options);
 

@@ -26,12 +26,13 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout)
 
 struct ShapeComparison {
   int num_points = 0;
-  Statistics distance_m;      // after rigid alignment without scale, points that both shapes have
-  double scale = 1.0;         // this shape / reference, from the alignment with scale
+  Statistics distance_m;  // after rigid alignment without scale, points that both shapes have
+  double scale = 1.0;     // this shape / reference, from the alignment with scale
   Statistics distance_after_scaling_m;
 };
 
-// Aligns common corners (not centres) by least squares. Throws DataError with fewer than three.
+// Aligns common corners (not centres) by least squares. Throws DataError with fewer than three, or
+// when they all lie in one point.
 ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference);
 
 }  // namespace velamap

@@ -1,0 +1,110 @@
+#include "exporters/shape_exporter.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "exporters/metric_shape.h"
+#include "exporters/ply_writer.h"
+#include "exporters/scale_csv.h"
+#include "exporters/shape_csv.h"
+#include "importer/atomic_output.h"
+#include "importer/error.h"
+#include "reconstruct/model_io.h"
+#include "reconstruct/reprojection.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::set<std::string> kModelFiles = {"cameras.bin", "images.bin", "points3D.bin",
+                                           "cameras.txt", "images.txt", "points3D.txt"};
+const std::set<std::string> kShapeFiles = {"shape.csv", "shape.ply", "markers.ply", "scale.csv"};
+
+// A folder is replaced as a whole, so it must hold nothing but what an earlier run wrote: a
+// mistyped path shall not cost anyone their files.
+void CheckReplaceable(const fs::path& path, const std::set<std::string>& our_files) {
+  std::error_code error;
+  const bool exists = fs::exists(path, error);
+  if (error) throw InputError(path.string() + ": cannot be written: " + error.message());
+  if (!exists) return;
+  if (!fs::is_directory(path, error)) {
+    throw InputError(path.string() + ": is not a folder; choose another output path");
+  }
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (our_files.count(name) > 0 && entry->is_regular_file(error)) continue;
+    throw InputError(path.string() + ": the output folder holds " + name +
+                     ", which velamap did not write there; choose another folder or empty it");
+  }
+  if (error) throw InputError(path.string() + ": cannot be read: " + error.message());
+}
+
+bool IsInside(const fs::path& path, const fs::path& folder) {
+  const auto [mismatch, unused] =
+      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return mismatch == folder.end();
+}
+
+// The path without dots and a slash at its end; empty stays empty.
+fs::path OutputFolder(const std::string& path) {
+  if (path.empty()) return {};
+  const fs::path absolute = fs::absolute(path).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) {
+  if (!model_path.empty()) CheckReplaceable(model_path, kModelFiles);
+  if (!shape_path.empty()) CheckReplaceable(shape_path, kShapeFiles);
+  if (model_path.empty() || shape_path.empty()) return;
+  if (IsInside(model_path, shape_path) || IsInside(shape_path, model_path)) {
+    throw InputError(shape_path.string() + ": the folders of the shape and of the model (" +
+                     model_path.string() + ") must not be the same or one inside the other");
+  }
+}
+
+void WriteShapeFiles(const ShapeExportReport& report, const Model& metric_model, bool ascii_ply,
+                     const fs::path& folder) {
+  const PlyFormat format = ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
+  WriteFile(folder / "shape.csv", [&](std::ostream& out) { WriteShapeCsv(report.shape, out); });
+  WriteFile(folder / "shape.ply",
+            [&](std::ostream& out) { WritePointsPly(report.shape, metric_model, format, out); });
+  WriteFile(folder / "markers.ply",
+            [&](std::ostream& out) { WriteMarkersPly(report.shape, format, out); });
+  WriteFile(folder / "scale.csv", [&](std::ostream& out) { WriteScaleCsv(report.scale, out); });
+}
+
+}  // namespace
+
+ShapeExportReport ExportShape(const Model& model, const Layout& layout,
+                              const ShapeExporterOptions& options) {
+  const fs::path model_path = OutputFolder(options.model_output_path);
+  const fs::path shape_path = OutputFolder(options.shape_output_path);
+  CheckOutputFolders(model_path, shape_path);
+
+  ShapeExportReport report;
+  report.scale = EstimateScale(model, layout);
+  Model metric_model = model;
+  ScaleModel(report.scale, &metric_model);
+  UpdatePointErrors(&metric_model);
+  report.shape = ShapeFromModel(metric_model, layout);
+  report.metrics = ComputeShapeMetrics(report.shape, layout);
+  report.reprojection_error_px =
+      SummarizeReprojectionErrors(ComputeReprojectionErrors(metric_model));
+
+  std::optional<AtomicFolder> shape_folder;
+  if (!shape_path.empty()) {
+    shape_folder.emplace(shape_path);
+    WriteShapeFiles(report, metric_model, options.ascii_ply, shape_folder->TemporaryPath());
+  }
+  if (!model_path.empty()) {
+    WriteModel(metric_model, model_path.string(), ModelFormat::kBinaryAndText);
+  }
+  // Last, so that a model that cannot be written leaves the old shape beside the old model.
+  if (shape_folder) shape_folder->Commit();
+  return report;
+}
+
+}  // namespace velamap

@@ -1,0 +1,109 @@
+#include "exporters/shape_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "importer/error.h"
+#include "reconstruct/alignment.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kMmPerM = 1e3;
+constexpr int kMinCommonPoints = 3;
+
+std::map<CornerId, Eigen::Vector3d> CornersOf(const MarkerShape& shape) {
+  std::map<CornerId, Eigen::Vector3d> corners;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      const auto& x_in_shape_m = marker.x_in_shape_m[corner];
+      if (x_in_shape_m) corners[{marker.marker_id, corner}] = *x_in_shape_m;
+    }
+  }
+  return corners;
+}
+
+bool LieInOnePoint(const std::vector<Eigen::Vector3d>& points) {
+  return std::all_of(points.begin(), points.end(),
+                     [&](const Eigen::Vector3d& x) { return x == points.front(); });
+}
+
+template <typename Transform>
+Statistics DistanceStatistics(const Transform& reference_from_shape,
+                              const std::vector<Eigen::Vector3d>& x_in_shape_m,
+                              const std::vector<Eigen::Vector3d>& x_in_reference_m) {
+  std::vector<double> distances_m;
+  for (std::size_t i = 0; i < x_in_shape_m.size(); ++i) {
+    distances_m.push_back((reference_from_shape * x_in_shape_m[i] - x_in_reference_m[i]).norm());
+  }
+  return ComputeStatistics(std::move(distances_m));
+}
+
+}  // namespace
+
+ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout) {
+  ShapeMetrics metrics;
+  std::vector<double> area_errors_mm2, area_errors_percent, side_errors_mm;
+  std::map<int, bool> is_whole;
+  for (const ShapeMarker& marker : shape.markers) {
+    is_whole[marker.marker_id] = marker.IsWhole();
+    if (!marker.IsWhole()) continue;
+    ++metrics.num_markers;
+    const double printed_side_m = MarkerLength(layout, marker.marker_id);
+    const double printed_area_m2 = printed_side_m * printed_side_m;
+    const double area_error_m2 = std::abs(MarkerArea(marker) - printed_area_m2);
+    area_errors_mm2.push_back(area_error_m2 * kMmPerM * kMmPerM);
+    area_errors_percent.push_back(100.0 * area_error_m2 / printed_area_m2);
+    for (const double side_m : MarkerSides(marker)) {
+      side_errors_mm.push_back(std::abs(side_m - printed_side_m) * kMmPerM);
+    }
+  }
+  metrics.area_error_mm2 = ComputeStatistics(std::move(area_errors_mm2));
+  metrics.area_error_percent = ComputeStatistics(std::move(area_errors_percent));
+  metrics.side_error_mm = ComputeStatistics(std::move(side_errors_mm));
+
+  const std::vector<int> layout_ids = MarkerIds(layout);
+  if (!layout_ids.empty()) {
+    for (const int marker_id : layout_ids) {
+      if (!is_whole[marker_id]) metrics.missing_marker_ids.push_back(marker_id);
+    }
+    const int num_layout = static_cast<int>(layout_ids.size());
+    const int num_missing = static_cast<int>(metrics.missing_marker_ids.size());
+    metrics.num_layout_markers = num_layout;
+    metrics.reconstruction_ratio = static_cast<double>(num_layout - num_missing) / num_layout;
+  }
+  return metrics;
+}
+
+ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference) {
+  const auto reference_corners = CornersOf(reference);
+  std::vector<Eigen::Vector3d> x_in_shape_m, x_in_reference_m;
+  for (const auto& [id, x] : CornersOf(shape)) {
+    const auto common = reference_corners.find(id);
+    if (common == reference_corners.end()) continue;
+    x_in_shape_m.push_back(x);
+    x_in_reference_m.push_back(common->second);
+  }
+  ShapeComparison comparison;
+  comparison.num_points = static_cast<int>(x_in_shape_m.size());
+  if (comparison.num_points < kMinCommonPoints) {
+    throw DataError("the shape and its reference have " + std::to_string(comparison.num_points) +
+                    " marker corners in common, an alignment needs " +
+                    std::to_string(kMinCommonPoints));
+  }
+  if (LieInOnePoint(x_in_shape_m) || LieInOnePoint(x_in_reference_m)) {
+    throw DataError("the corners that the shape and its reference share lie in one point");
+  }
+  // Both are taken into the reference's frame, so that distances are in the reference's metres.
+  comparison.distance_m = DistanceStatistics(EstimateRigid3(x_in_shape_m, x_in_reference_m),
+                                             x_in_shape_m, x_in_reference_m);
+  const Sim3 reference_from_shape = EstimateSim3(x_in_shape_m, x_in_reference_m);
+  comparison.scale = 1.0 / reference_from_shape.scale;
+  comparison.distance_after_scaling_m =
+      DistanceStatistics(reference_from_shape, x_in_shape_m, x_in_reference_m);
+  return comparison;
+}
+
+}  // namespace velamap
