@@ -1,0 +1,120 @@
+#include <iostream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/atomic_output.h"
+#include "importer/calibration.h"
+#include "reconstruct/model_io.h"
+#include "reconstruct/seed_model.h"
+#include "workflows/commands.h"
+#include "workflows/logging.h"
+#include "workflows/pipeline.h"
+#include "workflows/shared_options.h"
+#include "workflows/summary.h"
+#include "workflows/version.h"
+#include "workflows/workspace.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  MarkerImporterOptions importer;
+  RegistrationOptions registration;
+  BundleAdjustmentOptions adjustment;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {"automatic_reconstructor",
+          "photographs or a video of markers in, a workspace with the metric shape out",
+          "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
+          "    --workspace_path result",
+          {{"Input and output",
+            {ImagePathOption(paths), CameraPathOption(paths),
+             {"workspace_path", &paths->workspace_path, "path",
+              "folder of the result: new, empty, or of an earlier run, whose database is used on",
+              true}}},
+           MarkerGroup(&options->markers, true),
+           ArucoDetectionGroup(&options->importer.detection),
+           VideoGroup(&options->importer.video),
+           RegistrationGroup(&options->registration),
+           BundleAdjustmentGroup(&options->adjustment),
+           GeneralGroup(&options->general)}};
+}
+
+// Everything that can be refused without touching the workspace.
+void Validate(Options* options) {
+  ApplyGeneralOptions(options->general);
+  options->importer.detection.Check();
+  options->importer.video.Check();
+  options->registration.random_seed = options->general.random_seed;
+  options->registration.Check();
+  options->adjustment.Check();
+  options->importer.layout = LoadLayout(options->markers, true);
+  options->importer.camera = ReadCalibration(options->paths.camera_path);
+  options->importer.camera_path = options->paths.camera_path;
+  options->importer.image_path = options->paths.image_path;
+  options->importer.num_threads = options->general.num_threads;
+  CheckColmap(options->adjustment.colmap_path);
+}
+
+void Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* unreadable) {
+  options->importer.database_path = workspace->paths().Database().string();
+  options->importer.frame_output_path = workspace->paths().Images().string();
+  const ImportReport report = ImportImages(options->importer);
+  workspace->Keep();
+  for (const SkippedImage& skipped : report.skipped) {
+    unreadable->push_back({skipped.image_name, skipped.reason});
+  }
+}
+
+// From the seed to the final files. sparse/ and shape/ change places with the old ones when both
+// are whole.
+void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
+                     ReconstructionSummary* summary) {
+  AtomicFolder sparse(paths.Sparse());
+  WriteModel(seed.model, (sparse.TemporaryPath() / "seed").string(), ModelFormat::kBinaryAndText);
+  Model model = seed.model;
+  summary->adjustment = AdjustModel(options.adjustment, paths.ColmapLog().string(), &model);
+  AddModelImages(model, options.paths.image_path, paths.Images());
+  summary->shape = ExportShape(model, options.importer.layout,
+                               {(sparse.TemporaryPath() / "0").string(), paths.Shape().string()});
+  sparse.Commit();
+  WriteFileAtomically(paths.RegistrationCsv(), [&seed](std::ostream& out) {
+    WriteRegistrationCsv(seed.registration, out);
+  });
+  RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
+  summary->num_images = static_cast<int>(model.images.size());
+}
+
+}  // namespace
+
+void RunAutomaticReconstructor(const Arguments& arguments) {
+  Options options;
+  const CommandSyntax syntax = Declare(&options);
+  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
+    PrintHelp(syntax, std::cout);
+    return;
+  }
+  Validate(&options);
+  Workspace workspace(options.paths.workspace_path, options.paths.image_path);
+  const WorkspacePaths& paths = workspace.paths();
+  AddLogFile(paths.Log().string());
+  spdlog::info("velamap {} automatic_reconstructor {}", kVersion, fmt::join(arguments, " "));
+
+  ReconstructionSummary summary;
+  Import(&options, &workspace, &summary.left_out);
+  const SeedResult seed = RegisterDatabase(paths.Database().string(), options.importer.layout,
+                                           options.registration);
+  summary.num_images_total = static_cast<int>(seed.image_names.size() + summary.left_out.size());
+  summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
+  AdjustAndExport(options, paths, seed, &summary);
+  PrintSummary(summary, paths, std::cout);
+}
+
+}  // namespace velamap

@@ -1,0 +1,80 @@
+#include <iostream>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <fmt/ranges.h>
+
+#include "importer/calibration.h"
+#include "workflows/commands.h"
+#include "workflows/pipeline.h"
+#include "workflows/shared_options.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  MarkerImporterOptions importer;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {"marker_importer",
+          "finds the markers in images or a video and writes them into a COLMAP database; images "
+          "that the database already holds are passed over",
+          "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
+          "    --database_path database.db",
+          {{"Input and output",
+            {ImagePathOption(paths), CameraPathOption(paths),
+             DatabasePathOption(paths, "COLMAP database, made new or added to"),
+             {"frame_output_path", &paths->frame_output_path, "path",
+              "folder for the frames of a video that hold markers, as JPEG; left out: none are "
+              "written"}}},
+           MarkerGroup(&options->markers, true),
+           ArucoDetectionGroup(&options->importer.detection),
+           VideoGroup(&options->importer.video),
+           GeneralGroup(&options->general)}};
+}
+
+void Validate(Options* options) {
+  ApplyGeneralOptions(options->general);
+  MarkerImporterOptions& importer = options->importer;
+  importer.detection.Check();
+  importer.video.Check();
+  importer.layout = LoadLayout(options->markers, true);
+  importer.camera = ReadCalibration(options->paths.camera_path);
+  importer.camera_path = options->paths.camera_path;
+  importer.image_path = options->paths.image_path;
+  importer.database_path = options->paths.database_path;
+  importer.frame_output_path = options->paths.frame_output_path;
+  importer.num_threads = options->general.num_threads;
+}
+
+void Print(const ImportReport& report, const std::string& database_path, std::ostream& out) {
+  fmt::print(out, "images_added: {}\n", report.num_images_added);
+  fmt::print(out, "images_present: {}\n", report.num_images_present);
+  fmt::print(out, "images_without_markers: {}\n", report.num_images_without_markers);
+  fmt::print(out, "images_skipped: {}\n", report.skipped.size());
+  fmt::print(out, "markers: {}\n", report.num_markers);
+  fmt::print(out, "markers_rejected: {}\n", report.num_rejected);
+  fmt::print(out, "ids_not_in_layout: {}\n", fmt::join(report.ids_not_in_layout, " "));
+  fmt::print(out, "pairs_with_matches: {}\n", report.num_pairs);
+  fmt::print(out, "database_path: {}\n", database_path);
+}
+
+}  // namespace
+
+void RunMarkerImporter(const Arguments& arguments) {
+  Options options;
+  const CommandSyntax syntax = Declare(&options);
+  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
+    PrintHelp(syntax, std::cout);
+    return;
+  }
+  Validate(&options);
+  Print(ImportImages(options.importer), options.paths.database_path, std::cout);
+}
+
+}  // namespace velamap

@@ -1,0 +1,66 @@
+#include <iostream>
+
+#include "importer/error.h"
+#include "reconstruct/model_io.h"
+#include "workflows/commands.h"
+#include "workflows/shared_options.h"
+#include "workflows/summary.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  bool ascii_ply = false;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {"shape_exporter",
+          "scales a model to metres by the markers' sides and writes the shape",
+          "--input_path sparse/0 --layout_path layout.yml --output_path metric --shape_path shape",
+          {{"Input and output",
+            {ModelInputOption(paths),
+             {"output_path", &paths->output_path, "path",
+              "folder of the metric model; left out: it is not written"},
+             {"shape_path", &paths->shape_path, "path",
+              "folder of shape.csv, shape.ply, markers.ply, scale.csv; left out: none is written"},
+             {"ascii_ply", &options->ascii_ply, "0|1", "PLY as text instead of binary"}}},
+           MarkerGroup(&options->markers, false),
+           GeneralGroup(&options->general)}};
+}
+
+void Validate(const Options& options) {
+  ApplyGeneralOptions(options.general);
+  if (options.paths.output_path.empty() && options.paths.shape_path.empty()) {
+    throw InputError(
+        "--shape_path: missing; give --shape_path, --output_path or both to say what to write");
+  }
+}
+
+void Print(const ShapeExportReport& report, const PathOptions& paths, std::ostream& out) {
+  PrintShapeSummary(report, out);
+  if (!paths.shape_path.empty()) out << "shape_path: " << paths.shape_path << '\n';
+  if (!paths.output_path.empty()) out << "model_path: " << paths.output_path << '\n';
+}
+
+}  // namespace
+
+void RunShapeExporter(const Arguments& arguments) {
+  Options options;
+  const CommandSyntax syntax = Declare(&options);
+  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
+    PrintHelp(syntax, std::cout);
+    return;
+  }
+  Validate(options);
+  const Layout layout = LoadLayout(options.markers, false);
+  const ShapeExportReport report =
+      ExportShape(ReadModel(options.paths.input_path), layout,
+                  {options.paths.output_path, options.paths.shape_path, options.ascii_ply});
+  Print(report, options.paths, std::cout);
+}
+
+}  // namespace velamap

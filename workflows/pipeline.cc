@@ -1,0 +1,139 @@
+#include "workflows/pipeline.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/colmap_database.h"
+#include "importer/error.h"
+#include "reconstruct/colmap_runner.h"
+#include "reconstruct/seed_model.h"
+#include "workflows/progress.h"
+
+namespace velamap {
+namespace {
+
+// More lines than this say no more; the registration table has all.
+constexpr std::size_t kMaxListed = 10;
+
+std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
+  std::set<std::string> used;
+  for (const ModelImage& image : seed.model.images) used.insert(image.name);
+  std::map<std::string, std::string> reasons;
+  for (const RegisteredFrame& frame : seed.registration.frames) {
+    reasons[frame.image_name] =
+        frame.reason.empty() ? "fewer than two of its markers stay" : frame.reason;
+  }
+  std::vector<LeftOutImage> left_out;
+  for (const std::string& name : seed.image_names) {
+    if (used.count(name) > 0) continue;
+    const auto it = reasons.find(name);
+    left_out.push_back({name, it == reasons.end() ? "no marker found" : it->second});
+  }
+  return left_out;
+}
+
+void LogSeed(const SeedResult& seed) {
+  const Registration& registration = seed.registration;
+  spdlog::info("central image {}: {}", registration.central_image_name,
+               registration.central_reason);
+  for (const std::string& note : registration.notes) spdlog::info(note);
+  spdlog::info("{} of {} images registered, {} markers", seed.model.images.size(),
+               seed.image_names.size(), registration.shape.size());
+  for (std::size_t i = 0; i < std::min(seed.left_out.size(), kMaxListed); ++i) {
+    spdlog::info("{} left out: {}", seed.left_out[i].image_name, seed.left_out[i].reason);
+  }
+  if (seed.left_out.size() > kMaxListed) {
+    spdlog::info("and {} more images left out", seed.left_out.size() - kMaxListed);
+  }
+  for (const DroppedMarker& marker : registration.dropped_markers) {
+    spdlog::debug("marker {} left out: {}", marker.marker_id, marker.reason);
+  }
+}
+
+}  // namespace
+
+ImportReport ImportImages(const MarkerImporterOptions& options) {
+  Progress progress("detecting markers");
+  const ImportReport report =
+      ImportMarkers(options, [&progress](int done, int total, const std::string& message) {
+        progress.Update(done, total, message);
+      });
+  ClearProgressLine();
+  spdlog::info("{} images added to the {} of the database, {} markers found", report.num_images_added,
+               report.num_images_present, report.num_markers);
+  if (!report.ids_not_in_layout.empty()) {
+    spdlog::warn("markers found that the layout does not name, left out: {}",
+                 fmt::join(report.ids_not_in_layout, " "));
+  }
+  return report;
+}
+
+SeedResult RegisterDatabase(const std::string& database_path, const Layout& layout,
+                            const RegistrationOptions& options) {
+  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly);
+  const std::vector<DatabaseImage> images = database.ReadImages();
+  const std::map<CameraId, Camera> cameras = database.ReadCameras();
+  SeedResult seed;
+  for (const auto& [name, image_id] : database.ReadImageIdsByName()) {
+    seed.image_names.push_back(name);
+  }
+  spdlog::info("registering {} images", images.size());
+  seed.registration = RegisterFrames(images, cameras, layout, options);
+  seed.model = MakeSeedModel(seed.registration, images, cameras);
+  seed.left_out = FindLeftOut(seed);
+  LogSeed(seed);
+  return seed;
+}
+
+std::string BesideFolder(const std::string& folder, const std::string& name) {
+  const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
+  const auto parent = absolute.parent_path();
+  return ((absolute.has_filename() ? parent : parent.parent_path()) / name).string();
+}
+
+void CheckModelFolder(const std::string& path) {
+  static const std::set<std::string> kModelFiles = {"cameras.bin", "images.bin", "points3D.bin",
+                                                    "cameras.txt", "images.txt", "points3D.txt"};
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (kModelFiles.count(name) > 0) continue;
+    throw InputError(fmt::format("--output_path {}: holds {}, which is no part of a model; give a "
+                                 "new or an empty folder",
+                                 path, name));
+  }
+}
+
+void CheckBackend(const std::string& backend) {
+  if (backend != "colmap") {
+    throw InputError(fmt::format("--backend: '{}' is unknown; there is: colmap", backend));
+  }
+}
+
+void CheckColmap(const std::string& colmap_path) {
+  if (!ColmapHasOption(colmap_path, "bundle_adjuster", "input_path")) {
+    throw ExternalToolError(fmt::format("{} bundle_adjuster -h: does not know --input_path; is it "
+                                        "COLMAP? (--colmap_path)",
+                                        colmap_path));
+  }
+}
+
+BundleAdjustmentSummary AdjustModel(const BundleAdjustmentOptions& options,
+                                    const std::string& log_path, Model* model) {
+  spdlog::info("bundle adjustment of {} images and {} points by {}", model->images.size(),
+               model->points3D.size(), options.colmap_path);
+  const BundleAdjustmentSummary summary = AdjustWithColmap(options, log_path, model);
+  spdlog::info("{} rounds, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px",
+               summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
+               summary.error_after_px.mean);
+  return summary;
+}
+
+}  // namespace velamap

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# Reconstructs several inputs (folders of images, or videos) with one camera and layout, each into
+# its own workspace, and writes one row each into OUTPUT/summary.csv.
+#
+# usage: workflows/run_batch.sh --output_path FOLDER [--keep_going] INPUT... [-- VELAMAP_OPTION...]
+#
+# What follows -- goes to every `velamap automatic_reconstructor` call:
+#   workflows/run_batch.sh --output_path results sail1.mp4 sail2.mp4 -- \
+#     --camera_path camera.yml --layout_path layout.yml
+#
+# Stops at the first failure unless --keep_going; the exit code is that of the first failure.
+# VELAMAP: the program, default the one of build/release, else the one on the PATH.
+set -euo pipefail
+
+fail() {
+  echo "error: $*" >&2
+  exit 2
+}
+
+output_path=""
+keep_going=0
+inputs=()
+while [[ $# -gt 0 && "$1" != -- ]]; do
+  case "$1" in
+    --output_path) output_path="${2:-}"; shift 2 || fail "--output_path needs a folder" ;;
+    --keep_going) keep_going=1; shift ;;
+    --help) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
+    --*) fail "$1: unknown option; velamap's own go behind --" ;;
+    *) inputs+=("$1"); shift ;;
+  esac
+done
+[[ $# -gt 0 ]] && shift
+[[ -n "$output_path" ]] || fail "--output_path is missing"
+[[ ${#inputs[@]} -gt 0 ]] || fail "no input given"
+
+velamap="${VELAMAP:-$(dirname "${BASH_SOURCE[0]}")/../build/release/workflows/velamap}"
+[[ -x "$velamap" ]] || velamap="$(command -v velamap)" ||
+  fail "velamap is not built; run workflows/build.sh release"
+
+# sail.mp4 and sail/ become the workspace sail; two inputs of one name would overwrite each other.
+workspace_name() {
+  local name
+  name="$(basename "$1")"
+  if [[ -d "$1" ]]; then echo "$name"; else echo "${name%.*}"; fi
+}
+duplicates="$(for input in "${inputs[@]}"; do workspace_name "$input"; done | sort | uniq -d)"
+[[ -z "$duplicates" ]] || fail "several inputs would go into the workspace $duplicates; rename one"
+
+keys=(images_used images_left_out markers_reconstructed reprojection_error_px marker_area_error
+  scale_m_per_unit scale_spread_over_markers bounding_box_m outliers_removed)
+
+csv_field() { printf '"%s"' "${1//\"/\"\"}"; }
+
+mkdir -p "$output_path"
+summary="$output_path/summary.csv"
+{ printf 'input,workspace,exit_code,error'; printf ',%s' "${keys[@]}"; printf '\n'; } >"$summary"
+results="$(mktemp)"
+errors="$(mktemp)"
+trap 'rm -f "$results" "$errors"' EXIT
+
+first_failure=0
+for input in "${inputs[@]}"; do
+  workspace="$output_path/$(workspace_name "$input")"
+  echo "== $input -> $workspace"
+  status=0
+  "$velamap" automatic_reconstructor --image_path "$input" --workspace_path "$workspace" "$@" \
+    2>&1 >"$results" | tee "$errors" >&2 || status="${PIPESTATUS[0]}"
+  {
+    csv_field "$input"; printf ','
+    csv_field "$workspace"; printf ',%d,' "$status"
+    csv_field "$(sed -n 's/^error: //p' "$errors" | tail -n 1)"
+    for key in "${keys[@]}"; do
+      printf ','
+      csv_field "$(sed -n "s/^$key: //p" "$results")"
+    done
+    printf '\n'
+  } >>"$summary"
+  cat "$results"
+  if [[ $status -ne 0 ]]; then
+    [[ $first_failure -ne 0 ]] || first_failure=$status
+    [[ $keep_going -eq 1 ]] || break
+  fi
+done
+echo "== summary: $summary"
+exit "$first_failure"

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that velamap is built with. As root, or through sudo.
+# usage: workflows/setup.sh [--with-tests]
+set -euo pipefail
+
+packages=(
+  build-essential cmake ninja-build ccache pkg-config colmap
+  libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
+  libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev
+  libboost-program-options-dev libspdlog-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
+)
+test_packages=(xvfb xauth imagemagick ffmpeg x11-utils)
+
+case "${1:-}" in
+  "") ;;
+  --with-tests) packages+=("${test_packages[@]}") ;;
+  *) echo "usage: $0 [--with-tests]" >&2; exit 2 ;;
+esac
+
+is_installed() {
+  [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
+}
+
+missing=()
+for package in "${packages[@]}"; do
+  is_installed "$package" || missing+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 ]]; then
+  echo "== setup: all ${#packages[@]} packages are installed"
+  exit 0
+fi
+
+as_root=()
+if [[ "$(id -u)" -ne 0 ]]; then
+  if ! command -v sudo >/dev/null; then
+    echo "error: packages are missing (${missing[*]}); run this as root or install sudo" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "== setup: installing ${missing[*]}"
+"${as_root[@]}" apt-get update
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install --yes --no-install-recommends "${missing[@]}"

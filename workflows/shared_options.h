@@ -1,0 +1,71 @@
+// Options that several commands share, each declared in this one place.
+
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include "importer/layout.h"
+#include "importer/options.h"
+#include "reconstruct/bundle_adjustment.h"
+#include "reconstruct/registration.h"
+#include "workflows/option_parser.h"
+
+namespace velamap {
+
+struct GeneralOptions {
+  std::string log_level = "info";
+  int random_seed = 0;
+  int num_threads = 0;  // 0: one a core
+};
+
+// Files and folders; each command declares those that it reads or writes.
+struct PathOptions {
+  std::string image_path;
+  std::string camera_path;
+  std::string database_path;
+  std::string frame_output_path;
+  std::string workspace_path;
+  std::string input_path;
+  std::string output_path;
+  std::string shape_path;
+  std::string reference_path;
+  std::string registration_path;
+  std::string log_path;
+};
+
+// What is known of the markers: a layout file, or the options that replace it.
+struct MarkerOptions {
+  std::string layout_path;
+  std::string dictionary;
+  std::optional<double> marker_length_m;
+};
+
+Option ImagePathOption(PathOptions* paths);
+Option CameraPathOption(PathOptions* paths);
+Option DatabasePathOption(PathOptions* paths, const std::string& description);
+Option ModelInputOption(PathOptions* paths);
+
+OptionGroup GeneralGroup(GeneralOptions* options);
+// Without detection the dictionary does not matter.
+OptionGroup MarkerGroup(MarkerOptions* options, bool with_dictionary);
+OptionGroup ArucoDetectionGroup(ArucoDetectionOptions* options);
+OptionGroup VideoGroup(VideoOptions* options);
+OptionGroup RegistrationGroup(RegistrationOptions* options);
+OptionGroup BundleAdjustmentGroup(BundleAdjustmentOptions* options);
+
+// Names of all options in this file: one project file may hold them for all commands.
+std::set<std::string> SharedOptionNames();
+
+// Whether anything says how large the markers are.
+bool HasMarkerOptions(const MarkerOptions& options);
+
+// Throws InputError unless a layout file alone, or a marker length (with a dictionary, where one is
+// needed) is given, and for what ReadLayout() refuses.
+Layout LoadLayout(const MarkerOptions& options, bool with_dictionary);
+
+// Sets the log level and the bounds that more than one library relies on. Throws InputError.
+void ApplyGeneralOptions(const GeneralOptions& options);
+
+}  // namespace velamap

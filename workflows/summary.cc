@@ -1,0 +1,126 @@
+#include "workflows/summary.h"
+
+#include <algorithm>
+#include <cctype>
+#include <ostream>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+namespace velamap {
+namespace {
+
+constexpr std::size_t kMaxNames = 3;
+
+struct ReasonGroup {
+  std::string key;     // the reason without its numbers
+  std::string reason;  // of the first image
+  std::vector<std::string> names;
+};
+
+std::string WithoutNumbers(const std::string& text) {
+  std::string rest;
+  for (const char c : text) {
+    if (!std::isdigit(static_cast<unsigned char>(c))) rest += c;
+  }
+  return rest;
+}
+
+std::vector<ReasonGroup> GroupByReason(const std::vector<LeftOutImage>& left_out) {
+  std::vector<ReasonGroup> groups;
+  for (const LeftOutImage& image : left_out) {
+    const std::string key = WithoutNumbers(image.reason);
+    auto it = std::find_if(groups.begin(), groups.end(),
+                           [&](const ReasonGroup& group) { return group.key == key; });
+    if (it == groups.end()) it = groups.insert(it, {key, image.reason, {}});
+    it->names.push_back(image.image_name);
+  }
+  return groups;
+}
+
+std::string FirstNames(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxNames); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  return names.size() > kMaxNames ? text + ", ..." : text;
+}
+
+}  // namespace
+
+std::string LeftOutText(const std::vector<LeftOutImage>& left_out) {
+  if (left_out.empty()) return "none";
+  std::string text = fmt::format("{}", left_out.size());
+  for (const ReasonGroup& group : GroupByReason(left_out)) {
+    text += fmt::format("; {}: {} ({})", group.names.size(), group.reason, FirstNames(group.names));
+  }
+  return text;
+}
+
+std::string ErrorText(const Statistics& statistics) {
+  return fmt::format("mean {:.3f}, median {:.3f}, max {:.3f}", statistics.mean, statistics.median,
+                     statistics.max);
+}
+
+Eigen::Vector3d BoundingBox(const MarkerShape& shape) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      if (marker.x_in_shape_m[corner]) points.push_back(*marker.x_in_shape_m[corner]);
+    }
+  }
+  if (points.empty()) return Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    scatter += (point - mean) * (point - mean).transpose();
+  }
+  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& point : points) box.extend(axes.transpose() * (point - mean));
+  Eigen::Vector3d sides = box.sizes();
+  std::sort(sides.data(), sides.data() + 3, std::greater<double>());
+  return sides;
+}
+
+std::string ShellQuote(const std::string& text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) || std::string("/._-+,:@%").find(static_cast<char>(c)) != std::string::npos;
+  });
+  if (plain) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
+  const ShapeMetrics& metrics = report.metrics;
+  const Eigen::Vector3d box_m = BoundingBox(report.shape);
+  out << "markers_reconstructed: " << metrics.num_markers;
+  if (metrics.num_layout_markers) out << " of " << *metrics.num_layout_markers << " in the layout";
+  out << '\n';
+  fmt::print(out, "reprojection_error_px: {}\n", ErrorText(report.reprojection_error_px));
+  fmt::print(out, "marker_area_error: mean {:.3f} mm2, {:.3f} %\n", metrics.area_error_mm2.mean,
+             metrics.area_error_percent.mean);
+  fmt::print(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
+  fmt::print(out, "scale_spread_over_markers: {:.3f} %\n", 100.0 * report.scale.relative_spread);
+  fmt::print(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
+}
+
+void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
+                  std::ostream& out) {
+  fmt::print(out, "images_used: {} of {}\n", summary.num_images, summary.num_images_total);
+  fmt::print(out, "images_left_out: {}\n", LeftOutText(summary.left_out));
+  PrintShapeSummary(summary.shape, out);
+  fmt::print(out, "outliers_removed: {} of {} observations\n", summary.adjustment.removed.size(),
+             summary.adjustment.error_before_px.count);
+  fmt::print(out, "shape_path: {}\n", paths.Shape().string());
+  fmt::print(out, "model_path: {}\n", paths.Model().string());
+  fmt::print(out, "colmap_command: colmap gui --database_path {} --image_path {} --import_path {}\n",
+             ShellQuote(paths.Database().string()), ShellQuote(paths.Images().string()),
+             ShellQuote(paths.Model().string()));
+}
+
+}  // namespace velamap

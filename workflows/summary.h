@@ -1,0 +1,46 @@
+// What a run tells its user at the end, as `key: value` lines.
+
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "exporters/shape_exporter.h"
+#include "reconstruct/bundle_adjustment.h"
+#include "workflows/pipeline.h"
+#include "workflows/workspace.h"
+
+namespace velamap {
+
+// Counts by reason, with the first few names; "none" for an empty list. Reasons that differ in
+// their numbers only are counted together.
+std::string LeftOutText(const std::vector<LeftOutImage>& left_out);
+
+// `mean 0.12, median 0.10, max 0.6`.
+std::string ErrorText(const Statistics& statistics);
+
+// Sides of the box around all corners along the shape's principal axes, longest first, m.
+Eigen::Vector3d BoundingBox(const MarkerShape& shape);
+
+// A path as a shell takes it.
+std::string ShellQuote(const std::string& text);
+
+// Markers, their errors, scale and size: what shape_exporter and automatic_reconstructor share.
+void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);
+
+struct ReconstructionSummary {
+  int num_images = 0;       // images used
+  int num_images_total = 0;
+  std::vector<LeftOutImage> left_out;
+  BundleAdjustmentSummary adjustment;
+  ShapeExportReport shape;
+};
+
+// About ten lines: images, markers, errors, scale, where the results are and how to open them.
+void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
+                  std::ostream& out);
+
+}  // namespace velamap
