@@ -1,0 +1,65 @@
+// Time of everything behind the database: registration, COLMAP's bundle adjustment, export.
+// A sail of 120 markers; the argument is the number of frames of the clip.
+
+#include <benchmark/benchmark.h>
+
+#include "exporters/shape_exporter.h"
+#include "reconstruct/bundle_adjustment.h"
+#include "reconstruct/registration.h"
+#include "reconstruct/seed_model.h"
+#include "tests/reconstruct/registration_fixture.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+SyntheticScene Sail(int num_frames) {
+  SyntheticSceneOptions options;
+  options.num_rows = 8;
+  options.num_columns = 15;
+  options.spacing_m = 0.2;
+  options.num_frames = num_frames;
+  SyntheticScene scene = MakeSyntheticScene(options);
+  AddNoise({0.2, 0.05, 0.005, 200, 1}, &scene);
+  return scene;
+}
+
+Model Seed(const SyntheticScene& scene) {
+  const auto images = DatabaseImages(scene);
+  const auto cameras = SceneCameras(scene);
+  return MakeSeedModel(RegisterFrames(images, cameras, scene.layout, {}), images, cameras);
+}
+
+void BM_Registration(benchmark::State& state) {
+  const SyntheticScene scene = Sail(static_cast<int>(state.range(0)));
+  const auto images = DatabaseImages(scene);
+  const auto cameras = SceneCameras(scene);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(RegisterFrames(images, cameras, scene.layout, {}));
+  }
+}
+BENCHMARK(BM_Registration)->Arg(41)->Arg(200)->Arg(600)->Unit(benchmark::kMillisecond);
+
+void BM_ColmapBundleAdjustment(benchmark::State& state) {
+  const Model seed = Seed(Sail(static_cast<int>(state.range(0))));
+  const TempDir folder;
+  for (auto _ : state) {
+    Model model = seed;
+    AdjustWithColmap({}, (folder / "colmap.log").string(), &model);
+  }
+}
+BENCHMARK(BM_ColmapBundleAdjustment)->Arg(41)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void BM_Export(benchmark::State& state) {
+  const SyntheticScene scene = Sail(41);
+  const Model model = Seed(scene);
+  const TempDir folder;
+  ShapeExporterOptions options;
+  options.model_output_path = (folder / "model").string();
+  options.shape_output_path = (folder / "shape").string();
+  for (auto _ : state) ExportShape(model, scene.layout, options);
+}
+BENCHMARK(BM_Export)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,34 @@
+// Reads PLY files independently of the writer, strictly: every byte has to be accounted for.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace velamap {
+
+struct PlyReadProperty {
+  std::string type;
+  std::string list_count_type;  // empty: a scalar
+  std::string name;
+};
+
+struct PlyReadElement {
+  std::string name;
+  std::vector<PlyReadProperty> properties;
+  std::vector<std::vector<std::vector<double>>> rows;  // [row][property][entry of a list, or 0]
+
+  // Values of a scalar property; throws std::runtime_error where there is none.
+  std::vector<double> Column(const std::string& property) const;
+  std::vector<std::vector<double>> ListColumn(const std::string& property) const;
+};
+
+struct PlyFile {
+  std::string format;
+  std::vector<PlyReadElement> elements;
+};
+
+// Throws std::runtime_error for anything that is not a whole PLY file.
+PlyFile ReadPly(const std::string& bytes);
+
+}  // namespace velamap

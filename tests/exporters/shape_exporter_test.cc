@@ -1,0 +1,300 @@
+#include "exporters/shape_exporter.h"
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <random>
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "exporters/metric_shape.h"
+#include "exporters/ply_writer.h"
+#include "exporters/scale_csv.h"
+#include "exporters/shape_csv.h"
+#include "importer/error.h"
+#include "reconstruct/gauge.h"
+#include "reconstruct/model_io.h"
+#include "tests/exporters/comma_locale.h"
+#include "tests/exporters/example_model.h"
+#include "tests/exporters/golden_file.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+using testing::UnorderedElementsAre;
+
+std::set<std::string> FilesIn(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+// Contents of a folder's files, by name.
+std::map<std::string, std::string> BytesIn(const fs::path& folder) {
+  std::map<std::string, std::string> bytes;
+  for (const std::string& name : FilesIn(folder)) bytes[name] = ReadBytes(folder / name);
+  return bytes;
+}
+
+ShapeExporterOptions OptionsIn(const TempDir& dir) {
+  ShapeExporterOptions options;
+  options.model_output_path = dir / "0";
+  options.shape_output_path = dir / "shape";
+  return options;
+}
+
+std::string ErrorOf(const ShapeExporterOptions& options) {
+  try {
+    ExportShape(ExampleModel(), ExampleLayout(), options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Distances between all corners: what a change of the world frame must not touch.
+std::vector<double> Lengths(const MarkerShape& shape) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (const auto& x : marker.x_in_shape_m) points.push_back(x.value());
+  }
+  std::vector<double> lengths;
+  for (const auto& a : points) {
+    for (const auto& b : points) lengths.push_back((a - b).norm());
+  }
+  return lengths;
+}
+
+// The same model with everything in another order that may be.
+Model Shuffled(Model model, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto shuffle = [&](auto& values) {
+    for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random() % i]);
+  };
+  shuffle(model.images);
+  for (ModelImage& image : model.images) {
+    std::vector<std::uint32_t> new_idx(image.points2D.size());
+    for (std::uint32_t i = 0; i < new_idx.size(); ++i) new_idx[i] = i;
+    shuffle(new_idx);
+    std::vector<Point2D> points2D(new_idx.size());
+    for (std::uint32_t i = 0; i < new_idx.size(); ++i) points2D[new_idx[i]] = image.points2D[i];
+    image.points2D = points2D;
+    for (auto& [id, point] : model.points3D) {
+      for (TrackElement& element : point.track) {
+        if (element.image_id == image.image_id) element.point2D_idx = new_idx[element.point2D_idx];
+      }
+    }
+  }
+  for (auto& [id, point] : model.points3D) shuffle(point.track);
+  CheckModel(model);
+  return model;
+}
+
+TEST(ShapeExporter, AnExactModelGivesTheExactLengths) {
+  const std::vector<double> truth = Lengths(ShapeFromModel(ExampleModel(), ExampleLayout()));
+  for (const double scale : {1.0, 1e-3, 0.37, 88.0}) {
+    Model model = ExampleModel();
+    TransformModel(ExampleSim3(scale), &model);
+    const ShapeExportReport report = ExportShape(model, ExampleLayout(), {});
+    const std::vector<double> lengths = Lengths(report.shape);
+    ASSERT_EQ(lengths.size(), truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) EXPECT_NEAR(lengths[i], truth[i], 1e-12);
+    EXPECT_LT(report.metrics.side_error_mm.max, 1e-9);
+    EXPECT_LT(report.reprojection_error_px.max, 1e-8);
+  }
+}
+
+TEST(ShapeExporter, ANoisyModelExportsTheSameInEveryWorldFrame) {
+  Model model = ExampleModel();
+  std::mt19937 random(5);
+  for (auto& [id, point] : model.points3D) {
+    for (double& x : point.x_in_world) x += 1e-3 * (random() / 4294967295.0 - 0.5);
+  }
+  const ShapeExportReport expected = ExportShape(model, ExampleLayout(), {});
+  EXPECT_GT(expected.metrics.side_error_mm.mean, 0.1);
+  TransformModel(ExampleSim3(12.5), &model);
+  const ShapeExportReport report = ExportShape(model, ExampleLayout(), {});
+  const auto lengths = Lengths(report.shape), expected_lengths = Lengths(expected.shape);
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    EXPECT_NEAR(lengths[i], expected_lengths[i], 1e-12);
+  }
+  EXPECT_NEAR(report.metrics.area_error_mm2.max, expected.metrics.area_error_mm2.max, 1e-8);
+  EXPECT_NEAR(report.scale.relative_spread, expected.scale.relative_spread, 1e-12);
+}
+
+TEST(ShapeExporter, OrderChangesNoByte) {
+  const TempDir dir;
+  Model model = ExampleModel();
+  AddImageNoise(0.5, 3, &model);
+  ExportShape(model, ExampleLayout(), OptionsIn(dir));
+  const auto expected = BytesIn(dir / "shape");
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    ExportShape(Shuffled(model, seed), ExampleLayout(), OptionsIn(dir));
+    EXPECT_EQ(BytesIn(dir / "shape"), expected);
+  }
+}
+
+TEST(ShapeExporter, LocaleChangesNoByte) {
+  const TempDir dir;
+  ExportShape(ExampleModel(), ExampleLayout(), OptionsIn(dir));
+  const auto expected = BytesIn(dir / "shape");
+  const CommaLocale locale;
+  ExportShape(ExampleModel(), ExampleLayout(), OptionsIn(dir));
+  EXPECT_EQ(BytesIn(dir / "shape"), expected);
+}
+
+TEST(ShapeExporter, FilesHoldWhatTheReportSays) {
+  const TempDir dir;
+  Model model = ExampleModel();
+  TransformModel(ExampleSim3(0.2), &model);
+  for (const bool ascii : {false, true}) {
+    ShapeExporterOptions options = OptionsIn(dir);
+    options.ascii_ply = ascii;
+    const ShapeExportReport report = ExportShape(model, ExampleLayout(), options);
+    const PlyFormat format = ascii ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
+    const fs::path shape = dir / "shape";
+    EXPECT_THAT(FilesIn(shape),
+                UnorderedElementsAre("shape.csv", "shape.ply", "markers.ply", "scale.csv"));
+    const auto csv = [&](std::ostream& out) { WriteShapeCsv(report.shape, out); };
+    const auto scale = [&](std::ostream& out) { WriteScaleCsv(report.scale, out); };
+    const auto markers = [&](std::ostream& out) { WriteMarkersPly(report.shape, format, out); };
+    const auto points = [&](std::ostream& out) {
+      WritePointsPly(report.shape, model, format, out);  // only colours are taken from the model
+    };
+    EXPECT_EQ(ReadBytes(shape / "shape.csv"), Written(csv));
+    EXPECT_EQ(ReadBytes(shape / "scale.csv"), Written(scale));
+    EXPECT_EQ(ReadBytes(shape / "markers.ply"), Written(markers));
+    EXPECT_EQ(ReadBytes(shape / "shape.ply"), Written(points));
+  }
+}
+
+TEST(ShapeExporter, TheModelIsMetricAndHasTrueErrorsInBothFormats) {
+  const TempDir dir;
+  Model model = ExampleModel();
+  AddImageNoise(0.5, 7, &model);
+  TransformModel(ExampleSim3(40.0), &model);
+  for (auto& [id, point] : model.points3D) point.mean_error_px = 99.0;  // stale
+  const ShapeExportReport report = ExportShape(model, ExampleLayout(), OptionsIn(dir));
+  EXPECT_THAT(FilesIn(dir / "0"),
+              UnorderedElementsAre("cameras.bin", "images.bin", "points3D.bin", "cameras.txt",
+                                   "images.txt", "points3D.txt"));
+  const Model from_binary = ReadModel(dir / "0");
+  for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {
+    fs::remove(dir / "0" / name);
+  }
+  const Model from_text = ReadModel(dir / "0");
+  for (const Model& written : {from_binary, from_text}) {
+    const MarkerShape shape = ShapeFromModel(written, ExampleLayout());
+    EXPECT_EQ(Lengths(shape), Lengths(report.shape));
+    double sum = 0.0;
+    for (const auto& [id, point] : written.points3D) sum += point.mean_error_px;
+    // Every point is seen in every image, so that the mean over points is the mean over all.
+    EXPECT_NEAR(sum / written.points3D.size(), report.reprojection_error_px.mean, 1e-12);
+    EXPECT_EQ(written.images.size(), 3u);
+    EXPECT_EQ(written.images[0].image_id, model.images[0].image_id);
+  }
+  EXPECT_GT(report.reprojection_error_px.mean, 0.1);
+}
+
+TEST(ShapeExporter, TheInputModelIsNotNeededToBeWhole) {
+  Model model = ExampleModel();
+  model.points3D.erase(Point3DIdFromCorner({6, 2}));
+  const ShapeExportReport report = ExportShape(model, ExampleLayout(), {});
+  EXPECT_THAT(report.metrics.missing_marker_ids, ElementsAre(6));
+  EXPECT_EQ(report.metrics.num_markers, 7);
+  EXPECT_NEAR(report.scale.m_per_unit, 1.0, 1e-12);
+}
+
+TEST(ShapeExporter, EitherFolderCanBeLeftOut) {
+  const TempDir dir;
+  ShapeExporterOptions options;
+  options.shape_output_path = (dir / "a" / "shape").string() + "/";
+  ExportShape(ExampleModel(), ExampleLayout(), options);
+  EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre("a"));
+  EXPECT_THAT(FilesIn(dir / "a"), UnorderedElementsAre("shape"));
+  options.shape_output_path.clear();
+  options.model_output_path = dir / "model";
+  ExportShape(ExampleModel(), ExampleLayout(), options);
+  EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre("a", "model"));
+}
+
+TEST(ShapeExporter, FoldersOfOursAreReplacedAsAWhole) {
+  const TempDir dir;
+  fs::create_directories(dir / "shape");
+  fs::create_directories(dir / "0");
+  std::ofstream(dir / "shape" / "scale.csv") << "old";
+  std::ofstream(dir / "0" / "images.txt") << "old";
+  ExportShape(ExampleModel(), ExampleLayout(), OptionsIn(dir));
+  EXPECT_THAT(ReadBytes(dir / "shape" / "scale.csv"), StartsWith("marker_id,"));
+  EXPECT_EQ(FilesIn(dir / "0").size(), 6u);
+  EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre("shape", "0"));  // nothing temporary
+}
+
+TEST(ShapeExporter, FoldersOfOthersStayAsTheyAre) {
+  for (const char* folder : {"shape", "0"}) {
+    const TempDir dir;
+    fs::create_directories(dir / folder);
+    std::ofstream(dir / folder / "thesis.tex") << "precious";
+    EXPECT_THAT(ErrorOf(OptionsIn(dir)), StartsWith((dir / folder).string() + ": "));
+    EXPECT_THAT(ErrorOf(OptionsIn(dir)), HasSubstr("holds thesis.tex"));
+    EXPECT_THAT(ErrorOf(OptionsIn(dir)), HasSubstr("choose another folder or empty it"));
+    EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre(folder));
+    EXPECT_THAT(BytesIn(dir / folder),
+                UnorderedElementsAre(std::make_pair("thesis.tex", "precious")));
+  }
+}
+
+TEST(ShapeExporter, AFolderWithTheNameOfAFileIsNotOurs) {
+  const TempDir dir;
+  fs::create_directories(dir / "shape" / "shape.csv");
+  EXPECT_THAT(ErrorOf(OptionsIn(dir)), HasSubstr("holds shape.csv"));
+}
+
+TEST(ShapeExporter, OutputThatIsAFileOrBelowOneIsNamed) {
+  const TempDir dir;
+  std::ofstream(dir / "file") << "precious";
+  for (const std::string& bad : {(dir / "file").string(), (dir / "file" / "below").string()}) {
+    for (const bool is_model : {false, true}) {
+      ShapeExporterOptions options = OptionsIn(dir);
+      (is_model ? options.model_output_path : options.shape_output_path) = bad;
+      EXPECT_THAT(ErrorOf(options), StartsWith(bad + ": "));
+      EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre("file"));
+    }
+  }
+  EXPECT_EQ(ReadBytes(dir / "file"), "precious");
+}
+
+TEST(ShapeExporter, OneFolderInsideTheOtherIsRefused) {
+  const TempDir dir;
+  const struct {
+    std::string model, shape;
+  } cases[] = {{"out", "out"}, {"out", "out/"}, {"out", "x/../out/shape"}, {"out/0", "out"}};
+  for (const auto& c : cases) {
+    ShapeExporterOptions options;
+    options.model_output_path = dir / c.model;
+    options.shape_output_path = dir / c.shape;
+    EXPECT_THAT(ErrorOf(options), HasSubstr("must not be the same or one inside the other"));
+    EXPECT_TRUE(FilesIn(dir.path()).empty());
+  }
+}
+
+TEST(ShapeExporter, WithoutAScaleNothingIsWritten) {
+  const TempDir dir;
+  Model model = ExampleModel();
+  for (const int marker_id : {1, 2, 3, 4, 5, 6, 120, 121}) {
+    model.points3D.erase(Point3DIdFromCorner({marker_id, 1}));
+  }
+  EXPECT_THROW(ExportShape(model, ExampleLayout(), OptionsIn(dir)), DataError);
+  EXPECT_TRUE(FilesIn(dir.path()).empty());
+}
+
+}  // namespace
+}  // namespace velamap

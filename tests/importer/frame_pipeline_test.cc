@@ -1,0 +1,107 @@
+#include "importer/frame_pipeline.h"
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "importer/bounded_queue.h"
+#include "importer/error.h"
+
+namespace velamap {
+namespace {
+
+// Counts how many of its frames have not come back yet.
+class FakeSource : public FrameSource {
+ public:
+  explicit FakeSource(int num_frames) : num_frames_(num_frames) {}
+
+  std::optional<Frame> Next() override {
+    if (num_read == num_frames_) return std::nullopt;
+    max_in_flight = std::max(max_in_flight, num_read + 1 - num_processed);
+    Frame frame;
+    frame.image_name = std::to_string(num_read++);
+    return frame;
+  }
+  bool Load(Frame*, std::string*) const override { return true; }
+  bool IsVideo() const override { return false; }
+  int NumFrames() const override { return num_frames_; }
+
+  int num_read = 0;
+  std::atomic<int> num_processed{0};
+  int max_in_flight = 0;
+
+ private:
+  int num_frames_;
+};
+
+void SleepUnevenly(int frame_idx) {
+  std::this_thread::sleep_for(std::chrono::microseconds(37 * frame_idx % 500));
+}
+
+TEST(RunFramePipeline, ResultsComeInOrderAndFewFramesAreInFlight) {
+  for (const int num_threads : {1, 4}) {
+    FakeSource source(200);
+    std::vector<std::string> names;
+    RunFramePipeline(
+        &source, num_threads,
+        [&](int frame_idx, Frame* frame) {
+          SleepUnevenly(frame_idx);
+          FrameResult result;
+          result.detections.image_name = frame->image_name;
+          ++source.num_processed;
+          return result;
+        },
+        [&](int frame_idx, const FrameResult& result) {
+          EXPECT_EQ(result.detections.image_name, std::to_string(frame_idx));
+          names.push_back(result.detections.image_name);
+        });
+    EXPECT_EQ(names.size(), 200u);
+    EXPECT_LE(source.max_in_flight, num_threads + 2);
+  }
+}
+
+TEST(RunFramePipeline, FailuresOnAnySideEndItAndAreHandedOn) {
+  const auto pass = [](int, Frame*) { return FrameResult(); };
+  FakeSource a(100000);
+  EXPECT_THROW(RunFramePipeline(
+                   &a, 3,
+                   [&](int frame_idx, Frame*) {
+                     if (frame_idx == 20) throw InputError("bad");
+                     return FrameResult();
+                   },
+                   [](int, const FrameResult&) {}),
+               InputError);
+  EXPECT_LT(a.num_read, 100000);
+  FakeSource b(100000);
+  EXPECT_THROW(RunFramePipeline(&b, 3, pass,
+                                [](int frame_idx, const FrameResult&) {
+                                  if (frame_idx == 20) throw DataError("bad");
+                                }),
+               DataError);
+  EXPECT_LT(b.num_read, 100000);
+}
+
+TEST(BoundedQueue, ClosedQueueHandsOutWhatIsLeft) {
+  BoundedQueue<int> queue(3);
+  EXPECT_TRUE(queue.Push(1));
+  EXPECT_TRUE(queue.Push(2));
+  queue.Close();
+  EXPECT_FALSE(queue.Push(3));
+  EXPECT_EQ(queue.Pop(), 1);
+  EXPECT_EQ(queue.Pop(), 2);
+  EXPECT_EQ(queue.Pop(), std::nullopt);
+}
+
+TEST(BoundedQueue, AbortDropsEverythingAndWakesWaiters) {
+  BoundedQueue<int> queue(1);
+  EXPECT_TRUE(queue.Push(1));
+  std::thread waiter([&] { EXPECT_FALSE(queue.Push(2)); });
+  queue.Abort();
+  waiter.join();
+  EXPECT_EQ(queue.Pop(), std::nullopt);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,269 @@
+#include "importer/marker_importer.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "importer/colmap_database.h"
+#include "importer/dictionary.h"
+#include "importer/error.h"
+#include "tests/importer/error_matchers.h"
+#include "tests/importer/marker_builders.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+const cv::Size kSize(320, 200);
+
+// The same two or three markers move a little from picture to picture; those after `num_with` are
+// bare.
+cv::Mat Picture(int idx, const std::vector<int>& ids, const std::string& dictionary) {
+  std::vector<DrawnMarker> markers;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    markers.push_back({ids[i], 20 + 95 * static_cast<int>(i) + idx, 40 + 2 * idx, 72});
+  }
+  cv::Mat picture = DrawMarkers(LoadDictionary(dictionary).aruco, kSize, markers);
+  cv::GaussianBlur(picture, picture, cv::Size(), 0.7);
+  return picture;
+}
+
+// A folder of pictures or a video, and the options to import it.
+class MarkerImporterTest : public testing::Test {
+ protected:
+  MarkerImporterTest() {
+    fs::create_directory(dir_ / "images");
+    options_.image_path = dir_ / "images";
+    options_.database_path = dir_ / "database.db";
+    options_.camera = {CameraModel::kPinhole, 320, 200, {300, 300, 160, 100}};
+    options_.camera_path = "camera.yml";
+    options_.layout = MakeLayout("DICT_4X4_50", 0.1);
+    options_.num_threads = 2;
+  }
+
+  void WritePicture(const std::string& name, int idx, const std::vector<int>& ids,
+                    const std::string& dictionary = "DICT_4X4_50") {
+    cv::imwrite(dir_ / ("images/" + name), Picture(idx, ids, dictionary));
+  }
+
+  // Frames 0, 1, 4, 5, 8, 9 ... hold markers 1 and 2.
+  void WriteVideo(int num_frames) {
+    options_.image_path = dir_ / "video.avi";
+    cv::VideoWriter writer(options_.image_path, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
+                           kSize);
+    ASSERT_TRUE(writer.isOpened());
+    for (int i = 0; i < num_frames; ++i) {
+      writer << Picture(i, i % 4 < 2 ? std::vector<int>{1, 2} : std::vector<int>{}, "DICT_4X4_50");
+    }
+  }
+
+  std::vector<DatabaseImage> ReadImages() const {
+    return ColmapDatabase(options_.database_path, ColmapDatabase::Mode::kReadOnly).ReadImages();
+  }
+
+  TempDir dir_;
+  MarkerImporterOptions options_;
+};
+
+TEST_F(MarkerImporterTest, FolderOfImages) {
+  WritePicture("2.png", 0, {1, 2});
+  WritePicture("10.png", 1, {2, 3});
+  WritePicture("11.png", 2, {});
+  std::vector<int> done;
+  const ImportReport report = ImportMarkers(options_, [&](int n, int total, const std::string&) {
+    done.push_back(n);
+    EXPECT_EQ(total, 3);
+  });
+  EXPECT_THAT(done, ElementsAre(1, 2, 3));
+  EXPECT_EQ(report.num_frames_read, 3);
+  EXPECT_EQ(report.num_images_added, 3);
+  EXPECT_EQ(report.num_images_present, 0);
+  EXPECT_EQ(report.num_images_without_markers, 1);
+  EXPECT_EQ(report.num_markers, 4);
+  EXPECT_EQ(report.num_rejected, 0);
+  EXPECT_EQ(report.num_pairs, 1);
+  const std::vector<DatabaseImage> images = ReadImages();
+  ASSERT_EQ(images.size(), 3u);
+  EXPECT_EQ(images[0].detections.image_name, "2.png");
+  EXPECT_EQ(images[1].detections.image_name, "10.png");
+  const MarkerDetection& marker = images[1].detections.markers.at(0);
+  EXPECT_EQ(marker.marker_id, 2);
+  EXPECT_NEAR(marker.corners_in_image_px[0].x(), 21, 0.1);
+  EXPECT_NEAR(marker.corners_in_image_px[0].y(), 42, 0.1);
+  EXPECT_EQ(fs::exists(dir_ / "database.db-journal"), false);
+}
+
+TEST_F(MarkerImporterTest, RerunAddsWhatIsMissingAndNothingElse) {
+  WritePicture("1.png", 0, {1, 2});
+  WritePicture("3.png", 1, {1, 2});
+  ImportMarkers(options_);
+  ImportReport report = ImportMarkers(options_);
+  EXPECT_EQ(report.num_frames_read, 0);
+  EXPECT_EQ(report.num_images_added, 0);
+  EXPECT_EQ(report.num_images_present, 2);
+  EXPECT_EQ(report.num_pairs, 1);
+  WritePicture("2.png", 2, {1, 2});
+  report = ImportMarkers(options_);
+  EXPECT_EQ(report.num_images_added, 1);
+  EXPECT_EQ(report.num_pairs, 3);
+  EXPECT_EQ(ReadImages().size(), 3u);
+}
+
+TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
+  for (int i = 0; i < 8; ++i) WritePicture(std::to_string(i) + ".png", i, {1, 2, 3});
+  options_.num_threads = 1;
+  ImportMarkers(options_);
+  const auto read = [](const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string bytes = read(options_.database_path);
+  fs::remove(options_.database_path);
+  options_.num_threads = 4;
+  ImportMarkers(options_);
+  EXPECT_EQ(read(options_.database_path), bytes);
+}
+
+TEST_F(MarkerImporterTest, OtherWayOfDetectionOrCameraIsRefused) {
+  WritePicture("1.png", 0, {1, 2});
+  ImportMarkers(options_);
+  MarkerImporterOptions other = options_;
+  other.detection.error_correction_rate = 0.5;
+  ExpectThrows<InputError>([&] { ImportMarkers(other); },
+                           {options_.database_path, "other detection options"});
+  other = options_;
+  LayoutPart part;
+  part.name = "sail";
+  part.marker_ids = {1, 2};
+  other.layout.parts = {part};
+  ExpectThrows<InputError>([&] { ImportMarkers(other); }, {"another layout"});
+  other = options_;
+  other.camera.params[0] = 301;
+  ExpectThrows<InputError>([&] { ImportMarkers(other); },
+                           {options_.database_path, "another calibration", "camera.yml"});
+  EXPECT_EQ(ReadImages().size(), 1u);
+}
+
+TEST_F(MarkerImporterTest, VideoKeepsFramesWithMarkers) {
+  WriteVideo(10);
+  options_.frame_output_path = dir_ / "frames";
+  const ImportReport report = ImportMarkers(options_);
+  EXPECT_EQ(report.num_frames_read, 10);
+  EXPECT_EQ(report.num_images_added, 6);
+  EXPECT_EQ(report.num_images_without_markers, 4);
+  const std::vector<DatabaseImage> images = ReadImages();
+  ASSERT_EQ(images.size(), 6u);
+  EXPECT_EQ(images[2].detections.frame_number, 4);
+  EXPECT_NEAR(images[2].detections.time_s.value(), 0.4, 1e-9);
+  EXPECT_EQ(std::distance(fs::directory_iterator(dir_ / "frames"), {}), 6);
+  EXPECT_EQ(cv::imread(dir_ / "frames/frame_000004.jpg").size(), kSize);
+  EXPECT_EQ(ImportMarkers(options_).num_images_added, 0);
+}
+
+TEST_F(MarkerImporterTest, IdsThatTheLayoutDoesNotNameAreReported) {
+  WritePicture("1.png", 0, {1, 2, 7});
+  LayoutPart part;
+  part.name = "sail";
+  part.marker_ids = {1, 2};
+  options_.layout.parts = {part};
+  const ImportReport report = ImportMarkers(options_);
+  EXPECT_THAT(report.ids_not_in_layout, ElementsAre(7));
+  EXPECT_EQ(report.num_markers, 2);
+  EXPECT_EQ(report.num_rejected, 1);
+  const std::vector<DatabaseImage> images = ReadImages();
+  EXPECT_EQ(images[0].detections.markers[0].part, "sail");
+  EXPECT_EQ(images[0].detections.rejected.at(0).reason, "not in layout");
+}
+
+TEST_F(MarkerImporterTest, NoMarkerOfTheLayoutIsADataError) {
+  WritePicture("1.png", 0, {1, 7});
+  LayoutPart part;
+  part.name = "sail";
+  part.marker_ids = {30};
+  options_.layout.parts = {part};
+  ExpectThrows<DataError>([&] { ImportMarkers(options_); }, {"no marker of the layout", "1 7"});
+}
+
+TEST_F(MarkerImporterTest, BrokenImagesAreSkippedUnlessAllAre) {
+  WritePicture("1.png", 0, {1, 2});
+  std::ofstream(dir_ / "images/2.png") << "no picture";
+  const ImportReport report = ImportMarkers(options_);
+  EXPECT_EQ(report.num_images_added, 1);
+  ASSERT_EQ(report.skipped.size(), 1u);
+  EXPECT_EQ(report.skipped[0].image_name, "2.png");
+  EXPECT_EQ(report.skipped[0].reason, "no image that can be decoded");
+  fs::remove(dir_ / "images/1.png");
+  fs::remove(options_.database_path);
+  ExpectThrows<InputError>([&] { ImportMarkers(options_); }, {"none of 1 images", "2.png"});
+  EXPECT_FALSE(fs::exists(options_.database_path));
+}
+
+TEST_F(MarkerImporterTest, HintsAtTheRightDictionary) {
+  WritePicture("1.png", 0, {60, 2}, "DICT_6X6_100");
+  ExpectThrows<DataError>(
+      [&] { ImportMarkers(options_); },
+      {"no marker of DICT_4X4_50", "--dictionary DICT_6X6_100", "--ArucoDetection.inverted 0"});
+  EXPECT_FALSE(fs::exists(options_.database_path));
+}
+
+TEST_F(MarkerImporterTest, HintsAtInvertedMarkers) {
+  cv::Mat inverted;
+  cv::bitwise_not(Picture(0, {1, 2}, "DICT_4X4_50"), inverted);
+  cv::imwrite(dir_ / "images/1.png", inverted);
+  ExpectThrows<DataError>([&] { ImportMarkers(options_); },
+                          {"--dictionary DICT_4X4_50", "--ArucoDetection.inverted 1"});
+  options_.detection.inverted = true;
+  EXPECT_EQ(ImportMarkers(options_).num_markers, 2);
+}
+
+TEST_F(MarkerImporterTest, AFewFalseMarkersDoNotHideTheRightDictionary) {
+  // One marker of the wanted dictionary among eight pictures full of another's.
+  for (int i = 0; i < 8; ++i) {
+    WritePicture(std::to_string(i) + ".png", i, {60, 2, 5}, "DICT_6X6_100");
+  }
+  WritePicture("8.png", 0, {1});
+  ExpectThrows<DataError>([&] { ImportMarkers(options_); },
+                          {"hardly any marker of DICT_4X4_50", "--dictionary DICT_6X6_100"});
+  EXPECT_FALSE(fs::exists(options_.database_path));
+}
+
+TEST_F(MarkerImporterTest, RareMarkersAreAcceptedWhereNothingElseIsFound) {
+  WritePicture("0.png", 0, {1});
+  for (int i = 1; i < 5; ++i) WritePicture(std::to_string(i) + ".png", i, {});
+  EXPECT_EQ(ImportMarkers(options_).num_markers, 1);
+}
+
+TEST_F(MarkerImporterTest, ImageOfAnotherSizeNeedsAPureScale) {
+  WritePicture("1.png", 0, {1, 2});
+  cv::Mat larger;
+  cv::resize(Picture(0, {1, 2}, "DICT_4X4_50"), larger, cv::Size(640, 400));
+  cv::imwrite(dir_ / "images/2.png", larger);
+  ImportMarkers(options_);
+  const auto cameras =
+      ColmapDatabase(options_.database_path, ColmapDatabase::Mode::kReadOnly).ReadCameras();
+  ASSERT_EQ(cameras.size(), 2u);
+  EXPECT_EQ(cameras.at(2).params, (std::vector<double>{600, 600, 320, 200}));
+  cv::imwrite(dir_ / "images/3.png", larger(cv::Rect(0, 0, 300, 300)));
+  fs::remove(options_.database_path);
+  ExpectThrows<InputError>([&] { ImportMarkers(options_); }, {"camera.yml", "300x300", "3.png"});
+  EXPECT_FALSE(fs::exists(options_.database_path));
+}
+
+TEST_F(MarkerImporterTest, FailedRunLeavesAnExistingDatabaseAlone) {
+  WritePicture("1.png", 0, {1, 2});
+  ImportMarkers(options_);
+  options_.image_path = dir_ / "none";
+  EXPECT_THROW(ImportMarkers(options_), InputError);
+  EXPECT_EQ(ReadImages().size(), 1u);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,45 @@
+#include "importer/options.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "importer/error.h"
+#include "tests/importer/error_matchers.h"
+
+namespace velamap {
+namespace {
+
+TEST(CornerRefinement, NamesRoundTrip) {
+  for (const CornerRefinement refinement :
+       {CornerRefinement::kNone, CornerRefinement::kSubpix, CornerRefinement::kEdge}) {
+    EXPECT_EQ(CornerRefinementFromName(CornerRefinementName(refinement)), refinement);
+  }
+  ExpectThrows<InputError>([] { CornerRefinementFromName("magic"); },
+                           {"corner_refinement", "'magic'", "none, subpix or edge"});
+}
+
+TEST(ArucoDetectionOptions, CheckNamesTheOption) {
+  EXPECT_NO_THROW(ArucoDetectionOptions().Check());
+  for (const double rate : {0.0, -1.0, 5.0, std::nan("")}) {
+    ArucoDetectionOptions options;
+    options.min_marker_perimeter_rate = rate;
+    ExpectThrows<InputError>([&] { options.Check(); },
+                             {"--ArucoDetection.min_marker_perimeter_rate"});
+  }
+  ArucoDetectionOptions options;
+  options.error_correction_rate = 1.5;
+  ExpectThrows<InputError>([&] { options.Check(); }, {"--ArucoDetection.error_correction_rate"});
+}
+
+TEST(VideoOptions, CheckNamesTheOption) {
+  EXPECT_NO_THROW(VideoOptions().Check());
+  EXPECT_NO_THROW((VideoOptions{5, 5, 1}.Check()));
+  ExpectThrows<InputError>([] { VideoOptions{-1, -1, 1}.Check(); }, {"--Video.first_frame"});
+  ExpectThrows<InputError>([] { VideoOptions{5, 4, 1}.Check(); }, {"--Video.last_frame"});
+  ExpectThrows<InputError>([] { VideoOptions{0, -2, 1}.Check(); }, {"--Video.last_frame"});
+  ExpectThrows<InputError>([] { VideoOptions{0, -1, 0}.Check(); }, {"--Video.frame_step"});
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,48 @@
+# Fails when a room includes a room to its right, or when knowledge that belongs in one file stands
+# in another. Run as cmake -DSOURCE_DIR=... -P include_direction_test.cmake.
+
+set(ROOMS importer reconstruct exporters workflows)
+set(failures "")
+set(num_files 0)
+
+# SQL is known to the database's files only, cv::aruco to the detector and the dictionaries.
+set(SQL_FILES "^importer/colmap_(database|schema)\\.cc$")
+set(ARUCO_FILES "^importer/(marker_detector|dictionary)\\.(h|cc)$")
+
+set(forbidden_rooms ${ROOMS} tests)
+foreach(room IN LISTS ROOMS)
+  list(REMOVE_ITEM forbidden_rooms ${room})
+  file(GLOB files RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/${room}/*.h ${SOURCE_DIR}/${room}/*.cc)
+  list(LENGTH files num_room_files)
+  if(num_room_files EQUAL 0)
+    list(APPEND failures "${room}: no source files found")
+  endif()
+  foreach(file IN LISTS files)
+    math(EXPR num_files "${num_files} + 1")
+    file(STRINGS ${SOURCE_DIR}/${file} includes REGEX "^[ \t]*#[ \t]*include")
+    foreach(include IN LISTS includes)
+      foreach(other IN LISTS forbidden_rooms)
+        if(include MATCHES "[\"<]${other}/")
+          list(APPEND failures "${file} includes the room ${other}, which is to its right: ${include}")
+        endif()
+      endforeach()
+      if(include MATCHES "opencv2/aruco" AND NOT file MATCHES "${ARUCO_FILES}")
+        list(APPEND failures "${file} includes opencv2/aruco; only the detector and dictionary may")
+      endif()
+      if(include MATCHES "\"\\.\\./")
+        list(APPEND failures "${file}: ${include} is not relative to the project's root")
+      endif()
+    endforeach()
+    file(STRINGS ${SOURCE_DIR}/${file} sql
+         REGEX "(SELECT .* FROM|INSERT (OR [A-Z]+ )?INTO|CREATE (UNIQUE )?(TABLE|INDEX)|DELETE FROM|PRAGMA )")
+    if(sql AND NOT file MATCHES "${SQL_FILES}")
+      list(APPEND failures "${file} holds SQL, which only the database's files may: ${sql}")
+    endif()
+  endforeach()
+endforeach()
+
+if(failures)
+  string(REPLACE ";" "\n  " text "${failures}")
+  message(FATAL_ERROR "breaches of the house's rules:\n  ${text}")
+endif()
+message(STATUS "${num_files} files include in the right direction")

@@ -1,0 +1,12 @@
+# Models, their files, and COLMAP's program.
+velamap_test(NAME reconstruct_model_test LABEL unit
+  SOURCES
+    colmap_runner_test.cc
+    gauge_test.cc
+    model_io_test.cc
+    model_test.cc
+    reprojection_test.cc
+    sheet_model.cc
+    statistics_test.cc
+)
+

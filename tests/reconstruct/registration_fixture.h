@@ -1,0 +1,42 @@
+// Shared by the tests of registration: a synthetic scene as the database would hold it.
+
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "importer/colmap_database.h"
+#include "reconstruct/frame_shape.h"
+#include "tests/support/synthetic_scene.h"
+
+namespace velamap {
+
+constexpr CameraId kSceneCameraId = 1;
+
+inline std::vector<DatabaseImage> DatabaseImages(const SyntheticScene& scene) {
+  std::vector<DatabaseImage> images;
+  for (const FrameDetections& frame : scene.frames) {
+    images.push_back({static_cast<ImageId>(images.size() + 1), kSceneCameraId, frame});
+  }
+  return images;
+}
+
+inline std::map<CameraId, Camera> SceneCameras(const SyntheticScene& scene) {
+  return {{kSceneCameraId, scene.camera}};
+}
+
+inline std::vector<FrameShape> FrameShapes(const SyntheticScene& scene) {
+  std::vector<FrameShape> frames;
+  for (const DatabaseImage& image : DatabaseImages(scene)) {
+    frames.push_back(EstimateFrameShape(image, scene.camera, scene.layout));
+  }
+  return frames;
+}
+
+// Truth in the cam frame of one frame.
+inline MarkerPoints TruthInCam(const SyntheticScene& scene, int marker_id, int frame_idx) {
+  return Transform(scene.cam_from_world[static_cast<std::size_t>(frame_idx)],
+                   scene.x_in_world.at(marker_id));
+}
+
+}  // namespace velamap

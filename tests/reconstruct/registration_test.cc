@@ -1,0 +1,196 @@
+#include "reconstruct/registration.h"
+
+#include <algorithm>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "importer/error.h"
+#include "reconstruct/frame_selection.h"
+#include "tests/reconstruct/registration_fixture.h"
+
+namespace velamap {
+namespace {
+
+SyntheticScene Scene(SceneKind kind, int num_frames, bool video) {
+  SyntheticSceneOptions options;
+  options.kind = kind;
+  options.num_frames = num_frames;
+  options.video = video;
+  if (kind == SceneKind::kCube) options.num_rows = options.num_columns = 3;
+  return MakeSyntheticScene(options);
+}
+
+Registration Register(const SyntheticScene& scene, const RegistrationOptions& options = {}) {
+  return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, options);
+}
+
+int CentralIdx(const Registration& registration) {
+  return static_cast<int>(registration.central_image_id) - 1;
+}
+
+double MaxError(const Registration& registration, const SyntheticScene& scene) {
+  double max_error_m = 0;
+  for (const auto& [marker_id, points] : registration.shape) {
+    max_error_m = std::max(
+        max_error_m, RmsDistance(points, TruthInCam(scene, marker_id, CentralIdx(registration))));
+  }
+  return max_error_m;
+}
+
+struct Case {
+  SceneKind kind;
+  bool video;
+};
+
+class NoiseFreeRegistration : public testing::TestWithParam<Case> {};
+
+TEST_P(NoiseFreeRegistration, GivesTheTruthBack) {
+  const SyntheticScene scene = Scene(GetParam().kind, 24, GetParam().video);
+  const Registration registration = Register(scene);
+  EXPECT_LT(MaxError(registration, scene), 1e-9);
+  EXPECT_GE(registration.NumRegistered(), 20);
+  for (const RegisteredFrame& frame : registration.frames) {
+    if (!frame.cam_from_shape) continue;
+    EXPECT_TRUE(frame.outlier_ids.empty());
+    const Rigid3 truth =
+        scene.cam_from_world[frame.image_id - 1] *
+        Inverse(scene.cam_from_world[static_cast<std::size_t>(CentralIdx(registration))]);
+    EXPECT_LT((frame.cam_from_shape->translation - truth.translation).norm(), 1e-8);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, NoiseFreeRegistration,
+                         testing::Values(Case{SceneKind::kSail, true}, Case{SceneKind::kSail, false},
+                                         Case{SceneKind::kPlane, true},
+                                         Case{SceneKind::kCube, false}));
+
+TEST(Registration, ImagesThatShareNothingWithTheCentralOneAreReachedThroughOthers) {
+  const SyntheticScene scene = Scene(SceneKind::kCube, 24, false);
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.NumRegistered(), 24);
+  const auto frames = FrameShapes(scene);
+  int num_without_shared = 0;
+  const FrameShape& central = frames[static_cast<std::size_t>(CentralIdx(registration))];
+  for (const FrameShape& frame : frames) num_without_shared += NumSharedMarkers(frame, central) == 0;
+  EXPECT_GT(num_without_shared, 0);
+}
+
+TEST(Registration, OrderAndIdsOfImagesChangeNothing) {
+  SyntheticScene scene = Scene(SceneKind::kSail, 12, false);
+  AddNoise({0.3, 0.05, 0.02, 200, 3}, &scene);
+  auto images = DatabaseImages(scene);
+  const Registration registration =
+      RegisterFrames(images, SceneCameras(scene), scene.layout, {});
+  std::shuffle(images.begin(), images.end(), std::mt19937(5));
+  for (std::size_t i = 0; i < images.size(); ++i) images[i].image_id = static_cast<ImageId>(i + 100);
+  const Registration shuffled = RegisterFrames(images, SceneCameras(scene), scene.layout, {});
+  EXPECT_EQ(shuffled.central_image_name, registration.central_image_name);
+  ASSERT_EQ(shuffled.shape.size(), registration.shape.size());
+  for (const auto& [marker_id, points] : registration.shape) {
+    EXPECT_EQ(RmsDistance(points, shuffled.shape.at(marker_id)), 0.0);
+  }
+}
+
+TEST(Registration, SeedDecidesNothingThatMatters) {
+  SyntheticScene scene = Scene(SceneKind::kSail, 41, true);
+  AddNoise({0.2, 0.0, 0.03, 200, 3}, &scene);
+  RegistrationOptions options;
+  const Registration first = Register(scene, options);
+  options.random_seed = 42;
+  const Registration second = Register(scene, options);
+  EXPECT_EQ(first.central_image_id, second.central_image_id);
+  ASSERT_EQ(first.shape.size(), second.shape.size());
+  for (const auto& [marker_id, points] : first.shape) {
+    EXPECT_LT(RmsDistance(points, second.shape.at(marker_id)), 0.002);
+  }
+}
+
+TEST(Registration, MisplacedMarkersAreLeftOutOfTheirFrames) {
+  SyntheticScene scene = Scene(SceneKind::kSail, 21, true);
+  AddNoise({0.1, 0.0, 0.05, 300, 9}, &scene);
+  const Registration registration = Register(scene);
+  int num_outliers = 0;
+  for (const RegisteredFrame& frame : registration.frames) {
+    num_outliers += static_cast<int>(frame.outlier_ids.size());
+  }
+  EXPECT_GE(num_outliers, 10);
+  EXPECT_LT(MaxError(registration, scene), 0.03);
+}
+
+TEST(Registration, WrongFrameIsLeftOutWithAReason) {
+  SyntheticScene scene = Scene(SceneKind::kSail, 8, false);
+  // Ids of one image are permuted: every marker is in the wrong place.
+  auto& markers = scene.frames[3].markers;
+  const std::size_t count = markers.size();
+  std::vector<int> ids;
+  for (const auto& marker : markers) ids.push_back(marker.marker_id);
+  for (std::size_t i = 0; i < count; ++i) markers[i].marker_id = ids[count - 1 - i];
+  std::sort(markers.begin(), markers.end(),
+            [](const auto& a, const auto& b) { return a.marker_id < b.marker_id; });
+  std::vector<MarkerDetection> irregular;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 3 != 1) irregular.push_back(markers[(i * 7) % count]);
+  }
+  for (std::size_t i = 0; i < irregular.size(); ++i) irregular[i].marker_id = ids[i];
+  markers = irregular;
+  RegistrationOptions options;
+  options.min_num_inliers = 5;
+  const Registration registration = Register(scene, options);
+  EXPECT_FALSE(registration.frames[3].cam_from_shape);
+  EXPECT_THAT(registration.frames[3].reason, testing::HasSubstr("do not agree"));
+  EXPECT_EQ(registration.NumRegistered(), 7);
+}
+
+TEST(Registration, SecondGroupOfImagesIsReported) {
+  SyntheticScene scene = Scene(SceneKind::kSail, 10, false);
+  for (std::size_t i = 7; i < 10; ++i) {
+    for (auto& marker : scene.frames[i].markers) marker.marker_id += 500;
+  }
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.NumRegistered(), 7);
+  for (std::size_t i = 7; i < 10; ++i) {
+    EXPECT_THAT(registration.frames[i].reason, testing::HasSubstr("shares 0 of its"));
+  }
+}
+
+TEST(Registration, RareMarkersAreDroppedFromAVideo) {
+  SyntheticScene scene = Scene(SceneKind::kSail, 21, true);
+  const int rare = 14;
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    auto& markers = scene.frames[i].markers;
+    if (i % 7 == 0) continue;
+    markers.erase(std::remove_if(markers.begin(), markers.end(),
+                                 [](const auto& m) { return m.marker_id == rare; }),
+                  markers.end());
+  }
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.shape.count(rare), 0u);
+  ASSERT_EQ(registration.dropped_markers.size(), 1u);
+  EXPECT_EQ(registration.dropped_markers[0].marker_id, rare);
+  EXPECT_EQ(registration.dropped_markers[0].num_frames, 3);
+}
+
+TEST(Registration, DataThatCannotBeRegisteredAreRefused) {
+  SyntheticScene scene = Scene(SceneKind::kSail, 3, false);
+  auto images = DatabaseImages(scene);
+  images.resize(1);
+  EXPECT_THROW(RegisterFrames(images, SceneCameras(scene), scene.layout, {}), DataError);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (auto& marker : scene.frames[i].markers) marker.marker_id += static_cast<int>(100 * i);
+  }
+  EXPECT_THROW(Register(scene), DataError);
+}
+
+TEST(Registration, UnknownCentralFrameIsAnInputError) {
+  const SyntheticScene scene = Scene(SceneKind::kSail, 3, true);
+  RegistrationOptions options;
+  options.central_frame = "17";
+  EXPECT_THROW(Register(scene, options), InputError);
+  options.central_frame = "2";
+  EXPECT_EQ(Register(scene, options).central_image_name, "frame_000002.jpg");
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,55 @@
+#include "reconstruct/seed_model.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "reconstruct/reprojection.h"
+#include "tests/reconstruct/registration_fixture.h"
+
+namespace velamap {
+namespace {
+
+SyntheticScene Scene(SceneKind kind, int num_frames, bool video) {
+  SyntheticSceneOptions options;
+  options.kind = kind;
+  options.num_frames = num_frames;
+  options.video = video;
+  if (kind == SceneKind::kCube) options.num_rows = options.num_columns = 3;
+  return MakeSyntheticScene(options);
+}
+
+Registration Register(const SyntheticScene& scene) {
+  return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, {});
+}
+
+TEST(SeedModel, NoiseFreeSceneReprojectsOntoItsKeypoints) {
+  const SyntheticScene scene = Scene(SceneKind::kCube, 24, false);
+  const Registration registration = Register(scene);
+  const Model model = MakeSeedModel(registration, DatabaseImages(scene), SceneCameras(scene));
+  CheckModel(model);
+  EXPECT_EQ(model.images.front().image_id, registration.central_image_id);
+  EXPECT_LT(SummarizeReprojectionErrors(ComputeReprojectionErrors(model)).max, 1e-5);
+  std::size_t num_observations = 0, num_seen = 0;
+  for (const auto& [id, point] : model.points3D) num_observations += point.track.size();
+  for (const FrameDetections& frame : scene.frames) {
+    for (const MarkerDetection& marker : frame.markers) {
+      if (model.points3D.count(Point3DIdFromCorner({marker.marker_id, 1}))) num_seen += 4;
+    }
+  }
+  EXPECT_EQ(num_observations, num_seen);  // tracks are complete
+}
+
+TEST(SeedModel, RegistrationTableNamesEveryImage) {
+  const SyntheticScene scene = Scene(SceneKind::kSail, 6, true);
+  std::ostringstream csv;
+  WriteRegistrationCsv(Register(scene), csv);
+  const std::string text = csv.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 7);
+  EXPECT_THAT(text, testing::HasSubstr("frame_000005.jpg,1,"));
+}
+
+}  // namespace
+}  // namespace velamap

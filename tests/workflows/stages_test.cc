@@ -1,0 +1,228 @@
+// The single commands on databases and models of a synthetic scene, without pictures.
+
+#include <algorithm>
+
+#include <SQLiteCpp/Database.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/shape_csv.h"
+#include "importer/colmap_database.h"
+#include "reconstruct/model_io.h"
+#include "tests/support/synthetic_scene.h"
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+SyntheticScene MakeScene() {
+  SyntheticSceneOptions options;
+  options.num_rows = 3;
+  options.num_columns = 4;
+  options.num_frames = 8;
+  options.video = false;
+  return MakeSyntheticScene(options);
+}
+
+// Keeps every frame whose index `keep` accepts, and of its markers those that `keep_id` accepts.
+template <typename KeepId>
+void WriteDatabase(const SyntheticScene& scene, const fs::path& path, int num_frames,
+                   KeepId keep_id) {
+  ColmapDatabase database(path.string(), ColmapDatabase::Mode::kReadWriteCreate);
+  const CameraId camera_id = database.AddCamera(scene.camera);
+  for (int i = 0; i < num_frames; ++i) {
+    FrameDetections detections = scene.frames[static_cast<std::size_t>(i)];
+    auto& markers = detections.markers;
+    markers.erase(std::remove_if(markers.begin(), markers.end(),
+                                 [&](const auto& m) { return !keep_id(i, m.marker_id); }),
+                  markers.end());
+    database.AddImage(camera_id, detections, "test");
+  }
+}
+
+bool All(int, int) { return true; }
+
+// A model of the truth in units of 2 m, every observation exact.
+Model TrueModel(const SyntheticScene& scene) {
+  constexpr double kUnitInM = 2.0;
+  Model model;
+  model.cameras[1] = scene.camera;
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    ModelImage image;
+    image.image_id = static_cast<ImageId>(i + 1);
+    image.camera_id = 1;
+    image.name = scene.frames[i].image_name;
+    image.cam_from_world = scene.cam_from_world[i];
+    image.cam_from_world.translation /= kUnitInM;
+    for (const MarkerDetection& marker : scene.frames[i].markers) {
+      for (int corner = 1; corner <= kNumCorners; ++corner) {
+        const std::size_t idx = static_cast<std::size_t>(corner);
+        const Point3DId id = Point3DIdFromCorner({marker.marker_id, corner});
+        Point3D& point = model.points3D[id];
+        point.x_in_world = scene.x_in_world.at(marker.marker_id)[idx] / kUnitInM;
+        point.track.push_back({image.image_id, static_cast<std::uint32_t>(image.points2D.size())});
+        image.points2D.push_back({marker.corners_in_image_px[idx - 1], id});
+      }
+    }
+    model.images.push_back(image);
+  }
+  return model;
+}
+
+class StagesTest : public ::testing::Test {
+ protected:
+  ProgramRun Register(const ProgramLimits& limits = {}) {
+    return RunVelamap({"frame_registrator", "--database_path", path("database.db"),
+                       "--marker_length", "0.1", "--output_path", path("sparse/seed")},
+                      limits);
+  }
+
+  ProgramRun Export(const ProgramLimits& limits = {}) {
+    return RunVelamap({"shape_exporter", "--input_path", path("model"), "--marker_length", "0.1",
+                       "--shape_path", path("shape"), "--output_path", path("metric")},
+                      limits);
+  }
+
+  void ExpectError(const ProgramRun& run, int exit_code, const std::string& expected) {
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("error: "));
+    EXPECT_THAT(run.err, HasSubstr(expected));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_EQ(run.out, "");
+  }
+
+  std::string path(const std::string& name) const { return (dir_ / name).string(); }
+
+  const SyntheticScene scene_ = MakeScene();
+  TempDir dir_;
+};
+
+TEST_F(StagesTest, RegistratorWritesModelAndTable) {
+  WriteDatabase(scene_, path("database.db"), 8, All);
+  const ProgramRun run = Register();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("images_registered: 8 of 8\nimages_left_out: none\n"));
+  EXPECT_EQ(ReadModel(path("sparse/seed")).images.size(), 8u);
+  EXPECT_THAT(ListFolder(path("sparse")), ElementsAre("registration.csv", "seed"));
+  EXPECT_EQ(NumErrorLines(run.err), 0) << run.err;
+}
+
+TEST_F(StagesTest, SameInputSameBytes) {
+  WriteDatabase(scene_, path("database.db"), 8, All);
+  ASSERT_EQ(Register().exit_code, 0);
+  const std::string first = ReadFileBytes(path("sparse/seed/points3D.bin"));
+  ASSERT_EQ(Register().exit_code, 0);
+  EXPECT_EQ(ReadFileBytes(path("sparse/seed/points3D.bin")), first);
+}
+
+TEST_F(StagesTest, OneImageIsNoShape) {
+  WriteDatabase(scene_, path("database.db"), 1, All);
+  ExpectError(Register(), 1, "at least two images");
+  EXPECT_FALSE(fs::exists(dir_ / "sparse"));
+}
+
+TEST_F(StagesTest, ImagesThatShareNoMarker) {
+  WriteDatabase(scene_, path("database.db"), 2,
+                [](int frame_idx, int id) { return id % 2 == frame_idx; });
+  ExpectError(Register(), 1, "shares enough markers");
+  EXPECT_FALSE(fs::exists(dir_ / "sparse"));
+}
+
+TEST_F(StagesTest, OfTwoGroupsTheLargerIsUsedAndTheOtherNamed) {
+  WriteDatabase(scene_, path("database.db"), 8,
+                [](int frame_idx, int id) { return id % 2 == (frame_idx < 5 ? 0 : 1); });
+  const ProgramRun run = Register();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("images_registered: 5 of 8\nimages_left_out: 3; 3: shares 0"));
+}
+
+TEST_F(StagesTest, DatabaseThatIsMissingOrNone) {
+  ExpectError(Register(), 2, "database.db");
+  EXPECT_FALSE(fs::exists(dir_ / "database.db"));
+  WriteTextFile(dir_ / "database.db", "no database at all, but long enough to hold a header");
+  ExpectError(Register(), 2, "database.db");
+  fs::remove(dir_ / "database.db");
+  SQLite::Database(path("database.db"), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+      .exec("CREATE TABLE recipes (name TEXT)");
+  ExpectError(Register(), 2, "database.db");
+}
+
+TEST_F(StagesTest, DatabaseThatIsLocked) {
+  WriteDatabase(scene_, path("database.db"), 8, All);
+  SQLite::Database lock(path("database.db"), SQLite::OPEN_READWRITE);
+  lock.exec("BEGIN EXCLUSIVE");
+  ExpectError(Register(), 2, "locked");
+  lock.exec("ROLLBACK");
+  EXPECT_EQ(Register().exit_code, 0);
+}
+
+TEST_F(StagesTest, RegistratorRefusesAFolderWithOtherFiles) {
+  WriteDatabase(scene_, path("database.db"), 8, All);
+  fs::create_directories(dir_ / "sparse/seed");
+  WriteTextFile(dir_ / "sparse/seed/thesis.tex", "text");
+  ExpectError(Register(), 2, "thesis.tex");
+  EXPECT_THAT(ListFolder(path("sparse/seed")), ElementsAre("thesis.tex"));
+}
+
+TEST_F(StagesTest, FullDiskLeavesTheOldModel) {
+  WriteDatabase(scene_, path("database.db"), 8, All);
+  ASSERT_EQ(Register().exit_code, 0);
+  const std::string before = ReadFileBytes(path("sparse/seed/images.txt"));
+  ExpectError(Register({1000}), 2, "seed");
+  EXPECT_EQ(ReadFileBytes(path("sparse/seed/images.txt")), before);
+  EXPECT_THAT(ListFolder(path("sparse")), ElementsAre("registration.csv", "seed"));
+}
+
+TEST_F(StagesTest, ExporterGivesTheTruthBack) {
+  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  const ProgramRun run = Export();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("scale_m_per_unit: 2\n"));
+  EXPECT_THAT(run.out, HasSubstr("marker_area_error: mean 0.000 mm2"));
+  const MarkerShape shape = ReadShapeCsv(path("shape/shape.csv"));
+  ASSERT_EQ(shape.markers.size(), scene_.x_in_world.size());
+  for (const ShapeMarker& marker : shape.markers) {
+    for (std::size_t i = 0; i <= kNumCorners; ++i) {
+      EXPECT_LT((*marker.x_in_shape_m[i] - scene_.x_in_world.at(marker.marker_id)[i]).norm(), 1e-9);
+    }
+  }
+  const ProgramRun analysis =
+      RunVelamap({"shape_analyzer", "--shape_path", path("shape"), "--marker_length", "0.1",
+                  "--reference_path", path("shape/shape.csv")});
+  EXPECT_EQ(analysis.exit_code, 0) << analysis.err;
+  EXPECT_THAT(analysis.out, HasSubstr("num_markers: 12\n"));
+  EXPECT_THAT(analysis.out, HasSubstr("num_points: 48\n"));
+}
+
+TEST_F(StagesTest, ExporterOnAFullDiskLeavesNothing) {
+  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  ExpectError(Export({1000}), 2, path("shape"));
+  EXPECT_THAT(ListFolder(dir_.path()), ElementsAre("model"));
+}
+
+TEST_F(StagesTest, ExporterRefusesAFolderWithOtherFiles) {
+  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  fs::create_directory(dir_ / "shape");
+  WriteTextFile(dir_ / "shape/thesis.tex", "text");
+  ExpectError(Export(), 2, "thesis.tex");
+  EXPECT_THAT(ListFolder(dir_.path()), ElementsAre("model", "shape"));
+}
+
+TEST_F(StagesTest, TruncatedModelNamesItsFile) {
+  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  fs::resize_file(dir_ / "model/points3D.bin", 100);
+  ExpectError(Export(), 2, "points3D.bin");
+}
+
+TEST_F(StagesTest, AnalyzerWantsSomethingToCompareWith) {
+  ExpectError(RunVelamap({"shape_analyzer", "--shape_path", path("shape.csv")}), 2,
+              "--reference_path");
+}
+
+}  // namespace
+}  // namespace velamap
