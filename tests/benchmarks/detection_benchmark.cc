@@ -1,0 +1,71 @@
+// Time of detection in one thread: the whole frame, and the corner refinement by itself.
+
+#include <benchmark/benchmark.h>
+
+#include "importer/corner_refinement.h"
+#include "importer/marker_detector.h"
+#include "tests/support/marker_renderer.h"
+
+namespace velamap {
+namespace {
+
+struct Picture {
+  SyntheticScene scene;
+  Dictionary dictionary;
+  cv::Mat gray;
+};
+
+// A frame of a sail of 40 markers; `width_px` sets the resolution, the field of view stays.
+Picture RenderPicture(int width_px) {
+  const double scale = width_px / 1920.0;
+  SyntheticSceneOptions options;
+  options.num_columns = 8;
+  options.num_frames = 3;
+  options.camera = {CameraModel::kOpenCV,
+                    width_px,
+                    width_px * 9 / 16,
+                    {1200 * scale, 1200 * scale, 960 * scale, 540 * scale, -0.1, 0.03, 0, 0}};
+  Picture picture{MakeSyntheticScene(options), {}, {}};
+  picture.dictionary = LoadDictionary(picture.scene.layout.dictionary);
+  RenderOptions render;
+  render.noise_sigma = 2.0;
+  render.background_texture = 20.0;
+  picture.gray = RenderFrame(picture.scene, 1, render);
+  return picture;
+}
+
+// Arguments: width of the frame, corner refinement (0 none, 1 subpix, 2 edge).
+void BM_DetectMarkers(benchmark::State& state) {
+  const Picture picture = RenderPicture(static_cast<int>(state.range(0)));
+  ArucoDetectionOptions options;
+  options.corner_refinement = static_cast<CornerRefinement>(state.range(1));
+  std::size_t num_markers = 0;
+  cv::setNumThreads(1);
+  for (auto _ : state) {
+    num_markers = DetectMarkers(picture.gray, picture.dictionary, 1, options).size();
+  }
+  state.counters["markers"] = static_cast<double>(num_markers);
+}
+BENCHMARK(BM_DetectMarkers)
+    ->ArgsProduct({{1280, 1920, 3840}, {0, 1, 2}})
+    ->Unit(benchmark::kMillisecond);
+
+// All markers of a 1920x1080 frame, from corners off by 0.7 px.
+void BM_RefineCornersByEdges(benchmark::State& state) {
+  const Picture picture = RenderPicture(1920);
+  const auto& markers = picture.scene.frames[1].markers;
+  const int num_cells = picture.dictionary.aruco->markerSize + 2;
+  for (auto _ : state) {
+    for (const MarkerDetection& marker : markers) {
+      auto corners_px = marker.corners_in_image_px;  // to OpenCV's pixel frame, and off by 0.7 px
+      for (auto& corner : corners_px) corner += Eigen::Vector2d(-0.5 + 0.5, -0.5 - 0.5);
+      benchmark::DoNotOptimize(RefineCornersByEdges(picture.gray, corners_px, num_cells));
+    }
+  }
+  state.counters["markers/s"] =
+      benchmark::Counter(static_cast<double>(markers.size()), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(BM_RefineCornersByEdges)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace velamap
