@@ -20,7 +20,7 @@ struct BundleAdjustmentOptions {
   // COLMAP's adjustment has no robust loss, so observations are judged between rounds: those beyond
   // outlier_ratio robust sigmas of all residuals are left out, but never below
   // min_outlier_error_px; one left out that has come to fit returns.
-  int max_num_rounds = 4;
+  int max_num_rounds = 6;
   double outlier_ratio = 6.0;
   double min_outlier_error_px = 0.5;
   int min_track_length = 2;

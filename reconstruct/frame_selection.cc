@@ -51,11 +51,10 @@ std::optional<SelectedFrame> BestInWindow(const Search& search, const ShapePoint
                                 search.alignment);
     if (!candidate) continue;
     const std::size_t num_inliers = candidate->inlier_ids.size();
-    const bool better =
-        !best || num_inliers > best->alignment.inlier_ids.size() ||
-        (num_inliers == best->alignment.inlier_ids.size() &&
-         std::abs(search.Number(idx) - target_number) <
-             std::abs(search.Number(best->frame_idx) - target_number));
+    const bool better = !best || num_inliers > best->alignment.inlier_ids.size() ||
+                        (num_inliers == best->alignment.inlier_ids.size() &&
+                         std::abs(search.Number(idx) - target_number) <
+                             std::abs(search.Number(best->frame_idx) - target_number));
     if (better) best = SelectedFrame{idx, std::move(*candidate)};
   }
   return best;
@@ -84,8 +83,8 @@ void SearchOneSide(int central_idx, int direction, Search* search,
     }
     const FrameShape& frame = search->frames[static_cast<std::size_t>(best->frame_idx)];
     for (const FrameMarker& marker : frame.markers) {
-      search->extended.emplace(marker.marker_id, Transform(best->alignment.shape_from_cam,
-                                                           marker.x_in_cam.front()));
+      search->extended.emplace(marker.marker_id,
+                               Transform(best->alignment.shape_from_cam, marker.x_in_cam.front()));
     }
     from_number = search->Number(best->frame_idx);
     selected->push_back(std::move(*best));
@@ -133,14 +132,18 @@ CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames) {
                         " times in the other images, more than any other image's"};
 }
 
-FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_video_frames) {
+FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side) {
   FrameSearchOptions fitted = options;
-  fitted.skip = std::clamp((num_video_frames - 1) / (2 * std::max(options.num_frames, 1)), 1,
-                           options.skip);
+  fitted.skip = std::clamp(num_frames_on_side / std::max(options.num_frames, 1), 1, options.skip);
   if (fitted.skip < options.skip) {
     fitted.neighborhood = std::min(options.neighborhood, fitted.skip / 2);
   }
   return fitted;
+}
+
+std::pair<int, int> ReachableFrames(int central_frame_number, const FrameSearchOptions& options) {
+  const int reach = options.num_frames * (options.skip + options.neighborhood);
+  return {central_frame_number - reach, central_frame_number + reach};
 }
 
 CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,
@@ -152,11 +155,12 @@ CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,
     for (int step = -options.num_frames; step <= options.num_frames; ++step) {
       if (step == 0) continue;
       const int target = *frames[idx].frame_number + step * options.skip;
-      const auto [begin, end] = FramesInWindow(frames, target - options.neighborhood,
-                                               target + options.neighborhood);
+      const auto [begin, end] =
+          FramesInWindow(frames, target - options.neighborhood, target + options.neighborhood);
       int most = 0;
       for (int other = begin; other < end; ++other) {
-        most = std::max(most, NumSharedMarkers(frames[idx], frames[static_cast<std::size_t>(other)]));
+        most =
+            std::max(most, NumSharedMarkers(frames[idx], frames[static_cast<std::size_t>(other)]));
       }
       shared += most;
     }
@@ -179,8 +183,9 @@ std::vector<SelectedFrame> SearchFrames(const std::vector<FrameShape>& frames, i
     Search one_side{frames, search, layout, alignment, central, central};
     SearchOneSide(central_idx, direction, &one_side, &selected);
   }
-  std::sort(selected.begin(), selected.end(),
-            [](const SelectedFrame& a, const SelectedFrame& b) { return a.frame_idx < b.frame_idx; });
+  std::sort(selected.begin(), selected.end(), [](const SelectedFrame& a, const SelectedFrame& b) {
+    return a.frame_idx < b.frame_idx;
+  });
   return selected;
 }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "reconstruct/frame_alignment.h"
@@ -28,9 +29,14 @@ struct FrameSearchOptions {
   int neighborhood = 5;  // m
 };
 
-// The parameters that fit a video of `num_video_frames`: the skip shrinks so that n frames on both
-// sides find room, the neighbourhood so that windows do not overlap.
-FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_video_frames);
+// The parameters that fit a video with `num_frames_on_side` frames on the longer side of the central
+// one: the skip shrinks so that n frames find room there, the neighbourhood so that windows do not
+// overlap.
+FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side);
+
+// First and last frame number that the search can visit from a central frame: n times a skip that
+// ends up to m frames further.
+std::pair<int, int> ReachableFrames(int central_frame_number, const FrameSearchOptions& options);
 
 // The frame that shares most markers with the windows that the search will visit around it.
 CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,

@@ -40,26 +40,27 @@ void Remove(const ReprojectionError& error, Model* model,
   removed->push_back({error.point3D_id, error.element, error.error_px});
 }
 
-// Outliers among the observations of one point, the worst first. Where most of them stand out, the
-// point itself is misplaced, dragged by one of them: the worst goes alone, and the others are judged
-// again after the next adjustment. Points behind the camera go at once: COLMAP would drop them.
-std::vector<ReprojectionError> FindOutliers(std::vector<ReprojectionError> track,
+// Outliers among the observations of one point. A gross one drags the point along and makes good
+// observations look bad, so that only those of its size go with it, and it goes alone where most of
+// them stand out; the others are judged again after the next adjustment. Points behind the camera
+// go at once: COLMAP would drop them.
+std::vector<ReprojectionError> FindOutliers(const std::vector<ReprojectionError>& track,
                                             double threshold_px) {
-  std::stable_sort(track.begin(), track.end(),
-                   [](const ReprojectionError& a, const ReprojectionError& b) {
-                     return a.error_px > b.error_px;
-                   });
-  const auto count_above = [&track](double error_px) {
-    return static_cast<std::size_t>(std::count_if(
-        track.begin(), track.end(),
-        [error_px](const ReprojectionError& error) { return !(error.error_px <= error_px); }));
+  constexpr double kFractionOfWorst = 0.3;
+  const auto less = [](const ReprojectionError& a, const ReprojectionError& b) {
+    return a.error_px < b.error_px;
   };
-  std::size_t num_outliers = count_above(threshold_px);
-  if (2 * num_outliers > track.size()) {
-    num_outliers = std::max<std::size_t>(1, count_above(std::numeric_limits<double>::max()));
+  const auto worst = std::max_element(track.begin(), track.end(), less);
+  if (worst->error_px <= threshold_px) return {};
+  std::vector<ReprojectionError> outliers;
+  for (const ReprojectionError& error : track) {
+    if (error.error_px > std::max(threshold_px, kFractionOfWorst * worst->error_px) ||
+        std::isinf(error.error_px)) {
+      outliers.push_back(error);
+    }
   }
-  track.resize(num_outliers);
-  return track;
+  const bool is_dragged = 2 * outliers.size() > track.size();
+  return is_dragged && std::isfinite(worst->error_px) ? std::vector{*worst} : outliers;
 }
 
 // Puts an observation back into the track and the image. False where one of them is gone or the
@@ -154,8 +155,8 @@ int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
   const double threshold_px = OutlierThreshold(options, RobustSigma(residuals));
   // First, so that what is taken out below is not judged again.
   int num_changes = RestoreFitting(threshold_px, model, removed);
-  for (auto& [point3D_id, track] : tracks) {
-    for (const ReprojectionError& outlier : FindOutliers(std::move(track), threshold_px)) {
+  for (const auto& [point3D_id, track] : tracks) {
+    for (const ReprojectionError& outlier : FindOutliers(track, threshold_px)) {
       Remove(outlier, model, removed);
       ++num_changes;
     }

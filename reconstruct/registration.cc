@@ -2,126 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "importer/error.h"
 #include "reconstruct/frame_selection.h"
+#include "reconstruct/registration_state.h"
 
 namespace velamap {
 namespace {
-
-// Alternations of aligning every frame with the mean shape and averaging anew.
-constexpr int kNumRefinements = 4;
-
-// Images that reach this part of the best image's inliers join in the same round of growing.
-constexpr double kJoinRatio = 0.8;
-
-// The state of a registration while it grows.
-struct Workspace {
-  const Layout& layout;
-  const RegistrationOptions& options;
-  std::vector<FrameShape> frames;                         // in canonical order
-  std::vector<const Camera*> cameras;                     // by frame_idx, as the next
-  std::vector<std::optional<FrameAlignment>> alignments;  // with the shape
-  ShapePoints shape;
-
-  FrameAlignmentOptions AlignmentOptions() const {
-    FrameAlignmentOptions alignment;
-    alignment.ransac_max_error_m = options.ransac_max_error_m;
-    alignment.min_num_inliers = options.min_num_inliers;
-    alignment.random_seed = static_cast<std::uint32_t>(options.random_seed);
-    return alignment;
-  }
-};
-
-bool IsOutlier(const FrameAlignment& alignment, int marker_id) {
-  return std::binary_search(alignment.outlier_ids.begin(), alignment.outlier_ids.end(), marker_id);
-}
-
-// Solutions of every marker in the shape frame, from all registered frames that agree with it.
-std::map<int, std::vector<MarkerSolutions>> CollectSolutions(const Workspace& workspace) {
-  std::map<int, std::vector<MarkerSolutions>> solutions_of;
-  for (std::size_t idx = 0; idx < workspace.frames.size(); ++idx) {
-    const auto& alignment = workspace.alignments[idx];
-    if (!alignment) continue;
-    for (const FrameMarker& marker : workspace.frames[idx].markers) {
-      if (IsOutlier(*alignment, marker.marker_id)) continue;
-      MarkerSolutions solutions;
-      for (const MarkerPoints& x_in_cam : marker.x_in_cam) {
-        solutions.push_back(Transform(alignment->shape_from_cam, x_in_cam));
-      }
-      solutions_of[marker.marker_id].push_back(std::move(solutions));
-    }
-  }
-  return solutions_of;
-}
-
-void AverageShape(Workspace* workspace) {
-  const ShapeAveragingOptions averaging{workspace->options.num_mean_iterations,
-                                        workspace->options.mean_sigma_m};
-  workspace->shape.clear();
-  for (const auto& [marker_id, solutions] : CollectSolutions(*workspace)) {
-    workspace->shape.emplace(marker_id, AverageMarker(solutions, averaging));
-  }
-}
-
-int NumRegisteredFrames(const Workspace& workspace) {
-  return static_cast<int>(std::count_if(workspace.alignments.begin(), workspace.alignments.end(),
-                                        [](const auto& a) { return a.has_value(); }));
-}
-
-// Aligns every registered frame with the mean shape and averages again.
-void RefineShape(Workspace* workspace) {
-  for (int round = 0; round < kNumRefinements; ++round) {
-    for (std::size_t idx = 0; idx < workspace->frames.size(); ++idx) {
-      auto& alignment = workspace->alignments[idx];
-      if (!alignment) continue;
-      alignment = AlignFrame(workspace->frames[idx], workspace->shape, workspace->layout,
-                             workspace->AlignmentOptions());
-    }
-    AverageShape(workspace);
-  }
-}
-
-void StartAtCentralFrame(int central_idx, Workspace* workspace) {
-  workspace->alignments.assign(workspace->frames.size(), std::nullopt);
-  workspace->alignments[static_cast<std::size_t>(central_idx)] = FrameAlignment{};
-  AverageShape(workspace);
-}
-
-void GrowFromCentralFrame(int central_idx, Workspace* workspace) {
-  StartAtCentralFrame(central_idx, workspace);
-  while (true) {
-    std::map<std::size_t, FrameAlignment> candidates;
-    std::size_t most_inliers = 0;
-    for (std::size_t idx = 0; idx < workspace->frames.size(); ++idx) {
-      if (workspace->alignments[idx]) continue;
-      auto alignment = AlignFrame(workspace->frames[idx], workspace->shape, workspace->layout,
-                                  workspace->AlignmentOptions());
-      if (!alignment) continue;
-      most_inliers = std::max(most_inliers, alignment->inlier_ids.size());
-      candidates.emplace(idx, std::move(*alignment));
-    }
-    if (candidates.empty()) return;
-    for (auto& [idx, alignment] : candidates) {
-      if (static_cast<double>(alignment.inlier_ids.size()) >=
-          kJoinRatio * static_cast<double>(most_inliers)) {
-        workspace->alignments[idx] = std::move(alignment);
-      }
-    }
-    AverageShape(workspace);
-  }
-}
-
-void SearchInTimeOrder(int central_idx, const FrameSearchOptions& search, Workspace* workspace) {
-  StartAtCentralFrame(central_idx, workspace);
-  for (SelectedFrame& selected : SearchFrames(workspace->frames, central_idx, search,
-                                              workspace->layout, workspace->AlignmentOptions())) {
-    workspace->alignments[static_cast<std::size_t>(selected.frame_idx)] =
-        std::move(selected.alignment);
-  }
-  AverageShape(workspace);
-}
 
 // Whether a marker's place in the mean shape projects to within one marker side of where the frame
 // sees it: the thesis's 100 mm for a marker of 100 mm, but in the image, where the poor depth of a
@@ -139,18 +26,18 @@ bool FitsInImage(const Camera& camera, const Rigid3& cam_from_shape, const Frame
   return squared_errors <= squared_sides;
 }
 
-RegisteredFrame PlaceFrame(const Workspace& workspace, std::size_t idx) {
-  const FrameShape& frame = workspace.frames[idx];
+RegisteredFrame PlaceFrame(const RegistrationState& state, std::size_t idx) {
+  const FrameShape& frame = state.frames[idx];
   RegisteredFrame registered{frame.image_id, frame.image_name, {}, {}, {}, 0.0, ""};
-  const auto& alignment = workspace.alignments[idx];
+  const auto& alignment = state.alignments[idx];
   if (!alignment) return registered;
   registered.cam_from_shape = Inverse(alignment->shape_from_cam);
   registered.rms_error_m = alignment->rms_error_m;
   for (const FrameMarker& marker : frame.markers) {
-    const auto place = workspace.shape.find(marker.marker_id);
-    if (place == workspace.shape.end()) continue;
-    const bool fits = FitsInImage(*workspace.cameras[idx], *registered.cam_from_shape, marker,
-                                  place->second);
+    const auto place = state.shape.find(marker.marker_id);
+    if (place == state.shape.end()) continue;
+    const bool fits =
+        FitsInImage(*state.cameras[idx], *registered.cam_from_shape, marker, place->second);
     (fits ? registered.marker_ids : registered.outlier_ids).push_back(marker.marker_id);
   }
   return registered;
@@ -165,10 +52,10 @@ void DropRareMarkers(int min_num_frames, Registration* registration) {
   }
   for (const auto& [marker_id, num_frames] : num_frames_of) {
     if (num_frames >= min_num_frames) continue;
-    registration->dropped_markers.push_back(
-        {marker_id, num_frames,
-         "seen in " + std::to_string(num_frames) + " registered frames, " +
-             std::to_string(min_num_frames) + " are needed"});
+    registration->dropped_markers.push_back({marker_id, num_frames,
+                                             "seen in " + std::to_string(num_frames) +
+                                                 " registered frames, " +
+                                                 std::to_string(min_num_frames) + " are needed"});
     registration->shape.erase(marker_id);
   }
   for (RegisteredFrame& frame : registration->frames) {
@@ -204,28 +91,58 @@ bool UseTimeOrder(const std::vector<FrameShape>& frames, FrameOrder order) {
   return order == FrameOrder::kTime || (order == FrameOrder::kAuto && all_numbered);
 }
 
-int FindCentralFrame(const std::vector<FrameShape>& frames, const std::string& name_or_number) {
+int FindCentralFrame(const std::vector<FrameShape>& frames, const RegistrationOptions& options) {
+  const std::string& name_or_number = options.central_frame;
+  const auto fail = [&name_or_number](const std::string& what) {
+    throw InputError("--Registration.central_frame " + name_or_number + ": " + what +
+                     "; leave the option out to let the best one be chosen");
+  };
   for (std::size_t idx = 0; idx < frames.size(); ++idx) {
     const FrameShape& frame = frames[idx];
-    if (frame.image_name == name_or_number ||
-        (frame.frame_number && std::to_string(*frame.frame_number) == name_or_number)) {
-      return static_cast<int>(idx);
+    if (frame.image_name != name_or_number &&
+        !(frame.frame_number && std::to_string(*frame.frame_number) == name_or_number)) {
+      continue;
     }
+    if (static_cast<int>(frame.markers.size()) < options.min_num_inliers) {
+      fail("holds " + std::to_string(frame.markers.size()) + " markers, " +
+           std::to_string(options.min_num_inliers) + " are needed");
+    }
+    return static_cast<int>(idx);
   }
-  throw InputError("--Registration.central_frame " + name_or_number +
-                   ": no image of that name or frame number holds markers; leave the option out to "
-                   "let the best one be chosen");
+  fail("no image of that name or frame number holds markers");
+  return -1;
 }
 
-std::string ReasonLeftOut(const Workspace& workspace, const FrameShape& frame, bool time_order) {
+// Shrinks the search where the video is too short for it, with a note.
+FrameSearchOptions FitSearch(const std::vector<FrameShape>& frames,
+                             const std::optional<CentralFrame>& central,
+                             const FrameSearchOptions& search, std::vector<std::string>* notes) {
+  const int first = *frames.front().frame_number, last = *frames.back().frame_number;
+  int num_frames_on_side = (last - first) / 2;
+  if (central) {
+    const int number = *frames[static_cast<std::size_t>(central->frame_idx)].frame_number;
+    num_frames_on_side = std::max(number - first, last - number);
+  }
+  const FrameSearchOptions fitted = FitToVideo(search, num_frames_on_side);
+  if (fitted.skip != search.skip) {
+    notes->push_back("the video is too short for " + std::to_string(search.num_frames) +
+                     " skips of " + std::to_string(search.skip) + " frames: skip " +
+                     std::to_string(fitted.skip) + " and neighborhood " +
+                     std::to_string(fitted.neighborhood) + " are used");
+  }
+  return fitted;
+}
+
+std::string ReasonLeftOut(const RegistrationState& state, const FrameShape& frame,
+                          bool time_order) {
   int num_shared = 0;
   for (const FrameMarker& marker : frame.markers) {
-    num_shared += static_cast<int>(workspace.shape.count(marker.marker_id));
+    num_shared += static_cast<int>(state.shape.count(marker.marker_id));
   }
-  if (num_shared < workspace.options.min_num_inliers) {
+  if (num_shared < state.options.min_num_inliers) {
     return "shares " + std::to_string(num_shared) + " of its " +
            std::to_string(frame.markers.size()) + " markers with the registered images, " +
-           std::to_string(workspace.options.min_num_inliers) + " are needed";
+           std::to_string(state.options.min_num_inliers) + " are needed";
   }
   if (time_order) return "not selected by the search around the central frame";
   return "its " + std::to_string(num_shared) +
@@ -233,13 +150,13 @@ std::string ReasonLeftOut(const Workspace& workspace, const FrameShape& frame, b
 }
 
 // Moves everything so that the central image's camera is the origin again after averaging.
-void ReturnToCentralFrame(int central_idx, Workspace* workspace) {
+void ReturnToCentralFrame(int central_idx, RegistrationState* state) {
   const Rigid3 central_from_shape =
-      Inverse(workspace->alignments[static_cast<std::size_t>(central_idx)]->shape_from_cam);
-  for (auto& alignment : workspace->alignments) {
+      Inverse(state->alignments[static_cast<std::size_t>(central_idx)]->shape_from_cam);
+  for (auto& alignment : state->alignments) {
     if (alignment) alignment->shape_from_cam = central_from_shape * alignment->shape_from_cam;
   }
-  for (auto& [marker_id, points] : workspace->shape) points = Transform(central_from_shape, points);
+  for (auto& [marker_id, points] : state->shape) points = Transform(central_from_shape, points);
 }
 
 }  // namespace
@@ -270,68 +187,59 @@ Registration RegisterFrames(const std::vector<DatabaseImage>& images,
                             const std::map<CameraId, Camera>& cameras, const Layout& layout,
                             const RegistrationOptions& options) {
   options.Check();
-  Workspace workspace{layout, options, {}, {}, {}, {}};
+  RegistrationState state{layout, options, {}, {}, {}, {}};
   for (const DatabaseImage* image : CanonicalOrder(images)) {
     const Camera& camera = cameras.at(image->camera_id);
-    workspace.frames.push_back(EstimateFrameShape(*image, camera, layout));
-    workspace.cameras.push_back(&camera);
+    state.frames.push_back(EstimateFrameShape(*image, camera, layout));
+    state.cameras.push_back(&camera);
   }
-  if (workspace.frames.size() < 2) {
+  if (state.frames.size() < 2) {
     throw DataError("a shape needs at least two images with markers, the database has " +
-                    std::to_string(workspace.frames.size()) +
-                    "; take pictures from several positions");
+                    std::to_string(state.frames.size()) + "; take pictures from several positions");
   }
 
   Registration registration;
-  const bool time_order = UseTimeOrder(workspace.frames, options.frame_order);
+  const bool time_order = UseTimeOrder(state.frames, options.frame_order);
   FrameSearchOptions search{options.num_frames, options.skip, options.neighborhood};
-  if (time_order) {
-    const int num_video_frames =
-        *workspace.frames.back().frame_number - *workspace.frames.front().frame_number + 1;
-    search = FitToVideo(search, num_video_frames);
-    if (search.skip != options.skip) {
-      registration.notes.push_back("the video has " + std::to_string(num_video_frames) +
-                                   " frames with markers in reach: skip " +
-                                   std::to_string(search.skip) + " and neighborhood " +
-                                   std::to_string(search.neighborhood) + " are used");
-    }
-  }
-  CentralFrame central;
+  std::optional<CentralFrame> central;
   if (!options.central_frame.empty()) {
-    central = {FindCentralFrame(workspace.frames, options.central_frame), "named by option"};
-  } else {
-    central = time_order ? ChooseCentralVideoFrame(workspace.frames, search)
-                         : ChooseCentralFrame(workspace.frames);
+    central = CentralFrame{FindCentralFrame(state.frames, options), "named by option"};
+  }
+  if (time_order) {
+    search = FitSearch(state.frames, central, search, &registration.notes);
+    if (!central) central = ChooseCentralVideoFrame(state.frames, search);
+  } else if (!central) {
+    central = ChooseCentralFrame(state.frames);
   }
 
   if (time_order) {
-    SearchInTimeOrder(central.frame_idx, search, &workspace);
+    SearchInTimeOrder(central->frame_idx, search, &state, &registration.notes);
   } else {
-    GrowFromCentralFrame(central.frame_idx, &workspace);
+    GrowFromCentralFrame(central->frame_idx, &state);
   }
-  const std::size_t central_idx = static_cast<std::size_t>(central.frame_idx);
-  registration.central_image_id = workspace.frames[central_idx].image_id;
-  registration.central_image_name = workspace.frames[central_idx].image_name;
-  registration.central_reason = central.reason;
-  RefineShape(&workspace);
-  if (!workspace.alignments[central_idx] || NumRegisteredFrames(workspace) < 2) {
+  const std::size_t central_idx = static_cast<std::size_t>(central->frame_idx);
+  registration.central_image_id = state.frames[central_idx].image_id;
+  registration.central_image_name = state.frames[central_idx].image_name;
+  registration.central_reason = central->reason;
+  RefineShape(&state);
+  if (!state.alignments[central_idx] || state.NumRegistered() < 2) {
     throw DataError("no image shares enough markers with the central image " +
                     registration.central_image_name + ": at least " +
                     std::to_string(options.min_num_inliers) +
                     " markers must be seen together in two images");
   }
-  ReturnToCentralFrame(central.frame_idx, &workspace);
-  for (std::size_t idx = 0; idx < workspace.frames.size(); ++idx) {
-    registration.frames.push_back(PlaceFrame(workspace, idx));
-    if (!workspace.alignments[idx]) {
-      registration.frames.back().reason = ReasonLeftOut(workspace, workspace.frames[idx], time_order);
+  ReturnToCentralFrame(central->frame_idx, &state);
+  for (std::size_t idx = 0; idx < state.frames.size(); ++idx) {
+    registration.frames.push_back(PlaceFrame(state, idx));
+    if (!state.alignments[idx]) {
+      registration.frames.back().reason = ReasonLeftOut(state, state.frames[idx], time_order);
     }
   }
-  registration.shape = std::move(workspace.shape);
+  registration.shape = std::move(state.shape);
   const int by_frequency =
-      time_order ? static_cast<int>(std::ceil(options.frequency_threshold *
-                                              registration.NumRegistered()))
-                 : 0;
+      time_order
+          ? static_cast<int>(std::ceil(options.frequency_threshold * registration.NumRegistered()))
+          : 0;
   DropRareMarkers(std::max(options.min_num_frames, by_frequency), &registration);
   return registration;
 }

@@ -65,14 +65,27 @@ TEST(FrameSelection, EmptyWindowIsPassedOver) {
   EXPECT_GE(*frames[static_cast<std::size_t>(selected.back().frame_idx)].frame_number, 35);
 }
 
+TEST(FrameSelection, SearchStaysWithinReach) {
+  const SyntheticScene scene = Clip(121);
+  const auto frames = FrameShapes(scene);
+  const FrameSearchOptions search{3, 10, 5};
+  const auto [first, last] = ReachableFrames(60, search);
+  EXPECT_EQ(first, 15);
+  EXPECT_EQ(last, 105);
+  for (const SelectedFrame& selected : SearchFrames(frames, 60, search, scene.layout, {})) {
+    EXPECT_GE(selected.frame_idx, first);
+    EXPECT_LE(selected.frame_idx, last);
+  }
+}
+
 TEST(FrameSelection, ShortVideoShrinksTheSkip) {
   const FrameSearchOptions thesis;
-  EXPECT_EQ(FitToVideo(thesis, 2000).skip, 10);
-  EXPECT_EQ(FitToVideo(thesis, 2000).neighborhood, 5);
-  EXPECT_EQ(FitToVideo(thesis, 161).skip, 4);
-  EXPECT_EQ(FitToVideo(thesis, 161).neighborhood, 2);
-  EXPECT_EQ(FitToVideo(thesis, 10).skip, 1);
-  EXPECT_EQ(FitToVideo(thesis, 10).neighborhood, 0);
+  EXPECT_EQ(FitToVideo(thesis, 1000).skip, 10);
+  EXPECT_EQ(FitToVideo(thesis, 1000).neighborhood, 5);
+  EXPECT_EQ(FitToVideo(thesis, 80).skip, 4);
+  EXPECT_EQ(FitToVideo(thesis, 80).neighborhood, 2);
+  EXPECT_EQ(FitToVideo(thesis, 5).skip, 1);
+  EXPECT_EQ(FitToVideo(thesis, 5).neighborhood, 0);
 }
 
 }  // namespace

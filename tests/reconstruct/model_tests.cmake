@@ -10,3 +10,9 @@ velamap_test(NAME reconstruct_model_test LABEL unit
     statistics_test.cc
 )
 
+velamap_test(NAME reconstruct_colmap_test LABEL colmap
+  SOURCES
+    bundle_adjustment_test.cc
+    model_colmap_test.cc
+    sheet_model.cc
+)
