@@ -83,19 +83,19 @@ bool RefinesCameras(const BundleAdjustmentOptions& options) {
          options.refine_extra_params;
 }
 
-// COLMAP exits with 0 whatever happened, so that its files are proof of nothing. `before` is what it
-// was given.
+// COLMAP exits with 0 whatever happened, so that its files are proof of nothing. `before` is what
+// it was given.
 void JudgeStructure(const Model& before, const Model& after, bool refines_cameras,
                     const std::string& log_path) {
   if (after.images.size() != before.images.size()) {
-    ThrowImplausible(fmt::format("{} of {} images came back", after.images.size(),
-                                 before.images.size()),
-                     log_path);
+    ThrowImplausible(
+        fmt::format("{} of {} images came back", after.images.size(), before.images.size()),
+        log_path);
   }
   if (after.points3D.size() != before.points3D.size()) {
-    ThrowImplausible(fmt::format("{} of {} points came back", after.points3D.size(),
-                                 before.points3D.size()),
-                     log_path);
+    ThrowImplausible(
+        fmt::format("{} of {} points came back", after.points3D.size(), before.points3D.size()),
+        log_path);
   }
   for (const ModelImage& image : before.images) {
     if (after.FindImage(image.image_id) == nullptr) {
@@ -115,8 +115,7 @@ void JudgeStructure(const Model& before, const Model& after, bool refines_camera
       ThrowImplausible(fmt::format("camera {} is lost", camera_id), log_path);
     }
     if (refines_cameras ? !(MeanFocalLength(it->second) > 0) : !(it->second == camera)) {
-      ThrowImplausible(fmt::format("camera {} has parameters that cannot be", camera_id),
-                       log_path);
+      ThrowImplausible(fmt::format("camera {} has parameters that cannot be", camera_id), log_path);
     }
   }
 }
@@ -152,8 +151,7 @@ Model ReadResult(const std::string& path, const std::string& log_path) {
   }
 }
 
-void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_path,
-                Model* model) {
+void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_path, Model* model) {
   const ScratchFolder scratch;
   OrderForGauge(model->images.front().image_id, model);
   WriteModel(*model, scratch.InputPath(), ModelFormat::kBinary);

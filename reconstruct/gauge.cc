@@ -9,13 +9,11 @@ namespace velamap {
 
 void OrderForGauge(ImageId first_image_id, Model* model) {
   std::vector<ModelImage>& images = model->images;
-  std::sort(images.begin(), images.end(), [](const ModelImage& a, const ModelImage& b) {
-    return a.image_id < b.image_id;
-  });
-  const auto first =
-      std::find_if(images.begin(), images.end(), [first_image_id](const ModelImage& image) {
-        return image.image_id == first_image_id;
-      });
+  std::sort(images.begin(), images.end(),
+            [](const ModelImage& a, const ModelImage& b) { return a.image_id < b.image_id; });
+  const auto first = std::find_if(
+      images.begin(), images.end(),
+      [first_image_id](const ModelImage& image) { return image.image_id == first_image_id; });
   VELAMAP_CHECK(first != images.end());
   std::rotate(images.begin(), first, std::next(first));
 
@@ -23,11 +21,11 @@ void OrderForGauge(ImageId first_image_id, Model* model) {
   TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
   images.front().cam_from_world = Rigid3{};  // exactly, without rounding
 
-  const auto second = std::max_element(
-      std::next(images.begin()), images.end(), [](const ModelImage& a, const ModelImage& b) {
-        return std::abs(a.cam_from_world.translation.x()) <
-               std::abs(b.cam_from_world.translation.x());
-      });
+  const auto second = std::max_element(std::next(images.begin()), images.end(),
+                                       [](const ModelImage& a, const ModelImage& b) {
+                                         return std::abs(a.cam_from_world.translation.x()) <
+                                                std::abs(b.cam_from_world.translation.x());
+                                       });
   if (second != images.end()) std::rotate(std::next(images.begin()), second, std::next(second));
 }
 

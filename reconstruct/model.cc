@@ -70,9 +70,10 @@ std::string FindPointFault(const ImagesById& images, Point3DId point3D_id, const
     const std::vector<Point2D>& points2D = image->second->points2D;
     if (element.point2D_idx >= points2D.size() ||
         points2D[element.point2D_idx].point3D_id != point3D_id) {
-      return fmt::format("the track of point {} has 2D point {} of image {}, which does not "
-                         "observe it",
-                         point3D_id, element.point2D_idx, element.image_id);
+      return fmt::format(
+          "the track of point {} has 2D point {} of image {}, which does not "
+          "observe it",
+          point3D_id, element.point2D_idx, element.image_id);
     }
     if (!elements.insert({element.image_id, element.point2D_idx}).second) {
       return fmt::format("the track of point {} has 2D point {} of image {} twice", point3D_id,
@@ -135,10 +136,9 @@ void RemoveObservation(Model* model, Point3DId point3D_id, const TrackElement& e
   const auto it = std::find_if(track.begin(), track.end(), [&element](const TrackElement& other) {
     return other.image_id == element.image_id && other.point2D_idx == element.point2D_idx;
   });
-  const auto image =
-      std::find_if(model->images.begin(), model->images.end(), [&element](const ModelImage& other) {
-        return other.image_id == element.image_id;
-      });
+  const auto image = std::find_if(
+      model->images.begin(), model->images.end(),
+      [&element](const ModelImage& other) { return other.image_id == element.image_id; });
   VELAMAP_CHECK(it != track.end() && image != model->images.end());
   image->points2D.at(element.point2D_idx).point3D_id = kInvalidPoint3DId;
   track.erase(it);

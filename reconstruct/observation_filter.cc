@@ -67,10 +67,10 @@ std::vector<ReprojectionError> FindOutliers(const std::vector<ReprojectionError>
 // observation does not fit.
 bool RestoreIfFits(const RemovedObservation& observation, double threshold_px, Model* model) {
   const auto point = model->points3D.find(observation.point3D_id);
-  const auto image = std::find_if(
-      model->images.begin(), model->images.end(), [&observation](const ModelImage& other) {
-        return other.image_id == observation.element.image_id;
-      });
+  const auto image = std::find_if(model->images.begin(), model->images.end(),
+                                  [&observation](const ModelImage& other) {
+                                    return other.image_id == observation.element.image_id;
+                                  });
   if (point == model->points3D.end() || image == model->images.end()) return false;
   Point2D& point2D = image->points2D.at(observation.element.point2D_idx);
   const auto projection = ImageFromCam(model->cameras.at(image->camera_id),
@@ -83,10 +83,10 @@ bool RestoreIfFits(const RemovedObservation& observation, double threshold_px, M
 }
 
 int RestoreFitting(double threshold_px, Model* model, std::vector<RemovedObservation>* removed) {
-  const auto restored = std::stable_partition(
-      removed->begin(), removed->end(), [threshold_px, model](const RemovedObservation& o) {
-        return !RestoreIfFits(o, threshold_px, model);
-      });
+  const auto restored = std::stable_partition(removed->begin(), removed->end(),
+                                              [threshold_px, model](const RemovedObservation& o) {
+                                                return !RestoreIfFits(o, threshold_px, model);
+                                              });
   const auto num_restored = removed->end() - restored;
   removed->erase(restored, removed->end());
   return static_cast<int>(num_restored);
@@ -133,9 +133,8 @@ void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
     point_sigma_px[point3D_id] = RobustSigmaAboutZero(residuals);
   }
   for (const ReprojectionError& error : errors) {
-    const double sigma_px =
-        std::max({model_sigma_px, image_sigma_px.at(error.element.image_id),
-                  point_sigma_px.at(error.point3D_id)});
+    const double sigma_px = std::max({model_sigma_px, image_sigma_px.at(error.element.image_id),
+                                      point_sigma_px.at(error.point3D_id)});
     if (std::isfinite(error.error_px) && error.error_px <= OutlierThreshold(options, sigma_px)) {
       continue;
     }

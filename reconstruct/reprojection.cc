@@ -16,8 +16,8 @@ std::vector<ReprojectionError> ComputeReprojectionErrors(const Model& model) {
   for (const auto& [point3D_id, point] : model.points3D) {
     for (const TrackElement& element : point.track) {
       const ModelImage& image = *images.at(element.image_id);
-      const auto projection = ImageFromCam(model.cameras.at(image.camera_id),
-                                           image.cam_from_world * point.x_in_world);
+      const auto projection =
+          ImageFromCam(model.cameras.at(image.camera_id), image.cam_from_world * point.x_in_world);
       ReprojectionError error{point3D_id, element, Eigen::Vector2d::Constant(kInfinity), kInfinity};
       if (projection) {
         error.residual_in_image_px =

@@ -47,7 +47,8 @@ class ColmapRunnerTest : public testing::Test {
 
 TEST_F(ColmapRunnerTest, ArgumentsArriveAsTheyAre) {
   const std::string program = Script("for word in \"$@\"; do echo \"<$word>\"; done");
-  const ColmapRun run = RunColmap(program, {"two words", "$HOME; exit 1", "*", "", "'\""}, log_path_);
+  const ColmapRun run =
+      RunColmap(program, {"two words", "$HOME; exit 1", "*", "", "'\""}, log_path_);
   EXPECT_EQ(run.output, "<two words>\n<$HOME; exit 1>\n<*>\n<>\n<'\">\n");
 }
 
@@ -59,8 +60,9 @@ TEST_F(ColmapRunnerTest, BothStreamsReachTheLogWhichIsAppendedTo) {
 }
 
 TEST_F(ColmapRunnerTest, LongOutputIsWhole) {
-  const std::string program = Script("i=0; while [ $i -lt 20000 ]; do echo 123456789; i=$((i+1)); "
-                                     "done");
+  const std::string program = Script(
+      "i=0; while [ $i -lt 20000 ]; do echo 123456789; i=$((i+1)); "
+      "done");
   EXPECT_EQ(RunColmap(program, {}, log_path_).output.size(), 200000u);
 }
 
@@ -81,8 +83,7 @@ TEST_F(ColmapRunnerTest, FailureNamesStatusCommandReasonAndLog) {
 }
 
 TEST_F(ColmapRunnerTest, FailureWithoutASignQuotesTheLastLine) {
-  EXPECT_THAT(ErrorOf(Script("echo one; echo two; echo; exit 1")),
-              HasSubstr("it wrote last: two"));
+  EXPECT_THAT(ErrorOf(Script("echo one; echo two; echo; exit 1")), HasSubstr("it wrote last: two"));
   EXPECT_THAT(ErrorOf(Script("exit 1")), HasSubstr("it wrote nothing"));
 }
 
@@ -94,9 +95,8 @@ TEST_F(ColmapRunnerTest, DeathBySignalSaysSo) {
 
 TEST_F(ColmapRunnerTest, MissingProgramSaysHowToGetIt) {
   for (const std::string program : {"velamap-no-such-program", "/no/such/colmap"}) {
-    EXPECT_THAT(ErrorOf(program),
-                AllOf(HasSubstr(program), HasSubstr("apt install colmap"),
-                      HasSubstr("--colmap_path")));
+    EXPECT_THAT(ErrorOf(program), AllOf(HasSubstr(program), HasSubstr("apt install colmap"),
+                                        HasSubstr("--colmap_path")));
   }
   std::ofstream(dir_ / "text") << "not a program";
   EXPECT_THAT(ErrorOf(dir_ / "text"), HasSubstr("Permission denied"));

@@ -67,9 +67,9 @@ TEST(OrderForGauge, SimilarityOfTheInputChangesTheScaleOnly) {
   OrderForGauge(4, &moved);
   EXPECT_EQ(Order(model), Order(moved));
   for (const auto& [point3D_id, point] : model.points3D) {
-    EXPECT_LT((kSimilarity.scale * point.x_in_world - moved.points3D.at(point3D_id).x_in_world)
-                  .norm(),
-              1e-12);
+    EXPECT_LT(
+        (kSimilarity.scale * point.x_in_world - moved.points3D.at(point3D_id).x_in_world).norm(),
+        1e-12);
   }
 }
 

@@ -29,7 +29,9 @@ Model AwkwardModel() {
   Model model = MakeSheetModel(options);
   AddImageNoise(1.0 / 3.0, 5, &model);
   PerturbSeed(0.01, 5, &model);
-  model.cameras[4294967295u] = {CameraModel::kFullOpenCV, 4000, 3000,
+  model.cameras[4294967295u] = {CameraModel::kFullOpenCV,
+                                4000,
+                                3000,
                                 {1e3 / 3, 7e2, 1.1, 2.2, 1e-17, -1e-300, 0, -0.0, 5, 6, 7, 8}};
   model.images[2].camera_id = 4294967295u;
   RemoveObservation(&model, 12, {3, 1});

@@ -67,9 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"TrackOther", "which does not observe it",
               [](Model* m) { m->points3D.at(12).track[0].point2D_idx = 0; }},
         Fault{"TrackTwice", "twice",
-              [](Model* m) {
-                m->points3D.at(12).track.push_back(m->points3D.at(12).track[0]);
-              }},
+              [](Model* m) { m->points3D.at(12).track.push_back(m->points3D.at(12).track[0]); }},
         Fault{"Untracked", "point 12 is observed by 3 2D points, but its track has 2",
               [](Model* m) { m->points3D.at(12).track.pop_back(); }}),
     [](const auto& test) { return test.param.name; });

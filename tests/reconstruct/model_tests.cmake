@@ -12,6 +12,7 @@ velamap_test(NAME reconstruct_model_test LABEL unit
 
 velamap_test(NAME reconstruct_colmap_test LABEL colmap
   SOURCES
+    bundle_adjustment_failure_test.cc
     bundle_adjustment_test.cc
     model_colmap_test.cc
     sheet_model.cc

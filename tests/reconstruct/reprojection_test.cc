@@ -15,8 +15,7 @@ TEST(ComputeReprojectionErrors, ExactModelHasNone) {
     SheetOptions options;
     options.camera_model = camera_model;
     const Model model = MakeSheetModel(options);
-    const Statistics statistics =
-        SummarizeReprojectionErrors(ComputeReprojectionErrors(model));
+    const Statistics statistics = SummarizeReprojectionErrors(ComputeReprojectionErrors(model));
     EXPECT_EQ(statistics.count, 9 * 80);
     EXPECT_LT(statistics.max, 1e-9);
   }
@@ -58,9 +57,9 @@ TEST(ComputeReprojectionErrors, PointBehindTheCameraIsInfinitelyWrong) {
   Point3D& point = model.points3D.at(11);
   point.x_in_world *= -100;
   for (const ReprojectionError& error : ComputeReprojectionErrors(model)) {
-    const bool behind = error.point3D_id == 11 &&
-                        (model.FindImage(error.element.image_id)->cam_from_world *
-                         point.x_in_world).z() <= 0;
+    const bool behind =
+        error.point3D_id == 11 &&
+        (model.FindImage(error.element.image_id)->cam_from_world * point.x_in_world).z() <= 0;
     EXPECT_EQ(std::isinf(error.error_px), behind);
   }
 }

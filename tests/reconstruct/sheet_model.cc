@@ -79,8 +79,7 @@ Model MakeSheetModel(const SheetOptions& options) {
       for (ModelImage& image : model.images) {
         const auto x_in_image_px =
             ImageFromCam(model.cameras.at(1), image.cam_from_world * point.x_in_world);
-        point.track.push_back(
-            {image.image_id, static_cast<std::uint32_t>(image.points2D.size())});
+        point.track.push_back({image.image_id, static_cast<std::uint32_t>(image.points2D.size())});
         image.points2D.push_back({x_in_image_px.value(), id});
       }
       model.points3D.emplace(id, std::move(point));
