@@ -35,7 +35,8 @@ CommandSyntax Declare(Options* options) {
           "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
           "    --workspace_path result",
           {{"Input and output",
-            {ImagePathOption(paths), CameraPathOption(paths),
+            {ImagePathOption(paths),
+             CameraPathOption(paths),
              {"workspace_path", &paths->workspace_path, "path",
               "folder of the result: new, empty, or of an earlier run, whose database is used on",
               true}}},
@@ -59,6 +60,7 @@ void Validate(Options* options) {
   options->importer.camera = ReadCalibration(options->paths.camera_path);
   options->importer.camera_path = options->paths.camera_path;
   options->importer.image_path = options->paths.image_path;
+  options->importer.video = NarrowToReach(options->importer.video, options->registration);
   options->importer.num_threads = options->general.num_threads;
   CheckColmap(options->adjustment.colmap_path);
 }
@@ -85,9 +87,8 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   summary->shape = ExportShape(model, options.importer.layout,
                                {(sparse.TemporaryPath() / "0").string(), paths.Shape().string()});
   sparse.Commit();
-  WriteFileAtomically(paths.RegistrationCsv(), [&seed](std::ostream& out) {
-    WriteRegistrationCsv(seed.registration, out);
-  });
+  WriteFileAtomically(paths.RegistrationCsv(),
+                      [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
   RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
   summary->num_images = static_cast<int>(model.images.size());
 }
@@ -109,8 +110,8 @@ void RunAutomaticReconstructor(const Arguments& arguments) {
 
   ReconstructionSummary summary;
   Import(&options, &workspace, &summary.left_out);
-  const SeedResult seed = RegisterDatabase(paths.Database().string(), options.importer.layout,
-                                           options.registration);
+  const SeedResult seed =
+      RegisterDatabase(paths.Database().string(), options.importer.layout, options.registration);
   summary.num_images_total = static_cast<int>(seed.image_names.size() + summary.left_out.size());
   summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
   AdjustAndExport(options, paths, seed, &summary);

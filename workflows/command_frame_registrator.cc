@@ -69,12 +69,11 @@ void RunFrameRegistrator(const Arguments& arguments) {
     return;
   }
   Validate(&options);
-  const SeedResult seed = RegisterDatabase(options.paths.database_path,
-                                           LoadLayout(options.markers, false), options.registration);
+  const SeedResult seed = RegisterDatabase(
+      options.paths.database_path, LoadLayout(options.markers, false), options.registration);
   WriteModel(seed.model, options.paths.output_path, ModelFormat::kBinaryAndText);
-  WriteFileAtomically(options.paths.registration_path, [&seed](std::ostream& out) {
-    WriteRegistrationCsv(seed.registration, out);
-  });
+  WriteFileAtomically(options.paths.registration_path,
+                      [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
   Print(seed, options.paths, std::cout);
 }
 

@@ -27,7 +27,8 @@ CommandSyntax Declare(Options* options) {
           "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
           "    --database_path database.db",
           {{"Input and output",
-            {ImagePathOption(paths), CameraPathOption(paths),
+            {ImagePathOption(paths),
+             CameraPathOption(paths),
              DatabasePathOption(paths, "COLMAP database, made new or added to"),
              {"frame_output_path", &paths->frame_output_path, "path",
               "folder for the frames of a video that hold markers, as JPEG; left out: none are "
@@ -59,7 +60,10 @@ void Print(const ImportReport& report, const std::string& database_path, std::os
   fmt::print(out, "images_skipped: {}\n", report.skipped.size());
   fmt::print(out, "markers: {}\n", report.num_markers);
   fmt::print(out, "markers_rejected: {}\n", report.num_rejected);
-  fmt::print(out, "ids_not_in_layout: {}\n", fmt::join(report.ids_not_in_layout, " "));
+  fmt::print(out, "ids_not_in_layout: {}\n",
+             report.ids_not_in_layout.empty()
+                 ? "none"
+                 : fmt::format("{}", fmt::join(report.ids_not_in_layout, " ")));
   fmt::print(out, "pairs_with_matches: {}\n", report.num_pairs);
   fmt::print(out, "database_path: {}\n", database_path);
 }

@@ -1,11 +1,15 @@
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
-#include "exporters/metrics_text.h"
-#include "exporters/part_planes.h"
+#include <spdlog/spdlog.h>
+
+#include "exporters/metric_shape.h"
 #include "exporters/shape_csv.h"
-#include "exporters/shape_metrics.h"
+#include "exporters/shape_report.h"
+#include "importer/atomic_output.h"
 #include "importer/error.h"
+#include "reconstruct/model_io.h"
 #include "workflows/commands.h"
 #include "workflows/shared_options.h"
 
@@ -17,37 +21,88 @@ struct Options {
   MarkerOptions markers;
   GeneralOptions general;
   bool part_planes = false;
+  std::string csv_path;
+  std::string json_path;
 };
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {"shape_analyzer",
-          "judges a shape by the printed size of its markers and against a reference",
-          "--shape_path shape/shape.csv --layout_path layout.yml --reference_path truth.csv",
-          {{"Input and output",
-            {{"shape_path", &paths->shape_path, "path", "shape.csv, or the folder that holds it",
-              true},
-             {"reference_path", &paths->reference_path, "path",
-              "shape.csv of the truth or the design; the shape is aligned with it"},
-             {"part_planes", &options->part_planes, "0|1",
-              "fit a plane to every part and compare the planes"}}},
-           MarkerGroup(&options->markers, false),
-           GeneralGroup(&options->general)}};
+  return {
+      "shape_analyzer",
+      "judges a shape by its markers, its images and a reference",
+      "--shape_path shape --layout_path layout.yml --input_path sparse/0",
+      {{"Input and output",
+        {{"shape_path", &paths->shape_path, "path", "shape.csv, or the folder that holds it", true},
+         {"input_path", &paths->input_path, "path",
+          "folder of the COLMAP model that the shape is from; for reprojection errors"},
+         {"reference_path", &paths->reference_path, "path",
+          "shape.csv of the truth or the design; the shape is aligned with it, and distances "
+          "of adjacent markers are compared"},
+         {"part_planes", &options->part_planes, "0|1",
+          "fit a plane to every part and compare the planes"},
+         {"csv_path", &options->csv_path, "path",
+          "file for all metrics and the tables of markers and distances"},
+         {"json_path", &options->json_path, "path", "the same as JSON"}}},
+       MarkerGroup(&options->markers, false),
+       GeneralGroup(&options->general)}};
 }
 
 void Validate(const Options& options) {
   ApplyGeneralOptions(options.general);
-  if (!HasMarkerOptions(options.markers) && options.paths.reference_path.empty() &&
-      !options.part_planes) {
+  const PathOptions& paths = options.paths;
+  if (!HasMarkerOptions(options.markers) && paths.reference_path.empty() &&
+      paths.input_path.empty() && !options.part_planes) {
     throw InputError(
         "--layout_path: missing; give it or --marker_length to judge the markers' size, "
-        "--reference_path to compare, or --part_planes 1");
+        "--input_path for reprojection errors, --reference_path to compare, or --part_planes 1");
+  }
+  if (!options.csv_path.empty() && options.csv_path == options.json_path) {
+    throw InputError("--json_path: " + options.json_path + " is the --csv_path too; give another");
   }
 }
 
 std::string ShapeFile(const std::string& path) {
   const std::filesystem::path file = path;
   return std::filesystem::is_directory(file) ? (file / "shape.csv").string() : path;
+}
+
+// A shape is similar to the corners of its model, or one of the two is of another run.
+void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathOptions& paths) {
+  constexpr double kTolerance_m = 1e-6;
+  const auto max_distance_m = [&] {
+    try {
+      return CompareShapes(ShapeFromModel(model, Layout()), shape).distance_after_scaling_m.max;
+    } catch (const DataError&) {
+      throw InputError("--input_path " + paths.input_path +
+                       ": shares fewer than three corners with " + paths.shape_path +
+                       "; give the model that the shape is from");
+    }
+  }();
+  if (max_distance_m <= kTolerance_m) return;
+  spdlog::warn(
+      "{} is not the shape of the model {}: corners differ by up to {:.6f} m, errors of "
+      "the two do not belong together",
+      paths.shape_path, paths.input_path, max_distance_m);
+}
+
+MetricsReport Analyze(const Options& options) {
+  const MarkerShape shape = ReadShapeCsv(ShapeFile(options.paths.shape_path));
+  std::optional<Layout> layout;
+  if (HasMarkerOptions(options.markers)) layout = LoadLayout(options.markers, false);
+  MetricsReport report;
+  if (layout) AddMetrics(ComputeShapeMetrics(shape, *layout), &report);
+  if (!options.paths.input_path.empty()) {
+    const Model model = ReadModel(options.paths.input_path);
+    CheckModelOfShape(model, shape, options.paths);
+    AddMetrics(ComputeModelMetrics(model, MarkerIds(layout.value_or(Layout()))), &report);
+  }
+  if (options.part_planes) AddMetrics(FitPartPlanes(shape), &report);
+  if (!options.paths.reference_path.empty()) {
+    const MarkerShape reference = ReadShapeCsv(ShapeFile(options.paths.reference_path));
+    AddMetrics(CompareShapes(shape, reference), &report);
+    if (layout) AddMetrics(CompareAdjacentDistances(shape, reference, *layout), &report);
+  }
+  return report;
 }
 
 }  // namespace
@@ -60,15 +115,16 @@ void RunShapeAnalyzer(const Arguments& arguments) {
     return;
   }
   Validate(options);
-  const MarkerShape shape = ReadShapeCsv(ShapeFile(options.paths.shape_path));
-  if (HasMarkerOptions(options.markers)) {
-    PrintMetrics(ComputeShapeMetrics(shape, LoadLayout(options.markers, false)), std::cout);
+  const MetricsReport report = Analyze(options);
+  if (!options.csv_path.empty()) {
+    WriteFileAtomically(options.csv_path,
+                        [&report](std::ostream& out) { WriteMetricsCsv(report, out); });
   }
-  if (options.part_planes) PrintPlanes(FitPartPlanes(shape), std::cout);
-  if (!options.paths.reference_path.empty()) {
-    PrintMetrics(CompareShapes(shape, ReadShapeCsv(ShapeFile(options.paths.reference_path))),
-                 std::cout);
+  if (!options.json_path.empty()) {
+    WriteFileAtomically(options.json_path,
+                        [&report](std::ostream& out) { WriteMetricsJson(report, out); });
   }
+  PrintMetrics(report, std::cout);
 }
 
 }  // namespace velamap

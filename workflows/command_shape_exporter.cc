@@ -26,7 +26,7 @@ CommandSyntax Declare(Options* options) {
              {"output_path", &paths->output_path, "path",
               "folder of the metric model; left out: it is not written"},
              {"shape_path", &paths->shape_path, "path",
-              "folder of shape.csv, shape.ply, markers.ply, scale.csv; left out: none is written"},
+              "folder of shape.csv, PLY files, scale.csv and metrics; left out: none is written"},
              {"ascii_ply", &options->ascii_ply, "0|1", "PLY as text instead of binary"}}},
            MarkerGroup(&options->markers, false),
            GeneralGroup(&options->general)}};

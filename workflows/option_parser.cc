@@ -7,8 +7,8 @@
 #include <map>
 #include <ostream>
 
-#include <boost/program_options.hpp>
 #include <fmt/format.h>
+#include <boost/program_options.hpp>
 
 #include "importer/error.h"
 
@@ -47,16 +47,18 @@ po::options_description Describe(const OptionGroup& group) {
     auto* semantic = po::value<std::string>()->value_name(option.unit);
     const std::string text = DefaultText(option.target);
     if (!option.required && !text.empty()) semantic->default_value(text);
-    description.add_options()(option.name.c_str(), semantic,
-                              (option.description + (option.required ? " (required)" : "")).c_str());
+    description.add_options()(
+        option.name.c_str(), semantic,
+        (option.description + (option.required ? " (required)" : "")).c_str());
   }
   return description;
 }
 
 OptionGroup ProjectGroup(std::string* project_path) {
   return {"Project file",
-          {{kProjectPath, project_path, "path", "ini file with the same options; the command line "
-                                                "wins over it"}}};
+          {{kProjectPath, project_path, "path",
+            "ini file with the same options; the command line "
+            "wins over it"}}};
 }
 
 po::options_description DescribeAll(const CommandSyntax& syntax) {
@@ -90,12 +92,12 @@ GivenValues ReadCommandLine(const CommandSyntax& syntax, const po::options_descr
   namespace style = po::command_line_style;
   GivenValues values;
   try {
-    const auto parsed = po::command_line_parser(arguments)
-                            .options(description)
-                            .style(style::allow_long | style::long_allow_adjacent |
-                                   style::long_allow_next)
-                            .allow_unregistered()
-                            .run();
+    const auto parsed =
+        po::command_line_parser(arguments)
+            .options(description)
+            .style(style::allow_long | style::long_allow_adjacent | style::long_allow_next)
+            .allow_unregistered()
+            .run();
     for (const auto& option : parsed.options) {
       if (option.position_key >= 0) {
         throw InputError(fmt::format("'{}': every value needs its option before it; {}",
@@ -121,14 +123,16 @@ GivenValues ReadProjectFile(const CommandSyntax& syntax, const po::options_descr
                             const std::string& path, const std::set<std::string>& other_names) {
   std::ifstream stream(path);
   if (!stream || stream.peek() == std::ifstream::traits_type::eof()) {
-    throw InputError(fmt::format("--{} {}: cannot be read, or is empty; give an ini file with "
-                                 "key=value lines",
-                                 kProjectPath, path));
+    throw InputError(
+        fmt::format("--{} {}: cannot be read, or is empty; give an ini file with "
+                    "key=value lines",
+                    kProjectPath, path));
   }
   GivenValues values;
   try {
     constexpr bool kAllowUnregistered = true;
-    for (const auto& option : po::parse_config_file(stream, description, kAllowUnregistered).options) {
+    for (const auto& option :
+         po::parse_config_file(stream, description, kAllowUnregistered).options) {
       const std::string& name = option.string_key;
       if (option.unregistered && other_names.count(name) > 0) continue;
       if (option.unregistered || name == kProjectPath) {
@@ -140,9 +144,10 @@ GivenValues ReadProjectFile(const CommandSyntax& syntax, const po::options_descr
       }
     }
   } catch (const po::error& error) {
-    throw InputError(fmt::format("{}: {}; expected key=value lines, and [Section] before keys of a "
-                                 "section",
-                                 path, error.what()));
+    throw InputError(
+        fmt::format("{}: {}; expected key=value lines, and [Section] before keys of a "
+                    "section",
+                    path, error.what()));
   }
   return values;
 }
@@ -210,8 +215,8 @@ bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& a
     for (const Option& option : group.options) {
       const auto it = values.find(option.name);
       if (option.required && (it == values.end() || it->second.text.empty())) {
-        throw InputError(
-            fmt::format("--{}: missing; {} ({})", option.name, option.description, HelpHint(syntax)));
+        throw InputError(fmt::format("--{}: missing; {} ({})", option.name, option.description,
+                                     HelpHint(syntax)));
       }
       if (it != values.end()) std::visit(Setter{it->second}, option.target);
     }

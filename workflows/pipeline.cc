@@ -1,6 +1,7 @@
 #include "workflows/pipeline.h"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -12,14 +13,16 @@
 #include "importer/colmap_database.h"
 #include "importer/error.h"
 #include "reconstruct/colmap_runner.h"
+#include "reconstruct/frame_selection.h"
 #include "reconstruct/seed_model.h"
 #include "workflows/progress.h"
+#include "workflows/summary.h"
 
 namespace velamap {
 namespace {
 
-// More lines than this say no more; the registration table has all.
-constexpr std::size_t kMaxListed = 10;
+// Corners are good to a few tenths of a pixel; a model that is off by more has another fault.
+constexpr double kSuspiciousErrorPx = 1.0;
 
 std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
   std::set<std::string> used;
@@ -45,18 +48,31 @@ void LogSeed(const SeedResult& seed) {
   for (const std::string& note : registration.notes) spdlog::info(note);
   spdlog::info("{} of {} images registered, {} markers", seed.model.images.size(),
                seed.image_names.size(), registration.shape.size());
-  for (std::size_t i = 0; i < std::min(seed.left_out.size(), kMaxListed); ++i) {
-    spdlog::info("{} left out: {}", seed.left_out[i].image_name, seed.left_out[i].reason);
-  }
-  if (seed.left_out.size() > kMaxListed) {
-    spdlog::info("and {} more images left out", seed.left_out.size() - kMaxListed);
-  }
+  if (!seed.left_out.empty()) spdlog::info("images left out: {}", LeftOutText(seed.left_out));
   for (const DroppedMarker& marker : registration.dropped_markers) {
     spdlog::debug("marker {} left out: {}", marker.marker_id, marker.reason);
   }
 }
 
 }  // namespace
+
+VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration) {
+  const std::string& central = registration.central_frame;
+  int number = 0;
+  const auto [end, error] = std::from_chars(central.data(), central.data() + central.size(), number);
+  if (error != std::errc() || end != central.data() + central.size() || number < 0 ||
+      registration.frame_order == FrameOrder::kUnordered) {
+    return video;
+  }
+  const auto [first, last] = ReachableFrames(
+      number, {registration.num_frames, registration.skip, registration.neighborhood});
+  VideoOptions narrowed = video;
+  // In steps from the first frame, so that the frames that are read stay the same.
+  const int skipped = std::max(0, first - video.first_frame);
+  narrowed.first_frame += skipped / video.frame_step * video.frame_step;
+  narrowed.last_frame = video.last_frame < 0 ? last : std::min(video.last_frame, last);
+  return narrowed;
+}
 
 ImportReport ImportImages(const MarkerImporterOptions& options) {
   Progress progress("detecting markers");
@@ -65,8 +81,8 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
         progress.Update(done, total, message);
       });
   ClearProgressLine();
-  spdlog::info("{} images added to the {} of the database, {} markers found", report.num_images_added,
-               report.num_images_present, report.num_markers);
+  spdlog::info("{} images added to the {} of the database, {} markers found",
+               report.num_images_added, report.num_images_present, report.num_markers);
   if (!report.ids_not_in_layout.empty()) {
     spdlog::warn("markers found that the layout does not name, left out: {}",
                  fmt::join(report.ids_not_in_layout, " "));
@@ -105,9 +121,10 @@ void CheckModelFolder(const std::string& path) {
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (kModelFiles.count(name) > 0) continue;
-    throw InputError(fmt::format("--output_path {}: holds {}, which is no part of a model; give a "
-                                 "new or an empty folder",
-                                 path, name));
+    throw InputError(
+        fmt::format("--output_path {}: holds {}, which is no part of a model; give a "
+                    "new or an empty folder",
+                    path, name));
   }
 }
 
@@ -119,9 +136,10 @@ void CheckBackend(const std::string& backend) {
 
 void CheckColmap(const std::string& colmap_path) {
   if (!ColmapHasOption(colmap_path, "bundle_adjuster", "input_path")) {
-    throw ExternalToolError(fmt::format("{} bundle_adjuster -h: does not know --input_path; is it "
-                                        "COLMAP? (--colmap_path)",
-                                        colmap_path));
+    throw ExternalToolError(
+        fmt::format("{} bundle_adjuster -h: does not know --input_path; is it "
+                    "COLMAP? (--colmap_path)",
+                    colmap_path));
   }
 }
 
@@ -133,6 +151,16 @@ BundleAdjustmentSummary AdjustModel(const BundleAdjustmentOptions& options,
   spdlog::info("{} rounds, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px",
                summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
                summary.error_after_px.mean);
+  if (summary.error_after_px.mean > kSuspiciousErrorPx) {
+    spdlog::warn(
+        "a mean reprojection error of {:.2f} px is more than the noise of corners explains: is the "
+        "calibration of these images, and did the surface keep its shape? Do not trust the result",
+        summary.error_after_px.mean);
+  }
+  if (!summary.removed_images.empty()) {
+    spdlog::warn("{} images lost so many observations to the outlier filter that they are left out",
+                 summary.removed_images.size());
+  }
   return summary;
 }
 

@@ -25,6 +25,10 @@ struct SeedResult {
   std::vector<LeftOutImage> left_out;    // those that the model does not hold
 };
 
+// The part of a video that the search around a named central frame can reach (thesis 3.4.1), so that
+// nothing else is decoded; all that `video` asks for where no frame number is named.
+VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration);
+
 // ImportMarkers() with progress, and a log line on what is odd.
 ImportReport ImportImages(const MarkerImporterOptions& options);
 
@@ -36,8 +40,8 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
 // is sparse/NAME.
 std::string BesideFolder(const std::string& folder, const std::string& name);
 
-// Throws InputError unless the folder is new, empty, or holds a COLMAP model and nothing else: it is
-// replaced as a whole, and a mistyped path shall not cost anyone their files.
+// Throws InputError unless the folder is new, empty, or holds a COLMAP model and nothing else: it
+// is replaced as a whole, and a mistyped path shall not cost anyone their files.
 void CheckModelFolder(const std::string& path);
 
 // Throws InputError for a backend that does not exist.

@@ -7,10 +7,10 @@ packages=(
   build-essential cmake ninja-build ccache pkg-config colmap
   libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
   libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev
-  libboost-program-options-dev libspdlog-dev
+  libboost-program-options-dev libspdlog-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
 )
-test_packages=(xvfb xauth imagemagick ffmpeg x11-utils)
+test_packages=(xvfb xauth imagemagick ffmpeg x11-utils xdotool)
 
 case "${1:-}" in
   "") ;;

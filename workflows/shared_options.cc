@@ -26,8 +26,7 @@ FrameOrder FrameOrderFromName(const std::string& name) {
 
 void CheckMethod(const std::string& name) {
   if (name != "thesis") {
-    throw InputError(
-        fmt::format("--Registration.method: '{}' is unknown; there is: thesis", name));
+    throw InputError(fmt::format("--Registration.method: '{}' is unknown; there is: thesis", name));
   }
 }
 
@@ -72,19 +71,19 @@ OptionGroup MarkerGroup(MarkerOptions* options, bool with_dictionary) {
 }
 
 OptionGroup ArucoDetectionGroup(ArucoDetectionOptions* options) {
-  const ParsedValue refinement = {
-      CornerRefinementName(options->corner_refinement),
-      [options](const std::string& name) {
-        options->corner_refinement = CornerRefinementFromName(name);
-      }};
-  return {"Marker detection",
-          {{"ArucoDetection.corner_refinement", refinement, "none|subpix|edge",
-            "how corners get sub-pixel accuracy; subpix pulls them inwards"},
-           {"ArucoDetection.min_marker_perimeter_rate", &options->min_marker_perimeter_rate,
-            "fraction", "smallest marker perimeter, of the larger image side"},
-           {"ArucoDetection.error_correction_rate", &options->error_correction_rate, "fraction",
-            "part of the dictionary's error correction that is used"},
-           {"ArucoDetection.inverted", &options->inverted, "0|1", "white markers on black ground"}}};
+  const ParsedValue refinement = {CornerRefinementName(options->corner_refinement),
+                                  [options](const std::string& name) {
+                                    options->corner_refinement = CornerRefinementFromName(name);
+                                  }};
+  return {
+      "Marker detection",
+      {{"ArucoDetection.corner_refinement", refinement, "none|subpix|edge",
+        "how corners get sub-pixel accuracy; subpix pulls them inwards"},
+       {"ArucoDetection.min_marker_perimeter_rate", &options->min_marker_perimeter_rate, "fraction",
+        "smallest marker perimeter, of the larger image side"},
+       {"ArucoDetection.error_correction_rate", &options->error_correction_rate, "fraction",
+        "part of the dictionary's error correction that is used"},
+       {"ArucoDetection.inverted", &options->inverted, "0|1", "white markers on black ground"}}};
 }
 
 OptionGroup VideoGroup(VideoOptions* options) {
@@ -108,7 +107,8 @@ OptionGroup RegistrationGroup(RegistrationOptions* options) {
         "image name or frame number; left out: the best one is chosen"},
        {"Registration.num_frames", &options->num_frames, "frames",
         "frames on each side of the central one (time order)"},
-       {"Registration.skip", &options->skip, "frames", "steps between selected frames (time order)"},
+       {"Registration.skip", &options->skip, "frames",
+        "steps between selected frames (time order)"},
        {"Registration.neighborhood", &options->neighborhood, "frames",
         "frames on each side of a step that compete (time order)"},
        {"Registration.ransac_max_error", &options->ransac_max_error_m, "m",
@@ -125,29 +125,28 @@ OptionGroup RegistrationGroup(RegistrationOptions* options) {
 }
 
 OptionGroup BundleAdjustmentGroup(BundleAdjustmentOptions* options) {
-  return {
-      "Bundle adjustment",
-      {{"colmap_path", &options->colmap_path, "path", "COLMAP's program"},
-       {"BundleAdjustment.refine_focal_length", &options->refine_focal_length, "0|1",
-        "adjust the focal length of the calibration"},
-       {"BundleAdjustment.refine_principal_point", &options->refine_principal_point, "0|1",
-        "adjust the principal point"},
-       {"BundleAdjustment.refine_extra_params", &options->refine_extra_params, "0|1",
-        "adjust the distortion"},
-       {"BundleAdjustment.max_num_iterations", &options->max_num_iterations, "count",
-        "iterations a round"},
-       {"BundleAdjustment.function_tolerance", &options->function_tolerance, "fraction",
-        "change of the cost that ends a round"},
-       {"BundleAdjustment.max_num_rounds", &options->max_num_rounds, "count",
-        "rounds of adjustment and removal of outliers"},
-       {"BundleAdjustment.outlier_ratio", &options->outlier_ratio, "sigmas",
-        "an error beyond so many robust sigmas is an outlier"},
-       {"BundleAdjustment.min_outlier_error", &options->min_outlier_error_px, "px",
-        "a smaller error is no outlier"},
-       {"BundleAdjustment.min_track_length", &options->min_track_length, "images",
-        "fewest images that have to see a corner"},
-       {"BundleAdjustment.max_mean_error", &options->max_mean_error_px, "px",
-        "a larger mean reprojection error is no result"}}};
+  return {"Bundle adjustment",
+          {{"colmap_path", &options->colmap_path, "path", "COLMAP's program"},
+           {"BundleAdjustment.refine_focal_length", &options->refine_focal_length, "0|1",
+            "adjust the focal length of the calibration"},
+           {"BundleAdjustment.refine_principal_point", &options->refine_principal_point, "0|1",
+            "adjust the principal point"},
+           {"BundleAdjustment.refine_extra_params", &options->refine_extra_params, "0|1",
+            "adjust the distortion"},
+           {"BundleAdjustment.max_num_iterations", &options->max_num_iterations, "count",
+            "iterations a round"},
+           {"BundleAdjustment.function_tolerance", &options->function_tolerance, "fraction",
+            "change of the cost that ends a round"},
+           {"BundleAdjustment.max_num_rounds", &options->max_num_rounds, "count",
+            "rounds of adjustment and removal of outliers"},
+           {"BundleAdjustment.outlier_ratio", &options->outlier_ratio, "sigmas",
+            "an error beyond so many robust sigmas is an outlier"},
+           {"BundleAdjustment.min_outlier_error", &options->min_outlier_error_px, "px",
+            "a smaller error is no outlier"},
+           {"BundleAdjustment.min_track_length", &options->min_track_length, "images",
+            "fewest images that have to see a corner"},
+           {"BundleAdjustment.max_mean_error", &options->max_mean_error_px, "px",
+            "a larger mean reprojection error is no result"}}};
 }
 
 std::set<std::string> SharedOptionNames() {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
+#include <limits>
 #include <ostream>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <Eigen/Eigenvalues>
 
 namespace velamap {
 namespace {
@@ -47,6 +49,37 @@ std::string FirstNames(const std::vector<std::string>& names) {
   return names.size() > kMaxNames ? text + ", ..." : text;
 }
 
+std::vector<Eigen::Vector3d> AllCorners(const MarkerShape& shape) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      if (marker.x_in_shape_m[corner]) points.push_back(*marker.x_in_shape_m[corner]);
+    }
+  }
+  return points;
+}
+
+// Columns are axes of unit length.
+Eigen::Matrix3d PrincipalAxes(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    scatter += (point - mean) * (point - mean).transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
+}
+
+Eigen::Matrix3d MarkerAxes(const ShapeMarker& marker) {
+  const Eigen::Vector3d normal = MarkerNormal(marker);
+  const Eigen::Vector3d side = *marker.x_in_shape_m[2] - *marker.x_in_shape_m[1];
+  Eigen::Matrix3d axes;
+  axes.col(2) = normal;
+  axes.col(0) = (side - side.dot(normal) * normal).normalized();
+  axes.col(1) = normal.cross(axes.col(0));
+  return axes;
+}
+
 }  // namespace
 
 std::string LeftOutText(const std::vector<LeftOutImage>& left_out) {
@@ -59,35 +92,38 @@ std::string LeftOutText(const std::vector<LeftOutImage>& left_out) {
 }
 
 std::string ErrorText(const Statistics& statistics) {
-  return fmt::format("mean {:.3f}, median {:.3f}, max {:.3f}", statistics.mean, statistics.median,
-                     statistics.max);
+  return fmt::format("mean {:.3f}, std {:.3f}, median {:.3f}, min {:.3f}, max {:.3f}",
+                     statistics.mean, statistics.standard_deviation, statistics.median,
+                     statistics.min, statistics.max);
 }
 
 Eigen::Vector3d BoundingBox(const MarkerShape& shape) {
-  std::vector<Eigen::Vector3d> points;
+  const std::vector<Eigen::Vector3d> points = AllCorners(shape);
+  if (points.empty()) return Eigen::Vector3d::Zero();
+  std::vector<Eigen::Matrix3d> candidates = {PrincipalAxes(points)};
   for (const ShapeMarker& marker : shape.markers) {
-    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
-      if (marker.x_in_shape_m[corner]) points.push_back(*marker.x_in_shape_m[corner]);
+    if (marker.IsWhole()) candidates.push_back(MarkerAxes(marker));
+  }
+  Eigen::Vector3d best;
+  double least_surface = std::numeric_limits<double>::infinity();
+  for (const Eigen::Matrix3d& axes : candidates) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& point : points) box.extend(axes.transpose() * point);
+    const Eigen::Vector3d sides = box.sizes();
+    const double surface = sides.x() * sides.y() + sides.y() * sides.z() + sides.z() * sides.x();
+    if (surface < least_surface) {
+      least_surface = surface;
+      best = sides;
     }
   }
-  if (points.empty()) return Eigen::Vector3d::Zero();
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    scatter += (point - mean) * (point - mean).transpose();
-  }
-  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& point : points) box.extend(axes.transpose() * (point - mean));
-  Eigen::Vector3d sides = box.sizes();
-  std::sort(sides.data(), sides.data() + 3, std::greater<double>());
-  return sides;
+  std::sort(best.data(), best.data() + 3, std::greater<double>());
+  return best;
 }
 
 std::string ShellQuote(const std::string& text) {
   const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) || std::string("/._-+,:@%").find(static_cast<char>(c)) != std::string::npos;
+    return std::isalnum(c) ||
+           std::string("/._-+,:@%").find(static_cast<char>(c)) != std::string::npos;
   });
   if (plain) return text;
   std::string quoted = "'";
@@ -101,9 +137,16 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   out << "markers_reconstructed: " << metrics.num_markers;
   if (metrics.num_layout_markers) out << " of " << *metrics.num_layout_markers << " in the layout";
   out << '\n';
-  fmt::print(out, "reprojection_error_px: {}\n", ErrorText(report.reprojection_error_px));
-  fmt::print(out, "marker_area_error: mean {:.3f} mm2, {:.3f} %\n", metrics.area_error_mm2.mean,
-             metrics.area_error_percent.mean);
+  if (metrics.reconstruction_ratio) {
+    fmt::print(out, "reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);
+  }
+  const ModelMetrics& model = report.model_metrics;
+  fmt::print(out, "reprojection_error_px: {}\n", ErrorText(model.error_px));
+  fmt::print(out, "central_image_name: {}\n", model.central_image_name);
+  fmt::print(out, "central_reprojection_error_px: {}\n", ErrorText(model.central_error_px));
+  fmt::print(out, "area_error_mm2: {}\n", ErrorText(metrics.area_error_mm2));
+  fmt::print(out, "area_error_percent: {}\n", ErrorText(metrics.area_error_percent));
+  fmt::print(out, "side_error_mm: {}\n", ErrorText(metrics.side_error_mm));
   fmt::print(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
   fmt::print(out, "scale_spread_over_markers: {:.3f} %\n", 100.0 * report.scale.relative_spread);
   fmt::print(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
@@ -118,7 +161,8 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
              summary.adjustment.error_before_px.count);
   fmt::print(out, "shape_path: {}\n", paths.Shape().string());
   fmt::print(out, "model_path: {}\n", paths.Model().string());
-  fmt::print(out, "colmap_command: colmap gui --database_path {} --image_path {} --import_path {}\n",
+  fmt::print(out,
+             "colmap_command: colmap gui --database_path {} --image_path {} --import_path {}\n",
              ShellQuote(paths.Database().string()), ShellQuote(paths.Images().string()),
              ShellQuote(paths.Model().string()));
 }

@@ -22,7 +22,8 @@ fs::path AbsoluteFolder(const std::string& path) {
 }
 
 bool IsInside(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = fs::weakly_canonical(path).lexically_relative(fs::weakly_canonical(folder));
+  const fs::path relative =
+      fs::weakly_canonical(path).lexically_relative(fs::weakly_canonical(folder));
   return !relative.empty() && *relative.begin() != "..";
 }
 
@@ -48,14 +49,16 @@ void CheckExisting(const WorkspacePaths& paths, const std::string& image_path) {
   }
   const std::string foreign = ForeignEntry(paths, image_path);
   if (!foreign.empty()) {
-    throw InputError(fmt::format("--workspace_path {}: holds {} and is no workspace of velamap; "
-                                 "give a new or an empty folder",
-                                 paths.root.string(), foreign));
+    throw InputError(
+        fmt::format("--workspace_path {}: holds {} and is no workspace of velamap; "
+                    "give a new or an empty folder",
+                    paths.root.string(), foreign));
   }
   if (access(paths.root.c_str(), W_OK | X_OK) != 0) {
-    throw InputError(fmt::format("--workspace_path {}: cannot be written; choose another folder or "
-                                 "change its permissions",
-                                 paths.root.string()));
+    throw InputError(
+        fmt::format("--workspace_path {}: cannot be written; choose another folder or "
+                    "change its permissions",
+                    paths.root.string()));
   }
 }
 
@@ -98,9 +101,10 @@ Workspace::Workspace(const std::string& path, const std::string& image_path) {
   paths_.root = AbsoluteFolder(path);
   try {
     if (fs::is_directory(image_path) && IsInside(paths_.root, image_path)) {
-      throw InputError(fmt::format("--workspace_path {}: lies in the image folder {}, where its "
-                                   "images would be read as photographs; give another folder",
-                                   paths_.root.string(), image_path));
+      throw InputError(
+          fmt::format("--workspace_path {}: lies in the image folder {}, where its "
+                      "images would be read as photographs; give another folder",
+                      paths_.root.string(), image_path));
     }
     if (fs::exists(paths_.root)) {
       CheckExisting(paths_, image_path);
@@ -128,7 +132,8 @@ Workspace::~Workspace() {
   }
 }
 
-void AddModelImages(const Model& model, const std::string& image_path, const fs::path& images_path) {
+void AddModelImages(const Model& model, const std::string& image_path,
+                    const fs::path& images_path) {
   const bool is_video = !fs::is_directory(image_path);
   std::vector<std::string> missing;
   for (const std::string& name : ImageNames(model)) {
@@ -141,9 +146,10 @@ void AddModelImages(const Model& model, const std::string& image_path, const fs:
     }
   }
   if (missing.empty()) return;
-  spdlog::warn("{}: {} images of the model are not there, such as {}; delete the workspace to "
-               "read them again",
-               images_path.string(), missing.size(), missing.front());
+  spdlog::warn(
+      "{}: {} images of the model are not there, such as {}; delete the workspace to "
+      "read them again",
+      images_path.string(), missing.size(), missing.front());
 }
 
 void RemoveOtherImages(const Model& model, const std::vector<std::string>& database_names,
