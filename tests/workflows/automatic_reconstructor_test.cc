@@ -1,6 +1,6 @@
 // The main job on real pictures: a workspace from photographs and from a video.
 
-#include <regex>
+#include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,10 +25,14 @@ class AutomaticReconstructorTest : public ::testing::Test {
  protected:
   ProgramRun Run(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {"automatic_reconstructor",
-                                          "--image_path", (kStylus / "images").string(),
-                                          "--camera_path", (kStylus / "camera.yml").string(),
-                                          "--layout_path", (kStylus / "layout.yml").string(),
-                                          "--workspace_path", workspace().string()};
+                                          "--image_path",
+                                          (kStylus / "images").string(),
+                                          "--camera_path",
+                                          (kStylus / "camera.yml").string(),
+                                          "--layout_path",
+                                          (kStylus / "layout.yml").string(),
+                                          "--workspace_path",
+                                          workspace().string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return RunVelamap(arguments);
   }
@@ -44,7 +48,7 @@ TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
   EXPECT_EQ(NumErrorLines(run.err), 0) << run.err;
   for (const char* key :
        {"images_used: 16 of 16\n", "images_left_out: none\n", "markers_reconstructed: 8 of 8 in",
-        "reprojection_error_px: mean ", "marker_area_error: mean ", "scale_m_per_unit: ",
+        "reprojection_error_px: mean ", "area_error_mm2: mean ", "scale_m_per_unit: ",
         "scale_spread_over_markers: ", "bounding_box_m: ", "outliers_removed: "}) {
     EXPECT_THAT(run.out, HasSubstr(key));
   }
@@ -57,7 +61,8 @@ TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
                           "sparse", "velamap.log"));
   EXPECT_THAT(ListFolder(workspace() / "sparse"), ElementsAre("0", "seed"));
   EXPECT_THAT(ListFolder(workspace() / "shape"),
-              IsSupersetOf({"markers.ply", "scale.csv", "shape.csv", "shape.ply"}));
+              IsSupersetOf({"markers.ply", "metrics.csv", "metrics.json", "scale.csv", "shape.csv",
+                            "shape.ply"}));
   std::vector<std::string> names;
   for (const ModelImage& image : ReadModel((workspace() / "sparse/0").string()).images) {
     names.push_back(image.name);

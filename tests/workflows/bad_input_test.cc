@@ -1,6 +1,8 @@
 // What happens when the input is wrong: the exit code, one line that names the fault, and nothing
 // left behind.
 
+#include <map>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -12,7 +14,6 @@ namespace velamap {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 namespace fs = std::filesystem;
 
 constexpr char kCamera[] = R"(%YAML:1.0
@@ -31,7 +32,8 @@ distortion_coefficients: !!opencv-matrix
    data: [ 0., 0., 0., 0., 0. ]
 )";
 
-// A call of automatic_reconstructor that fails for want of markers only; each test breaks one thing.
+// A call of automatic_reconstructor that fails for want of markers only; each test breaks one
+// thing.
 class BadInputTest : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -102,7 +102,9 @@ TEST_F(ColmapCommandsTest, FailsWithAStatus) {
 
 TEST_F(ColmapCommandsTest, IsKilled) { ExpectFailure(Adjust(FakeColmap("kill -9 $$"))); }
 
-TEST_F(ColmapCommandsTest, SaysItIsDoneAndWritesNothing) { ExpectFailure(Adjust(FakeColmap("exit 0"))); }
+TEST_F(ColmapCommandsTest, SaysItIsDoneAndWritesNothing) {
+  ExpectFailure(Adjust(FakeColmap("exit 0")));
+}
 
 TEST_F(ColmapCommandsTest, FailureKeepsTheOldModel) {
   ASSERT_EQ(Adjust("colmap").exit_code, 0);

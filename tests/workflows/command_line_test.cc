@@ -13,9 +13,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-const std::vector<std::string> kCommands = {"automatic_reconstructor", "marker_importer",
-                                            "frame_registrator",       "bundle_adjuster",
-                                            "shape_exporter",          "shape_analyzer",
+const std::vector<std::string> kCommands = {"automatic_reconstructor",
+                                            "marker_importer",
+                                            "frame_registrator",
+                                            "bundle_adjuster",
+                                            "shape_exporter",
+                                            "shape_analyzer",
                                             "version"};
 
 TEST(CommandLineTest, HelpListsAllCommands) {
@@ -102,7 +105,8 @@ TEST(CommandLineTest, UnknownNamesListWhatThereIs) {
     return run.err;
   };
   EXPECT_THAT(error_of("--Registration.method", "global"), HasSubstr("there is: thesis"));
-  EXPECT_THAT(error_of("--Registration.frame_order", "random"), HasSubstr("auto, time or unordered"));
+  EXPECT_THAT(error_of("--Registration.frame_order", "random"),
+              HasSubstr("auto, time or unordered"));
   EXPECT_THAT(error_of("--ArucoDetection.corner_refinement", "contour"),
               HasSubstr("none, subpix or edge"));
   EXPECT_THAT(error_of("--log_level", "loud"), HasSubstr("error, warn, info or debug"));

@@ -24,16 +24,17 @@ struct Values {
 };
 
 CommandSyntax MakeSyntax(Values* values) {
-  return {"walker",
-          "walks",
-          "--path x",
-          {{"First",
-            {{"path", &values->path, "path", "where to", true}, {"text", &values->text, "", "words"}}},
-           {"Second",
-            {{"Walk.count", &values->count, "steps", "how many"},
-             {"Walk.length", &values->length_m, "m", "how long"},
-             {"Walk.maybe", &values->maybe_m, "m", "perhaps"},
-             {"Walk.yes", &values->yes, "0|1", "whether"}}}}};
+  return {
+      "walker",
+      "walks",
+      "--path x",
+      {{"First",
+        {{"path", &values->path, "path", "where to", true}, {"text", &values->text, "", "words"}}},
+       {"Second",
+        {{"Walk.count", &values->count, "steps", "how many"},
+         {"Walk.length", &values->length_m, "m", "how long"},
+         {"Walk.maybe", &values->maybe_m, "m", "perhaps"},
+         {"Walk.yes", &values->yes, "0|1", "whether"}}}}};
 }
 
 std::string ErrorOf(const std::vector<std::string>& arguments) {
@@ -105,8 +106,7 @@ TEST(OptionParserTest, CommandLineWinsOverProjectFile) {
   const std::string file = (temp_dir / "project.ini").string();
   WriteTextFile(file, "path=from file\ntext = words\n# a comment\n[Walk]\ncount=3\nlength=0.5\n");
   Values values;
-  ASSERT_TRUE(
-      ParseOptions(MakeSyntax(&values), {"--Walk.count", "4", "--project_path", file}, {}));
+  ASSERT_TRUE(ParseOptions(MakeSyntax(&values), {"--Walk.count", "4", "--project_path", file}, {}));
   EXPECT_EQ(values.path, "from file");
   EXPECT_EQ(values.text, "words");
   EXPECT_EQ(values.count, 4);

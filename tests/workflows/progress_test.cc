@@ -7,8 +7,7 @@ namespace {
 
 TEST(ProgressTest, TextTellsCountPercentRateAndTimeLeft) {
   EXPECT_EQ(ProgressText("reading", 100, 400, 10.0), "reading: 100/400, 25 %, 10.0/s, 30 s left");
-  EXPECT_EQ(ProgressText("reading", 1, 1001, 10.0),
-            "reading: 1/1001, 0 %, 0.1/s, 2 h 46 min left");
+  EXPECT_EQ(ProgressText("reading", 1, 1001, 10.0), "reading: 1/1001, 0 %, 0.1/s, 2 h 46 min left");
   EXPECT_EQ(ProgressText("reading", 10, 110, 10.0), "reading: 10/110, 9 %, 1.0/s, 1 min 40 s left");
 }
 

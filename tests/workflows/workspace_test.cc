@@ -131,7 +131,8 @@ TEST(ModelImagesTest, OnlyWhatIsNotLostIsRemoved) {
     WriteTextFile(images / name, name);
   }
   WriteTextFile(temp_dir / "photos/left_out.jpg", "original");
-  RemoveOtherImages(ModelWithImages({"used.jpg"}), {"left_out.jpg", "original_gone.jpg", "used.jpg"},
+  RemoveOtherImages(ModelWithImages({"used.jpg"}),
+                    {"left_out.jpg", "original_gone.jpg", "used.jpg"},
                     (temp_dir / "photos").string(), images);
   EXPECT_THAT(ListFolder(images), ElementsAre("not_ours.jpg", "original_gone.jpg", "used.jpg"));
   // Photographs that are read from images/ itself are the originals.
