@@ -2,7 +2,6 @@
 
 #pragma once
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -13,13 +12,20 @@
 
 namespace velamap {
 
-// Least-squares plane of all corners of a part's whole markers. Shape frame, m.
+// The least-squares plane of all corners of a part's whole markers, and how far the markers are
+// from lying in it. Shape frame, m.
 struct PartPlane {
   std::string part;
   int num_markers = 0;
   Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, on the side that the markers face
-  Statistics residual_mm;                             // signed distances of the corners
+  Statistics corner_distance_mm;                      // of the corners, without sign
+  // Thesis 4.1, plane projected error: distances of the centres, without sign, from the plane of
+  // the centres. No value with fewer than four, which always have one.
+  Statistics center_distance_mm;
+  // Thesis 4.1, orientation error: angles between each marker's vector and the mean of all of them.
+  Statistics normal_spread_deg;
+  Statistics tangent_spread_deg;  // of the x axes: marks markers that are turned in the plane
 };
 
 struct PlanePair {
@@ -35,8 +41,5 @@ std::vector<PartPlane> FitPartPlanes(const MarkerShape& shape);
 
 // All pairs of planes in order.
 std::vector<PlanePair> ComparePlanes(const std::vector<PartPlane>& planes);
-
-// `key: value` lines: residuals of every part, angle and distance of every pair.
-void PrintPlanes(const std::vector<PartPlane>& planes, std::ostream& out);
 
 }  // namespace velamap

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <ostream>
 #include <string>
 
@@ -182,6 +183,23 @@ Rgb VertexColor(const Model& model, const Vertex& vertex) {
   return mean;
 }
 
+// Colours that are told apart by most eyes (Okabe and Ito, "Color universal design", 2008), one a
+// part in the order of their names.
+std::map<std::string, Rgb> PartColors(const MarkerShape& shape) {
+  constexpr std::array<Rgb, 7> kPalette = {{{0, 114, 178},
+                                            {230, 159, 0},
+                                            {0, 158, 115},
+                                            {213, 94, 0},
+                                            {86, 180, 233},
+                                            {204, 121, 167},
+                                            {240, 228, 66}}};
+  std::map<std::string, Rgb> colors;
+  for (const ShapeMarker& marker : shape.markers) colors[marker.part] = {};
+  std::size_t idx = 0;
+  for (auto& [part, color] : colors) color = kPalette[idx++ % kPalette.size()];
+  return colors;
+}
+
 }  // namespace
 
 void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyFormat format,
@@ -200,7 +218,9 @@ void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyForm
 }
 
 void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out) {
+  const std::map<std::string, Rgb> part_colors = PartColors(shape);
   PlyElement<Vertex> vertices{"vertex", PositionAndNormal(), {}};
+  AddColor(&vertices.properties);
   AddIdentity(&vertices.properties);
   PlyElement<Face> faces{
       "face",
@@ -213,6 +233,7 @@ void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& o
     const int first = static_cast<int>(vertices.rows.size());
     for (int corner = 1; corner <= kNumCorners; ++corner) {
       vertices.rows.push_back(MakeVertex(marker, corner));
+      vertices.rows.back().color = part_colors.at(marker.part);
     }
     // Corners 1..4 run clockwise seen from the front; a face runs the other way.
     faces.rows.push_back({{first, first + 3, first + 2, first + 1}, marker.marker_id});

@@ -18,8 +18,8 @@ void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyForm
                     std::ostream& out);
 
 // One quadrilateral a whole marker, seen from the front counter-clockwise, so that its normal is
-// the marker's outward one: four vertices with double x y z, float nx ny nz, int marker_id, int
-// corner, and faces with vertex_indices and int marker_id.
+// the marker's outward one: four vertices with double x y z, float nx ny nz, uchar red green blue
+// (one colour a part), int marker_id, int corner, and faces with vertex_indices and int marker_id.
 void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out);
 
 }  // namespace velamap

@@ -8,6 +8,7 @@
 #include "exporters/ply_writer.h"
 #include "exporters/scale_csv.h"
 #include "exporters/shape_csv.h"
+#include "exporters/shape_report.h"
 #include "importer/atomic_output.h"
 #include "importer/error.h"
 #include "reconstruct/model_io.h"
@@ -20,7 +21,8 @@ namespace fs = std::filesystem;
 
 const std::set<std::string> kModelFiles = {"cameras.bin", "images.bin", "points3D.bin",
                                            "cameras.txt", "images.txt", "points3D.txt"};
-const std::set<std::string> kShapeFiles = {"shape.csv", "shape.ply", "markers.ply", "scale.csv"};
+const std::set<std::string> kShapeFiles = {"shape.csv", "shape.ply",   "markers.ply",
+                                           "scale.csv", "metrics.csv", "metrics.json"};
 
 // A folder is replaced as a whole, so it must hold nothing but what an earlier run wrote: a
 // mistyped path shall not cost anyone their files.
@@ -65,6 +67,15 @@ void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) 
   }
 }
 
+MetricsReport MetricsOf(const ShapeExportReport& report) {
+  MetricsReport metrics;
+  AddMetrics(report.metrics, &metrics);
+  AddMetrics(report.model_metrics, &metrics);
+  AddMetrics(report.scale, &metrics);
+  AddMetrics(FitPartPlanes(report.shape), &metrics);
+  return metrics;
+}
+
 void WriteShapeFiles(const ShapeExportReport& report, const Model& metric_model, bool ascii_ply,
                      const fs::path& folder) {
   const PlyFormat format = ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
@@ -74,6 +85,9 @@ void WriteShapeFiles(const ShapeExportReport& report, const Model& metric_model,
   WriteFile(folder / "markers.ply",
             [&](std::ostream& out) { WriteMarkersPly(report.shape, format, out); });
   WriteFile(folder / "scale.csv", [&](std::ostream& out) { WriteScaleCsv(report.scale, out); });
+  const MetricsReport metrics = MetricsOf(report);
+  WriteFile(folder / "metrics.csv", [&](std::ostream& out) { WriteMetricsCsv(metrics, out); });
+  WriteFile(folder / "metrics.json", [&](std::ostream& out) { WriteMetricsJson(metrics, out); });
 }
 
 }  // namespace
@@ -91,8 +105,7 @@ ShapeExportReport ExportShape(const Model& model, const Layout& layout,
   UpdatePointErrors(&metric_model);
   report.shape = ShapeFromModel(metric_model, layout);
   report.metrics = ComputeShapeMetrics(report.shape, layout);
-  report.reprojection_error_px =
-      SummarizeReprojectionErrors(ComputeReprojectionErrors(metric_model));
+  report.model_metrics = ComputeModelMetrics(metric_model, MarkerIds(layout));
 
   std::optional<AtomicFolder> shape_folder;
   if (!shape_path.empty()) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "exporters/metric_scale.h"
+#include "exporters/model_metrics.h"
 #include "exporters/shape_metrics.h"
 #include "importer/layout.h"
 #include "reconstruct/model.h"
@@ -21,14 +22,14 @@ struct ShapeExportReport {
   ScaleEstimate scale;
   MarkerShape shape;
   ShapeMetrics metrics;
-  Statistics reprojection_error_px;
+  ModelMetrics model_metrics;
 };
 
-// Writes shape.csv, shape.ply (points), markers.ply (squares) and scale.csv into shape_output_path,
-// and the metric COLMAP model with true point errors, each folder to a temporary sibling that is
-// renamed when whole. A folder that exists is replaced if it holds nothing but files of these
-// names. Throws DataError (no marker gives a scale), InputError (unwritable output, a folder with
-// other files, one folder inside the other).
+// Writes shape.csv, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv and
+// metrics.json into shape_output_path, and the metric COLMAP model with true point errors, each
+// folder to a temporary sibling that is renamed when whole. A folder that exists is replaced if it
+// holds nothing but files of these names. Throws DataError (no marker gives a scale, no image),
+// InputError (unwritable output, a folder with other files, one folder inside the other).
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
                               const ShapeExporterOptions& options);
 

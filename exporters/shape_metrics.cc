@@ -30,15 +30,49 @@ bool LieInOnePoint(const std::vector<Eigen::Vector3d>& points) {
                      [&](const Eigen::Vector3d& x) { return x == points.front(); });
 }
 
+// Distance of every point, in the order of the points.
 template <typename Transform>
-Statistics DistanceStatistics(const Transform& reference_from_shape,
+std::vector<double> Distances(const Transform& reference_from_shape,
                               const std::vector<Eigen::Vector3d>& x_in_shape_m,
                               const std::vector<Eigen::Vector3d>& x_in_reference_m) {
   std::vector<double> distances_m;
   for (std::size_t i = 0; i < x_in_shape_m.size(); ++i) {
     distances_m.push_back((reference_from_shape * x_in_shape_m[i] - x_in_reference_m[i]).norm());
   }
-  return ComputeStatistics(std::move(distances_m));
+  return distances_m;
+}
+
+// `ids` are those of the points, by marker.
+std::vector<MarkerDistance> DistancesOfMarkers(const std::vector<CornerId>& ids,
+                                               const std::vector<double>& distances_m,
+                                               const std::vector<double>& after_scaling_m) {
+  std::vector<MarkerDistance> markers;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (markers.empty() || markers.back().marker_id != ids[i].marker_id) {
+      markers.push_back({ids[i].marker_id, 0, 0.0, 0.0});
+    }
+    ++markers.back().num_corners;
+    markers.back().distance_m += distances_m[i];
+    markers.back().distance_after_scaling_m += after_scaling_m[i];
+  }
+  for (MarkerDistance& marker : markers) {
+    marker.distance_m /= marker.num_corners;
+    marker.distance_after_scaling_m /= marker.num_corners;
+  }
+  return markers;
+}
+
+MarkerMetrics MetricsOfMarker(const ShapeMarker& marker, double printed_side_m,
+                              std::vector<double>* side_errors_mm) {
+  const double printed_area_m2 = printed_side_m * printed_side_m;
+  const double area_error_m2 = std::abs(MarkerArea(marker) - printed_area_m2);
+  MarkerMetrics metrics{marker.marker_id, marker.part, area_error_m2 * kMmPerM * kMmPerM,
+                        100.0 * area_error_m2 / printed_area_m2, 0.0};
+  for (const double side_m : MarkerSides(marker)) {
+    side_errors_mm->push_back(std::abs(side_m - printed_side_m) * kMmPerM);
+    metrics.side_error_mm += side_errors_mm->back() / kNumCorners;
+  }
+  return metrics;
 }
 
 }  // namespace
@@ -51,14 +85,10 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout)
     is_whole[marker.marker_id] = marker.IsWhole();
     if (!marker.IsWhole()) continue;
     ++metrics.num_markers;
-    const double printed_side_m = MarkerLength(layout, marker.marker_id);
-    const double printed_area_m2 = printed_side_m * printed_side_m;
-    const double area_error_m2 = std::abs(MarkerArea(marker) - printed_area_m2);
-    area_errors_mm2.push_back(area_error_m2 * kMmPerM * kMmPerM);
-    area_errors_percent.push_back(100.0 * area_error_m2 / printed_area_m2);
-    for (const double side_m : MarkerSides(marker)) {
-      side_errors_mm.push_back(std::abs(side_m - printed_side_m) * kMmPerM);
-    }
+    metrics.markers.push_back(
+        MetricsOfMarker(marker, MarkerLength(layout, marker.marker_id), &side_errors_mm));
+    area_errors_mm2.push_back(metrics.markers.back().area_error_mm2);
+    area_errors_percent.push_back(metrics.markers.back().area_error_percent);
   }
   metrics.area_error_mm2 = ComputeStatistics(std::move(area_errors_mm2));
   metrics.area_error_percent = ComputeStatistics(std::move(area_errors_percent));
@@ -79,10 +109,12 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout)
 
 ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference) {
   const auto reference_corners = CornersOf(reference);
+  std::vector<CornerId> ids;
   std::vector<Eigen::Vector3d> x_in_shape_m, x_in_reference_m;
   for (const auto& [id, x] : CornersOf(shape)) {
     const auto common = reference_corners.find(id);
     if (common == reference_corners.end()) continue;
+    ids.push_back(id);
     x_in_shape_m.push_back(x);
     x_in_reference_m.push_back(common->second);
   }
@@ -97,12 +129,15 @@ ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& refer
     throw DataError("the corners that the shape and its reference share lie in one point");
   }
   // Both are taken into the reference's frame, so that distances are in the reference's metres.
-  comparison.distance_m = DistanceStatistics(EstimateRigid3(x_in_shape_m, x_in_reference_m),
-                                             x_in_shape_m, x_in_reference_m);
+  const std::vector<double> distances_m =
+      Distances(EstimateRigid3(x_in_shape_m, x_in_reference_m), x_in_shape_m, x_in_reference_m);
   const Sim3 reference_from_shape = EstimateSim3(x_in_shape_m, x_in_reference_m);
+  const std::vector<double> after_scaling_m =
+      Distances(reference_from_shape, x_in_shape_m, x_in_reference_m);
+  comparison.distance_m = ComputeStatistics(distances_m);
   comparison.scale = 1.0 / reference_from_shape.scale;
-  comparison.distance_after_scaling_m =
-      DistanceStatistics(reference_from_shape, x_in_shape_m, x_in_reference_m);
+  comparison.distance_after_scaling_m = ComputeStatistics(after_scaling_m);
+  comparison.markers = DistancesOfMarkers(ids, distances_m, after_scaling_m);
   return comparison;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "exporters/marker_shape.h"
@@ -10,6 +11,15 @@
 #include "reconstruct/statistics.h"
 
 namespace velamap {
+
+// A whole marker against its printed size, without sign.
+struct MarkerMetrics {
+  int marker_id = 0;
+  std::string part;
+  double area_error_mm2 = 0.0;
+  double area_error_percent = 0.0;  // of the printed area
+  double side_error_mm = 0.0;       // mean of the four
+};
 
 struct ShapeMetrics {
   Statistics area_error_mm2;      // |reconstructed - printed area| of whole markers
@@ -19,16 +29,26 @@ struct ShapeMetrics {
   std::optional<int> num_layout_markers;
   std::optional<double> reconstruction_ratio;  // of the markers that the layout names
   std::vector<int> missing_marker_ids;         // named by the layout, not whole
+  std::vector<MarkerMetrics> markers;          // whole ones, by id
 };
 
 // Markers are judged against their printed sides in `layout`.
 ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout);
+
+// Means over the corners that both shapes have of a marker.
+struct MarkerDistance {
+  int marker_id = 0;
+  int num_corners = 0;
+  double distance_m = 0.0;
+  double distance_after_scaling_m = 0.0;
+};
 
 struct ShapeComparison {
   int num_points = 0;
   Statistics distance_m;  // after rigid alignment without scale, points that both shapes have
   double scale = 1.0;     // this shape / reference, from the alignment with scale
   Statistics distance_after_scaling_m;
+  std::vector<MarkerDistance> markers;  // by id
 };
 
 // Aligns common corners (not centres) by least squares. Throws DataError with fewer than three, or

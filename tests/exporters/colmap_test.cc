@@ -95,7 +95,7 @@ TEST_F(ExportToColmap, PointErrorsAreThoseOfTheImages) {
     }
     EXPECT_NEAR(point.mean_error_px, sum_px / point.track.size(), 1e-9) << id;
   }
-  EXPECT_GT(report_.reprojection_error_px.mean, 0.3);
+  EXPECT_GT(report_.model_metrics.error_px.mean, 0.3);
 }
 
 TEST_F(ExportToColmap, ConverterMakesAPlyOfAllPointsInMetres) {

@@ -79,7 +79,8 @@ TEST(PlyWriter, PropertiesAreTheOnesThatViewersKnow) {
     EXPECT_EQ(markers.elements[0].name, "vertex");
     EXPECT_THAT(Signature(markers.elements[0]),
                 ElementsAre("double x", "double y", "double z", "float nx", "float ny", "float nz",
-                            "int marker_id", "int corner"));
+                            "uchar red", "uchar green", "uchar blue", "int marker_id",
+                            "int corner"));
     EXPECT_EQ(markers.elements[1].name, "face");
     EXPECT_THAT(Signature(markers.elements[1]),
                 ElementsAre("list uchar int vertex_indices", "int marker_id"));

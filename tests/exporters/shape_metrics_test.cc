@@ -1,5 +1,6 @@
 #include "exporters/shape_metrics.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -51,6 +52,22 @@ TEST(ShapeMetrics, ErrorsAreAgainstThePrintedLengthOfEachMarker) {
   EXPECT_NEAR(metrics.side_error_mm.max, 3.0, 1e-10);
   EXPECT_NEAR(metrics.side_error_mm.min, 1.0, 1e-10);
   EXPECT_NEAR(metrics.side_error_mm.mean, 2.0, 1e-10);
+}
+
+TEST(ShapeMetrics, MarkersAreListedWithTheirOwnErrors) {
+  MarkerShape shape;
+  shape.markers = {SquareMarker(1, 0.103), SquareMarker(2, 0.1), SquareMarker(121, 0.049)};
+  shape.markers[1].x_in_shape_m[0].reset();  // not whole
+  shape.markers[2].part = "hull";
+  const auto markers = ComputeShapeMetrics(shape, ExampleLayout()).markers;
+  ASSERT_EQ(markers.size(), 2u);
+  EXPECT_EQ(markers[0].marker_id, 1);
+  EXPECT_NEAR(markers[0].area_error_mm2, 609.0, 1e-8);
+  EXPECT_NEAR(markers[0].area_error_percent, 6.09, 1e-10);
+  EXPECT_NEAR(markers[0].side_error_mm, 3.0, 1e-10);
+  EXPECT_EQ(markers[1].marker_id, 121);
+  EXPECT_EQ(markers[1].part, "hull");
+  EXPECT_NEAR(markers[1].side_error_mm, 1.0, 1e-10);
 }
 
 TEST(ShapeMetrics, OnlyWholeMarkersOfTheLayoutCountForTheRatio) {
@@ -126,6 +143,28 @@ TEST(CompareShapes, ADisplacedCornerShowsInTheMaximum) {
   const ShapeComparison comparison = CompareShapes(shape, reference);
   EXPECT_NEAR(comparison.distance_m.max, 0.01, 0.002);
   EXPECT_LT(comparison.distance_m.median, 0.002);
+}
+
+TEST(CompareShapes, DistancesOfMarkersAddUpToTheWhole) {
+  const MarkerShape reference = ExampleShape();
+  MarkerShape shape = Transformed(ExampleSim3(1.01), reference);
+  for (auto& x : shape.markers[5].x_in_shape_m) *x += Eigen::Vector3d(0, 0, 0.02);
+  shape.markers[2].x_in_shape_m[4].reset();
+  const ShapeComparison comparison = CompareShapes(shape, reference);
+  ASSERT_EQ(comparison.markers.size(), 8u);
+  double sum = 0.0, sum_after_scaling = 0.0;
+  for (const MarkerDistance& marker : comparison.markers) {
+    EXPECT_EQ(marker.num_corners, marker.marker_id == 3 ? 3 : 4);
+    sum += marker.num_corners * marker.distance_m;
+    sum_after_scaling += marker.num_corners * marker.distance_after_scaling_m;
+  }
+  EXPECT_NEAR(sum / 31, comparison.distance_m.mean, 1e-12);
+  EXPECT_NEAR(sum_after_scaling / 31, comparison.distance_after_scaling_m.mean, 1e-12);
+  const auto worst = std::max_element(
+      comparison.markers.begin(), comparison.markers.end(), [](const auto& a, const auto& b) {
+        return a.distance_after_scaling_m < b.distance_after_scaling_m;
+      });
+  EXPECT_EQ(worst->marker_id, 6);
 }
 
 TEST(CompareShapes, AMirroredShapeDoesNotPass) {

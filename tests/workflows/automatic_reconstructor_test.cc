@@ -67,6 +67,11 @@ TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
   for (const ModelImage& image : ReadModel((workspace() / "sparse/0").string()).images) {
     names.push_back(image.name);
   }
+  // COLMAP keeps the central image at the first place.
+  const std::string central = ReadModel((workspace() / "sparse/seed").string()).images.at(0).name;
+  EXPECT_EQ(names.at(0), central);
+  EXPECT_THAT(run.out, HasSubstr("\ncentral_image_name: " + central + "\n"));
+  EXPECT_THAT(run.err, HasSubstr("central image " + central + ": "));
   std::sort(names.begin(), names.end());
   EXPECT_EQ(ListFolder(workspace() / "images"), names);
 }

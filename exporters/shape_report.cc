@@ -1,0 +1,133 @@
+#include "exporters/shape_report.h"
+
+#include <cmath>
+
+namespace velamap {
+namespace {
+
+constexpr double kMmPerM = 1e3;
+
+Statistics Scaled(double factor, Statistics statistics) {
+  for (double* figure : {&statistics.mean, &statistics.standard_deviation, &statistics.median,
+                         &statistics.min, &statistics.max, &statistics.rms}) {
+    *figure *= factor;
+  }
+  return statistics;
+}
+
+void Append(const Metrics& metrics, MetricsReport* report) {
+  report->metrics.insert(report->metrics.end(), metrics.begin(), metrics.end());
+}
+
+MetricTable LongTable(const char* name) { return {name, false, {}}; }
+
+}  // namespace
+
+void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report) {
+  Append({{"num_markers", metrics.num_markers}}, report);
+  if (metrics.num_layout_markers) {
+    Append({{"num_layout_markers", *metrics.num_layout_markers},
+            {"reconstruction_ratio", metrics.reconstruction_ratio.value()},
+            {"missing_marker_ids", metrics.missing_marker_ids}},
+           report);
+  }
+  Append({{"area_error_mm2", metrics.area_error_mm2},
+          {"area_error_percent", metrics.area_error_percent},
+          {"side_error_mm", metrics.side_error_mm}},
+         report);
+  MetricTable table = LongTable("markers");
+  for (const MarkerMetrics& marker : metrics.markers) {
+    table.rows.push_back({{"marker_id", marker.marker_id},
+                          {"part", marker.part},
+                          {"area_error_mm2", marker.area_error_mm2},
+                          {"area_error_percent", marker.area_error_percent},
+                          {"side_error_mm", marker.side_error_mm}});
+  }
+  report->tables.push_back(std::move(table));
+}
+
+void AddMetrics(const ModelMetrics& metrics, MetricsReport* report) {
+  Append({{"central_image_name", metrics.central_image_name},
+          {"central_reprojection_error_px", metrics.central_error_px},
+          {"reprojection_error_px", metrics.error_px},
+          {"num_behind_camera", metrics.num_behind_camera}},
+         report);
+  if (metrics.marker_ratio.count > 0)
+    Append({{"image_marker_ratio", metrics.marker_ratio}}, report);
+  MetricTable table{"images", true, {}};
+  for (const ImageMetrics& image : metrics.images) {
+    Metrics row = {{"image_name", image.image_name}, {"num_markers", image.num_markers}};
+    if (image.marker_ratio) row.push_back({"marker_ratio", *image.marker_ratio});
+    row.push_back({"reprojection_error_px", image.error_px});
+    table.rows.push_back(std::move(row));
+  }
+  report->tables.push_back(std::move(table));
+}
+
+void AddMetrics(const ScaleEstimate& scale, MetricsReport* report) {
+  Append({{"scale_m_per_unit", scale.m_per_unit},
+          {"scale_spread_percent", 100.0 * scale.relative_spread},
+          {"num_scale_markers", scale.num_markers}},
+         report);
+}
+
+void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report) {
+  MetricTable parts{"parts", true, {}};
+  for (const PartPlane& plane : planes) {
+    parts.rows.push_back({{"part", plane.part},
+                          {"num_markers", plane.num_markers},
+                          {"plane_error_mm", plane.center_distance_mm},
+                          {"corner_plane_error_mm", plane.corner_distance_mm},
+                          {"normal_spread_deg", plane.normal_spread_deg},
+                          {"tangent_spread_deg", plane.tangent_spread_deg}});
+  }
+  MetricTable pairs{"part_pairs", true, {}};
+  for (const PlanePair& pair : ComparePlanes(planes)) {
+    Metrics row = {{"part1", pair.part1}, {"part2", pair.part2}, {"angle_deg", pair.angle_deg}};
+    if (pair.distance_mm > 0) row.push_back({"distance_mm", pair.distance_mm});
+    pairs.rows.push_back(std::move(row));
+  }
+  report->tables.push_back(std::move(parts));
+  report->tables.push_back(std::move(pairs));
+}
+
+void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* report) {
+  std::vector<double> errors_mm, deviations_percent;
+  MetricTable table = LongTable("adjacent_distances");
+  for (const AdjacentDistance& pair : distances) {
+    const double deviation_m = pair.distance_m - pair.reference_distance_m;
+    errors_mm.push_back(std::abs(deviation_m) * kMmPerM);
+    if (pair.reference_distance_m > 0) {
+      deviations_percent.push_back(100.0 * deviation_m / pair.reference_distance_m);
+    }
+    table.rows.push_back({{"marker_id1", pair.marker_id1},
+                          {"marker_id2", pair.marker_id2},
+                          {"distance_mm", pair.distance_m * kMmPerM},
+                          {"reference_distance_mm", pair.reference_distance_m * kMmPerM}});
+  }
+  Append(
+      {{"adjacent_distance_error_mm", ComputeStatistics(std::move(errors_mm))},
+       {"adjacent_distance_deviation_percent", ComputeStatistics(std::move(deviations_percent))}},
+      report);
+  report->tables.push_back(std::move(table));
+}
+
+void AddMetrics(const ShapeComparison& comparison, MetricsReport* report) {
+  Append({{"num_points", comparison.num_points},
+          {"distance_mm", Scaled(kMmPerM, comparison.distance_m)},
+          {"scale", comparison.scale},
+          {"scale_error_percent", 100.0 * (comparison.scale - 1.0)},
+          {"distance_after_scaling_mm", Scaled(kMmPerM, comparison.distance_after_scaling_m)}},
+         report);
+  MetricTable table = LongTable("reference_markers");
+  for (const MarkerDistance& marker : comparison.markers) {
+    table.rows.push_back(
+        {{"marker_id", marker.marker_id},
+         {"num_corners", marker.num_corners},
+         {"distance_mm", marker.distance_m * kMmPerM},
+         {"distance_after_scaling_mm", marker.distance_after_scaling_m * kMmPerM}});
+  }
+  report->tables.push_back(std::move(table));
+}
+
+}  // namespace velamap

@@ -1,0 +1,38 @@
+// What the metrics are called: one function a kind, each adds its figures and tables to a report.
+// The keys and what they mean stand in the README of this room.
+
+#pragma once
+
+#include <vector>
+
+#include "exporters/adjacent_distances.h"
+#include "exporters/metric_scale.h"
+#include "exporters/metrics_report.h"
+#include "exporters/model_metrics.h"
+#include "exporters/part_planes.h"
+#include "exporters/shape_metrics.h"
+
+namespace velamap {
+
+// num_markers, area_error_mm2, area_error_percent, side_error_mm; where the layout names its
+// markers, num_layout_markers, reconstruction_ratio and missing_marker_ids. Table markers.
+void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report);
+
+// central_image_name, central_reprojection_error_px, reprojection_error_px, num_behind_camera,
+// image_marker_ratio. Table images.
+void AddMetrics(const ModelMetrics& metrics, MetricsReport* report);
+
+// scale_m_per_unit, scale_spread_percent, num_scale_markers.
+void AddMetrics(const ScaleEstimate& scale, MetricsReport* report);
+
+// Tables parts and part_pairs.
+void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report);
+
+// adjacent_distance_error_mm, adjacent_distance_deviation_percent. Table adjacent_distances.
+void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* report);
+
+// num_points, distance_mm, scale, scale_error_percent, distance_after_scaling_mm. Table
+// reference_markers.
+void AddMetrics(const ShapeComparison& comparison, MetricsReport* report);
+
+}  // namespace velamap
