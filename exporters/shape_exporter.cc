@@ -19,30 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::set<std::string> kModelFiles = {"cameras.bin", "images.bin", "points3D.bin",
-                                           "cameras.txt", "images.txt", "points3D.txt"};
 const std::set<std::string> kShapeFiles = {"shape.csv", "shape.ply",   "markers.ply",
                                            "scale.csv", "metrics.csv", "metrics.json"};
-
-// A folder is replaced as a whole, so it must hold nothing but what an earlier run wrote: a
-// mistyped path shall not cost anyone their files.
-void CheckReplaceable(const fs::path& path, const std::set<std::string>& our_files) {
-  std::error_code error;
-  const bool exists = fs::exists(path, error);
-  if (error) throw InputError(path.string() + ": cannot be written: " + error.message());
-  if (!exists) return;
-  if (!fs::is_directory(path, error)) {
-    throw InputError(path.string() + ": is not a folder; choose another output path");
-  }
-  for (fs::directory_iterator entry(path, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (our_files.count(name) > 0 && entry->is_regular_file(error)) continue;
-    throw InputError(path.string() + ": the output folder holds " + name +
-                     ", which velamap did not write there; choose another folder or empty it");
-  }
-  if (error) throw InputError(path.string() + ": cannot be read: " + error.message());
-}
 
 bool IsInside(const fs::path& path, const fs::path& folder) {
   const auto [mismatch, unused] =
@@ -58,8 +36,8 @@ fs::path OutputFolder(const std::string& path) {
 }
 
 void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) {
-  if (!model_path.empty()) CheckReplaceable(model_path, kModelFiles);
-  if (!shape_path.empty()) CheckReplaceable(shape_path, kShapeFiles);
+  if (!model_path.empty()) CheckReplaceableFolder(model_path, ModelFileNames());
+  if (!shape_path.empty()) CheckReplaceableFolder(shape_path, kShapeFiles);
   if (model_path.empty() || shape_path.empty()) return;
   if (IsInside(model_path, shape_path) || IsInside(shape_path, model_path)) {
     throw InputError(shape_path.string() + ": the folders of the shape and of the model (" +

@@ -39,6 +39,18 @@ fs::path TemporarySibling(const fs::path& path) {
          fmt::format(".{}.tmp-{}-{}", path.filename().string(), getpid(), counter++);
 }
 
+// The path that a file in a temporary folder will have once the folder is renamed.
+fs::path FinalPath(const fs::path& path) {
+  fs::path final_path;
+  for (const fs::path& component : path) {
+    const std::string name = component.string();
+    const std::size_t suffix = name.rfind(".tmp-");
+    const bool is_temporary = name.front() == '.' && suffix != std::string::npos && suffix > 1;
+    final_path /= is_temporary ? name.substr(1, suffix - 1) : name;
+  }
+  return final_path;
+}
+
 void CreateParentFolder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
@@ -72,12 +84,12 @@ void WriteStream(const fs::path& path, const fs::path& shown_path,
 }  // namespace
 
 AtomicFolder::AtomicFolder(const fs::path& path) : path_(WithoutTrailingSlash(path)) {
-  if (fs::exists(path_) && !fs::is_directory(path_)) {
+  std::error_code error;
+  if (fs::exists(path_, error) && !fs::is_directory(path_, error)) {
     ThrowCannotWrite(path_, "it exists and is no folder; choose another output path");
   }
   CreateParentFolder(path_);
   temporary_path_ = TemporarySibling(path_);
-  std::error_code error;
   fs::create_directory(temporary_path_, error);
   if (error) ThrowCannotWrite(path_, error.message());
 }
@@ -90,7 +102,7 @@ AtomicFolder::~AtomicFolder() {
 void AtomicFolder::Commit() {
   VELAMAP_CHECK(!committed_);
   std::error_code error;
-  if (!fs::exists(path_)) {
+  if (!fs::exists(path_, error)) {
     fs::rename(temporary_path_, path_, error);
     if (error) ThrowCannotWrite(path_, error.message());
     committed_ = true;
@@ -116,8 +128,29 @@ void AtomicFolder::Commit() {
   fs::remove_all(old_path, error);
 }
 
+void CheckReplaceableFolder(const fs::path& path, const std::set<std::string>& known_files) {
+  std::error_code error;
+  const bool exists = fs::exists(path, error);
+  if (error) ThrowCannotWrite(path, error.message());
+  if (!exists) return;
+  if (!fs::is_directory(path, error)) {
+    ThrowCannotWrite(path, "it exists and is no folder; choose another output path");
+  }
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (known_files.count(name) > 0 && entry->is_regular_file(error)) continue;
+    throw InputError(fmt::format(
+        "{}: the output folder holds {}, which velamap did not write there; choose another folder "
+        "or empty it",
+        path.string(), name));
+  }
+  if (error)
+    throw InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
+}
+
 void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  WriteStream(path, path, write);
+  WriteStream(path, FinalPath(path), write);
 }
 
 void WriteFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <set>
 #include <string>
 
 namespace velamap {
@@ -27,6 +28,12 @@ class AtomicFolder {
   std::filesystem::path temporary_path_;
   bool committed_ = false;
 };
+
+// A folder is replaced as a whole, so it must hold nothing but what an earlier run wrote: a mistyped
+// path shall not cost anyone their files. Throws InputError, naming the path and what is in the way,
+// unless `path` is not there, or is a folder with no other files than `known_files`.
+void CheckReplaceableFolder(const std::filesystem::path& path,
+                            const std::set<std::string>& known_files);
 
 // Calls `write` with a stream (classic locale, 17 digits, binary mode), then checks that every byte
 // reached the disk and renames. Throws InputError, naming the path, if it cannot be written.

@@ -2,280 +2,337 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "importer/edge_fit.h"
+#include "importer/error.h"
+#include "importer/interpolate.h"
+#include "importer/pattern_fit.h"
+#include "importer/unit_square_map.h"
 
 namespace velamap {
 namespace {
 
-using Corners = std::array<Eigen::Vector2d, kNumCorners>;
+using Quad = std::array<Eigen::Vector2d, kNumCorners>;
 
-constexpr int kNumPasses = 2;  // the second samples along the lines of the first
-constexpr int kMaxIterations = 8;
-constexpr int kMaxSamplesAlong = 32;
-constexpr int kMaxSamplesAcross = 13;
-constexpr int kMinSamplesAlong = 4;
-constexpr int kMinSamplesAcross = 7;
-constexpr double kCornerMarginPx = 2.5;       // where the neighbouring side blurs into the profile
-constexpr double kMinContrast = 10.0;         // grey levels
-constexpr double kMaxRelativeResidual = 0.2;  // of the contrast, rms
-constexpr double kNoiseOfContrast = 0.03;     // expected, for the weight of the bend's prior
-constexpr double kBendSigma = 0.01;           // expected bend as a part of half the side
-constexpr double kMinBlurPx = 0.3, kMaxBlurPx = 4.0;
-constexpr double kMinStepPx = 1e-3;
+constexpr double kQuietZoneCells = 1.0;  // what every marker has; more does no harm
+constexpr double kMinContrast = 12.0;    // grey levels
+constexpr double kMaxRelativeRms = 0.2;  // of the residuals, by contrast
+constexpr double kFirstBlurPx = 1.0;
+// Places along a side where the cells beyond the border and the quiet zone are looked up.
+constexpr int kNumPlaces = 33;
 
-// Parameters of one side: offset of the edge from the sampled line, px, as a function of the place
-// s in [-1, 1] along it: offset + slope * s + bend * (1 - s^2), so that the ends carry no bend;
-// blur, px; grey levels inside (dark) and outside (light), each linear in s.
-enum Parameter {
-  kOffset,
-  kSlope,
-  kBend,
-  kBlur,
-  kDark,
-  kLight,
-  kDarkSlope,
-  kLightSlope,
-  kNumParameters
-};
-using Parameters = Eigen::Matrix<double, kNumParameters, 1>;
-
-struct Sample {
-  double s;
-  double distance_px;  // outwards from the sampled line
-  double gray;
+struct Pass {
+  double band_px;
+  int max_samples;  // of a side
+  double tolerance_px;
 };
 
+// One side from corner 0 to 1 of a quad turned to start there; the marker lies at v > 0.
 struct Side {
-  Eigen::Vector2d middle, along, outward;  // px; unit vectors
+  Eigen::Vector2d middle_px, along, outward;  // unit vectors
   double half_length_px;
 };
 
-struct Samples {
-  std::array<Sample, kMaxSamplesAlong * kMaxSamplesAcross> values;
-  int count = 0;
-};
-
-Side MakeSide(const Corners& corners, int side_idx) {
-  const Eigen::Vector2d& a = corners[static_cast<std::size_t>(side_idx)];
-  const Eigen::Vector2d& b = corners[static_cast<std::size_t>((side_idx + 1) % kNumCorners)];
-  const Eigen::Vector2d center = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-  Side side{0.5 * (a + b), (b - a).normalized(), {}, 0.5 * (b - a).norm()};
+Side MakeSide(const Quad& quad) {
+  Side side{0.5 * (quad[0] + quad[1]),
+            (quad[1] - quad[0]).normalized(),
+            {},
+            0.5 * (quad[1] - quad[0]).norm()};
   side.outward = {side.along.y(), -side.along.x()};
-  if (side.outward.dot(side.middle - center) < 0) side.outward = -side.outward;
+  if (side.outward.dot(quad[2] + quad[3] - 2 * side.middle_px) > 0) side.outward *= -1;
   return side;
 }
 
-std::optional<double> Interpolate(const cv::Mat& gray, const Eigen::Vector2d& x_px) {
-  const int column = static_cast<int>(std::floor(x_px.x()));
-  const int row = static_cast<int>(std::floor(x_px.y()));
-  if (column < 0 || row < 0 || column + 1 >= gray.cols || row + 1 >= gray.rows) return std::nullopt;
-  const double fx = x_px.x() - column, fy = x_px.y() - row;
-  const std::uint8_t* upper = gray.ptr<std::uint8_t>(row) + column;
-  const std::uint8_t* lower = gray.ptr<std::uint8_t>(row + 1) + column;
-  return (1 - fy) * ((1 - fx) * upper[0] + fx * upper[1]) +
-         fy * ((1 - fx) * lower[0] + fx * lower[1]);
-}
+// Grey values along a line parallel to the side, v cells inside it.
+using GrayLine = std::array<double, kNumPlaces>;
 
-// A grid of samples along and across the side; places outside the image are left out.
-Samples SampleSide(const cv::Mat& gray, const Side& side, double band_px) {
-  const double margin_px = std::min(kCornerMarginPx, 0.4 * side.half_length_px);
-  const double usable_px = 2 * (side.half_length_px - margin_px);
-  const int num_along =
-      std::clamp(static_cast<int>(usable_px) + 1, kMinSamplesAlong, kMaxSamplesAlong);
-  const int num_across = std::clamp(2 * static_cast<int>(std::ceil(2 * band_px)) + 1,
-                                    kMinSamplesAcross, kMaxSamplesAcross);
-  Samples samples;
-  for (int i = 0; i < num_along; ++i) {
-    const double along_px = usable_px * (i / (num_along - 1.0) - 0.5);
-    for (int j = 0; j < num_across; ++j) {
-      const double distance_px = band_px * (2.0 * j / (num_across - 1.0) - 1);
-      const auto value =
-          Interpolate(gray, side.middle + along_px * side.along + distance_px * side.outward);
-      if (!value) continue;
-      samples.values[static_cast<std::size_t>(samples.count++)] = {along_px / side.half_length_px,
-                                                                   distance_px, *value};
-    }
+GrayLine ReadLine(const cv::Mat& gray, const UnitSquareMap& map, double v) {
+  GrayLine line;
+  for (int i = 0; i < kNumPlaces; ++i) {
+    line[static_cast<std::size_t>(i)] =
+        InterpolateGray(gray, map.ToImage(i / (kNumPlaces - 1.0), v));
   }
-  return samples;
+  return line;
 }
 
-Parameters InitialGuess(const Samples& samples, double band_px) {
-  double dark = 0, light = 0;
-  int num_dark = 0, num_light = 0;
-  for (int i = 0; i < samples.count; ++i) {
-    const Sample& sample = samples.values[static_cast<std::size_t>(i)];
-    if (sample.distance_px < -0.5 * band_px) dark += sample.gray, ++num_dark;
-    if (sample.distance_px > 0.5 * band_px) light += sample.gray, ++num_light;
-  }
-  Parameters guess = Parameters::Zero();
-  guess[kBlur] = 0.8;
-  guess[kDark] = dark / std::max(num_dark, 1);
-  guess[kLight] = light / std::max(num_light, 1);
-  return guess;
+double Mean(const GrayLine& line) {
+  double sum = 0.0;
+  for (const double value : line) sum += value;
+  return sum / kNumPlaces;
 }
 
-// Cost and normal equations of a fit at one set of parameters.
-struct NormalEquations {
-  double cost = 0.0;
-  Eigen::Matrix<double, kNumParameters, kNumParameters> hessian;
-  Parameters gradient;
+double LookUp(const GrayLine& line, double u) {
+  const double place = std::clamp(u, 0.0, 1.0) * (kNumPlaces - 1.001);
+  const auto index = static_cast<std::size_t>(place);
+  return line[index] + (place - static_cast<double>(index)) * (line[index + 1] - line[index]);
+}
+
+// Linear in s along the side.
+struct LinearInS {
+  double middle, slope;
+  double operator()(double s) const { return middle + slope * s; }
 };
 
-// Cumulative normal distribution and density, by linear interpolation to 3e-6.
-class NormalTable {
- public:
-  NormalTable() {
-    for (int i = 0; i <= kSize; ++i) {
-      const double z = i / kPerUnit - kMaxZ;
-      cumulative_[static_cast<std::size_t>(i)] = 0.5 * (1 + std::erf(z / std::sqrt(2.0)));
-      density_[static_cast<std::size_t>(i)] = std::exp(-0.5 * z * z) / std::sqrt(2 * CV_PI);
-    }
-  }
-
-  // (cumulative, density) at z.
-  std::pair<double, double> At(double z) const {
-    const double position = std::clamp((z + kMaxZ) * kPerUnit, 0.0, kSize - 1e-6);
-    const std::size_t i = static_cast<std::size_t>(position);
-    const double f = position - static_cast<double>(i);
-    return {(1 - f) * cumulative_[i] + f * cumulative_[i + 1],
-            (1 - f) * density_[i] + f * density_[i + 1]};
-  }
-
- private:
-  static constexpr double kMaxZ = 6.0, kPerUnit = 128.0;
-  static constexpr int kSize = static_cast<int>(2 * kMaxZ * kPerUnit);
-  std::array<double, kSize + 1> cumulative_, density_;
-};
-
-// `bend_weight` is the weight of the prior on the bend.
-NormalEquations Evaluate(const Samples& samples, const Parameters& p, double bend_weight) {
-  static const NormalTable table;
-  NormalEquations equations;
-  equations.hessian.setZero();
-  equations.gradient.setZero();
-  for (int i = 0; i < samples.count; ++i) {
-    const Sample& sample = samples.values[static_cast<std::size_t>(i)];
-    const double s = sample.s;
-    const double dark = p[kDark] + p[kDarkSlope] * s, light = p[kLight] + p[kLightSlope] * s;
-    const double z =
-        (sample.distance_px - (p[kOffset] + p[kSlope] * s + p[kBend] * (1 - s * s))) / p[kBlur];
-    const auto [step, density] = table.At(z);
-    const double residual = dark + (light - dark) * step - sample.gray;
-    const double by_offset = -(light - dark) * density / p[kBlur];
-    Parameters jacobian;
-    jacobian << by_offset, by_offset * s, by_offset * (1 - s * s), by_offset * z, 1 - step, step,
-        (1 - step) * s, step * s;
-    equations.cost += residual * residual;
-    equations.hessian.noalias() += jacobian * jacobian.transpose();
-    equations.gradient += residual * jacobian;
-  }
-  equations.cost += bend_weight * p[kBend] * p[kBend];
-  equations.hessian(kBend, kBend) += bend_weight;
-  equations.gradient[kBend] += bend_weight * p[kBend];
-  return equations;
+LinearInS FromEnds(double at_start, double at_end) {
+  return {0.5 * (at_start + at_end), 0.5 * (at_end - at_start)};
 }
 
-// Levenberg-Marquardt. The bend has a weak prior: a side bends by hundredths of its length at most,
-// and on short sides noise would pass for a bend.
-std::optional<Parameters> FitSide(const Samples& samples, double band_px, double half_length_px) {
-  if (samples.count < kMinSamplesAlong * kMinSamplesAcross) return std::nullopt;
-  Parameters p = InitialGuess(samples, band_px);
-  const double contrast = p[kLight] - p[kDark];
-  if (!(contrast > kMinContrast)) return std::nullopt;
-  const double bend_weight =
-      std::pow(kNoiseOfContrast * contrast / (kBendSigma * half_length_px), 2);
-  double damping = 1e-4;
-  NormalEquations current = Evaluate(samples, p, bend_weight);
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    auto damped = current.hessian;
-    damped.diagonal() *= 1 + damping;
-    const Parameters step = -damped.ldlt().solve(current.gradient);
-    if (!step.allFinite()) return std::nullopt;
-    Parameters candidate = p + step;
-    candidate[kBlur] = std::clamp(candidate[kBlur], kMinBlurPx, kMaxBlurPx);
-    NormalEquations next = Evaluate(samples, candidate, bend_weight);
-    if (!(next.cost < current.cost)) {
-      damping *= 10;
-      continue;
+// A line of the print parallel to the side, at v in the unit square: how far it is from the side,
+// and the place u on it that faces a place s of the side.
+struct Parallel {
+  LinearInS depth_px, u;
+};
+
+Parallel MakeParallel(const Side& side, const UnitSquareMap& map, double v) {
+  const auto depth_px = [&](double u) {
+    return std::abs((map.ToImage(u, v) - side.middle_px).dot(side.outward));
+  };
+  const Parallel line{FromEnds(depth_px(0), depth_px(1)), {}};
+  const auto facing_u = [&](double s) {
+    const double outwards_px = v > 0 ? -line.depth_px(s) : line.depth_px(s);
+    return map
+        .ToSquare(side.middle_px + s * side.half_length_px * side.along +
+                  outwards_px * side.outward)
+        .x();
+  };
+  return {line.depth_px, FromEnds(facing_u(-1), facing_u(1))};
+}
+
+// Share of a step that lies on the far side, for the sides that end this one.
+double Step(double distance_px, double blur_px) {
+  if (distance_px > 3.5 * blur_px) return 1.0;
+  return 0.5 * std::erfc(-distance_px / blur_px * 0.70710678118654752);
+}
+
+// Everything about one side that a pass keeps fixed.
+struct SideModel {
+  Side side, previous, next;
+  GrayLine inner_gray, outer_gray;
+  Parallel inner, outer;
+  double dark, light;
+  double blur_px;
+};
+
+SideModel MakeSideModel(const cv::Mat& gray, const Quad& quad, int side_idx, int num_cells,
+                        double blur_px) {
+  const auto turned = [&](int turns) {
+    Quad result;
+    for (int i = 0; i < kNumCorners; ++i) {
+      result[static_cast<std::size_t>(i)] =
+          quad[static_cast<std::size_t>((i + turns) % kNumCorners)];
     }
-    p = candidate;
-    current = std::move(next);
-    damping *= 0.1;
-    if (step.head<3>().norm() < kMinStepPx) break;
+    return result;
+  };
+  const Quad own = turned(side_idx);
+  const UnitSquareMap map(own);
+  const double cell = 1.0 / num_cells;
+  SideModel model;
+  model.side = MakeSide(own);
+  model.previous = MakeSide(turned(side_idx + kNumCorners - 1));
+  model.next = MakeSide(turned(side_idx + 1));
+  model.inner_gray = ReadLine(gray, map, 1.5 * cell);
+  model.outer_gray = ReadLine(gray, map, -(kQuietZoneCells + 0.5) * cell);
+  model.inner = MakeParallel(model.side, map, cell);
+  model.outer = MakeParallel(model.side, map, -kQuietZoneCells * cell);
+  model.dark = Mean(ReadLine(gray, map, 0.5 * cell));
+  model.light = Mean(ReadLine(gray, map, -0.5 * kQuietZoneCells * cell));
+  model.blur_px = blur_px;
+  return model;
+}
+
+EdgeSample MakeSample(const SideModel& model, const Eigen::Vector2d& x_px, double along_px,
+                      double distance_px, double gray) {
+  EdgeSample sample;
+  sample.s = along_px / model.side.half_length_px;
+  sample.distance_px = distance_px;
+  sample.gray = gray;
+  for (const Side* neighbour : {&model.previous, &model.next}) {
+    sample.cover *= Step(-(x_px - neighbour->middle_px).dot(neighbour->outward), model.blur_px);
   }
-  const double fitted_contrast = p[kLight] - p[kDark];
-  const double rms = std::sqrt(current.cost / samples.count);
-  if (!(fitted_contrast > kMinContrast) || rms > kMaxRelativeResidual * fitted_contrast ||
-      std::abs(p[kOffset]) + std::abs(p[kSlope]) > band_px) {
+  sample.inner = std::max(0.0, LookUp(model.inner_gray, model.inner.u(sample.s)) - model.dark);
+  sample.outer = std::min(0.0, LookUp(model.outer_gray, model.outer.u(sample.s)) - model.light);
+  sample.inner_depth_px = model.inner.depth_px(sample.s);
+  sample.outer_depth_px = model.outer.depth_px(sample.s);
+  return sample;
+}
+
+// All pixels within the band, or every k-th row or column of them. Two sides' blur mixes near the
+// corners, which are left out.
+void SampleSide(const cv::Mat& gray, const SideModel& model, const Pass& pass,
+                EdgeSamples* samples) {
+  const Side& side = model.side;
+  const double margin_px =
+      std::clamp(0.24 * side.half_length_px, model.blur_px, 2.5 * model.blur_px);
+  const double reach_px = side.half_length_px - margin_px;
+  const int major = std::abs(side.along.x()) >= std::abs(side.along.y()) ? 0 : 1;
+  const int minor = 1 - major;
+  const double major_reach =
+      reach_px * std::abs(side.along[major]) + pass.band_px * std::abs(side.outward[major]);
+  const double minor_reach = pass.band_px / std::abs(side.outward[minor]);
+  const int stride = static_cast<int>(
+      std::ceil(4 * reach_px * pass.band_px / std::min(pass.max_samples, kMaxEdgeSamples)));
+  const int major_size = major == 0 ? gray.cols : gray.rows;
+  const int minor_size = major == 0 ? gray.rows : gray.cols;
+  const int first = std::max(0, static_cast<int>(std::ceil(side.middle_px[major] - major_reach)));
+  const int last =
+      std::min(major_size - 1, static_cast<int>(std::floor(side.middle_px[major] + major_reach)));
+  samples->count = 0;
+  for (int i = first; i <= last; i += stride) {
+    const double center =
+        side.middle_px[minor] + (i - side.middle_px[major]) * side.along[minor] / side.along[major];
+    const int begin = std::max(0, static_cast<int>(std::ceil(center - minor_reach)));
+    const int end = std::min(minor_size - 1, static_cast<int>(std::floor(center + minor_reach)));
+    for (int j = begin; j <= end; ++j) {
+      Eigen::Vector2d x_px;
+      x_px[major] = i;
+      x_px[minor] = j;
+      const double along_px = (x_px - side.middle_px).dot(side.along);
+      if (std::abs(along_px) > reach_px || samples->count == kMaxEdgeSamples) continue;
+      const double distance_px = (x_px - side.middle_px).dot(side.outward);
+      const double value = major == 0 ? gray.at<std::uint8_t>(j, i) : gray.at<std::uint8_t>(i, j);
+      samples->values[static_cast<std::size_t>(samples->count++)] =
+          MakeSample(model, x_px, along_px, distance_px, value);
+    }
+  }
+}
+
+// A lens or a curved cloth bends a side by some thousandths of its length; on a short side noise
+// would pass for a bend.
+EdgePrior MakePrior(const SideModel& model) {
+  const double contrast = model.light - model.dark;
+  const double half_length = model.side.half_length_px;
+  using P = EdgeParameters;
+  EdgePrior prior;
+  P& mean = prior.mean;
+  mean[P::kBlur] = model.blur_px;
+  mean[P::kDark] = model.dark;
+  mean[P::kLight] = model.light;
+  mean[P::kInnerGain] = mean[P::kOuterGain] = 1.0;
+  P& sigma = prior.sigma;
+  sigma[P::kOffset] = sigma[P::kSlope] = 1e3;
+  sigma[P::kBend] = 2e-3 * half_length + 5e-4 * half_length * half_length;
+  sigma[P::kBlur] = 0.5;
+  sigma[P::kDark] = sigma[P::kLight] = 1e3;
+  sigma[P::kDarkSlope] = sigma[P::kLightSlope] = 0.1 * contrast;
+  sigma[P::kInnerGain] = sigma[P::kOuterGain] = 0.3;
+  return prior;
+}
+
+std::optional<EdgeParameters> FitSide(const cv::Mat& gray, const SideModel& model, const Pass& pass,
+                                      EdgeSamples* samples) {
+  if (!(model.light - model.dark > kMinContrast)) return std::nullopt;
+  SampleSide(gray, model, pass, samples);
+  const EdgePrior prior = MakePrior(model);
+  const auto fit = FitEdge(*samples, prior, pass.tolerance_px);
+  if (!fit) return std::nullopt;
+  const EdgeParameters& p = fit->parameters;
+  if (!(p.Contrast() > kMinContrast) || fit->rms_gray > kMaxRelativeRms * p.Contrast() ||
+      std::abs(p[EdgeParameters::kOffset]) + std::abs(p[EdgeParameters::kSlope]) > pass.band_px) {
     return std::nullopt;
   }
   return p;
 }
 
 struct Line {
-  Eigen::Vector2d point, direction;
+  Eigen::Vector2d point_px, direction;
 };
+
+// The tangent of the fitted edge at its end s = -1 or 1, where the bend adds nothing.
+Line TangentAtEnd(const Side& side, const EdgeParameters& p, double s) {
+  using P = EdgeParameters;
+  const double offset_px = p[P::kOffset] + p[P::kSlope] * s;
+  const double slope = (p[P::kSlope] - 2 * p[P::kBend] * s) / side.half_length_px;
+  return {side.middle_px + s * side.half_length_px * side.along + offset_px * side.outward,
+          side.along + slope * side.outward};
+}
 
 std::optional<Eigen::Vector2d> Intersect(const Line& a, const Line& b) {
   Eigen::Matrix2d directions;
   directions << a.direction, -b.direction;
-  const double determinant = directions.determinant();
-  if (std::abs(determinant) < 0.05) return std::nullopt;
-  return a.point + a.direction * (directions.inverse() * (b.point - a.point)).x();
+  if (std::abs(directions.determinant()) < 0.05) return std::nullopt;
+  return a.point_px + a.direction * (directions.inverse() * (b.point_px - a.point_px)).x();
 }
 
-// The tangent of the fitted edge at its end s = -1 or 1.
-Line TangentAtEnd(const Side& side, const Parameters& p, double s) {
-  const double offset_px = p[kOffset] + p[kSlope] * s;
-  const double slope = (p[kSlope] - 2 * p[kBend] * s) / side.half_length_px;
-  return {side.middle + s * side.half_length_px * side.along + offset_px * side.outward,
-          (side.along + slope * side.outward).normalized()};
-}
+struct Fit {
+  Quad corners_px;
+  double blur_px;
+};
 
-std::optional<Corners> FitOnce(const cv::Mat& gray, const Corners& corners, double band_px) {
+std::optional<Fit> FitSides(const cv::Mat& gray, const Fit& start, int num_cells,
+                            const Pass& pass) {
+  EdgeSamples samples;
   std::array<Line, kNumCorners> starts, ends;
+  double blur_sum_px = 0.0;
   for (int i = 0; i < kNumCorners; ++i) {
-    const Side side = MakeSide(corners, i);
-    if (side.half_length_px < 2) return std::nullopt;
-    const auto fit = FitSide(SampleSide(gray, side, band_px), band_px, side.half_length_px);
-    if (!fit) return std::nullopt;
-    starts[static_cast<std::size_t>(i)] = TangentAtEnd(side, *fit, -1);
-    ends[static_cast<std::size_t>(i)] = TangentAtEnd(side, *fit, 1);
+    const SideModel model = MakeSideModel(gray, start.corners_px, i, num_cells, start.blur_px);
+    const auto parameters = FitSide(gray, model, pass, &samples);
+    if (!parameters) return std::nullopt;
+    starts[static_cast<std::size_t>(i)] = TangentAtEnd(model.side, *parameters, -1);
+    ends[static_cast<std::size_t>(i)] = TangentAtEnd(model.side, *parameters, 1);
+    blur_sum_px += (*parameters)[EdgeParameters::kBlur];
   }
-  Corners refined;
+  Fit fit{{}, blur_sum_px / kNumCorners};
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     const auto corner = Intersect(starts[i], ends[(i + kNumCorners - 1) % kNumCorners]);
     if (!corner) return std::nullopt;
-    refined[i] = *corner;
+    fit.corners_px[i] = *corner;
   }
-  return refined;
+  return fit;
+}
+
+double MaxShiftPx(const Quad& a, const Quad& b) {
+  double max_shift_px = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    max_shift_px = std::max(max_shift_px, (a[i] - b[i]).norm());
+  }
+  return max_shift_px;
+}
+
+double MaxAllowedShiftPx(double cell_px, const EdgeFitOptions& options) {
+  return std::max(2.0, options.max_shift_in_cells * cell_px);
+}
+
+double MeanSidePx(const Quad& quad) {
+  double perimeter_px = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    perimeter_px += (quad[(i + 1) % kNumCorners] - quad[i]).norm();
+  }
+  return perimeter_px / kNumCorners;
 }
 
 }  // namespace
 
-std::optional<Corners> RefineCornersByEdges(const cv::Mat& gray, const Corners& corners_px,
-                                            int num_cells, const EdgeFitOptions& options) {
-  double perimeter_px = 0.0;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    perimeter_px += (corners_px[(i + 1) % kNumCorners] - corners_px[i]).norm();
-  }
-  const double cell_px = perimeter_px / kNumCorners / num_cells;
+std::optional<Quad> RefineCornersByEdges(const cv::Mat& gray, const Quad& corners_px, int num_cells,
+                                         const EdgeFitOptions& options) {
+  VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
+  const double cell_px = MeanSidePx(corners_px) / num_cells;
   const double band_px =
       std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
-  const double max_shift_px = std::max(1.5, options.max_shift_in_cells * cell_px);
-  Corners corners = corners_px;
-  for (int pass = 0; pass < kNumPasses; ++pass) {
-    const auto refined = FitOnce(gray, corners, band_px);
-    if (!refined) return std::nullopt;
-    corners = *refined;
+  const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.05}, {band_px, 320, 5e-3}};
+  Fit fit{corners_px, kFirstBlurPx};
+  for (const Pass& pass : passes) {
+    const auto next = FitSides(gray, fit, num_cells, pass);
+    if (!next) return std::nullopt;
+    fit = *next;
   }
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    if (!((corners[i] - corners_px[i]).norm() <= max_shift_px)) return std::nullopt;
+  if (MaxShiftPx(fit.corners_px, corners_px) > MaxAllowedShiftPx(cell_px, options)) {
+    return std::nullopt;
   }
-  return corners;
+  return fit.corners_px;
+}
+
+std::optional<Quad> RefineCorners(const cv::Mat& gray, const Quad& corners_px, const cv::Mat& cells,
+                                  const EdgeFitOptions& options) {
+  const double cell_px = MeanSidePx(corners_px) / cells.rows;
+  if (cell_px < options.min_edge_cell_px) {
+    const auto fitted = FitPattern(gray, corners_px, cells);
+    if (fitted && MaxShiftPx(*fitted, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
+      return fitted;
+    }
+  }
+  return RefineCornersByEdges(gray, corners_px, cells.rows, options);
 }
 
 }  // namespace velamap

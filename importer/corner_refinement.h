@@ -1,14 +1,11 @@
 // Sub-pixel corners of a dark square on light ground as intersections of fitted edges.
 //
 // cv::cornerSubPix pulls a marker's corners inwards by 0.1 to 0.4 px, which scaling by the marker's
-// side turns into a scale error of 0.4 to 6 %. Here each side is modelled as a straight step edge
-// blurred by a Gaussian,
-//
-//   I(d) = dark + (light - dark) * (1 + erf(d / (sqrt(2) blur))) / 2,   d = distance outwards, px
-//
-// whose line and blur are fitted by least squares to the pixels within a band around the side, the
-// band no wider than the marker's own border and quiet zone. The corners are the intersections of
-// neighbouring lines.
+// side turns into a scale error of 0.4 to 6 %. Here each side is modelled as a step edge blurred by
+// a Gaussian (edge_fit.h), whose place, bend, blur and grey levels are fitted by least squares to
+// the pixels within a band around the side. The corners are where neighbouring sides meet. A marker
+// of small cells is fitted as a whole (pattern_fit.h), because there the blur of one edge reaches
+// the next.
 
 #pragma once
 
@@ -27,8 +24,10 @@ struct EdgeFitOptions {
   double band_in_cells = 0.6;
   double min_band_px = 1.5;
   double max_band_px = 6.0;
-  // A corner that the fit moves further than this many cells (but at least 1.5 px) is a failure.
+  // A corner that the fit moves further than this many cells (but at least 2 px) is a failure.
   double max_shift_in_cells = 0.8;
+  // Markers with smaller cells are fitted as a whole (pattern_fit.h).
+  double min_edge_cell_px = 5.0;
 };
 
 // `corners_px` in OpenCV's pixel frame (first pixel's centre at (0,0)), in order around the square,
@@ -37,5 +36,10 @@ struct EdgeFitOptions {
 std::optional<std::array<Eigen::Vector2d, kNumCorners>> RefineCornersByEdges(
     const cv::Mat& gray, const std::array<Eigen::Vector2d, kNumCorners>& corners_px, int num_cells,
     const EdgeFitOptions& options = {});
+
+// The same for a marker whose cells are known (as in pattern_fit.h): the best way for its size.
+std::optional<std::array<Eigen::Vector2d, kNumCorners>> RefineCorners(
+    const cv::Mat& gray, const std::array<Eigen::Vector2d, kNumCorners>& corners_px,
+    const cv::Mat& cells, const EdgeFitOptions& options = {});
 
 }  // namespace velamap

@@ -121,7 +121,9 @@ std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary
     std::optional<Quad> refined;
     if (options.corner_refinement == CornerRefinement::kNone) refined = quad.corners_px;
     if (options.corner_refinement == CornerRefinement::kEdge) {
-      refined = RefineCornersByEdges(dark_on_light, quad.corners_px, num_cells);
+      cv::Mat cells;  // one pixel a cell
+      cv::aruco::drawMarker(dictionary.aruco, quad.marker_id, num_cells, cells, border_bits);
+      refined = RefineCorners(dark_on_light, quad.corners_px, cells);
       num_fallbacks += !refined;
     }
     if (!refined) refined = RefineSubpix(dark_on_light, quad.corners_px, num_cells);

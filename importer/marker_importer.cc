@@ -143,37 +143,43 @@ constexpr double kFewMarkersPerFrame = 0.5;
 // What another dictionary or polarity has to find more a frame to be the right one instead.
 constexpr double kConvincingRatio = 10.0;
 
-// Throws if the frames hold no marker, or hardly any while another dictionary finds many.
+// Throws if the frames hold no marker, or hardly any while another dictionary finds many. What the
+// wrong dictionary or polarity finds are false ids, mostly some that the layout does not name; the
+// hint therefore comes before any complaint about ids.
 void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,
                        const ImageSample& sample, const ImportReport& report) {
-  if (report.num_markers == 0 && !report.ids_not_in_layout.empty()) {
+  const std::vector<DictionaryHint> hints =
+      SuggestDictionaries(sample.Images(), options.layout.border_bits, options.detection);
+  const double rate = static_cast<double>(report.num_markers + report.num_rejected) /
+                      std::max(report.num_frames_read, 1);
+  const bool is_convincing =
+      !hints.empty() && static_cast<double>(hints.front().num_markers) >=
+                            kConvincingRatio * rate * hints.front().num_images;
+  if (is_convincing) {
+    throw DataError(fmt::format(
+        "{}: {} marker of {}{} found in {} frames; found with {}", options.image_path,
+        report.num_markers + report.num_rejected > 0 ? "hardly any" : "no", dictionary_name,
+        options.detection.inverted ? " (inverted)" : "", report.num_frames_read,
+        DescribeHints(hints)));
+  }
+  if (report.num_markers > 0) return;
+  if (!report.ids_not_in_layout.empty()) {
     throw DataError(
         fmt::format("{}: no marker of the layout found, only other ids: {}; check the "
                     "layout's dictionary and markers",
                     options.image_path, fmt::join(report.ids_not_in_layout, " ")));
   }
-  if (report.num_markers == 0 && report.num_rejected > 0) {
+  if (report.num_rejected > 0) {
     throw DataError(
         fmt::format("{}: only markers whose id is there more than once; give a layout "
                     "(--layout_path) that tells them apart",
                     options.image_path));
   }
-  const std::vector<DictionaryHint> hints =
-      SuggestDictionaries(sample.Images(), options.layout.border_bits, options.detection);
-  if (report.num_markers > 0) {
-    if (hints.empty()) return;
-    const double hinted_rate =
-        static_cast<double>(hints.front().num_markers) / hints.front().num_images;
-    const double rate = static_cast<double>(report.num_markers) / report.num_frames_read;
-    if (hinted_rate < kConvincingRatio * rate) return;
-  }
   throw DataError(fmt::format(
-      "{}: {} marker of {}{} found in {} frames; {}", options.image_path,
-      report.num_markers > 0 ? "hardly any" : "no", dictionary_name,
-      options.detection.inverted ? " (inverted)" : "", report.num_frames_read,
-      hints.empty()
-          ? "no predefined dictionary finds any: check focus, size and border of the markers"
-          : "found with " + DescribeHints(hints)));
+      "{}: no marker of {}{} found in {} frames; no predefined dictionary finds any: check focus, "
+      "size and border of the markers",
+      options.image_path, dictionary_name, options.detection.inverted ? " (inverted)" : "",
+      report.num_frames_read));
 }
 
 int NumThreads(int num_threads) {

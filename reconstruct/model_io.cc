@@ -67,6 +67,12 @@ void WriteFiles(const Model& model, const fs::path& path, const std::array<Model
 
 }  // namespace
 
+const std::set<std::string>& ModelFileNames() {
+  static const std::set<std::string> names = {"cameras.bin", "images.bin", "points3D.bin",
+                                              "cameras.txt", "images.txt", "points3D.txt"};
+  return names;
+}
+
 Model ReadModel(const std::string& path) {
   Model model;
   for (const ModelFile& file : ChooseFiles(path)) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <set>
 #include <string>
 
 #include "reconstruct/model.h"
@@ -10,6 +11,9 @@
 namespace velamap {
 
 enum class ModelFormat { kBinary, kText, kBinaryAndText };
+
+// Names of all files that a model folder may hold: what CheckReplaceableFolder() asks for.
+const std::set<std::string>& ModelFileNames();
 
 // Reads the folder; binary wins where both formats are there, as in COLMAP. Throws InputError that
 // names the file (and the line in text) for anything missing, truncated or inconsistent.

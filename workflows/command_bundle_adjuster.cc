@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include "importer/atomic_output.h"
 #include "reconstruct/model_io.h"
 #include "workflows/commands.h"
 #include "workflows/pipeline.h"
@@ -38,7 +39,7 @@ void Validate(Options* options) {
   ApplyGeneralOptions(options->general);
   CheckBackend(options->backend);
   options->adjustment.Check();
-  CheckModelFolder(options->paths.output_path);
+  CheckReplaceableFolder(options->paths.output_path, ModelFileNames());
   if (options->paths.log_path.empty()) {
     options->paths.log_path = BesideFolder(options->paths.output_path, "colmap.log");
   }

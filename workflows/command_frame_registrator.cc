@@ -41,7 +41,7 @@ void Validate(Options* options) {
   ApplyGeneralOptions(options->general);
   options->registration.random_seed = options->general.random_seed;
   options->registration.Check();
-  CheckModelFolder(options->paths.output_path);
+  CheckReplaceableFolder(options->paths.output_path, ModelFileNames());
   if (options->paths.registration_path.empty()) {
     options->paths.registration_path = BesideFolder(options->paths.output_path, "registration.csv");
   }

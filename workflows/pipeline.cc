@@ -113,21 +113,6 @@ std::string BesideFolder(const std::string& folder, const std::string& name) {
   return ((absolute.has_filename() ? parent : parent.parent_path()) / name).string();
 }
 
-void CheckModelFolder(const std::string& path) {
-  static const std::set<std::string> kModelFiles = {"cameras.bin", "images.bin", "points3D.bin",
-                                                    "cameras.txt", "images.txt", "points3D.txt"};
-  std::error_code error;
-  for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (kModelFiles.count(name) > 0) continue;
-    throw InputError(
-        fmt::format("--output_path {}: holds {}, which is no part of a model; give a "
-                    "new or an empty folder",
-                    path, name));
-  }
-}
-
 void CheckBackend(const std::string& backend) {
   if (backend != "colmap") {
     throw InputError(fmt::format("--backend: '{}' is unknown; there is: colmap", backend));

@@ -40,10 +40,6 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
 // is sparse/NAME.
 std::string BesideFolder(const std::string& folder, const std::string& name);
 
-// Throws InputError unless the folder is new, empty, or holds a COLMAP model and nothing else: it
-// is replaced as a whole, and a mistyped path shall not cost anyone their files.
-void CheckModelFolder(const std::string& path);
-
 // Throws InputError for a backend that does not exist.
 void CheckBackend(const std::string& backend);
 

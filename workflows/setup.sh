@@ -5,12 +5,12 @@ set -euo pipefail
 
 packages=(
   build-essential cmake ninja-build ccache pkg-config colmap
-  libopencv-dev libopencv-contrib-dev libeigen3-dev libceres-dev
+  libopencv-dev libopencv-contrib-dev libeigen3-dev
   libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev
   libboost-program-options-dev libspdlog-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
 )
-test_packages=(xvfb xauth imagemagick ffmpeg x11-utils xdotool)
+test_packages=(xvfb xauth imagemagick ffmpeg xdotool)
 
 case "${1:-}" in
   "") ;;

@@ -13,6 +13,15 @@ namespace velamap {
 
 constexpr CameraId kSceneCameraId = 1;
 
+inline SyntheticScene MakeScene(SceneKind kind, int num_frames, bool video) {
+  SyntheticSceneOptions options;
+  options.kind = kind;
+  options.num_frames = num_frames;
+  options.video = video;
+  if (kind == SceneKind::kCube) options.num_rows = options.num_columns = 3;
+  return MakeSyntheticScene(options);
+}
+
 inline std::vector<DatabaseImage> DatabaseImages(const SyntheticScene& scene) {
   std::vector<DatabaseImage> images;
   for (const FrameDetections& frame : scene.frames) {

@@ -13,15 +13,6 @@
 namespace velamap {
 namespace {
 
-SyntheticScene Scene(SceneKind kind, int num_frames, bool video) {
-  SyntheticSceneOptions options;
-  options.kind = kind;
-  options.num_frames = num_frames;
-  options.video = video;
-  if (kind == SceneKind::kCube) options.num_rows = options.num_columns = 3;
-  return MakeSyntheticScene(options);
-}
-
 Registration Register(const SyntheticScene& scene, const RegistrationOptions& options = {}) {
   return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, options);
 }
@@ -47,7 +38,7 @@ struct Case {
 class NoiseFreeRegistration : public testing::TestWithParam<Case> {};
 
 TEST_P(NoiseFreeRegistration, GivesTheTruthBack) {
-  const SyntheticScene scene = Scene(GetParam().kind, 24, GetParam().video);
+  const SyntheticScene scene = MakeScene(GetParam().kind, 24, GetParam().video);
   const Registration registration = Register(scene);
   EXPECT_LT(MaxError(registration, scene), 1e-9);
   EXPECT_GE(registration.NumRegistered(), 20);
@@ -62,29 +53,31 @@ TEST_P(NoiseFreeRegistration, GivesTheTruthBack) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NoiseFreeRegistration,
-                         testing::Values(Case{SceneKind::kSail, true}, Case{SceneKind::kSail, false},
+                         testing::Values(Case{SceneKind::kSail, true},
+                                         Case{SceneKind::kSail, false},
                                          Case{SceneKind::kPlane, true},
                                          Case{SceneKind::kCube, false}));
 
 TEST(Registration, ImagesThatShareNothingWithTheCentralOneAreReachedThroughOthers) {
-  const SyntheticScene scene = Scene(SceneKind::kCube, 24, false);
+  const SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);
   const Registration registration = Register(scene);
   EXPECT_EQ(registration.NumRegistered(), 24);
   const auto frames = FrameShapes(scene);
   int num_without_shared = 0;
   const FrameShape& central = frames[static_cast<std::size_t>(CentralIdx(registration))];
-  for (const FrameShape& frame : frames) num_without_shared += NumSharedMarkers(frame, central) == 0;
+  for (const FrameShape& frame : frames)
+    num_without_shared += NumSharedMarkers(frame, central) == 0;
   EXPECT_GT(num_without_shared, 0);
 }
 
 TEST(Registration, OrderAndIdsOfImagesChangeNothing) {
-  SyntheticScene scene = Scene(SceneKind::kSail, 12, false);
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 12, false);
   AddNoise({0.3, 0.05, 0.02, 200, 3}, &scene);
   auto images = DatabaseImages(scene);
-  const Registration registration =
-      RegisterFrames(images, SceneCameras(scene), scene.layout, {});
+  const Registration registration = RegisterFrames(images, SceneCameras(scene), scene.layout, {});
   std::shuffle(images.begin(), images.end(), std::mt19937(5));
-  for (std::size_t i = 0; i < images.size(); ++i) images[i].image_id = static_cast<ImageId>(i + 100);
+  for (std::size_t i = 0; i < images.size(); ++i)
+    images[i].image_id = static_cast<ImageId>(i + 100);
   const Registration shuffled = RegisterFrames(images, SceneCameras(scene), scene.layout, {});
   EXPECT_EQ(shuffled.central_image_name, registration.central_image_name);
   ASSERT_EQ(shuffled.shape.size(), registration.shape.size());
@@ -94,7 +87,7 @@ TEST(Registration, OrderAndIdsOfImagesChangeNothing) {
 }
 
 TEST(Registration, SeedDecidesNothingThatMatters) {
-  SyntheticScene scene = Scene(SceneKind::kSail, 41, true);
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 41, true);
   AddNoise({0.2, 0.0, 0.03, 200, 3}, &scene);
   RegistrationOptions options;
   const Registration first = Register(scene, options);
@@ -108,7 +101,7 @@ TEST(Registration, SeedDecidesNothingThatMatters) {
 }
 
 TEST(Registration, MisplacedMarkersAreLeftOutOfTheirFrames) {
-  SyntheticScene scene = Scene(SceneKind::kSail, 21, true);
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 21, true);
   AddNoise({0.1, 0.0, 0.05, 300, 9}, &scene);
   const Registration registration = Register(scene);
   int num_outliers = 0;
@@ -120,7 +113,7 @@ TEST(Registration, MisplacedMarkersAreLeftOutOfTheirFrames) {
 }
 
 TEST(Registration, WrongFrameIsLeftOutWithAReason) {
-  SyntheticScene scene = Scene(SceneKind::kSail, 8, false);
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 8, false);
   // Ids of one image are permuted: every marker is in the wrong place.
   auto& markers = scene.frames[3].markers;
   const std::size_t count = markers.size();
@@ -144,7 +137,7 @@ TEST(Registration, WrongFrameIsLeftOutWithAReason) {
 }
 
 TEST(Registration, SecondGroupOfImagesIsReported) {
-  SyntheticScene scene = Scene(SceneKind::kSail, 10, false);
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 10, false);
   for (std::size_t i = 7; i < 10; ++i) {
     for (auto& marker : scene.frames[i].markers) marker.marker_id += 500;
   }
@@ -156,7 +149,7 @@ TEST(Registration, SecondGroupOfImagesIsReported) {
 }
 
 TEST(Registration, RareMarkersAreDroppedFromAVideo) {
-  SyntheticScene scene = Scene(SceneKind::kSail, 21, true);
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 21, true);
   const int rare = 14;
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     auto& markers = scene.frames[i].markers;
@@ -173,7 +166,7 @@ TEST(Registration, RareMarkersAreDroppedFromAVideo) {
 }
 
 TEST(Registration, DataThatCannotBeRegisteredAreRefused) {
-  SyntheticScene scene = Scene(SceneKind::kSail, 3, false);
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 3, false);
   auto images = DatabaseImages(scene);
   images.resize(1);
   EXPECT_THROW(RegisterFrames(images, SceneCameras(scene), scene.layout, {}), DataError);
@@ -184,7 +177,7 @@ TEST(Registration, DataThatCannotBeRegisteredAreRefused) {
 }
 
 TEST(Registration, UnknownCentralFrameIsAnInputError) {
-  const SyntheticScene scene = Scene(SceneKind::kSail, 3, true);
+  const SyntheticScene scene = MakeScene(SceneKind::kSail, 3, true);
   RegistrationOptions options;
   options.central_frame = "17";
   EXPECT_THROW(Register(scene, options), InputError);

@@ -12,21 +12,12 @@
 namespace velamap {
 namespace {
 
-SyntheticScene Scene(SceneKind kind, int num_frames, bool video) {
-  SyntheticSceneOptions options;
-  options.kind = kind;
-  options.num_frames = num_frames;
-  options.video = video;
-  if (kind == SceneKind::kCube) options.num_rows = options.num_columns = 3;
-  return MakeSyntheticScene(options);
-}
-
 Registration Register(const SyntheticScene& scene) {
   return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, {});
 }
 
 TEST(SeedModel, NoiseFreeSceneReprojectsOntoItsKeypoints) {
-  const SyntheticScene scene = Scene(SceneKind::kCube, 24, false);
+  const SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);
   const Registration registration = Register(scene);
   const Model model = MakeSeedModel(registration, DatabaseImages(scene), SceneCameras(scene));
   CheckModel(model);
@@ -43,7 +34,7 @@ TEST(SeedModel, NoiseFreeSceneReprojectsOntoItsKeypoints) {
 }
 
 TEST(SeedModel, RegistrationTableNamesEveryImage) {
-  const SyntheticScene scene = Scene(SceneKind::kSail, 6, true);
+  const SyntheticScene scene = MakeScene(SceneKind::kSail, 6, true);
   std::ostringstream csv;
   WriteRegistrationCsv(Register(scene), csv);
   const std::string text = csv.str();

@@ -1,0 +1,26 @@
+// Grey values between pixels.
+
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace velamap {
+
+// Bilinear value of an 8-bit grey image at a place in OpenCV's pixel frame; places outside take the
+// nearest value inside.
+inline double InterpolateGray(const cv::Mat& gray, const Eigen::Vector2d& x_px) {
+  const double x = std::clamp(x_px.x(), 0.0, gray.cols - 1.001);
+  const double y = std::clamp(x_px.y(), 0.0, gray.rows - 1.001);
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const double fx = x - column, fy = y - row;
+  const std::uint8_t* upper = gray.ptr<std::uint8_t>(row) + column;
+  const std::uint8_t* lower = gray.ptr<std::uint8_t>(row + 1) + column;
+  return (1 - fy) * ((1 - fx) * upper[0] + fx * upper[1]) +
+         fy * ((1 - fx) * lower[0] + fx * lower[1]);
+}
+
+}  // namespace velamap

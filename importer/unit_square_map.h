@@ -1,0 +1,49 @@
+// The homography between a unit square and a quad of the image (Heckbert 1989).
+
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "importer/ids.h"
+
+namespace velamap {
+
+// Takes (0,0) (1,0) (1,1) (0,1) to the corners 0, 1, 2, 3 of the quad. A quad without area gives
+// non-finite values.
+class UnitSquareMap {
+ public:
+  explicit UnitSquareMap(const std::array<Eigen::Vector2d, kNumCorners>& quad) {
+    const Eigen::Vector2d sum = quad[0] - quad[1] + quad[2] - quad[3];
+    Eigen::Matrix2d sides;
+    sides << quad[1] - quad[2], quad[3] - quad[2];
+    const Eigen::Vector2d g = sides.inverse() * sum;
+    image_from_square_ << quad[1] - quad[0] + g.x() * quad[1], quad[3] - quad[0] + g.y() * quad[3],
+        quad[0], g.x(), g.y(), 1.0;
+    square_from_image_ = image_from_square_.inverse();
+  }
+
+  Eigen::Vector2d ToImage(double u, double v) const {
+    return (image_from_square_ * Eigen::Vector3d(u, v, 1)).hnormalized();
+  }
+
+  Eigen::Vector2d ToSquare(const Eigen::Vector2d& x_px) const {
+    return (square_from_image_ * x_px.homogeneous()).hnormalized();
+  }
+
+  // Rows: gradients of u and v by the place in the image, 1/px.
+  Eigen::Matrix2d SquareGradient(const Eigen::Vector2d& x_px) const {
+    const Eigen::Vector3d h = square_from_image_ * x_px.homogeneous();
+    return (square_from_image_.topLeftCorner<2, 2>() -
+            h.hnormalized() * square_from_image_.bottomLeftCorner<1, 2>()) /
+           h.z();
+  }
+
+ private:
+  Eigen::Matrix3d image_from_square_, square_from_image_;
+};
+
+}  // namespace velamap

@@ -1,0 +1,51 @@
+// Pictures of markers with exact truth: every pixel is the mean over its area of what the camera
+// sees there, then blurred and made noisy. COLMAP's image frame: the first pixel's centre lies at
+// (0.5, 0.5). Same options, same bytes.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/camera.h"
+#include "importer/dictionary.h"
+#include "tests/support/synthetic_scene.h"
+
+namespace velamap {
+
+// A flat square marker; corners top-left, top-right, bottom-right, bottom-left of the upright
+// marker, in the cam frame, m. Only the first, second and fourth are used: the third follows.
+struct PlacedMarkerInCam {
+  int marker_id = 0;
+  std::array<Eigen::Vector3d, kNumCorners> corners_in_cam;
+};
+
+struct RenderOptions {
+  double black = 40.0;  // grey levels
+  double white = 200.0;
+  double background = 120.0;
+  double background_texture = 0.0;  // standard deviation of smooth random patches, grey levels
+  double quiet_zone_cells = 1.0;    // white ring around the black square
+  double surround_cells = 0.0;      // black ring around that, as on a chequered board
+  double light_gradient = 0.0;      // relative change of the light across the picture's diagonal
+  double blur_sigma_px = 0.7;       // of the lens; a pixel's own area comes on top
+  double noise_sigma = 0.0;         // grey levels
+  int supersampling = 8;            // samples along each side of a pixel
+  bool color = false;               // BGR with three equal channels instead of grey
+  std::uint32_t seed = 1;           // of texture and noise
+};
+
+// An 8-bit picture of the camera's size. Markers that turn their back or reach behind the camera
+// are not drawn; near ones hide far ones.
+cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>& markers,
+                      const Dictionary& dictionary, int border_bits, const RenderOptions& options);
+
+// The markers of a scene as its frame `frame_idx` sees them, with the dictionary and border of the
+// scene's layout.
+cv::Mat RenderFrame(const SyntheticScene& scene, int frame_idx, const RenderOptions& options);
+
+}  // namespace velamap
