@@ -1,0 +1,111 @@
+#include "tests/support/clip_camera.h"
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+
+namespace velamap {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRadPerDeg = kPi / 180.0;
+
+// Sums of sines with random phases; std::mt19937's numbers are the same everywhere.
+class Sway {
+ public:
+  explicit Sway(std::uint32_t seed) : random_(seed) {}
+
+  // A phase for each swaying quantity, to be drawn in a fixed order.
+  double Phase() { return 2 * kPi * (random_() / 4294967296.0); }
+
+ private:
+  std::mt19937 random_;
+};
+
+double Wave(double time_s, double period_s, double phase_rad) {
+  return std::sin(2 * kPi * time_s / period_s + phase_rad);
+}
+
+Rigid3 LookAt(const Eigen::Vector3d& position_m, const Eigen::Vector3d& target_m, double roll_rad) {
+  const Eigen::Vector3d forward = (target_m - position_m).normalized();
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Matrix3d rotation;
+  rotation << right.transpose(), forward.cross(right).transpose(), forward.transpose();
+  Rigid3 cam_from_world;
+  cam_from_world.rotation =
+      Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ()) * Eigen::Quaterniond(rotation);
+  cam_from_world.translation = -(cam_from_world.rotation * position_m);
+  return cam_from_world;
+}
+
+}  // namespace
+
+Camera MakeClipCamera(bool wide_angle, int width_px) {
+  const double scale = width_px / 3840.0;
+  const double center_x = scale * (1920 + 9), center_y = scale * (1080 - 6);
+  Camera camera{CameraModel::kOpenCV, width_px, width_px * 9 / 16, {}};
+  if (wide_angle) {
+    camera.params = {1750 * scale, 1750 * scale, center_x, center_y, -0.245, 0.07, 2e-4, -1e-4};
+  } else {
+    camera.params = {2840 * scale, 2840 * scale, center_x, center_y, 0.08, -0.12, -3e-4, 2e-4};
+  }
+  return camera;
+}
+
+std::vector<Rigid3> MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
+                              double camera_height_m, double drift_deg) {
+  Sway sway(options.seed);
+  const double turn = sway.Phase(), range = sway.Phase(), heave = sway.Phase();
+  const double pan = sway.Phase(), tilt = sway.Phase(), roll = sway.Phase();
+  std::vector<Rigid3> cam_from_world;
+  for (int i = 0; i < options.num_frames; ++i) {
+    const double time_s = i / options.fps;
+    const double part = options.num_frames > 1 ? i / (options.num_frames - 1.0) : 0.5;
+    const double angle = kRadPerDeg * (options.angle_deg + drift_deg * (2 * part - 1) +
+                                       4 * Wave(time_s, 4.1, turn));
+    const double distance_m = options.distance_m * (1 + 0.07 * Wave(time_s, 6.3, range));
+    const Eigen::Vector3d position_m(
+        middle_m.x() + distance_m * std::sin(angle), middle_m.y() - distance_m * std::cos(angle),
+        camera_height_m + 0.04 * options.distance_m * Wave(time_s, 3.2, heave));
+    const Eigen::Vector3d target_m =
+        middle_m + 0.02 * options.distance_m *
+                       Eigen::Vector3d(Wave(time_s, 2.7, pan), 0, Wave(time_s, 2.2, tilt));
+    cam_from_world.push_back(
+        LookAt(position_m, target_m, 4 * kRadPerDeg * Wave(time_s, 3.7, roll)));
+  }
+  return cam_from_world;
+}
+
+std::vector<Rigid3> MakeBoardMotion(const ClipOptions& options) {
+  Sway sway(options.seed);
+  const double phase_x = sway.Phase(), phase_y = sway.Phase(), phase_z = sway.Phase();
+  const bool upright = options.motion >= 'e';
+  const int kind = (options.motion - 'a') % 4;  // at rest, about y, about x, about the centre
+  const double still = 0.3, swing = 38;         // degrees
+  std::vector<Rigid3> cam_from_world;
+  for (int i = 0; i < options.num_frames; ++i) {
+    const double time_s = i / options.fps;
+    const double about_y = (kind == 1 || kind == 3 ? swing : still) * Wave(time_s, 4.3, phase_y) +
+                           options.angle_deg;
+    const double about_x = (kind == 2 || kind == 3 ? swing : still) * Wave(time_s, 3.1, phase_x);
+    const double about_z = (kind == 3 ? 60 : still) * Wave(time_s, 5.7, phase_z);
+    const auto turned = [](double angle_deg, const Eigen::Vector3d& axis) {
+      return Eigen::AngleAxisd(kRadPerDeg * angle_deg, axis);
+    };
+    const Rigid3 facing =
+        LookAt({0, -options.distance_m, 0}, Eigen::Vector3d::Zero(), upright ? kPi / 2 : 0);
+    Rigid3 pose;
+    pose.rotation = turned(about_x, Eigen::Vector3d::UnitX()) *
+                    turned(about_y, Eigen::Vector3d::UnitY()) *
+                    turned(about_z, Eigen::Vector3d::UnitZ()) * facing.rotation;
+    pose.translation =
+        options.distance_m * Eigen::Vector3d(0.02 * Wave(time_s, 3.9, phase_x),
+                                             0.02 * Wave(time_s, 2.9, phase_y),
+                                             1 + 0.05 * Wave(time_s, 4.9, phase_z));
+    cam_from_world.push_back(pose);
+  }
+  return cam_from_world;
+}
+
+}  // namespace velamap

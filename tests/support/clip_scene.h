@@ -1,0 +1,97 @@
+// Scenes for rendered clips: surfaces with markers on them, the camera's path, and the exact truth.
+//
+// World frame: z up, the camera on the side of -y and x to its right; m. The world frame is the
+// shape frame of the truth.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "exporters/marker_shape.h"
+#include "importer/camera.h"
+#include "importer/dictionary.h"
+#include "importer/layout.h"
+#include "reconstruct/rigid3.h"
+
+namespace velamap {
+
+enum class ClipKind {
+  kSail,   // thesis section 4.3: 114 markers of 100 mm on a sail, 8 on a rigid strip of the hull
+  kBoard,  // thesis Figure 4.1: 12 markers of 40 mm on a flat board
+  kWalls,  // thesis Figure 4.10a: two walls at a right angle, 20 markers of 100 mm on each
+};
+
+struct ClipOptions {
+  ClipKind kind = ClipKind::kSail;
+  int dictionary_bits = 4;  // 4: DICT_4X4_250; 3: the 3x3 bits of the thesis
+  int width_px = 1920;      // 16:9; the lens scales with it
+  bool wide_angle = true;   // an action camera's lens instead of a webcam's
+  int num_frames = 200;
+  double fps = 30.0;
+  double distance_m = 6.0;  // of the camera from the scene's middle
+  double angle_deg = 0.0;   // of the view from straight on
+  // Motion of the board in the thesis's Figure 4.3, 'a' to 'h'; for the board only.
+  char motion = 'd';
+  double sail_scale = 1.0;     // of the sail, not of its markers: fewer fit on a smaller one
+  double sail_motion_m = 0.0;  // amplitude of slow flapping, whole periods in a clip: truth = mean
+  double trim_change_m = 0.0;  // largest displacement when the trim changes, halfway
+  bool busy = false;           // clutter behind the scene and on the cloth
+  std::uint32_t seed = 1;
+};
+
+// A point of a surface: where it is under both trims, and how it flaps.
+struct ClipVertex {
+  Eigen::Vector3d x_before_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d x_after_m = Eigen::Vector3d::Zero();
+  double flap = 0.0;            // amplitude as a part of the largest
+  double flap_phase_rad = 0.0;
+};
+
+// A surface cut into tiles: (num_columns + 1) x (num_rows + 1) vertices, row by row from the top.
+struct ClipSheet {
+  int num_columns = 0;
+  int num_rows = 0;
+  std::vector<ClipVertex> vertices;
+  double gray = 0.0;
+};
+
+// A printed square with its white margin, cut along its cells and each cell once more.
+struct ClipMarker {
+  int marker_id = 0;
+  std::string part;
+  double ground_gray = 0.0;  // of the surface it sticks to
+  ClipSheet sheet;           // num_columns == num_rows; gray unused
+  cv::Mat cells;             // 1 white, 0 black; with border; CV_8UC1
+  std::array<ClipVertex, kNumCorners> corners;
+};
+
+// Paint on a surface between the markers.
+struct ClipPaint {
+  std::array<ClipVertex, 4> corners;  // from the top left, clockwise
+  double gray_change = 0.0;
+};
+
+struct ClipScene {
+  ClipOptions options;
+  Layout layout;
+  Dictionary dictionary;
+  Camera camera;
+  std::vector<ClipSheet> sheets;  // no two overlap in a picture
+  std::vector<ClipMarker> markers;
+  std::vector<ClipPaint> paint;
+  std::vector<Rigid3> cam_from_world;  // by frame
+};
+
+// Throws InputError for options out of range.
+ClipScene MakeClipScene(const ClipOptions& options);
+
+// World position of a vertex in a frame, m.
+Eigen::Vector3d PositionInFrame(const ClipScene& scene, const ClipVertex& vertex, int frame_idx);
+
+// The mean shape before (or after) the trim changes; all frames count for every corner.
+MarkerShape TrueShape(const ClipScene& scene, bool after);
+
+}  // namespace velamap

@@ -1,0 +1,59 @@
+#include "tests/support/picture_effects.h"
+
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+namespace velamap {
+namespace {
+
+// A line of the given length through the kernel's middle, sampled finely: symmetric, so that
+// nothing moves.
+cv::Mat MotionKernel(double length_px, double angle_rad) {
+  constexpr int kNumSamples = 64;
+  const int reach = static_cast<int>(std::ceil(0.5 * length_px)) + 1;
+  cv::Mat kernel(2 * reach + 1, 2 * reach + 1, CV_32F, cv::Scalar(0));
+  for (int i = 0; i < kNumSamples; ++i) {
+    const double along = length_px * ((i + 0.5) / kNumSamples - 0.5);
+    const double x = reach + along * std::cos(angle_rad), y = reach + along * std::sin(angle_rad);
+    const int column = static_cast<int>(x), row = static_cast<int>(y);
+    const double fx = x - column, fy = y - row;
+    for (int dy = 0; dy < 2; ++dy) {
+      for (int dx = 0; dx < 2; ++dx) {
+        kernel.at<float>(row + dy, column + dx) += static_cast<float>(
+            (dx ? fx : 1 - fx) * (dy ? fy : 1 - fy) / kNumSamples);
+      }
+    }
+  }
+  return kernel;
+}
+
+}  // namespace
+
+void MotionBlur(double length_px, double angle_rad, cv::Mat* image) {
+  if (length_px <= 0) return;
+  cv::filter2D(*image, *image, -1, MotionKernel(length_px, angle_rad), {-1, -1}, 0,
+               cv::BORDER_REPLICATE);
+}
+
+void LensBlur(double sigma_px, cv::Mat* image) {
+  if (sigma_px <= 0) return;
+  const int size = 2 * static_cast<int>(std::ceil(4 * sigma_px)) + 1;
+  cv::GaussianBlur(*image, *image, {size, size}, sigma_px, 0, cv::BORDER_REPLICATE);
+}
+
+void AddNoise(double sigma, std::uint64_t seed, cv::Mat* image) {
+  if (sigma <= 0) return;
+  cv::RNG random(seed);
+  cv::Mat noise(image->size(), CV_32FC1);
+  random.fill(noise, cv::RNG::NORMAL, 0.0, sigma);
+  for (int row = 0; row < image->rows; ++row) {
+    cv::Vec3f* pixels = image->ptr<cv::Vec3f>(row);
+    const float* values = noise.ptr<float>(row);
+    for (int column = 0; column < image->cols; ++column) {
+      pixels[column] += cv::Vec3f::all(values[column]);
+    }
+  }
+}
+
+}  // namespace velamap

@@ -1,0 +1,290 @@
+#include "tests/support/surface_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "importer/error.h"
+#include "tests/support/coverage_image.h"
+#include "tests/support/picture_effects.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kInk = 38.0, kSticker = 218.0;  // grey levels in full light
+
+// One frame's view of the scene.
+class FrameView {
+ public:
+  FrameView(const ClipScene& scene, int frame_idx) : scene_(scene), frame_idx_(frame_idx) {}
+
+  const Rigid3& cam_from_world() const {
+    return scene_.cam_from_world[static_cast<std::size_t>(frame_idx_)];
+  }
+
+  Eigen::Vector3d World(const ClipVertex& vertex) const {
+    return PositionInFrame(scene_, vertex, frame_idx_);
+  }
+
+  std::optional<Eigen::Vector2d> Image(const Eigen::Vector3d& x_in_world) const {
+    return ImageFromCam(scene_.camera, cam_from_world() * x_in_world);
+  }
+
+ private:
+  const ClipScene& scene_;
+  int frame_idx_;
+};
+
+// Light from the upper left, behind the camera.
+double Shade(const Eigen::Vector3d& normal) {
+  static const Eigen::Vector3d light = Eigen::Vector3d(-0.5, -0.7, 0.5).normalized();
+  return 0.7 + 0.3 * std::max(0.0, normal.normalized().dot(light));
+}
+
+struct Vertex {
+  Eigen::Vector3d x_in_world;
+  std::optional<Eigen::Vector2d> x_in_image_px;
+};
+
+struct Patch {
+  ImageQuad quad;
+  double shade;
+};
+
+// Nothing for a patch that turns its back or reaches behind the camera. Corners clockwise.
+std::optional<Patch> MakePatch(const std::array<const Vertex*, 4>& corners) {
+  Patch patch;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!corners[i]->x_in_image_px) return std::nullopt;
+    patch.quad[i] = *corners[i]->x_in_image_px;
+  }
+  if (SignedArea(patch.quad) <= 0) return std::nullopt;
+  patch.shade = Shade((corners[3]->x_in_world - corners[1]->x_in_world)
+                          .cross(corners[2]->x_in_world - corners[0]->x_in_world));
+  return patch;
+}
+
+std::vector<Vertex> ProjectVertices(const FrameView& view, const ClipVertex* vertices,
+                                    std::size_t count) {
+  std::vector<Vertex> projected;
+  projected.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d x_in_world = view.World(vertices[i]);
+    projected.push_back({x_in_world, view.Image(x_in_world)});
+  }
+  return projected;
+}
+
+// Calls draw(column, row, patch) for every patch that faces the camera.
+template <typename Draw>
+void ForEachPatch(const FrameView& view, const ClipSheet& sheet, const Draw& draw) {
+  const std::vector<Vertex> vertices =
+      ProjectVertices(view, sheet.vertices.data(), sheet.vertices.size());
+  const int stride = sheet.num_columns + 1;
+  for (int row = 0; row < sheet.num_rows; ++row) {
+    for (int column = 0; column < sheet.num_columns; ++column) {
+      const Vertex* top_left = vertices.data() + row * stride + column;
+      const auto patch =
+          MakePatch({top_left, top_left + 1, top_left + stride + 1, top_left + stride});
+      if (patch) draw(column, row, *patch);
+    }
+  }
+}
+
+void DrawMarker(const FrameView& view, const ClipMarker& marker, CoverageImage* image) {
+  // A ring of white margin of as many patches as a cell has.
+  const int steps = marker.sheet.num_columns / (marker.cells.cols + 2);
+  ForEachPatch(view, marker.sheet, [&](int column, int row, const Patch& patch) {
+    const int x = column / steps - 1, y = row / steps - 1;
+    const bool margin = x < 0 || y < 0 || x >= marker.cells.cols || y >= marker.cells.rows;
+    const bool white = margin || marker.cells.at<std::uint8_t>(y, x) != 0;
+    image->Add(patch.quad, patch.shade * ((white ? kSticker : kInk) - marker.ground_gray), 0.0);
+  });
+}
+
+cv::Mat DrawSurfaces(const ClipScene& scene, const FrameView& view) {
+  CoverageImage image(scene.camera.width_px, scene.camera.height_px);
+  for (const ClipSheet& sheet : scene.sheets) {
+    ForEachPatch(view, sheet, [&](int, int, const Patch& patch) {
+      image.Add(patch.quad, patch.shade * sheet.gray, 1.0);
+    });
+  }
+  for (const ClipPaint& paint : scene.paint) {
+    const std::vector<Vertex> corners =
+        ProjectVertices(view, paint.corners.data(), paint.corners.size());
+    const auto patch = MakePatch({&corners[0], &corners[1], &corners[2], &corners[3]});
+    if (patch) image.Add(patch->quad, patch->shade * paint.gray_change, 0.0);
+  }
+  for (const ClipMarker& marker : scene.markers) DrawMarker(view, marker, &image);
+  return image.Resolve();
+}
+
+// BGR of the far world in a direction: sea, haze at the horizon, sky.
+cv::Vec3f FarColor(const Eigen::Vector3d& direction) {
+  const double height = direction.normalized().z();
+  const cv::Vec3f haze(214, 206, 196), sky(190, 140, 95), sea(92, 78, 56);
+  const auto clear = static_cast<float>(std::clamp(1.6 * height, 0.0, 1.0));
+  // The horizon is wider than the lattice of DrawSky, which would show as stairs otherwise.
+  const auto above = static_cast<float>(std::clamp(height / 0.08 + 1.0, 0.0, 1.0));
+  return above * (haze + clear * (sky - haze)) + (1 - above) * sea;
+}
+
+cv::Mat DrawSky(const ClipScene& scene, const FrameView& view) {
+  constexpr int kPitchPx = 16;
+  const Camera& camera = scene.camera;
+  cv::Mat coarse(camera.height_px / kPitchPx, camera.width_px / kPitchPx, CV_32FC3);
+  const Eigen::Quaterniond world_from_cam = view.cam_from_world().rotation.conjugate();
+  for (int row = 0; row < coarse.rows; ++row) {
+    for (int column = 0; column < coarse.cols; ++column) {
+      const auto ray = CamFromImage(camera, {(column + 0.5) * camera.width_px / coarse.cols,
+                                             (row + 0.5) * camera.height_px / coarse.rows});
+      const Eigen::Vector3d in_cam = ray.value_or(Eigen::Vector2d::Zero()).homogeneous();
+      coarse.at<cv::Vec3f>(row, column) = FarColor(world_from_cam * in_cam);
+    }
+  }
+  cv::Mat sky;
+  cv::resize(coarse, sky, {camera.width_px, camera.height_px}, 0, 0, cv::INTER_LINEAR);
+  return sky;
+}
+
+// Boards and squares of all kinds on a plane behind the scene, some in a white frame as a marker.
+void DrawClutter(const ClipScene& scene, const FrameView& view, cv::Mat* image) {
+  constexpr int kShift = 4;
+  std::mt19937 random(scene.options.seed + 29);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * (random() / 4294967296.0);
+  };
+  const double behind_m = 0.8 * scene.options.distance_m;
+  const auto draw = [&](const Eigen::Vector2d& middle_m, const Eigen::Vector2d& half_m,
+                        double skew, const cv::Scalar& color) {
+    std::vector<cv::Point> corners;
+    for (const auto& [right, up] : {std::pair{-1, 1}, {1, 1}, {1, -1}, {-1, -1}}) {
+      const auto x = view.Image({middle_m.x() + right * half_m.x() + skew * up, behind_m,
+                                 middle_m.y() + up * half_m.y()});
+      if (!x || x->norm() > 4 * scene.camera.width_px) return;
+      corners.emplace_back(static_cast<int>(std::lround((x->x() - 0.5) * (1 << kShift))),
+                           static_cast<int>(std::lround((x->y() - 0.5) * (1 << kShift))));
+    }
+    cv::fillConvexPoly(*image, corners, color, cv::LINE_8, kShift);
+  };
+  const double reach_m = 2.2 * scene.options.distance_m;
+  for (int i = 0; i < 260; ++i) {
+    const Eigen::Vector2d middle_m(between(-reach_m, reach_m), between(-0.5 * reach_m, reach_m));
+    const double size_m = scene.options.distance_m * between(0.005, 0.05);
+    const Eigen::Vector2d half_m(size_m * between(0.3, 1.6), size_m);
+    const double skew = between(-0.3, 0.3) * size_m, gray = between(20, 235);
+    const cv::Scalar color(gray, gray * between(0.7, 1), gray * between(0.7, 1));
+    if (i % 3 == 0) draw(middle_m, 1.4 * half_m, skew, {230, 230, 230});
+    draw(middle_m, half_m, skew, color);
+    if (i % 3 == 0) draw(middle_m, 0.3 * half_m, 0.3 * skew, {230, 230, 230});
+  }
+}
+
+// Surfaces over what lies behind them.
+void Compose(const cv::Mat& surfaces, cv::Mat* image) {
+  for (int row = 0; row < image->rows; ++row) {
+    const cv::Vec2f* sums = surfaces.ptr<cv::Vec2f>(row);
+    cv::Vec3f* pixels = image->ptr<cv::Vec3f>(row);
+    for (int column = 0; column < image->cols; ++column) {
+      const float alpha = sums[column][1];
+      // A surface that folds over itself is there twice.
+      const float gray = alpha > 1 ? sums[column][0] / alpha : sums[column][0];
+      pixels[column] = cv::Vec3f::all(gray) + std::max(0.0F, 1 - alpha) * pixels[column];
+    }
+  }
+}
+
+// Mirrored sunlight: patches that wander over the last sheet (the sail) as the camera moves.
+void AddReflections(const ClipScene& scene, const FrameView& view, int num_reflections,
+                    const cv::Mat& surfaces, cv::Mat* image) {
+  constexpr double kMaxRadius2 = 6;  // beyond it nothing is seen of a patch
+  const ClipSheet& sheet = scene.sheets.back();
+  const Eigen::Vector3d eye_m = Inverse(view.cam_from_world()).translation;
+  const double turn = std::atan2(eye_m.x(), -eye_m.y());
+  const auto in_image = [&](double u, double v) {
+    const int column = std::clamp(static_cast<int>(u * sheet.num_columns), 0, sheet.num_columns);
+    const int row = std::clamp(static_cast<int>((1 - v) * sheet.num_rows), 0, sheet.num_rows);
+    const auto index = static_cast<std::size_t>(row * (sheet.num_columns + 1) + column);
+    return view.Image(view.World(sheet.vertices[index]));
+  };
+  for (int i = 0; i < num_reflections; ++i) {
+    const double u = std::fmod(0.34 + 0.381966 * i, 0.8) + 0.1 - 0.15 * turn;
+    const double v = std::fmod(0.22 + 0.618034 * i, 0.7) + 0.08;
+    const auto middle = in_image(u, v), right = in_image(u + 0.16, v), up = in_image(u, v + 0.12);
+    if (!middle || !right || !up) continue;
+    Eigen::Matrix2d image_from_patch;
+    image_from_patch << *right - *middle, *up - *middle;
+    if (std::abs(image_from_patch.determinant()) < 1) continue;
+    const Eigen::Vector2d reach = std::sqrt(kMaxRadius2) * image_from_patch.rowwise().norm();
+    const cv::Rect box = cv::Rect(cv::Point(middle->x() - reach.x(), middle->y() - reach.y()),
+                                  cv::Point(middle->x() + reach.x(), middle->y() + reach.y())) &
+                         cv::Rect({}, image->size());
+    const Eigen::Matrix2d patch_from_image = image_from_patch.inverse();
+    for (int row = box.y; row < box.y + box.height; ++row) {
+      cv::Vec3f* pixels = image->ptr<cv::Vec3f>(row);
+      const cv::Vec2f* sums = surfaces.ptr<cv::Vec2f>(row);
+      for (int column = box.x; column < box.x + box.width; ++column) {
+        const Eigen::Vector2d offset(column + 0.5 - middle->x(), row + 0.5 - middle->y());
+        const double radius2 = (patch_from_image * offset).squaredNorm();
+        if (radius2 > kMaxRadius2) continue;
+        const double cover = std::min(1.0F, sums[column][1]);
+        const double glare = cover * std::min(1.0, 1.4 * std::exp(-radius2));
+        pixels[column] += static_cast<float>(glare) * (cv::Vec3f::all(252) - pixels[column]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void SurfaceRenderOptions::Check() const {
+  const auto check = [](const char* option, double value, double max) {
+    if (!(value >= 0 && value <= max)) {
+      throw InputError(fmt::format("--{}: {} is out of range; give 0 to {}", option, value, max));
+    }
+  };
+  check("blur_px", blur_px, 20);
+  check("motion_blur_px", motion_blur_px, 100);
+  check("noise", noise, 100);
+  check("reflection", num_reflections, 20);
+}
+
+cv::Mat RenderClipFrame(const ClipScene& scene, const SurfaceRenderOptions& options,
+                        int frame_idx) {
+  const FrameView view(scene, frame_idx);
+  const cv::Mat surfaces = DrawSurfaces(scene, view);
+  cv::Mat image = DrawSky(scene, view);
+  if (scene.options.busy) DrawClutter(scene, view, &image);
+  Compose(surfaces, &image);
+  AddReflections(scene, view, options.num_reflections, surfaces, &image);
+  constexpr double kGoldenAngle_rad = 2.399963;
+  MotionBlur(options.motion_blur_px, kGoldenAngle_rad * frame_idx, &image);
+  LensBlur(options.blur_px, &image);
+  const auto seed = static_cast<std::uint64_t>(scene.options.seed) << 32;
+  AddNoise(options.noise, seed + static_cast<std::uint64_t>(frame_idx) + 1, &image);
+  image.convertTo(image, CV_8U);
+  return image;
+}
+
+std::optional<std::array<Eigen::Vector2d, kNumCorners>> ProjectCorners(const ClipScene& scene,
+                                                                       const ClipMarker& marker,
+                                                                       int frame_idx) {
+  const FrameView view(scene, frame_idx);
+  std::array<Eigen::Vector2d, kNumCorners> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto x = view.Image(view.World(marker.corners[i]));
+    if (!x || x->minCoeff() < 0 || x->x() > scene.camera.width_px ||
+        x->y() > scene.camera.height_px) {
+      return std::nullopt;
+    }
+    corners[i] = *x;
+  }
+  if (SignedArea(corners) <= 0) return std::nullopt;
+  return corners;
+}
+
+}  // namespace velamap
