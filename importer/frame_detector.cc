@@ -37,7 +37,9 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
                          LoadDictionary(layout.dictionary),
                          layout.border_bits,
                          BuildAdjacencyGraph(layout),
+                         {},
                          {}};
+  detector.symmetries = FindCodeSymmetries(detector.dictionary);
   for (const int id : MarkerIds(layout)) detector.part_of_id[id] = PartOfMarker(layout, id);
   return detector;
 }
@@ -83,6 +85,7 @@ FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
   detections.markers = std::move(resolved.markers);
   std::move(resolved.rejected.begin(), resolved.rejected.end(),
             std::back_inserter(detections.rejected));
+  ResolveRotations(detector.symmetries, detector.graph, &detections.markers, &detections.rejected);
   return detections;
 }
 

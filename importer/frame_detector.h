@@ -1,4 +1,5 @@
-// Everything that is done to one frame: detection, colours, the layout's filter, duplicates.
+// Everything that is done to one frame: detection, colours, the layout's filter, duplicates,
+// rotations.
 
 #pragma once
 
@@ -12,6 +13,7 @@
 #include "importer/frame_source.h"
 #include "importer/layout.h"
 #include "importer/options.h"
+#include "importer/rotation_ambiguity.h"
 
 namespace velamap {
 
@@ -24,6 +26,7 @@ struct FrameDetector {
   Dictionary dictionary;
   int border_bits = 1;
   AdjacencyGraph graph;
+  CodeSymmetries symmetries;  // of the markers that look the same when turned
   std::map<int, std::string> part_of_id;  // empty: every id is welcome
 };
 
