@@ -144,7 +144,7 @@ void WarnOfSymmetricMarkers(const std::vector<cv::Mat>& bits, const std::string&
   if (symmetric_ids.empty()) return;
   spdlog::warn(
       "{}: {} of {} markers look the same when turned (ids {}): the order of their "
-      "corners is ambiguous",
+      "corners is taken from their neighbours",
       path, symmetric_ids.size(), bits.size(), fmt::join(symmetric_ids, " "));
 }
 

@@ -134,7 +134,9 @@ CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames) {
 
 FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side) {
   FrameSearchOptions fitted = options;
-  fitted.skip = std::clamp(num_frames_on_side / std::max(options.num_frames, 1), 1, options.skip);
+  // Rounded: a frame less on a side costs less than half a clip left aside.
+  const int num_frames = std::max(options.num_frames, 1);
+  fitted.skip = std::clamp((num_frames_on_side + num_frames / 2) / num_frames, 1, options.skip);
   if (fitted.skip < options.skip) {
     fitted.neighborhood = std::min(options.neighborhood, fitted.skip / 2);
   }

@@ -84,6 +84,7 @@ TEST(FrameSelection, ShortVideoShrinksTheSkip) {
   EXPECT_EQ(FitToVideo(thesis, 1000).neighborhood, 5);
   EXPECT_EQ(FitToVideo(thesis, 80).skip, 4);
   EXPECT_EQ(FitToVideo(thesis, 80).neighborhood, 2);
+  EXPECT_EQ(FitToVideo(thesis, 39).skip, 2);
   EXPECT_EQ(FitToVideo(thesis, 5).skip, 1);
   EXPECT_EQ(FitToVideo(thesis, 5).neighborhood, 0);
 }
