@@ -136,18 +136,6 @@ int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
   return min_distance;
 }
 
-void WarnOfSymmetricMarkers(const std::vector<cv::Mat>& bits, const std::string& path) {
-  std::vector<std::size_t> symmetric_ids;
-  for (std::size_t i = 0; i < bits.size(); ++i) {
-    if (cv::norm(Turned(bits[i], 2), bits[i], cv::NORM_L1) == 0) symmetric_ids.push_back(i);
-  }
-  if (symmetric_ids.empty()) return;
-  spdlog::warn(
-      "{}: {} of {} markers look the same when turned (ids {}): the order of their "
-      "corners is taken from their neighbours",
-      path, symmetric_ids.size(), bits.size(), fmt::join(symmetric_ids, " "));
-}
-
 Dictionary ReadDictionaryFile(const std::string& path) {
   const std::string text = ReadTextFile(path, "dictionary file");
   cv::FileStorage storage;
@@ -176,7 +164,6 @@ Dictionary ReadDictionaryFile(const std::string& path) {
                  correction_bits, unique_bits);
     correction_bits = unique_bits;
   }
-  WarnOfSymmetricMarkers(bits, path);
   return {std::filesystem::path(path).filename().string(),
           cv::makePtr<cv::aruco::Dictionary>(bytes, marker_size, correction_bits)};
 }

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include "importer/duplicates.h"
 #include "importer/marker_detector.h"
@@ -30,6 +32,17 @@ Rgb ColorAt(const cv::Mat& color, const Eigen::Vector2d& x_in_image_px) {
   return {bgr[2], bgr[1], bgr[0]};
 }
 
+void WarnOfSymmetries(const FrameDetector& detector) {
+  std::vector<int> ids;
+  for (const auto& [id, turns] : detector.symmetries) {
+    if (detector.part_of_id.empty() || detector.part_of_id.count(id) > 0) ids.push_back(id);
+  }
+  if (ids.empty()) return;
+  spdlog::warn(
+      "{}: markers {} look the same when turned: their corners are numbered by their neighbours",
+      detector.dictionary.name, fmt::join(ids, " "));
+}
+
 }  // namespace
 
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options) {
@@ -41,6 +54,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
                          {}};
   detector.symmetries = FindCodeSymmetries(detector.dictionary);
   for (const int id : MarkerIds(layout)) detector.part_of_id[id] = PartOfMarker(layout, id);
+  WarnOfSymmetries(detector);
   return detector;
 }
 
