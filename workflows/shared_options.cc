@@ -98,6 +98,8 @@ OptionGroup RegistrationGroup(RegistrationOptions* options) {
   const ParsedValue order = {
       kFrameOrders[static_cast<std::size_t>(options->frame_order)].second,
       [options](const std::string& name) { options->frame_order = FrameOrderFromName(name); }};
+  const ParsedValue central_frame = {
+      "", [options](const std::string& name) { options->central_frame = name; }};
   return {
       "Registration of the frames",
       {{"Registration.method", method, "name", "thesis is the only one yet"},
@@ -105,6 +107,7 @@ OptionGroup RegistrationGroup(RegistrationOptions* options) {
         "time: search around the central frame; unordered: grow from it; auto: time for a video"},
        {"Registration.central_frame", &options->central_frame, "name|frame",
         "image name or frame number; left out: the best one is chosen"},
+       {"central_frame", central_frame, "name|frame", "the same, shorter"},
        {"Registration.num_frames", &options->num_frames, "frames",
         "frames on each side of the central one (time order)"},
        {"Registration.skip", &options->skip, "frames",

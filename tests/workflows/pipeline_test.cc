@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "workflows/shared_options.h"
+
 namespace velamap {
 namespace {
 
@@ -46,6 +48,15 @@ TEST(NarrowToReachTest, WithoutAFrameNumberNothingChanges) {
   RegistrationOptions unordered = Around("100");
   unordered.frame_order = FrameOrder::kUnordered;
   EXPECT_EQ(NarrowToReach({}, unordered).last_frame, -1);
+}
+
+TEST(RegistrationGroupTest, CentralFrameHasAShortName) {
+  for (const char* name : {"--central_frame", "--Registration.central_frame"}) {
+    RegistrationOptions options;
+    ASSERT_TRUE(ParseOptions({"walker", "walks", "", {RegistrationGroup(&options)}},
+                             {name, "12"}, {}));
+    EXPECT_EQ(options.central_frame, "12");
+  }
 }
 
 }  // namespace
