@@ -10,7 +10,7 @@ packages=(
   libboost-program-options-dev libspdlog-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
 )
-test_packages=(xvfb xauth imagemagick ffmpeg xdotool)
+test_packages=(xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox)
 
 case "${1:-}" in
   "") ;;

@@ -52,18 +52,19 @@ BENCHMARK(BM_DetectMarkers)
 
 // All markers of a 1920x1080 frame, from corners off by 0.7 px.
 void BM_RefineCornersByEdges(benchmark::State& state) {
+  const Eigen::Vector2d kOpenCvFromImagePx(-0.5, -0.5), kOffsetPx(0.5, -0.5);
   const Picture picture = RenderPicture(1920);
   const auto& markers = picture.scene.frames[1].markers;
   const int num_cells = picture.dictionary.aruco->markerSize + 2;
   for (auto _ : state) {
     for (const MarkerDetection& marker : markers) {
-      auto corners_px = marker.corners_in_image_px;  // to OpenCV's pixel frame, and off by 0.7 px
-      for (auto& corner : corners_px) corner += Eigen::Vector2d(-0.5 + 0.5, -0.5 - 0.5);
+      auto corners_px = marker.corners_in_image_px;
+      for (auto& corner : corners_px) corner += kOpenCvFromImagePx + kOffsetPx;
       benchmark::DoNotOptimize(RefineCornersByEdges(picture.gray, corners_px, num_cells));
     }
   }
-  state.counters["markers/s"] =
-      benchmark::Counter(static_cast<double>(markers.size()), benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["markers/s"] = benchmark::Counter(static_cast<double>(markers.size()),
+                                                   benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(BM_RefineCornersByEdges)->Unit(benchmark::kMillisecond);
 

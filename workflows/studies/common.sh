@@ -1,0 +1,192 @@
+# shellcheck shell=bash
+# What the studies share: options, programs, clips that are rendered and imported once, a
+# reconstruction a parameter set, and its metrics. Sourced by them, not run.
+#
+# A work folder holds
+#   clips/NAME    rendered clip with its truth, database.db with its detections, arguments.txt
+#   runs/STUDY    every reconstruction of a study: models, shape, analysis.csv, log.txt
+#   STUDY*.csv, STUDY*.png
+# The clips are kept and used again, by other studies too, as long as their arguments are the same.
+set -euo pipefail
+export LC_ALL=C
+
+fail() {
+  echo "error: $*" >&2
+  exit 2
+}
+
+# find_program VARIABLE NAME PATH_IN_THE_BUILD: $VARIABLE, else the release build, else the PATH.
+find_program() {
+  local repository program
+  repository="$(dirname "${BASH_SOURCE[0]}")/../.."
+  program="${!1:-$repository/build/release/$3}"
+  [[ -x "$program" ]] || program="$(command -v "$2")" ||
+    fail "$2 is not built; run workflows/build.sh release, or set $1 to the program"
+  realpath "$program"
+}
+
+# begin_study NAME "$@": the arguments of every study, [--quick] [WORK_FOLDER].
+begin_study() {
+  study="$1"
+  shift
+  quick=0
+  work=workspace/studies
+  while [[ $# -gt 0 ]]; do
+    case "$1" in
+      --quick) quick=1 ;;
+      --help)
+        sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "$0"
+        exit 0
+        ;;
+      -*) fail "$1: unknown option; expected [--quick] [WORK_FOLDER]" ;;
+      *) work="$1" ;;
+    esac
+    shift
+  done
+  velamap="$(find_program VELAMAP velamap workflows/velamap)"
+  render_clip="$(find_program RENDER_CLIP render_clip tests/tools/render_clip)"
+  mkdir -p "$work"
+  work="$(realpath "$work")"
+  clips="$work/clips"
+  runs="$work/runs/$study"
+  rm -rf "$runs"
+  mkdir -p "$clips" "$runs"
+  if [[ $quick -eq 1 ]]; then sail=("${quick_sail[@]}"); else sail=("${full_sail[@]}"); fi
+  echo "== $study: into $work"
+}
+
+# The sail of all studies: 122 markers of 100 mm as in section 4.3, or a half of it for --quick.
+full_sail=(--scene sail --width 1920)
+quick_sail=(--scene sail --width 1280 --sail_scale 0.5 --distance 3)
+
+# Frames of the sail's clips that have no need of more; the near one has to hold all of the search.
+short_clip_frames() { if [[ $quick -eq 1 ]]; then echo 90; else echo 220; fi; }
+near_clip_frames() { if [[ $quick -eq 1 ]]; then echo 110; else echo 600; fi; }
+
+# make_clip NAME RENDER_CLIP_ARGUMENT...: renders and imports clips/NAME, unless it is there.
+make_clip() {
+  local folder="$clips/$1" arguments="${*:2}"
+  if [[ -f "$folder/arguments.txt" && "$(cat "$folder/arguments.txt")" == "$arguments" ]]; then
+    return
+  fi
+  rm -rf "$folder"
+  echo "== $study: clip $1: $arguments"
+  "$render_clip" "${@:2}" --output_path "$folder" >"$work/render.log" 2>&1 ||
+    fail "render_clip failed: $(tail -n 1 "$work/render.log")"
+  rm "$work/render.log"
+  if ! "$velamap" marker_importer --image_path "$folder/clip.mp4" \
+    --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
+    --database_path "$folder/database.db" --log_level error >"$folder/import.txt"; then
+    # A clip without a marker is one of the results of a study.
+    echo "== $study: clip $1 gives no detections" >&2
+  fi
+  echo "$arguments" >"$folder/arguments.txt"
+}
+
+make_near_clip() { make_clip near "${sail[@]}" --num_frames "$(near_clip_frames)"; }
+
+# reconstruct CLIP RUN FRAME_REGISTRATOR_OPTION...: into runs/STUDY/RUN. TRUTH names another
+# reference than the clip's truth.csv; ADJUST=0 leaves the bundle adjustment out. No result, which
+# the log explains, is one of the results of a study: then there is no analysis.csv.
+reconstruct() {
+  local clip="$clips/$1" run="$runs/$2"
+  mkdir -p "$run"
+  if ! reconstruct_steps "$clip" "$run" "${@:3}" >"$run/log.txt" 2>&1; then
+    rm -f "$run/analysis.csv"
+    echo "== $study: $2: no result: $(grep '^error: ' "$run/log.txt" | tail -n 1)" >&2
+    grep -q '^error: ' "$run/log.txt" || fail "$run/log.txt says what went wrong"
+  fi
+}
+
+# The && are for `if`, in whose condition bash does not stop at a failure.
+reconstruct_steps() {
+  local clip="$1" run="$2" model="$2/adjusted" reference="${TRUTH:-$1/truth.csv}"
+  local layout=(--layout_path "$clip/layout.yml" --log_level warn)
+  if [[ "${ADJUST:-1}" -eq 0 ]]; then model="$run/seed"; fi
+  "$velamap" frame_registrator --database_path "$clip/database.db" --output_path "$run/seed" \
+    "${layout[@]}" "${@:3}" &&
+    { [[ "$model" == "$run/seed" ]] || "$velamap" bundle_adjuster --input_path "$run/seed" \
+      --output_path "$run/adjusted" --log_level warn; } &&
+    "$velamap" shape_exporter --input_path "$model" --output_path "$run/metric" \
+      --shape_path "$run/shape" "${layout[@]}" &&
+    "$velamap" shape_analyzer --shape_path "$run/shape" --input_path "$run/metric" \
+      --reference_path "$reference" --part_planes 1 --csv_path "$run/analysis.csv" "${layout[@]}"
+}
+
+# search N S M [CENTRAL_FRAME]: the options of frame_registrator.
+search() {
+  printf '%s\n' --Registration.num_frames "$1" --Registration.skip "$2" \
+    --Registration.neighborhood "$3"
+  if [[ $# -gt 3 ]]; then printf '%s\n' --Registration.central_frame "$4"; fi
+}
+
+# metric RUN KEY: one figure of a reconstruction, or nothing.
+metric() {
+  local file="$runs/$1/analysis.csv"
+  [[ -f "$file" ]] || return 0
+  awk -F, -v key="$2" '$1 == "" && $3 == key { print $4 }' "$file"
+}
+
+# table_metric RUN TABLE NAME_KEY NAME KEY: one figure of the row whose NAME_KEY is NAME.
+table_metric() {
+  local file="$runs/$1/analysis.csv"
+  [[ -f "$file" ]] || return 0
+  awk -F, -v table="$2" -v name_key="$3" -v name="$4" -v key="$5" '
+    $1 != table { next }
+    $3 == name_key && $4 == name { row = $2 }
+    $3 == key && row != "" && $2 == row { print $4 }' "$file"
+}
+
+# mean_metric KEY RUN...: the mean over those reconstructions that have it (section 4.3.3).
+mean_metric() {
+  local key="$1" run
+  for run in "${@:2}"; do metric "$run" "$key"; done |
+    awk '{ sum += $1; n++ } END { if (n) printf "%.6g", sum / n }'
+}
+
+# What a row about the sail holds, and what it is called.
+sail_keys=(image_marker_ratio_count num_markers reconstruction_ratio
+  area_error_mm2_mean area_error_mm2_std area_error_mm2_median area_error_mm2_min
+  area_error_mm2_max area_error_percent_mean
+  central_reprojection_error_px_mean central_reprojection_error_px_std
+  central_reprojection_error_px_median central_reprojection_error_px_min
+  central_reprojection_error_px_max reprojection_error_px_mean
+  scale_error_percent distance_mm_rms distance_after_scaling_mm_rms)
+sail_header() {
+  local IFS=,
+  local keys="${sail_keys[*]}"
+  echo "${keys/image_marker_ratio_count/num_images}"
+}
+
+# sail_row RUN...: the means over the reconstructions, behind commas.
+sail_row() {
+  local key
+  for key in "${sail_keys[@]}"; do printf ',%s' "$(mean_metric "$key" "$@")"; done
+  printf '\n'
+}
+
+# plot PICTURE [gnuplot's script on stdin]: a PNG in the work folder; without gnuplot, none.
+plot() {
+  local size="${2:-900,600}"
+  if ! command -v gnuplot >/dev/null; then
+    cat >/dev/null
+    echo "== $study: no $1: gnuplot is not installed (Debian package gnuplot-nox)" >&2
+    return
+  fi
+  {
+    echo "set terminal pngcairo size $size"
+    echo "set output '$work/$1'"
+    echo "set datafile separator comma; set grid; set key outside bottom center horizontal"
+    cat
+  } | gnuplot
+  echo "$work/$1"
+}
+
+# finish CSV...: says what the study wrote, with a table for the eye.
+finish() {
+  local csv
+  for csv in "$@"; do
+    echo "$csv"
+    column -s, -t "$csv" 2>/dev/null || cat "$csv"
+  done
+}

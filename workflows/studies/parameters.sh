@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# Area error, reprojection error and reconstruction ratio, and the error against the truth, as
+# functions of |S| = 2 n + 1, skip s and neighborhood m (thesis Figures 4.17 to 4.22).
+# usage: workflows/studies/parameters.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
+# NUM_FRAMES, SKIPS, NEIGHBORHOODS, CENTRAL_FRAMES: other values than its own, e.g. "5 10 20".
+# Every figure is the mean over the reconstructions around CENTRAL_FRAMES, as in section 4.3.3.
+set -euo pipefail
+# shellcheck source-path=SCRIPTDIR source=common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+begin_study parameters "$@"
+if [[ $quick -eq 1 ]]; then
+  base=(5 5 2)
+  num_frames="3 5 7 9" skips="2 3 5 8" neighborhoods="0 1 2" central_frames="54"
+else
+  base=(20 10 5)
+  num_frames="5 10 15 20 25 28" skips="2 4 6 8 10 12 14" neighborhoods="0 1 2 3 4 5"
+  central_frames="300"
+fi
+read -ra num_frames <<<"${NUM_FRAMES-$num_frames}"
+read -ra skips <<<"${SKIPS-$skips}"
+read -ra neighborhoods <<<"${NEIGHBORHOODS-$neighborhoods}"
+read -ra central_frames <<<"${CENTRAL_FRAMES:-$central_frames}"
+
+make_near_clip
+csv="$work/parameters.csv"
+echo "parameter,value,n,s,m,$(sail_header)" >"$csv"
+
+# vary PARAMETER VALUE N S M: a row, the mean over the central frames.
+vary() {
+  local names=() frame name options
+  for frame in "${central_frames[@]}"; do
+    name="n$3_s$4_m$5_r$frame"
+    names+=("$name")
+    if [[ -d "$runs/$name" ]]; then continue; fi
+    mapfile -t options < <(search "$3" "$4" "$5" "$frame")
+    reconstruct near "$name" "${options[@]}"
+    grep -h 'the video is too short' "$runs/$name/log.txt" >&2 || true
+  done
+  { printf '%s,%s,%s,%s,%s' "$@"; sail_row "${names[@]}"; } >>"$csv"
+}
+
+for n in "${num_frames[@]}"; do vary n $((2 * n + 1)) "$n" "${base[1]}" "${base[2]}"; done
+for s in "${skips[@]}"; do
+  # Neighborhoods of two steps must not overlap.
+  m=$(((s - 1) / 2 < base[2] ? (s - 1) / 2 : base[2]))
+  vary s "$s" "${base[0]}" "$s" "$m"
+done
+for m in "${neighborhoods[@]}"; do vary m "$m" "${base[0]}" "${base[1]}" "$m"; done
+
+# chart PICTURE TITLE KEY... : a panel for every parameter that was varied.
+chart() {
+  local picture="$1" title="$2" keys=("${@:3}") parameter key curves
+  {
+    echo "set multiplot layout 1,3 title '$title'"
+    for parameter in n s m; do
+      grep -q "^$parameter," "$csv" || continue
+      case "$parameter" in
+        n) echo "set xlabel 'frames selected, |S| = 2 n + 1'" ;;
+        s) echo "set xlabel 'skip s, frames'" ;;
+        m) echo "set xlabel 'neighborhood m, frames'" ;;
+      esac
+      curves=()
+      for key in "${keys[@]}"; do
+        curves+=("'$csv' using (strcol(1) eq '$parameter' ? column('value') : NaN):'$key' \
+with linespoints title '${key//_/ }'")
+      done
+      echo "set yrange [0:*]; set offsets graph 0.05, graph 0.05, graph 0.1, 0"
+      (IFS=,; echo "plot ${curves[*]}")
+    done
+    echo "unset multiplot"
+  } | plot "$picture" 1500,520
+}
+chart parameters_area.png "Marker area error, mm^2 (Figures 4.17, 4.20)" \
+  area_error_mm2_mean area_error_mm2_std area_error_mm2_median area_error_mm2_max
+chart parameters_reprojection.png "Reprojection error, px (Figures 4.18, 4.21)" \
+  central_reprojection_error_px_mean central_reprojection_error_px_std \
+  central_reprojection_error_px_median central_reprojection_error_px_max
+chart parameters_ratio.png "Reconstruction ratio (Figures 4.19, 4.22)" reconstruction_ratio
+chart parameters_truth.png "Error against the truth, RMS, mm" \
+  distance_mm_rms distance_after_scaling_mm_rms
+finish "$csv"
