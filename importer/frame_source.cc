@@ -181,10 +181,10 @@ class VideoFile : public FrameSource {
   void End() {
     ended_ = true;
     if (num_grabbed_ <= options_.first_frame) {
-      throw InputError(
-          fmt::format("{}: the video has {} frames, none at or after "
-                      "--Video.first_frame {}",
-                      path_, num_grabbed_, options_.first_frame));
+      throw InputError(fmt::format(
+          "{}: the video has {} frames, none at or after frame {} (--Video.first_frame, "
+          "or the first that the search around --central_frame can reach)",
+          path_, num_grabbed_, options_.first_frame));
     }
     // Counts that a container derives from its duration are off by a frame or so.
     const int tolerance = std::max(2, num_container_frames_ / 100);
