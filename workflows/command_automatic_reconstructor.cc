@@ -97,11 +97,7 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
 
 void RunAutomaticReconstructor(const Arguments& arguments) {
   Options options;
-  const CommandSyntax syntax = Declare(&options);
-  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
-    PrintHelp(syntax, std::cout);
-    return;
-  }
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
   Workspace workspace(options.paths.workspace_path, options.paths.image_path);
   const WorkspacePaths& paths = workspace.paths();

@@ -59,11 +59,7 @@ void Print(const BundleAdjustmentSummary& summary, const std::string& model_path
 
 void RunBundleAdjuster(const Arguments& arguments) {
   Options options;
-  const CommandSyntax syntax = Declare(&options);
-  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
-    PrintHelp(syntax, std::cout);
-    return;
-  }
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
   Model model = ReadModel(options.paths.input_path);
   const BundleAdjustmentSummary summary =

@@ -63,11 +63,7 @@ void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) 
 
 void RunFrameRegistrator(const Arguments& arguments) {
   Options options;
-  const CommandSyntax syntax = Declare(&options);
-  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
-    PrintHelp(syntax, std::cout);
-    return;
-  }
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
   const SeedResult seed = RegisterDatabase(
       options.paths.database_path, LoadLayout(options.markers, false), options.registration);

@@ -72,11 +72,7 @@ void Print(const ImportReport& report, const std::string& database_path, std::os
 
 void RunMarkerImporter(const Arguments& arguments) {
   Options options;
-  const CommandSyntax syntax = Declare(&options);
-  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
-    PrintHelp(syntax, std::cout);
-    return;
-  }
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
   Print(ImportImages(options.importer), options.paths.database_path, std::cout);
 }

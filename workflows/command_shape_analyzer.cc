@@ -109,11 +109,7 @@ MetricsReport Analyze(const Options& options) {
 
 void RunShapeAnalyzer(const Arguments& arguments) {
   Options options;
-  const CommandSyntax syntax = Declare(&options);
-  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
-    PrintHelp(syntax, std::cout);
-    return;
-  }
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(options);
   const MetricsReport report = Analyze(options);
   if (!options.csv_path.empty()) {

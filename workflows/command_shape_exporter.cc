@@ -50,11 +50,7 @@ void Print(const ShapeExportReport& report, const PathOptions& paths, std::ostre
 
 void RunShapeExporter(const Arguments& arguments) {
   Options options;
-  const CommandSyntax syntax = Declare(&options);
-  if (!ParseOptions(syntax, arguments, SharedOptionNames())) {
-    PrintHelp(syntax, std::cout);
-    return;
-  }
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(options);
   const Layout layout = LoadLayout(options.markers, false);
   const ShapeExportReport report =

@@ -1,6 +1,8 @@
 #include "workflows/shared_options.h"
 
 #include <array>
+#include <iostream>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -152,6 +154,9 @@ OptionGroup BundleAdjustmentGroup(BundleAdjustmentOptions* options) {
             "a larger mean reprojection error is no result"}}};
 }
 
+namespace {
+
+// One project file may hold options for all commands.
 std::set<std::string> SharedOptionNames() {
   GeneralOptions general;
   MarkerOptions markers;
@@ -171,6 +176,14 @@ std::set<std::string> SharedOptionNames() {
     for (const Option& option : group.options) names.insert(option.name);
   }
   return names;
+}
+
+}  // namespace
+
+bool ParseOrPrintHelp(const CommandSyntax& syntax, const std::vector<std::string>& arguments) {
+  if (ParseOptions(syntax, arguments, SharedOptionNames())) return true;
+  PrintHelp(syntax, std::cout);
+  return false;
 }
 
 bool HasMarkerOptions(const MarkerOptions& options) {

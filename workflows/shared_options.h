@@ -3,8 +3,8 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <string>
+#include <vector>
 
 #include "importer/layout.h"
 #include "importer/options.h"
@@ -55,8 +55,9 @@ OptionGroup VideoGroup(VideoOptions* options);
 OptionGroup RegistrationGroup(RegistrationOptions* options);
 OptionGroup BundleAdjustmentGroup(BundleAdjustmentOptions* options);
 
-// Names of all options in this file: one project file may hold them for all commands.
-std::set<std::string> SharedOptionNames();
+// Sets the options that the arguments give. With --help it prints the help on stdout and returns
+// false: the command has nothing more to do. Throws InputError as ParseOptions() does.
+bool ParseOrPrintHelp(const CommandSyntax& syntax, const std::vector<std::string>& arguments);
 
 // Whether anything says how large the markers are.
 bool HasMarkerOptions(const MarkerOptions& options);
