@@ -29,9 +29,9 @@ class AtomicFolder {
   bool committed_ = false;
 };
 
-// A folder is replaced as a whole, so it must hold nothing but what an earlier run wrote: a mistyped
-// path shall not cost anyone their files. Throws InputError, naming the path and what is in the way,
-// unless `path` is not there, or is a folder with no other files than `known_files`.
+// A folder is replaced as a whole, so it must hold nothing but what an earlier run wrote: a
+// mistyped path shall not cost anyone their files. Throws InputError, naming the path and what is
+// in the way, unless `path` is not there, or is a folder with no other files than `known_files`.
 void CheckReplaceableFolder(const std::filesystem::path& path,
                             const std::set<std::string>& known_files);
 

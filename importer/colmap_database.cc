@@ -1,7 +1,6 @@
 #include "importer/colmap_database.h"
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -11,6 +10,8 @@
 #include "importer/colmap_schema.h"
 #include "importer/correspondence.h"
 #include "importer/error.h"
+#include "importer/marker_detections_table.h"
+#include "importer/sqlite_blob.h"
 
 namespace velamap {
 namespace {
@@ -57,21 +58,6 @@ auto Guarded(const std::string& path, const Function& function) {
   }
 }
 
-template <typename T>
-void BindBlob(SQLite::Statement& statement, int index, const std::vector<T>& values) {
-  // An empty vector has no address, and SQLite takes a null address for NULL.
-  static constexpr char kNothing = 0;
-  const void* data = values.empty() ? static_cast<const void*>(&kNothing) : values.data();
-  statement.bind(index, data, static_cast<int>(values.size() * sizeof(T)));
-}
-
-template <typename T>
-std::vector<T> ReadBlob(const SQLite::Column& column) {
-  std::vector<T> values(static_cast<std::size_t>(column.getBytes()) / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), column.getBlob(), values.size() * sizeof(T));
-  return values;
-}
-
 std::int64_t PairId(ImageId image_id1, ImageId image_id2) {
   const auto [first, second] = std::minmax(image_id1, image_id2);
   return static_cast<std::int64_t>(kMaxNumImages) * first + second;
@@ -102,80 +88,6 @@ void InsertKeypoints(SQLite::Database& database, ImageId image_id,
   insert_descriptors.bind(2, num_keypoints);
   BindBlob(insert_descriptors, 3, descriptors);
   insert_descriptors.exec();
-}
-
-// Writes rows of marker_detections, one for each detection of an image.
-class DetectionWriter {
- public:
-  DetectionWriter(SQLite::Database& database, ImageId image_id, const FrameDetections& detections,
-                  const std::string& detector)
-      : insert_(database,
-                "INSERT INTO marker_detections(image_id, frame_number, time_s, detector, marker_id,"
-                " part, first_keypoint_idx, corners, colors, rejected_because)"
-                " VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
-        image_id_(image_id),
-        detections_(detections),
-        detector_(detector) {}
-
-  // The row of an image without any detection: nothing but the image's own columns.
-  void InsertNone() {
-    BindImage();
-    insert_.exec();
-  }
-
-  void Insert(const MarkerDetection& marker, std::optional<int> first_keypoint_idx,
-              const std::string& rejected_because) {
-    BindImage();
-    std::vector<double> corners;
-    std::vector<std::uint8_t> colors;
-    for (int i = 0; i < kNumCorners; ++i) {
-      const Eigen::Vector2d& x = marker.corners_in_image_px[i];
-      corners.insert(corners.end(), {x.x(), x.y()});
-      colors.insert(colors.end(), marker.colors[i].begin(), marker.colors[i].end());
-    }
-    insert_.bind(5, marker.marker_id);
-    if (!marker.part.empty()) insert_.bind(6, marker.part);
-    if (first_keypoint_idx) insert_.bind(7, *first_keypoint_idx);
-    BindBlob(insert_, 8, corners);
-    BindBlob(insert_, 9, colors);
-    if (!rejected_because.empty()) insert_.bind(10, rejected_because);
-    insert_.exec();
-  }
-
- private:
-  void BindImage() {
-    insert_.reset();
-    insert_.clearBindings();
-    insert_.bind(1, image_id_);
-    if (detections_.frame_number) insert_.bind(2, *detections_.frame_number);
-    if (detections_.time_s) insert_.bind(3, *detections_.time_s);
-    insert_.bind(4, detector_);
-  }
-
-  SQLite::Statement insert_;
-  ImageId image_id_;
-  const FrameDetections& detections_;
-  const std::string& detector_;
-};
-
-// Columns from `begin` on: marker_id, part, corners, colors.
-MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::string& path) {
-  MarkerDetection marker;
-  marker.marker_id = row.getColumn(begin).getInt();
-  marker.part = row.getColumn(begin + 1).getString();
-  const std::vector<double> corners = ReadBlob<double>(row.getColumn(begin + 2));
-  const std::vector<std::uint8_t> colors = ReadBlob<std::uint8_t>(row.getColumn(begin + 3));
-  if (corners.size() != 2 * kNumCorners || colors.size() != 3 * kNumCorners) {
-    throw InputError(
-        fmt::format("{}: table marker_detections: corners or colors of marker {} have "
-                    "a wrong size; delete the database and import again",
-                    path, marker.marker_id));
-  }
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    marker.corners_in_image_px[i] = {corners[2 * i], corners[2 * i + 1]};
-    marker.colors[i] = {colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]};
-  }
-  return marker;
 }
 
 }  // namespace
@@ -280,15 +192,29 @@ ImageId ColmapDatabase::AddImage(CameraId camera_id, const FrameDetections& dete
     insert.exec();
     const ImageId image_id = static_cast<ImageId>(database_->getLastInsertRowid());
     InsertKeypoints(*database_, image_id, detections.markers);
-    DetectionWriter writer(*database_, image_id, detections, detector);
-    for (std::size_t i = 0; i < detections.markers.size(); ++i) {
-      writer.Insert(detections.markers[i], kNumCorners * static_cast<int>(i), "");
-    }
-    for (const RejectedDetection& rejected : detections.rejected) {
-      writer.Insert(rejected.detection, std::nullopt, rejected.reason);
-    }
-    if (detections.markers.empty() && detections.rejected.empty()) writer.InsertNone();
+    InsertMarkerDetections(image_id, detections, detector, database_.get());
     return image_id;
+  });
+}
+
+void ColmapDatabase::ReplaceDetections(ImageId image_id, const FrameDetections& detections,
+                                       const std::string& detector) {
+  Guarded(path_, [&] {
+    for (const char* table : {"keypoints", "descriptors"}) {
+      SQLite::Statement remove(*database_, fmt::format("DELETE FROM {} WHERE image_id = ?", table));
+      remove.bind(1, image_id);
+      remove.exec();
+    }
+    for (const char* table : {"matches", "two_view_geometries"}) {
+      SQLite::Statement remove(
+          *database_, fmt::format("DELETE FROM {} WHERE pair_id / {} = ?1 OR pair_id % {} = ?1",
+                                  table, kMaxNumImages, kMaxNumImages));
+      remove.bind(1, image_id);
+      remove.exec();
+    }
+    DeleteMarkerDetections(image_id, database_.get());
+    InsertKeypoints(*database_, image_id, detections.markers);
+    InsertMarkerDetections(image_id, detections, detector, database_.get());
   });
 }
 
@@ -334,35 +260,7 @@ std::vector<DatabaseImage> ColmapDatabase::ReadImages() const {
                     "with velamap marker_importer",
                     path_));
   }
-  return Guarded(path_, [&] {
-    std::vector<DatabaseImage> images;
-    SQLite::Statement query(
-        *database_,
-        "SELECT images.image_id, camera_id, name, frame_number, time_s, rejected_because,"
-        " marker_id, part, corners, colors FROM images JOIN marker_detections USING(image_id)"
-        " ORDER BY images.image_id, detection_id");
-    while (query.executeStep()) {
-      const ImageId image_id = query.getColumn(0).getUInt();
-      if (images.empty() || images.back().image_id != image_id) {
-        DatabaseImage image;
-        image.image_id = image_id;
-        image.camera_id = query.getColumn(1).getUInt();
-        image.detections.image_name = query.getColumn(2).getString();
-        if (!query.isColumnNull(3)) image.detections.frame_number = query.getColumn(3).getInt();
-        if (!query.isColumnNull(4)) image.detections.time_s = query.getColumn(4).getDouble();
-        images.push_back(std::move(image));
-      }
-      if (query.isColumnNull(6)) continue;
-      FrameDetections& detections = images.back().detections;
-      const MarkerDetection marker = ReadDetection(query, 6, path_);
-      if (query.isColumnNull(5)) {
-        detections.markers.push_back(marker);
-      } else {
-        detections.rejected.push_back({marker, query.getColumn(5).getString()});
-      }
-    }
-    return images;
-  });
+  return Guarded(path_, [&] { return ReadImagesWithDetections(path_, database_.get()); });
 }
 
 std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
@@ -377,12 +275,7 @@ std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
 }
 
 std::optional<std::string> ColmapDatabase::ReadDetector() const {
-  return Guarded(path_, [&]() -> std::optional<std::string> {
-    if (!database_->tableExists("marker_detections")) return std::nullopt;
-    SQLite::Statement query(*database_, "SELECT detector FROM marker_detections LIMIT 1");
-    if (!query.executeStep()) return std::nullopt;
-    return query.getColumn(0).getString();
-  });
+  return Guarded(path_, [&] { return ReadDetectorOfDetections(database_.get()); });
 }
 
 }  // namespace velamap

@@ -65,6 +65,11 @@ class ColmapDatabase {
   ImageId AddImage(CameraId camera_id, const FrameDetections& detections,
                    const std::string& detector);
 
+  // Writes keypoints, descriptors and marker rows of an image anew. Its matches with other images
+  // go: they name keypoints by their place.
+  void ReplaceDetections(ImageId image_id, const FrameDetections& detections,
+                         const std::string& detector);
+
   // Writes `matches` and `two_view_geometries` of a pair, replacing what is there.
   void WriteMatches(ImageId image_id1, ImageId image_id2, const FeatureMatches& matches);
 

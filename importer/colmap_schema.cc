@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "importer/error.h"
+#include "importer/marker_detections_table.h"
 
 namespace velamap {
 namespace {
@@ -70,26 +71,6 @@ CREATE TABLE two_view_geometries (
     qvec BLOB,
     tvec BLOB);
 PRAGMA user_version = 3800;
-)";
-
-// One row for each detection, or one with NULL marker_id for an image without any. corners: eight
-// float64 x1 y1 ... x4 y4 in the image frame, px; colors: twelve bytes r1 g1 b1 ... b4. A rejected
-// detection has a reason and no keypoints.
-constexpr char kMarkerDetectionsSchema[] = R"(
-CREATE TABLE IF NOT EXISTS marker_detections (
-    detection_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
-    image_id INTEGER NOT NULL,
-    frame_number INTEGER,
-    time_s REAL,
-    detector TEXT NOT NULL,
-    marker_id INTEGER,
-    part TEXT,
-    first_keypoint_idx INTEGER,
-    corners BLOB,
-    colors BLOB,
-    rejected_because TEXT,
-    FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
-CREATE INDEX IF NOT EXISTS index_marker_detections_image_id ON marker_detections(image_id);
 )";
 
 std::set<std::string> ColumnNames(SQLite::Database& database, const std::string& table) {
@@ -159,7 +140,7 @@ void CreateMissingTables(const std::string& path, SQLite::Database* database) {
                     "would need; give a new --database_path",
                     path));
   }
-  database->exec(kMarkerDetectionsSchema);
+  CreateMarkerDetectionsTable(database);
 }
 
 }  // namespace velamap

@@ -16,6 +16,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/ids.h"
+#include "importer/refined_corners.h"
 
 namespace velamap {
 
@@ -31,14 +32,15 @@ struct EdgeFitOptions {
 };
 
 // `corners_px` in OpenCV's pixel frame (first pixel's centre at (0,0)), in order around the square,
-// the refined ones likewise. `num_cells` is the number of cells along a side with the border.
-// Nothing if an edge has too little contrast, leaves the image, or the fit moves a corner too far.
-std::optional<std::array<Eigen::Vector2d, kNumCorners>> RefineCornersByEdges(
+// the refined ones likewise, with their uncertainty. `num_cells` is the number of cells along a
+// side with the border. Nothing if an edge has too little contrast, leaves the image, or the fit
+// moves a corner too far.
+std::optional<RefinedCorners> RefineCornersByEdges(
     const cv::Mat& gray, const std::array<Eigen::Vector2d, kNumCorners>& corners_px, int num_cells,
     const EdgeFitOptions& options = {});
 
 // The same for a marker whose cells are known (as in pattern_fit.h): the best way for its size.
-std::optional<std::array<Eigen::Vector2d, kNumCorners>> RefineCorners(
+std::optional<RefinedCorners> RefineCorners(
     const cv::Mat& gray, const std::array<Eigen::Vector2d, kNumCorners>& corners_px,
     const cv::Mat& cells, const EdgeFitOptions& options = {});
 

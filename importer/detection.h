@@ -20,6 +20,10 @@ struct MarkerDetection {
   std::array<Eigen::Vector2d, kNumCorners> corners_in_image_px;
   std::array<Rgb, kNumCorners> colors{};  // of the image at the corners
   std::string part{};                     // of the layout that names it; empty without a layout
+  // 1 sigma of a coordinate by the image's noise, px; 0 where unknown: no edge fit, or it failed.
+  std::array<double, kNumCorners> corner_sigma_px{};
+  // The corner fit failed here, so that cv::cornerSubPix had to do.
+  bool is_fallback = false;
 };
 
 struct RejectedDetection {

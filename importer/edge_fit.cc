@@ -25,6 +25,10 @@ struct NormalEquations {
   double squared_residuals = 0.0;
 };
 
+Vector PriorWeight(const EdgePrior& prior) {
+  return (kPixelNoise * prior.sigma.values.cwiseInverse()).cwiseAbs2();
+}
+
 NormalEquations Accumulate(const EdgeSamples& samples, const EdgePrior& prior,
                            const EdgeParameters& parameters) {
   NormalEquations equations;
@@ -36,7 +40,7 @@ NormalEquations Accumulate(const EdgeSamples& samples, const EdgePrior& prior,
     equations.hessian.noalias() += jacobian * jacobian.transpose();
     equations.gradient += residual * jacobian;
   }
-  const Vector weight = (kPixelNoise * prior.sigma.values.cwiseInverse()).cwiseAbs2();
+  const Vector weight = PriorWeight(prior);
   const Vector departure = parameters.values - prior.mean.values;
   equations.hessian.diagonal() += weight;
   equations.gradient += weight.cwiseProduct(departure);
@@ -98,6 +102,27 @@ std::optional<EdgeFit> FitEdge(const EdgeSamples& samples, const EdgePrior& prio
     if (step.head<3>().cwiseAbs().maxCoeff() < tolerance_px) break;
   }
   return EdgeFit{parameters, std::sqrt(equations.squared_residuals / samples.count)};
+}
+
+std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeSamples& samples,
+                                                   const EdgePrior& prior,
+                                                   const EdgeParameters& parameters) {
+  const Matrix hessian = Accumulate(samples, prior, parameters).hessian;
+  const Matrix inverse = hessian.ldlt().solve(Matrix::Identity());
+  if (!inverse.allFinite()) return std::nullopt;
+  Matrix observed = hessian;
+  observed.diagonal() -= PriorWeight(prior);
+  EdgeUncertainty uncertainty;
+  uncertainty.place_covariance =
+      (inverse.topRows<2>() * observed * inverse.topRows<2>().transpose()).eval();
+  Vector jacobian;
+  for (int i = 0; i < samples.count; ++i) {
+    const EdgeSample& sample = samples.values[static_cast<std::size_t>(i)];
+    const double residual = EvaluateEdge(parameters, sample, &jacobian) - sample.gray;
+    const double slope = jacobian[EdgeParameters::kOffset];
+    uncertainty.noise.Add(slope * slope, residual, jacobian.dot(inverse * jacobian));
+  }
+  return uncertainty;
 }
 
 }  // namespace velamap

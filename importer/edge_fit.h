@@ -18,6 +18,8 @@
 
 #include <Eigen/Core>
 
+#include "importer/refined_corners.h"
+
 namespace velamap {
 
 struct EdgeSample {
@@ -80,5 +82,18 @@ double EvaluateEdge(const EdgeParameters& parameters, const EdgeSample& sample,
 // `tolerance_px`. Nothing with too few samples or a singular system.
 std::optional<EdgeFit> FitEdge(const EdgeSamples& samples, const EdgePrior& prior,
                                double tolerance_px);
+
+// How well noise lets the place of a fitted edge be known.
+struct EdgeUncertainty {
+  // Covariance of offset and slope (px^2) for noise of one grey level.
+  Eigen::Matrix2d place_covariance;
+  ResidualNoise noise;
+};
+
+// At the minimum that FitEdge() found. The priors hold weak parameters but are no observations:
+// their own error does not count. Nothing for a singular system.
+std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeSamples& samples,
+                                                   const EdgePrior& prior,
+                                                   const EdgeParameters& parameters);
 
 }  // namespace velamap

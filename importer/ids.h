@@ -1,9 +1,9 @@
 // Identifiers that all rooms share.
 //
 // Marker corner c (1..4 = top-left, top-right, bottom-right, bottom-left of the upright marker) of
-// marker k has the permanent COLMAP point id 10*k + c, so that it reads in the COLMAP GUI: point 793
-// is marker 79, corner 3. Corner 0 stands for the marker's centre, which is derived in 3D and never
-// observed; it is no COLMAP point.
+// marker k has the permanent COLMAP point id 10*k + c, so that it reads in the COLMAP GUI: point
+// 793 is marker 79, corner 3. Corner 0 stands for the marker's centre, which is derived in 3D and
+// never observed; it is no COLMAP point.
 
 #pragma once
 

@@ -1,122 +1,58 @@
 // ReadLayout of importer/layout.h: the YAML side of a layout.
 
-#include <charconv>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
 #include "importer/error.h"
 #include "importer/ids.h"
 #include "importer/layout.h"
 #include "importer/text_file.h"
+#include "importer/yaml_item.h"
 
 namespace velamap {
 namespace {
 
-[[noreturn]] void Fail(const std::string& path, const YAML::Mark& mark,
-                       const std::string& message) {
-  if (mark.is_null()) throw InputError(fmt::format("{}: {}", path, message));
-  throw InputError(fmt::format("{}:{}: {}", path, mark.line + 1, message));
+bool ParseMarkerId(const std::string& text, int* id) {
+  return ParseNumber(text, id) && *id >= 0 && *id <= kMaxMarkerId;
 }
 
-// A node, the file it comes from and its key from the top, as errors name it.
-struct Item {
-  const std::string& path;
-  YAML::Node node;
-  std::string key;
-
-  [[noreturn]] void Fail(const std::string& message) const {
-    velamap::Fail(path, node.Mark(), key.empty() ? message : key + ": " + message);
-  }
-};
-
-using KeyHandlers = std::map<std::string, std::function<void(const Item&)>>;
-
-// Calls handle(name, value) for every key of a map, each key once.
-void ForEachKey(const Item& map,
-                const std::function<void(const std::string&, const Item&)>& handle) {
-  if (!map.node.IsMap()) map.Fail("a map of 'key: value' is expected");
-  std::set<std::string> seen;
-  for (const auto& entry : map.node) {
-    if (!entry.first.IsScalar()) Fail(map.path, entry.first.Mark(), "a plain key is expected");
-    const std::string name = entry.first.Scalar();
-    const std::string key = map.key.empty() ? name : map.key + "." + name;
-    if (!seen.insert(name).second) Fail(map.path, entry.first.Mark(), key + ": stands twice");
-    // An empty value has no mark of its own in yaml-cpp; the key's line serves.
-    if (entry.second.IsNull()) Fail(map.path, entry.first.Mark(), key + ": has no value");
-    handle(name, Item{map.path, entry.second, key});
-  }
-}
-
-void ReadMap(const Item& map, const KeyHandlers& handlers) {
-  ForEachKey(map, [&](const std::string& name, const Item& value) {
-    const auto handler = handlers.find(name);
-    if (handler == handlers.end()) {
-      std::string known;
-      for (const auto& [known_name, function] : handlers) known += " " + known_name;
-      value.Fail("unknown key; known here:" + known);
-    }
-    handler->second(value);
-  });
-}
-
-std::string ReadString(const Item& item) {
-  if (!item.node.IsScalar() || item.node.Scalar().empty()) item.Fail("a name is expected");
-  return item.node.Scalar();
-}
-
-// yaml-cpp would read 010 as octal and skip what follows a number; a marker's label is decimal.
-template <typename T>
-bool ParseNumber(const std::string& text, T* value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
-int ReadMarkerId(const Item& item) {
+int ReadMarkerId(const YamlItem& item) {
   int id = -1;
-  const bool number = item.node.IsScalar() && ParseNumber(item.node.Scalar(), &id);
-  if (!number || id < 0 || id > kMaxMarkerId) {
+  if (!ParseMarkerId(item.Text(), &id)) {
     item.Fail(fmt::format("'{}' is no marker id; whole numbers from 0 to {} are expected",
-                          item.node.IsScalar() ? item.node.Scalar() : "", kMaxMarkerId));
+                          item.Text(), kMaxMarkerId));
   }
   return id;
 }
 
-double ReadLength(const Item& item) {
+double ReadMetres(const YamlItem& item) {
   double length_m = 0.0;
-  if (!item.node.IsScalar() || !ParseNumber(item.node.Scalar(), &length_m)) {
-    item.Fail(fmt::format("'{}' is no number; a length in metres is expected, such as 0.1",
-                          item.node.IsScalar() ? item.node.Scalar() : ""));
+  if (!ParseNumber(item.Text(), &length_m)) {
+    item.Fail(
+        fmt::format("'{}' is no number; a length in metres is expected, such as 0.1", item.Text()));
   }
+  return length_m;
+}
+
+double ReadMarkerLength(const YamlItem& item) {
+  const double length_m = ReadMetres(item);
   CheckMarkerLength(length_m,
                     fmt::format("{}:{}: {}", item.path, item.node.Mark().line + 1, item.key));
   return length_m;
 }
 
-bool ReadBool(const Item& item) {
-  bool value = false;
-  if (!item.node.IsScalar() || !YAML::convert<bool>::decode(item.node, value)) {
-    item.Fail("true or false is expected");
-  }
-  return value;
-}
-
-void ForEachElement(const Item& list, const std::function<void(const Item&)>& handle) {
-  if (!list.node.IsSequence()) list.Fail("a list is expected, such as [1, 2, 3]");
-  for (std::size_t i = 0; i < list.node.size(); ++i) {
-    handle(Item{list.path, list.node[i], fmt::format("{}[{}]", list.key, i)});
-  }
-}
-
-std::vector<int> ReadMarkerIds(const Item& list) {
+std::vector<int> ReadMarkerIds(const YamlItem& list) {
   std::vector<int> ids;
   std::set<int> seen;
-  ForEachElement(list, [&](const Item& item) {
+  ForEachElement(list, [&](const YamlItem& item) {
     ids.push_back(ReadMarkerId(item));
     if (!seen.insert(ids.back()).second) {
       item.Fail(fmt::format("marker {} stands twice on this line", ids.back()));
@@ -128,7 +64,7 @@ std::vector<int> ReadMarkerIds(const Item& list) {
 // Ids that one part holds, each with the part that named it first.
 using PartOfId = std::map<int, std::string>;
 
-void ClaimMarkers(const Item& item, const std::string& part, const std::vector<int>& ids,
+void ClaimMarkers(const YamlItem& item, const std::string& part, const std::vector<int>& ids,
                   PartOfId* part_of_id) {
   for (const int id : ids) {
     const std::string& owner = part_of_id->emplace(id, part).first->second;
@@ -139,13 +75,14 @@ void ClaimMarkers(const Item& item, const std::string& part, const std::vector<i
   }
 }
 
-std::vector<MarkerLine> ReadLines(const Item& list, const std::string& part, PartOfId* part_of_id) {
+std::vector<MarkerLine> ReadLines(const YamlItem& list, const std::string& part,
+                                  PartOfId* part_of_id) {
   std::vector<MarkerLine> lines;
   std::set<std::string> names;
-  ForEachElement(list, [&](const Item& item) {
+  ForEachElement(list, [&](const YamlItem& item) {
     MarkerLine line;
-    ReadMap(item, {{"name", [&](const Item& value) { line.name = ReadString(value); }},
-                   {"markers", [&](const Item& value) {
+    ReadMap(item, {{"name", [&](const YamlItem& value) { line.name = ReadString(value); }},
+                   {"markers", [&](const YamlItem& value) {
                       line.marker_ids = ReadMarkerIds(value);
                       ClaimMarkers(value, part, line.marker_ids, part_of_id);
                     }}});
@@ -157,56 +94,197 @@ std::vector<MarkerLine> ReadLines(const Item& list, const std::string& part, Par
   return lines;
 }
 
-LayoutPart ReadPart(const Item& item, const std::string& name, PartOfId* part_of_id) {
+LayoutPart ReadPart(const YamlItem& item, const std::string& name, PartOfId* part_of_id) {
   LayoutPart part;
   part.name = name;
-  ReadMap(item, {{"rigid", [&](const Item& value) { part.rigid = ReadBool(value); }},
-                 {"horizontal",
-                  [&](const Item& value) { part.horizontal = ReadLines(value, name, part_of_id); }},
-                 {"vertical",
-                  [&](const Item& value) { part.vertical = ReadLines(value, name, part_of_id); }},
-                 {"markers", [&](const Item& value) {
-                    part.marker_ids = ReadMarkerIds(value);
-                    ClaimMarkers(value, name, part.marker_ids, part_of_id);
-                  }}});
+  ReadMap(item,
+          {{"rigid", [&](const YamlItem& value) { part.rigid = ReadBool(value); }},
+           {"horizontal",
+            [&](const YamlItem& value) { part.horizontal = ReadLines(value, name, part_of_id); }},
+           {"vertical",
+            [&](const YamlItem& value) { part.vertical = ReadLines(value, name, part_of_id); }},
+           {"markers", [&](const YamlItem& value) {
+              part.marker_ids = ReadMarkerIds(value);
+              ClaimMarkers(value, name, part.marker_ids, part_of_id);
+            }}});
   if (part.horizontal.empty() && part.vertical.empty() && part.marker_ids.empty()) {
     item.Fail("the part has no markers");
   }
   return part;
 }
 
-std::vector<LayoutPart> ReadParts(const Item& item) {
+std::vector<LayoutPart> ReadParts(const YamlItem& item) {
   std::vector<LayoutPart> parts;
   PartOfId part_of_id;
-  ForEachKey(item, [&](const std::string& name, const Item& value) {
+  ForEachKey(item, [&](const std::string& name, const YamlItem& value) {
     parts.push_back(ReadPart(value, name, &part_of_id));
   });
   if (parts.empty()) item.Fail("no part is named; leave the key out to accept every marker");
   return parts;
 }
 
-std::map<int, double> ReadMarkerLengths(const Item& item) {
+std::map<int, double> ReadMarkerLengths(const YamlItem& item) {
   std::map<int, double> lengths_m;
-  ForEachKey(item, [&](const std::string& name, const Item& value) {
+  ForEachKey(item, [&](const std::string& name, const YamlItem& value) {
     int id = -1;
-    if (!ParseNumber(name, &id) || id < 0 || id > kMaxMarkerId) {
+    if (!ParseMarkerId(name, &id)) {
       value.Fail(fmt::format("'{}' is no marker id; {{id: length in m}} is expected", name));
     }
-    lengths_m[id] = ReadLength(value);
+    lengths_m[id] = ReadMarkerLength(value);
   });
   return lengths_m;
 }
 
-int ReadBorderBits(const Item& item) {
+int ReadBorderBits(const YamlItem& item) {
   int border_bits = 0;
-  if (!item.node.IsScalar() || !ParseNumber(item.node.Scalar(), &border_bits) || border_bits < 1 ||
-      border_bits > 8) {
+  if (!ParseNumber(item.Text(), &border_bits) || border_bits < 1 || border_bits > 8) {
     item.Fail("the width of the black border in cells is expected, 1 to 8");
   }
   return border_bits;
 }
 
-std::string ReadDictionaryName(const Item& item) {
+double ReadPositiveMetres(const YamlItem& item) {
+  const double length_m = ReadMetres(item);
+  if (!std::isfinite(length_m) || length_m <= 0) {
+    item.Fail(fmt::format("{} m is no length; a positive number of metres is expected", length_m));
+  }
+  return length_m;
+}
+
+// "12" is the centre of marker 12, "12.1" its corner 1.
+void ReadMarkerPoint(const YamlItem& item, int* marker_id, int* corner) {
+  const std::string text = item.Text();
+  const std::size_t dot = text.find('.');
+  *corner = 0;
+  const bool is_corner =
+      dot == std::string::npos || (ParseNumber(text.substr(dot + 1), corner) && *corner >= 1 &&
+                                   *corner <= kNumCorners && text.size() == dot + 2);
+  if (!is_corner || !ParseMarkerId(text.substr(0, dot), marker_id)) {
+    item.Fail(
+        fmt::format("'{}' is no point of a marker; its id stands for the centre, id.corner "
+                    "(1 to 4) for a corner, such as 12 or 12.1",
+                    text));
+  }
+}
+
+// Whether the length takes part in the adjustment.
+bool ReadUse(const YamlItem& item) {
+  if (item.Text() != "check" && item.Text() != "scale") {
+    item.Fail(
+        fmt::format("'{}': check (compared with the result) or scale (takes part in the "
+                    "adjustment) is expected",
+                    item.Text()));
+  }
+  return item.Text() == "scale";
+}
+
+KnownDistance ReadDistance(const YamlItem& item) {
+  KnownDistance distance;
+  std::set<std::string> missing = {"from", "to", "length", "sigma"};
+  ReadMap(item, {{"from",
+                  [&](const YamlItem& v) {
+                    ReadMarkerPoint(v, &distance.marker_id1, &distance.corner1);
+                    missing.erase("from");
+                  }},
+                 {"to",
+                  [&](const YamlItem& v) {
+                    ReadMarkerPoint(v, &distance.marker_id2, &distance.corner2);
+                    missing.erase("to");
+                  }},
+                 {"length",
+                  [&](const YamlItem& v) {
+                    distance.length_m = ReadPositiveMetres(v);
+                    missing.erase("length");
+                  }},
+                 {"sigma",
+                  [&](const YamlItem& v) {
+                    distance.sigma_m = ReadPositiveMetres(v);
+                    missing.erase("sigma");
+                  }},
+                 {"use", [&](const YamlItem& v) { distance.is_scale_bar = ReadUse(v); }}});
+  if (!missing.empty()) {
+    item.Fail(
+        fmt::format("key '{}' is missing; expected is such as {{from: 12, to: 45, length: "
+                    "2.315, sigma: 0.002}} (m)",
+                    *missing.begin()));
+  }
+  if (distance.marker_id1 == distance.marker_id2 && distance.corner1 == distance.corner2) {
+    item.Fail("from and to are the same point");
+  }
+  if (distance.sigma_m >= distance.length_m) {
+    item.Fail(
+        fmt::format("the sigma of {} m is no less than the length of {} m; both are in metres",
+                    distance.sigma_m, distance.length_m));
+  }
+  return distance;
+}
+
+// `layout` has its parts.
+std::vector<KnownDistance> ReadDistances(const YamlItem& list, const Layout& layout) {
+  const std::vector<int> ids = MarkerIds(layout);
+  std::vector<KnownDistance> distances;
+  ForEachElement(list, [&](const YamlItem& item) {
+    distances.push_back(ReadDistance(item));
+    for (const int id : {distances.back().marker_id1, distances.back().marker_id2}) {
+      if (!layout.HasMarkers() || std::binary_search(ids.begin(), ids.end(), id)) continue;
+      item.Fail(fmt::format("marker {} is in no part; name it there or correct its id", id));
+    }
+  });
+  if (distances.empty()) list.Fail("no distance is given; leave the key out");
+  return distances;
+}
+
+FrameChoice ReadFrameMarkers(const YamlItem& map) {
+  FrameChoice frame;
+  frame.kind = FrameKind::kMarkers;
+  ReadMap(map, {{"origin", [&](const YamlItem& v) { frame.origin_id = ReadMarkerId(v); }},
+                {"axis", [&](const YamlItem& v) { frame.axis_id = ReadMarkerId(v); }},
+                {"plane", [&](const YamlItem& v) { frame.plane_id = ReadMarkerId(v); }}});
+  for (const auto& [id, key] : {std::pair(frame.origin_id, "origin"),
+                                std::pair(frame.axis_id, "axis"),
+                                std::pair(frame.plane_id, "plane")}) {
+    if (id < 0) {
+      map.Fail(fmt::format("key '{}' is missing; expected is such as {{origin: 12, axis: 15, "
+                           "plane: 40}} (marker ids)",
+                           key));
+    }
+  }
+  if (std::set<int>{frame.origin_id, frame.axis_id, frame.plane_id}.size() < 3) {
+    map.Fail("origin, axis and plane have to be three different markers");
+  }
+  return frame;
+}
+
+// `layout` has its parts and its reference part.
+FrameChoice ReadFrame(const YamlItem& item, const Layout& layout) {
+  if (item.node.IsMap()) {
+    const FrameChoice frame = ReadFrameMarkers(item);
+    const std::vector<int> ids = MarkerIds(layout);
+    for (const int id : {frame.origin_id, frame.axis_id, frame.plane_id}) {
+      if (!layout.HasMarkers() || std::binary_search(ids.begin(), ids.end(), id)) continue;
+      item.Fail(fmt::format("marker {} is in no part; name it there or correct its id", id));
+    }
+    return frame;
+  }
+  FrameChoice frame;
+  if (!ParseFrameKeyword(item.Text(), &frame.kind)) {
+    item.Fail(fmt::format("'{}' is no frame; reference_part, lines, camera, or three markers such "
+                          "as {{origin: 12, axis: 15, plane: 40}} are expected",
+                          item.Text()));
+  }
+  if (frame.kind == FrameKind::kReferencePart && !layout.reference_part) {
+    item.Fail("the frame of the reference part needs the key 'reference_part'");
+  }
+  const bool has_lines =
+      std::any_of(layout.parts.begin(), layout.parts.end(),
+                  [](const LayoutPart& part) { return !part.horizontal.empty(); });
+  if (frame.kind == FrameKind::kLines && !has_lines) {
+    item.Fail("the frame by lines needs a part with horizontal lines");
+  }
+  return frame;
+}
+
+std::string ReadDictionaryName(const YamlItem& item) {
   const std::string name = ReadString(item);
   const std::filesystem::path file = std::filesystem::path(item.path).parent_path() / name;
   std::error_code ignored;
@@ -224,18 +302,22 @@ Layout ReadLayout(const std::string& path) {
   try {
     root = YAML::Load(text);
   } catch (const YAML::Exception& exception) {
-    Fail(path, exception.mark, "no valid YAML: " + exception.msg);
+    FailYaml(path, exception.mark, "no valid YAML: " + exception.msg);
   }
-  const Item top{path, root, ""};
+  const YamlItem top{path, root, ""};
   Layout layout;
-  std::optional<Item> reference;
-  ReadMap(top, {{"dictionary", [&](const Item& v) { layout.dictionary = ReadDictionaryName(v); }},
-                {"marker_length", [&](const Item& v) { layout.marker_length_m = ReadLength(v); }},
-                {"marker_lengths",
-                 [&](const Item& v) { layout.marker_lengths_m = ReadMarkerLengths(v); }},
-                {"border_bits", [&](const Item& v) { layout.border_bits = ReadBorderBits(v); }},
-                {"parts", [&](const Item& v) { layout.parts = ReadParts(v); }},
-                {"reference_part", [&](const Item& v) { reference.emplace(v); }}});
+  std::optional<YamlItem> reference, distances, frame;
+  ReadMap(
+      top,
+      {{"dictionary", [&](const YamlItem& v) { layout.dictionary = ReadDictionaryName(v); }},
+       {"marker_length", [&](const YamlItem& v) { layout.marker_length_m = ReadMarkerLength(v); }},
+       {"marker_lengths",
+        [&](const YamlItem& v) { layout.marker_lengths_m = ReadMarkerLengths(v); }},
+       {"border_bits", [&](const YamlItem& v) { layout.border_bits = ReadBorderBits(v); }},
+       {"parts", [&](const YamlItem& v) { layout.parts = ReadParts(v); }},
+       {"reference_part", [&](const YamlItem& v) { reference.emplace(v); }},
+       {"distances", [&](const YamlItem& v) { distances.emplace(v); }},
+       {"frame", [&](const YamlItem& v) { frame.emplace(v); }}});
   if (layout.dictionary.empty()) top.Fail("key 'dictionary' is missing, such as DICT_4X4_50");
   if (layout.marker_length_m == 0.0) top.Fail("key 'marker_length' is missing (metres)");
   if (reference) {
@@ -244,6 +326,8 @@ Layout ReadLayout(const std::string& path) {
     for (const LayoutPart& part : layout.parts) known |= part.name == *layout.reference_part;
     if (!known) reference->Fail("there is no part '" + *layout.reference_part + "'");
   }
+  if (distances) layout.distances = ReadDistances(*distances, layout);
+  if (frame) layout.frame = ReadFrame(*frame, layout);
   return layout;
 }
 

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/corner_refinement.h"
+#include "importer/saddle_corners.h"
 
 namespace velamap {
 namespace {
@@ -118,19 +119,25 @@ std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary
   std::vector<MarkerDetection> detections;
   int num_fallbacks = 0;
   for (const QuadWithId& quad : FindQuads(dark_on_light, dictionary, border_bits, options)) {
-    std::optional<Quad> refined;
-    if (options.corner_refinement == CornerRefinement::kNone) refined = quad.corners_px;
-    if (options.corner_refinement == CornerRefinement::kEdge) {
+    std::optional<RefinedCorners> refined;
+    MarkerDetection detection;
+    detection.marker_id = quad.marker_id;
+    if (options.corner_refinement == CornerRefinement::kNone) {
+      refined = RefinedCorners{quad.corners_px, {}};
+    } else if (options.corner_refinement == CornerRefinement::kEdge) {
       cv::Mat cells;  // one pixel a cell
       cv::aruco::drawMarker(dictionary.aruco, quad.marker_id, num_cells, cells, border_bits);
       refined = RefineCorners(dark_on_light, quad.corners_px, cells);
+      detection.is_fallback = !refined;
       num_fallbacks += !refined;
     }
-    if (!refined) refined = RefineSubpix(dark_on_light, quad.corners_px, num_cells);
-    MarkerDetection detection;
-    detection.marker_id = quad.marker_id;
+    if (!refined) refined = {RefineSubpix(dark_on_light, quad.corners_px, num_cells), {}};
+    if (options.corner_refinement == CornerRefinement::kEdge) {
+      RefineSaddleCorners(dark_on_light, num_cells, &refined->corners_px);
+    }
+    detection.corner_sigma_px = refined->sigma_px;
     for (int c = 0; c < kNumCorners; ++c) {
-      detection.corners_in_image_px[c] = (*refined)[c] + kImageFromOpenCvPx;
+      detection.corners_in_image_px[c] = refined->corners_px[c] + kImageFromOpenCvPx;
     }
     detections.push_back(detection);
   }

@@ -18,13 +18,12 @@
 #include "importer/atomic_output.h"
 #include "importer/calibration.h"
 #include "importer/colmap_database.h"
-#include "importer/correspondence.h"
 #include "importer/dictionary_hint.h"
 #include "importer/error.h"
 #include "importer/frame_detector.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_source.h"
-#include "importer/natural_order.h"
+#include "importer/import_completion.h"
 
 namespace velamap {
 namespace {
@@ -114,29 +113,6 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
   }
 }
 
-// Matches every pair that is worth it and has none yet; returns the number of pairs with matches.
-int WriteAllMatches(ColmapDatabase* database) {
-  std::vector<DatabaseImage> images = database->ReadImages();
-  std::sort(images.begin(), images.end(), [](const DatabaseImage& a, const DatabaseImage& b) {
-    return NaturalLess(a.detections.image_name, b.detections.image_name);
-  });
-  const std::vector<std::pair<int, int>> pairs = PairsToMatch(static_cast<int>(images.size()));
-  int num_pairs = 0;
-  ColmapDatabase::Transaction transaction(database);
-  for (const auto& [first_idx, second_idx] : pairs) {
-    const DatabaseImage& first = images[static_cast<std::size_t>(first_idx)];
-    const DatabaseImage& second = images[static_cast<std::size_t>(second_idx)];
-    const FeatureMatches matches = MatchByMarkerId(first.detections, second.detections);
-    if (matches.empty()) continue;
-    ++num_pairs;
-    if (!database->HasMatches(first.image_id, second.image_id)) {
-      database->WriteMatches(first.image_id, second.image_id, matches);
-    }
-  }
-  transaction.Commit();
-  return num_pairs;
-}
-
 // Fewer markers a frame than this are as good as none: false ones turn up in any picture.
 constexpr double kFewMarkersPerFrame = 0.5;
 
@@ -156,11 +132,11 @@ void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& 
       !hints.empty() && static_cast<double>(hints.front().num_markers) >=
                             kConvincingRatio * rate * hints.front().num_images;
   if (is_convincing) {
-    throw DataError(fmt::format(
-        "{}: {} marker of {}{} found in {} frames; found with {}", options.image_path,
-        report.num_markers + report.num_rejected > 0 ? "hardly any" : "no", dictionary_name,
-        options.detection.inverted ? " (inverted)" : "", report.num_frames_read,
-        DescribeHints(hints)));
+    throw DataError(fmt::format("{}: {} marker of {}{} found in {} frames; found with {}",
+                                options.image_path,
+                                report.num_markers + report.num_rejected > 0 ? "hardly any" : "no",
+                                dictionary_name, options.detection.inverted ? " (inverted)" : "",
+                                report.num_frames_read, DescribeHints(hints)));
   }
   if (report.num_markers > 0) return;
   if (!report.ids_not_in_layout.empty()) {
@@ -242,6 +218,9 @@ class ImportRun {
     report_.num_markers += static_cast<int>(detections.markers.size());
     report_.num_rejected += static_cast<int>(detections.rejected.size());
     report_.num_images_without_markers += detections.markers.empty();
+    report_.num_fallbacks += static_cast<int>(
+        std::count_if(detections.markers.begin(), detections.markers.end(),
+                      [](const MarkerDetection& marker) { return marker.is_fallback; }));
     for (const RejectedDetection& rejected : detections.rejected) {
       if (rejected.reason == kNotInLayout) ids_not_in_layout_.insert(rejected.detection.marker_id);
     }
@@ -318,6 +297,9 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
       });
   ImportReport report = run.Finish();
   report.num_images_present = static_cast<int>(known_names.size());
+  const int num_turned = ResolveDoubtfulRotations(detector, &database);
+  report.num_markers += num_turned;
+  report.num_rejected -= num_turned;
   report.num_pairs = WriteAllMatches(&database);
   guard.Keep();
   return report;

@@ -21,20 +21,9 @@ Eigen::Vector2d TopSide(const MarkerDetection& marker, int turn) {
   return (corners[(first + 1) % kNumCorners] - corners[first]).normalized();
 }
 
-MarkerDetection Turned(const MarkerDetection& marker, int turn) {
-  MarkerDetection turned = marker;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    const std::size_t from = (i + static_cast<std::size_t>(turn)) % kNumCorners;
-    turned.corners_in_image_px[i] = marker.corners_in_image_px[from];
-    turned.colors[i] = marker.colors[from];
-  }
-  return turned;
-}
-
-std::vector<const MarkerDetection*> NearestUnambiguous(const MarkerDetection& marker,
-                                                       const CodeSymmetries& symmetries,
-                                                       const AdjacencyGraph& graph,
-                                                       const std::vector<MarkerDetection>& markers) {
+std::vector<const MarkerDetection*> NearestUnambiguous(
+    const MarkerDetection& marker, const CodeSymmetries& symmetries, const AdjacencyGraph& graph,
+    const std::vector<MarkerDetection>& markers) {
   const std::map<int, int> steps = TopologicalDistances(graph, marker.marker_id);
   std::vector<std::pair<double, const MarkerDetection*>> by_steps, by_distance;
   for (const MarkerDetection& other : markers) {
@@ -75,12 +64,23 @@ int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_t
 
 }  // namespace
 
+MarkerDetection Turned(const MarkerDetection& marker, int turn) {
+  MarkerDetection turned = marker;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const std::size_t from = (i + static_cast<std::size_t>(turn)) % kNumCorners;
+    turned.corners_in_image_px[i] = marker.corners_in_image_px[from];
+    turned.colors[i] = marker.colors[from];
+    turned.corner_sigma_px[i] = marker.corner_sigma_px[from];
+  }
+  return turned;
+}
+
 CodeSymmetries FindCodeSymmetries(const Dictionary& dictionary) {
   CodeSymmetries symmetries;
   const cv::Mat& codes = dictionary.aruco->bytesList;
   for (int id = 0; id < codes.rows; ++id) {
-    const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
-        codes.rowRange(id, id + 1), dictionary.aruco->markerSize);
+    const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(codes.rowRange(id, id + 1),
+                                                                    dictionary.aruco->markerSize);
     cv::Mat turned = bits;
     for (int turn = 1; turn < kNumCorners; ++turn) {
       cv::Mat next;
@@ -108,7 +108,7 @@ void ResolveRotations(const CodeSymmetries& symmetries, const AdjacencyGraph& gr
     if (turn >= 0) {
       resolved.push_back(Turned(marker, turn));
     } else {
-      rejected->push_back({marker, "looks the same when turned, no neighbour tells how it stands"});
+      rejected->push_back({marker, kDoubtfulRotation});
     }
   }
   *markers = std::move(resolved);

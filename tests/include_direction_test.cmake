@@ -6,7 +6,7 @@ set(failures "")
 set(num_files 0)
 
 # SQL is known to the database's files only, cv::aruco to the detector and the dictionaries.
-set(SQL_FILES "^importer/colmap_(database|schema)\\.cc$")
+set(SQL_FILES "^importer/(colmap_(database|schema)|marker_detections_table)\\.cc$")
 set(ARUCO_FILES "^importer/(marker_detector|dictionary)\\.(h|cc)$")
 
 set(forbidden_rooms ${ROOMS} tests)

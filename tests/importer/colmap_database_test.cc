@@ -26,6 +26,8 @@ FrameDetections SomeDetections(const std::string& name) {
   detections.markers = {SquareMarker(2, 100.123456789, 50), SquareMarker(79, 300, 1.0 / 3.0)};
   detections.markers[0].part = "sail";
   detections.markers[0].colors[3] = {1, 20, 255};
+  detections.markers[0].corner_sigma_px = {0.01, 0.02, 1.0 / 30, 0.04};
+  detections.markers[1].is_fallback = true;
   detections.rejected = {{SquareMarker(5, 700, 700), "not in layout"}};
   return detections;
 }
@@ -45,6 +47,8 @@ void ExpectEqual(const MarkerDetection& a, const MarkerDetection& b) {
   EXPECT_EQ(a.corners_in_image_px, b.corners_in_image_px);
   EXPECT_EQ(a.colors, b.colors);
   EXPECT_EQ(a.part, b.part);
+  EXPECT_EQ(a.corner_sigma_px, b.corner_sigma_px);
+  EXPECT_EQ(a.is_fallback, b.is_fallback);
 }
 
 TEST(ColmapDatabase, RoundTrip) {
@@ -125,6 +129,91 @@ TEST(ColmapDatabase, IsWhatSqliteAndColmapExpect) {
                             " AND marker_id = 79")
                 .getInt(),
             4);
+}
+
+// What the velamap before wrote: no columns for sigmas and fallbacks.
+void MakeOlder(const std::string& path) {
+  SQLite::Database sqlite(path, SQLite::OPEN_READWRITE);
+  sqlite.exec("ALTER TABLE marker_detections DROP COLUMN corner_sigmas");
+  sqlite.exec("ALTER TABLE marker_detections DROP COLUMN is_fallback");
+}
+
+TEST(ColmapDatabase, OlderDetectionsAreReadAndAddedTo) {
+  const TempDir dir;
+  const std::string path = dir / "database.db";
+  {
+    ColmapDatabase database(path, Mode::kReadWriteCreate);
+    database.AddImage(database.AddCamera(kCamera), SomeDetections("a.jpg"), "how");
+  }
+  MakeOlder(path);
+  MarkerDetection unknown = SomeDetections("a.jpg").markers[0];
+  unknown.corner_sigma_px = {};
+  {
+    const ColmapDatabase database(path, Mode::kReadOnly);
+    ExpectEqual(database.ReadImages().at(0).detections.markers.at(0), unknown);
+    EXPECT_FALSE(database.ReadImages().at(0).detections.markers.at(1).is_fallback);
+  }
+  {
+    ColmapDatabase database(path, Mode::kReadWriteCreate);
+    database.AddImage(1, SomeDetections("b.jpg"), "how");
+  }
+  const std::vector<DatabaseImage> images = ColmapDatabase(path, Mode::kReadOnly).ReadImages();
+  ASSERT_EQ(images.size(), 2u);
+  ExpectEqual(images[0].detections.markers.at(0), unknown);
+  ExpectEqual(images[1].detections.markers.at(0), SomeDetections("b.jpg").markers[0]);
+  ExpectEqual(images[1].detections.markers.at(1), SomeDetections("b.jpg").markers[1]);
+}
+
+TEST(ColmapDatabase, UnknownSigmasAreNull) {
+  const TempDir dir;
+  const std::string path = dir / "database.db";
+  {
+    ColmapDatabase database(path, Mode::kReadWriteCreate);
+    database.AddImage(database.AddCamera(kCamera), SomeDetections("a.jpg"), "how");
+  }
+  SQLite::Database sqlite(path);
+  SQLite::Statement query(sqlite,
+                          "SELECT corner_sigmas, is_fallback FROM marker_detections"
+                          " WHERE marker_id IN (2, 79) ORDER BY marker_id");
+  ASSERT_TRUE(query.executeStep());
+  EXPECT_EQ(Blob<double>(query.getColumn(0)), (std::vector<double>{0.01, 0.02, 1.0 / 30, 0.04}));
+  EXPECT_EQ(query.getColumn(1).getInt(), 0);
+  ASSERT_TRUE(query.executeStep());
+  EXPECT_TRUE(query.isColumnNull(0));
+  EXPECT_EQ(query.getColumn(1).getInt(), 1);
+}
+
+TEST(ColmapDatabase, ReplacedDetectionsTakeTheMatchesOfTheirImageAlong) {
+  const TempDir dir;
+  const std::string path = dir / "database.db";
+  FrameDetections more = SomeDetections("a.jpg");
+  more.markers.insert(more.markers.begin() + 1, SquareMarker(5, 700, 700));
+  more.rejected.clear();
+  {
+    ColmapDatabase database(path, Mode::kReadWriteCreate);
+    const CameraId camera_id = database.AddCamera(kCamera);
+    for (const char* name : {"a.jpg", "b.jpg", "c.jpg"}) {
+      database.AddImage(camera_id, SomeDetections(name), "how");
+    }
+    for (const auto& [id1, id2] : {std::pair(1, 2), std::pair(2, 3), std::pair(1, 3)}) {
+      database.WriteMatches(id1, id2, {{0, 0}});
+    }
+    database.ReplaceDetections(1, more, "how");
+    EXPECT_FALSE(database.HasMatches(1, 2));
+    EXPECT_FALSE(database.HasMatches(1, 3));
+    EXPECT_TRUE(database.HasMatches(2, 3));
+  }
+  const std::vector<DatabaseImage> images = ColmapDatabase(path, Mode::kReadOnly).ReadImages();
+  ASSERT_EQ(images.size(), 3u);
+  EXPECT_EQ(images[0].detections.image_name, "a.jpg");
+  ASSERT_EQ(images[0].detections.markers.size(), 3u);
+  ExpectEqual(images[0].detections.markers[1], more.markers[1]);
+  EXPECT_TRUE(images[0].detections.rejected.empty());
+  EXPECT_EQ(images[1].detections.markers.size(), 2u);
+  SQLite::Database sqlite(path);
+  EXPECT_EQ(sqlite.execAndGet("SELECT rows FROM keypoints WHERE image_id = 1").getInt(), 12);
+  EXPECT_EQ(sqlite.execAndGet("SELECT rows FROM descriptors WHERE image_id = 1").getInt(), 12);
+  EXPECT_EQ(sqlite.execAndGet("SELECT count(*) FROM matches").getInt(), 1);
 }
 
 TEST(ColmapDatabase, PairIdAndColumnsFollowTheSmallerImageId) {

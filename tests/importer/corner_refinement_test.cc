@@ -14,7 +14,8 @@
 namespace velamap {
 namespace {
 
-using Refiner = std::function<std::optional<QuadPx>(const cv::Mat&, const QuadPx&, const cv::Mat&)>;
+using Refiner =
+    std::function<std::optional<RefinedCorners>(const cv::Mat&, const QuadPx&, const cv::Mat&)>;
 
 struct Quality {
   int num_fitted = 0, num_failed = 0;
@@ -32,9 +33,9 @@ Quality Measure(const MarkerGrid& grid, const Refiner& refine) {
       continue;
     }
     ++quality.num_fitted;
-    quality.bias_px += MeanSide(*refined) - MeanSide(grid.truth[k]);
+    quality.bias_px += MeanSide(refined->corners_px) - MeanSide(grid.truth[k]);
     for (std::size_t i = 0; i < kNumCorners; ++i) {
-      squares += ((*refined)[i] - grid.truth[k][i]).squaredNorm();
+      squares += (refined->corners_px[i] - grid.truth[k][i]).squaredNorm();
     }
   }
   if (quality.num_fitted > 0) {
@@ -60,8 +61,10 @@ Quality MeasureSubpix(const MarkerGrid& grid) {
     }
     cv::cornerSubPix(gray, points, {half_window, half_window}, {-1, -1},
                      cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 0.01));
-    QuadPx refined;
-    for (std::size_t i = 0; i < kNumCorners; ++i) refined[i] = {points[i].x, points[i].y};
+    RefinedCorners refined;
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      refined.corners_px[i] = {points[i].x, points[i].y};
+    }
     return std::make_optional(refined);
   });
 }

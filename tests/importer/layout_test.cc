@@ -29,6 +29,10 @@ parts:
     markers: [90, 91]
   hull: {markers: [120, 121, 122], rigid: true}
 reference_part: hull
+distances:
+  - {from: 1, to: 120, length: 2.315, sigma: 0.002}
+  - {from: "3.1", to: 3.3, length: 0.1414, sigma: 0.0001, use: scale}
+  - {from: 2, to: 2.4, length: 0.0707, sigma: 1e-4, use: check}
 )";
 
 std::string WriteLayout(const TempDir& dir, const std::string& text) {
@@ -57,6 +61,18 @@ TEST(ReadLayout, ReadsEveryKey) {
   EXPECT_EQ(PartOfMarker(layout, 22), "sail");
   EXPECT_EQ(PartOfMarker(layout, 121), "hull");
   EXPECT_EQ(PartOfMarker(layout, 7), "");
+  ASSERT_EQ(layout.distances.size(), 3u);
+  const KnownDistance& bar = layout.distances[1];
+  EXPECT_THAT((std::vector<int>{bar.marker_id1, bar.corner1, bar.marker_id2, bar.corner2}),
+              ElementsAre(3, 1, 3, 3));
+  EXPECT_EQ(bar.length_m, 0.1414);
+  EXPECT_EQ(bar.sigma_m, 0.0001);
+  EXPECT_TRUE(bar.is_scale_bar);
+  EXPECT_EQ(layout.distances[0].corner2, 0);
+  EXPECT_EQ(layout.distances[0].marker_id2, 120);
+  EXPECT_FALSE(layout.distances[0].is_scale_bar);
+  EXPECT_FALSE(layout.distances[2].is_scale_bar);
+  EXPECT_EQ(layout.distances[2].corner2, 4);
 }
 
 TEST(ReadLayout, DictionaryFileIsRelativeToTheLayout) {
@@ -109,6 +125,49 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
   expect(head + "parts:\n  sail: {markers: [1, 2]}\n  hull: {markers: [2]}\n", 5,
          "marker 2 is in part 'sail' already");
   expect(head + "parts:\n  sail: {markers: [1]}\nreference_part: mast\n", 5, "no part 'mast'");
+}
+
+TEST(ReadLayout, NamesFileLineAndKeyOfAWrongDistance) {
+  const TempDir dir;
+  // `entry` stands on line 4, after parts with marker 12 and 45.
+  const auto expect = [&](const std::string& entry, const std::string& part) {
+    const std::string path =
+        WriteLayout(dir, "dictionary: DICT_4X4_50\nmarker_length: 0.1\ndistances:\n  - " + entry +
+                             "\nparts: {s: {markers: [12, 45]}}\n");
+    ExpectThrows<InputError>([&] { ReadLayout(path); }, {path + ":4: distances[0]", part});
+  };
+  expect("{from: 12, to: 46, length: 1, sigma: 0.01}", "marker 46 is in no part");
+  expect("{from: 12, to: 12, length: 1, sigma: 0.01}", "the same point");
+  expect("{from: 12.2, to: 12.2, length: 1, sigma: 0.01}", "the same point");
+  expect("{from: 12, to: 45, length: 1}", "key 'sigma' is missing");
+  expect("{from: 12, length: 1, sigma: 0.01}", "key 'to' is missing");
+  expect("{from: 12, to: 45, length: 1, sigma: 0.01, tape: 3}", "unknown key");
+  expect("{from: 12, to: 45, length: 1, sigma: 0.01, use: maybe}", ".use: 'maybe'");
+  expect("{from: 12, to: 45, length: 1, sigma: 2}", "no less than the length");
+  expect("7", "a map");
+  for (const char* length : {"0", "-1", "nan", "inf"}) {
+    expect(std::string("{from: 12, to: 45, sigma: 0.01, length: ") + length + "}",
+           ".length: " + std::string(length));
+    expect(std::string("{from: 12, to: 45, length: 1, sigma: ") + length + "}", ".sigma: ");
+  }
+  expect("{from: 12, to: 45, length: 2 m, sigma: 0.01}", "'2 m' is no number");
+  for (const char* point :
+       {"12.5", "12.0", "12.", "12.10", ".1", "-3", "x", "9000", "12.1.1", "[1]"}) {
+    expect(std::string("{to: 12, length: 1, sigma: 0.01, from: ") + point + "}",
+           "is no point of a marker");
+  }
+  const std::string empty =
+      WriteLayout(dir, "dictionary: DICT_4X4_50\nmarker_length: 0.1\ndistances: []\n");
+  ExpectThrows<InputError>([&] { ReadLayout(empty); }, {empty + ":3: distances: no distance"});
+}
+
+TEST(ReadLayout, WithoutPartsAnyMarkerMayHaveADistance) {
+  const TempDir dir;
+  const Layout layout =
+      ReadLayout(WriteLayout(dir,
+                             "dictionary: D\nmarker_length: 0.1\n"
+                             "distances: [{from: 7, to: 8, length: 1, sigma: 0.01}]\n"));
+  EXPECT_EQ(layout.distances.at(0).marker_id1, 7);
 }
 
 TEST(ReadLayout, LeadingZerosAreDecimal) {

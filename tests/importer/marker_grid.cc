@@ -12,7 +12,9 @@ constexpr double kRadPerDeg = 0.017453292519943295;
 PlacedMarkerInCam PlaceMarker(const MarkerGridOptions& options, int marker_id,
                               const Eigen::Vector2d& x_in_image_px, std::mt19937* random) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  const double tilt = 0.5 * options.max_tilt_deg * kRadPerDeg * (1 + unit(*random));
+  const double tilt =
+      kRadPerDeg * (options.min_tilt_deg + 0.5 * (options.max_tilt_deg - options.min_tilt_deg) *
+                                               (1 + unit(*random)));
   const double azimuth = 180 * kRadPerDeg * unit(*random);
   const double roll = 180 * kRadPerDeg * unit(*random);
   const Eigen::Vector3d ray = CamFromImage(options.camera, x_in_image_px)->homogeneous();

@@ -19,7 +19,7 @@ using QuadPx = std::array<Eigen::Vector2d, kNumCorners>;  // OpenCV's pixel fram
 struct MarkerGridOptions {
   std::string dictionary = "DICT_5X5_50";
   double side_px = 25.0;  // upright; tilted markers are smaller
-  double max_tilt_deg = 60.0;
+  double min_tilt_deg = 0.0, max_tilt_deg = 60.0;
   double start_error_px = 0.7;  // of each coordinate of a start corner, uniform
   Camera camera{CameraModel::kPinhole, 640, 480, {900, 900, 320, 240}};
   RenderOptions rendering;

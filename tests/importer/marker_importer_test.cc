@@ -101,6 +101,25 @@ TEST_F(MarkerImporterTest, FolderOfImages) {
   EXPECT_EQ(fs::exists(dir_ / "database.db-journal"), false);
 }
 
+TEST_F(MarkerImporterTest, FailedCornerFitsAreCountedAndMarked) {
+  // Something dark takes most of the quiet zone beside marker 1: its code is read, but that side
+  // has no light ground to fit.
+  cv::Mat picture = Picture(0, {1, 2}, "DICT_4X4_50");
+  cv::rectangle(picture, cv::Rect(0, 30, 16, 92), cv::Scalar(40, 40, 40), cv::FILLED);
+  cv::imwrite(dir_ / "images/1.png", picture);
+  const ImportReport report = ImportMarkers(options_);
+  ASSERT_EQ(report.num_markers, 2);
+  EXPECT_EQ(report.num_fallbacks, 1);
+  const std::vector<DatabaseImage> images = ReadImages();
+  const std::vector<MarkerDetection>& markers = images[0].detections.markers;
+  EXPECT_TRUE(markers[0].is_fallback);
+  EXPECT_FALSE(markers[1].is_fallback);
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    EXPECT_EQ(markers[0].corner_sigma_px[i], 0.0);
+    EXPECT_GT(markers[1].corner_sigma_px[i], 0.0);
+  }
+}
+
 TEST_F(MarkerImporterTest, RerunAddsWhatIsMissingAndNothingElse) {
   WritePicture("1.png", 0, {1, 2});
   WritePicture("3.png", 1, {1, 2});
@@ -130,6 +149,43 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
   options_.num_threads = 4;
   ImportMarkers(options_);
   EXPECT_EQ(read(options_.database_path), bytes);
+}
+
+TEST_F(MarkerImporterTest, OtherFramesTellHowASymmetricMarkerStands) {
+  // Marker 2 looks the same upside down. Marker 0 stands as it does; marker 1 stands across, so
+  // that it tells nothing in the frame without marker 0.
+  std::ofstream(dir_ / "nine_bits.yml") << "%YAML:1.0\n---\nnmarkers: 3\nmarkersize: 3\n"
+                                           "maxCorrectionBits: 0\nmarker_0: \"110100001\"\n"
+                                           "marker_1: \"111000100\"\nmarker_2: \"100000001\"\n";
+  options_.layout = MakeLayout(dir_ / "nine_bits.yml", 0.1);
+  const auto write = [&](int idx, bool with_first) {
+    std::vector<DrawnMarker> markers = {{1, 115 + idx, 40, 70}, {2, 210 + idx, 40 + idx, 70}};
+    if (with_first) markers.push_back({0, 20 + idx, 40, 70});
+    cv::Mat picture = DrawMarkers(LoadDictionary(options_.layout.dictionary).aruco, kSize, markers);
+    const cv::Mat across = picture(cv::Rect(115 + idx, 40, 70, 70));
+    cv::Mat turned;
+    cv::rotate(across, turned, cv::ROTATE_90_CLOCKWISE);
+    turned.copyTo(across);
+    cv::GaussianBlur(picture, picture, cv::Size(), 0.7);
+    cv::imwrite(dir_ / ("images/" + std::to_string(idx) + ".png"), picture);
+  };
+  const auto num_markers = [&](std::size_t image_idx) {
+    return ReadImages().at(image_idx).detections.markers.size();
+  };
+  write(0, false);
+  write(1, true);
+  EXPECT_EQ(ImportMarkers(options_).num_rejected, 1);
+  EXPECT_EQ(num_markers(0), 1u);
+  for (int i = 2; i < 5; ++i) write(i, true);
+  const ImportReport report = ImportMarkers(options_);
+  EXPECT_EQ(report.num_images_present, 2);
+  EXPECT_EQ(report.num_markers, 10);  // nine in the new pictures, one in an older one
+  EXPECT_EQ(report.num_pairs, 10);
+  ASSERT_EQ(num_markers(0), 2u);
+  const MarkerDetection marker = ReadImages()[0].detections.markers[1];
+  EXPECT_EQ(marker.marker_id, 2);
+  EXPECT_NEAR(marker.corners_in_image_px[0].x(), 210, 0.1);
+  EXPECT_NEAR(marker.corners_in_image_px[0].y(), 40, 0.1);
 }
 
 TEST_F(MarkerImporterTest, OtherWayOfDetectionOrCameraIsRefused) {

@@ -36,6 +36,7 @@ MarkerDetection Marker(int id, double x, double y, double angle_deg, int first =
     const std::size_t from = (i + static_cast<std::size_t>(first)) % 4;
     marker.corners_in_image_px[i] = Eigen::Vector2d(x, y) + 10 * corners[from];
     marker.colors[i] = {static_cast<std::uint8_t>(from), 0, 0};
+    marker.corner_sigma_px[i] = 0.01 * static_cast<double>(from + 1);
   }
   return marker;
 }
@@ -68,6 +69,7 @@ TEST(ResolveRotations, HalfTurnIsUndoneHoweverTheFrameIsTurned) {
       for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_EQ(markers[2].corners_in_image_px[i], truth.corners_in_image_px[i]);
         EXPECT_EQ(markers[2].colors[i], truth.colors[i]);
+        EXPECT_EQ(markers[2].corner_sigma_px[i], truth.corner_sigma_px[i]);
       }
     }
   }
@@ -100,7 +102,7 @@ TEST(ResolveRotations, DoubtfulMarkersAreLeftOut) {
   std::vector<MarkerDetection> quarter = {Marker(1, 100, 100, 40), Marker(6, 150, 100, 0)};
   ResolveRotations(symmetries, {}, &quarter, &rejected);
   ASSERT_EQ(rejected.size(), 1u);
-  EXPECT_THAT(rejected[0].reason, testing::HasSubstr("no neighbour tells"));
+  EXPECT_EQ(rejected[0].reason, kDoubtfulRotation);
 }
 
 }  // namespace

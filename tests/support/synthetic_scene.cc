@@ -28,8 +28,7 @@ struct PlacedMarker {
 Rigid3 LookAt(const Eigen::Vector3d& position, const Eigen::Vector3d& target, double roll_rad) {
   const Eigen::Vector3d z = (target - position).normalized();
   const bool looks_along_z = std::abs(z.z()) > 0.95;
-  const Eigen::Vector3d down =
-      looks_along_z ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(0, 0, -1);
+  const Eigen::Vector3d down = looks_along_z ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(0, 0, -1);
   const Eigen::Vector3d x = down.cross(z).normalized();
   Eigen::Matrix3d cam_from_world;
   cam_from_world.row(0) = x;
@@ -44,8 +43,8 @@ Rigid3 LookAt(const Eigen::Vector3d& position, const Eigen::Vector3d& target, do
 // The marker frame on a surface with the given normal, its y axis as far up as it goes.
 Eigen::Quaterniond MarkerRotation(const Eigen::Vector3d& normal) {
   const Eigen::Vector3d z = normal.normalized();
-  const Eigen::Vector3d up = std::abs(z.z()) > 0.95 ? Eigen::Vector3d::UnitY()
-                                                    : Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d up =
+      std::abs(z.z()) > 0.95 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d x = up.cross(z).normalized();
   Eigen::Matrix3d world_from_marker;
   world_from_marker.col(0) = x;
@@ -83,18 +82,17 @@ std::vector<PlacedMarker> PlaceOnSheet(const SyntheticSceneOptions& options) {
 
 std::vector<PlacedMarker> PlaceOnCube(const SyntheticSceneOptions& options) {
   const std::array<Eigen::Vector3d, 6> normals = {
-      -Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX(),  Eigen::Vector3d::UnitY(),
+      -Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
       -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitZ()};
-  const double half =
-      0.5 * options.spacing_m * std::max(options.num_rows, options.num_columns);
+  const double half = 0.5 * options.spacing_m * std::max(options.num_rows, options.num_columns);
   std::vector<PlacedMarker> markers;
   for (const Eigen::Vector3d& normal : normals) {
     const Eigen::Quaterniond rotation = MarkerRotation(normal);
     for (int row = 0; row < options.num_rows; ++row) {
       for (int column = 0; column < options.num_columns; ++column) {
-        const Eigen::Vector3d in_face((column - 0.5 * (options.num_columns - 1)) * options.spacing_m,
-                                      (row - 0.5 * (options.num_rows - 1)) * options.spacing_m,
-                                      half);
+        const Eigen::Vector3d in_face(
+            (column - 0.5 * (options.num_columns - 1)) * options.spacing_m,
+            (row - 0.5 * (options.num_rows - 1)) * options.spacing_m, half);
         markers.push_back({static_cast<int>(markers.size()), {rotation, rotation * in_face}});
       }
     }
@@ -110,8 +108,9 @@ Layout MakeSceneLayout(const SyntheticSceneOptions& options) {
   const int num_parts = options.kind == SceneKind::kCube ? 6 : 1;
   for (int part_idx = 0; part_idx < num_parts; ++part_idx) {
     LayoutPart part;
-    part.name = options.kind == SceneKind::kCube ? "face" + std::to_string(part_idx)
-                : options.kind == SceneKind::kSail ? "sail" : "board";
+    part.name = options.kind == SceneKind::kCube   ? "face" + std::to_string(part_idx)
+                : options.kind == SceneKind::kSail ? "sail"
+                                                   : "board";
     for (int row = 0; row < options.num_rows; ++row) {
       MarkerLine line{"h" + std::to_string(row + 1), {}};
       for (int column = 0; column < options.num_columns; ++column) {
@@ -126,8 +125,7 @@ Layout MakeSceneLayout(const SyntheticSceneOptions& options) {
 
 std::vector<Rigid3> PlaceCameras(const SyntheticSceneOptions& options, std::mt19937* generator) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  const double extent =
-      options.spacing_m * std::max(options.num_rows, options.num_columns);
+  const double extent = options.spacing_m * std::max(options.num_rows, options.num_columns);
   std::vector<Rigid3> cam_from_world;
   for (int i = 0; i < options.num_frames; ++i) {
     const double t = options.num_frames > 1 ? 2.0 * i / (options.num_frames - 1) - 1 : 0.0;
@@ -136,13 +134,14 @@ std::vector<Rigid3> PlaceCameras(const SyntheticSceneOptions& options, std::mt19
     if (options.kind == SceneKind::kCube) {
       // One turn around while rising, so that top and bottom are seen too.
       const double angle = kPi * t;
-      position = 3 * extent * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.9 * std::sin(2.5 * t));
+      position =
+          3 * extent * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.9 * std::sin(2.5 * t));
     } else {
       position = extent * Eigen::Vector3d(0.9 * t, -1.7, 0.3 * std::sin(3 * t));
     }
-    const Eigen::Vector3d target =
-        options.kind == SceneKind::kCube ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-                                         : Eigen::Vector3d(0.05 * extent * wobble.reverse());
+    const Eigen::Vector3d target = options.kind == SceneKind::kCube
+                                       ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                       : Eigen::Vector3d(0.05 * extent * wobble.reverse());
     cam_from_world.push_back(LookAt(position + 0.05 * extent * wobble, target, 0.1 * wobble.x()));
   }
   return cam_from_world;
@@ -220,12 +219,12 @@ void AddNoise(const SyntheticNoiseOptions& options, SyntheticScene* scene) {
       const bool is_outlier = unit(generator) < options.outlier_rate;
       const double angle = 2 * kPi * unit(generator);
       const Eigen::Vector2d shift =
-          is_outlier
-              ? Eigen::Vector2d(options.outlier_px * Eigen::Vector2d(std::cos(angle), std::sin(angle)))
-              : Eigen::Vector2d(Eigen::Vector2d::Zero());
+          is_outlier ? Eigen::Vector2d(options.outlier_px *
+                                       Eigen::Vector2d(std::cos(angle), std::sin(angle)))
+                     : Eigen::Vector2d(Eigen::Vector2d::Zero());
       for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
-        corner += shift + options.corner_sigma_px * Eigen::Vector2d(normal(generator),
-                                                                    normal(generator));
+        corner +=
+            shift + options.corner_sigma_px * Eigen::Vector2d(normal(generator), normal(generator));
       }
       kept.push_back(marker);
     }

@@ -1,0 +1,65 @@
+// The picture of a whole marker and its derivatives: the inner step of pattern_fit.h, which says
+// what the model is.
+
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/blurred_cells.h"
+#include "importer/ids.h"
+#include "importer/unit_square_map.h"
+
+namespace velamap {
+
+struct PatternParameters {
+  enum Index {
+    kCorners = 0,  // x0 y0 x1 y1 ..., OpenCV's pixel frame
+    kBlurU = 8,    // px
+    kBlurV,
+    kDark,  // grey levels
+    kLight,
+    kGradientX,  // relative change of the light over one side of the marker
+    kGradientY,
+    kSurround,    // contrast of the surroundings in parts of what the blurred image shows there
+    kInnerLight,  // lightness of the marker's own light cells in parts of the quiet zone's
+    kBendU,       // x y of the departure from the plane halfway along u and along v, px
+    kBendV = kBendU + 2,
+    kCount = kBendV + 2
+  };
+  using Vector = Eigen::Matrix<double, kCount, 1>;
+  using Matrix = Eigen::Matrix<double, kCount, kCount>;
+};
+
+std::array<Eigen::Vector2d, kNumCorners> CornersOf(const PatternParameters::Vector& parameters);
+
+// What a fit keeps fixed.
+struct PatternModel {
+  int num_cells = 0;  // along a side, with the border
+  // Of column i, row j at (j + kRing, i + kRing): the marker's own cells; all that lies outside, as
+  // if it were light; and what the surroundings depart from that.
+  Lightness inner, ring, surround;
+  Eigen::Vector2d center_px;
+  double diagonal_px = 0.0;
+};
+
+// Fills the three pictures of cells: the marker's own (zero for black) and the quiet zone are
+// known, what surrounds them is read from the image.
+void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMap& map, double dark,
+                   double light, PatternModel* model);
+
+struct PatternPixel {
+  double gray = 0.0;  // of the model
+  PatternParameters::Vector jacobian;
+};
+
+// The model at a place in OpenCV's pixel frame; nothing too far outside the black square. `map`
+// belongs to the parameters' corners.
+std::optional<PatternPixel> EvaluatePattern(const PatternModel& model, const UnitSquareMap& map,
+                                            const PatternParameters::Vector& parameters,
+                                            const Eigen::Vector2d& x_px);
+
+}  // namespace velamap

@@ -1,0 +1,47 @@
+// What a fit of a marker's corners finds, and the noise of the pixels that it was found from.
+
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "importer/ids.h"
+
+namespace velamap {
+
+struct RefinedCorners {
+  std::array<Eigen::Vector2d, kNumCorners> corners_px;  // OpenCV's pixel frame
+  // 1 sigma of a coordinate by the image's noise: root mean square over x and y.
+  std::array<double, kNumCorners> sigma_px{};
+};
+
+// The noise of pixels from what a least-squares fit leaves of them. Each counts by its weight, the
+// squared slope of the grey values: what moves a corner is the noise on the edges, and pixels
+// beside them may have none where black and white are clipped.
+class ResidualNoise {
+ public:
+  // `leverage`: the part of the pixel's own noise that the fit follows.
+  void Add(double weight, double residual, double leverage) {
+    weighted_squares_ += weight * residual * residual;
+    weights_ += weight * (1 - leverage);
+  }
+
+  void Add(const ResidualNoise& other) {
+    weighted_squares_ += other.weighted_squares_;
+    weights_ += other.weights_;
+  }
+
+  // Variance of a pixel. An 8-bit picture without noise still rounds: no less than a step's 1/12.
+  double VarianceGray() const {
+    constexpr double kRounding = 1.0 / 12;
+    return weights_ > 0 ? std::max(weighted_squares_ / weights_, kRounding) : kRounding;
+  }
+
+ private:
+  double weighted_squares_ = 0.0, weights_ = 0.0;
+};
+
+}  // namespace velamap

@@ -1,0 +1,52 @@
+// Strict reading of YAML: every error names file, line and key. Private to this room: it shows
+// yaml-cpp.
+
+#pragma once
+
+#include <charconv>
+#include <functional>
+#include <map>
+#include <string>
+#include <system_error>
+
+#include <yaml-cpp/yaml.h>
+
+namespace velamap {
+
+[[noreturn]] void FailYaml(const std::string& path, const YAML::Mark& mark,
+                           const std::string& message);
+
+// A node, the file it comes from and its key from the top, as errors name it.
+struct YamlItem {
+  const std::string& path;
+  YAML::Node node;
+  std::string key;
+
+  // Throws InputError.
+  [[noreturn]] void Fail(const std::string& message) const;
+  // The text of a scalar; empty for anything else.
+  std::string Text() const { return node.IsScalar() ? node.Scalar() : ""; }
+};
+
+// Calls handle(name, value) for every key of a map, each key once.
+void ForEachKey(const YamlItem& map,
+                const std::function<void(const std::string&, const YamlItem&)>& handle);
+
+using KeyHandlers = std::map<std::string, std::function<void(const YamlItem&)>>;
+
+// Calls the handler of every key that is there; a key without one is an error that lists them.
+void ReadMap(const YamlItem& map, const KeyHandlers& handlers);
+
+void ForEachElement(const YamlItem& list, const std::function<void(const YamlItem&)>& handle);
+
+std::string ReadString(const YamlItem& item);
+bool ReadBool(const YamlItem& item);
+
+// yaml-cpp would read 010 as octal and skip what follows a number; a marker's label is decimal.
+template <typename T>
+bool ParseNumber(const std::string& text, T* value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
+  return !text.empty() && error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace velamap

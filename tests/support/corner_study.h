@@ -1,0 +1,38 @@
+// How well corners of rendered markers are found, against the truth, against cv::cornerSubPix and
+// against the Cramer-Rao bound of the model that is fitted.
+
+#pragma once
+
+#include <cstdint>
+
+namespace velamap {
+
+struct CornerCase {
+  double side_px = 25.0;  // of the upright marker
+  double blur_px = 0.7;   // sigma of the lens's blur
+  double noise = 2.0;     // standard deviation, grey levels
+  double min_tilt_deg = 0.0, max_tilt_deg = 50.0;
+  int jpeg_quality = 0;   // 0: not compressed
+  double bend_deg = 0.0;  // angle of the arc that a marker takes on a cylinder; 0: flat
+  int min_markers = 120;
+  std::uint32_t seed = 1;
+};
+
+// Means over all markers of a case. Standard deviations are of one coordinate, without the common
+// inset that shows in the side.
+struct CornerAccuracy {
+  int num_markers = 0, num_failed = 0;
+  double side_bias_px = 0.0;        // mean error of the side length
+  double side_bias_sigma_px = 0.0;  // of that mean
+  double std_px = 0.0;
+  double subpix_side_bias_px = 0.0, subpix_std_px = 0.0;
+  // Cramer-Rao: the least standard deviation that an unbiased estimate from the same pixels can
+  // have: all of the marker's, or those around its outline where that alone is fitted. Whoever
+  // knows the blur's shape and that the marker is flat; for white noise.
+  double bound_px = 0.0;
+  double error_over_sigma = 0.0;  // root mean square; 1 when the sigmas are right
+};
+
+CornerAccuracy MeasureCorners(const CornerCase& parameters);
+
+}  // namespace velamap
