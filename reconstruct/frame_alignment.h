@@ -36,7 +36,8 @@ struct FrameAlignment {
 // Thesis, equation 3.1: triples of marker centres are sampled, and the centres of all inliers give
 // the transformation. Where fewer than four markers are shared, or their centres lie on a line,
 // centres do not suffice: hypotheses then come from the corners of single markers, each with both
-// of its pose solutions, and inliers' corners take part. Nothing if fewer than min_num_inliers agree.
+// of its pose solutions, and inliers' corners take part. Nothing if fewer than min_num_inliers
+// agree.
 std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoints& shape,
                                          const Layout& layout,
                                          const FrameAlignmentOptions& options);

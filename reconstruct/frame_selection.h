@@ -29,9 +29,9 @@ struct FrameSearchOptions {
   int neighborhood = 5;  // m
 };
 
-// The parameters that fit a video with `num_frames_on_side` frames on the longer side of the central
-// one: the skip shrinks so that n frames find room there, the neighbourhood so that windows do not
-// overlap.
+// The parameters that fit a video with `num_frames_on_side` frames on the longer side of the
+// central one: the skip shrinks so that n frames find room there, the neighbourhood so that windows
+// do not overlap.
 FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side);
 
 // First and last frame number that the search can visit from a central frame: n times a skip that
@@ -50,7 +50,8 @@ struct SelectedFrame {
 // Thesis section 3.4.1: from the central frame skip s frames, take the frame within m of there that
 // has most RANSAC inliers, go on from it, n times on each side. Where the camera
 // has moved so far that no frame of a window aligns with the central frame, the markers of the
-// frames found so far take its place; a window in which that fails too is passed over. `frames` ascend by frame_number. The central frame itself is not in the result.
+// frames found so far take its place; a window in which that fails too is passed over. `frames`
+// ascend by frame_number. The central frame itself is not in the result.
 std::vector<SelectedFrame> SearchFrames(const std::vector<FrameShape>& frames, int central_idx,
                                         const FrameSearchOptions& search, const Layout& layout,
                                         const FrameAlignmentOptions& alignment);

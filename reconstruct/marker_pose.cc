@@ -49,8 +49,7 @@ Rigid3 RefinePose(const std::array<Eigen::Vector3d, kNumCorners>& corners_in_mar
       const Eigen::Vector3d rotated = cam_from_marker.rotation * corners_in_marker[i];
       const Eigen::Vector3d x = rotated + cam_from_marker.translation;
       Eigen::Matrix<double, 2, 3> ray_from_x;
-      ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(),
-          -x.y() / (x.z() * x.z());
+      ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
       Eigen::Matrix<double, 3, 6> x_from_step;
       x_from_step << 0, rotated.z(), -rotated.y(), 1, 0, 0, -rotated.z(), 0, rotated.x(), 0, 1, 0,
           rotated.y(), -rotated.x(), 0, 0, 0, 1;
@@ -116,12 +115,12 @@ std::vector<MarkerPose> EstimateMarkerPoses(
     object_points.emplace_back(corner.x(), corner.y(), corner.z());
   }
   std::vector<cv::Mat> rotation_vectors, translations;
-  cv::solvePnPGeneric(object_points, image_points, cv::Matx33d::eye(), cv::noArray(), rotation_vectors,
-                      translations, false, cv::SOLVEPNP_IPPE_SQUARE);
+  cv::solvePnPGeneric(object_points, image_points, cv::Matx33d::eye(), cv::noArray(),
+                      rotation_vectors, translations, false, cv::SOLVEPNP_IPPE_SQUARE);
   std::vector<MarkerPose> poses;
   for (std::size_t i = 0; i < rotation_vectors.size(); ++i) {
-    const Rigid3 cam_from_marker = RefinePose(
-        corners_in_marker, rays, RigidFromOpenCV(rotation_vectors[i], translations[i]));
+    const Rigid3 cam_from_marker =
+        RefinePose(corners_in_marker, rays, RigidFromOpenCV(rotation_vectors[i], translations[i]));
     const auto error = RmsError(camera, cam_from_marker, corners_in_marker, corners_in_image_px);
     if (error) poses.push_back({cam_from_marker, *error});
   }

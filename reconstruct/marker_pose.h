@@ -1,8 +1,9 @@
 // Pose of a single marker from its four corners (thesis section 3.3).
 //
 // IPPE for squares: Collins and Bartoli, "Infinitesimal plane-based pose estimation", IJCV 109(3),
-// 2014, each solution refined by Levenberg-Marquardt. Two orientations explain four corners of a plane nearly equally well where perspective is
-// weak; both are kept, because only other views can tell.
+// 2014, each solution refined by Levenberg-Marquardt. Two orientations explain four corners of a
+// plane nearly equally well where perspective is weak; both are kept, because only other views can
+// tell.
 
 #pragma once
 

@@ -9,6 +9,7 @@
 
 #include "importer/atomic_output.h"
 #include "importer/error.h"
+#include "reconstruct/adjustment_uncertainty.h"
 
 namespace velamap {
 namespace {
@@ -69,7 +70,8 @@ void WriteFiles(const Model& model, const fs::path& path, const std::array<Model
 
 const std::set<std::string>& ModelFileNames() {
   static const std::set<std::string> names = {"cameras.bin", "images.bin", "points3D.bin",
-                                              "cameras.txt", "images.txt", "points3D.txt"};
+                                              "cameras.txt", "images.txt", "points3D.txt",
+                                              kUncertaintyFileName};
   return names;
 }
 
@@ -90,10 +92,12 @@ Model ReadModel(const std::string& path) {
   return model;
 }
 
-void WriteModel(const Model& model, const std::string& path, ModelFormat format) {
+void WriteModel(const Model& model, const std::string& path, ModelFormat format,
+                const std::function<void(const std::string& folder)>& write_more) {
   AtomicFolder folder(path);
   if (format != ModelFormat::kText) WriteFiles(model, folder.TemporaryPath(), kBinaryFiles);
   if (format != ModelFormat::kBinary) WriteFiles(model, folder.TemporaryPath(), kTextFiles);
+  if (write_more) write_more(folder.TemporaryPath().string());
   folder.Commit();
 }
 

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <set>
 #include <string>
@@ -21,8 +22,10 @@ Model ReadModel(const std::string& path);
 
 // Writes into a temporary sibling and renames it to `path`, so that an interrupted run leaves the
 // old model or none. Points and tracks are sorted by id: same model, same bytes. Text carries 17
-// digits and reads back to the same doubles. Throws InputError if the folder cannot be written.
-void WriteModel(const Model& model, const std::string& path, ModelFormat format);
+// digits and reads back to the same doubles. `write_more` may add files of ModelFileNames() to the
+// folder that it is given. Throws InputError if the folder cannot be written.
+void WriteModel(const Model& model, const std::string& path, ModelFormat format,
+                const std::function<void(const std::string& folder)>& write_more = {});
 
 void ReadCamerasText(std::istream& in, const std::string& name, Model* model);
 void ReadImagesText(std::istream& in, const std::string& name, Model* model);

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "importer/error.h"
+#include "reconstruct/frame_order.h"
 #include "reconstruct/frame_selection.h"
+#include "reconstruct/global_registration.h"
 #include "reconstruct/registration_state.h"
 
 namespace velamap {
@@ -28,7 +30,7 @@ bool FitsInImage(const Camera& camera, const Rigid3& cam_from_shape, const Frame
 
 RegisteredFrame PlaceFrame(const RegistrationState& state, std::size_t idx) {
   const FrameShape& frame = state.frames[idx];
-  RegisteredFrame registered{frame.image_id, frame.image_name, {}, {}, {}, 0.0, ""};
+  RegisteredFrame registered{frame.image_id, frame.image_name, {}, {}, {}, {}, 0.0, ""};
   const auto& alignment = state.alignments[idx];
   if (!alignment) return registered;
   registered.cam_from_shape = Inverse(alignment->shape_from_cam);
@@ -64,53 +66,6 @@ void DropRareMarkers(int min_num_frames, Registration* registration) {
                              [registration](int id) { return !registration->shape.count(id); }),
               ids.end());
   }
-}
-
-// Order by frame number or name, so that neither row order nor ids decide anything.
-std::vector<const DatabaseImage*> CanonicalOrder(const std::vector<DatabaseImage>& images) {
-  std::vector<const DatabaseImage*> ordered;
-  for (const DatabaseImage& image : images) {
-    if (!image.detections.markers.empty()) ordered.push_back(&image);
-  }
-  std::sort(ordered.begin(), ordered.end(), [](const DatabaseImage* a, const DatabaseImage* b) {
-    const FrameDetections &da = a->detections, &db = b->detections;
-    return std::make_pair(da.frame_number.value_or(-1), da.image_name) <
-           std::make_pair(db.frame_number.value_or(-1), db.image_name);
-  });
-  return ordered;
-}
-
-bool UseTimeOrder(const std::vector<FrameShape>& frames, FrameOrder order) {
-  const bool all_numbered = std::all_of(
-      frames.begin(), frames.end(), [](const FrameShape& f) { return f.frame_number.has_value(); });
-  if (order == FrameOrder::kTime && !all_numbered) {
-    throw InputError(
-        "--Registration.frame_order time: the database has images without frame numbers; use auto "
-        "or unordered");
-  }
-  return order == FrameOrder::kTime || (order == FrameOrder::kAuto && all_numbered);
-}
-
-int FindCentralFrame(const std::vector<FrameShape>& frames, const RegistrationOptions& options) {
-  const std::string& name_or_number = options.central_frame;
-  const auto fail = [&name_or_number](const std::string& what) {
-    throw InputError("--Registration.central_frame " + name_or_number + ": " + what +
-                     "; leave the option out to let the best one be chosen");
-  };
-  for (std::size_t idx = 0; idx < frames.size(); ++idx) {
-    const FrameShape& frame = frames[idx];
-    if (frame.image_name != name_or_number &&
-        !(frame.frame_number && std::to_string(*frame.frame_number) == name_or_number)) {
-      continue;
-    }
-    if (static_cast<int>(frame.markers.size()) < options.min_num_inliers) {
-      fail("holds " + std::to_string(frame.markers.size()) + " markers, " +
-           std::to_string(options.min_num_inliers) + " are needed");
-    }
-    return static_cast<int>(idx);
-  }
-  fail("no image of that name or frame number holds markers");
-  return -1;
 }
 
 // Shrinks the search where the video is too short for it, with a note.
@@ -165,7 +120,7 @@ void RegistrationOptions::Check() const {
   const auto require = [](bool ok, const std::string& option, const std::string& expected) {
     if (!ok) throw InputError("--Registration." + option + ": expected " + expected);
   };
-  require(num_frames >= 1, "num_frames", "at least 1");
+  require(num_frames >= 0, "num_frames", "0 (the central frame alone) or more");
   require(skip >= 1, "skip", "at least 1");
   require(neighborhood >= 0, "neighborhood", "0 or more");
   require(ransac_max_error_m >= 0, "ransac_max_error", "0 (the marker's side) or a distance in m");
@@ -175,6 +130,8 @@ void RegistrationOptions::Check() const {
   require(min_num_frames >= 2, "min_num_frames", "at least 2");
   require(num_mean_iterations >= 0, "num_mean_iterations", "0 or more");
   require(mean_sigma_m > 0, "mean_sigma", "a positive distance in m");
+  require(max_num_frames >= 3, "max_num_frames", "at least 3");
+  require(num_starts >= 1, "num_starts", "at least 1");
 }
 
 int Registration::NumRegistered() const {
@@ -187,26 +144,33 @@ Registration RegisterFrames(const std::vector<DatabaseImage>& images,
                             const std::map<CameraId, Camera>& cameras, const Layout& layout,
                             const RegistrationOptions& options) {
   options.Check();
+  if (options.method == RegistrationMethod::kGlobal) {
+    return RegisterFramesGlobally(images, cameras, layout, options);
+  }
   RegistrationState state{layout, options, {}, {}, {}, {}};
-  for (const DatabaseImage* image : CanonicalOrder(images)) {
+  const auto ordered = CanonicalOrder(images);
+  for (const DatabaseImage* image : ordered) {
     const Camera& camera = cameras.at(image->camera_id);
     state.frames.push_back(EstimateFrameShape(*image, camera, layout));
     state.cameras.push_back(&camera);
   }
-  if (state.frames.size() < 2) {
+  const bool time_order = UseTimeOrder(ordered, options.frame_order);
+  const int min_num_registered = time_order && options.num_frames == 0 ? 1 : 2;
+  if (static_cast<int>(state.frames.size()) < min_num_registered) {
     throw DataError("a shape needs at least two images with markers, the database has " +
                     std::to_string(state.frames.size()) + "; take pictures from several positions");
   }
 
   Registration registration;
-  const bool time_order = UseTimeOrder(state.frames, options.frame_order);
   FrameSearchOptions search{options.num_frames, options.skip, options.neighborhood};
   std::optional<CentralFrame> central;
   if (!options.central_frame.empty()) {
-    central = CentralFrame{FindCentralFrame(state.frames, options), "named by option"};
+    central = CentralFrame{FindCentralFrame(ordered, options), "named by option"};
   }
   if (time_order) {
-    search = FitSearch(state.frames, central, search, &registration.notes);
+    if (options.num_frames > 0) {
+      search = FitSearch(state.frames, central, search, &registration.notes);
+    }
     if (!central) central = ChooseCentralVideoFrame(state.frames, search);
   } else if (!central) {
     central = ChooseCentralFrame(state.frames);
@@ -222,7 +186,7 @@ Registration RegisterFrames(const std::vector<DatabaseImage>& images,
   registration.central_image_name = state.frames[central_idx].image_name;
   registration.central_reason = central->reason;
   RefineShape(&state);
-  if (!state.alignments[central_idx] || state.NumRegistered() < 2) {
+  if (!state.alignments[central_idx] || state.NumRegistered() < min_num_registered) {
     throw DataError("no image shares enough markers with the central image " +
                     registration.central_image_name + ": at least " +
                     std::to_string(options.min_num_inliers) +
@@ -240,7 +204,8 @@ Registration RegisterFrames(const std::vector<DatabaseImage>& images,
       time_order
           ? static_cast<int>(std::ceil(options.frequency_threshold * registration.NumRegistered()))
           : 0;
-  DropRareMarkers(std::max(options.min_num_frames, by_frequency), &registration);
+  const int min_num_frames = std::min(options.min_num_frames, registration.NumRegistered());
+  DropRareMarkers(std::max(min_num_frames, by_frequency), &registration);
   return registration;
 }
 

@@ -1,10 +1,11 @@
-// Registers frames to a central frame and averages their markers: the first guess of the surface
-// (thesis sections 3.4 and 3.5).
+// Registers frames and places markers: the first guess of the surface. Two methods do it; the
+// global one is in reconstruct/global_registration.h.
 //
-// A video is searched in time order as the thesis does. Photographs have no time order: there the
-// central frame is the one that has most markers in common with the others, and images are added
-// one after another to the growing mean shape, so that those that share nothing with the central
-// frame are reached through others.
+// The thesis's (3.4 and 3.5) registers frames to a central frame and averages their markers. A
+// video is searched in time order. Photographs have no time order: there the central frame is the
+// one that has most markers in common with the others, and images are added one after another to
+// the growing mean shape, so that those that share nothing with the central frame are reached
+// through others.
 
 #pragma once
 
@@ -22,6 +23,11 @@
 
 namespace velamap {
 
+enum class RegistrationMethod {
+  kThesis,  // rigid alignment of single-marker poses around one central frame
+  kGlobal,  // resection of all frames against a map that grows from several starts
+};
+
 enum class FrameOrder {
   kAuto,       // time where all images carry frame numbers, else none
   kTime,       // thesis search around the central frame
@@ -29,17 +35,25 @@ enum class FrameOrder {
 };
 
 struct RegistrationOptions {
+  RegistrationMethod method = RegistrationMethod::kGlobal;
   FrameOrder frame_order = FrameOrder::kAuto;
-  std::string central_frame;       // image name or frame number; empty: the best one is chosen
-  int num_frames = 20;             // n, frames on each side of the central one (time order)
-  int skip = 10;                   // s, frames between selected ones (time order)
-  int neighborhood = 5;            // m, frames on each side of the skip that compete (time order)
-  double ransac_max_error_m = 0.0; // 0: the marker's side (the thesis's 100 mm)
-  int min_num_inliers = 2;         // fewest shared markers that agree for a frame to be registered
-  double frequency_threshold = 0.3; // beta, part of the selected frames that see a marker (time)
-  int min_num_frames = 2;          // fewest frames that see a marker
+  std::string central_frame;  // image name or frame number; empty: the best one is chosen
+  // n, frames on each side of the central one (time order). 0: the central frame alone, whose
+  // single marker poses are then the shape (the detection that thesis 4.1 examines).
+  int num_frames = 20;
+  int skip = 10;                    // s, frames between selected ones (time order)
+  int neighborhood = 5;             // m, frames on each side of the skip that compete (time order)
+  double ransac_max_error_m = 0.0;  // 0: the marker's side (the thesis's 100 mm)
+  int min_num_inliers = 2;          // fewest shared markers that agree for a frame to be registered
+  double frequency_threshold = 0.3;  // beta, part of the selected frames that see a marker (time)
+  int min_num_frames = 2;            // fewest frames that see a marker
   int num_mean_iterations = 30;
   double mean_sigma_m = 0.6;
+  // kGlobal: frames of a video that take part; chosen for what they add to the precision of all
+  // markers. Photographs take part all.
+  int max_num_frames = 80;
+  // kGlobal: pairs of frames from which a map is grown before the best map is kept.
+  int num_starts = 4;
   int random_seed = 0;
 
   void Check() const;  // throws InputError that names the option
@@ -48,11 +62,12 @@ struct RegistrationOptions {
 struct RegisteredFrame {
   ImageId image_id = 0;
   std::string image_name;
-  std::optional<Rigid3> cam_from_shape;  // none: left out, see `reason`
-  std::vector<int> marker_ids;           // markers that stay in this frame, ascending
-  std::vector<int> outlier_ids;          // markers that do not fit their place in the shape
-  double rms_error_m = 0.0;              // of the alignment with the mean shape
-  std::string reason;                    // why it was left out, empty for a registered frame
+  std::optional<Rigid3> cam_from_shape;      // none: left out, see `reason`
+  std::vector<int> marker_ids;               // markers that stay in this frame, ascending
+  std::vector<int> outlier_ids;              // markers that do not fit their place in the shape
+  std::vector<std::string> outlier_reasons;  // kGlobal: by outlier_ids; empty with kThesis
+  double rms_error_m = 0.0;                  // of the alignment with the mean shape
+  std::string reason;                        // why it was left out, empty for a registered frame
 };
 
 struct DroppedMarker {
@@ -61,7 +76,8 @@ struct DroppedMarker {
   std::string reason;
 };
 
-// The shape frame is the cam frame of the central image, m by the nominal marker side.
+// The shape frame is the cam frame of the central image, m by the nominal marker side (kGlobal: by
+// the median over the markers).
 struct Registration {
   ImageId central_image_id = 0;
   std::string central_image_name;
@@ -69,7 +85,8 @@ struct Registration {
   std::vector<RegisteredFrame> frames;  // all images with markers, in order
   ShapePoints shape;                    // mean points by marker id
   std::vector<DroppedMarker> dropped_markers;
-  std::vector<std::string> notes;       // parameters that had to be fitted to the data, one a line
+  // Parameters that had to be fitted to the data, and doubts about the result, one a line.
+  std::vector<std::string> notes;
 
   int NumRegistered() const;
 };

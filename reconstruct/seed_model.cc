@@ -71,8 +71,9 @@ Model MakeSeedModel(const Registration& registration, const std::vector<Database
     AddImage(frame, image, registration.shape, &model, &color_sums);
   }
   SetColors(color_sums, &model);
-  RemoveShortTracks(&model, 2);
-  if (model.images.size() < 2 || model.points3D.empty()) {
+  const int min_num_images = registration.NumRegistered() == 1 ? 1 : 2;
+  RemoveShortTracks(&model, min_num_images);
+  if (static_cast<int>(model.images.size()) < min_num_images || model.points3D.empty()) {
     throw DataError("fewer than two images share markers, so there is nothing to adjust");
   }
   // The central image may have lost its markers to the filters; any other origin serves then.
@@ -85,11 +86,16 @@ Model MakeSeedModel(const Registration& registration, const std::vector<Database
 }
 
 void WriteRegistrationCsv(const Registration& registration, std::ostream& out) {
-  out << "image_name,registered,num_markers,num_outliers,rms_error_mm,reason\n";
+  out << "image_name,registered,num_markers,num_outliers,rms_error_mm,reason,outliers\n";
   for (const RegisteredFrame& frame : registration.frames) {
     out << frame.image_name << ',' << (frame.cam_from_shape ? 1 : 0) << ','
         << frame.marker_ids.size() << ',' << frame.outlier_ids.size() << ','
-        << 1e3 * frame.rms_error_m << ",\"" << frame.reason << "\"\n";
+        << 1e3 * frame.rms_error_m << ",\"" << frame.reason << "\",\"";
+    for (std::size_t i = 0; i < frame.outlier_ids.size(); ++i) {
+      out << (i > 0 ? "; " : "") << frame.outlier_ids[i];
+      if (i < frame.outlier_reasons.size()) out << ": " << frame.outlier_reasons[i];
+    }
+    out << "\"\n";
   }
 }
 

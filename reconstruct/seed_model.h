@@ -12,16 +12,17 @@
 
 namespace velamap {
 
-// Every registered image with all keypoints of the database, every corner of the mean shape as point
-// 10*k + c with its complete track, coloured by the mean over the track. The central image comes
-// first (it is the origin) and the others in the order that reconstruct/gauge.h explains. Images
-// left with fewer than two markers, and points with fewer than two observations, stay out.
-// Throws DataError when fewer than two images are left.
+// Every registered image with all keypoints of the database, every corner of the mean shape as
+// point 10*k + c with its complete track, coloured by the mean over the track. The central image
+// comes first (it is the origin) and the others in the order that reconstruct/gauge.h explains.
+// Images left with fewer than two markers, and points with fewer than two observations, stay out,
+// unless a single frame was asked for: its points have one each. Throws DataError when fewer than
+// two images are left.
 Model MakeSeedModel(const Registration& registration, const std::vector<DatabaseImage>& images,
                     const std::map<CameraId, Camera>& cameras);
 
 // One row an image with markers: image_name, registered, num_markers, num_outliers, rms_error_mm,
-// reason.
+// reason, outliers (marker ids, each with its reason where the method gives one).
 void WriteRegistrationCsv(const Registration& registration, std::ostream& out);
 
 }  // namespace velamap

@@ -7,10 +7,12 @@ packages=(
   build-essential cmake ninja-build ccache pkg-config colmap
   libopencv-dev libopencv-contrib-dev libeigen3-dev
   libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev
-  libboost-program-options-dev libspdlog-dev nlohmann-json3-dev
+  libboost-program-options-dev libspdlog-dev libceres-dev nlohmann-json3-dev
+  libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
+  libocct-data-exchange-dev libassimp-dev libjs-three libjs-chart.js
   libgtest-dev libgmock-dev libbenchmark-dev
 )
-test_packages=(xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox)
+test_packages=(xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium)
 
 case "${1:-}" in
   "") ;;

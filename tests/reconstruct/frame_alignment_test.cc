@@ -81,7 +81,8 @@ TEST_F(FrameAlignmentTest, WrongMarkersWithoutConsensusGiveNothing) {
   for (std::size_t i = 0; i < frames_[1].markers.size(); ++i) {
     for (auto& solution : frames_[1].markers[i].x_in_cam) {
       for (auto& x : solution) {
-        x += 0.7 * static_cast<double>(i * i % 17) * Eigen::Vector3d(1, -0.5, static_cast<double>(i % 5));
+        x += 0.7 * static_cast<double>(i * i % 17) *
+             Eigen::Vector3d(1, -0.5, static_cast<double>(i % 5));
       }
     }
   }

@@ -5,7 +5,8 @@
 namespace velamap {
 namespace {
 
-const Camera kCamera{CameraModel::kOpenCV, 1920, 1080, {1200, 1202, 957, 541, -0.1, 0.02, 4e-4, -3e-4}};
+const Camera kCamera{
+    CameraModel::kOpenCV, 1920, 1080, {1200, 1202, 957, 541, -0.1, 0.02, 4e-4, -3e-4}};
 
 std::array<Eigen::Vector2d, kNumCorners> Project(const Rigid3& cam_from_marker, double length_m) {
   const auto corners = CornersInMarker(length_m);
@@ -44,7 +45,8 @@ TEST(MarkerPose, NoiseFreePoseIsRecoveredAcrossTheImage) {
 }
 
 TEST(MarkerPose, MarkerThatFacesTheCameraExactlyIsNoSpecialCase) {
-  for (const Eigen::Vector3d& position : {Eigen::Vector3d(0, 0, 2), Eigen::Vector3d(-0.6, 0.1, 2.6)}) {
+  for (const Eigen::Vector3d& position :
+       {Eigen::Vector3d(0, 0, 2), Eigen::Vector3d(-0.6, 0.1, 2.6)}) {
     const Rigid3 truth = FacingCamera(0.0, position);
     const auto poses = EstimateMarkerPoses(kCamera, Project(truth, 0.1), 0.1);
     ASSERT_FALSE(poses.empty());

@@ -13,7 +13,14 @@
 namespace velamap {
 namespace {
 
-Registration Register(const SyntheticScene& scene, const RegistrationOptions& options = {}) {
+RegistrationOptions ThesisOptions() {
+  RegistrationOptions options;
+  options.method = RegistrationMethod::kThesis;
+  return options;
+}
+
+Registration Register(const SyntheticScene& scene,
+                      const RegistrationOptions& options = ThesisOptions()) {
   return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, options);
 }
 
@@ -74,11 +81,13 @@ TEST(Registration, OrderAndIdsOfImagesChangeNothing) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 12, false);
   AddNoise({0.3, 0.05, 0.02, 200, 3}, &scene);
   auto images = DatabaseImages(scene);
-  const Registration registration = RegisterFrames(images, SceneCameras(scene), scene.layout, {});
+  const Registration registration =
+      RegisterFrames(images, SceneCameras(scene), scene.layout, ThesisOptions());
   std::shuffle(images.begin(), images.end(), std::mt19937(5));
   for (std::size_t i = 0; i < images.size(); ++i)
     images[i].image_id = static_cast<ImageId>(i + 100);
-  const Registration shuffled = RegisterFrames(images, SceneCameras(scene), scene.layout, {});
+  const Registration shuffled =
+      RegisterFrames(images, SceneCameras(scene), scene.layout, ThesisOptions());
   EXPECT_EQ(shuffled.central_image_name, registration.central_image_name);
   ASSERT_EQ(shuffled.shape.size(), registration.shape.size());
   for (const auto& [marker_id, points] : registration.shape) {
@@ -89,7 +98,7 @@ TEST(Registration, OrderAndIdsOfImagesChangeNothing) {
 TEST(Registration, SeedDecidesNothingThatMatters) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 41, true);
   AddNoise({0.2, 0.0, 0.03, 200, 3}, &scene);
-  RegistrationOptions options;
+  RegistrationOptions options = ThesisOptions();
   const Registration first = Register(scene, options);
   options.random_seed = 42;
   const Registration second = Register(scene, options);
@@ -128,7 +137,7 @@ TEST(Registration, WrongFrameIsLeftOutWithAReason) {
   }
   for (std::size_t i = 0; i < irregular.size(); ++i) irregular[i].marker_id = ids[i];
   markers = irregular;
-  RegistrationOptions options;
+  RegistrationOptions options = ThesisOptions();
   options.min_num_inliers = 5;
   const Registration registration = Register(scene, options);
   EXPECT_FALSE(registration.frames[3].cam_from_shape);
@@ -169,7 +178,8 @@ TEST(Registration, DataThatCannotBeRegisteredAreRefused) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 3, false);
   auto images = DatabaseImages(scene);
   images.resize(1);
-  EXPECT_THROW(RegisterFrames(images, SceneCameras(scene), scene.layout, {}), DataError);
+  EXPECT_THROW(RegisterFrames(images, SceneCameras(scene), scene.layout, ThesisOptions()),
+               DataError);
   for (std::size_t i = 0; i < 3; ++i) {
     for (auto& marker : scene.frames[i].markers) marker.marker_id += static_cast<int>(100 * i);
   }
@@ -178,7 +188,7 @@ TEST(Registration, DataThatCannotBeRegisteredAreRefused) {
 
 TEST(Registration, UnknownCentralFrameIsAnInputError) {
   const SyntheticScene scene = MakeScene(SceneKind::kSail, 3, true);
-  RegistrationOptions options;
+  RegistrationOptions options = ThesisOptions();
   options.central_frame = "17";
   EXPECT_THROW(Register(scene, options), InputError);
   options.central_frame = "2";

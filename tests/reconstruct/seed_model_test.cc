@@ -33,6 +33,15 @@ TEST(SeedModel, NoiseFreeSceneReprojectsOntoItsKeypoints) {
   EXPECT_EQ(num_observations, num_seen);  // tracks are complete
 }
 
+TEST(SeedModel, RegistrationTableGivesReasonsOfOutliers) {
+  Registration registration;
+  registration.frames.push_back(
+      {1, "a.jpg", Rigid3{}, {3, 9}, {5, 6}, {"too far", "turned"}, 0.001, ""});
+  std::ostringstream csv;
+  WriteRegistrationCsv(registration, csv);
+  EXPECT_THAT(csv.str(), testing::EndsWith("a.jpg,1,2,2,1,\"\",\"5: too far; 6: turned\"\n"));
+}
+
 TEST(SeedModel, RegistrationTableNamesEveryImage) {
   const SyntheticScene scene = MakeScene(SceneKind::kSail, 6, true);
   std::ostringstream csv;

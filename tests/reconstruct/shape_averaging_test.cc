@@ -65,7 +65,8 @@ TEST(ShapeAveraging, FlippedSolutionIsLeftOutWhereFramesAgreeOnTheOther) {
   for (int i = 0; i < 9; ++i) {
     // The wrong solution differs from frame to frame and comes first in most of them.
     const MarkerPoints flipped = Square({1, 2, 3}, -0.3 - 0.05 * i);
-    frames.push_back(i % 3 == 0 ? MarkerSolutions{truth, flipped} : MarkerSolutions{flipped, truth});
+    frames.push_back(i % 3 == 0 ? MarkerSolutions{truth, flipped}
+                                : MarkerSolutions{flipped, truth});
   }
   EXPECT_LT(RmsDistance(AverageMarker(frames, {}), truth), 1e-12);
 }

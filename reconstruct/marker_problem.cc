@@ -1,0 +1,329 @@
+#include "reconstruct/marker_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+#include <ceres/manifold.h>
+#include <ceres/product_manifold.h>
+#include <ceres/solver.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/camera_projection.h"
+#include "importer/error.h"
+
+namespace velamap {
+namespace {
+
+// Sigmas that the motion of a hand or a boat does not exceed; they only matter for images that say
+// nothing about their own velocity.
+constexpr double kLinearVelocitySigma = 3.0;   // m/s
+constexpr double kAngularVelocitySigma = 1.0;  // rad/s
+
+Eigen::Map<const Eigen::Vector3d> CornerPosition(const MarkerBlock& marker, int slot) {
+  return Eigen::Map<const Eigen::Vector3d>(marker.x_in_world.data() + 3 * slot);
+}
+
+int SlotOf(const MarkerBlock& marker, int corner) {
+  const auto it = std::find(marker.corners.begin(), marker.corners.end(), corner);
+  return it == marker.corners.end() ? -1 : static_cast<int>(it - marker.corners.begin());
+}
+
+// Sum of the unit vectors along both sides away from the corner, as the image shows them now.
+Eigen::Vector2d InsetDirection(const Camera& camera, const Rigid3& cam_from_world,
+                               const MarkerBlock& marker, int corner) {
+  const auto project = [&](int other) -> std::optional<Eigen::Vector2d> {
+    const int slot = SlotOf(marker, other);
+    if (slot < 0) return std::nullopt;
+    return ImageFromCam(camera, cam_from_world * CornerPosition(marker, slot));
+  };
+  const auto here = project(corner);
+  const auto next = project(corner % kNumCorners + 1);
+  const auto previous = project((corner + kNumCorners - 2) % kNumCorners + 1);
+  if (!here || !next || !previous) return Eigen::Vector2d::Zero();
+  return (*next - *here).normalized() + (*previous - *here).normalized();
+}
+
+double CornerSigma(const MarkerAdjustmentOptions& options, const CornerSigmas& corner_sigmas,
+                   const TrackElement& element) {
+  const auto image = corner_sigmas.find(element.image_id);
+  double sigma_px = 0.0;
+  if (image != corner_sigmas.end() && element.point2D_idx < image->second.size()) {
+    sigma_px = image->second[element.point2D_idx];
+  }
+  if (!(sigma_px > 0)) sigma_px = options.corner_sigma_px;
+  return std::hypot(sigma_px, options.corner_sigma_floor_px);
+}
+
+// Puts a marker problem together.
+class ProblemBuilder {
+ public:
+  ProblemBuilder(const MarkerAdjustmentOptions& options, const Model& model,
+                 const MarkerWeights& weights, MarkerState* state)
+      : options_(options), model_(model), weights_(weights), state_(*state) {
+    result_.problem = std::make_unique<ceres::Problem>();
+  }
+
+  void AddParameters() {
+    ceres::Problem& problem = *result_.problem;
+    for (MarkerBlock& marker : state_.markers) {
+      problem.AddParameterBlock(marker.x_in_world.data(),
+                                static_cast<int>(marker.x_in_world.size()));
+      result_.markers.push_back(marker.x_in_world.data());
+    }
+    for (ImageBlock& image : state_.images) {
+      problem.AddParameterBlock(image.cam_from_world.data(), 7, new PoseManifold());
+      problem.AddParameterBlock(image.velocity.data(), 6);
+      AddGlobal(image.cam_from_world.data(), &image != &state_.images.front());
+      AddGlobal(image.velocity.data(), options_.rolling_shutter_s > 0);
+    }
+    for (auto& [camera_id, intrinsics] : state_.intrinsics) {
+      problem.AddParameterBlock(intrinsics.data(), static_cast<int>(intrinsics.size()));
+      const std::vector<int> held = HeldIntrinsics(model_.cameras.at(camera_id).model);
+      const bool refines = held.size() < intrinsics.size();
+      if (refines && !held.empty()) {
+        problem.SetManifold(intrinsics.data(),
+                            new ceres::SubsetManifold(static_cast<int>(intrinsics.size()), held));
+      }
+      AddGlobal(intrinsics.data(), refines);
+    }
+    problem.AddParameterBlock(&state_.inset_px, 1);
+    AddGlobal(&state_.inset_px, EstimatesInset());
+    problem.AddParameterBlock(&state_.print_scale, 1);
+    AddGlobal(&state_.print_scale, PrintScaleSigma() > 0 && !weights_.holds_print_scale);
+  }
+
+  void AddCorners(const CornerSigmas& corner_sigmas) {
+    std::unordered_map<ImageId, std::size_t> image_idxs;
+    for (std::size_t i = 0; i < state_.images.size(); ++i) {
+      image_idxs[state_.images[i].image_id] = i;
+    }
+    for (MarkerBlock& marker : state_.markers) {
+      std::map<std::size_t, std::vector<std::pair<int, TrackElement>>> views;  // by image
+      for (const int corner : marker.corners) {
+        const Point3DId point3D_id = Point3DIdFromCorner({marker.marker_id, corner});
+        for (const TrackElement& element : model_.points3D.at(point3D_id).track) {
+          views[image_idxs.at(element.image_id)].emplace_back(corner, element);
+        }
+      }
+      for (const auto& [image_idx, view] : views) AddView(image_idx, view, corner_sigmas, &marker);
+    }
+  }
+
+  void AddPriors(const std::map<CameraId, Camera>& calibration) {
+    for (MarkerBlock& marker : state_.markers) {
+      const bool has_size = weights_.markers_without_size.count(marker.marker_id) == 0;
+      const double flatness = marker.is_rigid ? options_.rigid_flatness : options_.cloth_flatness;
+      const double side_sigma_m = weights_.print_tolerance * marker.length_m;
+      const MarkerKnowledge knowledge{marker.length_m, has_size ? side_sigma_m : 0.0,
+                                      std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
+      auto error = std::make_unique<MarkerPriorError>(knowledge, marker.corners);
+      if (error->num_residuals() == 0) continue;
+      AddPrior(error.release(), {marker.x_in_world.data(), &state_.print_scale});
+    }
+    if (EstimatesInset()) {
+      AddPrior(new ParameterPriorError({0.0}, {options_.inset_sigma_px}), {&state_.inset_px});
+    }
+    if (PrintScaleSigma() > 0) {
+      AddPrior(new ParameterPriorError({0.0}, {PrintScaleSigma()}), {&state_.print_scale});
+    }
+    if (options_.rolling_shutter_s > 0) {
+      constexpr double v = kLinearVelocitySigma, w = kAngularVelocitySigma;
+      for (ImageBlock& image : state_.images) {
+        AddPrior(new ParameterPriorError({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}),
+                 {image.velocity.data()});
+      }
+    }
+    for (auto& [camera_id, intrinsics] : state_.intrinsics) {
+      const Camera& camera = calibration.at(camera_id);
+      if (HeldIntrinsics(camera.model).size() == intrinsics.size()) continue;
+      AddPrior(new ParameterPriorError(camera.params, IntrinsicsSigmas(camera)),
+               {intrinsics.data()});
+    }
+  }
+
+  void AddScaleBars() {
+    for (const ScaleBar& bar : weights_.scale_bars) {
+      std::vector<double*> blocks;
+      for (const int idx : bar.marker_idxs) {
+        blocks.push_back(state_.markers[idx].x_in_world.data());
+      }
+      result_.problem->AddResidualBlock(
+          new ScaleBarError(bar.distance.length_m, bar.distance.sigma_m, bar.corner_weights),
+          nullptr, blocks);
+    }
+  }
+
+  MarkerProblem Take() { return std::move(result_); }
+
+ private:
+  using PoseManifold =
+      ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
+
+  void AddGlobal(double* block, bool varies) {
+    if (varies) {
+      result_.globals.push_back(block);
+    } else {
+      result_.problem->SetParameterBlockConstant(block);
+    }
+  }
+
+  void AddPrior(ceres::CostFunction* error, const std::vector<double*>& blocks) {
+    result_.prior_residuals.push_back(result_.problem->AddResidualBlock(error, nullptr, blocks));
+  }
+
+  void AddView(std::size_t image_idx, const std::vector<std::pair<int, TrackElement>>& view,
+               const CornerSigmas& corner_sigmas, MarkerBlock* marker) {
+    ImageBlock& image = state_.images[image_idx];
+    const ModelImage& model_image = model_.images[image_idx];
+    const Camera& camera = model_.cameras.at(image.camera_id);
+    std::vector<CornerObservation> observations;
+    for (const auto& [corner, element] : view) {
+      CornerObservation observation;
+      observation.slot = SlotOf(*marker, corner);
+      observation.x_in_image_px = model_image.points2D.at(element.point2D_idx).x_in_image_px;
+      observation.sigma_px = weights_.corner_factor * CornerSigma(options_, corner_sigmas, element);
+      if (EstimatesInset()) {
+        observation.inset_direction =
+            InsetDirection(camera, model_image.cam_from_world, *marker, corner);
+      }
+      observation.row_time_s =
+          options_.rolling_shutter_s * (observation.x_in_image_px.y() / camera.height_px - 0.5);
+      observations.push_back(observation);
+      result_.corners.emplace_back(Point3DIdFromCorner({marker->marker_id, corner}), element);
+    }
+    result_.corner_residuals.push_back(result_.problem->AddResidualBlock(
+        new MarkerViewError(camera.model, static_cast<int>(marker->corners.size()),
+                            std::move(observations), weights_.loss_sigmas),
+        nullptr,
+        std::vector<double*>{marker->x_in_world.data(), image.cam_from_world.data(),
+                             &state_.inset_px, state_.intrinsics.at(image.camera_id).data(),
+                             image.velocity.data()}));
+  }
+
+  bool EstimatesInset() const { return options_.estimate_inset && options_.inset_sigma_px > 0; }
+
+  double PrintScaleSigma() const {
+    return std::hypot(options_.common_print_tolerance, weights_.inset_as_scale);
+  }
+
+  std::vector<int> HeldIntrinsics(CameraModel model) const {
+    const int num_focal = NumFocalLengths(model);
+    std::vector<int> held;
+    for (int i = 0; i < NumCameraParams(model); ++i) {
+      const bool is_refined = i < num_focal       ? options_.refine_focal_length
+                              : i < num_focal + 2 ? options_.refine_principal_point
+                                                  : options_.refine_extra_params;
+      if (!is_refined) held.push_back(i);
+    }
+    return held;
+  }
+
+  std::vector<double> IntrinsicsSigmas(const Camera& camera) const {
+    const int num_focal = NumFocalLengths(camera.model);
+    std::vector<double> sigmas(camera.params.size(), options_.intrinsics_sigma);
+    for (int i = 0; i < num_focal + 2; ++i) {
+      sigmas[i] *= i < num_focal ? camera.params[i] : MeanFocalLength(camera);
+    }
+    return sigmas;
+  }
+
+  static int NumFocalLengths(CameraModel model) { return HasOneFocalLength(model) ? 1 : 2; }
+
+  const MarkerAdjustmentOptions& options_;
+  const Model& model_;
+  const MarkerWeights& weights_;
+  MarkerState& state_;
+  MarkerProblem result_;
+};
+
+}  // namespace
+
+MarkerState MakeMarkerState(const Model& model, const Layout& layout) {
+  std::set<int> rigid;
+  for (const LayoutPart& part : layout.parts) {
+    if (!part.rigid) continue;
+    Layout only_this;
+    only_this.parts = {part};
+    for (const int marker_id : MarkerIds(only_this)) rigid.insert(marker_id);
+  }
+  MarkerState state;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    if (!IsCornerPoint3DId(point3D_id)) {
+      throw DataError(fmt::format(
+          "point {} of the model is no marker corner (corner c of marker k is point 10 k + c)",
+          point3D_id));
+    }
+    const CornerId id = CornerFromPoint3DId(point3D_id);
+    if (state.markers.empty() || state.markers.back().marker_id != id.marker_id) {
+      MarkerBlock marker;
+      marker.marker_id = id.marker_id;
+      marker.length_m = MarkerLength(layout, id.marker_id);
+      marker.is_rigid = rigid.count(id.marker_id) > 0;
+      state.markers.push_back(std::move(marker));
+    }
+    MarkerBlock& marker = state.markers.back();
+    marker.corners.push_back(id.corner);
+    for (const double x : point.x_in_world) marker.x_in_world.push_back(x);
+  }
+  for (const ModelImage& image : model.images) {
+    ImageBlock block{image.image_id, image.camera_id, {}, {}};
+    Eigen::Map<Eigen::Vector4d>(block.cam_from_world.data()) =
+        image.cam_from_world.rotation.coeffs();
+    Eigen::Map<Eigen::Vector3d>(block.cam_from_world.data() + 4) = image.cam_from_world.translation;
+    state.images.push_back(block);
+    state.intrinsics[image.camera_id] = model.cameras.at(image.camera_id).params;
+  }
+  return state;
+}
+
+void WriteMarkerState(const MarkerState& state, Model* model) {
+  for (const MarkerBlock& marker : state.markers) {
+    for (std::size_t slot = 0; slot < marker.corners.size(); ++slot) {
+      const Point3DId point3D_id = Point3DIdFromCorner({marker.marker_id, marker.corners[slot]});
+      model->points3D.at(point3D_id).x_in_world = CornerPosition(marker, static_cast<int>(slot));
+    }
+  }
+  for (std::size_t i = 0; i < state.images.size(); ++i) {
+    VELAMAP_CHECK(model->images[i].image_id == state.images[i].image_id);
+    const double* pose = state.images[i].cam_from_world.data();
+    model->images[i].cam_from_world.rotation =
+        Eigen::Map<const Eigen::Quaterniond>(pose).normalized();
+    model->images[i].cam_from_world.translation = Eigen::Map<const Eigen::Vector3d>(pose + 4);
+  }
+  for (const auto& [camera_id, intrinsics] : state.intrinsics) {
+    model->cameras.at(camera_id).params = intrinsics;
+  }
+}
+
+MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Model& model,
+                                const CornerSigmas& corner_sigmas,
+                                const std::map<CameraId, Camera>& calibration,
+                                const MarkerWeights& weights, MarkerState* state) {
+  ProblemBuilder builder(options, model, weights, state);
+  builder.AddParameters();
+  builder.AddCorners(corner_sigmas);
+  builder.AddPriors(calibration);
+  builder.AddScaleBars();
+  return builder.Take();
+}
+
+int SolveMarkerProblem(int max_num_iterations, double function_tolerance, MarkerProblem* problem) {
+  ceres::Solver::Options options;
+  options.max_num_iterations = max_num_iterations;
+  options.function_tolerance = function_tolerance;
+  options.gradient_tolerance = 0.0;
+  options.parameter_tolerance = 1e-14;
+  options.num_threads = 1;
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, problem->problem.get(), &summary);
+  spdlog::debug("{}", summary.BriefReport());
+  if (summary.termination_type == ceres::FAILURE) throw DataError(summary.message);
+  return static_cast<int>(summary.iterations.size()) - 1;
+}
+
+}  // namespace velamap

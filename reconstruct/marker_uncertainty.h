@@ -1,0 +1,22 @@
+// From the normal equations of a marker problem to what its user is told. Private to this room.
+
+#pragma once
+
+#include "reconstruct/adjustment_uncertainty.h"
+#include "reconstruct/marker_problem.h"
+#include "reconstruct/normal_equations.h"
+
+namespace velamap {
+
+// Of all corners, in the frame that the first image's camera fixes.
+PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covariance);
+
+// Number of residuals of the corners that no parameter absorbs.
+double CornerRedundancy(const MarkerProblem& problem, const MarkerCovariance& covariance);
+
+// All but the variance factor. `weights` and `problem` are those of `state`, without loss.
+AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeights& weights,
+                                      const MarkerProblem& problem,
+                                      const MarkerCovariance& covariance);
+
+}  // namespace velamap

@@ -1,0 +1,13 @@
+# The marker-aware bundle adjustment.
+velamap_test(NAME reconstruct_adjustment_test LABEL unit
+  SOURCES
+    adjustment_uncertainty_test.cc
+    covariance_update_test.cc
+    marker_adjustment_test.cc
+    marker_cost_functions_test.cc
+    marker_uncertainty_test.cc
+    scene_model.cc
+    sheet_model.cc
+    weak_geometry_test.cc
+  LIBRARIES Ceres::ceres
+)
