@@ -1,33 +1,29 @@
 #include "exporters/adjacent_distances.h"
 
-#include <map>
+#include "exporters/shape_sigma.h"
 
 namespace velamap {
-namespace {
-
-std::map<int, Eigen::Vector3d> CentersOf(const MarkerShape& shape) {
-  std::map<int, Eigen::Vector3d> centers;
-  for (const ShapeMarker& marker : shape.markers) {
-    if (marker.IsWhole()) centers[marker.marker_id] = *marker.x_in_shape_m[0];
-  }
-  return centers;
-}
-
-}  // namespace
 
 std::vector<AdjacentDistance> CompareAdjacentDistances(const MarkerShape& shape,
                                                        const MarkerShape& reference,
-                                                       const Layout& layout) {
-  const auto centers = CentersOf(shape), reference_centers = CentersOf(reference);
+                                                       const Layout& layout,
+                                                       const PointCovariance* covariance) {
+  const auto distance_m = [](const ShapeMarker& marker1, const ShapeMarker& marker2) {
+    return (*marker1.x_in_shape_m[0] - *marker2.x_in_shape_m[0]).norm();
+  };
   const auto is_known = [&](int id) {
-    return centers.count(id) > 0 && reference_centers.count(id) > 0;
+    return FindWholeMarker(shape, id) != nullptr && FindWholeMarker(reference, id) != nullptr;
   };
   std::vector<AdjacentDistance> distances;
   for (const auto& [id1, neighbors] : BuildAdjacencyGraph(layout)) {
     for (const int id2 : neighbors) {
       if (id1 > id2 || !is_known(id1) || !is_known(id2)) continue;
-      distances.push_back({id1, id2, (centers.at(id1) - centers.at(id2)).norm(),
-                           (reference_centers.at(id1) - reference_centers.at(id2)).norm()});
+      const ShapeMarker& marker1 = *FindWholeMarker(shape, id1);
+      const ShapeMarker& marker2 = *FindWholeMarker(shape, id2);
+      distances.push_back(
+          {id1, id2, distance_m(marker1, marker2),
+           distance_m(*FindWholeMarker(reference, id1), *FindWholeMarker(reference, id2)),
+           SigmaOf(covariance, DistanceGradient(marker1, 0, marker2, 0))});
     }
   }
   return distances;

@@ -2,10 +2,12 @@
 
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "exporters/marker_shape.h"
 #include "importer/layout.h"
+#include "reconstruct/point_covariance.h"
 
 namespace velamap {
 
@@ -14,6 +16,8 @@ struct AdjacentDistance {
   int marker_id1 = 0, marker_id2 = 0;
   double distance_m = 0.0;
   double reference_distance_m = 0.0;
+  // Of distance_m, where `covariance` holds the corners.
+  std::optional<double> sigma_m = std::nullopt;
 };
 
 // Every pair that is adjacent in the layout's graph (neighbours on a line, all markers of a rigid
@@ -21,6 +25,7 @@ struct AdjacentDistance {
 // Empty for a layout without lines or rigid parts.
 std::vector<AdjacentDistance> CompareAdjacentDistances(const MarkerShape& shape,
                                                        const MarkerShape& reference,
-                                                       const Layout& layout);
+                                                       const Layout& layout,
+                                                       const PointCovariance* covariance = nullptr);
 
 }  // namespace velamap

@@ -1,5 +1,7 @@
 #include "exporters/marker_shape.h"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 
 namespace velamap {
@@ -14,6 +16,18 @@ Eigen::Vector3d DiagonalProduct(const ShapeMarker& marker) {
 }
 
 }  // namespace
+
+const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id) {
+  const auto it =
+      std::lower_bound(shape.markers.begin(), shape.markers.end(), marker_id,
+                       [](const ShapeMarker& marker, int id) { return marker.marker_id < id; });
+  return it != shape.markers.end() && it->marker_id == marker_id ? &*it : nullptr;
+}
+
+const ShapeMarker* FindWholeMarker(const MarkerShape& shape, int marker_id) {
+  const ShapeMarker* marker = FindMarker(shape, marker_id);
+  return marker != nullptr && marker->IsWhole() ? marker : nullptr;
+}
 
 Eigen::Vector3d MarkerNormal(const ShapeMarker& marker) {
   return DiagonalProduct(marker).stableNormalized();

@@ -30,6 +30,11 @@ struct MarkerShape {
   std::vector<ShapeMarker> markers;  // by ascending marker id
 };
 
+// Null where there is no such marker.
+const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id);
+// Null where it is not whole either.
+const ShapeMarker* FindWholeMarker(const MarkerShape& shape, int marker_id);
+
 // Outward normal of the face (unit length): z of the marker frame. Needs a whole marker.
 Eigen::Vector3d MarkerNormal(const ShapeMarker& marker);
 

@@ -2,17 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "exporters/marker_sides.h"
 #include "exporters/metric_shape.h"
+#include "exporters/robust_fit.h"
 #include "reconstruct/statistics.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kMaxRobustSigmas = 3.0;
 // Keeps rounding from deciding where all markers agree and the robust sigma is next to nothing.
 constexpr double kRoundingTolerance = 1e-9;
 
@@ -29,33 +30,64 @@ constexpr double kRoundingTolerance = 1e-9;
   throw DataError(message);
 }
 
+// What each marker alone says; markers in one point say nothing.
+std::map<int, double> RatiosOf(const std::vector<MarkerSidesMeasured>& markers,
+                               const Layout& layout) {
+  std::map<int, double> ratios;
+  for (const MarkerSidesMeasured& marker : markers) {
+    const double ratio = MarkerLength(layout, marker.marker_id) / marker.Mean();
+    if (std::isfinite(ratio)) ratios[marker.marker_id] = ratio;
+  }
+  return ratios;
+}
+
+struct Agreement {
+  double robust_sigma = 0.0;
+  std::vector<double> ratios;  // those that agree
+};
+
+Agreement FindAgreement(const std::map<int, double>& ratio_of) {
+  std::vector<double> ratios;
+  for (const auto& [marker_id, ratio] : ratio_of) ratios.push_back(ratio);
+  Agreement agreement;
+  const double median = Median(ratios);
+  agreement.robust_sigma = RobustSigma(ratios);
+  const double max_deviation =
+      kMaxRobustSigmas * agreement.robust_sigma + kRoundingTolerance * median;
+  for (const double ratio : ratios) {
+    if (std::abs(ratio - median) <= max_deviation) agreement.ratios.push_back(ratio);
+  }
+  return agreement;
+}
+
 }  // namespace
 
 ScaleEstimate EstimateScale(const Model& model, const Layout& layout) {
   ScaleEstimate estimate;
-  std::vector<double> ratios;
-  for (const ShapeMarker& marker : ShapeFromModel(model, layout).markers) {  // in model units
-    if (!marker.IsWhole()) continue;
-    const auto sides = MarkerSides(marker);
-    const double mean_side = std::accumulate(sides.begin(), sides.end(), 0.0) / kNumCorners;
-    const double ratio = MarkerLength(layout, marker.marker_id) / mean_side;
-    if (!std::isfinite(ratio)) continue;  // all four corners on one point
-    estimate.m_per_unit_of[marker.marker_id] = ratio;
-    ratios.push_back(ratio);
+  estimate.m_per_unit_of = RatiosOf(MeasureSides(ShapeFromModel(model, layout)), layout);
+  if (estimate.m_per_unit_of.empty()) ThrowNoWholeMarker(model);
+  const Agreement agreement = FindAgreement(estimate.m_per_unit_of);
+  const Statistics statistics = ComputeStatistics(agreement.ratios);
+  estimate.num_markers = statistics.count;
+  estimate.m_per_unit = statistics.mean;
+  estimate.relative_spread = agreement.robust_sigma / estimate.m_per_unit;
+  if (statistics.count > 1) {
+    estimate.relative_sigma =
+        statistics.standard_deviation / std::sqrt(statistics.count) / estimate.m_per_unit;
   }
-  if (ratios.empty()) ThrowNoWholeMarker(model);
+  return estimate;
+}
 
-  const double median = Median(ratios);
-  const double robust_sigma = RobustSigma(ratios);
-  const double max_deviation = kMaxRobustSigmas * robust_sigma + kRoundingTolerance * median;
-  double sum = 0.0;
-  for (const double ratio : ratios) {
-    if (std::abs(ratio - median) > max_deviation) continue;
-    sum += ratio;
-    ++estimate.num_markers;
-  }
-  estimate.m_per_unit = sum / estimate.num_markers;
-  estimate.relative_spread = robust_sigma / estimate.m_per_unit;
+ScaleEstimate MetricScale(std::map<int, double> m_per_unit_of,
+                          const AdjustmentUncertainty& uncertainty) {
+  ScaleEstimate estimate;
+  estimate.m_per_unit = 1.0;
+  estimate.relative_sigma = uncertainty.relative_scale_sigma;
+  estimate.m_per_unit_of = std::move(m_per_unit_of);
+  if (estimate.m_per_unit_of.empty()) return estimate;  // a scale bar can do without
+  const Agreement agreement = FindAgreement(estimate.m_per_unit_of);
+  estimate.relative_spread = agreement.robust_sigma;
+  estimate.num_markers = static_cast<int>(agreement.ratios.size());
   return estimate;
 }
 

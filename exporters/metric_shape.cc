@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "exporters/shape_sigma.h"
 #include "reconstruct/gauge.h"
 
 namespace velamap {
@@ -33,7 +34,8 @@ void ScaleModel(const ScaleEstimate& scale, Model* model) {
   TransformModel(shape_from_world, model);
 }
 
-MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout) {
+MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout,
+                           const PointCovariance* covariance) {
   MarkerShape shape;
   // Ids ascend by marker, then corner.
   for (const auto& [point3D_id, point] : metric_model.points3D) {
@@ -48,8 +50,29 @@ MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout) {
     marker.x_in_shape_m[id.corner] = point.x_in_world;
     marker.num_frames[id.corner] = CountImages(point);
   }
-  for (ShapeMarker& marker : shape.markers) AddCentre(&marker);
+  for (ShapeMarker& marker : shape.markers) {
+    AddCentre(&marker);
+    for (int corner = 0; corner <= kNumCorners; ++corner) {
+      if (!marker.x_in_shape_m[corner]) continue;
+      marker.sigma_m[corner] = PointSigma(covariance, marker.marker_id, corner);
+    }
+  }
   return shape;
+}
+
+bool IsShapeOf(const MarkerShape& shape, const Model& metric_model) {
+  constexpr double kTolerance_m = 1e-6;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      if (!marker.x_in_shape_m[corner]) continue;
+      const auto point =
+          metric_model.points3D.find(Point3DIdFromCorner({marker.marker_id, corner}));
+      if (point == metric_model.points3D.end()) return false;
+      const Eigen::Vector3d difference = point->second.x_in_world - *marker.x_in_shape_m[corner];
+      if (!(difference.norm() <= kTolerance_m)) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace velamap

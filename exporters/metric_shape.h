@@ -6,6 +6,7 @@
 #include "exporters/metric_scale.h"
 #include "importer/layout.h"
 #include "reconstruct/model.h"
+#include "reconstruct/point_covariance.h"
 
 namespace velamap {
 
@@ -13,7 +14,13 @@ namespace velamap {
 // shape frame.
 void ScaleModel(const ScaleEstimate& scale, Model* model);
 
-// Corners and centres of a metric model (unit m). Points whose id is no corner are left out.
-MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout);
+// Corners and centres of a metric model (unit m). Points whose id is no corner are left out. Sigmas
+// are those of `covariance` where it is given; a centre's follows from its corners jointly.
+MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout,
+                           const PointCovariance* covariance = nullptr);
+
+// Whether every corner of the shape lies where the model has it, to a micrometre: then a covariance
+// of the model is the shape's.
+bool IsShapeOf(const MarkerShape& shape, const Model& metric_model);
 
 }  // namespace velamap

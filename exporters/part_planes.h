@@ -2,12 +2,15 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "exporters/marker_shape.h"
+#include "reconstruct/point_covariance.h"
 #include "reconstruct/statistics.h"
 
 namespace velamap {
@@ -26,6 +29,9 @@ struct PartPlane {
   // Thesis 4.1, orientation error: angles between each marker's vector and the mean of all of them.
   Statistics normal_spread_deg;
   Statistics tangent_spread_deg;  // of the x axes: marks markers that are turned in the plane
+  // What the corners' uncertainty alone makes of center_distance_mm.rms.
+  std::optional<double> center_distance_sigma_mm;
+  std::vector<std::pair<Point3DId, Eigen::Vector3d>> corners_m;  // that the plane is fitted to
 };
 
 struct PlanePair {
@@ -34,12 +40,18 @@ struct PlanePair {
   // Distance of the centroids along the mean normal axis, for planes within 10 degrees of parallel;
   // 0 otherwise.
   double distance_mm = 0.0;
+  // Near 0 and 180 degrees, where the angle can err to one side only, that of the tilt along it.
+  std::optional<double> angle_sigma_deg;
+  std::optional<double> distance_sigma_mm;
 };
 
-// One plane a part with at least two whole markers, by name.
-std::vector<PartPlane> FitPartPlanes(const MarkerShape& shape);
+// One plane a part with at least two whole markers, by name. Sigmas are there where `covariance`,
+// of the shape's corners, is given and holds all that they depend on.
+std::vector<PartPlane> FitPartPlanes(const MarkerShape& shape,
+                                     const PointCovariance* covariance = nullptr);
 
 // All pairs of planes in order.
-std::vector<PlanePair> ComparePlanes(const std::vector<PartPlane>& planes);
+std::vector<PlanePair> ComparePlanes(const std::vector<PartPlane>& planes,
+                                     const PointCovariance* covariance = nullptr);
 
 }  // namespace velamap

@@ -1,10 +1,12 @@
 #include "exporters/ply_writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <ostream>
 #include <string>
 
@@ -122,6 +124,7 @@ struct Vertex {
   Rgb color{};
   int marker_id = 0;
   int corner = 0;
+  std::optional<double> sigma_m;
 };
 
 struct Face {
@@ -153,6 +156,17 @@ void AddIdentity(std::vector<PlyProperty<Vertex>>* properties) {
   properties->push_back({"corner", PlyType::kInt, [](const Vertex& v, int) { return v.corner; }});
 }
 
+// Once all rows are there: all of them have the property or none, for PLY knows no empty value.
+void AddSigma(PlyElement<Vertex>* vertices) {
+  const auto has_sigma = [](const Vertex& v) { return v.sigma_m.has_value(); };
+  if (vertices->rows.empty() ||
+      !std::all_of(vertices->rows.begin(), vertices->rows.end(), has_sigma)) {
+    return;
+  }
+  vertices->properties.push_back(
+      {"sigma", PlyType::kFloat, [](const Vertex& v, int) { return *v.sigma_m; }});
+}
+
 Vertex MakeVertex(const ShapeMarker& marker, int corner) {
   Vertex vertex;
   vertex.x_in_shape_m = *marker.x_in_shape_m[corner];
@@ -160,6 +174,7 @@ Vertex MakeVertex(const ShapeMarker& marker, int corner) {
   if (marker.IsWhole()) vertex.normal += MarkerNormal(marker);  // added, so that no -0 is written
   vertex.marker_id = marker.marker_id;
   vertex.corner = corner;
+  if (marker.sigma_m[corner]) vertex.sigma_m = marker.sigma_m[corner]->norm() / std::sqrt(3.0);
   return vertex;
 }
 
@@ -214,6 +229,7 @@ void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyForm
       vertices.rows.back().color = VertexColor(metric_model, vertices.rows.back());
     }
   }
+  AddSigma(&vertices);
   WritePly(format, "velamap marker centres (corner 0) and corners (1 to 4), metres", out, vertices);
 }
 
@@ -238,6 +254,7 @@ void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& o
     // Corners 1..4 run clockwise seen from the front; a face runs the other way.
     faces.rows.push_back({{first, first + 3, first + 2, first + 1}, marker.marker_id});
   }
+  AddSigma(&vertices);
   WritePly(format, "velamap markers, metres", out, vertices, faces);
 }
 

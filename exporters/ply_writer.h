@@ -11,6 +11,9 @@ namespace velamap {
 
 enum class PlyFormat { kBinaryLittleEndian, kAscii };
 
+// Where every point written has a sigma, vertices have the float property sigma too: the root of
+// the mean variance along x, y and z, m.
+
 // Vertices: every corner and centre with double x y z, float nx ny nz (the marker's normal; zero
 // where the marker is not whole), uchar red green blue (of the model's points; the centre gets the
 // mean of its corners), int marker_id, int corner.

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "exporters/metric_shape.h"
 #include "exporters/ply_writer.h"
+#include "exporters/scale_audit_report.h"
 #include "exporters/scale_csv.h"
 #include "exporters/shape_csv.h"
 #include "exporters/shape_report.h"
@@ -45,17 +47,18 @@ void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) 
   }
 }
 
-MetricsReport MetricsOf(const ShapeExportReport& report) {
+MetricsReport MetricsOf(const ShapeExportReport& report, const PointCovariance* covariance) {
   MetricsReport metrics;
   AddMetrics(report.metrics, &metrics);
   AddMetrics(report.model_metrics, &metrics);
   AddMetrics(report.scale, &metrics);
-  AddMetrics(FitPartPlanes(report.shape), &metrics);
+  AddMetrics(report.audit, &metrics);
+  AddMetrics(FitPartPlanes(report.shape, covariance), &metrics, covariance);
   return metrics;
 }
 
-void WriteShapeFiles(const ShapeExportReport& report, const Model& metric_model, bool ascii_ply,
-                     const fs::path& folder) {
+void WriteShapeFiles(const ShapeExportReport& report, const Model& metric_model,
+                     const PointCovariance* covariance, bool ascii_ply, const fs::path& folder) {
   const PlyFormat format = ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
   WriteFile(folder / "shape.csv", [&](std::ostream& out) { WriteShapeCsv(report.shape, out); });
   WriteFile(folder / "shape.ply",
@@ -63,35 +66,53 @@ void WriteShapeFiles(const ShapeExportReport& report, const Model& metric_model,
   WriteFile(folder / "markers.ply",
             [&](std::ostream& out) { WriteMarkersPly(report.shape, format, out); });
   WriteFile(folder / "scale.csv", [&](std::ostream& out) { WriteScaleCsv(report.scale, out); });
-  const MetricsReport metrics = MetricsOf(report);
+  const MetricsReport metrics = MetricsOf(report, covariance);
   WriteFile(folder / "metrics.csv", [&](std::ostream& out) { WriteMetricsCsv(metrics, out); });
   WriteFile(folder / "metrics.json", [&](std::ostream& out) { WriteMetricsJson(metrics, out); });
+}
+
+std::map<int, double> ScalesOf(const ScaleAudit& audit) {
+  std::map<int, double> m_per_unit_of;
+  for (const MarkerScale& marker : audit.markers) {
+    m_per_unit_of[marker.marker_id] = 1.0 + marker.deviation;
+  }
+  return m_per_unit_of;
 }
 
 }  // namespace
 
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
-                              const ShapeExporterOptions& options) {
+                              const ShapeExporterOptions& options,
+                              const AdjustmentUncertainty* uncertainty) {
   const fs::path model_path = OutputFolder(options.model_output_path);
   const fs::path shape_path = OutputFolder(options.shape_output_path);
   CheckOutputFolders(model_path, shape_path);
 
+  const PointCovariance* covariance = uncertainty != nullptr ? &uncertainty->points : nullptr;
   ShapeExportReport report;
-  report.scale = EstimateScale(model, layout);
   Model metric_model = model;
-  ScaleModel(report.scale, &metric_model);
+  if (uncertainty == nullptr) {
+    report.scale = EstimateScale(model, layout);
+    ScaleModel(report.scale, &metric_model);
+  }
   UpdatePointErrors(&metric_model);
-  report.shape = ShapeFromModel(metric_model, layout);
-  report.metrics = ComputeShapeMetrics(report.shape, layout);
+  report.shape = ShapeFromModel(metric_model, layout, covariance);
+  report.audit = AuditScale(report.shape, layout, &metric_model, uncertainty);
+  if (uncertainty != nullptr) report.scale = MetricScale(ScalesOf(report.audit), *uncertainty);
+  report.metrics = ComputeShapeMetrics(report.shape, layout, covariance);
   report.model_metrics = ComputeModelMetrics(metric_model, MarkerIds(layout));
 
   std::optional<AtomicFolder> shape_folder;
   if (!shape_path.empty()) {
     shape_folder.emplace(shape_path);
-    WriteShapeFiles(report, metric_model, options.ascii_ply, shape_folder->TemporaryPath());
+    WriteShapeFiles(report, metric_model, covariance, options.ascii_ply,
+                    shape_folder->TemporaryPath());
   }
   if (!model_path.empty()) {
-    WriteModel(metric_model, model_path.string(), ModelFormat::kBinaryAndText);
+    WriteModel(metric_model, model_path.string(), ModelFormat::kBinaryAndText,
+               [&](const std::string& folder) {
+                 if (uncertainty != nullptr) WriteUncertainty(*uncertainty, folder);
+               });
   }
   // Last, so that a model that cannot be written leaves the old shape beside the old model.
   if (shape_folder) shape_folder->Commit();

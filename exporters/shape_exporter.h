@@ -6,8 +6,10 @@
 
 #include "exporters/metric_scale.h"
 #include "exporters/model_metrics.h"
+#include "exporters/scale_audit.h"
 #include "exporters/shape_metrics.h"
 #include "importer/layout.h"
+#include "reconstruct/adjustment_uncertainty.h"
 #include "reconstruct/model.h"
 
 namespace velamap {
@@ -23,14 +25,20 @@ struct ShapeExportReport {
   MarkerShape shape;
   ShapeMetrics metrics;
   ModelMetrics model_metrics;
+  ScaleAudit audit;
 };
 
 // Writes shape.csv, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv and
 // metrics.json into shape_output_path, and the metric COLMAP model with true point errors, each
 // folder to a temporary sibling that is renamed when whole. A folder that exists is replaced if it
-// holds nothing but files of these names. Throws DataError (no marker gives a scale, no image),
-// InputError (unwritable output, a folder with other files, one folder inside the other).
+// holds nothing but files of these names.
+//
+// With `uncertainty` (ReadUncertainty of the model's folder) the model is metric: it is not scaled,
+// all that is reported gets its sigma, and the metric model's folder keeps the uncertainty.
+// Without, the model is scaled by the markers' sides. Throws DataError (no marker gives a scale, no
+// image), InputError (unwritable output, a folder with other files, one folder inside the other).
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
-                              const ShapeExporterOptions& options);
+                              const ShapeExporterOptions& options,
+                              const AdjustmentUncertainty* uncertainty = nullptr);
 
 }  // namespace velamap

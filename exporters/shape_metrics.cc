@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "exporters/shape_sigma.h"
 #include "importer/error.h"
 #include "reconstruct/alignment.h"
 
@@ -62,13 +63,44 @@ std::vector<MarkerDistance> DistancesOfMarkers(const std::vector<CornerId>& ids,
   return markers;
 }
 
+// Sum of variances; nothing as soon as one is not known.
+class VarianceMean {
+ public:
+  void Add(const std::optional<double>& sigma) {
+    is_known_ = is_known_ && sigma.has_value();
+    sum_ += sigma.value_or(0.0) * sigma.value_or(0.0);
+    ++count_;
+  }
+  std::optional<double> RootOfMean() const {
+    if (!is_known_ || count_ == 0) return std::nullopt;
+    return std::sqrt(sum_ / count_);
+  }
+
+ private:
+  bool is_known_ = true;
+  double sum_ = 0.0;
+  int count_ = 0;
+};
+
+std::optional<double> Times(double factor, std::optional<double> value) {
+  if (value) *value *= factor;
+  return value;
+}
+
 MarkerMetrics MetricsOfMarker(const ShapeMarker& marker, double printed_side_m,
+                              const PointCovariance* covariance,
                               std::vector<double>* side_errors_mm) {
   const double printed_area_m2 = printed_side_m * printed_side_m;
   const double area_error_m2 = std::abs(MarkerArea(marker) - printed_area_m2);
-  MarkerMetrics metrics{marker.marker_id, marker.part, area_error_m2 * kMmPerM * kMmPerM,
-                        100.0 * area_error_m2 / printed_area_m2, 0.0};
+  MarkerMetrics metrics;
+  metrics.marker_id = marker.marker_id;
+  metrics.part = marker.part;
+  metrics.area_error_mm2 = area_error_m2 * kMmPerM * kMmPerM;
+  metrics.area_error_percent = 100.0 * area_error_m2 / printed_area_m2;
+  metrics.area_sigma_mm2 = Times(kMmPerM * kMmPerM, SigmaOf(covariance, AreaGradient(marker)));
+  metrics.mean_side_sigma_mm = Times(kMmPerM, SigmaOf(covariance, MeanSideGradient(marker)));
   for (const double side_m : MarkerSides(marker)) {
+    metrics.mean_side_mm += side_m * kMmPerM / kNumCorners;
     side_errors_mm->push_back(std::abs(side_m - printed_side_m) * kMmPerM);
     metrics.side_error_mm += side_errors_mm->back() / kNumCorners;
   }
@@ -77,22 +109,30 @@ MarkerMetrics MetricsOfMarker(const ShapeMarker& marker, double printed_side_m,
 
 }  // namespace
 
-ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout) {
+ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
+                                 const PointCovariance* covariance) {
   ShapeMetrics metrics;
   std::vector<double> area_errors_mm2, area_errors_percent, side_errors_mm;
   std::map<int, bool> is_whole;
+  VarianceMean area_variance, side_variance;
   for (const ShapeMarker& marker : shape.markers) {
     is_whole[marker.marker_id] = marker.IsWhole();
     if (!marker.IsWhole()) continue;
     ++metrics.num_markers;
-    metrics.markers.push_back(
-        MetricsOfMarker(marker, MarkerLength(layout, marker.marker_id), &side_errors_mm));
+    metrics.markers.push_back(MetricsOfMarker(marker, MarkerLength(layout, marker.marker_id),
+                                              covariance, &side_errors_mm));
+    area_variance.Add(metrics.markers.back().area_sigma_mm2);
+    for (int side = 1; side <= kNumCorners; ++side) {
+      side_variance.Add(SigmaOf(covariance, SideGradient(marker, side)));
+    }
     area_errors_mm2.push_back(metrics.markers.back().area_error_mm2);
     area_errors_percent.push_back(metrics.markers.back().area_error_percent);
   }
   metrics.area_error_mm2 = ComputeStatistics(std::move(area_errors_mm2));
   metrics.area_error_percent = ComputeStatistics(std::move(area_errors_percent));
   metrics.side_error_mm = ComputeStatistics(std::move(side_errors_mm));
+  metrics.area_sigma_mm2 = area_variance.RootOfMean();
+  metrics.side_sigma_mm = Times(kMmPerM, side_variance.RootOfMean());
 
   const std::vector<int> layout_ids = MarkerIds(layout);
   if (!layout_ids.empty()) {
@@ -111,12 +151,15 @@ ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& refer
   const auto reference_corners = CornersOf(reference);
   std::vector<CornerId> ids;
   std::vector<Eigen::Vector3d> x_in_shape_m, x_in_reference_m;
+  VarianceMean point_variance;
   for (const auto& [id, x] : CornersOf(shape)) {
     const auto common = reference_corners.find(id);
     if (common == reference_corners.end()) continue;
     ids.push_back(id);
     x_in_shape_m.push_back(x);
     x_in_reference_m.push_back(common->second);
+    const auto& sigma_m = FindMarker(shape, id.marker_id)->sigma_m[id.corner];
+    point_variance.Add(sigma_m ? std::optional(sigma_m->norm()) : std::nullopt);
   }
   ShapeComparison comparison;
   comparison.num_points = static_cast<int>(x_in_shape_m.size());
@@ -135,6 +178,7 @@ ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& refer
   const std::vector<double> after_scaling_m =
       Distances(reference_from_shape, x_in_shape_m, x_in_reference_m);
   comparison.distance_m = ComputeStatistics(distances_m);
+  comparison.distance_sigma_m = point_variance.RootOfMean();
   comparison.scale = 1.0 / reference_from_shape.scale;
   comparison.distance_after_scaling_m = ComputeStatistics(after_scaling_m);
   comparison.markers = DistancesOfMarkers(ids, distances_m, after_scaling_m);

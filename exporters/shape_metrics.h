@@ -8,6 +8,7 @@
 
 #include "exporters/marker_shape.h"
 #include "importer/layout.h"
+#include "reconstruct/point_covariance.h"
 #include "reconstruct/statistics.h"
 
 namespace velamap {
@@ -19,6 +20,10 @@ struct MarkerMetrics {
   double area_error_mm2 = 0.0;
   double area_error_percent = 0.0;  // of the printed area
   double side_error_mm = 0.0;       // mean of the four
+  double mean_side_mm = 0.0;        // of the four, reconstructed
+  // 1 sigma of the area, and of mean_side_mm.
+  std::optional<double> area_sigma_mm2;
+  std::optional<double> mean_side_sigma_mm;
 };
 
 struct ShapeMetrics {
@@ -30,10 +35,15 @@ struct ShapeMetrics {
   std::optional<double> reconstruction_ratio;  // of the markers that the layout names
   std::vector<int> missing_marker_ids;         // named by the layout, not whole
   std::vector<MarkerMetrics> markers;          // whole ones, by id
+  // Roots of the mean variances: what the corners' uncertainty alone makes of the rms errors.
+  std::optional<double> area_sigma_mm2;
+  std::optional<double> side_sigma_mm;
 };
 
-// Markers are judged against their printed sides in `layout`.
-ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout);
+// Markers are judged against their printed sides in `layout`. Sigmas are there where `covariance`,
+// of the shape's corners, holds all whole markers.
+ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
+                                 const PointCovariance* covariance = nullptr);
 
 // Means over the corners that both shapes have of a marker.
 struct MarkerDistance {
@@ -48,6 +58,9 @@ struct ShapeComparison {
   Statistics distance_m;  // after rigid alignment without scale, points that both shapes have
   double scale = 1.0;     // this shape / reference, from the alignment with scale
   Statistics distance_after_scaling_m;
+  // Root of the mean variance of the points, where the shape has their sigmas: what distance_m.rms
+  // would be if the reference were the truth and held all points.
+  std::optional<double> distance_sigma_m;
   std::vector<MarkerDistance> markers;  // by id
 };
 

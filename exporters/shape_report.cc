@@ -15,6 +15,12 @@ Statistics Scaled(double factor, Statistics statistics) {
   return statistics;
 }
 
+// Where it is known.
+void AddSigma(const char* key, const std::optional<double>& sigma, Metrics* metrics,
+              double factor = 1.0) {
+  if (sigma) metrics->push_back({key, factor * *sigma});
+}
+
 void Append(const Metrics& metrics, MetricsReport* report) {
   report->metrics.insert(report->metrics.end(), metrics.begin(), metrics.end());
 }
@@ -35,13 +41,18 @@ void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report) {
           {"area_error_percent", metrics.area_error_percent},
           {"side_error_mm", metrics.side_error_mm}},
          report);
+  AddSigma("area_sigma_mm2", metrics.area_sigma_mm2, &report->metrics);
+  AddSigma("side_sigma_mm", metrics.side_sigma_mm, &report->metrics);
   MetricTable table = LongTable("markers");
   for (const MarkerMetrics& marker : metrics.markers) {
     table.rows.push_back({{"marker_id", marker.marker_id},
                           {"part", marker.part},
                           {"area_error_mm2", marker.area_error_mm2},
                           {"area_error_percent", marker.area_error_percent},
-                          {"side_error_mm", marker.side_error_mm}});
+                          {"side_error_mm", marker.side_error_mm},
+                          {"mean_side_mm", marker.mean_side_mm}});
+    AddSigma("area_sigma_mm2", marker.area_sigma_mm2, &table.rows.back());
+    AddSigma("mean_side_sigma_mm", marker.mean_side_sigma_mm, &table.rows.back());
   }
   report->tables.push_back(std::move(table));
 }
@@ -65,13 +76,15 @@ void AddMetrics(const ModelMetrics& metrics, MetricsReport* report) {
 }
 
 void AddMetrics(const ScaleEstimate& scale, MetricsReport* report) {
-  Append({{"scale_m_per_unit", scale.m_per_unit},
-          {"scale_spread_percent", 100.0 * scale.relative_spread},
+  Append({{"scale_m_per_unit", scale.m_per_unit}}, report);
+  AddSigma("scale_sigma_percent", scale.relative_sigma, &report->metrics, 100.0);
+  Append({{"scale_spread_percent", 100.0 * scale.relative_spread},
           {"num_scale_markers", scale.num_markers}},
          report);
 }
 
-void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report) {
+void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report,
+                const PointCovariance* covariance) {
   MetricTable parts{"parts", true, {}};
   for (const PartPlane& plane : planes) {
     parts.rows.push_back({{"part", plane.part},
@@ -80,11 +93,14 @@ void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report) {
                           {"corner_plane_error_mm", plane.corner_distance_mm},
                           {"normal_spread_deg", plane.normal_spread_deg},
                           {"tangent_spread_deg", plane.tangent_spread_deg}});
+    AddSigma("plane_error_sigma_mm", plane.center_distance_sigma_mm, &parts.rows.back());
   }
   MetricTable pairs{"part_pairs", true, {}};
-  for (const PlanePair& pair : ComparePlanes(planes)) {
+  for (const PlanePair& pair : ComparePlanes(planes, covariance)) {
     Metrics row = {{"part1", pair.part1}, {"part2", pair.part2}, {"angle_deg", pair.angle_deg}};
+    AddSigma("angle_sigma_deg", pair.angle_sigma_deg, &row);
     if (pair.distance_mm > 0) row.push_back({"distance_mm", pair.distance_mm});
+    AddSigma("distance_sigma_mm", pair.distance_sigma_mm, &row);
     pairs.rows.push_back(std::move(row));
   }
   report->tables.push_back(std::move(parts));
@@ -104,6 +120,7 @@ void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* r
                           {"marker_id2", pair.marker_id2},
                           {"distance_mm", pair.distance_m * kMmPerM},
                           {"reference_distance_mm", pair.reference_distance_m * kMmPerM}});
+    AddSigma("distance_sigma_mm", pair.sigma_m, &table.rows.back(), kMmPerM);
   }
   Append(
       {{"adjacent_distance_error_mm", ComputeStatistics(std::move(errors_mm))},
@@ -114,8 +131,10 @@ void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* r
 
 void AddMetrics(const ShapeComparison& comparison, MetricsReport* report) {
   Append({{"num_points", comparison.num_points},
-          {"distance_mm", Scaled(kMmPerM, comparison.distance_m)},
-          {"scale", comparison.scale},
+          {"distance_mm", Scaled(kMmPerM, comparison.distance_m)}},
+         report);
+  AddSigma("distance_sigma_mm", comparison.distance_sigma_m, &report->metrics, kMmPerM);
+  Append({{"scale", comparison.scale},
           {"scale_error_percent", 100.0 * (comparison.scale - 1.0)},
           {"distance_after_scaling_mm", Scaled(kMmPerM, comparison.distance_after_scaling_m)}},
          report);

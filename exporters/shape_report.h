@@ -14,6 +14,8 @@
 
 namespace velamap {
 
+// Keys of sigmas are there where the sigmas are.
+
 // num_markers, area_error_mm2, area_error_percent, side_error_mm; where the layout names its
 // markers, num_layout_markers, reconstruction_ratio and missing_marker_ids. Table markers.
 void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report);
@@ -22,11 +24,12 @@ void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report);
 // image_marker_ratio. Table images.
 void AddMetrics(const ModelMetrics& metrics, MetricsReport* report);
 
-// scale_m_per_unit, scale_spread_percent, num_scale_markers.
+// scale_m_per_unit, scale_sigma_percent, scale_spread_percent, num_scale_markers.
 void AddMetrics(const ScaleEstimate& scale, MetricsReport* report);
 
-// Tables parts and part_pairs.
-void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report);
+// Tables parts and part_pairs; the pairs' sigmas are those of `covariance`.
+void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report,
+                const PointCovariance* covariance = nullptr);
 
 // adjacent_distance_error_mm, adjacent_distance_deviation_percent. Table adjacent_distances.
 void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* report);

@@ -4,6 +4,7 @@
 
 #include "importer/error.h"
 #include "reconstruct/gauge.h"
+#include "reconstruct/statistics.h"
 #include "tests/exporters/example_model.h"
 
 namespace velamap {
@@ -104,6 +105,36 @@ TEST(MetricScale, PointsWithForeignIdsAreExplained) {
   } catch (const DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("10 * marker id + corner"));
   }
+}
+
+TEST(MetricScale, SigmaIsTheStandardErrorOfTheMean) {
+  Model model = ExampleModel();
+  for (const int marker_id : {5, 6, 120, 121}) {
+    model.points3D.erase(Point3DIdFromCorner({marker_id, 2}));
+  }
+  ResizeMarker(1, 1 / 0.99, &model);
+  ResizeMarker(3, 1 / 1.02, &model);
+  ResizeMarker(4, 1 / 1.01, &model);
+  const ScaleEstimate estimate = EstimateScale(model, ExampleLayout());
+  const Statistics ratios = ComputeStatistics({0.99, 1.0, 1.02, 1.01});
+  EXPECT_EQ(estimate.num_markers, 4);
+  EXPECT_NEAR(*estimate.relative_sigma, ratios.standard_deviation / 2 / ratios.mean, 1e-9);
+  for (const int marker_id : {1, 2, 3}) {
+    model.points3D.erase(Point3DIdFromCorner({marker_id, 2}));
+  }
+  EXPECT_FALSE(EstimateScale(model, ExampleLayout()).relative_sigma.has_value());
+}
+
+TEST(MetricScale, OfAMetricModelIsOneWithTheSigmaOfItsAdjustment) {
+  AdjustmentUncertainty uncertainty;
+  uncertainty.relative_scale_sigma = 2e-4;
+  const ScaleEstimate estimate =
+      MetricScale({{1, 1.001}, {2, 0.999}, {3, 1.0}, {4, 1.5}}, uncertainty);
+  EXPECT_EQ(estimate.m_per_unit, 1.0);
+  EXPECT_EQ(*estimate.relative_sigma, 2e-4);
+  EXPECT_EQ(estimate.num_markers, 3);
+  EXPECT_NEAR(estimate.relative_spread, 1.4826e-3, 1e-9);
+  EXPECT_EQ(MetricScale({}, uncertainty).m_per_unit, 1.0);
 }
 
 }  // namespace

@@ -100,5 +100,18 @@ TEST(MetricShape, AMarkerThatTheLayoutDoesNotNameHasNoPart) {
   EXPECT_EQ(shape.markers[0].part, "");
 }
 
+TEST(MetricShape, IsThatOfItsModelInTheSameFrameOnly) {
+  const Model model = ExampleModel();
+  const MarkerShape shape = ShapeFromModel(model, ExampleLayout());
+  EXPECT_TRUE(IsShapeOf(shape, model));
+  Model moved = model;
+  moved.points3D.at(1213).x_in_world.z() += 2e-6;
+  EXPECT_FALSE(IsShapeOf(shape, moved));
+  Model incomplete = model;
+  incomplete.points3D.erase(11);
+  EXPECT_FALSE(IsShapeOf(shape, incomplete));
+  EXPECT_TRUE(IsShapeOf(ShapeFromModel(incomplete, ExampleLayout()), model));
+}
+
 }  // namespace
 }  // namespace velamap

@@ -1,10 +1,12 @@
 #include "exporters/part_planes.h"
 
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"
 
 namespace velamap {
@@ -115,6 +117,104 @@ TEST(PartPlanes, SpreadsAreTheAnglesToTheMeanDirection) {
   const PartPlane about_y = Leaning(20.0, Eigen::Vector3d::UnitY());
   EXPECT_NEAR(about_y.normal_spread_deg.mean, 20.0, 1e-9);
   EXPECT_NEAR(about_y.tangent_spread_deg.mean, 20.0, 1e-9);
+}
+
+// Corners of a box as a model, so that they can have a covariance.
+Model BoxModel(const MarkerShape& box) {
+  Model model;
+  for (const ShapeMarker& marker : box.markers) {
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      model.points3D[Point3DIdFromCorner({marker.marker_id, corner})].x_in_world =
+          *marker.x_in_shape_m[corner];
+    }
+  }
+  return model;
+}
+
+// A box with crooked faces, the one at the back leaning by 3 degrees.
+MarkerShape CrookedBox() {
+  MarkerShape shape;
+  AddFace("front", Eigen::Quaterniond::Identity(), 0.1, 0, &shape);
+  AddFace("back",
+          Eigen::Quaterniond(Eigen::AngleAxisd(3.09, Eigen::Vector3d(1, 0.2, 0).normalized())), 0.1,
+          10, &shape);
+  AddFace("side", Eigen::Quaterniond(Eigen::AngleAxisd(1.4, Eigen::Vector3d::UnitY())), 0.1, 20,
+          &shape);
+  std::mt19937 random(4);
+  for (ShapeMarker& marker : shape.markers) {
+    marker.x_in_shape_m[0]->setZero();
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      for (double& x : *marker.x_in_shape_m[corner]) x += 2e-3 * (random() / 4294967295.0 - 0.5);
+      *marker.x_in_shape_m[0] += *marker.x_in_shape_m[corner] / kNumCorners;
+    }
+  }
+  return shape;
+}
+
+TEST(PartPlanes, SigmasAreTheStandardDeviationsOfWhatIsReported) {
+  const MarkerShape box = CrookedBox();
+  const PointCovariance covariance = ExampleCovariance(BoxModel(box), 1e-4, 8);
+  const auto pairs = ComparePlanes(FitPartPlanes(box, &covariance), &covariance);
+  ASSERT_EQ(pairs.size(), 3u);
+  std::vector<std::vector<double>> angles_deg(3), distances_mm(3);
+  SampleShapes(box, covariance, 2000, [&](const MarkerShape& sample) {
+    const auto sampled = ComparePlanes(FitPartPlanes(sample));
+    for (std::size_t i = 0; i < 3; ++i) {
+      angles_deg[i].push_back(sampled[i].angle_deg);
+      distances_mm[i].push_back(sampled[i].distance_mm);
+    }
+  });
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(*pairs[i].angle_sigma_deg / ComputeStatistics(angles_deg[i]).standard_deviation,
+                1.0, 0.07)
+        << i;
+  }
+  ASSERT_TRUE(pairs[0].distance_sigma_mm.has_value());  // back and front
+  EXPECT_NEAR(*pairs[0].distance_sigma_mm / ComputeStatistics(distances_mm[0]).standard_deviation,
+              1.0, 0.07);
+  EXPECT_FALSE(pairs[1].distance_sigma_mm.has_value());
+}
+
+TEST(PartPlanes, PlaneErrorSigmaIsWhatNoiseMakesOfAFlatPart) {
+  const MarkerShape box = Box();
+  const PointCovariance covariance = ExampleCovariance(BoxModel(box), 1e-4, 9);
+  const auto planes = FitPartPlanes(box, &covariance);
+  double sum_mm2 = 0.0;
+  constexpr int kNumSamples = 2000;
+  SampleShapes(box, covariance, kNumSamples, [&](const MarkerShape& sample) {
+    const double rms_mm = FitPartPlanes(sample)[1].center_distance_mm.rms;
+    sum_mm2 += rms_mm * rms_mm / kNumSamples;
+  });
+  EXPECT_NEAR(*planes[1].center_distance_sigma_mm / std::sqrt(sum_mm2), 1.0, 0.04);
+  EXPECT_FALSE(FitPartPlanes(box)[1].center_distance_sigma_mm.has_value());
+}
+
+TEST(PartPlanes, ARigidMoveIsNoUncertaintyOfAngles) {
+  const MarkerShape box = CrookedBox();
+  PointCovariance covariance = ExampleCovariance(BoxModel(box), 1e-4, 8);
+  for (Eigen::MatrixXd& block : covariance.blocks) block.setZero();
+  const Model model = BoxModel(box);
+  covariance.signs.setOnes();
+  for (int axis = 0; axis < 3; ++axis) {  // turns about the three axes by 0.01 rad
+    for (std::size_t i = 0; i < covariance.point3D_ids.size(); ++i) {
+      covariance.factor.col(axis).segment<3>(3 * static_cast<int>(i)) =
+          0.01 * Eigen::Vector3d::Unit(axis).cross(
+                     model.points3D.at(covariance.point3D_ids[i]).x_in_world);
+    }
+  }
+  for (const PlanePair& pair : ComparePlanes(FitPartPlanes(box, &covariance), &covariance)) {
+    EXPECT_LT(*pair.angle_sigma_deg, 1e-6);
+    EXPECT_LT(pair.distance_sigma_mm.value_or(0.0), 1e-6);
+  }
+}
+
+TEST(PartPlanes, ParallelPlanesHaveAnAngleSigmaToo) {
+  const MarkerShape box = Box();
+  const PointCovariance covariance = ExampleCovariance(BoxModel(box), 1e-4, 9);
+  const auto pairs = ComparePlanes(FitPartPlanes(box, &covariance), &covariance);
+  EXPECT_NEAR(pairs[0].angle_deg, 180.0, 1e-9);
+  EXPECT_GT(*pairs[0].angle_sigma_deg, 1e-3);
+  EXPECT_LT(*pairs[0].angle_sigma_deg, 1.0);
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 #include "exporters/ply_writer.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 
 #include "exporters/metric_shape.h"
 #include "tests/exporters/comma_locale.h"
+#include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/golden_file.h"
 #include "tests/exporters/ply_reader.h"
@@ -77,10 +80,10 @@ TEST(PlyWriter, PropertiesAreTheOnesThatViewersKnow) {
     const PlyFile markers = ReadPly(Markers(ExampleModel(), format));
     ASSERT_EQ(markers.elements.size(), 2u);
     EXPECT_EQ(markers.elements[0].name, "vertex");
-    EXPECT_THAT(Signature(markers.elements[0]),
-                ElementsAre("double x", "double y", "double z", "float nx", "float ny", "float nz",
-                            "uchar red", "uchar green", "uchar blue", "int marker_id",
-                            "int corner"));
+    EXPECT_THAT(
+        Signature(markers.elements[0]),
+        ElementsAre("double x", "double y", "double z", "float nx", "float ny", "float nz",
+                    "uchar red", "uchar green", "uchar blue", "int marker_id", "int corner"));
     EXPECT_EQ(markers.elements[1].name, "face");
     EXPECT_THAT(Signature(markers.elements[1]),
                 ElementsAre("list uchar int vertex_indices", "int marker_id"));
@@ -185,6 +188,28 @@ TEST(PlyWriter, NoMarkersMakeAValidEmptyFile) {
   for (const PlyFormat format : kFormats) {
     EXPECT_EQ(ReadPly(Points(Model(), format)).elements.at(0).rows.size(), 0u);
     EXPECT_EQ(ReadPly(Markers(Model(), format)).elements.at(1).rows.size(), 0u);
+  }
+}
+
+TEST(PlyWriter, SigmasAreThereWhereAllPointsHaveOne) {
+  const Model model = ExampleModel();
+  const PointCovariance covariance = ExampleCovariance(model, 1e-4, 1);
+  MarkerShape shape = ShapeFromModel(model, ExampleLayout(), &covariance);
+  for (const PlyFormat format : kFormats) {
+    const auto points = [&](std::ostream& out) { WritePointsPly(shape, model, format, out); };
+    const auto markers = [&](std::ostream& out) { WriteMarkersPly(shape, format, out); };
+    const PlyReadElement vertices = ReadPly(Written(points)).elements[0];
+    EXPECT_EQ(Signature(vertices).back(), "float sigma");
+    const double expected = shape.markers[0].sigma_m[1]->norm() / std::sqrt(3.0);
+    EXPECT_NEAR(vertices.Column("sigma").at(1), expected, 1e-6 * expected);
+    const PlyReadElement corners = ReadPly(Written(markers)).elements[0];
+    EXPECT_EQ(Signature(corners).back(), "float sigma");
+    EXPECT_NEAR(corners.Column("sigma").at(0), expected, 1e-6 * expected);
+    const auto sigma_m = shape.markers[2].sigma_m[0];
+    shape.markers[2].sigma_m[0].reset();  // a centre is in one of the files only
+    EXPECT_EQ(Signature(ReadPly(Written(points)).elements[0]).back(), "int corner");
+    EXPECT_EQ(Signature(ReadPly(Written(markers)).elements[0]).back(), "float sigma");
+    shape.markers[2].sigma_m[0] = sigma_m;
   }
 }
 

@@ -16,6 +16,7 @@
 #include "reconstruct/gauge.h"
 #include "reconstruct/model_io.h"
 #include "tests/exporters/comma_locale.h"
+#include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/golden_file.h"
 #include "tests/support/temp_dir.h"
@@ -26,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 using testing::UnorderedElementsAre;
 
@@ -163,9 +165,8 @@ TEST(ShapeExporter, FilesHoldWhatTheReportSays) {
     const ShapeExportReport report = ExportShape(model, ExampleLayout(), options);
     const PlyFormat format = ascii ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
     const fs::path shape = dir / "shape";
-    EXPECT_THAT(FilesIn(shape),
-                UnorderedElementsAre("shape.csv", "shape.ply", "markers.ply", "scale.csv",
-                                     "metrics.csv", "metrics.json"));
+    EXPECT_THAT(FilesIn(shape), UnorderedElementsAre("shape.csv", "shape.ply", "markers.ply",
+                                                     "scale.csv", "metrics.csv", "metrics.json"));
     const auto csv = [&](std::ostream& out) { WriteShapeCsv(report.shape, out); };
     const auto scale = [&](std::ostream& out) { WriteScaleCsv(report.scale, out); };
     const auto markers = [&](std::ostream& out) { WriteMarkersPly(report.shape, format, out); };
@@ -297,6 +298,57 @@ TEST(ShapeExporter, WithoutAScaleNothingIsWritten) {
   }
   EXPECT_THROW(ExportShape(model, ExampleLayout(), OptionsIn(dir)), DataError);
   EXPECT_TRUE(FilesIn(dir.path()).empty());
+}
+
+TEST(ShapeExporter, AMetricModelIsNotScaledAndKeepsItsUncertainty) {
+  const TempDir dir;
+  Model model = ExampleModel();
+  AddImageNoise(0.5, 7, &model);
+  TransformModel(ExampleSim3(1.01), &model);  // the markers' sides do not count any more
+  const AdjustmentUncertainty uncertainty = ExampleUncertainty(model);
+  const ShapeExportReport report =
+      ExportShape(model, ExampleLayout(), OptionsIn(dir), &uncertainty);
+  EXPECT_EQ(report.scale.m_per_unit, 1.0);
+  EXPECT_EQ(*report.scale.relative_sigma, uncertainty.relative_scale_sigma);
+  EXPECT_EQ(report.audit.markers.size(), 8u);
+  EXPECT_NEAR(report.audit.deviation, -0.01, 0.01);
+  const Model written = ReadModel(dir / "0");
+  for (const auto& [id, point] : model.points3D) {
+    EXPECT_EQ(written.points3D.at(id).x_in_world, point.x_in_world);
+  }
+  ASSERT_TRUE(HasUncertainty(dir / "0"));
+  const AdjustmentUncertainty kept = ReadUncertainty(dir / "0");
+  EXPECT_EQ(kept.points.factor, uncertainty.points.factor);
+  EXPECT_EQ(kept.variance_factor, uncertainty.variance_factor);
+
+  const MarkerShape shape = ReadShapeCsv(dir / "shape" / "shape.csv");
+  const Eigen::Vector3d expected = PointCovarianceOf(uncertainty.points, 23).diagonal().cwiseSqrt();
+  EXPECT_LT((*shape.markers[1].sigma_m[3] - expected).norm(), 1e-15);
+  EXPECT_TRUE(shape.markers[1].sigma_m[0].has_value());
+  EXPECT_THAT(ReadBytes(dir / "shape" / "shape.ply"), HasSubstr("property float sigma\n"));
+  EXPECT_THAT(ReadBytes(dir / "shape" / "markers.ply"), HasSubstr("property float sigma\n"));
+  const std::string metrics = ReadBytes(dir / "shape" / "metrics.csv");
+  for (const char* key : {"scale_sigma_percent", "area_sigma_mm2", "side_sigma_mm",
+                          "mean_side_sigma_mm", "angle_sigma_deg"}) {
+    EXPECT_THAT(metrics, HasSubstr(std::string(",") + key + ",")) << key;
+  }
+}
+
+TEST(ShapeExporter, WithoutAnUncertaintyThereAreNoSigmasOfLengths) {
+  const TempDir dir;
+  AdjustmentUncertainty uncertainty = ExampleUncertainty(ExampleModel());
+  ExportShape(ExampleModel(), ExampleLayout(), OptionsIn(dir), &uncertainty);
+  Model model = ExampleModel();
+  AddImageNoise(0.5, 7, &model);
+  ExportShape(model, ExampleLayout(), OptionsIn(dir));  // in the place of the one with
+  EXPECT_FALSE(HasUncertainty(dir / "0"));
+  const std::string metrics = ReadBytes(dir / "shape" / "metrics.csv");
+  for (const char* key : {"area_sigma_mm2", "side_sigma_mm", "angle_sigma_deg"}) {
+    EXPECT_THAT(metrics, Not(HasSubstr(key))) << key;
+  }
+  // The errors of the scale and of its parts are known from the markers and their images.
+  EXPECT_THAT(metrics, HasSubstr(",scale_sigma_percent,"));
+  EXPECT_THAT(metrics, HasSubstr("scale_parts,0,deviation_from_others_sigma_percent,"));
 }
 
 }  // namespace

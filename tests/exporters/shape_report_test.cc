@@ -56,7 +56,10 @@ TEST(ShapeReport, ComparisonIsInMillimetres) {
   comparison.scale = 1.0125;
   comparison.distance_after_scaling_m = ComputeStatistics({0.0005, 0.0005});
   comparison.markers = {{17, 2, 0.002, 0.0005}};
+  EXPECT_FALSE(JsonOf(comparison).contains("distance_sigma_mm"));
+  comparison.distance_sigma_m = 0.004;
   const json report = JsonOf(comparison);
+  EXPECT_NEAR(report["distance_sigma_mm"].get<double>(), 4.0, 1e-12);
   EXPECT_EQ(report["num_points"], 2);
   EXPECT_EQ(report["distance_mm_count"], 2);
   EXPECT_NEAR(report["distance_mm_mean"].get<double>(), 2.0, 1e-12);
@@ -72,8 +75,10 @@ TEST(ShapeReport, ComparisonIsInMillimetres) {
 }
 
 TEST(ShapeReport, AdjacentDistancesHaveErrorsWithoutSignAndDeviationsWithIt) {
-  const json report = JsonOf(
-      std::vector<AdjacentDistance>{{1, 2, 0.198, 0.2}, {2, 3, 0.503, 0.5}, {3, 4, 0.001, 0.0}});
+  const json report = JsonOf(std::vector<AdjacentDistance>{
+      {1, 2, 0.198, 0.2, 0.003}, {2, 3, 0.503, 0.5}, {3, 4, 0.001, 0.0}});
+  EXPECT_NEAR(report["adjacent_distances"][0]["distance_sigma_mm"].get<double>(), 3.0, 1e-12);
+  EXPECT_FALSE(report["adjacent_distances"][1].contains("distance_sigma_mm"));
   EXPECT_EQ(report["adjacent_distance_error_mm_count"], 3);
   EXPECT_NEAR(report["adjacent_distance_error_mm_mean"].get<double>(), 2.0, 1e-9);
   EXPECT_EQ(report["adjacent_distance_deviation_percent_count"], 2);
