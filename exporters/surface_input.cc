@@ -1,0 +1,47 @@
+#include "exporters/surface_input.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace velamap {
+namespace {
+
+std::optional<SurfaceMarker> Find(const std::map<int, const ShapeMarker*>& whole_markers,
+                                  int marker_id) {
+  const auto found = whole_markers.find(marker_id);
+  if (found == whole_markers.end()) return std::nullopt;
+  const ShapeMarker& marker = *found->second;
+  SurfaceMarker result{marker_id, *marker.x_in_shape_m[0], std::nullopt};
+  if (marker.sigma_m[0]) result.sigma_m = std::sqrt(marker.sigma_m[0]->squaredNorm() / 3);
+  return result;
+}
+
+}  // namespace
+
+SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part) {
+  std::map<int, const ShapeMarker*> whole_markers;
+  for (const ShapeMarker& marker : shape.markers) {
+    if (marker.IsWhole()) whole_markers[marker.marker_id] = &marker;
+  }
+  SurfaceInput input;
+  std::set<int> on_lines, others(part.marker_ids.begin(), part.marker_ids.end());
+  for (const MarkerLine& line : part.horizontal) {
+    SurfaceLine surface_line{line.name, {}};
+    for (const int marker_id : line.marker_ids) {
+      surface_line.markers.push_back(Find(whole_markers, marker_id));
+      on_lines.insert(marker_id);
+    }
+    input.lines.push_back(surface_line);
+  }
+  for (const MarkerLine& line : part.vertical) {
+    others.insert(line.marker_ids.begin(), line.marker_ids.end());
+  }
+  for (const int marker_id : others) {
+    if (on_lines.count(marker_id) > 0) continue;
+    if (const auto marker = Find(whole_markers, marker_id)) input.markers.push_back(*marker);
+  }
+  return input;
+}
+
+}  // namespace velamap
