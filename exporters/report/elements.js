@@ -1,0 +1,52 @@
+'use strict';
+
+// Small helpers of the whole page.
+
+function byId(id) {
+  return document.getElementById(id);
+}
+
+// An element with properties and children (elements or text).
+function element(name, properties, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+function svgElement(name, attributes, ...children) {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  made.append(...children);
+  return made;
+}
+
+// A number with `digits` after the point; a dash for what is not known.
+function fixed(value, digits) {
+  return typeof value === 'number' ? value.toFixed(digits).replace(/^-(?=0\.?0*$)/, '') : '–';
+}
+
+// A number with `digits` significant digits, not in exponential form.
+function significant(value, digits) {
+  return typeof value === 'number' ? String(Number(value.toPrecision(digits))) : '–';
+}
+
+// A check box that tells `change` its state.
+function checkBox(text, checked, change, ...marks) {
+  const box = element('input', {type: 'checkbox', checked});
+  box.addEventListener('change', () => change(box.checked));
+  return element('label', {}, box, ...marks, text);
+}
+
+// The value below which the part `share` of the numbers lies.
+function quantile(values, share) {
+  const sorted = values.slice().sort((a, b) => a - b);
+  return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+}
+
+// The least of 1, 2, 5 times a power of ten that is not below `value`.
+function roundUp(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return power * [1, 2, 5, 10].find(factor => factor * power >= value * (1 - 1e-9));
+}

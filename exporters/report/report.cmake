@@ -1,0 +1,45 @@
+# The report's page with the libraries inside, as part of the exporters.
+set(JAVASCRIPT_DIR /usr/share/javascript CACHE PATH
+    "Where Debian's packages libjs-three and libjs-chart.js put their files")
+set(REPORT_DIR ${CMAKE_CURRENT_SOURCE_DIR}/report)
+set(REPORT_THREE ${JAVASCRIPT_DIR}/three/three.min.js
+                 ${JAVASCRIPT_DIR}/three/examples/js/controls/OrbitControls.js)
+set(REPORT_CHART ${JAVASCRIPT_DIR}/chart.js/chart.min.js)
+set(REPORT_SCRIPT)
+foreach(name elements colours tables charts picture scene view3d main)
+  list(APPEND REPORT_SCRIPT ${REPORT_DIR}/${name}.js)
+endforeach()
+set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/style.css ${REPORT_DIR}/licences.txt
+                 ${REPORT_SCRIPT} ${REPORT_THREE} ${REPORT_CHART})
+foreach(file IN LISTS REPORT_THREE REPORT_CHART)
+  if(NOT EXISTS ${file})
+    message(FATAL_ERROR "${file} is missing: install libjs-three and libjs-chart.js "
+                        "(workflows/setup.sh), or set JAVASCRIPT_DIR")
+  endif()
+endforeach()
+
+string(REPLACE ";" "|" REPORT_SCRIPT "${REPORT_SCRIPT}")
+string(REPLACE ";" "|" REPORT_THREE "${REPORT_THREE}")
+set(REPORT_ASSETS ${CMAKE_CURRENT_BINARY_DIR}/report_assets.cc)
+add_custom_command(
+  OUTPUT ${REPORT_ASSETS}
+  COMMAND ${CMAKE_COMMAND} -DOUTPUT=${REPORT_ASSETS}
+          -DkReportPage=${REPORT_DIR}/page.html -DkReportStyle=${REPORT_DIR}/style.css
+          "-DkReportScript=${REPORT_SCRIPT}" "-DkReportThree=${REPORT_THREE}"
+          -DkReportChart=${REPORT_CHART} -DkReportLicences=${REPORT_DIR}/licences.txt
+          -P ${REPORT_DIR}/embed.cmake
+  DEPENDS ${REPORT_FILES} ${REPORT_DIR}/embed.cmake
+  COMMENT "Building the report's page" VERBATIM)
+
+target_sources(velamap_exporters PRIVATE
+  report_data.cc
+  report_histogram.cc
+  report_images.cc
+  report_key_numbers.cc
+  report_markers.cc
+  report_picture.cc
+  report_writer.cc
+  ${REPORT_ASSETS}
+)
+target_link_libraries(velamap_exporters PRIVATE ${OpenCV_LIBS} Boost::headers)
+target_include_directories(velamap_exporters PRIVATE ${OpenCV_INCLUDE_DIRS})

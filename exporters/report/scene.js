@@ -1,0 +1,107 @@
+'use strict';
+
+// What the 3D view shows, as objects of three.js.
+
+const whole = marker => marker.corners.every(corner => corner !== null);
+
+// Two triangles a whole marker, 1 4 3 and 1 3 2 (front side counter-clockwise), coloured by vertex.
+function markerMesh(markers) {
+  const positions = markers.flatMap(
+      ({corners: [a, b, c, d]}) => [a, d, c, a, c, b].flat());
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
+  geometry.setAttribute('color', new THREE.Float32BufferAttribute(positions.length, 3));
+  return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors}));
+}
+
+// The backs of the same triangles, in grey: they show no marker.
+function markerBacks(mesh) {
+  return new THREE.Mesh(mesh.geometry, new THREE.MeshBasicMaterial(
+      {color: '#dfe4e8', side: THREE.BackSide}));
+}
+
+function colourMarkers(mesh, markers, colouring) {
+  const colours = mesh.geometry.getAttribute('color');
+  markers.forEach((marker, i) => {
+    const colour = colouring.colour(marker);
+    for (let vertex = 6 * i; vertex < 6 * i + 6; ++vertex) {
+      colours.setXYZ(vertex, colour.r, colour.g, colour.b);
+    }
+  });
+  colours.needsUpdate = true;
+}
+
+function lines(points, colour) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(points.flat(), 3));
+  return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: colour}));
+}
+
+function markerOutlines(markers) {
+  return lines(markers.flatMap(({corners: [a, b, c, d]}) => [a, b, b, c, c, d, d, a]), '#25313c');
+}
+
+// A pyramid an image, as deep as `depth`; the central one in orange.
+function cameraLines(images, depth) {
+  const group = new THREE.Group();
+  for (const isCentral of [false, true]) {
+    const points = images.filter(image => image.centre && Boolean(image.central) === isCentral)
+        .flatMap(({centre, frustum}) => {
+          const [a, b, c, d] = frustum.map(ray => ray.map((r, i) => centre[i] + depth * r));
+          return [centre, a, centre, b, centre, c, centre, d, a, b, b, c, c, d, d, a];
+        });
+    if (points.length > 0) group.add(lines(points, isCentral ? CHART_ACCENT : '#7a8794'));
+  }
+  return group;
+}
+
+// 1 sigma ellipsoids of the centres; `group.setFactor` makes them larger.
+function ellipsoids(markers) {
+  const group = new THREE.Group();
+  const sphere = new THREE.SphereBufferGeometry(1, 16, 10);
+  const material = new THREE.MeshLambertMaterial({color: '#c2185b'});
+  const known = markers.filter(marker => marker.ellipsoid);
+  for (const marker of known) {
+    const mesh = new THREE.Mesh(sphere, material);
+    mesh.matrixAutoUpdate = false;
+    group.add(mesh);
+  }
+  group.setFactor = factor => known.forEach(({centre, ellipsoid}, i) => {
+    const axes = ellipsoid.map(axis => new THREE.Vector3(...axis).multiplyScalar(factor));
+    group.children[i].matrix.makeBasis(...axes).setPosition(...centre);
+  });
+  return group;
+}
+
+function sectionLines(sections) {
+  const points = sections.filter(section => section.profile_in_shape).flatMap(
+      ({profile_in_shape: profile}) => profile.slice(1).flatMap((x, i) => [profile[i], x]));
+  return lines(points, '#0b2239');
+}
+
+function surfaceMesh(surface) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(surface.vertices, 3));
+  geometry.setIndex(surface.triangles);
+  geometry.computeVertexNormals();
+  return new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
+    color: '#9fc3da', side: THREE.DoubleSide, transparent: true, opacity: 0.75,
+    polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2}));
+}
+
+// What can be shown and hidden: {key, name, object, isOn}.
+function makeLayers(data, markers, size) {
+  const layers = [{key: 'markers', name: 'markers', object: new THREE.Group(), isOn: true}];
+  layers[0].object.add(markerOutlines(markers));
+  layers.push({key: 'cameras', name: 'cameras', object: cameraLines(data.images, 0.03 * size), isOn: true});
+  if (markers.some(marker => marker.ellipsoid)) {
+    layers.push({key: 'ellipsoids', name: 'ellipsoids', object: ellipsoids(markers), isOn: true});
+  }
+  if (data.sections && data.sections.some(section => section.profile_in_shape)) {
+    layers.push({key: 'sections', name: 'sections', object: sectionLines(data.sections), isOn: true});
+  }
+  if (data.surface) {
+    layers.push({key: 'surface', name: 'surface', object: surfaceMesh(data.surface), isOn: true});
+  }
+  return layers;
+}

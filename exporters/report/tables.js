@@ -1,0 +1,117 @@
+'use strict';
+
+// Tables whose heads sort them. A column is {name, value, text?}: `value` sorts, `text` shows.
+
+function fillTable(id, columns, rows) {
+  const body = element('tbody', {});
+  const show = sorted => body.replaceChildren(...sorted.map(row => element('tr', {},
+      ...columns.map(column => element('td', {
+        className: column.isText ? 'text' : '',
+        textContent: column.text ? column.text(row) : String(column.value(row) ?? '–'),
+      })))));
+  show(rows);
+  const heads = columns.map((column, index) => sortingHead(column, heads => {
+    const direction = heads[index].getAttribute('aria-sort') === 'ascending' ? -1 : 1;
+    heads.forEach(head => head.removeAttribute('aria-sort'));
+    heads[index].setAttribute('aria-sort', direction > 0 ? 'ascending' : 'descending');
+    show(rows.slice().sort((a, b) => direction * compare(column.value(a), column.value(b))));
+  }, () => heads));
+  byId(id).replaceChildren(element('table', {},
+      element('thead', {}, element('tr', {}, ...heads)), body));
+}
+
+function sortingHead(column, sort, heads) {
+  // No button inside: browsers leave it out where a printed table repeats its head.
+  const head = element('th', {scope: 'col', className: column.isText ? 'text' : '', tabIndex: 0,
+                              title: 'sort', textContent: column.name});
+  head.addEventListener('click', () => sort(heads()));
+  head.addEventListener('keydown', event => {
+    if (event.key === 'Enter') sort(heads());
+  });
+  return head;
+}
+
+// What is not known goes last.
+function compare(a, b) {
+  if (a === undefined || b === undefined) return (a === undefined) - (b === undefined);
+  return typeof a === 'string' ? a.localeCompare(b, 'en', {numeric: true}) : a - b;
+}
+
+function number(name, key, digits) {
+  return {name, value: row => row[key], text: row => fixed(row[key], digits)};
+}
+
+function text(name, key) {
+  return {name, value: row => row[key], isText: true};
+}
+
+// No line break between a number and its unit.
+function keepUnits(value) {
+  return value.replace(/(\d) (?=%|px|mm|m$)/g, '$1\u00a0');
+}
+
+function fillKeyNumbers(numbers) {
+  byId('key_numbers').replaceChildren(...numbers.map(item => {
+    const head = element('h3', {}, item.name);
+    if (item.status) head.append(element('span', {className: 'verdict', textContent: item.status}));
+    return element('article', {className: `card ${item.status}`}, head,
+        element('p', {className: 'value', textContent: keepUnits(item.value)}),
+        element('p', {className: 'meaning', textContent: item.meaning}));
+  }));
+}
+
+function fillLeftOut(data) {
+  const lists = [['images_left_out', 'Images'], ['markers_left_out', 'Markers']];
+  for (const [key, name] of lists) {
+    if (data[key].length === 0) {
+      byId('left_out').append(element('p', {textContent: `${name}: none.`}));
+      continue;
+    }
+    const id = `table_${key}`;
+    byId('left_out').append(element('details', {open: true},
+        element('summary', {textContent: `${name}: ${data[key].length}`}),
+        element('div', {id, className: 'table'})));
+    fillTable(id, [text(name.slice(0, -1), 'name'), text('Reason', 'reason')], data[key]);
+  }
+}
+
+function fillTables(data) {
+  fillTable('table_markers', [
+    {name: 'Marker', value: row => row.id}, text('Part', 'part'), {name: 'Images', value: row => row.num_images},
+    number('Area, %', 'area_deviation_percent', 2), number('Side, %', 'side_deviation_percent', 2),
+    number('Reprojection, px', 'error_px', 3), number('Scale, %', 'scale_deviation_percent', 2),
+    number('Sigma, mm', 'sigma_mm', 3),
+  ].filter(column => data.markers.some(row => column.value(row) !== undefined)), data.markers);
+  fillTable('table_images', [
+    text('Image', 'name'), {name: 'Markers', value: row => row.num_markers},
+    {name: 'Ratio, %', value: row => row.marker_ratio, text: row => fixed(row.marker_ratio * 100, 1)},
+    number('Mean error, px', 'error_mean_px', 3), number('RMS, px', 'error_rms_px', 3),
+    number('Largest, px', 'error_max_px', 2),
+  ].filter(column => data.images.some(row => column.value(row) !== undefined)), data.images);
+  fillTable('table_options', [
+    {name: 'Option', value: row => row[0], isText: true},
+    {name: 'Value', value: row => row[1], isText: true},
+  ], [['velamap', data.version], ...data.options]);
+}
+
+// A figure with its standard deviation, where that is known.
+function figure(name, key, sigmaKey, digits, factor) {
+  return {
+    name, value: row => row[key],
+    text: row => row[key] === undefined ? '–' : fixed(row[key] * factor, digits) +
+        (row[sigmaKey] === undefined ? '' : ` ± ${fixed(row[sigmaKey] * factor, digits)}`),
+  };
+}
+
+function fillSections(sections) {
+  byId('sections').hidden = false;
+  fillTable('table_sections', [
+    text('Section', 'name'), number('Height, m', 'height_m', 3),
+    figure('Chord, mm', 'chord_m', 'chord_sigma_m', 1, 1000),
+    figure('Camber, %', 'camber_percent', 'camber_sigma_percent', 2, 1),
+    figure('Draft, %', 'draft_percent', 'draft_sigma_percent', 1, 1),
+    figure('Entry, °', 'entry_deg', 'entry_sigma_deg', 1, 1),
+    figure('Exit, °', 'exit_deg', 'exit_sigma_deg', 1, 1),
+    figure('Twist, °', 'twist_deg', 'twist_sigma_deg', 2, 1),
+  ].filter(column => sections.some(row => column.value(row) !== undefined)), sections);
+}

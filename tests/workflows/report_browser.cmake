@@ -1,0 +1,12 @@
+# The report in headless Chromium; skipped where there is none.
+velamap_test(NAME report_browser_test LABEL browser
+  SOURCES
+    ../exporters/report_example.cc
+    report_browser_test.cc
+    run_velamap.cc
+  LIBRARIES ${OpenCV_LIBS}
+)
+# Pictures of the page stay here for whoever wants to look.
+target_compile_definitions(report_browser_test PRIVATE
+  VELAMAP_PROGRAM="$<TARGET_FILE:velamap>"
+  VELAMAP_PICTURE_DIR="${CMAKE_CURRENT_BINARY_DIR}/pictures")
