@@ -1,9 +1,13 @@
+#include <filesystem>
 #include <iostream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "exporters/metric_shape.h"
+#include "exporters/report_writer.h"
 #include "importer/atomic_output.h"
 #include "importer/calibration.h"
 #include "reconstruct/model_io.h"
@@ -25,7 +29,8 @@ struct Options {
   GeneralOptions general;
   MarkerImporterOptions importer;
   RegistrationOptions registration;
-  BundleAdjustmentOptions adjustment;
+  AdjustmentOptions adjustment;
+  Arguments arguments;  // as they were typed, for the report
 };
 
 CommandSyntax Declare(Options* options) {
@@ -39,12 +44,14 @@ CommandSyntax Declare(Options* options) {
              CameraPathOption(paths),
              {"workspace_path", &paths->workspace_path, "path",
               "folder of the result: new, empty, or of an earlier run, whose database is used on",
-              true}}},
+              true},
+             BackendOption(&options->adjustment.backend)}},
            MarkerGroup(&options->markers, true),
            ArucoDetectionGroup(&options->importer.detection),
            VideoGroup(&options->importer.video),
            RegistrationGroup(&options->registration),
-           BundleAdjustmentGroup(&options->adjustment),
+           BundleAdjustmentGroup(&options->adjustment.colmap),
+           MarkerAdjustmentGroup(&options->adjustment.ceres),
            GeneralGroup(&options->general)}};
 }
 
@@ -55,14 +62,14 @@ void Validate(Options* options) {
   options->importer.video.Check();
   options->registration.random_seed = options->general.random_seed;
   options->registration.Check();
-  options->adjustment.Check();
+  options->adjustment.Complete(options->general.num_threads);
   options->importer.layout = LoadLayout(options->markers, true);
   options->importer.camera = ReadCalibration(options->paths.camera_path);
   options->importer.camera_path = options->paths.camera_path;
   options->importer.image_path = options->paths.image_path;
   options->importer.video = NarrowToReach(options->importer.video, options->registration);
   options->importer.num_threads = options->general.num_threads;
-  CheckColmap(options->adjustment.colmap_path);
+  if (options->adjustment.UsesColmap()) CheckColmap(options->adjustment.colmap.colmap_path);
 }
 
 void Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* unreadable) {
@@ -75,6 +82,45 @@ void Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* u
   }
 }
 
+// `--name value` and `--name=value` as pairs.
+std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& arguments) {
+  std::vector<std::pair<std::string, std::string>> options;
+  for (const std::string& argument : arguments) {
+    const bool is_name = argument.rfind("--", 0) == 0;
+    const std::size_t equals = is_name ? argument.find('=') : std::string::npos;
+    if (!is_name) {
+      if (!options.empty()) options.back().second = argument;
+    } else if (equals == std::string::npos) {
+      options.emplace_back(argument.substr(2), "");
+    } else {
+      options.emplace_back(argument.substr(2, equals - 2), argument.substr(equals + 1));
+    }
+  }
+  return options;
+}
+
+void WriteReportFile(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
+                     const ReconstructionSummary& summary, const Model& model) {
+  const ShapeExportReport& shape = summary.shape;
+  Model metric_model = model;
+  ScaleModel(shape.scale, &metric_model);
+  ReportInput input{metric_model,  options.importer.layout, shape.shape,
+                    shape.metrics, shape.model_metrics,     shape.scale};
+  input.title = std::filesystem::path(options.paths.image_path).filename().string();
+  input.version = kVersion;
+  input.image_path = paths.Images().string();
+  const auto& uncertainty = summary.adjustment.uncertainty;
+  input.uncertainty = uncertainty ? &*uncertainty : nullptr;
+  for (const LeftOutImage& image : summary.left_out) {
+    input.images_left_out.push_back({image.image_name, image.reason});
+  }
+  for (const DroppedMarker& marker : seed.registration.dropped_markers) {
+    input.markers_left_out.push_back({std::to_string(marker.marker_id), marker.reason});
+  }
+  input.options = TypedOptions(options.arguments);
+  WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
+}
+
 // From the seed to the final files. sparse/ and shape/ change places with the old ones when both
 // are whole.
 void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
@@ -82,13 +128,17 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   AtomicFolder sparse(paths.Sparse());
   WriteModel(seed.model, (sparse.TemporaryPath() / "seed").string(), ModelFormat::kBinaryAndText);
   Model model = seed.model;
-  summary->adjustment = AdjustModel(options.adjustment, paths.ColmapLog().string(), &model);
+  summary->adjustment = AdjustModel(options.adjustment, options.importer.layout,
+                                    seed.corner_sigmas, paths.ColmapLog().string(), &model);
   AddModelImages(model, options.paths.image_path, paths.Images());
+  const auto& uncertainty = summary->adjustment.uncertainty;
   summary->shape = ExportShape(model, options.importer.layout,
-                               {(sparse.TemporaryPath() / "0").string(), paths.Shape().string()});
+                               {(sparse.TemporaryPath() / "0").string(), paths.Shape().string()},
+                               uncertainty ? &*uncertainty : nullptr);
   sparse.Commit();
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
+  WriteReportFile(options, paths, seed, *summary, model);
   RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
   summary->num_images = static_cast<int>(model.images.size());
 }
@@ -98,6 +148,7 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
 void RunAutomaticReconstructor(const Arguments& arguments) {
   Options options;
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
+  options.arguments = arguments;
   Validate(&options);
   Workspace workspace(options.paths.workspace_path, options.paths.image_path);
   const WorkspacePaths& paths = workspace.paths();

@@ -4,6 +4,7 @@
 #include <fmt/ostream.h>
 
 #include "importer/atomic_output.h"
+#include "importer/colmap_database.h"
 #include "reconstruct/model_io.h"
 #include "workflows/commands.h"
 #include "workflows/pipeline.h"
@@ -16,8 +17,8 @@ namespace {
 struct Options {
   PathOptions paths;
   GeneralOptions general;
-  std::string backend = "colmap";
-  BundleAdjustmentOptions adjustment;
+  MarkerOptions markers;
+  AdjustmentOptions adjustment;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -30,28 +31,44 @@ CommandSyntax Declare(Options* options) {
              {"output_path", &paths->output_path, "path", "folder of the adjusted model", true},
              {"log_path", &paths->log_path, "path",
               "COLMAP's output; left out: colmap.log beside output_path"},
-             {"backend", &options->backend, "name", "colmap: COLMAP's own program"}}},
-           BundleAdjustmentGroup(&options->adjustment),
+             BackendOption(&options->adjustment.backend),
+             {"database_path", &paths->database_path, "path",
+              "database of the model's images, which knows how good each corner is (ceres, "
+              "optional)"}}},
+           MarkerGroup(&options->markers, false),
+           BundleAdjustmentGroup(&options->adjustment.colmap),
+           MarkerAdjustmentGroup(&options->adjustment.ceres),
            GeneralGroup(&options->general)}};
 }
 
 void Validate(Options* options) {
   ApplyGeneralOptions(options->general);
-  CheckBackend(options->backend);
-  options->adjustment.Check();
+  options->adjustment.Complete(options->general.num_threads);
   CheckReplaceableFolder(options->paths.output_path, ModelFileNames());
   if (options->paths.log_path.empty()) {
     options->paths.log_path = BesideFolder(options->paths.output_path, "colmap.log");
   }
 }
 
-void Print(const BundleAdjustmentSummary& summary, const std::string& model_path,
-           std::ostream& out) {
-  fmt::print(out, "rounds: {}\n", summary.num_rounds);
-  fmt::print(out, "reprojection_error_before_px: {}\n", ErrorText(summary.error_before_px));
-  fmt::print(out, "reprojection_error_px: {}\n", ErrorText(summary.error_after_px));
-  fmt::print(out, "outliers_removed: {} of {} observations\n", summary.removed.size(),
-             summary.error_before_px.count);
+// What only `ceres` asks for is left empty for `colmap`.
+Layout LoadAdjustmentLayout(const Options& options) {
+  return options.adjustment.UsesCeres() ? LoadLayout(options.markers, false) : Layout{};
+}
+
+CornerSigmas LoadCornerSigmas(const Options& options) {
+  if (options.paths.database_path.empty() || !options.adjustment.UsesCeres()) return {};
+  const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
+  return CornerSigmasOf(database.ReadImages());
+}
+
+void Print(const AdjustmentResult& result, const std::string& model_path, std::ostream& out) {
+  fmt::print(out, "reprojection_error_before_px: {}\n", ErrorText(result.error_before_px));
+  fmt::print(out, "reprojection_error_px: {}\n", ErrorText(result.error_after_px));
+  fmt::print(out, "outliers_removed: {} of {} observations\n", result.num_removed,
+             result.error_before_px.count);
+  if (result.uncertainty) {
+    fmt::print(out, "scale_sigma: {:.4f} %\n", 100.0 * result.uncertainty->relative_scale_sigma);
+  }
   fmt::print(out, "model_path: {}\n", model_path);
 }
 
@@ -59,13 +76,15 @@ void Print(const BundleAdjustmentSummary& summary, const std::string& model_path
 
 void RunBundleAdjuster(const Arguments& arguments) {
   Options options;
+  options.adjustment.backend = "colmap";  // needs no more than a model
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
+  const Layout layout = LoadAdjustmentLayout(options);
   Model model = ReadModel(options.paths.input_path);
-  const BundleAdjustmentSummary summary =
-      AdjustModel(options.adjustment, options.paths.log_path, &model);
-  WriteModel(model, options.paths.output_path, ModelFormat::kBinaryAndText);
-  Print(summary, options.paths.output_path, std::cout);
+  const AdjustmentResult result = AdjustModel(options.adjustment, layout, LoadCornerSigmas(options),
+                                              options.paths.log_path, &model);
+  WriteAdjustedModel(model, result, options.paths.output_path);
+  Print(result, options.paths.output_path, std::cout);
 }
 
 }  // namespace velamap

@@ -60,6 +60,7 @@ void Print(const ImportReport& report, const std::string& database_path, std::os
   fmt::print(out, "images_skipped: {}\n", report.skipped.size());
   fmt::print(out, "markers: {}\n", report.num_markers);
   fmt::print(out, "markers_rejected: {}\n", report.num_rejected);
+  fmt::print(out, "markers_without_corner_fit: {}\n", report.num_fallbacks);
   fmt::print(out, "ids_not_in_layout: {}\n",
              report.ids_not_in_layout.empty()
                  ? "none"

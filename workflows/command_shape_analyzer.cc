@@ -5,10 +5,12 @@
 #include <spdlog/spdlog.h>
 
 #include "exporters/metric_shape.h"
+#include "exporters/scale_audit_report.h"
 #include "exporters/shape_csv.h"
 #include "exporters/shape_report.h"
 #include "importer/atomic_output.h"
 #include "importer/error.h"
+#include "reconstruct/adjustment_uncertainty.h"
 #include "reconstruct/model_io.h"
 #include "workflows/commands.h"
 #include "workflows/shared_options.h"
@@ -85,22 +87,50 @@ void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathO
       paths.shape_path, paths.input_path, max_distance_m);
 }
 
+// The model that the shape is from, and what is known of its points where they are the shape's.
+struct ModelOfShape {
+  std::optional<Model> model;
+  std::optional<AdjustmentUncertainty> uncertainty;
+
+  const PointCovariance* Covariance() const {
+    return uncertainty ? &uncertainty->points : nullptr;
+  }
+};
+
+ModelOfShape LoadModel(const MarkerShape& shape, const PathOptions& paths) {
+  ModelOfShape result;
+  if (paths.input_path.empty()) return result;
+  result.model = ReadModel(paths.input_path);
+  CheckModelOfShape(*result.model, shape, paths);
+  if (HasUncertainty(paths.input_path) && IsShapeOf(shape, *result.model)) {
+    result.uncertainty = ReadUncertainty(paths.input_path);
+  }
+  return result;
+}
+
 MetricsReport Analyze(const Options& options) {
   const MarkerShape shape = ReadShapeCsv(ShapeFile(options.paths.shape_path));
   std::optional<Layout> layout;
   if (HasMarkerOptions(options.markers)) layout = LoadLayout(options.markers, false);
+  const ModelOfShape source = LoadModel(shape, options.paths);
+  const PointCovariance* covariance = source.Covariance();
   MetricsReport report;
-  if (layout) AddMetrics(ComputeShapeMetrics(shape, *layout), &report);
-  if (!options.paths.input_path.empty()) {
-    const Model model = ReadModel(options.paths.input_path);
-    CheckModelOfShape(model, shape, options.paths);
-    AddMetrics(ComputeModelMetrics(model, MarkerIds(layout.value_or(Layout()))), &report);
+  if (layout) AddMetrics(ComputeShapeMetrics(shape, *layout, covariance), &report);
+  if (source.model) {
+    AddMetrics(ComputeModelMetrics(*source.model, MarkerIds(layout.value_or(Layout()))), &report);
   }
-  if (options.part_planes) AddMetrics(FitPartPlanes(shape), &report);
+  if (layout) {
+    AddMetrics(AuditScale(shape, *layout, source.model ? &*source.model : nullptr,
+                          source.uncertainty ? &*source.uncertainty : nullptr),
+               &report);
+  }
+  if (options.part_planes) AddMetrics(FitPartPlanes(shape, covariance), &report, covariance);
   if (!options.paths.reference_path.empty()) {
     const MarkerShape reference = ReadShapeCsv(ShapeFile(options.paths.reference_path));
     AddMetrics(CompareShapes(shape, reference), &report);
-    if (layout) AddMetrics(CompareAdjacentDistances(shape, reference, *layout), &report);
+    if (layout) {
+      AddMetrics(CompareAdjacentDistances(shape, reference, *layout, covariance), &report);
+    }
   }
   return report;
 }

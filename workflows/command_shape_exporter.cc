@@ -1,6 +1,8 @@
 #include <iostream>
+#include <optional>
 
 #include "importer/error.h"
+#include "reconstruct/adjustment_uncertainty.h"
 #include "reconstruct/model_io.h"
 #include "workflows/commands.h"
 #include "workflows/shared_options.h"
@@ -53,9 +55,15 @@ void RunShapeExporter(const Arguments& arguments) {
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(options);
   const Layout layout = LoadLayout(options.markers, false);
+  const Model model = ReadModel(options.paths.input_path);
+  std::optional<AdjustmentUncertainty> uncertainty;
+  if (HasUncertainty(options.paths.input_path)) {
+    uncertainty = ReadUncertainty(options.paths.input_path);
+  }
   const ShapeExportReport report =
-      ExportShape(ReadModel(options.paths.input_path), layout,
-                  {options.paths.output_path, options.paths.shape_path, options.ascii_ply});
+      ExportShape(model, layout,
+                  {options.paths.output_path, options.paths.shape_path, options.ascii_ply},
+                  uncertainty ? &*uncertainty : nullptr);
   Print(report, options.paths, std::cout);
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,6 +16,7 @@
 #include "importer/error.h"
 #include "reconstruct/colmap_runner.h"
 #include "reconstruct/frame_selection.h"
+#include "reconstruct/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "workflows/progress.h"
 #include "workflows/summary.h"
@@ -54,14 +57,57 @@ void LogSeed(const SeedResult& seed) {
   }
 }
 
+void WarnOfRemovedImages(const std::vector<ImageId>& removed_images) {
+  if (removed_images.empty()) return;
+  spdlog::warn("{} images lost so many observations to the outlier filter that they are left out",
+               removed_images.size());
+}
+
+AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
+                                  const std::string& log_path, Model* model) {
+  spdlog::info("bundle adjustment of {} images and {} points by {}", model->images.size(),
+               model->points3D.size(), options.colmap_path);
+  const BundleAdjustmentSummary summary = AdjustWithColmap(options, log_path, model);
+  spdlog::info("{} rounds, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px",
+               summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
+               summary.error_after_px.mean);
+  WarnOfRemovedImages(summary.removed_images);
+  return {summary.error_before_px, summary.error_after_px, static_cast<int>(summary.removed.size()),
+          std::nullopt};
+}
+
+AdjustmentResult RunCeresBackend(const MarkerAdjustmentOptions& options, const Layout& layout,
+                                 const CornerSigmas& corner_sigmas, Model* model) {
+  spdlog::info("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
+               model->points3D.size());
+  MarkerAdjustmentSummary summary = AdjustWithCeres(options, layout, corner_sigmas, model);
+  const AdjustmentUncertainty& uncertainty = summary.uncertainty;
+  spdlog::info(
+      "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, corners "
+      "{:.2f} times as noisy as their detector says, scale good to {:.3f} %",
+      summary.num_iterations, summary.removed.size(), summary.error_before_px.mean,
+      summary.error_after_px.mean, std::sqrt(uncertainty.variance_factor),
+      100.0 * uncertainty.relative_scale_sigma);
+  if (uncertainty.apparent_inset_sigma_px > 0) {
+    spdlog::info("apparent inset of the corners {:.3f} +- {:.3f} px", uncertainty.apparent_inset_px,
+                 uncertainty.apparent_inset_sigma_px);
+  }
+  for (const std::string& warning : summary.warnings) spdlog::warn(warning);
+  WarnOfRemovedImages(summary.removed_images);
+  return {summary.error_before_px, summary.error_after_px, static_cast<int>(summary.removed.size()),
+          std::move(summary.uncertainty)};
+}
+
 }  // namespace
 
 VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration) {
   const std::string& central = registration.central_frame;
   int number = 0;
-  const auto [end, error] = std::from_chars(central.data(), central.data() + central.size(), number);
+  const auto [end, error] =
+      std::from_chars(central.data(), central.data() + central.size(), number);
   if (error != std::errc() || end != central.data() + central.size() || number < 0 ||
-      registration.frame_order == FrameOrder::kUnordered) {
+      registration.frame_order == FrameOrder::kUnordered ||
+      registration.method == RegistrationMethod::kGlobal) {
     return video;
   }
   const auto [first, last] = ReachableFrames(
@@ -83,6 +129,10 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
   ClearProgressLine();
   spdlog::info("{} images added to the {} of the database, {} markers found",
                report.num_images_added, report.num_images_present, report.num_markers);
+  if (report.num_fallbacks > 0) {
+    spdlog::info("{} of them without a fit of their edges: corners from cv::cornerSubPix",
+                 report.num_fallbacks);
+  }
   if (!report.ids_not_in_layout.empty()) {
     spdlog::warn("markers found that the layout does not name, left out: {}",
                  fmt::join(report.ids_not_in_layout, " "));
@@ -103,6 +153,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   seed.registration = RegisterFrames(images, cameras, layout, options);
   seed.model = MakeSeedModel(seed.registration, images, cameras);
   seed.left_out = FindLeftOut(seed);
+  seed.corner_sigmas = CornerSigmasOf(images);
   LogSeed(seed);
   return seed;
 }
@@ -113,10 +164,20 @@ std::string BesideFolder(const std::string& folder, const std::string& name) {
   return ((absolute.has_filename() ? parent : parent.parent_path()) / name).string();
 }
 
-void CheckBackend(const std::string& backend) {
-  if (backend != "colmap") {
-    throw InputError(fmt::format("--backend: '{}' is unknown; there is: colmap", backend));
+void AdjustmentOptions::Complete(int num_threads) {
+  if (backend != "colmap" && backend != "ceres" && backend != "both") {
+    throw InputError(
+        fmt::format("--backend: '{}' is unknown; there are: colmap, ceres, both", backend));
   }
+  colmap.Check();
+  ceres.refine_focal_length = colmap.refine_focal_length;
+  ceres.refine_principal_point = colmap.refine_principal_point;
+  ceres.refine_extra_params = colmap.refine_extra_params;
+  ceres.max_num_iterations = colmap.max_num_iterations;
+  ceres.min_track_length = colmap.min_track_length;
+  ceres.max_mean_error_px = colmap.max_mean_error_px;
+  ceres.num_threads = num_threads;
+  ceres.Check();
 }
 
 void CheckColmap(const std::string& colmap_path) {
@@ -128,25 +189,32 @@ void CheckColmap(const std::string& colmap_path) {
   }
 }
 
-BundleAdjustmentSummary AdjustModel(const BundleAdjustmentOptions& options,
-                                    const std::string& log_path, Model* model) {
-  spdlog::info("bundle adjustment of {} images and {} points by {}", model->images.size(),
-               model->points3D.size(), options.colmap_path);
-  const BundleAdjustmentSummary summary = AdjustWithColmap(options, log_path, model);
-  spdlog::info("{} rounds, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px",
-               summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
-               summary.error_after_px.mean);
-  if (summary.error_after_px.mean > kSuspiciousErrorPx) {
+AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& layout,
+                             const CornerSigmas& corner_sigmas, const std::string& log_path,
+                             Model* model) {
+  AdjustmentResult result;
+  if (options.UsesColmap()) result = RunColmapBackend(options.colmap, log_path, model);
+  if (options.UsesCeres()) {
+    const Statistics before_px = result.error_before_px;
+    const int num_removed = result.num_removed;
+    result = RunCeresBackend(options.ceres, layout, corner_sigmas, model);
+    if (options.UsesColmap()) result.error_before_px = before_px;
+    result.num_removed += num_removed;
+  }
+  if (result.error_after_px.mean > kSuspiciousErrorPx) {
     spdlog::warn(
         "a mean reprojection error of {:.2f} px is more than the noise of corners explains: is the "
         "calibration of these images, and did the surface keep its shape? Do not trust the result",
-        summary.error_after_px.mean);
+        result.error_after_px.mean);
   }
-  if (!summary.removed_images.empty()) {
-    spdlog::warn("{} images lost so many observations to the outlier filter that they are left out",
-                 summary.removed_images.size());
-  }
-  return summary;
+  return result;
+}
+
+void WriteAdjustedModel(const Model& model, const AdjustmentResult& result,
+                        const std::string& path) {
+  WriteModel(model, path, ModelFormat::kBinaryAndText, [&result](const std::string& folder) {
+    if (result.uncertainty) WriteUncertainty(*result.uncertainty, folder);
+  });
 }
 
 }  // namespace velamap

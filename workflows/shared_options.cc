@@ -26,10 +26,15 @@ FrameOrder FrameOrderFromName(const std::string& name) {
       "--Registration.frame_order: '{}' is unknown; give auto, time or unordered", name));
 }
 
-void CheckMethod(const std::string& name) {
-  if (name != "thesis") {
-    throw InputError(fmt::format("--Registration.method: '{}' is unknown; there is: thesis", name));
+constexpr std::array<std::pair<RegistrationMethod, const char*>, 2> kMethods = {
+    {{RegistrationMethod::kThesis, "thesis"}, {RegistrationMethod::kGlobal, "global"}}};
+
+RegistrationMethod MethodFromName(const std::string& name) {
+  for (const auto& [method, known_name] : kMethods) {
+    if (name == known_name) return method;
   }
+  throw InputError(
+      fmt::format("--Registration.method: '{}' is unknown; give thesis or global", name));
 }
 
 }  // namespace
@@ -96,7 +101,9 @@ OptionGroup VideoGroup(VideoOptions* options) {
 }
 
 OptionGroup RegistrationGroup(RegistrationOptions* options) {
-  const ParsedValue method = {"thesis", CheckMethod};
+  const ParsedValue method = {
+      kMethods[static_cast<std::size_t>(options->method)].second,
+      [options](const std::string& name) { options->method = MethodFromName(name); }};
   const ParsedValue order = {
       kFrameOrders[static_cast<std::size_t>(options->frame_order)].second,
       [options](const std::string& name) { options->frame_order = FrameOrderFromName(name); }};
@@ -104,24 +111,30 @@ OptionGroup RegistrationGroup(RegistrationOptions* options) {
       "", [options](const std::string& name) { options->central_frame = name; }};
   return {
       "Registration of the frames",
-      {{"Registration.method", method, "name", "thesis is the only one yet"},
+      {{"Registration.method", method, "thesis|global",
+        "thesis: rigid alignment around one central frame; global: resection against a growing "
+        "map"},
        {"Registration.frame_order", order, "auto|time|unordered",
         "time: search around the central frame; unordered: grow from it; auto: time for a video"},
        {"Registration.central_frame", &options->central_frame, "name|frame",
         "image name or frame number; left out: the best one is chosen"},
        {"central_frame", central_frame, "name|frame", "the same, shorter"},
+       {"Registration.max_num_frames", &options->max_num_frames, "frames",
+        "most frames of a video that take part (global)"},
+       {"Registration.num_starts", &options->num_starts, "count",
+        "places from which the map is grown at most (global)"},
        {"Registration.num_frames", &options->num_frames, "frames",
-        "frames on each side of the central one (time order)"},
+        "frames on each side of the central one, 0: it alone (thesis, time order)"},
        {"Registration.skip", &options->skip, "frames",
-        "steps between selected frames (time order)"},
+        "steps between selected frames (thesis, time order)"},
        {"Registration.neighborhood", &options->neighborhood, "frames",
-        "frames on each side of a step that compete (time order)"},
+        "frames on each side of a step that compete (thesis, time order)"},
        {"Registration.ransac_max_error", &options->ransac_max_error_m, "m",
         "a marker further than this from its place is an outlier; 0: the marker's side"},
        {"Registration.min_num_inliers", &options->min_num_inliers, "markers",
         "fewest shared markers that have to agree"},
        {"Registration.frequency_threshold", &options->frequency_threshold, "fraction",
-        "part of the registered frames that has to see a marker (time order)"},
+        "part of the registered frames that has to see a marker (thesis, time order)"},
        {"Registration.min_num_frames", &options->min_num_frames, "frames",
         "fewest frames that have to see a marker"},
        {"Registration.num_mean_iterations", &options->num_mean_iterations, "count",
@@ -154,6 +167,41 @@ OptionGroup BundleAdjustmentGroup(BundleAdjustmentOptions* options) {
             "a larger mean reprojection error is no result"}}};
 }
 
+OptionGroup MarkerAdjustmentGroup(MarkerAdjustmentOptions* options) {
+  return {
+      "Marker-aware adjustment (--backend ceres or both)",
+      {{"MarkerAdjustment.corner_sigma", &options->corner_sigma_px, "px",
+        "1 sigma of a corner's coordinate where the detector gives none"},
+       {"MarkerAdjustment.corner_sigma_floor", &options->corner_sigma_floor_px, "px",
+        "added to every corner's own sigma, by squares"},
+       {"MarkerAdjustment.loss", &options->loss_sigmas, "sigmas", "errors beyond this lose weight"},
+       {"MarkerAdjustment.outlier", &options->outlier_sigmas, "sigmas",
+        "corners beyond this are left out"},
+       {"MarkerAdjustment.print_tolerance", &options->print_tolerance, "fraction",
+        "1 sigma of each printed side"},
+       {"MarkerAdjustment.common_print_tolerance", &options->common_print_tolerance, "fraction",
+        "1 sigma of the print as a whole; widens the scale's sigma"},
+       {"MarkerAdjustment.cloth_flatness", &options->cloth_flatness, "fraction",
+        "1 sigma of a corner from its marker's plane, of the side; 0: unknown"},
+       {"MarkerAdjustment.rigid_flatness", &options->rigid_flatness, "fraction",
+        "the same on parts that the layout calls rigid"},
+       {"MarkerAdjustment.inset_sigma", &options->inset_sigma_px, "px",
+        "1 sigma of an error that all corners share, seen too far inside; widens the scale's "
+        "sigma"},
+       {"MarkerAdjustment.estimate_inset", &options->estimate_inset, "0|1",
+        "estimate that error from the images"},
+       {"MarkerAdjustment.intrinsics_sigma", &options->intrinsics_sigma, "fraction",
+        "1 sigma of the calibration, where BundleAdjustment.refine_* frees it"},
+       {"MarkerAdjustment.rolling_shutter", &options->rolling_shutter_s, "s",
+        "time from the first row of a frame to the last; 0: not modelled"}}};
+}
+
+Option BackendOption(std::string* backend) {
+  return {"backend", backend, "colmap|ceres|both",
+          "colmap: COLMAP's own program; ceres: ours, which knows the markers' size and gives "
+          "sigmas; both: one after the other"};
+}
+
 namespace {
 
 // One project file may hold options for all commands.
@@ -164,15 +212,18 @@ std::set<std::string> SharedOptionNames() {
   VideoOptions video;
   RegistrationOptions registration;
   BundleAdjustmentOptions adjustment;
+  MarkerAdjustmentOptions marker_adjustment;
+  std::string backend;
   PathOptions paths;
-  const OptionGroup path_group{"",
-                               {ImagePathOption(&paths), CameraPathOption(&paths),
-                                DatabasePathOption(&paths, ""), ModelInputOption(&paths)}};
+  const OptionGroup path_group{
+      "",
+      {ImagePathOption(&paths), CameraPathOption(&paths), DatabasePathOption(&paths, ""),
+       ModelInputOption(&paths), BackendOption(&backend)}};
   std::set<std::string> names;
   for (const OptionGroup& group :
        {GeneralGroup(&general), MarkerGroup(&markers, true), ArucoDetectionGroup(&detection),
         VideoGroup(&video), RegistrationGroup(&registration), BundleAdjustmentGroup(&adjustment),
-        path_group}) {
+        MarkerAdjustmentGroup(&marker_adjustment), path_group}) {
     for (const Option& option : group.options) names.insert(option.name);
   }
   return names;

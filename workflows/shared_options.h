@@ -9,6 +9,7 @@
 #include "importer/layout.h"
 #include "importer/options.h"
 #include "reconstruct/bundle_adjustment.h"
+#include "reconstruct/marker_adjustment.h"
 #include "reconstruct/registration.h"
 #include "workflows/option_parser.h"
 
@@ -54,6 +55,8 @@ OptionGroup ArucoDetectionGroup(ArucoDetectionOptions* options);
 OptionGroup VideoGroup(VideoOptions* options);
 OptionGroup RegistrationGroup(RegistrationOptions* options);
 OptionGroup BundleAdjustmentGroup(BundleAdjustmentOptions* options);
+OptionGroup MarkerAdjustmentGroup(MarkerAdjustmentOptions* options);
+Option BackendOption(std::string* backend);
 
 // Sets the options that the arguments give. With --help it prints the help on stdout and returns
 // false: the command has nothing more to do. Throws InputError as ParseOptions() does.

@@ -10,6 +10,8 @@
 #include <fmt/ostream.h>
 #include <Eigen/Eigenvalues>
 
+#include "exporters/scale_audit_report.h"
+
 namespace velamap {
 namespace {
 
@@ -149,6 +151,7 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   fmt::print(out, "side_error_mm: {}\n", ErrorText(metrics.side_error_mm));
   fmt::print(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
   fmt::print(out, "scale_spread_over_markers: {:.3f} %\n", 100.0 * report.scale.relative_spread);
+  PrintScaleAudit(report.scale, report.audit, out);
   fmt::print(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
 }
 
@@ -157,7 +160,7 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   fmt::print(out, "images_used: {} of {}\n", summary.num_images, summary.num_images_total);
   fmt::print(out, "images_left_out: {}\n", LeftOutText(summary.left_out));
   PrintShapeSummary(summary.shape, out);
-  fmt::print(out, "outliers_removed: {} of {} observations\n", summary.adjustment.removed.size(),
+  fmt::print(out, "outliers_removed: {} of {} observations\n", summary.adjustment.num_removed,
              summary.adjustment.error_before_px.count);
   fmt::print(out, "shape_path: {}\n", paths.Shape().string());
   fmt::print(out, "model_path: {}\n", paths.Model().string());

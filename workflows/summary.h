@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 
 #include "exporters/shape_exporter.h"
-#include "reconstruct/bundle_adjustment.h"
 #include "workflows/pipeline.h"
 #include "workflows/workspace.h"
 
@@ -37,7 +36,7 @@ struct ReconstructionSummary {
   int num_images = 0;  // images used
   int num_images_total = 0;
   std::vector<LeftOutImage> left_out;
-  BundleAdjustmentSummary adjustment;
+  AdjustmentResult adjustment;
   ShapeExportReport shape;
 };
 

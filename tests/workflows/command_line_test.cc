@@ -104,16 +104,21 @@ TEST(CommandLineTest, UnknownNamesListWhatThereIs) {
     EXPECT_EQ(run.exit_code, 2) << option;
     return run.err;
   };
-  EXPECT_THAT(error_of("--Registration.method", "global"), HasSubstr("there is: thesis"));
+  EXPECT_THAT(error_of("--Registration.method", "local"), HasSubstr("thesis or global"));
   EXPECT_THAT(error_of("--Registration.frame_order", "random"),
               HasSubstr("auto, time or unordered"));
   EXPECT_THAT(error_of("--ArucoDetection.corner_refinement", "contour"),
               HasSubstr("none, subpix or edge"));
   EXPECT_THAT(error_of("--log_level", "loud"), HasSubstr("error, warn, info or debug"));
   const ProgramRun backend = RunVelamap(
-      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "ceres"});
+      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "g2o"});
   EXPECT_EQ(backend.exit_code, 2);
-  EXPECT_THAT(backend.err, HasSubstr("--backend: 'ceres' is unknown; there is: colmap"));
+  EXPECT_THAT(backend.err,
+              HasSubstr("--backend: 'g2o' is unknown; there are: colmap, ceres, both"));
+  const ProgramRun length = RunVelamap(
+      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "ceres"});
+  EXPECT_EQ(length.exit_code, 2);
+  EXPECT_THAT(length.err, HasSubstr("--layout_path: missing"));
 }
 
 TEST(CommandLineTest, FullStandardOutputIsNoSuccess) {

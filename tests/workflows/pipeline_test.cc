@@ -13,6 +13,7 @@ RegistrationOptions Around(const std::string& central_frame) {
   options.num_frames = 3;
   options.skip = 10;
   options.neighborhood = 5;
+  options.method = RegistrationMethod::kThesis;
   return options;
 }
 
@@ -48,6 +49,9 @@ TEST(NarrowToReachTest, WithoutAFrameNumberNothingChanges) {
   RegistrationOptions unordered = Around("100");
   unordered.frame_order = FrameOrder::kUnordered;
   EXPECT_EQ(NarrowToReach({}, unordered).last_frame, -1);
+  RegistrationOptions global = Around("100");
+  global.method = RegistrationMethod::kGlobal;
+  EXPECT_EQ(NarrowToReach({}, global).last_frame, -1);
 }
 
 TEST(RegistrationGroupTest, CentralFrameHasAShortName) {

@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 const fs::path kCube = fs::path(VELAMAP_SOURCE_DIR) / "sample_project/cube";
 const fs::path kStylus = fs::path(VELAMAP_SOURCE_DIR) / "sample_project/stylus";
+const fs::path kAprilGrid = fs::path(VELAMAP_SOURCE_DIR) / "tests/data/aprilgrid";
 const fs::path kBoardVideo = fs::path(VELAMAP_SOURCE_DIR) / "tests/data/board_video";
 
 // Pictures from `image_path`, calibration and layout from the folder of the sample.
@@ -128,6 +129,22 @@ TEST(StylusTest, AllMarkersComeNearTheDesign) {
   const ShapeComparison comparison = CompareWithReference(kStylus, shape);
   EXPECT_EQ(comparison.num_points, 32);
   EXPECT_LE(comparison.distance_m.rms, 0.0006);
+  RecordProperty("rms_mm", Text(1e3 * comparison.distance_m.rms));
+}
+
+// Its corners are saddle points, which stay where they are when ink spreads; its sides do not.
+TEST(AprilGridTest, ScaleIsThatOfTheLayout) {
+  const TempDir dir;
+  const fs::path workspace = dir / "workspace";
+  const ProgramRun run = Reconstruct(kAprilGrid, kAprilGrid / "images", workspace);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const MarkerShape shape = ReadShapeCsv((workspace / "shape/shape.csv").string());
+  EXPECT_EQ(NumWholeMarkers(shape), 20);
+  const ShapeComparison comparison = CompareWithReference(kAprilGrid, shape);
+  EXPECT_EQ(comparison.num_points, 80);
+  EXPECT_NEAR(comparison.scale, 1.0, 1e-3);
+  EXPECT_LE(comparison.distance_m.rms, 0.25e-3);
+  RecordProperty("scale", Text(comparison.scale));
   RecordProperty("rms_mm", Text(1e3 * comparison.distance_m.rms));
 }
 

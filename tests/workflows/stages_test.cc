@@ -120,6 +120,44 @@ TEST_F(StagesTest, SameInputSameBytes) {
   EXPECT_EQ(ReadFileBytes(path("sparse/seed/points3D.bin")), first);
 }
 
+TEST_F(StagesTest, CentralFrameAloneGivesTheShapeOfItsSingleMarkers) {
+  SyntheticSceneOptions options;
+  options.num_rows = 3;
+  options.num_columns = 4;
+  options.num_frames = 8;
+  WriteDatabase(MakeSyntheticScene(options), path("database.db"), 8, All);
+  const ProgramRun run =
+      RunVelamap({"frame_registrator", "--database_path", path("database.db"), "--marker_length",
+                  "0.1", "--output_path", path("model"), "--Registration.num_frames", "0",
+                  "--central_frame", "3"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Model model = ReadModel(path("model"));
+  ASSERT_EQ(model.images.size(), 1u);
+  EXPECT_EQ(model.images[0].name, "frame_000003.jpg");
+  EXPECT_EQ(Export().exit_code, 0);
+}
+
+TEST_F(StagesTest, MarkerAwareAdjustmentIsMetricAndKnowsItsSigmas) {
+  WriteDatabase(scene_, path("database.db"), 8, All);
+  ASSERT_EQ(Register().exit_code, 0);
+  const ProgramRun run =
+      RunVelamap({"bundle_adjuster", "--backend", "ceres", "--input_path", path("sparse/seed"),
+                  "--database_path", path("database.db"), "--marker_length", "0.1",
+                  "--output_path", path("model")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("scale_sigma: "));
+  EXPECT_TRUE(fs::exists(dir_ / "model/uncertainty.bin"));
+  ASSERT_EQ(Export().exit_code, 0);
+  const MarkerShape shape = ReadShapeCsv(path("shape/shape.csv"));
+  ASSERT_EQ(shape.markers.size(), 12u);
+  for (const ShapeMarker& marker : shape.markers) {
+    ASSERT_TRUE(marker.sigma_m[0]) << marker.marker_id;
+    EXPECT_GT(marker.sigma_m[0]->minCoeff(), 0.0);
+    EXPECT_LT(marker.sigma_m[0]->maxCoeff(), 0.01);
+    EXPECT_NEAR(MarkerSides(marker)[0], 0.1, 1e-6);
+  }
+}
+
 TEST_F(StagesTest, OneImageIsNoShape) {
   WriteDatabase(scene_, path("database.db"), 1, All);
   ExpectError(Register(), 1, "at least two images");

@@ -2,8 +2,8 @@
 # Accuracy of the detection on the flat board of 12 markers of 40 mm in the eight motions a to h
 # (thesis section 4.1, Figures 4.4 to 4.7).
 # usage: workflows/studies/board_motions.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# step "detection": poses of single markers, the mean of three neighbouring frames (the fewest that
-# velamap registers), nothing adjusted; mean over several places of the clip.
+# step "detection": poses of single markers in single frames, nothing adjusted; mean over every
+# fourth frame of the clip.
 # step "adjusted": one bundle-adjusted reconstruction of the clip.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -11,9 +11,9 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 begin_study board_motions "$@"
 if [[ $quick -eq 1 ]]; then
-  num_frames=30 places=(10 20) adjusted=(5 2 0 15)
+  num_frames=30 step=10 adjusted=(5 2 0 15)
 else
-  num_frames=100 places=(10 30 50 70 90) adjusted=(10 4 1 50)
+  num_frames=100 step=4 adjusted=(10 4 1 50)
 fi
 mapfile -t adjusted < <(search "${adjusted[@]}")
 
@@ -43,10 +43,10 @@ row() {
 for motion in a b c d e f g h; do
   make_clip "board_$motion" --scene board --motion "$motion" --num_frames "$num_frames"
   names=()
-  for place in "${places[@]}"; do
-    mapfile -t options < <(search 1 1 0 "$place")
-    ADJUST=0 reconstruct "board_$motion" "${motion}_$place" "${options[@]}"
-    names+=("${motion}_$place")
+  for ((frame = 0; frame < num_frames; frame += step)); do
+    mapfile -t options < <(search 0 1 0 "$frame")
+    ADJUST=0 reconstruct "board_$motion" "${motion}_$frame" "${options[@]}"
+    names+=("${motion}_$frame")
   done
   row detection "${names[@]}"
   reconstruct "board_$motion" "${motion}_adjusted" "${adjusted[@]}"

@@ -86,8 +86,9 @@ make_clip() {
 make_near_clip() { make_clip near "${sail[@]}" --num_frames "$(near_clip_frames)"; }
 
 # reconstruct CLIP RUN FRAME_REGISTRATOR_OPTION...: into runs/STUDY/RUN. TRUTH names another
-# reference than the clip's truth.csv; ADJUST=0 leaves the bundle adjustment out. No result, which
-# the log explains, is one of the results of a study: then there is no analysis.csv.
+# reference than the clip's truth.csv, DATABASE other detections than its own, METHOD another
+# registration than the thesis's, BACKEND another bundle adjustment than COLMAP's; ADJUST=0 leaves the adjustment out. No result, which the log explains, is
+# one of the results of a study: then there is no analysis.csv.
 reconstruct() {
   local clip="$clips/$1" run="$runs/$2"
   mkdir -p "$run"
@@ -102,11 +103,16 @@ reconstruct() {
 reconstruct_steps() {
   local clip="$1" run="$2" model="$2/adjusted" reference="${TRUTH:-$1/truth.csv}"
   local layout=(--layout_path "$clip/layout.yml" --log_level warn)
+  local database=(--database_path "${DATABASE:-$clip/database.db}")
+  local adjustment=(--log_level warn)
+  if [[ -n "${BACKEND:-}" ]]; then
+    adjustment=(--backend "$BACKEND" "${database[@]}" "${layout[@]}")
+  fi
   if [[ "${ADJUST:-1}" -eq 0 ]]; then model="$run/seed"; fi
-  "$velamap" frame_registrator --database_path "$clip/database.db" --output_path "$run/seed" \
-    "${layout[@]}" "${@:3}" &&
+  "$velamap" frame_registrator "${database[@]}" --output_path "$run/seed" "${layout[@]}" \
+    --Registration.method "${METHOD:-thesis}" "${@:3}" &&
     { [[ "$model" == "$run/seed" ]] || "$velamap" bundle_adjuster --input_path "$run/seed" \
-      --output_path "$run/adjusted" --log_level warn; } &&
+      --output_path "$run/adjusted" "${adjustment[@]}"; } &&
     "$velamap" shape_exporter --input_path "$model" --output_path "$run/metric" \
       --shape_path "$run/shape" "${layout[@]}" &&
     "$velamap" shape_analyzer --shape_path "$run/shape" --input_path "$run/metric" \

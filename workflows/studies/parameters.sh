@@ -15,7 +15,7 @@ if [[ $quick -eq 1 ]]; then
 else
   base=(20 10 5)
   num_frames="5 10 15 20 25 28" skips="2 4 6 8 10 12 14" neighborhoods="0 1 2 3 4 5"
-  central_frames="300"
+  central_frames="260 280 300 320 340"
 fi
 read -ra num_frames <<<"${NUM_FRAMES-$num_frames}"
 read -ra skips <<<"${SKIPS-$skips}"

@@ -1,0 +1,150 @@
+#!/usr/bin/env bash
+# How far the metric result is from the truth, on rendered clips and on real photographs of known
+# boards: the thesis's way, and what velamap puts in place of its steps, one after another.
+# usage: workflows/studies/accuracy.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
+# CLIPS, WAYS: other ones than all, e.g. CLIPS="walls board" WAYS="global_both".
+#
+#   way          corners  registration  adjustment
+#   thesis       subpix   thesis        COLMAP's
+#   edge         edge     thesis        COLMAP's
+#   global       edge     global        COLMAP's
+#   global_ceres edge     global        ours
+#   global_both  edge     global        COLMAP's, then ours
+set -euo pipefail
+# shellcheck source-path=SCRIPTDIR source=common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+begin_study accuracy "$@"
+read -ra ways <<<"${WAYS:-thesis edge global global_ceres global_both}"
+read -ra clips_of_study <<<"${CLIPS:-walls board sail_1080p sail_4k cube stylus board_video aprilgrid}"
+if [[ $quick -eq 1 ]]; then
+  num_frames=40 sail_frames=90
+  read -ra clips_of_study <<<"${CLIPS:-walls board board_video aprilgrid}"
+else
+  num_frames=120 sail_frames=400
+fi
+repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
+
+keys=(num_markers reconstruction_ratio scale_error_percent distance_mm_rms
+  distance_sigma_mm distance_after_scaling_mm_rms reprojection_error_px_mean)
+csv="$work/accuracy.csv"
+echo "clip,way,$(IFS=,; echo "${keys[*]}"),angle_deg" >"$csv"
+
+# link_real NAME FOLDER IMAGES: real pictures with known geometry as a clip, detections to be made.
+link_real() {
+  local folder="$clips/$1"
+  mkdir -p "$folder"
+  if [[ "$2" != "$folder" ]]; then cp "$2/camera.yml" "$2/layout.yml" "$folder/"; fi
+  cp "$2/reference.csv" "$folder/truth.csv"
+  echo "$3" >"$folder/images.txt"
+}
+
+# What is known of the cube's prints is exact within a face only: a reference for each, face0 as the
+# clip's own.
+link_cube() {
+  local folder="$clips/cube" face
+  mkdir -p "$folder/truth"
+  for face in 0 1 2 3 4 5; do
+    awk -F, -v group="face$face" -v OFS=, '
+      NR == 1 { print "marker_id,corner,x,y,z,sigma_x,sigma_y,sigma_z,num_frames,part" }
+      $1 == group { print $2, $3, $4, $5, $6, "", "", "", 0, group }' \
+      "$repository/sample_project/cube/known_geometry.csv" >"$folder/truth/face$face.csv"
+  done
+  cp "$folder/truth/face0.csv" "$folder/reference.csv"
+  cp "$repository/sample_project/cube/"{camera,layout}.yml "$folder/"
+  link_real cube "$folder" "$repository/sample_project/cube/images"
+}
+
+make_clip_of_study() {
+  case "$1" in
+    walls) make_clip walls_1080p --scene walls --width 1920 --num_frames "$num_frames" ;;
+    board) make_clip board_720p --scene board --motion d --num_frames "$num_frames" ;;
+    sail_1080p) make_clip sail_1080p --scene sail --width 1920 --num_frames "$sail_frames" ;;
+    sail_4k) make_clip sail_4k --scene sail --width 3840 --num_frames "$sail_frames" --bitrate 60M ;;
+    cube) link_cube ;;
+    stylus) link_real stylus "$repository/sample_project/stylus" "$repository/sample_project/stylus/images" ;;
+    board_video)
+      link_real board_video "$repository/tests/data/board_video" \
+        "$repository/tests/data/board_video/cam_0.mp4"
+      ;;
+    aprilgrid)
+      link_real aprilgrid "$repository/tests/data/aprilgrid" \
+        "$repository/tests/data/aprilgrid/images"
+      ;;
+    *) fail "CLIPS: $1 is unknown" ;;
+  esac
+}
+
+# Where make_clip_of_study put it.
+folder_of() {
+  case "$1" in
+    walls) echo walls_1080p ;;
+    board) echo board_720p ;;
+    *) echo "$1" ;;
+  esac
+}
+
+# detections CLIP CORNERS: the database, imported unless it is there.
+detections() {
+  local folder database images more=()
+  folder="$clips/$(folder_of "$1")"
+  database="$folder/$2.db"
+  images="$folder/clip.mp4"
+  if [[ -f "$folder/images.txt" ]]; then images="$(cat "$folder/images.txt")"; fi
+  if [[ "$1" == board_video ]]; then more=(--ArucoDetection.inverted 1); fi
+  if [[ ! -f "$database" ]]; then
+    "$velamap" marker_importer --image_path "$images" --camera_path "$folder/camera.yml" \
+      --layout_path "$folder/layout.yml" --database_path "$database" --log_level error \
+      --ArucoDetection.corner_refinement "$2" "${more[@]}" >"$folder/$2.txt"
+  fi
+  echo "$database"
+}
+
+# study CLIP WAY
+study() {
+  local corners=edge method=global backend=colmap face run="$1_$2"
+  case "$2" in
+    thesis) corners=subpix method=thesis ;;
+    edge) method=thesis ;;
+    global) ;;
+    global_ceres) backend=ceres ;;
+    global_both) backend=both ;;
+    *) fail "WAYS: $2 is unknown" ;;
+  esac
+  DATABASE="$(detections "$1" "$corners")" METHOD="$method" BACKEND="$backend" \
+    reconstruct "$(folder_of "$1")" "$run"
+  if [[ "$1" == cube ]]; then
+    for face in 0 1 2 3 4 5; do face_row "$2" "$face"; done
+  else
+    row "$1" "$2" "$run"
+  fi
+}
+
+# row CLIP WAY RUN
+row() {
+  local key
+  {
+    printf '%s,%s' "$1" "$2"
+    for key in "${keys[@]}"; do printf ',%s' "$(metric "$3" "$key")"; done
+    printf ',%s\n' "$(awk -F, '$1 == "part_pairs" && $3 == "angle_deg" { print $4; exit }' \
+      "$runs/$3/analysis.csv" 2>/dev/null)"
+  } >>"$csv"
+}
+
+# face_row WAY FACE: the cube's shape against the print of one face.
+face_row() {
+  local run="$runs/cube_$1" face_run="$runs/cube_$1_face$2"
+  mkdir -p "$face_run"
+  if [[ -f "$run/analysis.csv" ]]; then
+    "$velamap" shape_analyzer --shape_path "$run/shape" --input_path "$run/metric" \
+      --reference_path "$clips/cube/truth/face$2.csv" --csv_path "$face_run/analysis.csv" \
+      --log_level error >"$face_run/log.txt"
+  fi
+  row "cube_face$2" "$1" "cube_$1_face$2"
+}
+
+for clip in "${clips_of_study[@]}"; do
+  make_clip_of_study "$clip"
+  for way in "${ways[@]}"; do study "$clip" "$way"; done
+done
+finish "$csv"
