@@ -128,8 +128,8 @@ TEST_F(StagesTest, CentralFrameAloneGivesTheShapeOfItsSingleMarkers) {
   WriteDatabase(MakeSyntheticScene(options), path("database.db"), 8, All);
   const ProgramRun run =
       RunVelamap({"frame_registrator", "--database_path", path("database.db"), "--marker_length",
-                  "0.1", "--output_path", path("model"), "--Registration.num_frames", "0",
-                  "--central_frame", "3"});
+                  "0.1", "--output_path", path("model"), "--Registration.method", "thesis",
+                  "--Registration.num_frames", "0", "--central_frame", "3"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Model model = ReadModel(path("model"));
   ASSERT_EQ(model.images.size(), 1u);
@@ -167,7 +167,7 @@ TEST_F(StagesTest, OneImageIsNoShape) {
 TEST_F(StagesTest, ImagesThatShareNoMarker) {
   WriteDatabase(scene_, path("database.db"), 2,
                 [](int frame_idx, int id) { return id % 2 == frame_idx; });
-  ExpectError(Register(), 1, "shares enough markers");
+  ExpectError(Register(), 1, "no two images agree on the places of at least 2 markers");
   EXPECT_FALSE(fs::exists(dir_ / "sparse"));
 }
 
