@@ -1,5 +1,6 @@
 #include "exporters/csv.h"
 
+#include <algorithm>
 #include <istream>
 
 #include "importer/error.h"
@@ -91,6 +92,12 @@ std::vector<CsvRecord> ReadCsv(std::istream& in, const std::string& name) {
   }
   if (in.bad()) throw InputError(name + ": cannot be read; check that it is a file");
   return records;
+}
+
+std::string SingleLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return text;
 }
 
 std::string CsvField(const std::string& text) {

@@ -18,6 +18,10 @@ struct CsvRecord {
 // before a line's end are passed over. Throws InputError that names `name` and the line.
 std::vector<CsvRecord> ReadCsv(std::istream& in, const std::string& name);
 
+// Control characters become spaces: names come from the layout and may hold line breaks, a comment
+// or a header must not.
+std::string SingleLine(std::string text);
+
 // The text as a field, quoted where it has to be.
 std::string CsvField(const std::string& text);
 

@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "exporters/csv.h"
+
 namespace velamap {
 namespace {
 
@@ -109,11 +111,17 @@ std::string ElementBody(const PlyElement<Row>& element, PlyFormat format) {
   return body;
 }
 
+struct PlyComments {
+  std::string content;
+  std::string frame;  // empty: no such comment
+};
+
 template <typename... Rows>
-void WritePly(PlyFormat format, const std::string& comment, std::ostream& out,
+void WritePly(PlyFormat format, const PlyComments& comments, std::ostream& out,
               const PlyElement<Rows>&... elements) {
   out << "ply\nformat " << (format == PlyFormat::kAscii ? "ascii" : "binary_little_endian")
-      << " 1.0\ncomment " << comment << '\n';
+      << " 1.0\ncomment " << comments.content << '\n';
+  if (!comments.frame.empty()) out << "comment frame " << SingleLine(comments.frame) << '\n';
   (out << ... << ElementHeader(elements)) << "end_header\n";
   (out << ... << ElementBody(elements, format));
 }
@@ -218,7 +226,7 @@ std::map<std::string, Rgb> PartColors(const MarkerShape& shape) {
 }  // namespace
 
 void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyFormat format,
-                    std::ostream& out) {
+                    std::ostream& out, const std::string& frame) {
   PlyElement<Vertex> vertices{"vertex", PositionAndNormal(), {}};
   AddColor(&vertices.properties);
   AddIdentity(&vertices.properties);
@@ -230,10 +238,12 @@ void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyForm
     }
   }
   AddSigma(&vertices);
-  WritePly(format, "velamap marker centres (corner 0) and corners (1 to 4), metres", out, vertices);
+  WritePly(format, {"velamap marker centres (corner 0) and corners (1 to 4), metres", frame}, out,
+           vertices);
 }
 
-void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out) {
+void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out,
+                     const std::string& frame) {
   const std::map<std::string, Rgb> part_colors = PartColors(shape);
   PlyElement<Vertex> vertices{"vertex", PositionAndNormal(), {}};
   AddColor(&vertices.properties);
@@ -255,7 +265,7 @@ void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& o
     faces.rows.push_back({{first, first + 3, first + 2, first + 1}, marker.marker_id});
   }
   AddSigma(&vertices);
-  WritePly(format, "velamap markers, metres", out, vertices, faces);
+  WritePly(format, {"velamap markers, metres", frame}, out, vertices, faces);
 }
 
 }  // namespace velamap

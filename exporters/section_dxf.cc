@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/csv.h"
 #include "exporters/section_drawing.h"
 #include "exporters/section_writer.h"
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "exporters/csv.h"
 #include "exporters/section_drawing.h"
 #include "exporters/section_writer.h"
 

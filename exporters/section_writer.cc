@@ -41,12 +41,6 @@ std::string Shortest(double value) { return fmt::format("{}", value); }
 
 }  // namespace
 
-std::string SingleLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return text;
-}
-
 void WriteSectionsCsv(const SectionReport& report, const ShapeFrame& frame, std::ostream& out) {
   WriteFrameLine(frame, out);
   if (!report.twist_reference.empty()) out << "# twist against " << report.twist_reference << '\n';

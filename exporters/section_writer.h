@@ -6,7 +6,6 @@
 #pragma once
 
 #include <iosfwd>
-#include <string>
 
 #include "exporters/section.h"
 #include "exporters/shape_frame.h"
@@ -14,9 +13,6 @@
 namespace velamap {
 
 constexpr int kNumProfilePoints = 101;  // of the files
-
-// Control characters become spaces: names come from the layout and may hold line breaks.
-std::string SingleLine(std::string text);
 
 // One row a section, from the lowest up; then one with a reason for each that is missing.
 void WriteSectionsCsv(const SectionReport& report, const ShapeFrame& frame, std::ostream& out);

@@ -151,7 +151,8 @@ std::string SettleCentre(ShapeMarker* marker) {
 
 }  // namespace
 
-void WriteShapeCsv(const MarkerShape& shape, std::ostream& out) {
+void WriteShapeCsv(const MarkerShape& shape, std::ostream& out, const std::string& frame) {
+  if (!frame.empty()) out << "# frame " << SingleLine(frame) << '\n';
   out << Header() << '\n';
   for (const ShapeMarker& marker : shape.markers) {
     for (int corner = 0; corner <= kNumCorners; ++corner) {

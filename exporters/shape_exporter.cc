@@ -21,8 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::set<std::string> kShapeFiles = {"shape.csv", "shape.ply",   "markers.ply",
-                                           "scale.csv", "metrics.csv", "metrics.json"};
+std::set<std::string> ShapeFileNames() {
+  std::set<std::string> names = {"shape.csv", "shape.ply",   "markers.ply",
+                                 "scale.csv", "metrics.csv", "metrics.json"};
+  names.merge(SailFileNames());
+  return names;
+}
 
 bool IsInside(const fs::path& path, const fs::path& folder) {
   const auto [mismatch, unused] =
@@ -39,7 +43,7 @@ fs::path OutputFolder(const std::string& path) {
 
 void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) {
   if (!model_path.empty()) CheckReplaceableFolder(model_path, ModelFileNames());
-  if (!shape_path.empty()) CheckReplaceableFolder(shape_path, kShapeFiles);
+  if (!shape_path.empty()) CheckReplaceableFolder(shape_path, ShapeFileNames());
   if (model_path.empty() || shape_path.empty()) return;
   if (IsInside(model_path, shape_path) || IsInside(shape_path, model_path)) {
     throw InputError(shape_path.string() + ": the folders of the shape and of the model (" +
@@ -47,28 +51,38 @@ void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) 
   }
 }
 
-MetricsReport MetricsOf(const ShapeExportReport& report, const PointCovariance* covariance) {
+const PointCovariance* CovarianceOf(const ShapeExportReport& report) {
+  return report.uncertainty ? &report.uncertainty->points : nullptr;
+}
+
+MetricsReport MetricsOf(const ShapeExportReport& report) {
   MetricsReport metrics;
+  AddMetrics(report.frame, &metrics);
   AddMetrics(report.metrics, &metrics);
   AddMetrics(report.model_metrics, &metrics);
   AddMetrics(report.scale, &metrics);
   AddMetrics(report.audit, &metrics);
+  const PointCovariance* covariance = CovarianceOf(report);
   AddMetrics(FitPartPlanes(report.shape, covariance), &metrics, covariance);
+  AddMetrics(report.sail, &metrics);
   return metrics;
 }
 
-void WriteShapeFiles(const ShapeExportReport& report, const Model& metric_model,
-                     const PointCovariance* covariance, bool ascii_ply, const fs::path& folder) {
+void WriteShapeFiles(const ShapeExportReport& report, bool ascii_ply, const fs::path& folder) {
   const PlyFormat format = ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
-  WriteFile(folder / "shape.csv", [&](std::ostream& out) { WriteShapeCsv(report.shape, out); });
-  WriteFile(folder / "shape.ply",
-            [&](std::ostream& out) { WritePointsPly(report.shape, metric_model, format, out); });
+  const std::string frame = FrameText(report.frame);
+  WriteFile(folder / "shape.csv",
+            [&](std::ostream& out) { WriteShapeCsv(report.shape, out, frame); });
+  WriteFile(folder / "shape.ply", [&](std::ostream& out) {
+    WritePointsPly(report.shape, report.metric_model, format, out, frame);
+  });
   WriteFile(folder / "markers.ply",
-            [&](std::ostream& out) { WriteMarkersPly(report.shape, format, out); });
+            [&](std::ostream& out) { WriteMarkersPly(report.shape, format, out, frame); });
   WriteFile(folder / "scale.csv", [&](std::ostream& out) { WriteScaleCsv(report.scale, out); });
-  const MetricsReport metrics = MetricsOf(report, covariance);
+  const MetricsReport metrics = MetricsOf(report);
   WriteFile(folder / "metrics.csv", [&](std::ostream& out) { WriteMetricsCsv(metrics, out); });
   WriteFile(folder / "metrics.json", [&](std::ostream& out) { WriteMetricsJson(metrics, out); });
+  WriteSailFiles(report.sail, report.frame, folder);
 }
 
 std::map<int, double> ScalesOf(const ScaleAudit& audit) {
@@ -79,6 +93,42 @@ std::map<int, double> ScalesOf(const ScaleAudit& audit) {
   return m_per_unit_of;
 }
 
+// Moves model and uncertainty, which are metric, into the frame that the markers make.
+void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choice,
+                   ShapeExportReport* report) {
+  report->frame = ChooseFrame(ShapeFromModel(report->metric_model, layout), layout, choice);
+  const Rigid3& frame_from_shape = report->frame.frame_from_shape;
+  MoveModel(frame_from_shape, &report->metric_model);
+  if (report->uncertainty) {
+    report->uncertainty->points =
+        RotateCovariance(frame_from_shape.rotation, report->uncertainty->points);
+  }
+}
+
+ShapeExportReport ComputeReport(const Model& model, const Layout& layout,
+                                const ShapeExporterOptions& options,
+                                const AdjustmentUncertainty* uncertainty) {
+  ShapeExportReport report;
+  report.metric_model = model;
+  if (uncertainty != nullptr) {
+    report.uncertainty = *uncertainty;
+  } else {
+    report.scale = EstimateScale(model, layout);
+    ScaleModel(report.scale, &report.metric_model);
+  }
+  UpdatePointErrors(&report.metric_model);
+  MoveIntoFrame(layout, options.frame, &report);
+  const AdjustmentUncertainty* in_frame = report.uncertainty ? &*report.uncertainty : nullptr;
+  const PointCovariance* covariance = CovarianceOf(report);
+  report.shape = ShapeFromModel(report.metric_model, layout, covariance);
+  report.audit = AuditScale(report.shape, layout, &report.metric_model, in_frame);
+  if (in_frame != nullptr) report.scale = MetricScale(ScalesOf(report.audit), *in_frame);
+  report.metrics = ComputeShapeMetrics(report.shape, layout, covariance);
+  report.model_metrics = ComputeModelMetrics(report.metric_model, MarkerIds(layout));
+  report.sail = ComputeSail(report.shape, report.frame, layout, covariance, options.sail);
+  return report;
+}
+
 }  // namespace
 
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
@@ -87,31 +137,17 @@ ShapeExportReport ExportShape(const Model& model, const Layout& layout,
   const fs::path model_path = OutputFolder(options.model_output_path);
   const fs::path shape_path = OutputFolder(options.shape_output_path);
   CheckOutputFolders(model_path, shape_path);
-
-  const PointCovariance* covariance = uncertainty != nullptr ? &uncertainty->points : nullptr;
-  ShapeExportReport report;
-  Model metric_model = model;
-  if (uncertainty == nullptr) {
-    report.scale = EstimateScale(model, layout);
-    ScaleModel(report.scale, &metric_model);
-  }
-  UpdatePointErrors(&metric_model);
-  report.shape = ShapeFromModel(metric_model, layout, covariance);
-  report.audit = AuditScale(report.shape, layout, &metric_model, uncertainty);
-  if (uncertainty != nullptr) report.scale = MetricScale(ScalesOf(report.audit), *uncertainty);
-  report.metrics = ComputeShapeMetrics(report.shape, layout, covariance);
-  report.model_metrics = ComputeModelMetrics(metric_model, MarkerIds(layout));
-
+  options.sail.Check();
+  ShapeExportReport report = ComputeReport(model, layout, options, uncertainty);
   std::optional<AtomicFolder> shape_folder;
   if (!shape_path.empty()) {
     shape_folder.emplace(shape_path);
-    WriteShapeFiles(report, metric_model, covariance, options.ascii_ply,
-                    shape_folder->TemporaryPath());
+    WriteShapeFiles(report, options.ascii_ply, shape_folder->TemporaryPath());
   }
   if (!model_path.empty()) {
-    WriteModel(metric_model, model_path.string(), ModelFormat::kBinaryAndText,
+    WriteModel(report.metric_model, model_path.string(), ModelFormat::kBinaryAndText,
                [&](const std::string& folder) {
-                 if (uncertainty != nullptr) WriteUncertainty(*uncertainty, folder);
+                 if (report.uncertainty) WriteUncertainty(*report.uncertainty, folder);
                });
   }
   // Last, so that a model that cannot be written leaves the old shape beside the old model.

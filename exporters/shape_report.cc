@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace velamap {
 namespace {
 
@@ -27,7 +29,29 @@ void Append(const Metrics& metrics, MetricsReport* report) {
 
 MetricTable LongTable(const char* name) { return {name, false, {}}; }
 
+void AppendTexts(const char* key, const std::vector<std::string>& texts, MetricsReport* report) {
+  if (!texts.empty()) Append({{key, fmt::format("{}", fmt::join(texts, "; "))}}, report);
+}
+
 }  // namespace
+
+void AddMetrics(const ShapeFrame& frame, MetricsReport* report) {
+  Append({{"frame_name", frame.name}, {"frame_description", frame.description}}, report);
+  AppendTexts("frame_reasons", frame.reasons, report);
+}
+
+void AddMetrics(const SailShape& sail, MetricsReport* report) {
+  AppendTexts("section_notes", sail.sections.notes, report);
+  AppendTexts("surface_notes", sail.surface_notes, report);
+  if (sail.surfaces.empty()) return;
+  MetricTable table{"surfaces", true, {}};
+  for (const SailSurface& surface : sail.surfaces) {
+    table.rows.push_back({{"part", surface.part},
+                          {"area_m2", surface.area_m2},
+                          {"distance_mm", Scaled(kMmPerM, surface.fit.distance_m)}});
+  }
+  report->tables.push_back(std::move(table));
+}
 
 void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report) {
   Append({{"num_markers", metrics.num_markers}}, report);

@@ -10,11 +10,19 @@
 #include "exporters/metrics_report.h"
 #include "exporters/model_metrics.h"
 #include "exporters/part_planes.h"
+#include "exporters/sail_shape.h"
+#include "exporters/shape_frame.h"
 #include "exporters/shape_metrics.h"
 
 namespace velamap {
 
 // Keys of sigmas are there where the sigmas are.
+
+// frame_name, frame_description, frame_reasons.
+void AddMetrics(const ShapeFrame& frame, MetricsReport* report);
+
+// section_notes, surface_notes; table surfaces. The sections have files of their own.
+void AddMetrics(const SailShape& sail, MetricsReport* report);
 
 // num_markers, area_error_mm2, area_error_percent, side_error_mm; where the layout names its
 // markers, num_layout_markers, reconstruction_ratio and missing_marker_ids. Table markers.

@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "exporters/metric_shape.h"
+#include "exporters/report_sail.h"
 #include "exporters/report_writer.h"
 #include "importer/atomic_output.h"
 #include "importer/calibration.h"
@@ -15,6 +15,7 @@
 #include "workflows/commands.h"
 #include "workflows/logging.h"
 #include "workflows/pipeline.h"
+#include "workflows/sail_options.h"
 #include "workflows/shared_options.h"
 #include "workflows/summary.h"
 #include "workflows/version.h"
@@ -30,6 +31,8 @@ struct Options {
   MarkerImporterOptions importer;
   RegistrationOptions registration;
   AdjustmentOptions adjustment;
+  ShapeExporterOptions exporter;
+  SailOptionTexts sail;
   Arguments arguments;  // as they were typed, for the report
 };
 
@@ -52,6 +55,7 @@ CommandSyntax Declare(Options* options) {
            RegistrationGroup(&options->registration),
            BundleAdjustmentGroup(&options->adjustment.colmap),
            MarkerAdjustmentGroup(&options->adjustment.ceres),
+           SailGroup(&options->exporter, &options->sail),
            GeneralGroup(&options->general)}};
 }
 
@@ -63,6 +67,7 @@ void Validate(Options* options) {
   options->registration.random_seed = options->general.random_seed;
   options->registration.Check();
   options->adjustment.Complete(options->general.num_threads);
+  CompleteSailOptions(options->sail, &options->exporter);
   options->importer.layout = LoadLayout(options->markers, true);
   options->importer.camera = ReadCalibration(options->paths.camera_path);
   options->importer.camera_path = options->paths.camera_path;
@@ -100,17 +105,17 @@ std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& a
 }
 
 void WriteReportFile(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
-                     const ReconstructionSummary& summary, const Model& model) {
+                     const ReconstructionSummary& summary) {
   const ShapeExportReport& shape = summary.shape;
-  Model metric_model = model;
-  ScaleModel(shape.scale, &metric_model);
-  ReportInput input{metric_model,  options.importer.layout, shape.shape,
-                    shape.metrics, shape.model_metrics,     shape.scale};
+  ReportInput input{shape.metric_model, options.importer.layout, shape.shape,
+                    shape.metrics,      shape.model_metrics,     shape.scale};
   input.title = std::filesystem::path(options.paths.image_path).filename().string();
   input.version = kVersion;
   input.image_path = paths.Images().string();
-  const auto& uncertainty = summary.adjustment.uncertainty;
-  input.uncertainty = uncertainty ? &*uncertainty : nullptr;
+  input.uncertainty = shape.uncertainty ? &*shape.uncertainty : nullptr;
+  input.frame = MakeReportFrame(shape.frame, shape.metric_model);
+  input.sections = MakeReportSections(shape.sail.sections);
+  input.surface = MakeReportSurface(shape.sail);
   for (const LeftOutImage& image : summary.left_out) {
     input.images_left_out.push_back({image.image_name, image.reason});
   }
@@ -128,17 +133,19 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   AtomicFolder sparse(paths.Sparse());
   WriteModel(seed.model, (sparse.TemporaryPath() / "seed").string(), ModelFormat::kBinaryAndText);
   Model model = seed.model;
-  summary->adjustment = AdjustModel(options.adjustment, options.importer.layout,
-                                    seed.corner_sigmas, paths.ColmapLog().string(), &model);
+  summary->adjustment = AdjustModel(options.adjustment, options.importer.layout, seed.corner_sigmas,
+                                    paths.ColmapLog().string(), &model);
   AddModelImages(model, options.paths.image_path, paths.Images());
   const auto& uncertainty = summary->adjustment.uncertainty;
-  summary->shape = ExportShape(model, options.importer.layout,
-                               {(sparse.TemporaryPath() / "0").string(), paths.Shape().string()},
-                               uncertainty ? &*uncertainty : nullptr);
+  ShapeExporterOptions exporter = options.exporter;
+  exporter.model_output_path = (sparse.TemporaryPath() / "0").string();
+  exporter.shape_output_path = paths.Shape().string();
+  summary->shape =
+      ExportShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
   sparse.Commit();
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
-  WriteReportFile(options, paths, seed, *summary, model);
+  WriteReportFile(options, paths, seed, *summary);
   RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
   summary->num_images = static_cast<int>(model.images.size());
 }

@@ -5,6 +5,7 @@
 #include "reconstruct/adjustment_uncertainty.h"
 #include "reconstruct/model_io.h"
 #include "workflows/commands.h"
+#include "workflows/sail_options.h"
 #include "workflows/shared_options.h"
 #include "workflows/summary.h"
 
@@ -15,31 +16,37 @@ struct Options {
   PathOptions paths;
   MarkerOptions markers;
   GeneralOptions general;
-  bool ascii_ply = false;
+  ShapeExporterOptions exporter;
+  SailOptionTexts sail;
 };
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {"shape_exporter",
-          "scales a model to metres by the markers' sides and writes the shape",
-          "--input_path sparse/0 --layout_path layout.yml --output_path metric --shape_path shape",
-          {{"Input and output",
-            {ModelInputOption(paths),
-             {"output_path", &paths->output_path, "path",
-              "folder of the metric model; left out: it is not written"},
-             {"shape_path", &paths->shape_path, "path",
-              "folder of shape.csv, PLY files, scale.csv and metrics; left out: none is written"},
-             {"ascii_ply", &options->ascii_ply, "0|1", "PLY as text instead of binary"}}},
-           MarkerGroup(&options->markers, false),
-           GeneralGroup(&options->general)}};
+  return {
+      "shape_exporter",
+      "scales a model to metres by the markers' sides and writes the shape",
+      "--input_path sparse/0 --layout_path layout.yml --output_path metric --shape_path shape",
+      {{"Input and output",
+        {ModelInputOption(paths),
+         {"output_path", &paths->output_path, "path",
+          "folder of the metric model; left out: it is not written"},
+         {"shape_path", &paths->shape_path, "path",
+          "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is written"},
+         {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"}}},
+       MarkerGroup(&options->markers, false),
+       SailGroup(&options->exporter, &options->sail),
+       GeneralGroup(&options->general)}};
 }
 
-void Validate(const Options& options) {
-  ApplyGeneralOptions(options.general);
-  if (options.paths.output_path.empty() && options.paths.shape_path.empty()) {
+void Validate(Options* options) {
+  ApplyGeneralOptions(options->general);
+  if (options->paths.output_path.empty() && options->paths.shape_path.empty()) {
     throw InputError(
         "--shape_path: missing; give --shape_path, --output_path or both to say what to write");
   }
+  CompleteSailOptions(options->sail, &options->exporter);
+  options->exporter.model_output_path = options->paths.output_path;
+  options->exporter.shape_output_path = options->paths.shape_path;
 }
 
 void Print(const ShapeExportReport& report, const PathOptions& paths, std::ostream& out) {
@@ -53,7 +60,7 @@ void Print(const ShapeExportReport& report, const PathOptions& paths, std::ostre
 void RunShapeExporter(const Arguments& arguments) {
   Options options;
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  Validate(options);
+  Validate(&options);
   const Layout layout = LoadLayout(options.markers, false);
   const Model model = ReadModel(options.paths.input_path);
   std::optional<AdjustmentUncertainty> uncertainty;
@@ -61,9 +68,7 @@ void RunShapeExporter(const Arguments& arguments) {
     uncertainty = ReadUncertainty(options.paths.input_path);
   }
   const ShapeExportReport report =
-      ExportShape(model, layout,
-                  {options.paths.output_path, options.paths.shape_path, options.ascii_ply},
-                  uncertainty ? &*uncertainty : nullptr);
+      ExportShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
   Print(report, options.paths, std::cout);
 }
 

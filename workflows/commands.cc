@@ -16,6 +16,7 @@ const std::vector<Command>& Commands() {
       {"bundle_adjuster", RunBundleAdjuster, "model -> bundle-adjusted model"},
       {"shape_exporter", RunShapeExporter, "model -> metric model and shape files"},
       {"shape_analyzer", RunShapeAnalyzer, "shape -> its errors, alone or against a reference"},
+      {"shape_comparer", RunShapeComparer, "shape against another shape or a design's surface"},
       {"help", RunHelp, "this list"},
       {"version", RunVersion, "versions of velamap and of what it works with"},
   };

@@ -17,6 +17,7 @@ void RunFrameRegistrator(const Arguments& arguments);
 void RunBundleAdjuster(const Arguments& arguments);
 void RunShapeExporter(const Arguments& arguments);
 void RunShapeAnalyzer(const Arguments& arguments);
+void RunShapeComparer(const Arguments& arguments);
 void RunHelp(const Arguments& arguments);
 void RunVersion(const Arguments& arguments);
 

@@ -9,7 +9,7 @@ packages=(
   libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev
   libboost-program-options-dev libspdlog-dev libceres-dev nlohmann-json3-dev
   libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
-  libocct-data-exchange-dev libjs-three libjs-chart.js
+  libocct-data-exchange-dev libassimp-dev libjs-three libjs-chart.js
   libgtest-dev libgmock-dev libbenchmark-dev
 )
 test_packages=(xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium)

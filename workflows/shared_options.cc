@@ -9,6 +9,7 @@
 
 #include "importer/error.h"
 #include "workflows/logging.h"
+#include "workflows/sail_options.h"
 
 namespace velamap {
 namespace {
@@ -213,6 +214,8 @@ std::set<std::string> SharedOptionNames() {
   RegistrationOptions registration;
   BundleAdjustmentOptions adjustment;
   MarkerAdjustmentOptions marker_adjustment;
+  ShapeExporterOptions exporter;
+  SailOptionTexts sail;
   std::string backend;
   PathOptions paths;
   const OptionGroup path_group{
@@ -223,7 +226,7 @@ std::set<std::string> SharedOptionNames() {
   for (const OptionGroup& group :
        {GeneralGroup(&general), MarkerGroup(&markers, true), ArucoDetectionGroup(&detection),
         VideoGroup(&video), RegistrationGroup(&registration), BundleAdjustmentGroup(&adjustment),
-        MarkerAdjustmentGroup(&marker_adjustment), path_group}) {
+        MarkerAdjustmentGroup(&marker_adjustment), SailGroup(&exporter, &sail), path_group}) {
     for (const Option& option : group.options) names.insert(option.name);
   }
   return names;

@@ -82,6 +82,39 @@ Eigen::Matrix3d MarkerAxes(const ShapeMarker& marker) {
   return axes;
 }
 
+std::string RangeText(const std::vector<Section>& sections, double (*value)(const Section&)) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Section& section : sections) {
+    low = std::min(low, value(section));
+    high = std::max(high, value(section));
+  }
+  return fmt::format("{:.1f} to {:.1f}", low, high);
+}
+
+// Frame, and what the lines of a sail gave.
+void PrintSail(const ShapeExportReport& report, std::ostream& out) {
+  fmt::print(out, "frame: {}\n", report.frame.name);
+  const std::vector<Section>& sections = report.sail.sections.sections;
+  if (!sections.empty()) {
+    fmt::print(out, "sections: {}; camber {} %, twist {} deg\n", sections.size(),
+               RangeText(sections, [](const Section& s) { return 100.0 * s.camber.value; }),
+               RangeText(sections, [](const Section& s) { return s.twist_deg.value; }));
+  }
+  for (const std::string& note : report.sail.sections.notes) {
+    fmt::print(out, "section_note: {}\n", note);
+  }
+  for (const MissingSection& missing : report.sail.sections.missing) {
+    fmt::print(out, "section_missing: {} {}: {}\n", missing.part, missing.name, missing.reason);
+  }
+  for (const SailSurface& surface : report.sail.surfaces) {
+    fmt::print(out, "surface: {}; {:.4g} m2, markers {:.2f} mm RMS from it\n", surface.part,
+               surface.area_m2, 1e3 * surface.fit.distance_m.rms);
+  }
+  for (const std::string& note : report.sail.surface_notes) {
+    fmt::print(out, "surface_note: {}\n", note);
+  }
+}
+
 }  // namespace
 
 std::string LeftOutText(const std::vector<LeftOutImage>& left_out) {
@@ -152,6 +185,7 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   fmt::print(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
   fmt::print(out, "scale_spread_over_markers: {:.3f} %\n", 100.0 * report.scale.relative_spread);
   PrintScaleAudit(report.scale, report.audit, out);
+  PrintSail(report, out);
   fmt::print(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
 }
 

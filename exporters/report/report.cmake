@@ -38,6 +38,7 @@ target_sources(velamap_exporters PRIVATE
   report_key_numbers.cc
   report_markers.cc
   report_picture.cc
+  report_sail.cc
   report_writer.cc
   ${REPORT_ASSETS}
 )

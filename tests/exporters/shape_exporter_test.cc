@@ -27,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsSupersetOf;
 using testing::Not;
 using testing::StartsWith;
 using testing::UnorderedElementsAre;
@@ -165,13 +166,17 @@ TEST(ShapeExporter, FilesHoldWhatTheReportSays) {
     const ShapeExportReport report = ExportShape(model, ExampleLayout(), options);
     const PlyFormat format = ascii ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
     const fs::path shape = dir / "shape";
-    EXPECT_THAT(FilesIn(shape), UnorderedElementsAre("shape.csv", "shape.ply", "markers.ply",
-                                                     "scale.csv", "metrics.csv", "metrics.json"));
-    const auto csv = [&](std::ostream& out) { WriteShapeCsv(report.shape, out); };
+    EXPECT_THAT(FilesIn(shape), IsSupersetOf({"shape.csv", "shape.ply", "markers.ply", "scale.csv",
+                                              "metrics.csv", "metrics.json", "surface.step"}));
+    const std::string frame = FrameText(report.frame);
+    const auto csv = [&](std::ostream& out) { WriteShapeCsv(report.shape, out, frame); };
     const auto scale = [&](std::ostream& out) { WriteScaleCsv(report.scale, out); };
-    const auto markers = [&](std::ostream& out) { WriteMarkersPly(report.shape, format, out); };
+    const auto markers = [&](std::ostream& out) {
+      WriteMarkersPly(report.shape, format, out, frame);
+    };
     const auto points = [&](std::ostream& out) {
-      WritePointsPly(report.shape, model, format, out);  // only colours are taken from the model
+      WritePointsPly(report.shape, model, format, out,
+                     frame);  // only colours are taken from the model
     };
     EXPECT_EQ(ReadBytes(shape / "shape.csv"), Written(csv));
     EXPECT_EQ(ReadBytes(shape / "scale.csv"), Written(scale));
@@ -306,8 +311,9 @@ TEST(ShapeExporter, AMetricModelIsNotScaledAndKeepsItsUncertainty) {
   AddImageNoise(0.5, 7, &model);
   TransformModel(ExampleSim3(1.01), &model);  // the markers' sides do not count any more
   const AdjustmentUncertainty uncertainty = ExampleUncertainty(model);
-  const ShapeExportReport report =
-      ExportShape(model, ExampleLayout(), OptionsIn(dir), &uncertainty);
+  ShapeExporterOptions options = OptionsIn(dir);
+  options.frame = FrameChoice();  // as it is
+  const ShapeExportReport report = ExportShape(model, ExampleLayout(), options, &uncertainty);
   EXPECT_EQ(report.scale.m_per_unit, 1.0);
   EXPECT_EQ(*report.scale.relative_sigma, uncertainty.relative_scale_sigma);
   EXPECT_EQ(report.audit.markers.size(), 8u);

@@ -26,7 +26,7 @@ echo "central_frame,marker_id,area_mm2" >"$areas"
 # areas_of FRAME: half the cross product of the diagonals of every whole marker of its shape.
 areas_of() {
   awk -F, -v frame="$1" '
-    NR > 1 && $2 >= 1 { p[$1, $2, "x"] = $3; p[$1, $2, "y"] = $4; p[$1, $2, "z"] = $5; ids[$1] }
+    /^[0-9]/ && $2 >= 1 { p[$1, $2, "x"] = $3; p[$1, $2, "y"] = $4; p[$1, $2, "z"] = $5; ids[$1] }
     END {
       for (id in ids) {
         whole = 1

@@ -1,0 +1,19 @@
+// What the figures of a comparison are called: keys and tables for stdout, CSV and JSON. They are
+// listed in the README of this room.
+
+#pragma once
+
+#include "exporters/metrics_report.h"
+#include "exporters/shape_comparison.h"
+#include "exporters/shape_comparison_sections.h"
+
+namespace velamap {
+
+// Keys of sigmas and significance are there where the sigmas are. Tables parts, lines, and, for the
+// files only, markers.
+void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report);
+
+// section_frame, num_significant_section_numbers, section_note; table section_differences.
+void AddMetrics(const SectionComparison& comparison, MetricsReport* report);
+
+}  // namespace velamap
