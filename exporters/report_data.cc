@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "exporters/report_histogram.h"
 #include "exporters/report_json.h"
 #include "exporters/report_key_numbers.h"
+#include "exporters/scale_audit_report.h"
 #include "importer/error.h"
 
 namespace velamap {
@@ -64,6 +66,32 @@ Json ScaleJson(const ScaleEstimate& scale) {
                {"spread_percent", 100 * scale.relative_spread},
                {"num_markers", scale.num_markers}};
   if (scale.relative_sigma) json["sigma_percent"] = 100 * *scale.relative_sigma;
+  return json;
+}
+
+// The lines of the audit's text form, as pairs of key and figures; the page has a histogram of its
+// own.
+Json AuditJson(const ScaleAudit& audit) {
+  MetricsReport report;
+  AddMetrics(audit, &report);
+  const auto is_histogram = [](const MetricTable& table) { return table.name == "scale_histogram"; };
+  report.tables.erase(std::remove_if(report.tables.begin(), report.tables.end(), is_histogram),
+                      report.tables.end());
+  std::stringstream text;
+  PrintMetrics(report, text);
+  Json lines = Json::array();
+  for (std::string line; std::getline(text, line);) {
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) {
+      lines.push_back({line.substr(0, colon), line.substr(colon + 2)});
+    }
+  }
+  return lines;
+}
+
+Json PairsJson(const std::vector<std::pair<std::string, std::string>>& pairs) {
+  Json json = Json::array();
+  for (const auto& [name, value] : pairs) json.push_back({name, value});
   return json;
 }
 
@@ -167,8 +195,9 @@ std::string ReportJson(const ReportInput& input) {
   json["scale"] = ScaleJson(input.scale);
   json["images_left_out"] = JsonOf(input.images_left_out);
   json["markers_left_out"] = JsonOf(MarkersLeftOut(input));
-  json["options"] = Json::array();
-  for (const auto& [name, value] : input.options) json["options"].push_back({name, value});
+  if (input.audit != nullptr) json["scale_audit"] = AuditJson(*input.audit);
+  json["options"] = PairsJson(input.options);
+  json["versions"] = PairsJson(input.versions);
   json["picture"] = PictureJson(input, errors);
   if (!input.sections.empty()) {
     json["sections"] = Json::array();

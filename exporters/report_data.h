@@ -14,6 +14,7 @@
 #include "exporters/marker_shape.h"
 #include "exporters/metric_scale.h"
 #include "exporters/model_metrics.h"
+#include "exporters/scale_audit.h"
 #include "exporters/shape_metrics.h"
 #include "importer/layout.h"
 #include "reconstruct/adjustment_uncertainty.h"
@@ -67,9 +68,12 @@ struct ReportInput {
   // Nothing: as the central camera sees the shape.
   std::optional<ReportFrame> frame = {};
   const AdjustmentUncertainty* uncertainty = nullptr;  // null where none was computed
+  const ScaleAudit* audit = nullptr;                 // null where none was made
   std::vector<ReportLeftOut> images_left_out = {};
   std::vector<ReportLeftOut> markers_left_out = {};  // those of the layout that miss are added
-  std::vector<std::pair<std::string, std::string>> options = {};  // needed to repeat the run
+  // Needed to repeat the run: options as they were given, versions of the libraries.
+  std::vector<std::pair<std::string, std::string>> options = {};
+  std::vector<std::pair<std::string, std::string>> versions = {};
   std::vector<ReportSection> sections = {};
   std::optional<ReportSurface> surface = {};
 };

@@ -19,6 +19,7 @@
 #include "workflows/shared_options.h"
 #include "workflows/summary.h"
 #include "workflows/version.h"
+#include "workflows/versions.h"
 #include "workflows/workspace.h"
 
 namespace velamap {
@@ -122,7 +123,9 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
   for (const DroppedMarker& marker : seed.registration.dropped_markers) {
     input.markers_left_out.push_back({std::to_string(marker.marker_id), marker.reason});
   }
+  input.audit = &shape.audit;
   input.options = TypedOptions(options.arguments);
+  input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
   WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
 }
 

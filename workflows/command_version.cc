@@ -1,27 +1,11 @@
 #include <iostream>
 
-#include "importer/error.h"
-#include "reconstruct/colmap_runner.h"
 #include "workflows/commands.h"
 #include "workflows/option_parser.h"
 #include "workflows/version.h"
+#include "workflows/versions.h"
 
 namespace velamap {
-namespace {
-
-// First line of COLMAP's help, such as `COLMAP 3.8 -- Structure-from-Motion and ...`.
-std::string ColmapVersion(const std::string& colmap_path) {
-  try {
-    const std::string output = RunColmap(colmap_path, {"help"}, "/dev/null").output;
-    return output.substr(0, output.find_first_of("-\n("));
-  } catch (const ExternalToolError&) {
-    // Not having COLMAP is an answer here, not a failure.
-    return "not found (" + colmap_path + ")";
-  }
-}
-
-}  // namespace
-
 void RunVersion(const Arguments& arguments) {
   std::string colmap_path = "colmap";
   const CommandSyntax syntax{
@@ -33,8 +17,10 @@ void RunVersion(const Arguments& arguments) {
     PrintHelp(syntax, std::cout);
     return;
   }
-  std::cout << "velamap: " << kVersion << "\nopencv: " << kOpenCvVersion
-            << "\neigen: " << kEigenVersion << "\ncolmap: " << ColmapVersion(colmap_path) << '\n';
+  std::cout << "velamap: " << kVersion << '\n';
+  for (const auto& [name, version] : LibraryVersions(colmap_path)) {
+    std::cout << name << ": " << version << '\n';
+  }
 }
 
 }  // namespace velamap

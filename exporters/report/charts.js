@@ -28,6 +28,10 @@ function addChart(id, title, config) {
   byId(id).setAttribute('aria-label', title);
   const chart = new Chart(byId(id), config);
   charts.push(chart);
+  const save = element('button', {type: 'button', className: 'save screen_only', textContent: 'PNG',
+                                  title: `save the chart "${title}" as a picture`});
+  save.addEventListener('click', () => savePicture(chart.canvas, title));
+  byId(id).parentElement.append(save);
   return chart;
 }
 

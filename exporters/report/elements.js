@@ -50,3 +50,19 @@ function roundUp(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return power * [1, 2, 5, 10].find(factor => factor * power >= value * (1 - 1e-9));
 }
+
+// What a canvas shows, on white ground, as a PNG.
+function pictureOf(canvas) {
+  const copy = element('canvas', {width: canvas.width, height: canvas.height});
+  const context = copy.getContext('2d');
+  context.fillStyle = '#ffffff';
+  context.fillRect(0, 0, copy.width, copy.height);
+  context.drawImage(canvas, 0, 0);
+  return copy.toDataURL('image/png');
+}
+
+// Saves it under the page's title and `name`.
+function savePicture(canvas, name) {
+  const file = `${document.title.replace(/ – .*/, '')} ${name}.png`.replace(/[^\w.-]+/g, '_');
+  element('a', {href: pictureOf(canvas), download: file}).click();
+}

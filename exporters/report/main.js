@@ -62,6 +62,10 @@ function connectView(view) {
     button.addEventListener('click', () => view.setView(...VIEWS[button.dataset.view]));
   }
   byId('show_all').addEventListener('click', () => view.showAll());
+  byId('save_view').addEventListener('click', () => {
+    view.render();  // a canvas of WebGL holds its picture only until the browser shows it
+    savePicture(view.renderer.domElement, 'shape');
+  });
   view.container.addEventListener('keydown', event => {
     if (!KEYS[event.key]) return;
     event.preventDefault();

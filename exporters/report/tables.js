@@ -91,7 +91,13 @@ function fillTables(data) {
   fillTable('table_options', [
     {name: 'Option', value: row => row[0], isText: true},
     {name: 'Value', value: row => row[1], isText: true},
-  ], [['velamap', data.version], ...data.options]);
+  ], [['velamap', data.version], ...data.versions, ...data.options]);
+  if (!data.scale_audit) return;
+  byId('audit').hidden = false;
+  fillTable('table_audit', [
+    {name: 'Figure', value: row => row[0], isText: true},
+    {name: 'Value', value: row => row[1], isText: true},
+  ], data.scale_audit);
 }
 
 // A figure with its standard deviation, where that is known.

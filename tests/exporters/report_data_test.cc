@@ -1,5 +1,6 @@
 #include "exporters/report_data.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -197,6 +198,22 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   EXPECT_FALSE(data.at("sections").at(0).contains("camber_percent"));
   EXPECT_EQ(data.at("surface").at("vertices").size(), 9u);
   EXPECT_EQ(data.at("surface").at("triangles").size(), 3u);
+}
+
+TEST_F(ReportData, TheAuditIsThatOfTheMetrics) {
+  const ScaleAudit audit = AuditScale(example_.shape, example_.layout, &example_.model, nullptr);
+  ReportInput input = example_.Input();
+  EXPECT_FALSE(json::parse(ReportJson(input)).contains("scale_audit"));
+  input.audit = &audit;
+  const json data = json::parse(ReportJson(input));
+  const auto has = [&](const std::string& key) {
+    const json& lines = data.at("scale_audit");
+    return std::any_of(lines.begin(), lines.end(),
+                       [&](const json& line) { return line.at(0) == key; });
+  };
+  EXPECT_TRUE(has("num_disagreeing_markers"));
+  EXPECT_TRUE(has("x_over_y_percent"));
+  EXPECT_FALSE(has("scale_histogram"));
 }
 
 TEST_F(ReportData, CanStandInsideAScript) {

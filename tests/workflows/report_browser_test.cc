@@ -166,6 +166,7 @@ TEST_F(ReportBrowser, FillsThePageWithoutErrors) {
   EXPECT_THAT(dom, HasSubstr("2345.0 ± 1.2"));
   EXPECT_THAT(dom, HasSubstr("Registration.method"));
   EXPECT_THAT(dom, HasSubstr("data:image/jpeg;base64,"));
+  EXPECT_THAT(dom, HasSubstr("save the chart"));
   EXPECT_THAT(dom, Not(HasSubstr("No picture")));
   EXPECT_THAT(dom, Not(HasSubstr("no WebGL")));
   std::smatch time;
