@@ -109,6 +109,14 @@ void MeshOptions::Check() const {
   }
 }
 
+MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_length_m) {
+  constexpr double kEnoughTriangles = 1e5;
+  MeshOptions options;
+  options.edge_length_mm =
+      1e3 * std::max(marker_length_m / 2, std::sqrt(2 * SurfaceArea(surface) / kEnoughTriangles));
+  return options;
+}
+
 double CountTriangles(const SplineSurface& surface, const MeshOptions& options) {
   options.Check();
   const GridSize grid = ChooseGrid(surface, options);

@@ -29,6 +29,9 @@ struct MeshOptions {
   void Check() const;
 };
 
+// Edges of half a marker's side, longer where that would be more than 100 000 triangles.
+MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_length_m);
+
 // Triangles that MeshSurface would make, also where it would refuse to; not fewer than it makes.
 double CountTriangles(const SplineSurface& surface, const MeshOptions& options);
 

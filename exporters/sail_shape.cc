@@ -1,7 +1,5 @@
 #include "exporters/sail_shape.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <iosfwd>
 #include <utility>
@@ -19,17 +17,8 @@
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
-constexpr double kDefaultMaxTriangles = 1e5;
 // A boat has a few sails; more parts with lines get no surface files.
 constexpr int kMaxSurfaces = 20;
-
-MeshOptions DefaultMesh(double marker_length_m, double area_m2) {
-  MeshOptions options;
-  options.edge_length_mm =
-      kMmPerM * std::max(marker_length_m / 2, std::sqrt(2 * area_m2 / kDefaultMaxTriangles));
-  return options;
-}
 
 SailSurface MakeSurface(const MarkerShape& shape, const Layout& layout, const LayoutPart& part,
                         const SailOptions& options) {
@@ -37,9 +26,9 @@ SailSurface MakeSurface(const MarkerShape& shape, const Layout& layout, const La
   surface.part = part.name;
   surface.fit = FitSurface(CollectSurfaceInput(shape, part), options.surface);
   surface.area_m2 = SurfaceArea(surface.fit.surface);
-  surface.mesh =
-      MeshSurface(surface.fit.surface,
-                  options.mesh.value_or(DefaultMesh(layout.marker_length_m, surface.area_m2)));
+  surface.mesh = MeshSurface(
+      surface.fit.surface,
+      options.mesh.value_or(DefaultMeshOptions(surface.fit.surface, layout.marker_length_m)));
   return surface;
 }
 

@@ -9,25 +9,13 @@
 
 #include <fmt/format.h>
 
+#include "exporters/diverging_color.h"
 #include "importer/error.h"
 
 namespace velamap {
 namespace {
 
 constexpr double kMmPerM = 1e3;
-
-using Color = Eigen::Array3d;
-
-Color DivergingColor(double fraction) {
-  const Color blue(33, 102, 172), white(247, 247, 247), red(178, 24, 43);
-  const double part = std::clamp(fraction, -1.0, 1.0);
-  return part < 0 ? Color(white - part * (blue - white)) : Color(white + part * (red - white));
-}
-
-Color ColorOf(const MarkerDeviation& marker, double limit_m) {
-  if (!marker.is_over_surface) return {128, 128, 128};
-  return DivergingColor(limit_m > 0 ? marker.distance_m / limit_m : 0.0);
-}
 
 double LimitOf(const ShapeDeviation& deviation, std::optional<double> color_limit_m) {
   return color_limit_m.value_or(
@@ -65,7 +53,8 @@ void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> c
     const ShapeMarker* marker = FindWholeMarker(deviation.aligned_shape, deviating.marker_id);
     VELAMAP_CHECK(marker != nullptr);
     const Eigen::Vector3f normal = MarkerNormal(*marker).cast<float>();
-    const Color color = ColorOf(deviating, limit_m).round();
+    const Eigen::Array3d color = DivergingColor(
+        deviating.is_over_surface ? std::optional(deviating.distance_m) : std::nullopt, limit_m);
     for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
       const Eigen::Vector3d& x = *marker->x_in_shape_m[corner];
       text += fmt::format("{} {} {} {} {} {} {:.0f} {:.0f} {:.0f} {}", x.x(), x.y(), x.z(),

@@ -119,6 +119,18 @@ void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report) {
   report->tables.push_back(std::move(markers));
 }
 
+void AddMetrics(const SurfaceComparison& comparison, MetricsReport* report) {
+  if (!comparison.notes.empty()) {
+    report->metrics.push_back(
+        {"surface_note", fmt::format("{}", fmt::join(comparison.notes, "; "))});
+  }
+  MetricTable table{"surfaces", true, {}};
+  for (const SurfaceDeviation& part : comparison.parts) {
+    table.rows.push_back({{"part", part.part}, {"surface_distance_mm", InMm(part.statistics_m)}});
+  }
+  report->tables.push_back(std::move(table));
+}
+
 void AddMetrics(const SectionComparison& comparison, MetricsReport* report) {
   const auto& differences = comparison.differences;
   const auto num_significant = std::count_if(differences.begin(), differences.end(),

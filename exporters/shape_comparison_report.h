@@ -6,12 +6,16 @@
 #include "exporters/metrics_report.h"
 #include "exporters/shape_comparison.h"
 #include "exporters/shape_comparison_sections.h"
+#include "exporters/shape_comparison_surface.h"
 
 namespace velamap {
 
 // Keys of sigmas and significance are there where the sigmas are. Tables parts, lines, and, for the
 // files only, markers.
 void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report);
+
+// surface_note; table surfaces: part and surface_distance_mm.
+void AddMetrics(const SurfaceComparison& comparison, MetricsReport* report);
 
 // section_frame, num_significant_section_numbers, section_note; table section_differences.
 void AddMetrics(const SectionComparison& comparison, MetricsReport* report);

@@ -10,6 +10,7 @@
 #include "exporters/shape_comparison_ply.h"
 #include "exporters/shape_comparison_report.h"
 #include "exporters/shape_comparison_sigma.h"
+#include "exporters/shape_comparison_surface.h"
 #include "exporters/shape_csv.h"
 #include "exporters/shape_sigma.h"
 #include "importer/atomic_output.h"
@@ -34,6 +35,7 @@ struct Options {
   std::string reference_uncertainty_path;
   std::string csv_path;
   std::string json_path;
+  std::string surface_path;
   std::optional<double> color_limit_mm;
 };
 
@@ -100,6 +102,8 @@ CommandSyntax Declare(Options* options) {
            {"Output",
             {{"output_path", &options->paths.output_path, "path",
               "PLY of the markers, coloured by their signed distance"},
+             {"surface_path", &options->surface_path, "path",
+              "PLY of the surface through the lines, coloured in the same way; needs a layout"},
              {"color_limit", &options->color_limit_mm, "mm",
               "distance of the full colours; left out: the largest"},
              {"csv_path", &options->csv_path, "path", "file for all figures and tables"},
@@ -117,6 +121,9 @@ void Validate(const Options& options) {
   }
   if (!options.csv_path.empty() && options.csv_path == options.json_path) {
     throw InputError("--json_path: " + options.json_path + " is the --csv_path too; give another");
+  }
+  if (!options.surface_path.empty() && options.layout_path.empty()) {
+    throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
   }
   if (!options.alignment.marker_ids.empty() &&
       options.alignment.method != AlignmentMethod::kMarkers) {
@@ -190,8 +197,13 @@ void CheckUnit(const Options& options, const MarkerShape& shape, const MeshDista
                   DefaultMPerUnit(path) == 1.0 ? "m" : "mm"));
 }
 
-ShapeDeviation CompareWithSurface(const Options& options, const UncertainShape& shape,
-                                  const Layout& layout) {
+struct Result {
+  ShapeDeviation deviation;
+  SurfaceComparison surfaces;  // empty without a layout
+};
+
+Result CompareWithSurface(const Options& options, const UncertainShape& shape,
+                          const Layout& layout) {
   const std::string& path = options.paths.reference_path;
   const MeshDistance mesh(ReadMesh(path, options.mesh));
   CheckUnit(options, shape.shape, mesh);
@@ -200,29 +212,54 @@ ShapeDeviation CompareWithSurface(const Options& options, const UncertainShape& 
         "{}: {} edges have triangles that look to opposite sides; signs there mean nothing", path,
         mesh.NumFlippedEdges());
   }
-  return CompareWithMesh(shape, mesh, layout, options.alignment, options.part);
+  Result result;
+  result.deviation = CompareWithMesh(shape, mesh, layout, options.alignment, options.part);
+  result.surfaces = CompareSurfaces(result.deviation.aligned_shape, mesh, layout, options.part);
+  return result;
 }
 
-ShapeDeviation Compare(const Options& options, MetricsReport* report) {
+Result CompareWithOther(const Options& options, const UncertainShape& shape, const Layout& layout,
+                        MetricsReport* report) {
+  const UncertainShape reference =
+      ReadUncertainShape(options.paths.reference_path, options.reference_uncertainty_path,
+                         "--reference_uncertainty_path");
+  Result result;
+  result.deviation = CompareWithShape(shape, reference, layout, options.alignment, options.part);
+  AddMetrics(result.deviation, report);
+  if (options.layout_path.empty()) return result;
+  AddMetrics(CompareSections(shape, reference, result.deviation.alignment, layout), report);
+  result.surfaces =
+      CompareSurfaces(result.deviation.aligned_shape, reference.shape, layout, options.part);
+  AddMetrics(result.surfaces, report);
+  return result;
+}
+
+Result Compare(const Options& options, MetricsReport* report) {
   Layout layout;
   if (!options.layout_path.empty()) layout = ReadLayout(options.layout_path);
   const UncertainShape shape =
       ReadUncertainShape(options.paths.shape_path, options.uncertainty_path, "--uncertainty_path");
-  if (IsMeshPath(options.paths.reference_path)) {
-    const ShapeDeviation deviation = CompareWithSurface(options, shape, layout);
-    AddMetrics(deviation, report);
-    return deviation;
+  if (!IsMeshPath(options.paths.reference_path)) {
+    return CompareWithOther(options, shape, layout, report);
   }
-  const UncertainShape reference =
-      ReadUncertainShape(options.paths.reference_path, options.reference_uncertainty_path,
-                         "--reference_uncertainty_path");
-  const ShapeDeviation deviation =
-      CompareWithShape(shape, reference, layout, options.alignment, options.part);
-  AddMetrics(deviation, report);
-  if (!options.layout_path.empty()) {
-    AddMetrics(CompareSections(shape, reference, deviation.alignment, layout), report);
-  }
-  return deviation;
+  Result result = CompareWithSurface(options, shape, layout);
+  AddMetrics(result.deviation, report);
+  if (!options.layout_path.empty()) AddMetrics(result.surfaces, report);
+  return result;
+}
+
+void Write(const Options& options, const Result& result, const MetricsReport& report) {
+  const auto write = [](const std::string& path, const auto& writer) {
+    if (!path.empty()) WriteFileAtomically(path, writer);
+  };
+  std::optional<double> limit_m;
+  if (options.color_limit_mm) limit_m = *options.color_limit_mm / 1e3;
+  write(options.csv_path, [&](std::ostream& out) { WriteMetricsCsv(report, out); });
+  write(options.json_path, [&](std::ostream& out) { WriteMetricsJson(report, out); });
+  write(options.paths.output_path,
+        [&](std::ostream& out) { WriteComparisonPly(result.deviation, limit_m, out); });
+  write(options.surface_path,
+        [&](std::ostream& out) { WriteComparisonSurfacePly(result.surfaces, limit_m, out); });
 }
 
 }  // namespace
@@ -232,16 +269,8 @@ void RunShapeComparer(const Arguments& arguments) {
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(options);
   MetricsReport report;
-  const ShapeDeviation deviation = Compare(options, &report);
-  const auto write = [](const std::string& path, const auto& writer) {
-    if (!path.empty()) WriteFileAtomically(path, writer);
-  };
-  write(options.csv_path, [&](std::ostream& out) { WriteMetricsCsv(report, out); });
-  write(options.json_path, [&](std::ostream& out) { WriteMetricsJson(report, out); });
-  write(options.paths.output_path, [&](std::ostream& out) {
-    const auto limit_mm = options.color_limit_mm;
-    WriteComparisonPly(deviation, limit_mm ? std::optional(*limit_mm / 1e3) : std::nullopt, out);
-  });
+  const Result result = Compare(options, &report);
+  Write(options, result, report);
   PrintMetrics(report, std::cout);
 }
 

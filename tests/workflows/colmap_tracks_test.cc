@@ -246,7 +246,15 @@ TEST_F(ColmapResultTest, IsAnalyzedAndConverted) {
   EXPECT_THAT(ReadFileBytes(dir_ / "points.ply"),
               HasSubstr("element vertex " + std::to_string(model_.points3D.size())));
 
-  // NVM and Bundler hold no OpenCV distortion.
+  Convert("VRML", "scene");
+  EXPECT_TRUE(fs::exists(dir_ / "scene.points3D.wrl"));
+
+  // The others hold no OpenCV distortion.
+  fs::create_directory(dir_ / "cam");
+  Convert("CAM", "cam", {"--skip_distortion", "1"});
+  EXPECT_EQ(ListFolder(dir_ / "cam").size(), model_.images.size());
+  Convert("R3D", "recon3d", {"--skip_distortion", "1"});
+  EXPECT_FALSE(ListFolder(dir_ / "recon3d").empty());
   Convert("NVM", "model.nvm", {"--skip_distortion", "1"});
   std::ifstream nvm(path("model.nvm"));
   std::string version;
@@ -271,6 +279,9 @@ TEST_F(ColmapResultTest, IsUndistortedWithItsImages) {
               "--max_image_size", "640"});
   EXPECT_EQ(ListFolder(dir_ / "dense/images"), ListFolder(dir_ / "workspace/images"));
   EXPECT_EQ(ReadModel(path("dense/sparse")).points3D.size(), model_.points3D.size());
+  // What patch_match_stereo starts from: every image is a reference.
+  const std::string stereo = ReadFileBytes(dir_ / "dense/stereo/patch-match.cfg");
+  for (const ModelImage& image : model_.images) EXPECT_THAT(stereo, HasSubstr(image.name));
 }
 
 TEST_F(ColmapResultTest, IsTriangulatedWithItsDatabase) {

@@ -81,8 +81,11 @@ class ShapeComparerTest : public ::testing::Test {
 TEST_F(ShapeComparerTest, TwoShapesByTheHull) {
   const ProgramRun run =
       Compare("b/shape", {"--layout_path", path("layout.yml"), "--output_path", path("c.ply"),
-                          "--csv_path", path("c.csv"), "--json_path", path("c.json")});
+                          "--csv_path", path("c.csv"), "--json_path", path("c.json"),
+                          "--surface_path", path("s.ply")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("surfaces: part sail, surface_distance_mm mean "));
+  EXPECT_THAT(ReadFileBytes(dir_ / "s.ply"), HasSubstr("property float distance\n"));
   EXPECT_THAT(run.out, AllOf(HasSubstr("alignment: reference_part\n"),
                              HasSubstr("num_markers: 36\n"), HasSubstr("difference_mm_max: 30\n"),
                              HasSubstr("parts: part hull, distance_mm mean"),
@@ -168,9 +171,12 @@ TEST_F(ShapeComparerTest, BadInput) {
 }
 
 TEST_F(ShapeComparerTest, OutputThatCannotBeWritten) {
-  for (const char* option : {"--output_path", "--csv_path", "--json_path"}) {
-    ExpectError(Compare("b/shape", {option, path("layout.yml/c")}), 2, "layout.yml/c");
+  for (const char* option : {"--output_path", "--csv_path", "--json_path", "--surface_path"}) {
+    ExpectError(
+        Compare("b/shape", {option, path("layout.yml/c"), "--layout_path", path("layout.yml")}), 2,
+        "layout.yml/c");
   }
+  ExpectError(Compare("b/shape", {"--surface_path", path("c")}), 2, "needs --layout_path");
   ExpectError(Compare("b/shape", {"--csv_path", path("c"), "--json_path", path("c")}), 2,
               "--json_path");
   EXPECT_THAT(ListFolder(dir_.path()), ElementsAre("a", "b", "layout.yml"));
