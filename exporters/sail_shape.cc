@@ -21,10 +21,10 @@ namespace {
 constexpr int kMaxSurfaces = 20;
 
 SailSurface MakeSurface(const MarkerShape& shape, const Layout& layout, const LayoutPart& part,
-                        const SailOptions& options) {
+                        const PointCovariance* covariance, const SailOptions& options) {
   SailSurface surface;
   surface.part = part.name;
-  surface.fit = FitSurface(CollectSurfaceInput(shape, part), options.surface);
+  surface.fit = FitSurface(CollectSurfaceInput(shape, part, covariance), options.surface);
   surface.area_m2 = SurfaceArea(surface.fit.surface);
   surface.mesh = MeshSurface(
       surface.fit.surface,
@@ -98,7 +98,7 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
       continue;
     }
     try {
-      sail.surfaces.push_back(MakeSurface(shape, layout, part, options));
+      sail.surfaces.push_back(MakeSurface(shape, layout, part, covariance, options));
       for (const std::string& note : sail.surfaces.back().fit.notes) {
         sail.surface_notes.push_back(fmt::format("{}: {}", part.name, note));
       }

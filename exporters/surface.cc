@@ -15,8 +15,6 @@ namespace velamap {
 namespace {
 
 constexpr std::size_t kMinMarkers = 3, kMinLines = 2;
-// Of fewer markers cross-validation cannot tell their noise from their shape.
-constexpr std::size_t kMinCrossValidated = 30;
 // The feet of the markers between the lines move a little with every fit.
 constexpr int kNumFits = 4;
 // A foot this near to an edge, in parameters, is taken for one on the edge.

@@ -12,8 +12,9 @@
 // natural spline does.
 //
 // lambda: where the markers have sigmas it minimises the expected error (Mallows' Cp of the
-// distances along the normal; Mallows, "Some comments on Cp", 1973), else generalised
-// cross-validation does it (Golub, Heath and Wahba, 1979); a sigma of 0 interpolates.
+// distances along the normal; Mallows, "Some comments on Cp", 1973), but is not smaller than what
+// generalised cross-validation finds (Golub, Heath and Wahba, 1979), which it is without sigmas; a
+// sigma of 0 interpolates.
 
 #pragma once
 

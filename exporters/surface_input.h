@@ -10,6 +10,7 @@
 
 #include "exporters/marker_shape.h"
 #include "importer/layout.h"
+#include "reconstruct/point_covariance.h"
 
 namespace velamap {
 
@@ -38,7 +39,10 @@ struct SurfaceEdges {
 };
 
 // The horizontal lines of `part`, in the layout's order, and its other markers: whole markers only.
-// A marker's sigma is the root mean square of the three of its centre.
-SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part);
+// A marker's sigma is the root mean square of the three of its centre. With the joint covariance it
+// is that of the marker's own noise (the covariance's blocks): what all markers have in common,
+// such as the scale, bends no surface.
+SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part,
+                                 const PointCovariance* covariance = nullptr);
 
 }  // namespace velamap

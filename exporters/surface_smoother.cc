@@ -116,9 +116,9 @@ Solution Solve(const System& system, double log10_ratio) {
   solution.poles = Eigen::MatrixX3d::Zero(penalty.rows(), 3);
   // The poles that hardly any marker holds suffer from the squared design; refinement mends that.
   for (int step = 0; step < 4; ++step) {
-    solution.poles += factor.solve(
-        system.design.transpose() * (system.data - system.design * solution.poles) -
-        penalty * solution.poles);
+    solution.poles +=
+        factor.solve(system.design.transpose() * (system.data - system.design * solution.poles) -
+                     penalty * solution.poles);
   }
   solution.trace = factor.matrixL().solve(system.design.transpose()).squaredNorm();
   return solution;
@@ -136,6 +136,32 @@ double NormalSquaredResiduals(const System& system, const Solution& solution,
   return residuals.cwiseProduct(normals).rowwise().sum().squaredNorm();
 }
 
+struct Choice {
+  double log10_ratio = kMinLog10Ratio;
+  Solution solution;
+};
+
+// The smoothing with the least score.
+template <typename Score>
+Choice Search(const System& system, const Score& score_of) {
+  Choice best;
+  double best_score = std::numeric_limits<double>::infinity();
+  const auto search = [&](double first, double last, double step) {
+    for (double ratio = first; ratio <= last; ratio += step) {
+      Solution solution = Solve(system, ratio);
+      const double score = score_of(solution);
+      if (score >= best_score) continue;
+      best_score = score;
+      best = {ratio, std::move(solution)};
+    }
+  };
+  search(kMinLog10Ratio, kMaxLog10Ratio, kCoarseStep);
+  const double coarse = best.log10_ratio;
+  search(coarse - 3 * kFineStep, coarse - kFineStep, kFineStep);
+  search(coarse + kFineStep, coarse + 3 * kFineStep, kFineStep);
+  return best;
+}
+
 }  // namespace
 
 SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
@@ -151,32 +177,29 @@ SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
     system.data.row(k) = std::sqrt(weights[k]) * parameters.observations[k].x_in_shape_m;
   }
 
-  Solution best = Solve(system, kMinLog10Ratio);
-  if (smoothing == Smoothing::kInterpolate) return {MakeSurface(parameters, best), best.trace};
-  const SplineSurface interpolating = MakeSurface(parameters, best);
+  const Solution closest = Solve(system, kMinLog10Ratio);
+  const SplineSurface interpolating = MakeSurface(parameters, closest);
+  if (smoothing == Smoothing::kInterpolate) return {interpolating, closest.trace};
   Eigen::MatrixX3d normals(n, 3);
   for (std::size_t k = 0; k < n; ++k) {
     const SurfaceObservation& observation = parameters.observations[k];
     normals.row(k) = EvaluateJet(interpolating, observation.u, observation.v).normal;
   }
-  double best_score = std::numeric_limits<double>::infinity(), best_ratio = kMinLog10Ratio;
-  const auto search = [&](double first, double last, double step) {
-    for (double ratio = first; ratio <= last; ratio += step) {
-      const Solution solution = Solve(system, ratio);
-      const double squares = NormalSquaredResiduals(system, solution, normals);
-      const double free = n - solution.trace;
-      const double score = smoothing == Smoothing::kKnownSigma ? squares + 2 * solution.trace
-                                                               : squares / (free * free);
-      if (score >= best_score) continue;
-      best_score = score;
-      best_ratio = ratio;
-      best = solution;
-    }
+  const auto squares_of = [&](const Solution& solution) {
+    return NormalSquaredResiduals(system, solution, normals);
   };
-  search(kMinLog10Ratio, kMaxLog10Ratio, kCoarseStep);
-  const double coarse = best_ratio;
-  search(coarse - 3 * kFineStep, coarse - kFineStep, kFineStep);
-  search(coarse + kFineStep, coarse + 3 * kFineStep, kFineStep);
+  const Choice validated = Search(system, [&](const Solution& solution) {
+    const double free = n - solution.trace;
+    return squares_of(solution) / (free * free);
+  });
+  if (smoothing == Smoothing::kCrossValidation) {
+    return {MakeSurface(parameters, validated.solution), validated.solution.trace};
+  }
+  const Choice known = Search(
+      system, [&](const Solution& solution) { return squares_of(solution) + 2 * solution.trace; });
+  // Sigmas that are too small would have the surface swing from marker to marker.
+  const bool is_known = n < kMinCrossValidated || known.log10_ratio > validated.log10_ratio;
+  const Solution& best = is_known ? known.solution : validated.solution;
   return {MakeSurface(parameters, best), best.trace};
 }
 

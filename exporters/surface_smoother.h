@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -11,10 +12,14 @@ namespace velamap {
 
 // How the weight of the penalty is chosen.
 enum class Smoothing {
-  kInterpolate,      // as small as the arithmetic bears
-  kKnownSigma,       // Mallows' Cp; the weights are 1 / sigma^2
+  kInterpolate,  // as small as the arithmetic bears
+  // Mallows' Cp; the weights are 1 / sigma^2. Of kMinCrossValidated observations or more it is
+  // never closer than cross-validation finds right.
+  kKnownSigma,
   kCrossValidation,  // generalised; only the ratios of the weights count
 };
+
+constexpr std::size_t kMinCrossValidated = 30;  // fewer tell too little of the noise
 
 struct SmoothSurface {
   SplineSurface surface;

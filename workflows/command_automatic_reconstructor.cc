@@ -17,6 +17,7 @@
 #include "workflows/pipeline.h"
 #include "workflows/sail_options.h"
 #include "workflows/shared_options.h"
+#include "workflows/stage_times.h"
 #include "workflows/summary.h"
 #include "workflows/version.h"
 #include "workflows/versions.h"
@@ -78,7 +79,8 @@ void Validate(Options* options) {
   if (options->adjustment.UsesColmap()) CheckColmap(options->adjustment.colmap.colmap_path);
 }
 
-void Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* unreadable) {
+// Returns the number of frames that were read.
+int Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* unreadable) {
   options->importer.database_path = workspace->paths().Database().string();
   options->importer.frame_output_path = workspace->paths().Images().string();
   const ImportReport report = ImportImages(options->importer);
@@ -86,6 +88,7 @@ void Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* u
   for (const SkippedImage& skipped : report.skipped) {
     unreadable->push_back({skipped.image_name, skipped.reason});
   }
+  return report.num_frames_read;
 }
 
 // `--name value` and `--name=value` as pairs.
@@ -132,12 +135,13 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
 // From the seed to the final files. sparse/ and shape/ change places with the old ones when both
 // are whole.
 void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
-                     ReconstructionSummary* summary) {
+                     ReconstructionSummary* summary, StageClock* clock) {
   AtomicFolder sparse(paths.Sparse());
   WriteModel(seed.model, (sparse.TemporaryPath() / "seed").string(), ModelFormat::kBinaryAndText);
   Model model = seed.model;
   summary->adjustment = AdjustModel(options.adjustment, options.importer.layout, seed.corner_sigmas,
                                     paths.ColmapLog().string(), &model);
+  clock->End("adjust", static_cast<int>(model.images.size()));
   AddModelImages(model, options.paths.image_path, paths.Images());
   const auto& uncertainty = summary->adjustment.uncertainty;
   ShapeExporterOptions exporter = options.exporter;
@@ -148,9 +152,18 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   sparse.Commit();
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
+  clock->End("export");
   WriteReportFile(options, paths, seed, *summary);
+  clock->End("report");
   RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
   summary->num_images = static_cast<int>(model.images.size());
+}
+
+void WriteTimes(const StageClock& clock, const WorkspacePaths& paths) {
+  const std::vector<StageTime> times = clock.Times();
+  for (const std::string& line : StageTable(times)) spdlog::info("{}", line);
+  WriteFileAtomically(paths.Timing(),
+                      [&times](std::ostream& out) { WriteStageTimesJson(times, out); });
 }
 
 }  // namespace
@@ -166,12 +179,15 @@ void RunAutomaticReconstructor(const Arguments& arguments) {
   spdlog::info("velamap {} automatic_reconstructor {}", kVersion, fmt::join(arguments, " "));
 
   ReconstructionSummary summary;
-  Import(&options, &workspace, &summary.left_out);
+  StageClock clock;
+  clock.End("import", Import(&options, &workspace, &summary.left_out));
   const SeedResult seed =
       RegisterDatabase(paths.Database().string(), options.importer.layout, options.registration);
+  clock.End("register", static_cast<int>(seed.image_names.size()));
   summary.num_images_total = static_cast<int>(seed.image_names.size() + summary.left_out.size());
   summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
-  AdjustAndExport(options, paths, seed, &summary);
+  AdjustAndExport(options, paths, seed, &summary, &clock);
+  WriteTimes(clock, paths);
   PrintSummary(summary, paths, std::cout);
 }
 

@@ -57,8 +57,8 @@ TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
                                  (workspace() / "images").string() + " --import_path " +
                                  (workspace() / "sparse/0").string() + "\n"));
   EXPECT_THAT(ListFolder(workspace()),
-              ElementsAre("colmap.log", "database.db", "images", "registration.csv",
-                          "report.html", "shape", "sparse", "velamap.log"));
+              ElementsAre("colmap.log", "database.db", "images", "registration.csv", "report.html",
+                          "shape", "sparse", "timing.json", "velamap.log"));
   EXPECT_THAT(ListFolder(workspace() / "sparse"), ElementsAre("0", "seed"));
   EXPECT_THAT(ListFolder(workspace() / "shape"),
               IsSupersetOf({"markers.ply", "metrics.csv", "metrics.json", "scale.csv", "shape.csv",
@@ -123,8 +123,8 @@ TEST_F(AutomaticReconstructorTest, FailureOfColmapKeepsTheOldResult) {
   EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
   EXPECT_EQ(ReadFileBytes(workspace() / "sparse/0/points3D.bin"), before);
   EXPECT_THAT(ListFolder(workspace()),
-              ElementsAre("colmap.log", "database.db", "images", "registration.csv",
-                          "report.html", "shape", "sparse", "velamap.log"));
+              ElementsAre("colmap.log", "database.db", "images", "registration.csv", "report.html",
+                          "shape", "sparse", "timing.json", "velamap.log"));
   EXPECT_THAT(ReadFileBytes(workspace() / "velamap.log"), HasSubstr("error: "));
 }
 

@@ -1,0 +1,54 @@
+#include "workflows/stage_times.h"
+
+#include <chrono>
+#include <sstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace velamap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+
+TEST(StageTimes, SleepTakesWallTimeAndWorkTakesCpuTime) {
+  StageClock clock;
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  clock.End("sleep");
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(60);
+  while (std::chrono::steady_clock::now() < end) {
+  }
+  clock.End("work", 6);
+  const std::vector<StageTime> times = clock.Times();
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_GE(times[0].wall_s, 0.06);
+  EXPECT_LT(times[0].cpu_s, 0.03);
+  EXPECT_GE(times[1].wall_s, 0.06);
+  EXPECT_GT(times[1].cpu_s, 0.005);  // of a machine that others use too
+  EXPECT_EQ(times[2].name, "total");
+  EXPECT_NEAR(times[2].wall_s, times[0].wall_s + times[1].wall_s, 1e-9);
+  EXPECT_NEAR(times[2].cpu_s, times[0].cpu_s + times[1].cpu_s, 1e-9);
+  EXPECT_GT(times[2].peak_memory_mb, 1.0);
+}
+
+TEST(StageTimes, TableAndJsonSayTheSame) {
+  const std::vector<StageTime> times = {{"import", 2.0, 3.5, 100, 250.0},
+                                        {"export", 1.0, 1.0, 0, 300.0}};
+  EXPECT_THAT(StageTable(times), ElementsAre(MatchesRegex("stage +wall s +CPU s +frames/s +MB"),
+                                             MatchesRegex("import +2.00 +3.50 +50.0 +250"),
+                                             MatchesRegex("export +1.00 +1.00 +300")));
+  std::ostringstream out;
+  WriteStageTimesJson(times, out);
+  const auto json = nlohmann::json::parse(out.str());
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0].at("frames_per_s"), 50.0);
+  EXPECT_EQ(json[1].at("stage"), "export");
+  EXPECT_FALSE(json[1].contains("frames_per_s"));
+}
+
+}  // namespace
+}  // namespace velamap
