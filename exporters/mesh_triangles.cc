@@ -109,14 +109,6 @@ void MeshOptions::Check() const {
   }
 }
 
-MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_length_m) {
-  constexpr double kEnoughTriangles = 1e5;
-  MeshOptions options;
-  options.edge_length_mm =
-      1e3 * std::max(marker_length_m / 2, std::sqrt(2 * SurfaceArea(surface) / kEnoughTriangles));
-  return options;
-}
-
 double CountTriangles(const SplineSurface& surface, const MeshOptions& options) {
   options.Check();
   const GridSize grid = ChooseGrid(surface, options);
@@ -150,6 +142,17 @@ TriangleMesh MeshSurface(const SplineSurface& surface, const MeshOptions& option
     }
   }
   return mesh;
+}
+
+MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_length_m) {
+  constexpr double kEnoughTriangles = 1e5, kCoarser = 1.5;
+  MeshOptions options;
+  options.edge_length_mm =
+      1e3 * std::max(marker_length_m / 2, std::sqrt(2 * SurfaceArea(surface) / kEnoughTriangles));
+  while (CountTriangles(surface, options) > 2 * kEnoughTriangles) {
+    *options.edge_length_mm *= kCoarser;
+  }
+  return options;
 }
 
 }  // namespace velamap

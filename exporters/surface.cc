@@ -15,6 +15,8 @@ namespace velamap {
 namespace {
 
 constexpr std::size_t kMinMarkers = 3, kMinLines = 2;
+// Of the surface over straight strips from line to line: a half circle has 1.57 of its chord.
+constexpr double kMaxAreaRatio = 1.6, kMaxAreaRatioWithEdges = 4.0;
 // The feet of the markers between the lines move a little with every fit.
 constexpr int kNumFits = 4;
 // A foot this near to an edge, in parameters, is taken for one on the edge.
@@ -125,6 +127,59 @@ std::vector<SurfaceResidual> Residuals(const Given& given, const SurfaceParamete
   return residuals;
 }
 
+// Of the polyline through the points, at a fraction of its length.
+Eigen::Vector3d PointAt(const std::vector<Eigen::Vector3d>& points, double fraction) {
+  std::vector<double> lengths_m = {0.0};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    lengths_m.push_back(lengths_m.back() + (points[i] - points[i - 1]).norm());
+  }
+  const double wanted_m = fraction * lengths_m.back();
+  std::size_t i = 1;
+  while (i + 1 < points.size() && lengths_m[i] < wanted_m) ++i;
+  const double part = (wanted_m - lengths_m[i - 1]) / (lengths_m[i] - lengths_m[i - 1]);
+  return points[i - 1] + part * (points[i] - points[i - 1]);
+}
+
+// Of straight strips from line to line.
+double RuledArea(const std::vector<SurfaceLine>& lines) {
+  constexpr int kNumStrips = 50;
+  std::vector<std::vector<Eigen::Vector3d>> polylines;
+  for (const SurfaceLine& line : lines) {
+    polylines.emplace_back();
+    for (const auto& marker : line.markers) {
+      if (marker) polylines.back().push_back(marker->x_in_shape_m);
+    }
+  }
+  double area_m2 = 0.0;
+  for (std::size_t j = 1; j < polylines.size(); ++j) {
+    for (int i = 0; i < kNumStrips; ++i) {
+      const double from = i / static_cast<double>(kNumStrips);
+      const double to = (i + 1) / static_cast<double>(kNumStrips);
+      const Eigen::Vector3d a = PointAt(polylines[j - 1], from), b = PointAt(polylines[j - 1], to);
+      const Eigen::Vector3d c = PointAt(polylines[j], to), d = PointAt(polylines[j], from);
+      area_m2 += (c - a).cross(d - b).norm() / 2;
+    }
+  }
+  return area_m2;
+}
+
+// A surface through markers that lie scattered swings between them; better none than that.
+void CheckThatItIsCalm(const Given& given, const SurfaceOptions& options,
+                       const SplineSurface& surface) {
+  const SurfaceEdges& edges = options.edges;
+  const bool goes_on = options.luff_extension_m + options.leech_extension_m +
+                               options.foot_extension_m + options.head_extension_m >
+                           0 ||
+                       !edges.luff.empty() || !edges.leech.empty() || !edges.foot.empty() ||
+                       !edges.head.empty();
+  const double area_m2 = SurfaceArea(surface), ruled_area_m2 = RuledArea(given.lines);
+  if (area_m2 <= (goes_on ? kMaxAreaRatioWithEdges : kMaxAreaRatio) * ruled_area_m2) return;
+  throw DataError(fmt::format(
+      "it would swing between the markers ({:.3g} m2 instead of some {:.3g}): they do not lie on a "
+      "smooth surface, so check their errors and the order of the lines",
+      area_m2, ruled_area_m2));
+}
+
 }  // namespace
 
 void SurfaceOptions::Check() const {
@@ -174,6 +229,7 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
     smooth =
         SmoothObservations(parameters, Weights(parameters.observations, noise), noise.smoothing);
   }
+  CheckThatItIsCalm(given, options, smooth.surface);
   FittedSurface result;
   result.surface = smooth.surface;
   result.num_effective_parameters = smooth.num_effective_parameters;

@@ -66,7 +66,7 @@ struct FittedSurface {
 
 // Throws InputError for bad options and DataError where the data bear no surface: fewer than two
 // lines with three whole markers, two markers in one place, lines that cross or run against each
-// other.
+// other, or a surface that swings between its markers.
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options = {});
 
 }  // namespace velamap

@@ -12,6 +12,7 @@
 #include "exporters/surface_csv.h"
 #include "importer/error.h"
 #include "tests/exporters/example_surface.h"
+#include "tests/importer/error_matchers.h"
 
 namespace velamap {
 namespace {
@@ -192,6 +193,17 @@ TEST(Surface, SigmasThatAreTooSmallDoNotMakeItSwing) {
   const FittedSurface fit = FitSurface(input);
   EXPECT_NEAR(SurfaceArea(fit.surface), area_m2, 0.01 * area_m2);
   EXPECT_GT(fit.distance_m.rms, 0.001);
+}
+
+TEST(Surface, MarkersThatLieScatteredBearNone) {
+  SurfaceInput input = MarkersOn(TwistedSail, 7, 12);
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise_m(0.0, 0.25);
+  ForEachMarker(&input, [&](SurfaceMarker* marker) {
+    marker->x_in_shape_m.y() += 8 * noise_m(random);
+    marker->sigma_m = 0.0;
+  });
+  ExpectThrows<DataError>([&] { FitSurface(input); }, {"swing between the markers", "m2"});
 }
 
 TEST(Surface, MarkersBetweenTheLinesTakePart) {
