@@ -1,7 +1,5 @@
 #include "importer/frame_detector.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <utility>
@@ -22,14 +20,6 @@ std::uint64_t Hash(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   return hash;
-}
-
-// The pixel in which an image position lies.
-Rgb ColorAt(const cv::Mat& color, const Eigen::Vector2d& x_in_image_px) {
-  const int x = std::clamp(static_cast<int>(std::floor(x_in_image_px.x())), 0, color.cols - 1);
-  const int y = std::clamp(static_cast<int>(std::floor(x_in_image_px.y())), 0, color.rows - 1);
-  const cv::Vec3b& bgr = color.at<cv::Vec3b>(y, x);
-  return {bgr[2], bgr[1], bgr[0]};
 }
 
 void WarnOfSymmetries(const FrameDetector& detector) {
@@ -84,9 +74,6 @@ FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
        DetectMarkers(gray, detector.dictionary, detector.border_bits, detector.options)) {
-    for (std::size_t i = 0; i < kNumCorners; ++i) {
-      marker.colors[i] = ColorAt(frame.color, marker.corners_in_image_px[i]);
-    }
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;
     if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {
@@ -100,6 +87,7 @@ FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
   std::move(resolved.rejected.begin(), resolved.rejected.end(),
             std::back_inserter(detections.rejected));
   ResolveRotations(detector.symmetries, detector.graph, &detections.markers, &detections.rejected);
+  AddColors(frame, &detections);
   return detections;
 }
 

@@ -40,7 +40,10 @@ class Pipeline {
  public:
   Pipeline(FrameSource* source, int num_threads,
            const std::function<FrameResult(int, Frame*)>& process)
-      : source_(source), process_(process), num_working_(num_threads) {
+      : jobs_(static_cast<std::size_t>(num_threads)),
+        source_(source),
+        process_(process),
+        num_working_(num_threads) {
     threads_.emplace_back([this] { Run([this] { ReadFrames(); }); });
     for (int i = 0; i < num_threads; ++i) {
       threads_.emplace_back([this] {
@@ -101,8 +104,9 @@ class Pipeline {
     }
   }
 
-  // One frame is in the reader's hands and one waits; each worker holds one more.
-  BoundedQueue<Job> jobs_{1};
+  // A frame waits for each worker, so that none stands still while a slow one is decoded, and the
+  // decoder goes on while all are busy. Each worker holds one more, and the reader one.
+  BoundedQueue<Job> jobs_;
   // Results hold no pixels, so their number need not be bounded tightly.
   BoundedQueue<Done> done_{1000};
   FrameSource* source_;

@@ -5,8 +5,6 @@
 #include <functional>
 #include <string>
 
-#include <opencv2/core.hpp>
-
 #include "importer/camera.h"
 #include "importer/detection.h"
 #include "importer/frame_source.h"
@@ -17,12 +15,11 @@ struct FrameResult {
   FrameDetections detections;
   Camera camera;                // for the frame's size
   std::string skipped_because;  // not empty: the file was no whole image
-  cv::Mat gray;                 // only where `process` wants to hand it on
 };
 
 // Reads all frames of `source`, calls `process` for each on `num_threads` threads (frame_idx counts
 // from 0) and `consume` with the results in order on the calling thread. No more than
-// num_threads + 2 frames are in memory. An exception of any of them ends all threads and is thrown
+// 2 num_threads + 1 frames are in memory. An exception of any of them ends all threads and is thrown
 // again here. OpenCV's own threads are switched off meanwhile.
 void RunFramePipeline(FrameSource* source, int num_threads,
                       const std::function<FrameResult(int frame_idx, Frame* frame)>& process,

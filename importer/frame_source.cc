@@ -1,7 +1,5 @@
 #include "importer/frame_source.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -12,25 +10,23 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <opencv2/core/utils/logger.hpp>
-#include <opencv2/videoio.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "importer/error.h"
 #include "importer/image_file.h"
 #include "importer/natural_order.h"
+#include "importer/video_decoder.h"
 
 namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Our one line about a broken file shall stand alone. FFmpeg reads the variable when OpenCV first
-// uses it; -8 is its AV_LOG_QUIET. What the user has set stays.
-void SilenceDecoders() {
+// Our one line about a broken file shall stand alone.
+void SilenceOpenCv() {
   static std::once_flag once;
-  std::call_once(once, [] {
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
-  });
+  std::call_once(once,
+                 [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
 }
 
 bool IsHidden(const fs::path& path) { return path.filename().string().rfind('.', 0) == 0; }
@@ -87,9 +83,12 @@ class ImageFolder : public FrameSource {
   bool Load(Frame* frame, std::string* reason) const override {
     const fs::path path = folder_ / frame->image_name;
     frame->color = DecodeImageFile(path.string(), reason);
-    if (!frame->color.empty()) return true;
-    spdlog::warn("{}: skipped: {}", path.string(), *reason);
-    return false;
+    if (frame->color.empty()) {
+      spdlog::warn("{}: skipped: {}", path.string(), *reason);
+      return false;
+    }
+    cv::cvtColor(frame->color, frame->gray, cv::COLOR_BGR2GRAY);
+    return true;
   }
 
   bool IsVideo() const override { return false; }
@@ -108,45 +107,43 @@ std::string VideoFrameName(int frame_number) {
 class VideoFile : public FrameSource {
  public:
   VideoFile(const std::string& path, const VideoOptions& options,
-            const std::vector<std::string>& known_names)
-      : path_(path), options_(options), known_names_(known_names.begin(), known_names.end()) {
-    if (!capture_.open(path, cv::CAP_FFMPEG)) {
-      throw InputError(
-          fmt::format("{}: no video that can be read, or cut off before its index; "
-                      "give a folder of images or a whole video file",
-                      path));
-    }
-    capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
-    const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
-    if (count > 0 && count < 1e9) num_container_frames_ = static_cast<int>(count);
-    const double rate = capture_.get(cv::CAP_PROP_FPS);
-    if (rate > 0 && std::isfinite(rate)) frames_per_second_ = rate;
+            const std::vector<std::string>& known_names, int num_threads)
+      : path_(path),
+        options_(options),
+        known_names_(known_names.begin(), known_names.end()),
+        decoder_(path, num_threads),
+        num_container_frames_(decoder_.NumContainerFrames()) {
+    decoder_.SkipTo(options_.first_frame);
   }
 
   std::optional<Frame> Next() override {
-    while (!ended_ && (options_.last_frame < 0 || num_grabbed_ <= options_.last_frame)) {
-      if (!capture_.grab()) {
+    while (!ended_ && (options_.last_frame < 0 || num_read_ <= options_.last_frame)) {
+      std::optional<VideoFrame> read = decoder_.Next();
+      if (!read) {
         End();
         break;
       }
-      const int number = num_grabbed_++;
-      const bool wanted = number >= options_.first_frame &&
-                          (number - options_.first_frame) % options_.frame_step == 0;
-      if (!wanted || known_names_.count(VideoFrameName(number)) > 0) continue;
+      num_read_ = read->number + 1;
+      const bool wanted = read->number >= options_.first_frame &&
+                          (read->number - options_.first_frame) % options_.frame_step == 0;
+      if (!wanted || known_names_.count(VideoFrameName(read->number)) > 0) continue;
       Frame frame;
-      if (!capture_.retrieve(frame.color) || frame.color.empty()) {
-        spdlog::warn("{}: frame {} cannot be decoded and is skipped", path_, number);
-        continue;
-      }
-      frame.image_name = VideoFrameName(number);
-      frame.frame_number = number;
-      frame.time_s = Time(number);
+      frame.image_name = VideoFrameName(read->number);
+      frame.frame_number = read->number;
+      frame.time_s = read->time_s;
+      frame.picture = std::move(read->picture);
       return frame;
     }
     return std::nullopt;
   }
 
-  bool Load(Frame* frame, std::string*) const override { return !frame->color.empty(); }
+  bool Load(Frame* frame, std::string* reason) const override {
+    frame->gray = frame->picture->Gray();
+    if (!frame->gray.empty()) return true;
+    *reason = "its pixel format cannot be converted to grey";
+    spdlog::warn("{}: {} is skipped: {}", path_, frame->image_name, *reason);
+    return false;
+  }
 
   bool IsVideo() const override { return true; }
 
@@ -171,45 +168,70 @@ class VideoFile : public FrameSource {
     return num_known;
   }
 
-  std::optional<double> Time(int number) const {
-    const double time_ms = capture_.get(cv::CAP_PROP_POS_MSEC);
-    if (std::isfinite(time_ms) && (time_ms > 0 || number == 0)) return 1e-3 * time_ms;
-    if (frames_per_second_ > 0) return number / frames_per_second_;
-    return std::nullopt;
-  }
-
   void End() {
     ended_ = true;
-    if (num_grabbed_ <= options_.first_frame) {
+    if (num_read_ <= options_.first_frame) {
       throw InputError(fmt::format(
           "{}: the video has {} frames, none at or after frame {} (--Video.first_frame, "
           "or the first that the search around --central_frame can reach)",
-          path_, num_grabbed_, options_.first_frame));
+          path_, num_read_, options_.first_frame));
     }
     // Counts that a container derives from its duration are off by a frame or so.
     const int tolerance = std::max(2, num_container_frames_ / 100);
-    if (num_grabbed_ < num_container_frames_ - tolerance) {
+    if (num_read_ < num_container_frames_ - tolerance) {
       spdlog::warn("{}: the video breaks off after {} of {} frames; what is there is used", path_,
-                   num_grabbed_, num_container_frames_);
+                   num_read_, num_container_frames_);
     }
   }
 
   std::string path_;
   VideoOptions options_;
   std::set<std::string> known_names_;
-  cv::VideoCapture capture_;
-  int num_container_frames_ = 0;
-  double frames_per_second_ = 0.0;
-  int num_grabbed_ = 0;
+  VideoDecoder decoder_;
+  int num_container_frames_;
+  int num_read_ = 0;  // from the video's start, also where decoding began later
   bool ended_ = false;
 };
 
+// The pixel in which an image position lies.
+cv::Point PixelAt(const cv::Size& size, const Eigen::Vector2d& x_in_image_px) {
+  return {std::clamp(static_cast<int>(std::floor(x_in_image_px.x())), 0, size.width - 1),
+          std::clamp(static_cast<int>(std::floor(x_in_image_px.y())), 0, size.height - 1)};
+}
+
 }  // namespace
 
+cv::Mat ColorImage(const Frame& frame) {
+  return frame.picture ? frame.picture->Color() : frame.color;
+}
+
+void AddColors(const Frame& frame, FrameDetections* detections) {
+  std::vector<MarkerDetection*> markers;
+  for (MarkerDetection& marker : detections->markers) markers.push_back(&marker);
+  for (RejectedDetection& rejected : detections->rejected) markers.push_back(&rejected.detection);
+  std::vector<cv::Point> pixels;
+  for (const MarkerDetection* marker : markers) {
+    for (const Eigen::Vector2d& corner : marker->corners_in_image_px) {
+      pixels.push_back(PixelAt(frame.gray.size(), corner));
+    }
+  }
+  std::vector<cv::Vec3b> colors;
+  if (frame.picture) {
+    colors = frame.picture->ColorsAt(pixels);
+  } else {
+    for (const cv::Point& pixel : pixels) colors.push_back(frame.color.at<cv::Vec3b>(pixel));
+  }
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const cv::Vec3b& bgr = colors[i];
+    markers[i / kNumCorners]->colors[i % kNumCorners] = {bgr[2], bgr[1], bgr[0]};
+  }
+}
+
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const VideoOptions& options,
-                                             const std::vector<std::string>& known_names) {
+                                             const std::vector<std::string>& known_names,
+                                             int num_threads) {
   options.Check();
-  SilenceDecoders();
+  SilenceOpenCv();
   std::error_code error;
   if (path.empty() || !fs::exists(path, error)) {
     throw InputError(fmt::format("--image_path '{}': there is no such folder or video", path));
@@ -219,7 +241,7 @@ std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const Vide
     if (HasImageExtension(path)) {
       throw InputError(path + ": a single image; give the folder that holds the images");
     }
-    return std::make_unique<VideoFile>(path, options, known_names);
+    return std::make_unique<VideoFile>(path, options, known_names, num_threads);
   }
   std::vector<std::string> names = ListImages(path);
   const std::set<std::string> known(known_names.begin(), known_names.end());

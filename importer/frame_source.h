@@ -1,5 +1,5 @@
-// A stream of frames from a folder of images or a video file. Nothing is read twice, and one frame
-// at a time is in memory.
+// A stream of frames from a folder of images or a video file. Nothing is decoded twice, and one
+// frame at a time is in memory.
 
 #pragma once
 
@@ -10,7 +10,9 @@
 
 #include <opencv2/core.hpp>
 
+#include "importer/detection.h"
 #include "importer/options.h"
+#include "importer/video_picture.h"
 
 namespace velamap {
 
@@ -18,8 +20,18 @@ struct Frame {
   std::string image_name;           // images: path relative to the folder; video: frame_000123.jpg
   std::optional<int> frame_number;  // video only, zero-based
   std::optional<double> time_s;     // video only
-  cv::Mat color;                    // BGR, 8 bit; never rotated by metadata, as COLMAP reads it
+  // Pixels are never rotated by metadata, as COLMAP reads them. A video's colours are converted
+  // where they are asked for only: see ColorImage() and AddColors().
+  cv::Mat gray;                         // 8 bit, once the frame is loaded
+  cv::Mat color;                        // images only: BGR, 8 bit, once loaded
+  std::optional<VideoPicture> picture;  // video only
 };
+
+// The whole frame, BGR, 8 bit.
+cv::Mat ColorImage(const Frame& frame);
+
+// Fills in the colours of all detections: of the pixel in which each corner lies.
+void AddColors(const Frame& frame, FrameDetections* detections);
 
 class FrameSource {
  public:
@@ -28,9 +40,9 @@ class FrameSource {
   // The next frame, or nothing at the end. An unreadable image is skipped with a warning.
   virtual std::optional<Frame> Next() = 0;
 
-  // Decoding of an image file can be left to the thread that uses it; a video is sequential.
-  // For images Next() hands out frames without pixels and Load() fills them; thread-safe. False,
-  // with a warning and the reason, if the file is no whole image.
+  // Next() hands out frames without pixels and Load() fills them, so that what can be done on many
+  // threads is: decoding of an image file, the grey image of a picture of a video. Thread-safe.
+  // False, with a warning and the reason, if the file is no whole image.
   virtual bool Load(Frame* frame, std::string* reason) const = 0;
 
   virtual bool IsVideo() const = 0;
@@ -40,9 +52,11 @@ class FrameSource {
 };
 
 // `path` is a folder (searched recursively, hidden files left out, natural order of names) or a
-// video file. Throws InputError: nothing there, empty folder, not a video that OpenCV can read.
+// video file. Throws InputError: nothing there, empty folder, not a video that FFmpeg can read.
 // Frames whose name is in `known_names` are passed over without being decoded where possible.
+// `num_threads` decode a video; 0: as FFmpeg thinks best.
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const VideoOptions& options,
-                                             const std::vector<std::string>& known_names = {});
+                                             const std::vector<std::string>& known_names = {},
+                                             int num_threads = 0);
 
 }  // namespace velamap

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <thread>
@@ -13,7 +14,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "importer/atomic_output.h"
 #include "importer/calibration.h"
@@ -192,23 +192,21 @@ class ImportRun {
         held_markers_(HoldsMarkers(*database)),
         few_found_(!held_markers_) {}
 
-  FrameResult Process(Frame* frame) {
+  FrameResult Process(int frame_idx, Frame* frame) {
     FrameResult result;
     result.detections.image_name = frame->image_name;
-    if (frame->color.empty() && !source_->Load(frame, &result.skipped_because)) return result;
+    if (!source_->Load(frame, &result.skipped_because)) return result;
     result.camera = CameraOfFrame(*frame);
-    cv::Mat gray;
-    cv::cvtColor(frame->color, gray, cv::COLOR_BGR2GRAY);
-    result.detections = DetectInFrame(detector_, *frame, gray);
+    result.detections = DetectInFrame(detector_, *frame, frame->gray);
     if (source_->IsVideo() && !options_.frame_output_path.empty() &&
         !result.detections.markers.empty()) {
-      WriteJpeg(fs::path(options_.frame_output_path) / frame->image_name, frame->color);
+      WriteJpeg(fs::path(options_.frame_output_path) / frame->image_name, ColorImage(*frame));
     }
-    if (few_found_) result.gray = gray;
+    AddToSample(frame_idx, frame->gray);
     return result;
   }
 
-  void Consume(int frame_idx, const FrameResult& result) {
+  void Consume(const FrameResult& result) {
     const FrameDetections& detections = result.detections;
     if (!result.skipped_because.empty()) {
       report_.skipped.push_back({detections.image_name, result.skipped_because});
@@ -226,11 +224,7 @@ class ImportRun {
     }
     few_found_ =
         !held_markers_ && report_.num_markers < kFewMarkersPerFrame * report_.num_frames_read;
-    if (!few_found_) {
-      sample_.Clear();
-    } else if (!result.gray.empty()) {
-      sample_.Add(frame_idx, result.gray);
-    }
+    if (!few_found_) ClearSample();
     // A video has frames enough; a photograph without markers is still one that the user gave.
     if (source_->IsVideo() && detections.markers.empty()) return;
     writer_.Add(detections, result.camera);
@@ -252,9 +246,21 @@ class ImportRun {
   }
 
  private:
+  // Straight from the working threads: results that wait for their turn hold no pixels.
+  void AddToSample(int frame_idx, const cv::Mat& gray) {
+    if (!few_found_) return;
+    const std::lock_guard<std::mutex> lock(sample_mutex_);
+    sample_.Add(frame_idx, gray);
+  }
+
+  void ClearSample() {
+    const std::lock_guard<std::mutex> lock(sample_mutex_);
+    sample_.Clear();
+  }
+
   Camera CameraOfFrame(const Frame& frame) const {
     try {
-      return ScaleToImageSize(options_.camera, frame.color.cols, frame.color.rows,
+      return ScaleToImageSize(options_.camera, frame.gray.cols, frame.gray.rows,
                               options_.camera_path);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{} (image {})", error.what(), frame.image_name));
@@ -267,6 +273,7 @@ class ImportRun {
   DatabaseWriter writer_;
   bool held_markers_;            // before this run
   std::atomic<bool> few_found_;  // so far, so that frames are sampled for a hint
+  std::mutex sample_mutex_;
   ImageSample sample_;
   ImportReport report_;
   std::set<int> ids_not_in_layout_;
@@ -286,13 +293,14 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
   const std::unique_ptr<FrameSource> source =
-      OpenFrameSource(options.image_path, options.video, known_names);
+      OpenFrameSource(options.image_path, options.video, known_names, options.num_threads);
 
   ImportRun run(options, detector, &database, source.get());
   RunFramePipeline(
-      source.get(), num_threads, [&](int, Frame* frame) { return run.Process(frame); },
+      source.get(), num_threads,
+      [&](int frame_idx, Frame* frame) { return run.Process(frame_idx, frame); },
       [&](int frame_idx, const FrameResult& result) {
-        run.Consume(frame_idx, result);
+        run.Consume(result);
         if (progress) progress(frame_idx + 1, source->NumFrames(), ProgressLine(result));
       });
   ImportReport report = run.Finish();

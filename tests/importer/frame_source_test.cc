@@ -126,9 +126,10 @@ TEST(ImageFolder, ListsNestedImagesInNaturalOrder) {
   for (Frame& frame : ReadAll(source.get())) {
     names.push_back(frame.image_name);
     std::string reason;
-    EXPECT_TRUE(frame.color.empty());
+    EXPECT_TRUE(frame.gray.empty());
     EXPECT_TRUE(source->Load(&frame, &reason));
-    EXPECT_EQ(frame.color.type(), CV_8UC3);
+    EXPECT_EQ(frame.gray.type(), CV_8UC1);
+    EXPECT_EQ(ColorImage(frame).type(), CV_8UC3);
     EXPECT_FALSE(frame.frame_number);
   }
   EXPECT_EQ(names, (std::vector<std::string>{"9.PNG", "10.png", "sub/1.png"}));
@@ -186,10 +187,13 @@ TEST(VideoFile, FramesAreNumberedTimedAndComplete) {
   const std::vector<Frame> frames = ReadAll(source.get());
   ASSERT_EQ(frames.size(), 20u);
   for (int i = 0; i < 20; ++i) {
-    const Frame& frame = frames[static_cast<std::size_t>(i)];
+    Frame frame = frames[static_cast<std::size_t>(i)];
     EXPECT_EQ(frame.frame_number, i);
     EXPECT_NEAR(frame.time_s.value(), i / 25.0, 1e-9);
-    EXPECT_NEAR(cv::mean(frame.color)[0], 10 * i, 3);
+    std::string reason;
+    EXPECT_TRUE(source->Load(&frame, &reason)) << reason;
+    EXPECT_NEAR(cv::mean(frame.gray)[0], 10 * i, 3);
+    EXPECT_NEAR(cv::mean(ColorImage(frame))[0], 10 * i, 3);
   }
   EXPECT_EQ(frames[7].image_name, "frame_000007.jpg");
 }
@@ -201,7 +205,7 @@ TEST(VideoFile, StepRangeAndKnownFrames) {
   EXPECT_EQ(source->NumFrames(), 3);
   const std::vector<Frame> frames = ReadAll(source.get());
   EXPECT_EQ(FrameNumbers(frames), (std::vector<int>{3, 7, 15}));
-  EXPECT_NEAR(cv::mean(frames[2].color)[0], 150, 3);
+  EXPECT_NEAR(cv::mean(ColorImage(frames[2]))[0], 150, 3);
   EXPECT_NEAR(frames[2].time_s.value(), 15 / 25.0, 1e-9);
 }
 

@@ -1,0 +1,36 @@
+#include "importer/video_seek.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace velamap {
+
+std::optional<SeekPoint> FindSeekPoint(const std::vector<VideoPacket>& packets, int frame_number) {
+  if (packets.empty() || frame_number < 0 || !packets.front().is_key) return std::nullopt;
+  std::vector<std::int64_t> times;
+  for (const VideoPacket& packet : packets) {
+    if (packet.time == VideoPacket::kNoTime) return std::nullopt;
+    if (packet.is_shown) times.push_back(packet.time);
+  }
+  std::sort(times.begin(), times.end());
+  const bool is_repeated = std::adjacent_find(times.begin(), times.end()) != times.end();
+  if (times.empty() || is_repeated || times.front() < packets.front().time) return std::nullopt;
+
+  const std::size_t wanted = std::min(static_cast<std::size_t>(frame_number), times.size() - 1);
+  std::optional<SeekPoint> point;
+  std::int64_t latest = packets.front().time;  // of all packets so far
+  for (std::size_t i = 0; i + kMaxReorder < packets.size(); ++i) {
+    const VideoPacket& packet = packets[i];
+    // What is decoded before a key frame has to be shown before it, or it would be missing.
+    if (packet.is_key && packet.is_shown && packet.time > latest && packet.time <= times[wanted]) {
+      const auto position = std::lower_bound(times.begin(), times.end(), packet.time);
+      const bool has_decode_time = packet.decode_time != VideoPacket::kNoTime;
+      point = SeekPoint{packet.time, has_decode_time ? packet.decode_time : packet.time,
+                        static_cast<int>(position - times.begin())};
+    }
+    latest = std::max(latest, packet.time);
+  }
+  return point;
+}
+
+}  // namespace velamap
