@@ -5,6 +5,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 #include <fmt/ranges.h>
 
 #include "exporters/surface_parameters.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <new>
 #include <vector>
 
@@ -138,17 +139,20 @@ class VideoDecoder::Stream {
     return packets;
   }
 
-  // Decodes the key frame at `point`. False if the container or the decoder ends up elsewhere.
+  // Decodes the frame at `point`. False if the container or the decoder ends up elsewhere.
   bool SeekTo(const SeekPoint& point) {
     // Some containers search by the one time, some by the other; the earlier one suits both.
-    if (av_seek_frame(format_.get(), stream_->index, point.decode_time, AVSEEK_FLAG_BACKWARD) < 0) {
+    if (!point.is_start && av_seek_frame(format_.get(), stream_->index, point.key_decode_time,
+                                         AVSEEK_FLAG_BACKWARD) < 0) {
       return false;
     }
     do {
       if (!ReadPacket()) return false;
-    } while (packet_->pts != point.time || (packet_->flags & AV_PKT_FLAG_KEY) == 0);
+    } while (packet_->pts != point.key_time || (packet_->flags & AV_PKT_FLAG_KEY) == 0);
     avcodec_send_packet(codec_.get(), packet_.get());
-    // Frames that are shown before the key frame but stored behind it miss what they refer to.
+    skip_before_time_ = point.skip_before_time;
+    // Among those passed over may be pictures shown before the key frame but stored behind it,
+    // which miss what they refer to.
     do {
       if (!Decode()) return false;
     } while (frame_->pts != AV_NOPTS_VALUE && frame_->pts < point.time);
@@ -164,6 +168,8 @@ class VideoDecoder::Stream {
       if (result == AVERROR(EAGAIN)) {
         // At the end, nothing instead of a packet: the decoder hands out what it still holds.
         AVPacket* packet = ReadPacket() ? packet_.get() : nullptr;
+        const bool is_unwanted = packet != nullptr && packet->pts < skip_before_time_;
+        codec_->skip_frame = is_unwanted ? AVDISCARD_NONREF : AVDISCARD_DEFAULT;
         num_failures += avcodec_send_packet(codec_.get(), packet) < 0;
       } else {
         ++num_failures;
@@ -188,6 +194,7 @@ class VideoDecoder::Stream {
   std::unique_ptr<AVCodecContext, CodecFreer> codec_;
   std::unique_ptr<AVPacket, PacketFreer> packet_;
   std::unique_ptr<AVFrame, FrameFreer> frame_;
+  std::int64_t skip_before_time_ = std::numeric_limits<std::int64_t>::min();
 };
 
 VideoDecoder::VideoDecoder(const std::string& path, int num_threads)

@@ -28,8 +28,10 @@ class VideoDecoder {
   // By the container, which may be off by a frame or so; 0 when it does not say.
   int NumContainerFrames() const;
 
-  // Before the first Next(): begin at the key frame before frame `number` (or at the start, where
-  // the video does not let that frame be counted without decoding). Frames keep their numbers.
+  // Before the first Next(): pass over the frames before `number` without decoding more of them
+  // than that frame needs. Next() then begins with it (with the last one, if there are fewer), or
+  // with frame 0 where the video does not let frames be counted without decoding. Numbers stay the
+  // same.
   void SkipTo(int number);
 
   // The next frame, or nothing at the end. What cannot be decoded is passed over.

@@ -17,19 +17,23 @@ std::optional<SeekPoint> FindSeekPoint(const std::vector<VideoPacket>& packets, 
   if (times.empty() || is_repeated || times.front() < packets.front().time) return std::nullopt;
 
   const std::size_t wanted = std::min(static_cast<std::size_t>(frame_number), times.size() - 1);
-  std::optional<SeekPoint> point;
+  const VideoPacket* key = &packets.front();
   std::int64_t latest = packets.front().time;  // of all packets so far
   for (std::size_t i = 0; i + kMaxReorder < packets.size(); ++i) {
     const VideoPacket& packet = packets[i];
     // What is decoded before a key frame has to be shown before it, or it would be missing.
     if (packet.is_key && packet.is_shown && packet.time > latest && packet.time <= times[wanted]) {
-      const auto position = std::lower_bound(times.begin(), times.end(), packet.time);
-      const bool has_decode_time = packet.decode_time != VideoPacket::kNoTime;
-      point = SeekPoint{packet.time, has_decode_time ? packet.decode_time : packet.time,
-                        static_cast<int>(position - times.begin())};
+      key = &packet;
     }
     latest = std::max(latest, packet.time);
   }
+  SeekPoint point;
+  point.key_time = key->time;
+  point.key_decode_time = key->decode_time == VideoPacket::kNoTime ? key->time : key->decode_time;
+  point.is_start = key == &packets.front();
+  point.time = times[wanted];
+  point.frame_number = static_cast<int>(wanted);
+  point.skip_before_time = times[wanted - std::min(wanted, kMaxReorder)];
   return point;
 }
 

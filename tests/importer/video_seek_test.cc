@@ -1,5 +1,7 @@
 #include "importer/video_seek.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace velamap {
@@ -18,14 +20,16 @@ std::vector<VideoPacket> ClosedGroups(int num_groups) {
   return packets;
 }
 
-TEST(FindSeekPoint, IsTheLastKeyFrameNotBehindTheFrame) {
+TEST(FindSeekPoint, BeginsAtTheLastKeyFrameNotBehindTheFrame) {
   const std::vector<VideoPacket> packets = ClosedGroups(3);
-  for (int number = 0; number < 4; ++number) EXPECT_FALSE(FindSeekPoint(packets, number)) << number;
-  for (int number = 4; number < 30; ++number) {
+  for (int number = 0; number < 40; ++number) {
     const std::optional<SeekPoint> point = FindSeekPoint(packets, number);
     ASSERT_TRUE(point) << number;
-    EXPECT_EQ(point->frame_number, number < 8 ? 4 : 8);
+    EXPECT_EQ(point->key_time, number < 4 ? 0 : number < 8 ? 4 : 8);
+    EXPECT_EQ(point->is_start, number < 4);
+    EXPECT_EQ(point->frame_number, std::min(number, 27));
     EXPECT_EQ(point->time, point->frame_number);
+    EXPECT_EQ(point->skip_before_time, std::max(0, point->frame_number - 16));
   }
 }
 
@@ -35,20 +39,20 @@ TEST(FindSeekPoint, CountsFramesNotTimes) {
   for (VideoPacket& packet : packets) packet.time = 1000 + packet.time * packet.time;
   const std::optional<SeekPoint> point = FindSeekPoint(packets, 13);
   ASSERT_TRUE(point);
-  EXPECT_EQ(point->frame_number, 12);
-  EXPECT_EQ(point->time, 1144);
+  EXPECT_EQ(point->frame_number, 13);
+  EXPECT_EQ(point->time, 1000 + 13 * 13);
+  EXPECT_EQ(point->key_time, 1000 + 12 * 12);
 }
 
-TEST(FindSeekPoint, FramesShownBeforeAKeyFrameButStoredBehindItCount) {
+TEST(FindSeekPoint, FramesShownBeforeAKeyFrameButStoredBehindIt) {
   // Open groups: B6 and B7 follow I8 in the file.
   std::vector<VideoPacket> packets;
   for (const int time : {0, 4, 2, 3, 1, 8, 6, 7, 5, 10, 9})
     packets.push_back({time, time % 8 == 0});
   for (int time = 11; time < 30; ++time) packets.push_back({time, false});
-  EXPECT_FALSE(FindSeekPoint(packets, 7));
-  const std::optional<SeekPoint> point = FindSeekPoint(packets, 9);
-  ASSERT_TRUE(point);
-  EXPECT_EQ(point->frame_number, 8);
+  EXPECT_EQ(FindSeekPoint(packets, 7)->key_time, 0);
+  EXPECT_EQ(FindSeekPoint(packets, 9)->key_time, 8);
+  EXPECT_EQ(FindSeekPoint(packets, 9)->time, 9);
 }
 
 TEST(FindSeekPoint, PicturesCutAwayByTheContainerDoNotCount) {
@@ -56,25 +60,24 @@ TEST(FindSeekPoint, PicturesCutAwayByTheContainerDoNotCount) {
   for (VideoPacket& packet : packets) packet.is_shown = packet.time >= 2;
   const std::optional<SeekPoint> point = FindSeekPoint(packets, 3);
   ASSERT_TRUE(point);
-  EXPECT_EQ(point->time, 4);
-  EXPECT_EQ(point->frame_number, 2);
+  EXPECT_EQ(point->time, 5);
+  EXPECT_EQ(point->frame_number, 3);
+  EXPECT_EQ(point->key_time, 4);
 }
 
 TEST(FindSeekPoint, KeyFramesCloseToTheEndAreNotTaken) {
   std::vector<VideoPacket> packets = ClosedGroups(3);
+  packets.resize(9 + kMaxReorder);
+  EXPECT_EQ(FindSeekPoint(packets, 20)->key_time, 8);
   packets.pop_back();
-  const std::optional<SeekPoint> point = FindSeekPoint(packets, 20);
-  ASSERT_TRUE(point);
-  EXPECT_EQ(point->frame_number, 8);
-  packets.resize(8 + kMaxReorder);
-  EXPECT_EQ(FindSeekPoint(packets, 20)->frame_number, 4);
+  EXPECT_EQ(FindSeekPoint(packets, 20)->key_time, 4);
 }
 
 TEST(FindSeekPoint, TellsTheTimeOfDecoding) {
   std::vector<VideoPacket> packets = ClosedGroups(3);
   packets[8].decode_time = 6;
-  EXPECT_EQ(FindSeekPoint(packets, 9)->decode_time, 6);
-  EXPECT_EQ(FindSeekPoint(packets, 7)->decode_time, 4) << "not known";
+  EXPECT_EQ(FindSeekPoint(packets, 9)->key_decode_time, 6);
+  EXPECT_EQ(FindSeekPoint(packets, 7)->key_decode_time, 4) << "not known";
 }
 
 TEST(FindSeekPoint, DoubtMeansFromTheStart) {
@@ -94,9 +97,7 @@ TEST(FindSeekPoint, DoubtMeansFromTheStart) {
   // Shown behind the last key frame, decoded before it.
   packets = ClosedGroups(3);
   packets[5].time = 200;
-  const std::optional<SeekPoint> point = FindSeekPoint(packets, 9);
-  ASSERT_TRUE(point);
-  EXPECT_EQ(point->frame_number, 4);
+  EXPECT_EQ(FindSeekPoint(packets, 9)->key_time, 4);
 }
 
 }  // namespace
