@@ -1,41 +1,51 @@
 #include "importer/blurred_cells.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "importer/normal_table.h"
 
 namespace velamap {
+namespace {
+
+// std::floor is a call where the processor's own rounding may not be used. |x| stays small here.
+int Floor(double x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (x < truncated);
+}
+
+}  // namespace
 
 void ComputeShares(double x, double blur, int num_cells, Shares* shares) {
   constexpr double kReach = 3.3;  // sigmas
   // Edge k lies between the ringed cells k and k + 1.
   const int last_edge = num_cells + 2 * kRing - 2;
   const double place = x + kRing - 1;
-  const int low = std::clamp(static_cast<int>(std::ceil(place - kReach * blur)), 0, last_edge + 1);
-  const int high = std::clamp(static_cast<int>(std::floor(place + kReach * blur)), -1, last_edge);
+  const int low = std::clamp(-Floor(kReach * blur - place), 0, last_edge + 1);
+  const int high = std::clamp(Floor(place + kReach * blur), -1, last_edge);
   shares->first = low;
   shares->blur = blur;
   shares->count = std::max(high - low + 2, 1);
   const double inverse_blur = 1 / blur;
+  // What one edge leaves, the next takes.
   double distribution = 1.0, density = 0.0, moment = 0.0;
-  for (int i = 0; i < shares->count; ++i) {
+  const int num_edges = shares->count - 1;
+  for (int i = 0; i < num_edges; ++i) {
     const auto index = static_cast<std::size_t>(i);
-    double next_distribution = 0.0, next_density = 0.0, next_moment = 0.0;
-    if (i + 1 < shares->count) {
-      const double z = (place - (low + i)) * inverse_blur;
-      const NormalTable::Value normal = NormalTable::At(z);
-      next_distribution = normal.distribution;
-      next_density = normal.density * inverse_blur;
-      next_moment = -z * next_density;
-    }
-    shares->value[index] = distribution - next_distribution;
+    const double z = (place - (low + i)) * inverse_blur;
+    const NormalTable::Value normal = kNormalTable.At(z);
+    const double next_density = normal.density * inverse_blur;
+    const double next_moment = -z * next_density;
+    shares->value[index] = distribution - normal.distribution;
     shares->by_x[index] = density - next_density;
     shares->by_blur[index] = moment - next_moment;
-    distribution = next_distribution;
+    distribution = normal.distribution;
     density = next_density;
     moment = next_moment;
   }
+  const auto last = static_cast<std::size_t>(num_edges);
+  shares->value[last] = distribution;
+  shares->by_x[last] = density;
+  shares->by_blur[last] = moment;
 }
 
 bool Reaches(int num_rings, const Shares& shares, int num_cells) {
@@ -65,6 +75,17 @@ Blended Blend(const Lightness& lightness, const Shares& u, const Shares& v) {
     by_blur_u_v += by_blur_u * v.by_blur[index];
   }
   sum.by_uu_vv = by_blur_u_v / (u.blur * v.blur);  // for a Gaussian, d/dblur = blur d2/dx2
+  return sum;
+}
+
+double BlendValue(const Lightness& lightness, const Shares& u, const Shares& v) {
+  double sum = 0.0;
+  for (int j = 0; j < v.count; ++j) {
+    double value = 0.0;
+    const double* row = &lightness(v.first + j, u.first);
+    for (int i = 0; i < u.count; ++i) value += row[i] * u.value[static_cast<std::size_t>(i)];
+    sum += value * v.value[static_cast<std::size_t>(j)];
+  }
   return sum;
 }
 

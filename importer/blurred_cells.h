@@ -39,6 +39,9 @@ struct Blended {
 
 Blended Blend(const Lightness& lightness, const Shares& u, const Shares& v);
 
+// The value alone.
+double BlendValue(const Lightness& lightness, const Shares& u, const Shares& v);
+
 // *b += factor * a.
 void Add(double factor, const Blended& a, Blended* b);
 

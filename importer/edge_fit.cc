@@ -60,8 +60,8 @@ double EvaluateEdge(const EdgeParameters& p, const EdgeSample& sample, Vector* j
   const double z = distance * inverse_blur;
   const double inner_z = (distance + sample.inner_depth_px) * inverse_blur;
   const double outer_z = (distance - sample.outer_depth_px) * inverse_blur;
-  const NormalTable::Value edge = NormalTable::At(z), inner = NormalTable::At(inner_z),
-                           outer = NormalTable::At(outer_z);
+  const NormalTable::Value edge = kNormalTable.At(z), inner = kNormalTable.At(inner_z),
+                           outer = kNormalTable.At(outer_z);
 
   const double darkness = sample.cover * (1 - edge.distribution);
   const double inner_amount = sample.inner * (1 - inner.distribution);

@@ -15,13 +15,20 @@ class NormalTable {
     double distribution, density;
   };
 
-  static Value At(double z) {
-    static const NormalTable table;
+  NormalTable() {
+    for (int i = 0; i <= kSize; ++i) {
+      const double z = kMinZ + i * kStep;
+      entries_[static_cast<std::size_t>(i)] = {0.5 * std::erfc(-z * 0.70710678118654752),
+                                               0.39894228040143268 * std::exp(-0.5 * z * z)};
+    }
+  }
+
+  Value At(double z) const {
     const double place = std::clamp((z - kMinZ) / kStep, 0.0, kSize - 1e-9);
     const int index = static_cast<int>(place);
     const double fraction = place - index;
-    const Value& a = table.entries_[static_cast<std::size_t>(index)];
-    const Value& b = table.entries_[static_cast<std::size_t>(index) + 1];
+    const Value& a = entries_[static_cast<std::size_t>(index)];
+    const Value& b = entries_[static_cast<std::size_t>(index) + 1];
     return {a.distribution + fraction * (b.distribution - a.distribution),
             a.density + fraction * (b.density - a.density)};
   }
@@ -31,15 +38,10 @@ class NormalTable {
   static constexpr double kStep = 1.0 / 64;
   static constexpr int kSize = 768;
 
-  NormalTable() {
-    for (int i = 0; i <= kSize; ++i) {
-      const double z = kMinZ + i * kStep;
-      entries_[static_cast<std::size_t>(i)] = {0.5 * std::erfc(-z * 0.70710678118654752),
-                                               0.39894228040143268 * std::exp(-0.5 * z * z)};
-    }
-  }
-
   std::array<Value, kSize + 1> entries_;
 };
+
+// One for all; a static of a function would be guarded at every look-up.
+inline const NormalTable kNormalTable;
 
 }  // namespace velamap

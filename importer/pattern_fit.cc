@@ -34,22 +34,17 @@ struct Problem {
   P::Vector mean, weight;  // priors
 };
 
-// Sums J^T J and J^T r over pixels, many at a time because the product of matrices is fast.
-class NormalEquations {
+// The pixels of one evaluation of the model, what it leaves of them, and the normal equations.
+class Evaluation {
  public:
-  void Add(const P::Vector& jacobian, double residual) {
-    jacobians_.col(num_waiting_) = jacobian.cast<float>();
-    residuals_[num_waiting_] = residual;
-    ++num_pixels_;
-    if (++num_waiting_ == kBlock) Flush();
-  }
-
-  void Finish(const Problem& problem, const P::Vector& parameters) {
-    Flush();
+  // Every k-th pixel, so many that about `max_pixels` are used.
+  void Run(const Problem& problem, const P::Vector& parameters, int max_pixels) {
+    Evaluate(problem, parameters, max_pixels);
+    hessian_ = problem.weight.asDiagonal();
     const P::Vector departure = parameters - problem.mean;
-    hessian_.diagonal() += problem.weight;
-    gradient_ += problem.weight.cwiseProduct(departure);
+    gradient_ = problem.weight.cwiseProduct(departure);
     prior_cost_ = departure.cwiseAbs2().dot(problem.weight);
+    SumUp();
   }
 
   const P::Matrix& hessian() const { return hessian_; }
@@ -58,56 +53,79 @@ class NormalEquations {
   double Rms() const { return std::sqrt(squared_residuals_ / num_pixels_); }
   double Cost() const { return (squared_residuals_ + prior_cost_) / num_pixels_; }
 
- private:
-  static constexpr int kBlock = 48;
-
-  void Flush() {
-    jacobians_.rightCols(kBlock - num_waiting_).setZero();
-    residuals_.tail(kBlock - num_waiting_).setZero();
-    hessian_ += (jacobians_ * jacobians_.transpose()).cast<double>();
-    gradient_ += (jacobians_ * residuals_.cast<float>()).cast<double>();
-    squared_residuals_ += residuals_.squaredNorm();
-    num_waiting_ = 0;
+  // `inverse` of the Hessian.
+  ResidualNoise Noise(const P::Matrix& inverse) const {
+    const Eigen::Matrix<float, P::kCount, P::kCount> covariance = inverse.cast<float>();
+    ResidualNoise noise;
+    Block by_covariance;
+    for (int begin = 0; begin < num_pixels_; begin += kBlock) {
+      const auto jacobians = jacobians_.middleCols<kBlock>(begin);
+      by_covariance.noalias() = covariance * jacobians;
+      for (int i = 0; i < std::min(kBlock, num_pixels_ - begin); ++i) {
+        // All corners move: the slope of the grey values.
+        Eigen::Vector2f slope = Eigen::Vector2f::Zero();
+        for (int c = 0; c < kNumCorners; ++c) slope += jacobians.col(i).segment<2>(2 * c);
+        noise.Add(slope.squaredNorm(), residuals_[begin + i],
+                  jacobians.col(i).dot(by_covariance.col(i)));
+      }
+    }
+    return noise;
   }
 
-  Eigen::Matrix<float, P::kCount, kBlock> jacobians_;
-  Eigen::Matrix<double, kBlock, 1> residuals_;
-  int num_waiting_ = 0;
-  P::Matrix hessian_ = P::Matrix::Zero();
-  P::Vector gradient_ = P::Vector::Zero();
-  double squared_residuals_ = 0.0;
-  double prior_cost_ = 0.0;
-  int num_pixels_ = 0;
-};
+ private:
+  // Sums over many pixels at a time, because the product of matrices is fast.
+  static constexpr int kBlock = 48;
+  using Block = Eigen::Matrix<float, P::kCount, kBlock>;
 
-// Calls function(pixel of the model, grey value) for every k-th pixel, so many that about
-// `max_pixels` are used.
-template <typename Function>
-void ForEachPixel(const Problem& problem, const P::Vector& parameters, int max_pixels,
-                  const Function& function) {
-  const UnitSquareMap map(CornersOf(parameters));
-  const cv::Rect& box = problem.box;
-  const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
-  const int stride = static_cast<int>(std::ceil(area_px / max_pixels));
-  for (int row = box.y; row < box.y + box.height; ++row) {
-    const std::uint8_t* pixels = problem.gray->ptr<std::uint8_t>(row);
-    // Odd rows are shifted, so that every column has its share.
-    const int first = box.x + (row * ((stride + 1) / 2)) % stride;
-    for (int column = first; column < box.x + box.width; column += stride) {
-      const auto pixel = EvaluatePattern(problem.model, map, parameters, {column, row});
-      if (pixel) function(*pixel, pixels[column]);
+  void Evaluate(const Problem& problem, const P::Vector& parameters, int max_pixels) {
+    const PatternPicture picture(problem.model, parameters);
+    const cv::Rect& box = problem.box;
+    const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
+    const int stride = static_cast<int>(std::ceil(area_px / max_pixels));
+    Reserve(box.height * (box.width / stride + 1));
+    PatternPixel pixel;
+    num_pixels_ = 0;
+    for (int row = box.y; row < box.y + box.height; ++row) {
+      const std::uint8_t* pixels = problem.gray->ptr<std::uint8_t>(row);
+      // Odd rows are shifted, so that every column has its share.
+      const int first = box.x + (row * ((stride + 1) / 2)) % stride;
+      for (int column = first; column < box.x + box.width; column += stride) {
+        if (!picture.At(Eigen::Vector2d(column, row), &pixel)) continue;
+        jacobians_.col(num_pixels_) = pixel.jacobian;
+        residuals_[num_pixels_++] = pixel.gray - pixels[column];
+      }
     }
   }
-}
 
-NormalEquations Accumulate(const Problem& problem, const P::Vector& parameters, int max_pixels) {
-  NormalEquations equations;
-  ForEachPixel(problem, parameters, max_pixels, [&](const PatternPixel& pixel, double gray) {
-    equations.Add(pixel.jacobian, pixel.gray - gray);
-  });
-  equations.Finish(problem, parameters);
-  return equations;
-}
+  void Reserve(int max_pixels) {
+    const int size = (max_pixels + kBlock - 1) / kBlock * kBlock;
+    if (residuals_.size() >= size) return;
+    jacobians_.resize(P::kCount, size);
+    residuals_.resize(size);
+  }
+
+  void SumUp() {
+    squared_residuals_ = 0.0;
+    const int padding = (kBlock - num_pixels_ % kBlock) % kBlock;
+    jacobians_.middleCols(num_pixels_, padding).setZero();
+    residuals_.segment(num_pixels_, padding).setZero();
+    for (int begin = 0; begin < num_pixels_; begin += kBlock) {
+      const auto jacobians = jacobians_.middleCols<kBlock>(begin);
+      const auto residuals = residuals_.segment<kBlock>(begin);
+      hessian_ += (jacobians * jacobians.transpose()).cast<double>();
+      gradient_ += (jacobians * residuals.cast<float>()).cast<double>();
+      squared_residuals_ += residuals.squaredNorm();
+    }
+  }
+
+  Eigen::Matrix<float, P::kCount, Eigen::Dynamic> jacobians_;
+  Eigen::VectorXd residuals_;
+  int num_pixels_ = 0;
+  P::Matrix hessian_;
+  P::Vector gradient_;
+  double squared_residuals_ = 0.0;
+  double prior_cost_ = 0.0;  // of the priors
+};
 
 // Levels that explain the pixels best while the corners stay.
 std::optional<P::Vector> Start(const cv::Mat& cells, const Quad& corners, Problem* problem) {
@@ -139,81 +157,69 @@ std::optional<P::Vector> Start(const cv::Mat& cells, const Quad& corners, Proble
   return p;
 }
 
+// The best parameters so far, how the model meets the pixels there, and room for a trial.
 struct Minimum {
   P::Vector parameters;
-  double rms_gray;
+  Evaluation at_parameters, trial;
 };
 
 // Levenberg-Marquardt over about `max_pixels` pixels until a step moves no corner further than
-// `tolerance_px`.
-std::optional<Minimum> Minimize(const Problem& problem, P::Vector p, int max_pixels,
-                                double tolerance_px) {
-  NormalEquations equations = Accumulate(problem, p, max_pixels);
+// `tolerance_px`. False for too few pixels or a singular system.
+bool Minimize(const Problem& problem, int max_pixels, double tolerance_px, Minimum* minimum) {
+  Evaluation& best = minimum->at_parameters;
+  best.Run(problem, minimum->parameters, max_pixels);
   double damping = 1e-3;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    if (equations.num_pixels() <= P::kCount) return std::nullopt;
-    P::Matrix damped = equations.hessian();
+    if (best.num_pixels() <= P::kCount) return false;
+    P::Matrix damped = best.hessian();
     damped.diagonal() *= 1 + damping;
-    const P::Vector step =
-        -damped.selfadjointView<Eigen::Lower>().ldlt().solve(equations.gradient());
-    if (!step.allFinite()) return std::nullopt;
+    const P::Vector step = -damped.selfadjointView<Eigen::Lower>().ldlt().solve(best.gradient());
+    if (!step.allFinite()) return false;
     const double moved_px = step.head<8>().cwiseAbs().maxCoeff();
-    P::Vector candidate = p + step;
+    P::Vector candidate = minimum->parameters + step;
     candidate[P::kBlurU] = std::clamp(candidate[P::kBlurU], kMinBlurPx, kMaxBlurPx);
     candidate[P::kBlurV] = std::clamp(candidate[P::kBlurV], kMinBlurPx, kMaxBlurPx);
-    const NormalEquations next = Accumulate(problem, candidate, max_pixels);
-    if (next.num_pixels() > P::kCount && next.Cost() < equations.Cost()) {
-      p = candidate;
-      equations = next;
+    Evaluation& trial = minimum->trial;
+    trial.Run(problem, candidate, max_pixels);
+    if (trial.num_pixels() > P::kCount && trial.Cost() < best.Cost()) {
+      minimum->parameters = candidate;
+      std::swap(best, trial);
       damping *= 0.1;
     } else {
       damping *= 10;
     }
     if (moved_px < tolerance_px) break;
   }
-  return Minimum{p, equations.Rms()};
+  return true;
 }
 
 // A quick fit on some pixels, then an exact one on more from there, with the surroundings read
-// anew.
-std::optional<P::Vector> MinimizeInTwoPasses(const cv::Mat& cells, const P::Vector& start,
-                                             Problem* problem) {
-  Minimum minimum{start, 0.0};
+// anew. False if there is no marker like this.
+bool MinimizeInTwoPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) {
   for (const auto& [max_pixels, tolerance_px] :
        {std::pair(kFirstPixels, 0.05), std::pair(kPixels, 5e-3)}) {
-    const P::Vector& p = minimum.parameters;
+    const P::Vector& p = minimum->parameters;
     FillLightness(*problem->gray, cells, UnitSquareMap(CornersOf(p)), p[P::kDark], p[P::kLight],
                   &problem->model);
-    const auto next = Minimize(*problem, p, max_pixels, tolerance_px);
-    if (!next) return std::nullopt;
-    minimum = *next;
+    if (!Minimize(*problem, max_pixels, tolerance_px, minimum)) return false;
   }
-  const double contrast = minimum.parameters[P::kLight] - minimum.parameters[P::kDark];
-  if (!(contrast > kMinContrast && minimum.rms_gray < kMaxRelativeRms * contrast)) {
-    return std::nullopt;
-  }
-  return minimum.parameters;
+  const double contrast = minimum->parameters[P::kLight] - minimum->parameters[P::kDark];
+  return contrast > kMinContrast && minimum->at_parameters.Rms() < kMaxRelativeRms * contrast;
 }
 
 // The priors hold weak parameters but are no observations: their own error does not count.
-std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const P::Vector& p) {
-  const P::Matrix hessian = Accumulate(problem, p, kPixels).hessian();
+std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Minimum& minimum) {
+  const P::Matrix& hessian = minimum.at_parameters.hessian();
   const P::Matrix inverse = hessian.ldlt().solve(P::Matrix::Identity());
   if (!inverse.allFinite()) return std::nullopt;
   P::Matrix observed = hessian;
   observed.diagonal() -= problem.weight;
   const P::Matrix covariance = inverse * observed * inverse;
-  ResidualNoise noise;
-  ForEachPixel(problem, p, kPixels, [&](const PatternPixel& pixel, double gray) {
-    // All corners move: the slope of the grey values.
-    Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-    for (int i = 0; i < kNumCorners; ++i) slope += pixel.jacobian.segment<2>(2 * i);
-    noise.Add(slope.squaredNorm(), pixel.gray - gray, pixel.jacobian.dot(inverse * pixel.jacobian));
-  });
-  RefinedCorners refined{CornersOf(p), {}};
+  const double variance_gray = minimum.at_parameters.Noise(inverse).VarianceGray();
+  RefinedCorners refined{CornersOf(minimum.parameters), {}};
   for (int i = 0; i < kNumCorners; ++i) {
     const double trace = covariance.diagonal().segment<2>(2 * i).sum();
-    refined.sigma_px[static_cast<std::size_t>(i)] = std::sqrt(0.5 * trace * noise.VarianceGray());
+    refined.sigma_px[static_cast<std::size_t>(i)] = std::sqrt(0.5 * trace * variance_gray);
   }
   return refined;
 }
@@ -246,9 +252,9 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const Quad& corner
       0.5 * ((corners_px[2] - corners_px[0]).norm() + (corners_px[3] - corners_px[1]).norm());
   const auto start = Start(cells, corners_px, &problem);
   if (!start) return std::nullopt;
-  const auto fitted = MinimizeInTwoPasses(cells, *start, &problem);
-  if (!fitted) return std::nullopt;
-  return WithUncertainty(problem, *fitted);
+  Minimum minimum{*start, {}, {}};
+  if (!MinimizeInTwoPasses(cells, &problem, &minimum)) return std::nullopt;
+  return WithUncertainty(problem, minimum);
 }
 
 }  // namespace velamap

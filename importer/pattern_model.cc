@@ -49,36 +49,55 @@ void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMa
   }
 }
 
-std::optional<PatternPixel> EvaluatePattern(const PatternModel& model, const UnitSquareMap& map,
-                                            const P::Vector& p, const Eigen::Vector2d& x_px) {
-  const Eigen::Matrix2d flat_gradient = map.SquareGradient(x_px);
-  const Eigen::Vector2d flat_uv = map.ToSquare(x_px);
+PatternPicture::PatternPicture(const PatternModel& model, const P::Vector& parameters)
+    : model_(model), parameters_(parameters), map_(CornersOf(parameters)) {
+  const int n = model.num_cells + 2 * kRing;
+  print_.topLeftCorner(n, n) =
+      parameters[P::kInnerLight] * model.inner.topLeftCorner(n, n) + model.ring.topLeftCorner(n, n);
+}
+
+Blended PatternPicture::BlendAll(const Shares& u, const Shares& v, double correlation_px,
+                                 double* inner_value, double* surround_value) const {
+  const int n = model_.num_cells;
+  Blended pattern;
+  if (Reaches(kRing, u, n) || Reaches(kRing, v, n)) {
+    pattern = Blend(print_, u, v);
+    *inner_value = BlendValue(model_.inner, u, v);
+  } else {
+    const Blended inner = Blend(model_.inner, u, v);
+    Add(parameters_[P::kInnerLight], inner, &pattern);
+    *inner_value = inner.value;
+  }
+  AddCorrelation(correlation_px, &pattern);
+  *surround_value = 0.0;
+  if (Reaches(1, u, n) || Reaches(1, v, n)) {
+    const Blended around = Blend(model_.surround, u, v);
+    *surround_value = around.value;
+    Add(parameters_[P::kSurround], around, &pattern);
+  }
+  return pattern;
+}
+
+bool PatternPicture::At(const Eigen::Vector2d& x_px, PatternPixel* pixel) const {
+  const P::Vector& p = parameters_;
+  Eigen::Vector2d flat_uv;
+  Eigen::Matrix2d flat_gradient;
+  map_.ToSquare(x_px, &flat_uv, &flat_gradient);
   Eigen::Vector2d uv = flat_uv;
   for (int i = 0; i < 2; ++i) uv = flat_uv - flat_gradient * Bend(p, uv);
-  const double n = model.num_cells;
+  const double n = model_.num_cells;
   const double margin = kMarginInCells / n;
-  if (!(uv.minCoeff() > -margin && uv.maxCoeff() < 1 + margin)) return std::nullopt;
+  if (!(uv.minCoeff() > -margin && uv.maxCoeff() < 1 + margin)) return false;
   const Eigen::Matrix2d gradient = n * flat_gradient;  // cells/px
   const double cells_u = gradient.row(0).norm(), cells_v = gradient.row(1).norm();
   Shares u, v;
-  ComputeShares(n * uv.x(), cells_u * p[P::kBlurU], model.num_cells, &u);
-  ComputeShares(n * uv.y(), cells_v * p[P::kBlurV], model.num_cells, &v);
-  const Blended inner = Blend(model.inner, u, v);
-  Blended pattern;
-  Add(p[P::kInnerLight], inner, &pattern);
-  const int n_cells = model.num_cells;
-  if (Reaches(kRing, u, n_cells) || Reaches(kRing, v, n_cells)) {
-    Add(1.0, Blend(model.ring, u, v), &pattern);
-  }
-  AddCorrelation(p[P::kBlurU] * p[P::kBlurV] * gradient.row(0).dot(gradient.row(1)), &pattern);
-  double surround = 0.0;
-  if (Reaches(1, u, n_cells) || Reaches(1, v, n_cells)) {
-    const Blended around = Blend(model.surround, u, v);
-    surround = around.value;
-    Add(p[P::kSurround], around, &pattern);
-  }
+  ComputeShares(n * uv.x(), cells_u * p[P::kBlurU], model_.num_cells, &u);
+  ComputeShares(n * uv.y(), cells_v * p[P::kBlurV], model_.num_cells, &v);
+  double inner = 0.0, surround = 0.0;
+  const Blended pattern = BlendAll(
+      u, v, p[P::kBlurU] * p[P::kBlurV] * gradient.row(0).dot(gradient.row(1)), &inner, &surround);
 
-  const Eigen::Vector2d place = (x_px - model.center_px) / model.diagonal_px;
+  const Eigen::Vector2d place = (x_px - model_.center_px) / model_.diagonal_px;
   const double light = 1 + p[P::kGradientX] * place.x() + p[P::kGradientY] * place.y();
   const double contrast = light * (p[P::kLight] - p[P::kDark]);
   const double level = p[P::kDark] + (p[P::kLight] - p[P::kDark]) * pattern.value;
@@ -87,9 +106,8 @@ std::optional<PatternPixel> EvaluatePattern(const PatternModel& model, const Uni
   // A corner that moves takes each place along by its bilinear share, nearly enough for a step.
   const std::array<double, kNumCorners> share = {(1 - uv.x()) * (1 - uv.y()), uv.x() * (1 - uv.y()),
                                                  uv.x() * uv.y(), (1 - uv.x()) * uv.y()};
-  PatternPixel pixel;
-  pixel.gray = light * level;
-  P::Vector& jacobian = pixel.jacobian;
+  pixel->gray = light * level;
+  P::Vector jacobian;
   for (int i = 0; i < kNumCorners; ++i) {
     jacobian.segment<2>(2 * i) = -share[static_cast<std::size_t>(i)] * by_place;
   }
@@ -102,8 +120,9 @@ std::optional<PatternPixel> EvaluatePattern(const PatternModel& model, const Uni
   jacobian[P::kGradientX] = level * place.x();
   jacobian[P::kGradientY] = level * place.y();
   jacobian[P::kSurround] = contrast * surround;
-  jacobian[P::kInnerLight] = contrast * inner.value;
-  return pixel;
+  jacobian[P::kInnerLight] = contrast * inner;
+  pixel->jacobian = jacobian.cast<float>();
+  return true;
 }
 
 }  // namespace velamap

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
@@ -53,13 +52,26 @@ void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMa
 
 struct PatternPixel {
   double gray = 0.0;  // of the model
-  PatternParameters::Vector jacobian;
+  // By the parameters; single precision is enough for a step and half the memory.
+  Eigen::Matrix<float, PatternParameters::kCount, 1> jacobian;
 };
 
-// The model at a place in OpenCV's pixel frame; nothing too far outside the black square. `map`
-// belongs to the parameters' corners.
-std::optional<PatternPixel> EvaluatePattern(const PatternModel& model, const UnitSquareMap& map,
-                                            const PatternParameters::Vector& parameters,
-                                            const Eigen::Vector2d& x_px);
+// The model with its parameters, ready for many pixels.
+class PatternPicture {
+ public:
+  PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters);
+
+  // The model at a place in OpenCV's pixel frame; false too far outside the black square.
+  bool At(const Eigen::Vector2d& x_px, PatternPixel* pixel) const;
+
+ private:
+  Blended BlendAll(const Shares& u, const Shares& v, double correlation_px, double* inner_value,
+                   double* surround_value) const;
+
+  const PatternModel& model_;
+  PatternParameters::Vector parameters_;
+  UnitSquareMap map_;
+  Lightness print_;  // the marker's own cells and the quiet zone, as light as the parameters say
+};
 
 }  // namespace velamap

@@ -34,12 +34,13 @@ class UnitSquareMap {
     return (square_from_image_ * x_px.homogeneous()).hnormalized();
   }
 
-  // Rows: gradients of u and v by the place in the image, 1/px.
-  Eigen::Matrix2d SquareGradient(const Eigen::Vector2d& x_px) const {
+  // The same with its derivative; the rows of `gradient` are those of u and v, 1/px.
+  void ToSquare(const Eigen::Vector2d& x_px, Eigen::Vector2d* uv, Eigen::Matrix2d* gradient) const {
     const Eigen::Vector3d h = square_from_image_ * x_px.homogeneous();
-    return (square_from_image_.topLeftCorner<2, 2>() -
-            h.hnormalized() * square_from_image_.bottomLeftCorner<1, 2>()) /
-           h.z();
+    const double inverse_z = 1 / h.z();
+    *uv = inverse_z * h.head<2>();
+    *gradient = inverse_z * (square_from_image_.topLeftCorner<2, 2>() -
+                             *uv * square_from_image_.bottomLeftCorner<1, 2>());
   }
 
  private:
