@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <deque>
 #include <vector>
 
-#include <ceres/ceres.h>
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/product_manifold.h>
 
 #include "reconstruct/map_refinement.h"
+#include "reconstruct/schur_solver.h"
 
 namespace velamap {
 namespace {
@@ -51,6 +54,100 @@ void Pack(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation
 Rigid3 Unpack(const double* values) {
   return {Eigen::Quaterniond(values).normalized(), Eigen::Vector3d::Map(values + 4)};
 }
+
+// The map as a least-squares problem; its blocks are the frames, then the markers.
+class AdjustableMap {
+ public:
+  AdjustableMap(const MapProblem& map, const MapSolution& solution)
+      : frames_(map.frames.size()), markers_(map.markers.size()) {
+    for (FrameParameters& frame : frames_) problem_.blocks.push_back({frame.data(), 7});
+    for (MarkerParameters& marker : markers_) problem_.blocks.push_back({marker.data(), 8});
+    std::vector<const MapObservation*> observations;
+    std::vector<int> num_views(map.markers.size());
+    for (std::size_t idx = 0; idx < map.observations.size(); ++idx) {
+      const MapObservation& observation = map.observations[idx];
+      const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
+      if (!solution.fits[idx] ||
+          !solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)] ||
+          solution.shape_from_marker[marker_idx].empty()) {
+        continue;
+      }
+      observations.push_back(&observation);
+      ++num_views[marker_idx];
+    }
+    for (const MapObservation* observation : observations) {
+      const std::size_t frame_idx = static_cast<std::size_t>(observation->frame_idx);
+      const std::size_t marker_idx = static_cast<std::size_t>(observation->marker_idx);
+      if (num_views[marker_idx] < 2) continue;
+      AddFrame(frame_idx, *solution.cam_from_shape[frame_idx]);
+      AddMarker(marker_idx, solution.shape_from_marker[marker_idx].front());
+      errors_.emplace_back(*observation, map.Marker(observation->marker_idx));
+      problem_.residuals.push_back(
+          {&errors_.back(),
+           &loss_,
+           {observation->frame_idx, static_cast<int>(frames_.size() + marker_idx)}});
+    }
+  }
+
+  // False where there is none.
+  bool HoldFirstFrame() {
+    const auto end = problem_.blocks.begin() + static_cast<std::ptrdiff_t>(frames_.size());
+    const auto first = std::find_if(problem_.blocks.begin(), end, IsUsed);
+    if (first == end) return false;
+    first->kind = SchurBlock::Kind::kConstant;
+    return true;
+  }
+
+  const SchurProblem& Problem() const { return problem_; }
+
+  void WriteTo(MapSolution* solution) const {
+    for (std::size_t idx = 0; idx < frames_.size(); ++idx) {
+      if (IsUsed(problem_.blocks[idx])) {
+        solution->cam_from_shape[idx] = Unpack(frames_[idx].data());
+      }
+    }
+    for (std::size_t idx = 0; idx < markers_.size(); ++idx) {
+      if (!IsUsed(problem_.blocks[frames_.size() + idx])) continue;
+      const Rigid3 rigid = Unpack(markers_[idx].data());
+      solution->shape_from_marker[idx].front() =
+          Sim3{std::exp(markers_[idx][7]), rigid.rotation, rigid.translation};
+    }
+  }
+
+ private:
+  static bool IsUsed(const SchurBlock& block) { return block.kind != SchurBlock::Kind::kConstant; }
+
+  void AddFrame(std::size_t idx, const Rigid3& pose) {
+    SchurBlock& block = problem_.blocks[idx];
+    if (IsUsed(block)) return;
+    block.kind = SchurBlock::Kind::kKept;
+    block.manifold = &frame_manifold_;
+    Pack(pose.rotation, pose.translation, block.values);
+  }
+
+  void AddMarker(std::size_t idx, const Sim3& place) {
+    SchurBlock& block = problem_.blocks[frames_.size() + idx];
+    if (IsUsed(block)) return;
+    block.kind = SchurBlock::Kind::kEliminated;
+    block.manifold = &marker_manifold_;
+    Pack(place.rotation, place.translation, block.values);
+    block.values[7] = std::log(place.scale);
+    problem_.residuals.push_back(
+        {&scale_prior_, &scale_loss_, {static_cast<int>(frames_.size() + idx)}});
+  }
+
+  std::vector<FrameParameters> frames_;
+  std::vector<MarkerParameters> markers_;
+  std::deque<MapReprojectionCost> errors_;
+  const ceres::AutoDiffCostFunction<ScalePrior, 1, 8> scale_prior_{new ScalePrior};
+  const ceres::CauchyLoss loss_{kLossSigmas * std::sqrt(2.0 * kNumCorners)};
+  const ceres::CauchyLoss scale_loss_{kScaleLossSigmas};
+  const ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>
+      frame_manifold_;
+  const ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<4>>
+      marker_manifold_;
+  SchurProblem problem_;
+};
 
 }  // namespace
 
@@ -99,84 +196,13 @@ bool MapReprojectionCost::Evaluate(double const* const* parameters, double* resi
 
 void AdjustMap(const MapProblem& problem, const MapAdjustmentOptions& options,
                MapSolution* solution) {
-  // In two arrays: Ceres orders parameters by their addresses, and so sums are always in one order.
-  std::vector<FrameParameters> frames(problem.frames.size());
-  std::vector<MarkerParameters> markers(problem.markers.size());
-  std::vector<int> num_views_of_frame(problem.frames.size()), num_views(problem.markers.size());
-  const auto takes_part = [&](std::size_t idx) {
-    const MapObservation& observation = problem.observations[idx];
-    return solution->fits[idx] &&
-           solution->cam_from_shape[static_cast<std::size_t>(observation.frame_idx)] &&
-           !solution->shape_from_marker[static_cast<std::size_t>(observation.marker_idx)].empty();
-  };
-  for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
-    if (takes_part(idx)) {
-      ++num_views[static_cast<std::size_t>(problem.observations[idx].marker_idx)];
-    }
-  }
-  ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::CauchyLoss loss(kLossSigmas * std::sqrt(2.0 * kNumCorners));
-  ceres::CauchyLoss scale_loss(kScaleLossSigmas);
-  ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>
-      frame_manifold;
-  ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<4>>
-      marker_manifold;
-  ceres::Problem ceres_problem(problem_options);
-  const auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
-    const MapObservation& observation = problem.observations[idx];
-    const std::size_t frame_idx = static_cast<std::size_t>(observation.frame_idx);
-    const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
-    if (!takes_part(idx) || num_views[marker_idx] < 2) continue;
-    double* const frame = frames[frame_idx].data();
-    double* const marker = markers[marker_idx].data();
-    if (num_views_of_frame[frame_idx]++ == 0) {
-      const Rigid3& pose = *solution->cam_from_shape[frame_idx];
-      Pack(pose.rotation, pose.translation, frame);
-      ceres_problem.AddParameterBlock(frame, 7, &frame_manifold);
-      ordering->AddElementToGroup(frame, 1);
-    }
-    if (!ceres_problem.HasParameterBlock(marker)) {
-      const Sim3& place = solution->shape_from_marker[marker_idx].front();
-      Pack(place.rotation, place.translation, marker);
-      marker[7] = std::log(place.scale);
-      ceres_problem.AddParameterBlock(marker, 8, &marker_manifold);
-      ordering->AddElementToGroup(marker, 0);
-      ceres_problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<ScalePrior, 1, 8>(new ScalePrior), &scale_loss, marker);
-    }
-    ceres_problem.AddResidualBlock(
-        new MapReprojectionCost(observation, problem.Marker(observation.marker_idx)), &loss, frame,
-        marker);
-  }
-  const auto first_frame = std::find_if(num_views_of_frame.begin(), num_views_of_frame.end(),
-                                        [](int count) { return count > 0; });
-  if (first_frame == num_views_of_frame.end()) return;
-  ceres_problem.SetParameterBlockConstant(
-      frames[static_cast<std::size_t>(first_frame - num_views_of_frame.begin())].data());
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_SCHUR;
-  solver.linear_solver_ordering = ordering;
+  AdjustableMap map(problem, *solution);
+  if (!map.HoldFirstFrame()) return;
+  SchurSolverOptions solver;
   solver.max_num_iterations = options.max_num_iterations;
   solver.function_tolerance = options.tolerance;
-  solver.parameter_tolerance = 1e-14;
   solver.gradient_tolerance = 1e-14;
-  solver.num_threads = 1;  // sums in the same order every time; starts run side by side instead
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &ceres_problem, &summary);
-  if (!summary.IsSolutionUsable()) return;
-  for (std::size_t idx = 0; idx < frames.size(); ++idx) {
-    if (num_views_of_frame[idx] > 0) solution->cam_from_shape[idx] = Unpack(frames[idx].data());
-  }
-  for (std::size_t idx = 0; idx < markers.size(); ++idx) {
-    if (!ceres_problem.HasParameterBlock(markers[idx].data())) continue;
-    const Rigid3 rigid = Unpack(markers[idx].data());
-    solution->shape_from_marker[idx].front() =
-        Sim3{std::exp(markers[idx][7]), rigid.rotation, rigid.translation};
-  }
+  if (SolveSchur(solver, map.Problem()).is_usable) map.WriteTo(solution);
 }
 
 }  // namespace velamap

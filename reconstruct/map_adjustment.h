@@ -1,4 +1,4 @@
-// Adjustment of a whole map: all frames' poses and all markers' places at once (Ceres).
+// Adjustment of a whole map: all frames' poses and all markers' places at once.
 //
 // Residuals of an observation: (projected - seen corner) / sigma_px, 8 numbers with one Cauchy
 // loss; of a marker: log(scale) / kScaleSigma, with a Cauchy loss too, so that the scale of the

@@ -235,11 +235,12 @@ void MarkerAdjuster::Solve(double function_tolerance) {
 std::vector<MarkerAdjuster::CornerResidual> MarkerAdjuster::EvaluateCorners(const Model& model) {
   MarkerState state = MakeState(model);
   const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model, &state);
-  ceres::Problem::EvaluateOptions options;
-  options.residual_blocks = problem.corner_residuals;
-  options.num_threads = 1;
   std::vector<double> residuals;
-  VELAMAP_CHECK(problem.problem->Evaluate(options, nullptr, &residuals, nullptr, nullptr));
+  const auto append = [&residuals](const SchurResidual&, const Eigen::VectorXd& of_view,
+                                   const std::vector<SchurSystem::RowMajor>&) {
+    residuals.insert(residuals.end(), of_view.begin(), of_view.end());
+  };
+  VELAMAP_CHECK(VisitResiduals(problem.schur, problem.corner_residuals, false, append));
   std::vector<CornerResidual> corners;
   for (std::size_t i = 0; i < problem.corners.size(); ++i) {
     corners.push_back({problem.corners[i].first, problem.corners[i].second,

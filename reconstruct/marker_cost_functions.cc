@@ -1,6 +1,7 @@
 #include "reconstruct/marker_cost_functions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -103,11 +104,11 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
   const Eigen::Map<const Eigen::Vector3d> linear(parameters[4]), angular(parameters[4] + 3);
   const Eigen::Matrix3d rotation_matrix = rotation.toRotationMatrix();
 
-  std::vector<JacobianMap> maps;
-  for (std::size_t i = 0; i < parameter_block_sizes().size(); ++i) {
+  const auto map = [&](std::size_t i) {
     double* data = jacobians == nullptr ? nullptr : jacobians[i];
-    maps.emplace_back(data, data == nullptr ? 0 : num_residuals(), parameter_block_sizes()[i]);
-  }
+    return JacobianMap(data, data == nullptr ? 0 : num_residuals(), parameter_block_sizes()[i]);
+  };
+  std::array<JacobianMap, 5> maps = {map(0), map(1), map(2), map(3), map(4)};
   if (maps[0].rows() > 0) maps[0].setZero();
   const int num_corners = static_cast<int>(corners_.size());
   for (int i = 0; i < num_corners; ++i) {
@@ -118,13 +119,19 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
         x_at_middle_row + corner.row_time_s * (linear + angular.cross(x_at_middle_row));
     if (!(x_in_cam.z() > 0)) return false;
     const Eigen::Vector2d ray = x_in_cam.hnormalized();
+    const Eigen::Vector2d offset_px = inset_px * corner.inset_direction - corner.x_in_image_px;
+    if (jacobians == nullptr) {
+      const Eigen::Vector2d projected =
+          ImageFromRay<double, double>(camera_model_, intrinsics, ray);
+      Eigen::Map<Eigen::Vector2d>(residuals + 2 * i) =
+          RobustResidual((projected + offset_px) / corner.sigma_px, loss_sigmas_, nullptr);
+      continue;
+    }
     const Projection projection = Project(camera_model_, intrinsics, ray);
-    const Eigen::Vector2d error_px =
-        projection.x_in_image_px + inset_px * corner.inset_direction - corner.x_in_image_px;
+    const Eigen::Vector2d error_px = projection.x_in_image_px + offset_px;
     Eigen::Matrix2d by_whitened;
     Eigen::Map<Eigen::Vector2d>(residuals + 2 * i) =
         RobustResidual(error_px / corner.sigma_px, loss_sigmas_, &by_whitened);
-    if (jacobians == nullptr) continue;
 
     const Eigen::Matrix2d by_image = by_whitened / corner.sigma_px;
     Eigen::Matrix<double, 2, 3> ray_by_cam;

@@ -7,12 +7,12 @@
 
 #include <ceres/manifold.h>
 #include <ceres/product_manifold.h>
-#include <ceres/solver.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "importer/camera_projection.h"
 #include "importer/error.h"
+#include "reconstruct/schur_solver.h"
 
 namespace velamap {
 namespace {
@@ -62,37 +62,34 @@ class ProblemBuilder {
  public:
   ProblemBuilder(const MarkerAdjustmentOptions& options, const Model& model,
                  const MarkerWeights& weights, MarkerState* state)
-      : options_(options), model_(model), weights_(weights), state_(*state) {
-    result_.problem = std::make_unique<ceres::Problem>();
-  }
+      : options_(options), model_(model), weights_(weights), state_(*state) {}
 
   void AddParameters() {
-    ceres::Problem& problem = *result_.problem;
+    using Kind = SchurBlock::Kind;
     for (MarkerBlock& marker : state_.markers) {
-      problem.AddParameterBlock(marker.x_in_world.data(),
-                                static_cast<int>(marker.x_in_world.size()));
-      result_.markers.push_back(marker.x_in_world.data());
+      AddBlock(marker.x_in_world.data(), marker.x_in_world.size(), Kind::kEliminated);
     }
+    result_.num_markers = static_cast<int>(state_.markers.size());
+    result_.manifolds.push_back(std::make_unique<PoseManifold>());
+    const ceres::Manifold* pose_manifold = result_.manifolds.back().get();
     for (ImageBlock& image : state_.images) {
-      problem.AddParameterBlock(image.cam_from_world.data(), 7, new PoseManifold());
-      problem.AddParameterBlock(image.velocity.data(), 6);
-      AddGlobal(image.cam_from_world.data(), &image != &state_.images.front());
-      AddGlobal(image.velocity.data(), options_.rolling_shutter_s > 0);
+      AddBlock(image.cam_from_world.data(), 7, KeptIf(&image != &state_.images.front()),
+               pose_manifold);
+      AddBlock(image.velocity.data(), 6, KeptIf(options_.rolling_shutter_s > 0));
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
-      problem.AddParameterBlock(intrinsics.data(), static_cast<int>(intrinsics.size()));
       const std::vector<int> held = HeldIntrinsics(model_.cameras.at(camera_id).model);
       const bool refines = held.size() < intrinsics.size();
+      const ceres::Manifold* manifold = nullptr;
       if (refines && !held.empty()) {
-        problem.SetManifold(intrinsics.data(),
-                            new ceres::SubsetManifold(static_cast<int>(intrinsics.size()), held));
+        result_.manifolds.push_back(
+            std::make_unique<ceres::SubsetManifold>(static_cast<int>(intrinsics.size()), held));
+        manifold = result_.manifolds.back().get();
       }
-      AddGlobal(intrinsics.data(), refines);
+      AddBlock(intrinsics.data(), intrinsics.size(), KeptIf(refines), manifold);
     }
-    problem.AddParameterBlock(&state_.inset_px, 1);
-    AddGlobal(&state_.inset_px, EstimatesInset());
-    problem.AddParameterBlock(&state_.print_scale, 1);
-    AddGlobal(&state_.print_scale, PrintScaleSigma() > 0 && !weights_.holds_print_scale);
+    AddBlock(&state_.inset_px, 1, KeptIf(EstimatesInset()));
+    AddBlock(&state_.print_scale, 1, KeptIf(PrintScaleSigma() > 0 && !weights_.holds_print_scale));
   }
 
   void AddCorners(const CornerSigmas& corner_sigmas) {
@@ -121,26 +118,24 @@ class ProblemBuilder {
                                       std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
       auto error = std::make_unique<MarkerPriorError>(knowledge, marker.corners);
       if (error->num_residuals() == 0) continue;
-      AddPrior(error.release(), {marker.x_in_world.data(), &state_.print_scale});
+      AddPrior(std::move(error), {marker.x_in_world.data(), &state_.print_scale});
     }
     if (EstimatesInset()) {
-      AddPrior(new ParameterPriorError({0.0}, {options_.inset_sigma_px}), {&state_.inset_px});
+      AddPrior(MakePrior({0.0}, {options_.inset_sigma_px}), {&state_.inset_px});
     }
     if (PrintScaleSigma() > 0) {
-      AddPrior(new ParameterPriorError({0.0}, {PrintScaleSigma()}), {&state_.print_scale});
+      AddPrior(MakePrior({0.0}, {PrintScaleSigma()}), {&state_.print_scale});
     }
     if (options_.rolling_shutter_s > 0) {
       constexpr double v = kLinearVelocitySigma, w = kAngularVelocitySigma;
       for (ImageBlock& image : state_.images) {
-        AddPrior(new ParameterPriorError({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}),
-                 {image.velocity.data()});
+        AddPrior(MakePrior({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}), {image.velocity.data()});
       }
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
       const Camera& camera = calibration.at(camera_id);
       if (HeldIntrinsics(camera.model).size() == intrinsics.size()) continue;
-      AddPrior(new ParameterPriorError(camera.params, IntrinsicsSigmas(camera)),
-               {intrinsics.data()});
+      AddPrior(MakePrior(camera.params, IntrinsicsSigmas(camera)), {intrinsics.data()});
     }
   }
 
@@ -150,9 +145,9 @@ class ProblemBuilder {
       for (const int idx : bar.marker_idxs) {
         blocks.push_back(state_.markers[idx].x_in_world.data());
       }
-      result_.problem->AddResidualBlock(
-          new ScaleBarError(bar.distance.length_m, bar.distance.sigma_m, bar.corner_weights),
-          nullptr, blocks);
+      AddResidual(std::make_unique<ScaleBarError>(bar.distance.length_m, bar.distance.sigma_m,
+                                                  bar.corner_weights),
+                  blocks);
     }
   }
 
@@ -162,16 +157,27 @@ class ProblemBuilder {
   using PoseManifold =
       ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
 
-  void AddGlobal(double* block, bool varies) {
-    if (varies) {
-      result_.globals.push_back(block);
-    } else {
-      result_.problem->SetParameterBlockConstant(block);
-    }
+  static SchurBlock::Kind KeptIf(bool varies) {
+    return varies ? SchurBlock::Kind::kKept : SchurBlock::Kind::kConstant;
   }
 
-  void AddPrior(ceres::CostFunction* error, const std::vector<double*>& blocks) {
-    result_.prior_residuals.push_back(result_.problem->AddResidualBlock(error, nullptr, blocks));
+  void AddBlock(double* values, std::size_t size, SchurBlock::Kind kind,
+                const ceres::Manifold* manifold = nullptr) {
+    block_idxs_[values] = static_cast<int>(result_.schur.blocks.size());
+    result_.schur.blocks.push_back({values, static_cast<int>(size), kind, manifold});
+  }
+
+  // Returns its index.
+  int AddResidual(std::unique_ptr<ceres::CostFunction> error, const std::vector<double*>& blocks) {
+    SchurResidual residual{error.get(), nullptr, {}};
+    for (const double* block : blocks) residual.block_idxs.push_back(block_idxs_.at(block));
+    result_.errors.push_back(std::move(error));
+    result_.schur.residuals.push_back(std::move(residual));
+    return static_cast<int>(result_.schur.residuals.size()) - 1;
+  }
+
+  void AddPrior(std::unique_ptr<ceres::CostFunction> error, const std::vector<double*>& blocks) {
+    result_.prior_residuals.push_back(AddResidual(std::move(error), blocks));
   }
 
   void AddView(std::size_t image_idx, const std::vector<std::pair<int, TrackElement>>& view,
@@ -194,13 +200,16 @@ class ProblemBuilder {
       observations.push_back(observation);
       result_.corners.emplace_back(Point3DIdFromCorner({marker->marker_id, corner}), element);
     }
-    result_.corner_residuals.push_back(result_.problem->AddResidualBlock(
-        new MarkerViewError(camera.model, static_cast<int>(marker->corners.size()),
-                            std::move(observations), weights_.loss_sigmas),
-        nullptr,
-        std::vector<double*>{marker->x_in_world.data(), image.cam_from_world.data(),
-                             &state_.inset_px, state_.intrinsics.at(image.camera_id).data(),
-                             image.velocity.data()}));
+    result_.corner_residuals.push_back(AddResidual(
+        std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker->corners.size()),
+                                          std::move(observations), weights_.loss_sigmas),
+        {marker->x_in_world.data(), image.cam_from_world.data(), &state_.inset_px,
+         state_.intrinsics.at(image.camera_id).data(), image.velocity.data()}));
+  }
+
+  static std::unique_ptr<ceres::CostFunction> MakePrior(std::vector<double> mean,
+                                                        std::vector<double> sigma) {
+    return std::make_unique<ParameterPriorError>(std::move(mean), std::move(sigma));
   }
 
   bool EstimatesInset() const { return options_.estimate_inset && options_.inset_sigma_px > 0; }
@@ -236,6 +245,7 @@ class ProblemBuilder {
   const Model& model_;
   const MarkerWeights& weights_;
   MarkerState& state_;
+  std::unordered_map<const double*, int> block_idxs_;
   MarkerProblem result_;
 };
 
@@ -311,19 +321,20 @@ MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Mo
 }
 
 int SolveMarkerProblem(int max_num_iterations, double function_tolerance, MarkerProblem* problem) {
-  ceres::Solver::Options options;
+  SchurSolverOptions options;
   options.max_num_iterations = max_num_iterations;
   options.function_tolerance = function_tolerance;
-  options.gradient_tolerance = 0.0;
-  options.parameter_tolerance = 1e-14;
-  options.num_threads = 1;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, problem->problem.get(), &summary);
-  spdlog::debug("{}", summary.BriefReport());
-  if (summary.termination_type == ceres::FAILURE) throw DataError(summary.message);
-  return static_cast<int>(summary.iterations.size()) - 1;
+  SchurProblem schur = problem->schur;
+  KeepCoupledBlocks(&schur);
+  const SchurSummary summary = SolveSchur(options, schur);
+  spdlog::debug("{} iterations, cost {:.6g} -> {:.6g}", summary.num_iterations,
+                summary.initial_cost, summary.final_cost);
+  if (!summary.is_usable) {
+    throw DataError(
+        "the bundle adjustment finds no step: a corner lies behind the camera that sees it, or a "
+        "number is not finite");
+  }
+  return summary.num_iterations;
 }
 
 }  // namespace velamap

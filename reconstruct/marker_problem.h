@@ -1,5 +1,5 @@
-// The marker-aware bundle adjustment as a Ceres problem: parameters, weights, residual blocks.
-// Private to this room: it shows Ceres.
+// The marker-aware bundle adjustment as a least-squares problem: parameters, weights, residual
+// blocks. Private to this room: it shows Ceres.
 
 #pragma once
 
@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include <ceres/problem.h>
-
 #include "reconstruct/marker_adjustment.h"
 #include "reconstruct/marker_cost_functions.h"
+#include "reconstruct/schur_problem.h"
 
 namespace velamap {
 
@@ -70,12 +69,13 @@ MarkerState MakeMarkerState(const Model& model, const Layout& layout);
 void WriteMarkerState(const MarkerState& state, Model* model);
 
 struct MarkerProblem {
-  std::unique_ptr<ceres::Problem> problem;
-  // Parameter blocks that vary: markers in order, then all others.
-  std::vector<double*> markers;
-  std::vector<double*> globals;
-  std::vector<ceres::ResidualBlockId> corner_residuals;
-  std::vector<ceres::ResidualBlockId> prior_residuals;  // all others but scale bars
+  std::vector<std::unique_ptr<ceres::CostFunction>> errors;
+  std::vector<std::unique_ptr<ceres::Manifold>> manifolds;
+  // Blocks: markers in order (eliminated), then all others. Residuals: corners, priors, scale bars.
+  SchurProblem schur;
+  int num_markers = 0;
+  std::vector<int> corner_residuals;  // indices
+  std::vector<int> prior_residuals;   // all others but scale bars
   // Residual pairs of corner_residuals, in order.
   std::vector<std::pair<Point3DId, TrackElement>> corners;
 };

@@ -23,11 +23,10 @@ std::vector<Eigen::Vector3d> Positions(const MarkerState& state) {
 }
 
 // First column of a global block that varies; -1 for others.
-int GlobalColumn(const MarkerProblem& problem, const double* block) {
-  int column = 0;
-  for (double* other : problem.globals) {
-    if (other == block) return column;
-    column += problem.problem->ParameterBlockTangentSize(other);
+int GlobalColumn(const MarkerProblem& problem, const double* values) {
+  const SchurStructure structure = MakeSchurStructure(WithoutScaleBars(problem));
+  for (std::size_t idx = 0; idx < problem.schur.blocks.size(); ++idx) {
+    if (problem.schur.blocks[idx].values == values) return structure.column_of_block[idx];
   }
   return -1;
 }

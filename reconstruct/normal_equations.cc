@@ -2,102 +2,67 @@
 
 #include <cmath>
 
-#include <ceres/crs_matrix.h>
 #include <Eigen/Cholesky>
 
 #include "importer/error.h"
 
 namespace velamap {
-namespace {
 
-// Where the columns of the Jacobian lie.
-struct Columns {
-  std::vector<int> marker_of;  // by column; -1 for globals
-  std::vector<int> first_of;   // by marker
-  int first_global = 0;
-  int num_globals = 0;
-};
-
-Columns FindColumns(const MarkerProblem& problem) {
-  Columns columns;
-  for (std::size_t i = 0; i < problem.markers.size(); ++i) {
-    columns.first_of.push_back(columns.first_global);
-    const int size = problem.problem->ParameterBlockTangentSize(problem.markers[i]);
-    columns.marker_of.insert(columns.marker_of.end(), size, static_cast<int>(i));
-    columns.first_global += size;
-  }
-  for (double* block : problem.globals) {
-    columns.num_globals += problem.problem->ParameterBlockTangentSize(block);
-  }
-  columns.marker_of.insert(columns.marker_of.end(), columns.num_globals, -1);
-  return columns;
+SchurProblem WithoutScaleBars(const MarkerProblem& problem) {
+  const std::size_t num_residuals =
+      problem.corner_residuals.size() + problem.prior_residuals.size();
+  const auto& residuals = problem.schur.residuals;
+  return {problem.schur.blocks,
+          {residuals.begin(), residuals.begin() + static_cast<std::ptrdiff_t>(num_residuals)}};
 }
-
-ceres::CRSMatrix EvaluateJacobian(const MarkerProblem& problem,
-                                  const std::vector<ceres::ResidualBlockId>& residuals) {
-  ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = problem.markers;
-  options.parameter_blocks.insert(options.parameter_blocks.end(), problem.globals.begin(),
-                                  problem.globals.end());
-  options.residual_blocks = residuals;
-  options.num_threads = 1;
-  ceres::CRSMatrix jacobian;
-  VELAMAP_CHECK(problem.problem->Evaluate(options, nullptr, nullptr, nullptr, &jacobian));
-  return jacobian;
-}
-
-}  // namespace
 
 std::vector<JacobianRow> JacobianRows(const MarkerProblem& problem,
-                                      const std::vector<ceres::ResidualBlockId>& residuals) {
-  if (residuals.empty()) return {};
-  const Columns columns = FindColumns(problem);
-  const ceres::CRSMatrix jacobian = EvaluateJacobian(problem, residuals);
-  std::vector<JacobianRow> rows(jacobian.num_rows);
-  for (int i = 0; i < jacobian.num_rows; ++i) {
-    JacobianRow& row = rows[i];
-    for (int entry = jacobian.rows[i]; entry < jacobian.rows[i + 1]; ++entry) {
-      const int column = jacobian.cols[entry];
-      const int marker_idx = columns.marker_of[column];
-      if (marker_idx < 0) {
-        row.by_globals.emplace_back(column - columns.first_global, jacobian.values[entry]);
-        continue;
+                                      const std::vector<int>& residual_idxs) {
+  const SchurStructure structure = MakeSchurStructure(WithoutScaleBars(problem));
+  std::vector<JacobianRow> rows;
+  const auto add_rows = [&](const SchurResidual& residual, const Eigen::VectorXd& residuals,
+                            const std::vector<SchurSystem::RowMajor>& jacobians) {
+    for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+      JacobianRow row;
+      for (std::size_t k = 0; k < residual.block_idxs.size(); ++k) {
+        const int block_idx = residual.block_idxs[k];
+        const int column = structure.column_of_block[static_cast<std::size_t>(block_idx)];
+        if (block_idx < problem.num_markers) {
+          row.marker_idx = block_idx;
+          row.by_marker = jacobians[k].row(i);
+        } else if (column >= 0) {
+          for (Eigen::Index j = 0; j < jacobians[k].cols(); ++j) {
+            row.by_globals.emplace_back(column + static_cast<int>(j), jacobians[k](i, j));
+          }
+        }
       }
-      if (row.marker_idx < 0) {
-        row.marker_idx = marker_idx;
-        row.by_marker.setZero(
-            problem.problem->ParameterBlockTangentSize(problem.markers[marker_idx]));
-      }
-      VELAMAP_CHECK(row.marker_idx == marker_idx);
-      row.by_marker[column - columns.first_of[marker_idx]] = jacobian.values[entry];
+      rows.push_back(std::move(row));
     }
-  }
+  };
+  VELAMAP_CHECK(VisitResiduals(problem.schur, residual_idxs, true, add_rows));
   return rows;
 }
 
 NormalEquations MakeNormalEquations(const MarkerProblem& problem) {
-  const Columns columns = FindColumns(problem);
+  const SchurProblem schur = WithoutScaleBars(problem);
+  const SchurStructure structure = MakeSchurStructure(schur);
+  SchurSystem system;
+  VELAMAP_CHECK(Linearise(schur, structure, &system));
   NormalEquations equations;
-  for (double* marker : problem.markers) {
-    const int size = problem.problem->ParameterBlockTangentSize(marker);
-    equations.marker_blocks.push_back(Eigen::MatrixXd::Zero(size, size));
-    equations.coupling.push_back(Eigen::MatrixXd::Zero(size, columns.num_globals));
-  }
-  equations.globals.setZero(columns.num_globals, columns.num_globals);
-  for (const auto* residuals : {&problem.corner_residuals, &problem.prior_residuals}) {
-    for (const JacobianRow& row : JacobianRows(problem, *residuals)) {
-      for (const auto& [column, value] : row.by_globals) {
-        for (const auto& [other_column, other_value] : row.by_globals) {
-          equations.globals(other_column, column) += value * other_value;
-        }
-      }
-      if (row.marker_idx < 0) continue;
-      equations.marker_blocks[row.marker_idx].noalias() +=
-          row.by_marker * row.by_marker.transpose();
-      for (const auto& [column, value] : row.by_globals) {
-        equations.coupling[row.marker_idx].col(column) += value * row.by_marker;
-      }
+  equations.globals = system.kept_hessian;
+  for (std::size_t i = 0; i < system.eliminated.size(); ++i) {
+    const SchurSystem::Eliminated& eliminated = system.eliminated[i];
+    equations.marker_blocks.emplace_back(eliminated.hessian);
+    Eigen::MatrixXd coupling =
+        Eigen::MatrixXd::Zero(eliminated.hessian.rows(), structure.num_kept_columns);
+    Eigen::Index from = 0;
+    for (const int block_idx : structure.eliminated[i].kept_block_idxs) {
+      const int size = schur.blocks[static_cast<std::size_t>(block_idx)].TangentSize();
+      coupling.middleCols(structure.column_of_block[static_cast<std::size_t>(block_idx)], size) =
+          eliminated.coupling.middleCols(from, size);
+      from += size;
     }
+    equations.coupling.push_back(std::move(coupling));
   }
   return equations;
 }

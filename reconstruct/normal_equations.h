@@ -31,7 +31,10 @@ struct JacobianRow {
   std::vector<std::pair<int, double>> by_globals;  // column, value
 };
 std::vector<JacobianRow> JacobianRows(const MarkerProblem& problem,
-                                      const std::vector<ceres::ResidualBlockId>& residuals);
+                                      const std::vector<int>& residual_idxs);
+
+// With corners and priors only: no residual has two markers, all are eliminated.
+SchurProblem WithoutScaleBars(const MarkerProblem& problem);
 
 // Of corners and priors; not of scale bars.
 NormalEquations MakeNormalEquations(const MarkerProblem& problem);

@@ -5,6 +5,7 @@
 
 #include "exporters/shape_exporter.h"
 #include "reconstruct/bundle_adjustment.h"
+#include "reconstruct/global_registration.h"
 #include "reconstruct/registration.h"
 #include "reconstruct/seed_model.h"
 #include "tests/reconstruct/registration_fixture.h"
@@ -38,7 +39,23 @@ void BM_Registration(benchmark::State& state) {
     benchmark::DoNotOptimize(RegisterFrames(images, cameras, scene.layout, {}));
   }
 }
-BENCHMARK(BM_Registration)->Arg(41)->Arg(200)->Arg(600)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Registration)->Arg(41)->Arg(200)->Arg(600)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+void BM_GlobalRegistration(benchmark::State& state) {
+  const SyntheticScene scene = Sail(static_cast<int>(state.range(0)));
+  const auto images = DatabaseImages(scene);
+  const auto cameras = SceneCameras(scene);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(RegisterFramesGlobally(images, cameras, scene.layout, {}));
+  }
+}
+BENCHMARK(BM_GlobalRegistration)
+    ->Arg(41)
+    ->Arg(80)
+    ->Arg(200)
+    ->Arg(600)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 
 void BM_ColmapBundleAdjustment(benchmark::State& state) {
   const Model seed = Seed(Sail(static_cast<int>(state.range(0))));

@@ -7,6 +7,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     marker_cost_functions_test.cc
     marker_uncertainty_test.cc
     scene_model.cc
+    schur_solver_test.cc
     sheet_model.cc
     weak_geometry_test.cc
   LIBRARIES Ceres::ceres

@@ -10,6 +10,7 @@
 
 #include "reconstruct/alignment.h"
 #include "reconstruct/marker_sizes.h"
+#include "tests/reconstruct/ceres_problem.h"
 #include "tests/reconstruct/scene_model.h"
 
 namespace velamap {
@@ -25,11 +26,9 @@ SyntheticScene TinyScene() {
 
 Eigen::MatrixXd DenseJacobian(const MarkerProblem& problem) {
   ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = problem.markers;
-  options.parameter_blocks.insert(options.parameter_blocks.end(), problem.globals.begin(),
-                                  problem.globals.end());
+  options.parameter_blocks = VaryingBlocks(problem.schur);
   ceres::CRSMatrix sparse;
-  problem.problem->Evaluate(options, nullptr, nullptr, nullptr, &sparse);
+  MakeCeresProblem(problem.schur)->Evaluate(options, nullptr, nullptr, nullptr, &sparse);
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
   for (int row = 0; row < sparse.num_rows; ++row) {
     for (int i = sparse.rows[row]; i < sparse.rows[row + 1]; ++i) {
