@@ -1,11 +1,23 @@
-// Time of the marker-aware bundle adjustment, all of its rounds and the covariance; beside it
-// COLMAP's program (with velamap's outlier rounds) from the same seed. A sail of 130 markers, 41
-// frames.
+// Time of registration and adjustment together, beside COLMAP's bundle_adjuster as it is: with its
+// defaults, from the same seed, images in time order. With that order the scale runs away, and it
+// ends by its limit of 100 iterations. CPU times are those of all threads ("cpu_s": our own, or of
+// the program that was started). Arguments are frames, rows and columns of markers on the sail.
+// Then the marker-aware adjustment alone, beside COLMAP's program with velamap's order of images
+// and outlier rounds.
+
+#include <sys/resource.h>
+
+#include <filesystem>
 
 #include <benchmark/benchmark.h>
 
 #include "reconstruct/bundle_adjustment.h"
+#include "reconstruct/colmap_runner.h"
+#include "reconstruct/global_registration.h"
 #include "reconstruct/marker_adjustment.h"
+#include "reconstruct/model_io.h"
+#include "reconstruct/seed_model.h"
+#include "tests/reconstruct/registration_fixture.h"
 #include "tests/reconstruct/scene_model.h"
 #include "tests/reconstruct/sheet_model.h"
 #include "tests/support/temp_dir.h"
@@ -13,16 +25,73 @@
 namespace velamap {
 namespace {
 
-SyntheticScene Sail() {
+SyntheticScene Sail(int num_frames = 41, int num_rows = 10, int num_columns = 13) {
   SyntheticSceneOptions options;
-  options.num_rows = 10;
-  options.num_columns = 13;
-  options.spacing_m = 0.2;
-  options.num_frames = 41;
+  options.num_rows = num_rows;
+  options.num_columns = num_columns;
+  options.spacing_m = 2.6 / num_columns;
+  options.marker_length_m = 0.5 * options.spacing_m;
+  options.num_frames = num_frames;
   SyntheticScene scene = MakeSyntheticScene(options);
   AddNoise({0.2, 0.05, 0.005, 200, 1}, &scene);
   return scene;
 }
+
+SyntheticScene Sail(const benchmark::State& state) {
+  return Sail(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
+              static_cast<int>(state.range(2)));
+}
+
+double CpuSeconds(int who) {
+  rusage usage{};
+  getrusage(who, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+// Cases: frames, rows, columns.
+void Sizes(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Args({41, 10, 13})
+      ->Args({82, 10, 13})
+      ->Args({164, 10, 13})
+      ->Args({41, 5, 13})
+      ->Args({41, 20, 13})
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+}
+
+void BM_RegistrationAndAdjustment(benchmark::State& state) {
+  const SyntheticScene scene = Sail(state);
+  const auto images = DatabaseImages(scene);
+  const auto cameras = SceneCameras(scene);
+  const double before = CpuSeconds(RUSAGE_SELF);
+  for (auto _ : state) {
+    Model model =
+        MakeSeedModel(RegisterFramesGlobally(images, cameras, scene.layout, {}), images, cameras);
+    AdjustWithCeres({}, scene.layout, CornerSigmasOf(images), &model);
+  }
+  state.counters["cpu_s"] =
+      benchmark::Counter(CpuSeconds(RUSAGE_SELF) - before, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(BM_RegistrationAndAdjustment)->Apply(Sizes);
+
+void BM_ColmapWithDefaultsInTimeOrder(benchmark::State& state) {
+  Model seed = MakeSceneModel(Sail(state));
+  PerturbSeed(0.001, 1, &seed);  // 4 mm
+  const TempDir folder;
+  const auto input = folder / "seed", output = folder / "adjusted";
+  std::filesystem::create_directories(output);
+  WriteModel(seed, input.string(), ModelFormat::kBinary);
+  const double before = CpuSeconds(RUSAGE_CHILDREN);
+  for (auto _ : state) {
+    RunColmap("colmap",
+              {"bundle_adjuster", "--input_path", input.string(), "--output_path", output.string()},
+              (folder / "colmap.log").string());
+  }
+  state.counters["cpu_s"] =
+      benchmark::Counter(CpuSeconds(RUSAGE_CHILDREN) - before, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(BM_ColmapWithDefaultsInTimeOrder)->Apply(Sizes);
 
 Model Seed(const SyntheticScene& scene) {
   Model model = MakeSceneModel(scene);

@@ -31,15 +31,22 @@ Model Seed(const SyntheticScene& scene) {
   return MakeSeedModel(RegisterFrames(images, cameras, scene.layout, {}), images, cameras);
 }
 
-void BM_Registration(benchmark::State& state) {
+void BM_ThesisRegistration(benchmark::State& state) {
   const SyntheticScene scene = Sail(static_cast<int>(state.range(0)));
   const auto images = DatabaseImages(scene);
   const auto cameras = SceneCameras(scene);
+  RegistrationOptions options;
+  options.method = RegistrationMethod::kThesis;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(RegisterFrames(images, cameras, scene.layout, {}));
+    benchmark::DoNotOptimize(RegisterFrames(images, cameras, scene.layout, options));
   }
 }
-BENCHMARK(BM_Registration)->Arg(41)->Arg(200)->Arg(600)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK(BM_ThesisRegistration)
+    ->Arg(41)
+    ->Arg(200)
+    ->Arg(600)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 
 void BM_GlobalRegistration(benchmark::State& state) {
   const SyntheticScene scene = Sail(static_cast<int>(state.range(0)));
