@@ -161,20 +161,22 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
   const double band_px =
       std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
   P::Matrix information = P::Matrix::Zero();
+  const PatternPicture picture(model, p);
+  PatternPixel pixel;
   for (int row = 0; row < grid.image.rows; ++row) {
     if (std::abs(row - model.center_px.y()) > 1.5 * model.diagonal_px) continue;
     for (int column = 0; column < grid.image.cols; ++column) {
       const Eigen::Vector2d x(column, row);
       if ((x - model.center_px).norm() > 1.5 * model.diagonal_px) continue;
-      const auto pixel = EvaluatePattern(model, map, p, x);
-      if (!pixel) continue;
+      if (!picture.At(x, &pixel)) continue;
       double distance_px = band_px + 1;
       for (std::size_t i = 0; i < kNumCorners; ++i) {
         distance_px =
             std::min(distance_px, DistanceFromSegment(x, truth[i], truth[(i + 1) % kNumCorners]));
       }
       if (by_edges && distance_px > band_px) continue;
-      information.noalias() += pixel->jacobian * pixel->jacobian.transpose();
+      const P::Vector jacobian = pixel.jacobian.cast<double>();
+      information.noalias() += jacobian * jacobian.transpose();
     }
   }
   const Eigen::MatrixXd known = information.topLeftCorner(kNumKnown, kNumKnown);
