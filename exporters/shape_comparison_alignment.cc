@@ -186,6 +186,7 @@ Alignment AlignShapes(const MarkerShape& shape, const MarkerShape& reference, co
   if (!choice.note.empty()) alignment.notes.push_back(choice.note);
   if (choice.method == AlignmentMethod::kNone) {
     alignment.description = "both frames are taken as one";
+    alignment.notes.push_back("the sigmas do not hold how well each frame is known");
     return alignment;
   }
   const CommonCorners corners = FindCommonCorners(shape, reference, choice.marker_ids);
