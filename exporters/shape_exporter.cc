@@ -62,6 +62,7 @@ MetricsReport MetricsOf(const ShapeExportReport& report) {
   AddMetrics(report.model_metrics, &metrics);
   AddMetrics(report.scale, &metrics);
   AddMetrics(report.audit, &metrics);
+  if (report.uncertainty) AddMetrics(*report.uncertainty, &metrics);
   const PointCovariance* covariance = CovarianceOf(report);
   AddMetrics(FitPartPlanes(report.shape, covariance), &metrics, covariance);
   AddMetrics(report.sail, &metrics);

@@ -8,6 +8,7 @@
 #include "exporters/shape_sigma.h"
 #include "importer/error.h"
 #include "reconstruct/alignment.h"
+#include "reconstruct/covariance_update.h"
 
 namespace velamap {
 namespace {
@@ -107,6 +108,24 @@ MarkerMetrics MetricsOfMarker(const ShapeMarker& marker, double printed_side_m,
   return metrics;
 }
 
+// Of the points `ids`, which lie at `x_in_shape_m`, once they are aligned with their true places.
+void PredictDistances(const PointCovariance* covariance, const std::vector<CornerId>& ids,
+                      const std::vector<Eigen::Vector3d>& x_in_shape_m,
+                      ShapeComparison* comparison) {
+  if (covariance == nullptr) return;
+  std::vector<Point3DId> point3D_ids;
+  for (const CornerId& id : ids) point3D_ids.push_back(Point3DIdFromCorner(id));
+  PointCovariance points = Subset(*covariance, point3D_ids);
+  if (points.point3D_ids != point3D_ids) return;
+  ToInnerConstraints(x_in_shape_m, &points);
+  // A change of scale moves the points at right angles to all rigid motions.
+  const Eigen::VectorXd by_scale = ScaleGradient(x_in_shape_m).normalized();
+  const double of_scale = by_scale.dot(Multiply(points, by_scale).col(0));
+  const double trace = Trace(points), count = static_cast<double>(ids.size());
+  comparison->distance_sigma_m = std::sqrt(std::max(0.0, trace) / count);
+  comparison->distance_after_scaling_sigma_m = std::sqrt(std::max(0.0, trace - of_scale) / count);
+}
+
 }  // namespace
 
 ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
@@ -147,7 +166,8 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
   return metrics;
 }
 
-ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference) {
+ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference,
+                              const PointCovariance* covariance) {
   const auto reference_corners = CornersOf(reference);
   std::vector<CornerId> ids;
   std::vector<Eigen::Vector3d> x_in_shape_m, x_in_reference_m;
@@ -179,6 +199,7 @@ ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& refer
       Distances(reference_from_shape, x_in_shape_m, x_in_reference_m);
   comparison.distance_m = ComputeStatistics(distances_m);
   comparison.distance_sigma_m = point_variance.RootOfMean();
+  PredictDistances(covariance, ids, x_in_shape_m, &comparison);
   comparison.scale = 1.0 / reference_from_shape.scale;
   comparison.distance_after_scaling_m = ComputeStatistics(after_scaling_m);
   comparison.markers = DistancesOfMarkers(ids, distances_m, after_scaling_m);

@@ -58,14 +58,18 @@ struct ShapeComparison {
   Statistics distance_m;  // after rigid alignment without scale, points that both shapes have
   double scale = 1.0;     // this shape / reference, from the alignment with scale
   Statistics distance_after_scaling_m;
-  // Root of the mean variance of the points, where the shape has their sigmas: what distance_m.rms
-  // would be if the reference were the truth and held all points.
+  // What distance_m.rms and distance_after_scaling_m.rms would be if the reference were the truth:
+  // roots of the points' mean variance after these very alignments. Without a covariance the first
+  // is that of the points' own sigmas, where the shape has them.
   std::optional<double> distance_sigma_m;
+  std::optional<double> distance_after_scaling_sigma_m;
   std::vector<MarkerDistance> markers;  // by id
 };
 
-// Aligns common corners (not centres) by least squares. Throws DataError with fewer than three, or
+// Aligns common corners (not centres) by least squares. `covariance` is that of the shape's
+// corners; it counts where it holds all common ones. Throws DataError with fewer than three, or
 // when they all lie in one point.
-ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference);
+ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference,
+                              const PointCovariance* covariance = nullptr);
 
 }  // namespace velamap

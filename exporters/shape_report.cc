@@ -153,6 +153,13 @@ void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* r
   report->tables.push_back(std::move(table));
 }
 
+void AddMetrics(const AdjustmentUncertainty& uncertainty, MetricsReport* report) {
+  Append({{"corners_above_4_sigma_percent", 100.0 * uncertainty.share_above_4_sigma},
+          {"corner_sigma_factor", std::sqrt(uncertainty.variance_factor)},
+          {"correlation_factor", uncertainty.correlation_factor}},
+         report);
+}
+
 void AddMetrics(const ShapeComparison& comparison, MetricsReport* report) {
   Append({{"num_points", comparison.num_points},
           {"distance_mm", Scaled(kMmPerM, comparison.distance_m)}},
@@ -162,6 +169,8 @@ void AddMetrics(const ShapeComparison& comparison, MetricsReport* report) {
           {"scale_error_percent", 100.0 * (comparison.scale - 1.0)},
           {"distance_after_scaling_mm", Scaled(kMmPerM, comparison.distance_after_scaling_m)}},
          report);
+  AddSigma("distance_after_scaling_sigma_mm", comparison.distance_after_scaling_sigma_m,
+           &report->metrics, kMmPerM);
   MetricTable table = LongTable("reference_markers");
   for (const MarkerDistance& marker : comparison.markers) {
     table.rows.push_back(

@@ -13,6 +13,7 @@
 #include "exporters/sail_shape.h"
 #include "exporters/shape_frame.h"
 #include "exporters/shape_metrics.h"
+#include "reconstruct/adjustment_uncertainty.h"
 
 namespace velamap {
 
@@ -41,6 +42,9 @@ void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report,
 
 // adjacent_distance_error_mm, adjacent_distance_deviation_percent. Table adjacent_distances.
 void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* report);
+
+// corners_above_4_sigma_percent, corner_sigma_factor, correlation_factor.
+void AddMetrics(const AdjustmentUncertainty& uncertainty, MetricsReport* report);
 
 // num_points, distance_mm, scale, scale_error_percent, distance_after_scaling_mm. Table
 // reference_markers.

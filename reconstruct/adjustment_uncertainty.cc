@@ -13,9 +13,9 @@
 namespace velamap {
 namespace {
 
-// File: magic, version, four doubles, then points, blocks and factor; all little-endian.
+// File: magic, version, six doubles, then points, blocks and factor; all little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is written as memory holds it");
 
@@ -127,7 +127,8 @@ void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::strin
   Write(kMagic, sizeof(kMagic), &out);
   Write(kVersion, &out);
   for (const double value : {uncertainty.relative_scale_sigma, uncertainty.variance_factor,
-                             uncertainty.apparent_inset_px, uncertainty.apparent_inset_sigma_px}) {
+                             uncertainty.apparent_inset_px, uncertainty.apparent_inset_sigma_px,
+                             uncertainty.correlation_factor, uncertainty.share_above_4_sigma}) {
     Write(value, &out);
   }
   const PointCovariance& points = uncertainty.points;
@@ -158,6 +159,8 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   uncertainty.variance_factor = reader.Read<double>();
   uncertainty.apparent_inset_px = reader.Read<double>();
   uncertainty.apparent_inset_sigma_px = reader.Read<double>();
+  uncertainty.correlation_factor = reader.Read<double>();
+  uncertainty.share_above_4_sigma = reader.Read<double>();
   PointCovariance& points = uncertainty.points;
   points.point3D_ids.resize(reader.ReadCount(sizeof(Point3DId)));
   reader.Read(points.point3D_ids.data(), points.point3D_ids.size());

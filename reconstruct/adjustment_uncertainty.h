@@ -23,6 +23,12 @@ struct AdjustmentUncertainty {
   // Of the weighted corner residuals: sum of squares / redundancy. 1 where the corners' sigmas are
   // right.
   double variance_factor = 1.0;
+  // The corners' sigmas are taken this much larger in `points`, because errors that corners have in
+  // common move the shape farther than independent ones. 1 where nothing of the kind is found.
+  double correlation_factor = 1.0;
+  // Of the corners that stayed, those off by more than 4 of their calibrated sigmas (without the
+  // correlation factor).
+  double share_above_4_sigma = 0.0;
   double apparent_inset_px =
       0.0;  // corners lie this far inside along x and y of the marker; 0: not estimated
   double apparent_inset_sigma_px = 0.0;

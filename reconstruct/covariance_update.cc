@@ -25,7 +25,25 @@ Eigen::Vector3d Centroid(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-// Orthonormal basis of the infinitesimal rigid motions, 3n x 6 (5 for points on a line).
+}  // namespace
+
+Eigen::MatrixXd Multiply(const PointCovariance& covariance, const Eigen::MatrixXd& vectors) {
+  Eigen::MatrixXd result = covariance.factor * (covariance.signs.asDiagonal() *
+                                                (covariance.factor.transpose() * vectors));
+  Eigen::Index begin = 0;
+  for (const Eigen::MatrixXd& block : covariance.blocks) {
+    result.middleRows(begin, block.rows()) += block * vectors.middleRows(begin, block.rows());
+    begin += block.rows();
+  }
+  return result;
+}
+
+double Trace(const PointCovariance& covariance) {
+  double trace = covariance.signs.dot(covariance.factor.colwise().squaredNorm().transpose());
+  for (const Eigen::MatrixXd& block : covariance.blocks) trace += block.trace();
+  return trace;
+}
+
 Eigen::MatrixXd RigidMotions(const std::vector<Eigen::Vector3d>& x_in_world) {
   const Eigen::Vector3d centroid = Centroid(x_in_world);
   double extent = 0.0;
@@ -41,19 +59,6 @@ Eigen::MatrixXd RigidMotions(const std::vector<Eigen::Vector3d>& x_in_world) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(motions);
   qr.setThreshold(1e-9);
   return qr.householderQ() * Eigen::MatrixXd::Identity(motions.rows(), qr.rank());
-}
-
-}  // namespace
-
-Eigen::MatrixXd Multiply(const PointCovariance& covariance, const Eigen::MatrixXd& vectors) {
-  Eigen::MatrixXd result = covariance.factor * (covariance.signs.asDiagonal() *
-                                                (covariance.factor.transpose() * vectors));
-  Eigen::Index begin = 0;
-  for (const Eigen::MatrixXd& block : covariance.blocks) {
-    result.middleRows(begin, block.rows()) += block * vectors.middleRows(begin, block.rows());
-    begin += block.rows();
-  }
-  return result;
 }
 
 void AddMeasurements(const Eigen::MatrixXd& gradients, const Eigen::VectorXd& sigmas,

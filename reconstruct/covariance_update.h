@@ -18,6 +18,13 @@ void AddMeasurements(const Eigen::MatrixXd& gradients, const Eigen::VectorXd& si
 // C * vectors, 3n x m.
 Eigen::MatrixXd Multiply(const PointCovariance& covariance, const Eigen::MatrixXd& vectors);
 
+// Sum of all variances, m^2.
+double Trace(const PointCovariance& covariance);
+
+// Orthonormal, 3n x 6: the infinitesimal rigid motions of the points (fewer columns where they lie
+// on a line).
+Eigen::MatrixXd RigidMotions(const std::vector<Eigen::Vector3d>& x_in_world);
+
 // The covariance after a least-squares alignment (rotation and translation) of all points with
 // their true places: P C P, where P projects out the six infinitesimal rigid motions of the points
 // `x_in_world` (Baarda's S-transformation to inner constraints). Up to 12 more columns.

@@ -18,6 +18,55 @@ constexpr double kRivalRatio = 0.6;
 constexpr double kBlurRatio = 3.0;
 constexpr int kMinViewsWithoutBlurred = 3;
 
+// As if its square were marker `as_marker_idx`, with `quarters` turns in the numbers of its
+// corners.
+bool FitsAs(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
+            int quarters) {
+  MapObservation observation = global.problem.Observation(observation_idx);
+  observation.marker_idx = as_marker_idx;
+  std::rotate(observation.rays.begin(), observation.rays.begin() + quarters,
+              observation.rays.end());
+  std::rotate(observation.px_from_ray.begin(), observation.px_from_ray.begin() + quarters,
+              observation.px_from_ray.end());
+  const auto frame_idx = static_cast<std::size_t>(observation.frame_idx);
+  const auto& places = global.solution.shape_from_marker[static_cast<std::size_t>(as_marker_idx)];
+  return ReprojectionError(global.problem, observation, *global.solution.cam_from_shape[frame_idx],
+                           places.front()) <= GrowthTolerance(observation);
+}
+
+// These observations of one marker see a square that is known by another id, from so many more
+// frames that here it was misread.
+bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
+                      const std::vector<int>& observation_idxs) {
+  const auto count = static_cast<double>(observation_idxs.size());
+  for (int other_idx = 0; other_idx < static_cast<int>(global.problem.markers.size());
+       ++other_idx) {
+    if (other_idx == marker_idx ||
+        global.solution.shape_from_marker[static_cast<std::size_t>(other_idx)].empty() ||
+        count >= kRivalRatio * global.NumFits(other_idx)) {
+      continue;
+    }
+    if (std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
+          return FitsAs(global, observation_idx, other_idx, 0);
+        })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// They see the marker where it stands, but number its corners from a wrong one: no second place.
+bool SeeItTurned(const GlobalRegistration& global, int marker_idx,
+                 const std::vector<int>& observation_idxs) {
+  if (global.solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].empty()) return false;
+  return std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
+    for (int quarters = 1; quarters < kNumCorners; ++quarters) {
+      if (FitsAs(global, observation_idx, marker_idx, quarters)) return true;
+    }
+    return false;
+  });
+}
+
 }  // namespace
 
 void VoteOnIds(GlobalRegistration* global) {
@@ -29,11 +78,16 @@ void VoteOnIds(GlobalRegistration* global) {
         PlaceMarker(global->problem, global->solution, marker_idx, 1.0);
     if (placement.places.empty()) continue;
     const int num_here = static_cast<int>(placement.places.front().observation_idxs.size());
-    if (placement.num_elsewhere >= kRivalRatio * num_here) {
-      global->Drop(marker_idx, fmt::format("its id stands at two places, in {} and in {} frames, "
-                                           "and nothing tells which is right",
-                                           num_here, placement.num_elsewhere));
+    const std::vector<int>& elsewhere_idxs = placement.elsewhere_idxs;
+    const int num_elsewhere = static_cast<int>(elsewhere_idxs.size());
+    if (num_elsewhere < kRivalRatio * num_here ||
+        SeeAnotherMarker(*global, marker_idx, elsewhere_idxs) ||
+        (num_elsewhere < num_here && SeeItTurned(*global, marker_idx, elsewhere_idxs))) {
+      continue;
     }
+    global->Drop(marker_idx, fmt::format("its id stands at two places, in {} and in {} frames, "
+                                         "and nothing tells which is right",
+                                         num_here, num_elsewhere));
   }
 }
 

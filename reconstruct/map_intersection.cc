@@ -39,8 +39,8 @@ PlaceHypothesis Evaluate(const MapProblem& problem, const std::vector<View>& vie
   PlaceHypothesis hypothesis{shape_from_marker, 0.0, {}};
   for (const View& view : views) {
     const double tolerance_px = tolerance_factor * GrowthTolerance(*view.observation);
-    const double error_px = ReprojectionError(problem, *view.observation, *view.cam_from_shape,
-                                              shape_from_marker);
+    const double error_px =
+        ReprojectionError(problem, *view.observation, *view.cam_from_shape, shape_from_marker);
     hypothesis.cost += std::min(1.0, std::pow(error_px / tolerance_px, 2));
     if (error_px <= tolerance_px) hypothesis.observation_idxs.push_back(view.observation_idx);
   }
@@ -160,8 +160,9 @@ std::vector<PlaceHypothesis> RankPlaces(const MapProblem& problem, const MapSolu
   }
   std::vector<PlaceHypothesis> refined;
   for (PlaceHypothesis& hypothesis : Distinct(std::move(hypotheses), length_m, kMaxRefined)) {
-    const Sim3 coarse = Refine(problem, solution, views, kCoarse * tolerance_factor,
-                               std::move(hypothesis)).shape_from_marker;
+    const Sim3 coarse =
+        Refine(problem, solution, views, kCoarse * tolerance_factor, std::move(hypothesis))
+            .shape_from_marker;
     refined.push_back(Refine(problem, solution, views, tolerance_factor,
                              Evaluate(problem, views, tolerance_factor, coarse)));
   }
@@ -181,8 +182,8 @@ MarkerPlacement PlaceMarker(const MapProblem& problem, const MapSolution& soluti
   if (views.size() == 1) {
     const View& view = views.front();
     for (const Rigid3& cam_from_marker : view.observation->cam_from_marker) {
-      placement.places.push_back({Place(Inverse(*view.cam_from_shape) * cam_from_marker), 0.0,
-                                  {view.observation_idx}});
+      placement.places.push_back(
+          {Place(Inverse(*view.cam_from_shape) * cam_from_marker), 0.0, {view.observation_idx}});
     }
     return placement;
   }
@@ -190,8 +191,7 @@ MarkerPlacement PlaceMarker(const MapProblem& problem, const MapSolution& soluti
   if (ranked.empty() || ranked.front().observation_idxs.size() < 2) return placement;
   const PlaceHypothesis best = ranked.front();
   placement.places.push_back(best);
-  if (ranked.size() > 1 &&
-      ranked[1].observation_idxs.size() >= best.observation_idxs.size() &&
+  if (ranked.size() > 1 && ranked[1].observation_idxs.size() >= best.observation_idxs.size() &&
       ranked[1].cost < kRatio * best.cost + kNegligible * static_cast<double>(views.size())) {
     placement.places.push_back(ranked[1]);
   }
@@ -205,7 +205,7 @@ MarkerPlacement PlaceMarker(const MapProblem& problem, const MapSolution& soluti
   if (elsewhere.size() >= 2) {
     const auto others = RankPlaces(problem, solution, elsewhere, tolerance_factor);
     if (!others.empty() && others.front().observation_idxs.size() >= 2) {
-      placement.num_elsewhere = static_cast<int>(others.front().observation_idxs.size());
+      placement.elsewhere_idxs = others.front().observation_idxs;
     }
   }
   return placement;

@@ -18,9 +18,9 @@ struct MarkerPlacement {
   // The place that most frames support, with a rival that explains the same frames nearly as well
   // where there is one (the other planar solution). Empty: no two frames agree.
   std::vector<PlaceHypothesis> places;
-  // Frames that agree on another place, without those that agree on the best one: the same id
+  // Observations that agree on another place, without those that agree on the best one: the same id
   // twice.
-  int num_elsewhere = 0;
+  std::vector<int> elsewhere_idxs;
   int num_seen = 0;  // registered frames that see the marker
 };
 

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/error.h"
+#include "reconstruct/error_correlation.h"
 #include "reconstruct/gauge.h"
 #include "reconstruct/marker_sizes.h"
 #include "reconstruct/marker_uncertainty.h"
@@ -163,37 +164,15 @@ bool MarkerAdjuster::AddScaleBars() {
 }
 
 void MarkerAdjuster::Finish() {
-  constexpr int kMaxNumRounds = 3;
-  constexpr double kEnough = 0.01;
   // The first image may have been removed on the way.
   const Rigid3 first_from_world = model_.images.front().cam_from_world;
   TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, &model_);
   model_.images.front().cam_from_world = Rigid3{};
-  for (int round = 1; true; ++round) {
-    Solve(1e-9);
-    MarkerState state = MakeState(model_);
-    MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
-    const MarkerCovariance covariance = Covariance(problem);
-    const double redundancy = CornerRedundancy(problem, covariance);
-    double sum = 0.0;
-    int num_above_4_sigma = 0;
-    for (const CornerResidual& corner : EvaluateCorners(model_)) {
-      sum += corner.sigmas * corner.sigmas;
-      if (corner.sigmas > 4.0) ++num_above_4_sigma;
-    }
-    const double variance = sum / std::max(1.0, redundancy);
-    const double factor = std::max(kMinCornerFactor, weights_.corner_factor * std::sqrt(variance));
-    if (round < kMaxNumRounds && std::abs(factor / weights_.corner_factor - 1.0) > kEnough) {
-      weights_.corner_factor = factor;
-      continue;
-    }
-    summary_.share_above_4_sigma =
-        static_cast<double>(num_above_4_sigma) / static_cast<double>(problem.corners.size());
-    summary_.uncertainty = MakeUncertainty(state, weights_, problem, covariance);
-    summary_.uncertainty.variance_factor =
-        variance * weights_.corner_factor * weights_.corner_factor;
-    break;
-  }
+  summary_.uncertainty.variance_factor = CalibrateCorners();
+  summary_.uncertainty.correlation_factor = FindCorrelation();
+  weights_.corner_factor *= summary_.uncertainty.correlation_factor;
+  if (summary_.uncertainty.correlation_factor > 1.0) Solve(1e-9);
+  ComputeUncertainty();
   UpdatePointErrors(&model_);
   summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(model_));
   if (!(summary_.error_after_px.mean <= options_.max_mean_error_px)) {
@@ -205,6 +184,52 @@ void MarkerAdjuster::Finish() {
   for (const std::string& warning : FindWeakGeometry(model_, summary_.uncertainty.points)) {
     summary_.warnings.push_back(warning);
   }
+}
+
+double MarkerAdjuster::CalibrateCorners() {
+  constexpr int kMaxNumRounds = 3;
+  constexpr double kEnough = 0.01;
+  constexpr double kManySigmas = 4.0;
+  for (int round = 1; true; ++round) {
+    Solve(1e-9);
+    MarkerState state = MakeState(model_);
+    const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
+    const double redundancy = CornerRedundancy(problem, Covariance(problem));
+    double sum = 0.0;
+    const std::vector<CornerResidual> corners = EvaluateCorners(model_);
+    for (const CornerResidual& corner : corners) sum += corner.sigmas * corner.sigmas;
+    const double variance = sum / std::max(1.0, redundancy);
+    const double factor = std::max(kMinCornerFactor, weights_.corner_factor * std::sqrt(variance));
+    const bool is_calibrated = std::abs(factor / weights_.corner_factor - 1.0) <= kEnough;
+    if (round < kMaxNumRounds && !is_calibrated) {
+      weights_.corner_factor = factor;
+      continue;
+    }
+    const auto num_above =
+        std::count_if(corners.begin(), corners.end(), [variance](const CornerResidual& corner) {
+          return corner.sigmas > kManySigmas * std::sqrt(variance);
+        });
+    summary_.uncertainty.share_above_4_sigma =
+        static_cast<double>(num_above) / static_cast<double>(corners.size());
+    return variance * weights_.corner_factor * weights_.corner_factor;
+  }
+}
+
+double MarkerAdjuster::FindCorrelation() {
+  MarkerState state = MakeState(model_);
+  const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
+  return CorrelationFactor(state, problem, Covariance(problem), GroupImages(model_, state));
+}
+
+void MarkerAdjuster::ComputeUncertainty() {
+  MarkerState state = MakeState(model_);
+  const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
+  AdjustmentUncertainty uncertainty =
+      MakeUncertainty(state, weights_, problem, Covariance(problem));
+  uncertainty.variance_factor = summary_.uncertainty.variance_factor;
+  uncertainty.correlation_factor = summary_.uncertainty.correlation_factor;
+  uncertainty.share_above_4_sigma = summary_.uncertainty.share_above_4_sigma;
+  summary_.uncertainty = std::move(uncertainty);
 }
 
 MarkerProblem MarkerAdjuster::MakeProblem(const MarkerWeights& weights, const Model& model,

@@ -37,7 +37,8 @@ class MarkerAdjuster {
   // Scale bars that agree with the markers take part from now on; false: there are none.
   bool AddScaleBars();
 
-  // Until a step is a small part of a sigma; covariance, warnings, summary.
+  // Until a step is a small part of a sigma; what errors have in common; covariance, warnings,
+  // summary.
   void Finish();
 
   Model TakeModel() { return std::move(model_); }
@@ -58,6 +59,11 @@ class MarkerAdjuster {
   double CalibrateRobustly();
   int ReviseCorners();
   void RemoveUnderconstrainedParts();
+  // Corner sigmas by all residuals, solution, share of large residuals; returns the variance factor
+  // of the detector's sigmas.
+  double CalibrateCorners();
+  double FindCorrelation();
+  void ComputeUncertainty();
   // Throws DataError where a combination of parameters is undetermined.
   MarkerCovariance Covariance(const MarkerProblem& problem) const;
 

@@ -71,7 +71,6 @@ struct MarkerAdjustmentSummary {
   Statistics error_after_px;
   std::vector<RemovedObservation> removed;
   std::vector<ImageId> removed_images;
-  double share_above_4_sigma = 0.0;  // of the corners that stay
   AdjustmentUncertainty uncertainty;
   // Plain words on weak geometry (all views from one place, a flat board seen head-on, pure
   // rotation), a scale bar that contradicts the markers, markers whose size contradicts the others.

@@ -11,17 +11,6 @@
 namespace velamap {
 namespace {
 
-std::vector<Eigen::Vector3d> Positions(const MarkerState& state) {
-  std::vector<Eigen::Vector3d> positions;
-  for (const MarkerBlock& marker : state.markers) {
-    for (std::size_t i = 0; i < marker.x_in_world.size(); i += 3) {
-      positions.emplace_back(marker.x_in_world[i], marker.x_in_world[i + 1],
-                             marker.x_in_world[i + 2]);
-    }
-  }
-  return positions;
-}
-
 // First column of a global block that varies; -1 for others.
 int GlobalColumn(const MarkerProblem& problem, const double* values) {
   const SchurStructure structure = MakeSchurStructure(WithoutScaleBars(problem));
@@ -48,6 +37,17 @@ double GlobalSigma(const MarkerCovariance& covariance, int column, const PointCo
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> Positions(const MarkerState& state) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const MarkerBlock& marker : state.markers) {
+    for (std::size_t i = 0; i < marker.x_in_world.size(); i += 3) {
+      positions.emplace_back(marker.x_in_world[i], marker.x_in_world[i + 1],
+                             marker.x_in_world[i + 2]);
+    }
+  }
+  return positions;
+}
 
 PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covariance) {
   PointCovariance points;

@@ -2,11 +2,18 @@
 
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "reconstruct/adjustment_uncertainty.h"
 #include "reconstruct/marker_problem.h"
 #include "reconstruct/normal_equations.h"
 
 namespace velamap {
+
+// Of all corners, in order of the parameters.
+std::vector<Eigen::Vector3d> Positions(const MarkerState& state);
 
 // Of all corners, in the frame that the first image's camera fixes.
 PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covariance);

@@ -68,6 +68,8 @@ void Print(const AdjustmentResult& result, const std::string& model_path, std::o
              result.error_before_px.count);
   if (result.uncertainty) {
     fmt::print(out, "scale_sigma: {:.4f} %\n", 100.0 * result.uncertainty->relative_scale_sigma);
+    fmt::print(out, "corners_above_4_sigma: {:.3f} %\n",
+               100.0 * result.uncertainty->share_above_4_sigma);
   }
   fmt::print(out, "model_path: {}\n", model_path);
 }

@@ -92,9 +92,7 @@ struct ModelOfShape {
   std::optional<Model> model;
   std::optional<AdjustmentUncertainty> uncertainty;
 
-  const PointCovariance* Covariance() const {
-    return uncertainty ? &uncertainty->points : nullptr;
-  }
+  const PointCovariance* Covariance() const { return uncertainty ? &uncertainty->points : nullptr; }
 };
 
 ModelOfShape LoadModel(const MarkerShape& shape, const PathOptions& paths) {
@@ -124,10 +122,11 @@ MetricsReport Analyze(const Options& options) {
                           source.uncertainty ? &*source.uncertainty : nullptr),
                &report);
   }
+  if (source.uncertainty) AddMetrics(*source.uncertainty, &report);
   if (options.part_planes) AddMetrics(FitPartPlanes(shape, covariance), &report, covariance);
   if (!options.paths.reference_path.empty()) {
     const MarkerShape reference = ReadShapeCsv(ShapeFile(options.paths.reference_path));
-    AddMetrics(CompareShapes(shape, reference), &report);
+    AddMetrics(CompareShapes(shape, reference, covariance), &report);
     if (layout) {
       AddMetrics(CompareAdjacentDistances(shape, reference, *layout, covariance), &report);
     }

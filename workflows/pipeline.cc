@@ -84,9 +84,12 @@ AdjustmentResult RunCeresBackend(const MarkerAdjustmentOptions& options, const L
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
   spdlog::info(
       "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, corners "
-      "{:.2f} times as noisy as their detector says, scale good to {:.3f} %",
+      "{:.2f} times as noisy as their detector says and counted as {:.2f} times that for what "
+      "their "
+      "errors have in common, {:.2f} % of them off by more than 4 sigmas, scale good to {:.3f} %",
       summary.num_iterations, summary.removed.size(), summary.error_before_px.mean,
       summary.error_after_px.mean, std::sqrt(uncertainty.variance_factor),
+      uncertainty.correlation_factor, 100.0 * uncertainty.share_above_4_sigma,
       100.0 * uncertainty.relative_scale_sigma);
   if (uncertainty.apparent_inset_sigma_px > 0) {
     spdlog::info("apparent inset of the corners {:.3f} +- {:.3f} px", uncertainty.apparent_inset_px,

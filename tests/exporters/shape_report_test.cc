@@ -57,9 +57,12 @@ TEST(ShapeReport, ComparisonIsInMillimetres) {
   comparison.distance_after_scaling_m = ComputeStatistics({0.0005, 0.0005});
   comparison.markers = {{17, 2, 0.002, 0.0005}};
   EXPECT_FALSE(JsonOf(comparison).contains("distance_sigma_mm"));
+  EXPECT_FALSE(JsonOf(comparison).contains("distance_after_scaling_sigma_mm"));
   comparison.distance_sigma_m = 0.004;
+  comparison.distance_after_scaling_sigma_m = 0.003;
   const json report = JsonOf(comparison);
   EXPECT_NEAR(report["distance_sigma_mm"].get<double>(), 4.0, 1e-12);
+  EXPECT_NEAR(report["distance_after_scaling_sigma_mm"].get<double>(), 3.0, 1e-12);
   EXPECT_EQ(report["num_points"], 2);
   EXPECT_EQ(report["distance_mm_count"], 2);
   EXPECT_NEAR(report["distance_mm_mean"].get<double>(), 2.0, 1e-12);
@@ -133,6 +136,17 @@ TEST(ShapeReport, ExporterWritesWhatItReports) {
   const std::string csv = ReadBytes(dir / "shape" / "metrics.csv");
   EXPECT_THAT(csv, HasSubstr(",,reprojection_error_px_count,96\n"));
   EXPECT_THAT(csv, HasSubstr("images,2,image_name,image3.jpg\n"));
+}
+
+TEST(ShapeReport, UncertaintySaysWhatWasLeftInAndWhatItRestsOn) {
+  AdjustmentUncertainty uncertainty;
+  uncertainty.share_above_4_sigma = 0.002;
+  uncertainty.variance_factor = 2.25;
+  uncertainty.correlation_factor = 1.25;
+  const auto report = JsonOf(uncertainty);
+  EXPECT_NEAR(report["corners_above_4_sigma_percent"].get<double>(), 0.2, 1e-12);
+  EXPECT_NEAR(report["corner_sigma_factor"].get<double>(), 1.5, 1e-12);
+  EXPECT_EQ(report["correlation_factor"].get<double>(), 1.25);
 }
 
 }  // namespace

@@ -211,5 +211,35 @@ TEST(ShapeSigma, OfAComparisonIsTheRootOfTheMeanVariance) {
   EXPECT_NEAR(*CompareShapes(shape, reference).distance_sigma_m, std::sqrt(7.0) * 1e-3, 1e-12);
 }
 
+// Of the compared points alone, after their own alignment: the mean square over drawn shapes.
+TEST(ShapeSigma, OfAComparisonIsThatAfterItsOwnAlignments) {
+  const MarkerShape shape = CrookedShape();
+  const PointCovariance covariance = ExampleCovariance(ExampleModel(), 2e-4, 11);
+  MarkerShape part = shape;
+  part.markers.resize(3);
+  const ShapeComparison predicted = CompareShapes(shape, part, &covariance);
+  double sum = 0.0, sum_after_scaling = 0.0;
+  constexpr int kNumSamples = 2000;
+  SampleShapes(shape, covariance, kNumSamples, [&](const MarkerShape& sample) {
+    const ShapeComparison comparison = CompareShapes(sample, part);
+    sum += std::pow(comparison.distance_m.rms, 2);
+    sum_after_scaling += std::pow(comparison.distance_after_scaling_m.rms, 2);
+  });
+  EXPECT_NEAR(*predicted.distance_sigma_m / std::sqrt(sum / kNumSamples), 1.0, 0.03);
+  EXPECT_NEAR(
+      *predicted.distance_after_scaling_sigma_m / std::sqrt(sum_after_scaling / kNumSamples), 1.0,
+      0.03);
+  EXPECT_LT(*predicted.distance_after_scaling_sigma_m, *predicted.distance_sigma_m);
+}
+
+TEST(ShapeSigma, OfAComparisonNeedsACovarianceOfAllItsPoints) {
+  const MarkerShape shape = CrookedShape();
+  const PointCovariance covariance =
+      Subset(ExampleCovariance(ExampleModel(), 2e-4, 11), {11, 12, 13, 14});
+  const ShapeComparison comparison = CompareShapes(shape, shape, &covariance);
+  EXPECT_FALSE(comparison.distance_sigma_m.has_value());
+  EXPECT_FALSE(comparison.distance_after_scaling_sigma_m.has_value());
+}
+
 }  // namespace
 }  // namespace velamap

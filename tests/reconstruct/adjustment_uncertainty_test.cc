@@ -27,6 +27,8 @@ class UncertaintyFile : public testing::Test {
     uncertainty_.variance_factor = 1.7;
     uncertainty_.apparent_inset_px = -0.01;
     uncertainty_.apparent_inset_sigma_px = 0.02;
+    uncertainty_.correlation_factor = 1.3;
+    uncertainty_.share_above_4_sigma = 0.004;
   }
 
   std::string Folder() const { return dir_.path().string(); }
@@ -58,6 +60,8 @@ TEST_F(UncertaintyFile, ComesBackToTheLastBit) {
   EXPECT_EQ(read.relative_scale_sigma, uncertainty_.relative_scale_sigma);
   EXPECT_EQ(read.variance_factor, uncertainty_.variance_factor);
   EXPECT_EQ(read.apparent_inset_px, uncertainty_.apparent_inset_px);
+  EXPECT_EQ(read.correlation_factor, uncertainty_.correlation_factor);
+  EXPECT_EQ(read.share_above_4_sigma, uncertainty_.share_above_4_sigma);
   EXPECT_EQ(read.apparent_inset_sigma_px, uncertainty_.apparent_inset_sigma_px);
 }
 
@@ -91,7 +95,7 @@ TEST_F(UncertaintyFile, ForeignOrBrokenFilesAreInputErrors) {
   const std::string bytes = FileBytes();
   WriteBytes("no uncertainty at all, but a text that somebody put here");
   EXPECT_THROW(ReadUncertainty(Folder()), InputError);
-  for (const std::size_t at : {8u, 44u, 51u}) {  // version, number of points
+  for (const std::size_t at : {8u, 60u, 67u}) {  // version, number of points
     std::string broken = bytes;
     broken[at] = '\x7f';
     WriteBytes(broken);

@@ -134,7 +134,7 @@ TEST_F(MarkerAdjustment, GrossOutliersAreRemovedAndNothingElse) {
               kInvalidPoint3DId);
   }
   EXPECT_LT(MaxErrorInFirstCamera(model, clean), 2e-3);
-  EXPECT_LT(summary.share_above_4_sigma, 0.005);
+  EXPECT_LT(summary.uncertainty.share_above_4_sigma, 0.005);
   CheckModel(model);
 }
 

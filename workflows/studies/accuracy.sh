@@ -26,7 +26,8 @@ fi
 repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 
 keys=(num_markers reconstruction_ratio scale_error_percent distance_mm_rms
-  distance_sigma_mm distance_after_scaling_mm_rms reprojection_error_px_mean)
+  distance_sigma_mm distance_after_scaling_mm_rms distance_after_scaling_sigma_mm
+  corners_above_4_sigma_percent correlation_factor reprojection_error_px_mean)
 csv="$work/accuracy.csv"
 echo "clip,way,$(IFS=,; echo "${keys[*]}"),angle_deg" >"$csv"
 
@@ -102,7 +103,7 @@ detections() {
 
 # study CLIP WAY
 study() {
-  local corners=edge method=global backend=colmap face run="$1_$2"
+  local corners=edge method=global backend=colmap exact_print=0 face run="$1_$2"
   case "$2" in
     thesis) corners=subpix method=thesis ;;
     edge) method=thesis ;;
@@ -111,7 +112,11 @@ study() {
     global_both) backend=both ;;
     *) fail "WAYS: $2 is unknown" ;;
   esac
+  case "$1" in
+    walls | board | sail_*) exact_print=1 ;;
+  esac
   DATABASE="$(detections "$1" "$corners")" METHOD="$method" BACKEND="$backend" \
+    EXACT_PRINT="$exact_print" \
     reconstruct "$(folder_of "$1")" "$run"
   if [[ "$1" == cube ]]; then
     for face in 0 1 2 3 4 5; do face_row "$2" "$face"; done

@@ -87,7 +87,8 @@ make_near_clip() { make_clip near "${sail[@]}" --num_frames "$(near_clip_frames)
 
 # reconstruct CLIP RUN FRAME_REGISTRATOR_OPTION...: into runs/STUDY/RUN. TRUTH names another
 # reference than the clip's truth.csv, DATABASE other detections than its own, METHOD another
-# registration than the thesis's, BACKEND another bundle adjustment than COLMAP's; ADJUST=0 leaves the adjustment out. No result, which the log explains, is
+# registration than the thesis's, BACKEND another bundle adjustment than COLMAP's, EXACT_PRINT=1 that the squares are as large as
+# the layout says, as a renderer draws them; ADJUST=0 leaves the adjustment out. No result, which the log explains, is
 # one of the results of a study: then there is no analysis.csv.
 reconstruct() {
   local clip="$clips/$1" run="$runs/$2"
@@ -107,6 +108,9 @@ reconstruct_steps() {
   local adjustment=(--log_level warn)
   if [[ -n "${BACKEND:-}" ]]; then
     adjustment=(--backend "$BACKEND" "${database[@]}" "${layout[@]}")
+    if [[ "${EXACT_PRINT:-0}" -eq 1 ]]; then
+      adjustment+=(--MarkerAdjustment.common_print_tolerance 0)
+    fi
   fi
   if [[ "${ADJUST:-1}" -eq 0 ]]; then model="$run/seed"; fi
   "$velamap" frame_registrator "${database[@]}" --output_path "$run/seed" "${layout[@]}" \
