@@ -8,6 +8,7 @@
 #include "importer/camera.h"
 #include "importer/detection.h"
 #include "importer/frame_source.h"
+#include "importer/stage_timer.h"
 
 namespace velamap {
 
@@ -15,6 +16,8 @@ struct FrameResult {
   FrameDetections detections;
   Camera camera;                // for the frame's size
   std::string skipped_because;  // not empty: the file was no whole image
+  ImportTimes times;            // of the thread that processed it
+  double reading_s = 0.0;       // Frame::decode_s
 };
 
 // Reads all frames of `source`, calls `process` for each on `num_threads` threads (frame_idx counts

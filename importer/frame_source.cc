@@ -1,6 +1,7 @@
 #include "importer/frame_source.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <mutex>
@@ -112,11 +113,13 @@ class VideoFile : public FrameSource {
         options_(options),
         known_names_(known_names.begin(), known_names.end()),
         decoder_(path, num_threads),
-        num_container_frames_(decoder_.NumContainerFrames()) {
+        num_container_frames_(decoder_.NumContainerFrames()),
+        num_frames_(CountFrames()) {
     decoder_.SkipTo(options_.first_frame);
   }
 
   std::optional<Frame> Next() override {
+    const auto begin = std::chrono::steady_clock::now();
     while (!ended_ && (options_.last_frame < 0 || num_read_ <= options_.last_frame)) {
       std::optional<VideoFrame> read = decoder_.Next();
       if (!read) {
@@ -132,6 +135,8 @@ class VideoFile : public FrameSource {
       frame.frame_number = read->number;
       frame.time_s = read->time_s;
       frame.picture = std::move(read->picture);
+      const std::chrono::duration<double> decoding = std::chrono::steady_clock::now() - begin;
+      frame.decode_s = decoding.count();
       return frame;
     }
     return std::nullopt;
@@ -147,7 +152,10 @@ class VideoFile : public FrameSource {
 
   bool IsVideo() const override { return true; }
 
-  int NumFrames() const override {
+  int NumFrames() const override { return num_frames_; }
+
+ private:
+  int CountFrames() const {
     if (num_container_frames_ == 0 && options_.last_frame < 0) return 0;
     int end = num_container_frames_;
     if (options_.last_frame >= 0 && (end == 0 || options_.last_frame < end)) {
@@ -159,7 +167,6 @@ class VideoFile : public FrameSource {
     return std::max(0, num_wanted - NumKnownBefore(end));
   }
 
- private:
   int NumKnownBefore(int end) const {
     int num_known = 0;
     for (int i = options_.first_frame; i < end; i += options_.frame_step) {
@@ -189,6 +196,7 @@ class VideoFile : public FrameSource {
   std::set<std::string> known_names_;
   VideoDecoder decoder_;
   int num_container_frames_;
+  int num_frames_;    // that are to come at most
   int num_read_ = 0;  // from the video's start, also where decoding began later
   bool ended_ = false;
 };

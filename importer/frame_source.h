@@ -25,6 +25,7 @@ struct Frame {
   cv::Mat gray;                         // 8 bit, once the frame is loaded
   cv::Mat color;                        // images only: BGR, 8 bit, once loaded
   std::optional<VideoPicture> picture;  // video only
+  double decode_s = 0.0;                // video only: wall time of Next()
 };
 
 // The whole frame, BGR, 8 bit.

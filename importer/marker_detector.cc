@@ -9,6 +9,7 @@
 
 #include "importer/corner_refinement.h"
 #include "importer/saddle_corners.h"
+#include "importer/stage_timer.h"
 
 namespace velamap {
 namespace {
@@ -119,6 +120,7 @@ std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary
   std::vector<MarkerDetection> detections;
   int num_fallbacks = 0;
   for (const QuadWithId& quad : FindQuads(dark_on_light, dictionary, border_bits, options)) {
+    const StageTimer timer(ImportStage::kRefine);
     std::optional<RefinedCorners> refined;
     MarkerDetection detection;
     detection.marker_id = quad.marker_id;

@@ -195,18 +195,22 @@ class ImportRun {
   FrameResult Process(int frame_idx, Frame* frame) {
     FrameResult result;
     result.detections.image_name = frame->image_name;
-    if (!source_->Load(frame, &result.skipped_because)) return result;
-    result.camera = CameraOfFrame(*frame);
-    result.detections = DetectInFrame(detector_, *frame, frame->gray);
-    if (source_->IsVideo() && !options_.frame_output_path.empty() &&
-        !result.detections.markers.empty()) {
-      WriteJpeg(fs::path(options_.frame_output_path) / frame->image_name, ColorImage(*frame));
+    if (Load(frame, &result.skipped_because)) {
+      const StageTimer timer(ImportStage::kDetect);
+      result.camera = CameraOfFrame(*frame);
+      result.detections = DetectInFrame(detector_, *frame, frame->gray);
+      WriteImage(*frame, result.detections);
+      AddToSample(frame_idx, frame->gray);
     }
-    AddToSample(frame_idx, frame->gray);
+    result.times = TakeStageTimes();
+    result.reading_s = frame->decode_s;
     return result;
   }
 
   void Consume(const FrameResult& result) {
+    const StageTimer timer(ImportStage::kDatabase);
+    report_.times += result.times;
+    reading_s_ += result.reading_s;
     const FrameDetections& detections = result.detections;
     if (!result.skipped_because.empty()) {
       report_.skipped.push_back({detections.image_name, result.skipped_because});
@@ -231,8 +235,12 @@ class ImportRun {
     ++report_.num_images_added;
   }
 
-  // Writes what is left. Throws if the run found nothing.
-  ImportReport Finish() {
+  // Writes what is left. Throws if the run found nothing. `cpu_s`: of the whole program for the
+  // frames on `num_threads` threads.
+  ImportReport Finish(double cpu_s, int num_threads) {
+    const StageTimer timer(ImportStage::kDatabase);
+    report_.times += TakeStageTimes();
+    SettleTimes(cpu_s, num_threads);
     report_.ids_not_in_layout.assign(ids_not_in_layout_.begin(), ids_not_in_layout_.end());
     if (report_.num_frames_read == 0 && !report_.skipped.empty() && !held_markers_) {
       throw InputError(fmt::format("{}: none of {} images can be read; the first: {}: {}",
@@ -246,6 +254,31 @@ class ImportRun {
   }
 
  private:
+  bool Load(Frame* frame, std::string* reason) const {
+    const StageTimer timer(ImportStage::kDecode);
+    return source_->Load(frame, reason);
+  }
+
+  void WriteImage(const Frame& frame, const FrameDetections& detections) const {
+    if (!source_->IsVideo() || options_.frame_output_path.empty() || detections.markers.empty()) {
+      return;
+    }
+    const StageTimer timer(ImportStage::kImages);
+    WriteJpeg(fs::path(options_.frame_output_path) / frame.image_name, ColorImage(frame));
+  }
+
+  // From sums over threads to what ImportReport::times promises.
+  void SettleTimes(double cpu_s, int num_threads) {
+    ImportTimes& times = report_.times;
+    BusyTime& decode = times[ImportStage::kDecode];
+    decode.cpu_s = std::max(0.0, cpu_s - (times.CpuSeconds() - decode.cpu_s));
+    for (const ImportStage stage :
+         {ImportStage::kDecode, ImportStage::kDetect, ImportStage::kRefine, ImportStage::kImages}) {
+      times[stage].wall_s /= num_threads;
+    }
+    decode.wall_s += reading_s_;
+  }
+
   // Straight from the working threads: results that wait for their turn hold no pixels.
   void AddToSample(int frame_idx, const cv::Mat& gray) {
     if (!few_found_) return;
@@ -276,12 +309,24 @@ class ImportRun {
   std::mutex sample_mutex_;
   ImageSample sample_;
   ImportReport report_;
+  double reading_s_ = 0.0;
   std::set<int> ids_not_in_layout_;
 };
+
+// What needs all frames.
+void CompleteDatabase(const FrameDetector& detector, ColmapDatabase* database,
+                      ImportReport* report) {
+  const StageTimer timer(ImportStage::kDatabase);
+  const int num_turned = ResolveDoubtfulRotations(detector, database);
+  report->num_markers += num_turned;
+  report->num_rejected -= num_turned;
+  report->num_pairs = WriteAllMatches(database);
+}
 
 }  // namespace
 
 ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressCallback& progress) {
+  TakeStageTimes();  // of an earlier call on this thread
   options.detection.Check();
   options.video.Check();
   const int num_threads = NumThreads(options.num_threads);
@@ -292,6 +337,7 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   CheckExisting(options, DescribeDetector(detector), database);
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
+  const double cpu_begin_s = ProcessCpuSeconds();
   const std::unique_ptr<FrameSource> source =
       OpenFrameSource(options.image_path, options.video, known_names, options.num_threads);
 
@@ -303,12 +349,10 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
         run.Consume(result);
         if (progress) progress(frame_idx + 1, source->NumFrames(), ProgressLine(result));
       });
-  ImportReport report = run.Finish();
+  ImportReport report = run.Finish(ProcessCpuSeconds() - cpu_begin_s, num_threads);
   report.num_images_present = static_cast<int>(known_names.size());
-  const int num_turned = ResolveDoubtfulRotations(detector, &database);
-  report.num_markers += num_turned;
-  report.num_rejected -= num_turned;
-  report.num_pairs = WriteAllMatches(&database);
+  CompleteDatabase(detector, &database, &report);
+  report.times += TakeStageTimes();
   guard.Keep();
   return report;
 }

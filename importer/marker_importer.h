@@ -9,6 +9,7 @@
 #include "importer/camera.h"
 #include "importer/layout.h"
 #include "importer/options.h"
+#include "importer/stage_timer.h"
 
 namespace velamap {
 
@@ -46,6 +47,11 @@ struct ImportReport {
   int num_pairs = 0;      // pairs of images with matches
   std::vector<int> ids_not_in_layout;  // found, not named by the layout, left out
   std::vector<SkippedImage> skipped;   // unreadable files
+  // CPU time summed over the threads; that of decoding is what no other stage claims, because
+  // FFmpeg decodes on threads of its own. The stages overlap: their wall times are those of the
+  // reading thread (decode), of one of the working threads in the mean (detect, refine, images) and
+  // of the calling one (database).
+  ImportTimes times;
 };
 
 // Detects the markers of every frame on all cores while frames stream through a bounded queue,

@@ -79,16 +79,15 @@ void Validate(Options* options) {
   if (options->adjustment.UsesColmap()) CheckColmap(options->adjustment.colmap.colmap_path);
 }
 
-// Returns the number of frames that were read.
-int Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* unreadable) {
+ImportReport Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* unreadable) {
   options->importer.database_path = workspace->paths().Database().string();
   options->importer.frame_output_path = workspace->paths().Images().string();
-  const ImportReport report = ImportImages(options->importer);
+  ImportReport report = ImportImages(options->importer);
   workspace->Keep();
   for (const SkippedImage& skipped : report.skipped) {
     unreadable->push_back({skipped.image_name, skipped.reason});
   }
-  return report.num_frames_read;
+  return report;
 }
 
 // `--name value` and `--name=value` as pairs.
@@ -160,10 +159,9 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
 }
 
 void WriteTimes(const StageClock& clock, const WorkspacePaths& paths) {
-  const std::vector<StageTime> times = clock.Times();
-  for (const std::string& line : StageTable(times)) spdlog::info("{}", line);
+  LogStageTimes(clock);
   WriteFileAtomically(paths.Timing(),
-                      [&times](std::ostream& out) { WriteStageTimesJson(times, out); });
+                      [&clock](std::ostream& out) { WriteStageTimesJson(clock.Times(), out); });
 }
 
 }  // namespace
@@ -180,7 +178,8 @@ void RunAutomaticReconstructor(const Arguments& arguments) {
 
   ReconstructionSummary summary;
   StageClock clock;
-  clock.End("import", Import(&options, &workspace, &summary.left_out));
+  const ImportReport import = Import(&options, &workspace, &summary.left_out);
+  clock.EndImport(import.times, import.num_frames_read);
   const SeedResult seed =
       RegisterDatabase(paths.Database().string(), options.importer.layout, options.registration);
   clock.End("register", static_cast<int>(seed.image_names.size()));

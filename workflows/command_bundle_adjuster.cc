@@ -9,6 +9,7 @@
 #include "workflows/commands.h"
 #include "workflows/pipeline.h"
 #include "workflows/shared_options.h"
+#include "workflows/stage_times.h"
 #include "workflows/summary.h"
 
 namespace velamap {
@@ -81,11 +82,15 @@ void RunBundleAdjuster(const Arguments& arguments) {
   options.adjustment.backend = "colmap";  // needs no more than a model
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
+  StageClock clock;
   const Layout layout = LoadAdjustmentLayout(options);
   Model model = ReadModel(options.paths.input_path);
   const AdjustmentResult result = AdjustModel(options.adjustment, layout, LoadCornerSigmas(options),
                                               options.paths.log_path, &model);
+  clock.End("adjust", static_cast<int>(model.images.size()));
   WriteAdjustedModel(model, result, options.paths.output_path);
+  clock.End("export");
+  LogStageTimes(clock);
   Print(result, options.paths.output_path, std::cout);
 }
 

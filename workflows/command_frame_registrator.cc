@@ -10,6 +10,7 @@
 #include "workflows/commands.h"
 #include "workflows/pipeline.h"
 #include "workflows/shared_options.h"
+#include "workflows/stage_times.h"
 #include "workflows/summary.h"
 
 namespace velamap {
@@ -65,11 +66,15 @@ void RunFrameRegistrator(const Arguments& arguments) {
   Options options;
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
+  StageClock clock;
   const SeedResult seed = RegisterDatabase(
       options.paths.database_path, LoadLayout(options.markers, false), options.registration);
+  clock.End("register", static_cast<int>(seed.image_names.size()));
   WriteModel(seed.model, options.paths.output_path, ModelFormat::kBinaryAndText);
   WriteFileAtomically(options.paths.registration_path,
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
+  clock.End("export");
+  LogStageTimes(clock);
   Print(seed, options.paths, std::cout);
 }
 

@@ -8,6 +8,7 @@
 #include "workflows/commands.h"
 #include "workflows/pipeline.h"
 #include "workflows/shared_options.h"
+#include "workflows/stage_times.h"
 
 namespace velamap {
 namespace {
@@ -75,7 +76,11 @@ void RunMarkerImporter(const Arguments& arguments) {
   Options options;
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
-  Print(ImportImages(options.importer), options.paths.database_path, std::cout);
+  StageClock clock;
+  const ImportReport report = ImportImages(options.importer);
+  clock.EndImport(report.times, report.num_frames_read);
+  LogStageTimes(clock);
+  Print(report, options.paths.database_path, std::cout);
 }
 
 }  // namespace velamap

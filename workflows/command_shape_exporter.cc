@@ -7,6 +7,7 @@
 #include "workflows/commands.h"
 #include "workflows/sail_options.h"
 #include "workflows/shared_options.h"
+#include "workflows/stage_times.h"
 #include "workflows/summary.h"
 
 namespace velamap {
@@ -61,6 +62,7 @@ void RunShapeExporter(const Arguments& arguments) {
   Options options;
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
+  StageClock clock;
   const Layout layout = LoadLayout(options.markers, false);
   const Model model = ReadModel(options.paths.input_path);
   std::optional<AdjustmentUncertainty> uncertainty;
@@ -69,6 +71,8 @@ void RunShapeExporter(const Arguments& arguments) {
   }
   const ShapeExportReport report =
       ExportShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
+  clock.End("export");
+  LogStageTimes(clock);
   Print(report, options.paths, std::cout);
 }
 
