@@ -147,13 +147,15 @@ Registration RegisterFrames(const std::vector<DatabaseImage>& images,
   if (options.method == RegistrationMethod::kGlobal) {
     return RegisterFramesGlobally(images, cameras, layout, options);
   }
-  RegistrationState state{layout, options, {}, {}, {}, {}};
-  const auto ordered = CanonicalOrder(images);
-  for (const DatabaseImage* image : ordered) {
-    const Camera& camera = cameras.at(image->camera_id);
-    state.frames.push_back(EstimateFrameShape(*image, camera, layout));
-    state.cameras.push_back(&camera);
-  }
+  return RegisterPosedImages(PoseImages(images, cameras, layout), layout, options);
+}
+
+Registration RegisterPosedImages(const PosedImages& posed, const Layout& layout,
+                                 const RegistrationOptions& options) {
+  options.Check();
+  VELAMAP_CHECK(options.method == RegistrationMethod::kThesis);
+  RegistrationState state{layout, options, posed.frames, posed.cameras, {}, {}};
+  const std::vector<const DatabaseImage*>& ordered = posed.images;
   const bool time_order = UseTimeOrder(ordered, options.frame_order);
   const int min_num_registered = time_order && options.num_frames == 0 ? 1 : 2;
   if (static_cast<int>(state.frames.size()) < min_num_registered) {

@@ -19,6 +19,7 @@
 #include "importer/layout.h"
 #include "reconstruct/frame_alignment.h"
 #include "reconstruct/frame_shape.h"
+#include "reconstruct/posed_images.h"
 #include "reconstruct/shape_averaging.h"
 
 namespace velamap {
@@ -97,5 +98,10 @@ struct Registration {
 Registration RegisterFrames(const std::vector<DatabaseImage>& images,
                             const std::map<CameraId, Camera>& cameras, const Layout& layout,
                             const RegistrationOptions& options);
+
+// The same by the thesis's method, of images that are posed already: for several central frames of
+// one clip.
+Registration RegisterPosedImages(const PosedImages& posed, const Layout& layout,
+                                 const RegistrationOptions& options);
 
 }  // namespace velamap

@@ -14,8 +14,8 @@ namespace velamap {
 struct RegistrationState {
   const Layout& layout;
   const RegistrationOptions& options;
-  std::vector<FrameShape> frames;                         // in canonical order
-  std::vector<const Camera*> cameras;                     // by frame_idx, as the next
+  const std::vector<FrameShape>& frames;                  // in canonical order
+  const std::vector<const Camera*>& cameras;              // by frame_idx, as the next
   std::vector<std::optional<FrameAlignment>> alignments;  // with the shape
   ShapePoints shape;                                      // mean over the aligned frames
 

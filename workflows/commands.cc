@@ -14,6 +14,8 @@ const std::vector<Command>& Commands() {
       {"marker_importer", RunMarkerImporter, "images or video -> COLMAP database"},
       {"frame_registrator", RunFrameRegistrator, "database -> seed model and registration table"},
       {"bundle_adjuster", RunBundleAdjuster, "model -> bundle-adjusted model"},
+      {"central_frame_sweeper", RunCentralFrameSweeper,
+       "database -> table of the results around many central frames"},
       {"shape_exporter", RunShapeExporter, "model -> metric model and shape files"},
       {"shape_analyzer", RunShapeAnalyzer, "shape -> its errors, alone or against a reference"},
       {"shape_comparer", RunShapeComparer, "shape against another shape or a design's surface"},

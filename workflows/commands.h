@@ -15,6 +15,7 @@ void RunAutomaticReconstructor(const Arguments& arguments);
 void RunMarkerImporter(const Arguments& arguments);
 void RunFrameRegistrator(const Arguments& arguments);
 void RunBundleAdjuster(const Arguments& arguments);
+void RunCentralFrameSweeper(const Arguments& arguments);
 void RunShapeExporter(const Arguments& arguments);
 void RunShapeAnalyzer(const Arguments& arguments);
 void RunShapeComparer(const Arguments& arguments);

@@ -8,6 +8,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     marker_uncertainty_test.cc
     scene_model.cc
     schur_solver_test.cc
+    warm_start_test.cc
     sheet_model.cc
     weak_geometry_test.cc
   LIBRARIES Ceres::ceres

@@ -13,13 +13,9 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-const std::vector<std::string> kCommands = {"automatic_reconstructor",
-                                            "marker_importer",
-                                            "frame_registrator",
-                                            "bundle_adjuster",
-                                            "shape_exporter",
-                                            "shape_analyzer",
-                                            "version"};
+const std::vector<std::string> kCommands = {
+    "automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
+    "central_frame_sweeper",   "shape_exporter",  "shape_analyzer",    "version"};
 
 TEST(CommandLineTest, HelpListsAllCommands) {
   for (const std::vector<std::string>& arguments :

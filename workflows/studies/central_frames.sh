@@ -2,6 +2,7 @@
 # Reconstruction ratio around every central frame (thesis Figure 4.24), and the histogram of the
 # markers' areas (Figure 4.23).
 # usage: workflows/studies/central_frames.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
+# One central_frame_sweeper does them all; START=1 begins each adjustment at its neighbour's result.
 # Near the clip's ends the search finds frames on one side only, and so fewer; num_images says so.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -17,13 +18,21 @@ else
 fi
 
 make_near_clip
+frames=()
+for ((frame = step; frame < $(near_clip_frames); frame += step)); do frames+=("$frame"); done
+layout=(--layout_path "$clips/near/layout.yml" --log_level warn)
+"$velamap" central_frame_sweeper --database_path "$clips/near/database.db" "${layout[@]}" \
+  --central_frames "$(IFS=,; echo "${frames[*]}")" --backend "${BACKEND:-colmap}" \
+  --warm_start "${START:-0}" --models_path "$runs/models" \
+  --output_path "$work/central_frames_sweep.csv" "${options[@]}" >"$runs/log.txt" 2>&1 ||
+  fail "$runs/log.txt says what went wrong"
 csv="$work/central_frames.csv"
 areas="$work/central_frames_areas.csv"
 histogram="$work/central_frames_histogram.csv"
 echo "central_frame,$(sail_header)" >"$csv"
 echo "central_frame,marker_id,area_mm2" >"$areas"
 
-# areas_of FRAME: half the cross product of the diagonals of every whole marker of its shape.
+# areas_of FRAME SHAPE_CSV: half the cross product of the diagonals of every whole marker of its shape.
 areas_of() {
   awk -F, -v frame="$1" '
     /^[0-9]/ && $2 >= 1 { p[$1, $2, "x"] = $3; p[$1, $2, "y"] = $4; p[$1, $2, "z"] = $5; ids[$1] }
@@ -38,13 +47,25 @@ areas_of() {
         cx = ay * bz - az * by; cy = az * bx - ax * bz; cz = ax * by - ay * bx
         printf "%d,%d,%.2f\n", frame, id, 1e6 * sqrt(cx * cx + cy * cy + cz * cz) / 2
       }
-    }' "$runs/r$1/shape/shape.csv" | sort -t, -k2n
+    }' "$2" | sort -t, -k2n
 }
 
-for ((frame = step; frame < $(near_clip_frames); frame += step)); do
-  reconstruct near "r$frame" "${options[@]}" --Registration.central_frame "$frame"
+# analyze FRAME: against the truth; a frame without a result, whose reason is in the sweep's table,
+# leaves its row empty.
+analyze() {
+  local model
+  model="$runs/models/frame_$(printf '%06d' "$1")"
+  if [[ ! -f "$model/shape.csv" ]]; then return; fi
+  mkdir -p "$runs/r$1"
+  "$velamap" shape_analyzer --shape_path "$model/shape.csv" --input_path "$model/sparse" \
+    --reference_path "$clips/near/truth.csv" --csv_path "$runs/r$1/analysis.csv" \
+    "${layout[@]}" >>"$runs/log.txt" 2>&1 || fail "$runs/log.txt says what went wrong"
+  areas_of "$1" "$model/shape.csv" >>"$areas"
+}
+
+for frame in "${frames[@]}"; do
+  analyze "$frame"
   { printf '%s' "$frame"; sail_row "r$frame"; } >>"$csv"
-  if [[ -f "$runs/r$frame/analysis.csv" ]]; then areas_of "$frame" >>"$areas"; fi
 done
 
 # The best: highest ratio, and among these the smallest area error.
