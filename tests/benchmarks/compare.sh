@@ -1,0 +1,229 @@
+#!/usr/bin/env bash
+# Whole commands in pairs, with ratios, as tables for a README: velamap against OpenCV's and COLMAP's
+# own programs and FFmpeg's decoding, and against itself with more work.
+# usage: tests/benchmarks/compare.sh [PART...] [WORK_FOLDER]   (default: all parts, workspace/compare)
+#   detection   import of a clip; VideoCapture + detectMarkers(SUBPIX) in one loop; decoding alone
+#   adjustment  registration + adjustment; colmap bundle_adjuster on a seed in time order
+#   main        automatic_reconstructor around a named central frame; decoding of those frames
+#   memory      peak memory of the import of a short and a long clip
+#   growth      import with twice the frames, and with larger ones
+#   sweep       central_frame_sweeper; as many single runs
+# Times are CPU seconds, user and system, of all threads and children: another program beside them
+# changes wall times more. Clips are rendered with fixed seeds and kept in WORK_FOLDER/clips.
+# BUILD: folder of the build (build/release). WIDTHS, NUM_FRAMES, LONG, REPEATS, CENTRAL_FRAMES: sizes.
+set -euo pipefail
+export LC_ALL=C
+
+fail() {
+  echo "error: $*" >&2
+  exit 2
+}
+
+repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
+build="${BUILD:-$repository/build/release}"
+work="workspace/compare"
+parts=()
+for argument in "$@"; do
+  case "$argument" in
+    detection | adjustment | main | memory | growth | sweep) parts+=("$argument") ;;
+    --help)
+      sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "$0"
+      exit 0
+      ;;
+    -*) fail "$argument: unknown option; see --help" ;;
+    *) work="$argument" ;;
+  esac
+done
+if [[ ${#parts[@]} -eq 0 ]]; then parts=(detection adjustment main memory growth sweep); fi
+read -ra widths <<<"${WIDTHS:-1920 3840}"
+num_frames="${NUM_FRAMES:-200}"
+long="${LONG:-2000}"
+repeats="${REPEATS:-3}"
+central_frames="${CENTRAL_FRAMES:-11}"
+
+velamap="$build/workflows/velamap"
+render_clip="$build/tests/tools/render_clip"
+plain_detection="$build/tests/benchmarks/plain_detection"
+velamap_benchmark="$build/tests/benchmarks/velamap_benchmark"
+for program in "$velamap" "$render_clip" "$plain_detection" "$velamap_benchmark"; do
+  [[ -x "$program" ]] || fail "$program is not built; cmake --build it, or set BUILD to the build's folder"
+done
+[[ -x /usr/bin/time ]] || fail "/usr/bin/time is missing (Debian package time)"
+mkdir -p "$work/clips"
+work="$(realpath "$work")"
+
+# clip KIND WIDTH: the folder of a rendered clip, calm or busy.
+clip() {
+  local folder="$work/clips/$1_$2_$num_frames" busy=0
+  if [[ $1 == busy ]]; then busy=1; fi
+  if [[ ! -f "$folder/whole" ]]; then
+    "$render_clip" --output_path "$folder" --width "$2" --num_frames "$num_frames" --busy "$busy" \
+      --seed 1 >"$work/render.log" 2>&1 || fail "render_clip: $(tail -n 1 "$work/render.log")"
+    touch "$folder/whole"
+  fi
+  echo "$folder"
+}
+
+# looped FOLDER FRAMES: the clip again and again up to so many frames, not encoded anew.
+looped() {
+  local folder="$1_looped_$2"
+  mkdir -p "$folder"
+  cp "$1/camera.yml" "$1/layout.yml" "$folder/"
+  if [[ ! -f "$folder/clip.mp4" ]]; then
+    ffmpeg -v error -y -stream_loop -1 -i "$1/clip.mp4" -c copy -frames:v "$2" "$folder/part.mp4"
+    mv "$folder/part.mp4" "$folder/clip.mp4"
+  fi
+  echo "$folder"
+}
+
+# measure COMMAND...: runs it; sets cpu (s) and memory (MB). Its stdout goes to out.txt.
+measure() {
+  /usr/bin/time -o "$work/time.txt" -f '%U %S %M' "$@" >"$work/out.txt" 2>"$work/err.txt" ||
+    fail "$*: $(tail -n 1 "$work/err.txt")"
+  read -r cpu memory < <(awk '{ printf "%.2f %.0f\n", $1 + $2, $3 / 1024 }' "$work/time.txt")
+}
+
+# value KEY: of the last command's stdout.
+value() { awk -F': ' -v key="$1" '$1 == key { print $2 }' "$work/out.txt"; }
+
+ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", b > 0 ? a / b : 0 }'; }
+
+import() {
+  rm -f "$work/database.db"
+  measure "$velamap" marker_importer --image_path "$1/clip.mp4" --camera_path "$1/camera.yml" \
+    --layout_path "$1/layout.yml" --database_path "$work/database.db"
+}
+
+decode() { measure ffmpeg -v error -i "$1/clip.mp4" -an -f null -; }
+
+compare_detection() {
+  local width kind folder repeat import_cpu import_markers plain_cpu plain_markers
+  echo "| clip | velamap CPU s | markers | plain loop CPU s | markers | decoding CPU s | plain / velamap | decoding / velamap |"
+  echo "|---|---|---|---|---|---|---|---|"
+  for width in "${widths[@]}"; do
+    for kind in calm busy; do
+      folder="$(clip "$kind" "$width")"
+      for ((repeat = 0; repeat < repeats; repeat++)); do
+        import "$folder"
+        import_cpu="$cpu" import_markers="$(value markers)"
+        measure "$plain_detection" "$folder/clip.mp4" \
+          "$(sed -n 's/^dictionary: *//p' "$folder/layout.yml")"
+        plain_cpu="$cpu" plain_markers="$(value markers)"
+        decode "$folder"
+        echo "| $kind, $width px, $num_frames frames | $import_cpu | $import_markers | $plain_cpu | $plain_markers | $cpu | $(ratio "$plain_cpu" "$import_cpu") | $(ratio "$cpu" "$import_cpu") |"
+      done
+    done
+  done
+}
+
+compare_adjustment() {
+  local repeat
+  echo "| frames/rows/columns of markers | velamap CPU s | colmap bundle_adjuster CPU s | velamap / colmap |"
+  echo "|---|---|---|---|"
+  for ((repeat = 0; repeat < repeats; repeat++)); do
+    "$velamap_benchmark" --benchmark_format=csv \
+      --benchmark_filter='InTimeOrder/41/10/13|RegistrationAndAdjustment' 2>/dev/null |
+      awk -F, '
+        /^name/ { for (i = 1; i <= NF; i++) column[$i] = i; next }
+        /^"?BM_/ {
+          gsub(/"/, "", $1)
+          split($1, part, "/")
+          ms = $column["time_unit"] ~ /ms/ ? 1e-3 : 1e-9
+          size = part[2] "/" part[3] "/" part[4]
+          if ($1 ~ /InTimeOrder/) colmap[size] = $column["cpu_time"] * ms
+          else { ours[size] = $column["cpu_time"] * ms; order[++n] = size }
+        }
+        END {
+          for (i = 1; i <= n; i++) {
+            s = order[i]
+            if (s in colmap)
+              printf "| %s | %.2f | %.2f | %.2f |\n", s, ours[s], colmap[s], ours[s] / colmap[s]
+            else printf "| %s | %.2f | | |\n", s, ours[s]
+          }
+        }'
+  done
+}
+
+compare_main() {
+  local width repeat folder main_cpu
+  echo "| clip | automatic_reconstructor CPU s | decoding CPU s | ratio | import, register, adjust, export, report CPU s |"
+  echo "|---|---|---|---|---|"
+  for width in "${widths[@]}"; do
+    folder="$(clip calm "$width")"
+    for ((repeat = 0; repeat < repeats; repeat++)); do
+      rm -rf "$work/result"
+      measure "$velamap" automatic_reconstructor --image_path "$folder/clip.mp4" \
+        --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
+        --workspace_path "$work/result" --Registration.method thesis \
+        --central_frame $((num_frames / 2)) --backend ceres
+      main_cpu="$cpu"
+      decode "$folder"
+      echo "| calm, $width px, $num_frames frames | $main_cpu | $cpu | $(ratio "$main_cpu" "$cpu") | $(
+        awk '/"stage"/ { gsub(/[",]/, ""); stage = $2 }
+          /"cpu_s"/ && stage ~ /^(import|register|adjust|export|report)$/ {
+            sub(/,/, "", $2); printf "%s%.2f", separator, $2; separator = ", " }' "$work/result/timing.json") |"
+    done
+  done
+}
+
+compare_memory() {
+  local width folder frames
+  echo "| clip | peak memory MB | CPU s |"
+  echo "|---|---|---|"
+  for width in "${widths[@]}"; do
+    for frames in 100 "$long"; do
+      folder="$(looped "$(clip calm "$width")" "$frames")"
+      import "$folder"
+      echo "| $width px, $frames frames | $memory | $cpu |"
+    done
+  done
+}
+
+compare_growth() {
+  local width folder repeat once
+  echo "| clip | CPU s | of twice the frames | ratio |"
+  echo "|---|---|---|---|"
+  for width in 1280 "${widths[@]}"; do
+    folder="$(clip calm "$width")"
+    for ((repeat = 0; repeat < repeats; repeat++)); do
+      import "$folder"
+      once="$cpu"
+      import "$(looped "$folder" $((2 * num_frames)))"
+      echo "| $width px, $num_frames frames | $once | $cpu | $(ratio "$cpu" "$once") |"
+    done
+  done
+}
+
+compare_sweep() {
+  local folder first frames=() frame layout cold repeat sum sweep
+  folder="$(clip calm "${widths[0]}")"
+  import "$folder"
+  first=$((num_frames / 2 - central_frames / 2))
+  for ((frame = first; frame < first + central_frames; frame++)); do frames+=("$frame"); done
+  layout=(--layout_path "$folder/layout.yml" --log_level error)
+  echo "| central frames | single runs CPU s | sweep CPU s | sweep / single runs | sweep, cold starts CPU s |"
+  echo "|---|---|---|---|---|"
+  for ((repeat = 0; repeat < repeats; repeat++)); do
+    sum=0
+    for frame in "${frames[@]}"; do
+      measure "$velamap" frame_registrator --database_path "$work/database.db" "${layout[@]}" \
+        --output_path "$work/seed" --Registration.method thesis --central_frame "$frame"
+      sum="$(awk -v a="$sum" -v b="$cpu" 'BEGIN { print a + b }')"
+      measure "$velamap" bundle_adjuster --backend ceres --database_path "$work/database.db" \
+        "${layout[@]}" --input_path "$work/seed" --output_path "$work/adjusted"
+      sum="$(awk -v a="$sum" -v b="$cpu" 'BEGIN { print a + b }')"
+    done
+    sweep=("$velamap" central_frame_sweeper --database_path "$work/database.db" "${layout[@]}"
+      --output_path "$work/sweep.csv" --central_frames "$(IFS=,; echo "${frames[*]}")")
+    measure "${sweep[@]}" --warm_start 0
+    cold="$cpu"
+    measure "${sweep[@]}"
+    echo "| $central_frames | $sum | $cpu | $(ratio "$cpu" "$sum") | $cold |"
+  done
+}
+
+for part in "${parts[@]}"; do
+  echo
+  echo "## $part"
+  "compare_$part"
+done
