@@ -86,7 +86,7 @@ measure() {
 # value KEY: of the last command's stdout.
 value() { awk -F': ' -v key="$1" '$1 == key { print $2 }' "$work/out.txt"; }
 
-ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", b > 0 ? a / b : 0 }'; }
+ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (b > 0 ? a / b : 0) }'; }
 
 import() {
   rm -f "$work/database.db"
