@@ -1,6 +1,6 @@
 // What all registrations of one database by the thesis's method have in common, whatever their
-// central frame: its images in order, every marker posed alone (thesis 3.3). That is a large part of
-// the work of one.
+// central frame: its images in order, every marker posed alone (thesis 3.3). That is a large part
+// of the work of one.
 
 #pragma once
 
