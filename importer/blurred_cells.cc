@@ -2,39 +2,55 @@
 
 #include <algorithm>
 
-#include "importer/normal_table.h"
+#include "importer/normal_lanes.h"
 
 namespace velamap {
 namespace {
 
-// std::floor is a call where the processor's own rounding may not be used. |x| stays small here.
-int Floor(double x) {
-  const int truncated = static_cast<int>(x);
-  return truncated - (x < truncated);
+// Of column `column` to the right of the first, in row `row` below the first, for each place.
+Floats Gather(const std::array<const float*, kLanes>& corners, int row, int column) {
+  const int offset = row * kMaxRingedCells + column;
+  return Floats{corners[0][offset], corners[1][offset], corners[2][offset], corners[3][offset]};
+}
+
+std::array<const float*, kLanes> FirstCells(const Lightness& lightness, const Shares& u,
+                                            const Shares& v) {
+  std::array<const float*, kLanes> corners;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    corners[static_cast<std::size_t>(lane)] =
+        lightness.data() + v.first[lane] * kMaxRingedCells + u.first[lane];
+  }
+  return corners;
 }
 
 }  // namespace
 
-void ComputeShares(double x, double blur, int num_cells, Shares* shares) {
-  constexpr double kReach = 3.3;  // sigmas
+void ComputeShares(Floats x, Floats blur, int num_cells, Shares* shares) {
+  constexpr float kReach = 3.3f;  // sigmas
   // Edge k lies between the ringed cells k and k + 1.
-  const int last_edge = num_cells + 2 * kRing - 2;
-  const double place = x + kRing - 1;
-  const int low = std::clamp(-Floor(kReach * blur - place), 0, last_edge + 1);
-  const int high = std::clamp(Floor(place + kReach * blur), -1, last_edge);
+  const int all_edges = num_cells + 2 * kRing - 1;
+  const Floats place = x + static_cast<float>(kRing - 1);
+  // Where a fit runs away these need not be finite: the limits keep the cells inside the pattern.
+  const Floats limit = AllLanes(2 * kMaxRingedCells);
+  const Floats reach = Min(kReach * blur, limit);
+  // As many edges for each of the places; those out of reach do no harm.
+  const int num_edges = std::min(static_cast<int>(2 * MaxLane(reach)) + 1, all_edges);
+  Ints low = Floor(Max(Min(place, limit), -limit) - reach) + 1;
+  low = low < 0 ? Ints{} : low;
+  low = low > all_edges - num_edges ? Ints{} + (all_edges - num_edges) : low;
   shares->first = low;
   shares->blur = blur;
-  shares->count = std::max(high - low + 2, 1);
-  const double inverse_blur = 1 / blur;
+  shares->count = num_edges + 1;
+  const Floats inverse_blur = 1.0f / blur;
+  const Floats from_low = place - __builtin_convertvector(low, Floats);
   // What one edge leaves, the next takes.
-  double distribution = 1.0, density = 0.0, moment = 0.0;
-  const int num_edges = shares->count - 1;
+  Floats distribution = AllLanes(1.0), density{}, moment{};
   for (int i = 0; i < num_edges; ++i) {
     const auto index = static_cast<std::size_t>(i);
-    const double z = (place - (low + i)) * inverse_blur;
-    const NormalTable::Value normal = kNormalTable.At(z);
-    const double next_density = normal.density * inverse_blur;
-    const double next_moment = -z * next_density;
+    const Floats z = (from_low - static_cast<float>(i)) * inverse_blur;
+    const NormalLanes normal = NormalAt(z);
+    const Floats next_density = normal.density * inverse_blur;
+    const Floats next_moment = -z * next_density;
     shares->value[index] = distribution - normal.distribution;
     shares->by_x[index] = density - next_density;
     shares->by_blur[index] = moment - next_moment;
@@ -49,21 +65,26 @@ void ComputeShares(double x, double blur, int num_cells, Shares* shares) {
 }
 
 bool Reaches(int num_rings, const Shares& shares, int num_cells) {
-  return shares.first < num_rings ||
-         shares.first + shares.count > num_cells + 2 * kRing - num_rings;
+  int low = shares.first[0], high = low;
+  for (int lane = 1; lane < kLanes; ++lane) {
+    low = std::min(low, static_cast<int>(shares.first[lane]));
+    high = std::max(high, static_cast<int>(shares.first[lane]));
+  }
+  return low < num_rings || high + shares.count > num_cells + 2 * kRing - num_rings;
 }
 
 Blended Blend(const Lightness& lightness, const Shares& u, const Shares& v) {
+  const std::array<const float*, kLanes> corners = FirstCells(lightness, u, v);
   Blended sum;
-  double by_blur_u_v = 0.0;
+  Floats by_blur_u_v{};
   for (int j = 0; j < v.count; ++j) {
-    double value = 0.0, by_u = 0.0, by_blur_u = 0.0;
-    const double* row = &lightness(v.first + j, u.first);
+    Floats value{}, by_u{}, by_blur_u{};
     for (int i = 0; i < u.count; ++i) {
       const auto index = static_cast<std::size_t>(i);
-      value += row[i] * u.value[index];
-      by_u += row[i] * u.by_x[index];
-      by_blur_u += row[i] * u.by_blur[index];
+      const Floats cell = Gather(corners, j, i);
+      value += cell * u.value[index];
+      by_u += cell * u.by_x[index];
+      by_blur_u += cell * u.by_blur[index];
     }
     const auto index = static_cast<std::size_t>(j);
     sum.value += value * v.value[index];
@@ -78,18 +99,20 @@ Blended Blend(const Lightness& lightness, const Shares& u, const Shares& v) {
   return sum;
 }
 
-double BlendValue(const Lightness& lightness, const Shares& u, const Shares& v) {
-  double sum = 0.0;
+Floats BlendValue(const Lightness& lightness, const Shares& u, const Shares& v) {
+  const std::array<const float*, kLanes> corners = FirstCells(lightness, u, v);
+  Floats sum{};
   for (int j = 0; j < v.count; ++j) {
-    double value = 0.0;
-    const double* row = &lightness(v.first + j, u.first);
-    for (int i = 0; i < u.count; ++i) value += row[i] * u.value[static_cast<std::size_t>(i)];
+    Floats value{};
+    for (int i = 0; i < u.count; ++i) {
+      value += Gather(corners, j, i) * u.value[static_cast<std::size_t>(i)];
+    }
     sum += value * v.value[static_cast<std::size_t>(j)];
   }
   return sum;
 }
 
-void Add(double factor, const Blended& a, Blended* b) {
+void Add(Floats factor, const Blended& a, Blended* b) {
   b->value += factor * a.value;
   b->by_u += factor * a.by_u;
   b->by_v += factor * a.by_v;
@@ -99,9 +122,9 @@ void Add(double factor, const Blended& a, Blended* b) {
   b->by_uu_vv += factor * a.by_uu_vv;
 }
 
-void AddCorrelation(double covariance, Blended* blended) {
+void AddCorrelation(Floats covariance, Blended* blended) {
   blended->value +=
-      covariance * blended->by_u_v + 0.5 * covariance * covariance * blended->by_uu_vv;
+      covariance * blended->by_u_v + 0.5f * covariance * covariance * blended->by_uu_vv;
 }
 
 }  // namespace velamap

@@ -23,6 +23,7 @@ struct Pass {
   double band_px;
   int max_samples;  // of a side
   double tolerance_px;
+  bool is_last;  // the uncertainty of the others is of no use
 };
 
 struct FittedSide {
@@ -31,21 +32,31 @@ struct FittedSide {
   EdgeUncertainty uncertainty;
 };
 
+// Room that the fits of a marker's sides use one after the other.
+struct Workspace {
+  EdgeSamples samples;
+  EdgeFit fit;
+};
+
 std::optional<FittedSide> FitSide(const cv::Mat& gray, const SideModel& model, const Pass& pass,
-                                  EdgeSamples* samples) {
+                                  Workspace* workspace) {
   if (!(model.light - model.dark > kMinContrast)) return std::nullopt;
-  SampleSide(gray, model, pass.band_px, pass.max_samples, samples);
+  SampleSide(gray, model, pass.band_px, pass.max_samples, &workspace->samples);
   const EdgePrior prior = MakeEdgePrior(model);
-  const auto fit = FitEdge(*samples, prior, pass.tolerance_px);
-  if (!fit) return std::nullopt;
-  const EdgeParameters& p = fit->parameters;
-  if (!(p.Contrast() > kMinContrast) || fit->rms_gray > kMaxRelativeRms * p.Contrast() ||
+  EdgeFit& fit = workspace->fit;
+  if (!FitEdge(workspace->samples, prior, pass.tolerance_px, &fit)) return std::nullopt;
+  const EdgeParameters& p = fit.parameters;
+  if (!(p.Contrast() > kMinContrast) || fit.equations.Rms() > kMaxRelativeRms * p.Contrast() ||
       std::abs(p[EdgeParameters::kOffset]) + std::abs(p[EdgeParameters::kSlope]) > pass.band_px) {
     return std::nullopt;
   }
-  const auto uncertainty = EstimateUncertainty(*samples, prior, p);
-  if (!uncertainty) return std::nullopt;
-  return FittedSide{model.side, p, *uncertainty};
+  FittedSide fitted{model.side, p, {}};
+  if (pass.is_last) {
+    const auto uncertainty = EstimateUncertainty(fit, prior);
+    if (!uncertainty) return std::nullopt;
+    fitted.uncertainty = *uncertainty;
+  }
+  return fitted;
 }
 
 struct Line {
@@ -91,15 +102,14 @@ struct Fit {
 };
 
 std::optional<Fit> FitSides(const cv::Mat& gray, const Quad& corners_px, double blur_px,
-                            int num_cells, const Pass& pass) {
-  EdgeSamples samples;
+                            int num_cells, const Pass& pass, Workspace* workspace) {
   std::array<FittedSide, kNumCorners> sides;
   ResidualNoise noise;
   Fit fit{{}, 0.0};
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     const SideModel model =
         MakeSideModel(gray, corners_px, static_cast<int>(i), num_cells, blur_px);
-    const auto side = FitSide(gray, model, pass, &samples);
+    const auto side = FitSide(gray, model, pass, workspace);
     if (!side) return std::nullopt;
     sides[i] = *side;
     noise.Add(side->uncertainty.noise);
@@ -110,6 +120,7 @@ std::optional<Fit> FitSides(const cv::Mat& gray, const Quad& corners_px, double 
     const auto corner = Intersect(TangentAtEnd(sides[i], -1), TangentAtEnd(ending, 1));
     if (!corner) return std::nullopt;
     fit.corners.corners_px[i] = *corner;
+    if (!pass.is_last) continue;
     fit.corners.sigma_px[i] = std::sqrt(noise.VarianceGray() * CornerVariance(sides[i], ending));
   }
   return fit;
@@ -143,10 +154,13 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray, const Qu
   const double cell_px = MeanSidePx(corners_px) / num_cells;
   const double band_px =
       std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
-  const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.05}, {band_px, kMaxEdgeSamples, 5e-3}};
+  const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.05, false},
+                         {band_px, kMaxEdgeSamples, 5e-3, true}};
   Fit fit{{corners_px, {}}, kFirstBlurPx};
+  Workspace workspace;
   for (const Pass& pass : passes) {
-    const auto next = FitSides(gray, fit.corners.corners_px, fit.blur_px, num_cells, pass);
+    const auto next =
+        FitSides(gray, fit.corners.corners_px, fit.blur_px, num_cells, pass, &workspace);
     if (!next) return std::nullopt;
     fit = *next;
   }

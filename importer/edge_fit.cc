@@ -5,109 +5,93 @@
 
 #include <Eigen/Cholesky>
 
-#include "importer/normal_table.h"
+#include "importer/least_squares.h"
+#include "importer/normal_lanes.h"
 
 namespace velamap {
 namespace {
 
 using Vector = EdgeParameters::Vector;
-using Matrix = Eigen::Matrix<double, EdgeParameters::kCount, EdgeParameters::kCount>;
+using Matrix = EdgeEquations::Matrix;
 
 constexpr double kMinBlurPx = 0.3;
 constexpr double kMaxBlurPx = 5.0;
-constexpr int kMaxIterations = 8;
 constexpr double kPixelNoise = 3.0;  // grey levels, against which the priors weigh
-
-struct NormalEquations {
-  Matrix hessian = Matrix::Zero();
-  Vector gradient = Vector::Zero();
-  double cost = 0.0;
-  double squared_residuals = 0.0;
-};
 
 Vector PriorWeight(const EdgePrior& prior) {
   return (kPixelNoise * prior.sigma.values.cwiseInverse()).cwiseAbs2();
 }
 
-NormalEquations Accumulate(const EdgeSamples& samples, const EdgePrior& prior,
-                           const EdgeParameters& parameters) {
-  NormalEquations equations;
-  Vector jacobian;
-  for (int i = 0; i < samples.count; ++i) {
-    const EdgeSample& sample = samples.values[static_cast<std::size_t>(i)];
-    const double residual = EvaluateEdge(parameters, sample, &jacobian) - sample.gray;
-    equations.squared_residuals += residual * residual;
-    equations.hessian.noalias() += jacobian * jacobian.transpose();
-    equations.gradient += residual * jacobian;
+void Evaluate(const EdgeSamples& samples, const EdgePrior& prior, const Vector& weight,
+              const Vector& values, bool with_hessian, EdgeEquations* equations) {
+  const EdgeParameters parameters{values};
+  equations->Clear(with_hessian);
+  EdgeEquations::Jacobian jacobian;
+  for (int i = 0; i < samples.count; i += kLanes) {
+    const EdgeSamples4& four = samples.fours[static_cast<std::size_t>(i / kLanes)];
+    const Floats modelled = EvaluateEdge(parameters, four, &jacobian);
+    equations->Add(&jacobian, modelled - four.gray, samples.count - i);
   }
-  const Vector weight = PriorWeight(prior);
-  const Vector departure = parameters.values - prior.mean.values;
-  equations.hessian.diagonal() += weight;
-  equations.gradient += weight.cwiseProduct(departure);
-  equations.cost = equations.squared_residuals + departure.cwiseAbs2().cwiseProduct(weight).sum();
-  return equations;
+  equations->Finish(values - prior.mean.values, weight);
 }
 
 }  // namespace
 
-double EvaluateEdge(const EdgeParameters& p, const EdgeSample& sample, Vector* jacobian) {
-  const double s = sample.s, hump = 1 - s * s;
-  const double dark = p[EdgeParameters::kDark] + p[EdgeParameters::kDarkSlope] * s;
-  const double light = p[EdgeParameters::kLight] + p[EdgeParameters::kLightSlope] * s;
-  const double inverse_blur = 1 / p[EdgeParameters::kBlur];
-  const double distance = sample.distance_px - p[EdgeParameters::kOffset] -
-                          p[EdgeParameters::kSlope] * s - p[EdgeParameters::kBend] * hump;
-  const double z = distance * inverse_blur;
-  const double inner_z = (distance + sample.inner_depth_px) * inverse_blur;
-  const double outer_z = (distance - sample.outer_depth_px) * inverse_blur;
-  const NormalTable::Value edge = kNormalTable.At(z), inner = kNormalTable.At(inner_z),
-                           outer = kNormalTable.At(outer_z);
+Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSamples4& samples,
+                    EdgeEquations::Jacobian* jacobian) {
+  using P = EdgeParameters;
+  const Eigen::Matrix<float, P::kCount, 1> p = parameters.values.cast<float>();
+  const Floats s = samples.s, hump = 1.0f - s * s;
+  const Floats dark = p[P::kDark] + p[P::kDarkSlope] * s;
+  const Floats light = p[P::kLight] + p[P::kLightSlope] * s;
+  const float inverse_blur = 1 / p[P::kBlur];
+  const Floats distance =
+      samples.distance_px - p[P::kOffset] - p[P::kSlope] * s - p[P::kBend] * hump;
+  const Floats z = distance * inverse_blur;
+  const Floats inner_z = (distance + samples.inner_depth_px) * inverse_blur;
+  const Floats outer_z = (distance - samples.outer_depth_px) * inverse_blur;
+  const NormalLanes edge = NormalAt(z), inner = NormalAt(inner_z), outer = NormalAt(outer_z);
 
-  const double darkness = sample.cover * (1 - edge.distribution);
-  const double inner_amount = sample.inner * (1 - inner.distribution);
-  const double outer_amount = sample.outer * outer.distribution;
-  const double by_edge = (light - dark) * sample.cover * edge.density;
-  const double by_inner = -p[EdgeParameters::kInnerGain] * sample.inner * inner.density;
-  const double by_outer = p[EdgeParameters::kOuterGain] * sample.outer * outer.density;
-  const double by_offset = -(by_edge + by_inner + by_outer) * inverse_blur;
-  *jacobian << by_offset, by_offset * s, by_offset * hump,
-      -(by_edge * z + by_inner * inner_z + by_outer * outer_z) * inverse_blur, darkness,
-      1 - darkness, darkness * s, (1 - darkness) * s, inner_amount, outer_amount;
-  return light - (light - dark) * darkness + p[EdgeParameters::kInnerGain] * inner_amount +
-         p[EdgeParameters::kOuterGain] * outer_amount;
+  const Floats darkness = samples.cover * (1.0f - edge.distribution);
+  const Floats inner_amount = samples.inner * (1.0f - inner.distribution);
+  const Floats outer_amount = samples.outer * outer.distribution;
+  const Floats by_edge = (light - dark) * samples.cover * edge.density;
+  const Floats by_inner = -p[P::kInnerGain] * samples.inner * inner.density;
+  const Floats by_outer = p[P::kOuterGain] * samples.outer * outer.density;
+  const Floats by_offset = -(by_edge + by_inner + by_outer) * inverse_blur;
+  *jacobian = {
+      by_offset,        by_offset * s,
+      by_offset * hump, -(by_edge * z + by_inner * inner_z + by_outer * outer_z) * inverse_blur,
+      darkness,         1.0f - darkness,
+      darkness * s,     (1.0f - darkness) * s,
+      inner_amount,     outer_amount};
+  return light - (light - dark) * darkness + p[P::kInnerGain] * inner_amount +
+         p[P::kOuterGain] * outer_amount;
 }
 
-std::optional<EdgeFit> FitEdge(const EdgeSamples& samples, const EdgePrior& prior,
-                               double tolerance_px) {
-  if (samples.count < EdgeParameters::kCount) return std::nullopt;
-  EdgeParameters parameters = prior.mean;
-  NormalEquations equations = Accumulate(samples, prior, parameters);
-  double damping = 1e-4;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    Matrix damped = equations.hessian;
-    damped.diagonal() *= 1 + damping;
-    const Vector step = -damped.ldlt().solve(equations.gradient);
-    if (!step.allFinite()) return std::nullopt;
-    EdgeParameters candidate{parameters.values + step};
-    double& blur = candidate[EdgeParameters::kBlur];
-    blur = std::clamp(blur, kMinBlurPx, kMaxBlurPx);
-    const NormalEquations next = Accumulate(samples, prior, candidate);
-    if (next.cost < equations.cost) {
-      parameters = candidate;
-      equations = next;
-      damping *= 0.1;
-    } else {
-      damping *= 10;
-    }
-    if (step.head<3>().cwiseAbs().maxCoeff() < tolerance_px) break;
-  }
-  return EdgeFit{parameters, std::sqrt(equations.squared_residuals / samples.count)};
+bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double tolerance_px,
+             EdgeFit* fit) {
+  LeastSquaresOptions options;
+  options.max_iterations = 8;
+  options.first_damping = 1e-4;
+  options.tolerance_px = tolerance_px;
+  fit->parameters = prior.mean;
+  const Vector weight = PriorWeight(prior);
+  return MinimizeSquares(
+      options,
+      [&](const Vector& values, bool with_hessian, EdgeEquations* equations) {
+        Evaluate(samples, prior, weight, values, with_hessian, equations);
+      },
+      [](const Vector& step) { return step.head<3>().cwiseAbs().maxCoeff(); },
+      [](Vector* values) {
+        double& blur = (*values)[EdgeParameters::kBlur];
+        blur = std::clamp(blur, kMinBlurPx, kMaxBlurPx);
+      },
+      &fit->parameters.values, &fit->equations);
 }
 
-std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeSamples& samples,
-                                                   const EdgePrior& prior,
-                                                   const EdgeParameters& parameters) {
-  const Matrix hessian = Accumulate(samples, prior, parameters).hessian;
+std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior) {
+  const Matrix& hessian = fit.equations.hessian();
   const Matrix inverse = hessian.ldlt().solve(Matrix::Identity());
   if (!inverse.allFinite()) return std::nullopt;
   Matrix observed = hessian;
@@ -115,13 +99,9 @@ std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeSamples& samples,
   EdgeUncertainty uncertainty;
   uncertainty.place_covariance =
       (inverse.topRows<2>() * observed * inverse.topRows<2>().transpose()).eval();
-  Vector jacobian;
-  for (int i = 0; i < samples.count; ++i) {
-    const EdgeSample& sample = samples.values[static_cast<std::size_t>(i)];
-    const double residual = EvaluateEdge(parameters, sample, &jacobian) - sample.gray;
-    const double slope = jacobian[EdgeParameters::kOffset];
-    uncertainty.noise.Add(slope * slope, residual, jacobian.dot(inverse * jacobian));
-  }
+  uncertainty.noise = fit.equations.Noise(inverse, [](const EdgeEquations::Jacobian& jacobian) {
+    return jacobian[EdgeParameters::kOffset] * jacobian[EdgeParameters::kOffset];
+  });
   return uncertainty;
 }
 

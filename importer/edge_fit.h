@@ -18,26 +18,29 @@
 
 #include <Eigen/Core>
 
+#include "importer/float_lanes.h"
+#include "importer/normal_equations.h"
 #include "importer/refined_corners.h"
 
 namespace velamap {
 
-struct EdgeSample {
-  double s = 0.0;            // -1 and 1 at the side's ends
-  double distance_px = 0.0;  // outwards from the sampled line
-  double gray = 0.0;
-  double cover = 1.0;
-  double inner = 0.0;  // grey level of the cell beyond the border, less dark
-  double outer = 0.0;  // grey level beyond the quiet zone, less light
-  double inner_depth_px = 0.0;
-  double outer_depth_px = 0.0;
+// Four pixels near a side.
+struct EdgeSamples4 {
+  Floats s;            // -1 and 1 at the side's ends
+  Floats distance_px;  // outwards from the sampled line
+  Floats gray;
+  Floats cover;
+  Floats inner;  // grey level of the cell beyond the border, less dark
+  Floats outer;  // grey level beyond the quiet zone, less light
+  Floats inner_depth_px;
+  Floats outer_depth_px;
 };
 
 constexpr int kMaxEdgeSamples = 512;
 
 struct EdgeSamples {
-  std::array<EdgeSample, kMaxEdgeSamples> values;
-  int count = 0;
+  std::array<EdgeSamples4, kMaxEdgeSamples / kLanes> fours;
+  int count = 0;  // of samples; the last four may have less
 };
 
 struct EdgeParameters {
@@ -69,31 +72,30 @@ struct EdgePrior {
   EdgeParameters sigma;
 };
 
+using EdgeEquations = NormalEquations<EdgeParameters::kCount>;
+
 struct EdgeFit {
   EdgeParameters parameters;
-  double rms_gray = 0.0;  // of the residuals
+  EdgeEquations equations;  // near the minimum
 };
 
-// Grey value of the model at a sample, and its derivatives by the parameters.
-double EvaluateEdge(const EdgeParameters& parameters, const EdgeSample& sample,
-                    EdgeParameters::Vector* jacobian);
+// Grey values of the model at four samples, and their derivatives by the parameters.
+Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSamples4& samples,
+                    EdgeEquations::Jacobian* jacobian);
 
 // Levenberg-Marquardt from the prior's mean until a step moves the edge no further than
-// `tolerance_px`. Nothing with too few samples or a singular system.
-std::optional<EdgeFit> FitEdge(const EdgeSamples& samples, const EdgePrior& prior,
-                               double tolerance_px);
+// `tolerance_px`. False with too few samples or a singular system.
+bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double tolerance_px, EdgeFit* fit);
 
 // How well noise lets the place of a fitted edge be known.
 struct EdgeUncertainty {
   // Covariance of offset and slope (px^2) for noise of one grey level.
-  Eigen::Matrix2d place_covariance;
+  Eigen::Matrix2d place_covariance = Eigen::Matrix2d::Zero();
   ResidualNoise noise;
 };
 
 // At the minimum that FitEdge() found. The priors hold weak parameters but are no observations:
 // their own error does not count. Nothing for a singular system.
-std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeSamples& samples,
-                                                   const EdgePrior& prior,
-                                                   const EdgeParameters& parameters);
+std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior);
 
 }  // namespace velamap

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "importer/interpolate.h"
+#include "importer/normal_lanes.h"
 #include "importer/unit_square_map.h"
 
 namespace velamap {
@@ -29,21 +30,28 @@ GrayLine ReadLine(const cv::Mat& gray, const UnitSquareMap& map, double v) {
   GrayLine line;
   for (int i = 0; i < kNumPlaces; ++i) {
     line[static_cast<std::size_t>(i)] =
-        InterpolateGray(gray, map.ToImage(i / (kNumPlaces - 1.0), v));
+        static_cast<float>(InterpolateGray(gray, map.ToImage(i / (kNumPlaces - 1.0), v)));
   }
   return line;
 }
 
 double Mean(const GrayLine& line) {
   double sum = 0.0;
-  for (const double value : line) sum += value;
+  for (const float value : line) sum += value;
   return sum / kNumPlaces;
 }
 
-double LookUp(const GrayLine& line, double u) {
-  const double place = std::clamp(u, 0.0, 1.0) * (kNumPlaces - 1.001);
-  const auto index = static_cast<std::size_t>(place);
-  return line[index] + (place - static_cast<double>(index)) * (line[index + 1] - line[index]);
+Floats LookUp(const GrayLine& line, Floats u) {
+  const Floats place =
+      Min(Max(u, Floats{}), AllLanes(1.0)) * static_cast<float>(kNumPlaces - 1.001);
+  const Ints index = __builtin_convertvector(place, Ints);
+  const Floats fraction = place - __builtin_convertvector(index, Floats);
+  Floats value;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const float* entry = &line[static_cast<std::size_t>(index[lane])];
+    value[lane] = entry[0] + fraction[lane] * (entry[1] - entry[0]);
+  }
+  return value;
 }
 
 LinearInS FromEnds(double at_start, double at_end) {
@@ -65,26 +73,36 @@ Parallel MakeParallel(const Side& side, const UnitSquareMap& map, double v) {
   return {line.depth_px, FromEnds(facing_u(-1), facing_u(1))};
 }
 
-// Share of a step that lies on the far side, for the sides that end this one.
-double Step(double distance_px, double blur_px) {
-  if (distance_px > 3.5 * blur_px) return 1.0;
-  return 0.5 * std::erfc(-distance_px / blur_px * 0.70710678118654752);
+// How much of the step that `neighbour` is, which ends the side, lies inwards of it.
+Floats Cover(const Side& neighbour, const Eigen::Vector2d& origin_px, Floats x, Floats y,
+             double blur_px) {
+  const Eigen::Vector2f outward = neighbour.outward.cast<float>();
+  const auto offset = static_cast<float>((neighbour.middle_px - origin_px).dot(neighbour.outward));
+  const Floats z = (offset - x * outward.x() - y * outward.y()) * static_cast<float>(1 / blur_px);
+  constexpr float kReach = 3.5f;
+  return -MaxLane(-z) > kReach ? AllLanes(1.0) : NormalAt(z).distribution;
 }
 
-EdgeSample MakeSample(const SideModel& model, const Eigen::Vector2d& x_px, double along_px,
-                      double distance_px, double gray) {
-  EdgeSample sample;
-  sample.s = along_px / model.side.half_length_px;
-  sample.distance_px = distance_px;
-  sample.gray = gray;
-  for (const Side* neighbour : {&model.previous, &model.next}) {
-    sample.cover *= Step(-(x_px - neighbour->middle_px).dot(neighbour->outward), model.blur_px);
-  }
-  sample.inner = std::max(0.0, LookUp(model.inner_gray, model.inner.u(sample.s)) - model.dark);
-  sample.outer = std::min(0.0, LookUp(model.outer_gray, model.outer.u(sample.s)) - model.light);
-  sample.inner_depth_px = model.inner.depth_px(sample.s);
-  sample.outer_depth_px = model.outer.depth_px(sample.s);
-  return sample;
+Floats At(const LinearInS& line, Floats s) {
+  return static_cast<float>(line.middle) + static_cast<float>(line.slope) * s;
+}
+
+// Fills in what follows from the place of the samples: x and y from the middle of the side.
+void FillSamples(const SideModel& model, Floats x, Floats y, EdgeSamples4* samples) {
+  const Side& side = model.side;
+  const Eigen::Vector2f along = (side.along / side.half_length_px).cast<float>();
+  const Eigen::Vector2f outward = side.outward.cast<float>();
+  samples->s = x * along.x() + y * along.y();
+  samples->distance_px = x * outward.x() + y * outward.y();
+  samples->cover = Cover(model.previous, side.middle_px, x, y, model.blur_px) *
+                   Cover(model.next, side.middle_px, x, y, model.blur_px);
+  const Floats s = samples->s;
+  samples->inner = Max(
+      Floats{}, LookUp(model.inner_gray, At(model.inner.u, s)) - static_cast<float>(model.dark));
+  samples->outer = Min(
+      Floats{}, LookUp(model.outer_gray, At(model.outer.u, s)) - static_cast<float>(model.light));
+  samples->inner_depth_px = At(model.inner.depth_px, s);
+  samples->outer_depth_px = At(model.outer.depth_px, s);
 }
 
 }  // namespace
@@ -135,6 +153,11 @@ void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int
   const int last =
       std::min(major_size - 1, static_cast<int>(std::floor(side.middle_px[major] + major_reach)));
   samples->count = 0;
+  Floats x{}, y{};
+  const auto fill = [&] {
+    FillSamples(model, x, y,
+                &samples->fours[static_cast<std::size_t>((samples->count - 1) / kLanes)]);
+  };
   for (int i = first; i <= last; i += stride) {
     const double center =
         side.middle_px[minor] + (i - side.middle_px[major]) * side.along[minor] / side.along[major];
@@ -144,14 +167,21 @@ void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int
       Eigen::Vector2d x_px;
       x_px[major] = i;
       x_px[minor] = j;
-      const double along_px = (x_px - side.middle_px).dot(side.along);
+      const Eigen::Vector2d from_middle = x_px - side.middle_px;
+      const double along_px = from_middle.dot(side.along);
       if (std::abs(along_px) > reach_px || samples->count == kMaxEdgeSamples) continue;
-      const double distance_px = (x_px - side.middle_px).dot(side.outward);
-      const double value = major == 0 ? gray.at<std::uint8_t>(j, i) : gray.at<std::uint8_t>(i, j);
-      samples->values[static_cast<std::size_t>(samples->count++)] =
-          MakeSample(model, x_px, along_px, distance_px, value);
+      const int lane = samples->count % kLanes;
+      Floats& values = samples->fours[static_cast<std::size_t>(samples->count++ / kLanes)].gray;
+      // What is missing of the last four is a copy of this pixel.
+      for (int k = lane; k < kLanes; ++k) {
+        x[k] = static_cast<float>(from_middle.x());
+        y[k] = static_cast<float>(from_middle.y());
+        values[k] = major == 0 ? gray.at<std::uint8_t>(j, i) : gray.at<std::uint8_t>(i, j);
+      }
+      if (lane == kLanes - 1) fill();
     }
   }
+  if (samples->count % kLanes != 0) fill();
 }
 
 EdgePrior MakeEdgePrior(const SideModel& model) {

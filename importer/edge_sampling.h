@@ -32,7 +32,7 @@ struct Parallel {
 
 // Places along a side where the cells beyond the border and the quiet zone are looked up.
 constexpr int kNumPlaces = 33;
-using GrayLine = std::array<double, kNumPlaces>;
+using GrayLine = std::array<float, kNumPlaces>;
 
 // Everything about one side that a fit keeps fixed.
 struct SideModel {

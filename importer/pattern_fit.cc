@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Cholesky>
 
 #include "importer/error.h"
 #include "importer/interpolate.h"
+#include "importer/least_squares.h"
 #include "importer/pattern_model.h"
 #include "importer/unit_square_map.h"
 
@@ -23,9 +26,10 @@ constexpr double kPixelNoise = 3.0;      // grey levels, against which the prior
 constexpr double kMinBlurPx = 0.3;
 constexpr double kMaxBlurPx = 4.0;
 constexpr double kBendOfDiagonal = 0.003;  // what cloth usually has; a can's label has ten times
-constexpr int kMaxIterations = 10;
 constexpr int kFirstPixels = 200;
 constexpr int kPixels = 1000;
+
+using Equations = NormalEquations<P::kCount>;
 
 struct Problem {
   const cv::Mat* gray;
@@ -34,98 +38,67 @@ struct Problem {
   P::Vector mean, weight;  // priors
 };
 
-// The pixels of one evaluation of the model, what it leaves of them, and the normal equations.
-class Evaluation {
- public:
-  // Every k-th pixel, so many that about `max_pixels` are used.
-  void Run(const Problem& problem, const P::Vector& parameters, int max_pixels) {
-    Evaluate(problem, parameters, max_pixels);
-    hessian_ = problem.weight.asDiagonal();
-    const P::Vector departure = parameters - problem.mean;
-    gradient_ = problem.weight.cwiseProduct(departure);
-    prior_cost_ = departure.cwiseAbs2().dot(problem.weight);
-    SumUp();
-  }
-
-  const P::Matrix& hessian() const { return hessian_; }
-  const P::Vector& gradient() const { return gradient_; }
-  int num_pixels() const { return num_pixels_; }
-  double Rms() const { return std::sqrt(squared_residuals_ / num_pixels_); }
-  double Cost() const { return (squared_residuals_ + prior_cost_) / num_pixels_; }
-
-  // `inverse` of the Hessian.
-  ResidualNoise Noise(const P::Matrix& inverse) const {
-    const Eigen::Matrix<float, P::kCount, P::kCount> covariance = inverse.cast<float>();
-    ResidualNoise noise;
-    Block by_covariance;
-    for (int begin = 0; begin < num_pixels_; begin += kBlock) {
-      const auto jacobians = jacobians_.middleCols<kBlock>(begin);
-      by_covariance.noalias() = covariance * jacobians;
-      for (int i = 0; i < std::min(kBlock, num_pixels_ - begin); ++i) {
-        // All corners move: the slope of the grey values.
-        Eigen::Vector2f slope = Eigen::Vector2f::Zero();
-        for (int c = 0; c < kNumCorners; ++c) slope += jacobians.col(i).segment<2>(2 * c);
-        noise.Add(slope.squaredNorm(), residuals_[begin + i],
-                  jacobians.col(i).dot(by_covariance.col(i)));
-      }
-    }
-    return noise;
-  }
-
- private:
-  // Sums over many pixels at a time, because the product of matrices is fast.
-  static constexpr int kBlock = 48;
-  using Block = Eigen::Matrix<float, P::kCount, kBlock>;
-
-  void Evaluate(const Problem& problem, const P::Vector& parameters, int max_pixels) {
-    const PatternPicture picture(problem.model, parameters);
-    const cv::Rect& box = problem.box;
-    const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
-    const int stride = static_cast<int>(std::ceil(area_px / max_pixels));
-    Reserve(box.height * (box.width / stride + 1));
-    PatternPixel pixel;
-    num_pixels_ = 0;
-    for (int row = box.y; row < box.y + box.height; ++row) {
-      const std::uint8_t* pixels = problem.gray->ptr<std::uint8_t>(row);
-      // Odd rows are shifted, so that every column has its share.
-      const int first = box.x + (row * ((stride + 1) / 2)) % stride;
-      for (int column = first; column < box.x + box.width; column += stride) {
-        if (!picture.At(Eigen::Vector2d(column, row), &pixel)) continue;
-        jacobians_.col(num_pixels_) = pixel.jacobian;
-        residuals_[num_pixels_++] = pixel.gray - pixels[column];
-      }
-    }
-  }
-
-  void Reserve(int max_pixels) {
-    const int size = (max_pixels + kBlock - 1) / kBlock * kBlock;
-    if (residuals_.size() >= size) return;
-    jacobians_.resize(P::kCount, size);
-    residuals_.resize(size);
-  }
-
-  void SumUp() {
-    squared_residuals_ = 0.0;
-    const int padding = (kBlock - num_pixels_ % kBlock) % kBlock;
-    jacobians_.middleCols(num_pixels_, padding).setZero();
-    residuals_.segment(num_pixels_, padding).setZero();
-    for (int begin = 0; begin < num_pixels_; begin += kBlock) {
-      const auto jacobians = jacobians_.middleCols<kBlock>(begin);
-      const auto residuals = residuals_.segment<kBlock>(begin);
-      hessian_ += (jacobians * jacobians.transpose()).cast<double>();
-      gradient_ += (jacobians * residuals.cast<float>()).cast<double>();
-      squared_residuals_ += residuals.squaredNorm();
-    }
-  }
-
-  Eigen::Matrix<float, P::kCount, Eigen::Dynamic> jacobians_;
-  Eigen::VectorXd residuals_;
-  int num_pixels_ = 0;
-  P::Matrix hessian_;
-  P::Vector gradient_;
-  double squared_residuals_ = 0.0;
-  double prior_cost_ = 0.0;  // of the priors
+// Pixels of a marker and around it, by fours.
+struct Pixels {
+  struct Four {
+    Floats x, y;  // less the model's center_px
+    Floats gray;
+  };
+  std::vector<Four> fours;
+  int count = 0;  // the last four may have less
 };
+
+// Every k-th pixel that the model covers with these parameters, so many that about `max_pixels` are
+// used.
+Pixels ChoosePixels(const Problem& problem, const P::Vector& parameters, int max_pixels) {
+  const PatternPicture picture(problem.model, parameters);
+  const cv::Rect& box = problem.box;
+  const Eigen::Vector2d& center = problem.model.center_px;
+  const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
+  const int stride = static_cast<int>(std::ceil(area_px / max_pixels));
+  Pixels pixels;
+  pixels.fours.reserve(
+      static_cast<std::size_t>(box.height * (box.width / stride + 1) / kLanes + 1));
+  for (int row = box.y; row < box.y + box.height; ++row) {
+    const std::uint8_t* values = problem.gray->ptr<std::uint8_t>(row);
+    const Floats y = AllLanes(row - center.y());
+    // Odd rows are shifted, so that every column has its share.
+    const int first = box.x + (row * ((stride + 1) / 2)) % stride;
+    for (int begin = first; begin < box.x + box.width; begin += kLanes * stride) {
+      const auto left = static_cast<float>(begin - center.x()), next = static_cast<float>(stride);
+      const Floats x = {left, left + next, left + 2 * next, left + 3 * next};
+      const Ints covered = picture.Covers(x, y);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int column = begin + lane * stride;
+        if (!covered[lane] || column >= box.x + box.width) continue;
+        const int place = pixels.count++ % kLanes;
+        if (place == 0) pixels.fours.emplace_back();
+        Pixels::Four& four = pixels.fours.back();
+        // What is missing of the last four is a copy of this pixel.
+        for (int i = place; i < kLanes; ++i) {
+          four.x[i] = x[lane];
+          four.y[i] = y[lane];
+          four.gray[i] = values[column];
+        }
+      }
+    }
+  }
+  return pixels;
+}
+
+void Evaluate(const Problem& problem, const Pixels& pixels, const P::Vector& parameters,
+              bool with_hessian, Equations* equations) {
+  const PatternPicture picture(problem.model, parameters);
+  equations->Clear(with_hessian);
+  PatternPixels modelled;
+  int left = pixels.count;
+  for (const Pixels::Four& four : pixels.fours) {
+    picture.At(four.x, four.y, &modelled);
+    equations->Add(&modelled.jacobian, modelled.gray - four.gray, left);
+    left -= kLanes;
+  }
+  equations->Finish(parameters - problem.mean, problem.weight);
+}
 
 // Levels that explain the pixels best while the corners stay.
 std::optional<P::Vector> Start(const cv::Mat& cells, const Quad& corners, Problem* problem) {
@@ -157,40 +130,32 @@ std::optional<P::Vector> Start(const cv::Mat& cells, const Quad& corners, Proble
   return p;
 }
 
-// The best parameters so far, how the model meets the pixels there, and room for a trial.
+// The best parameters so far, and how the model meets the pixels there.
 struct Minimum {
   P::Vector parameters;
-  Evaluation at_parameters, trial;
+  Equations equations;
 };
 
-// Levenberg-Marquardt over about `max_pixels` pixels until a step moves no corner further than
-// `tolerance_px`. False for too few pixels or a singular system.
-bool Minimize(const Problem& problem, int max_pixels, double tolerance_px, Minimum* minimum) {
-  Evaluation& best = minimum->at_parameters;
-  best.Run(problem, minimum->parameters, max_pixels);
-  double damping = 1e-3;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    if (best.num_pixels() <= P::kCount) return false;
-    P::Matrix damped = best.hessian();
-    damped.diagonal() *= 1 + damping;
-    const P::Vector step = -damped.selfadjointView<Eigen::Lower>().ldlt().solve(best.gradient());
-    if (!step.allFinite()) return false;
-    const double moved_px = step.head<8>().cwiseAbs().maxCoeff();
-    P::Vector candidate = minimum->parameters + step;
-    candidate[P::kBlurU] = std::clamp(candidate[P::kBlurU], kMinBlurPx, kMaxBlurPx);
-    candidate[P::kBlurV] = std::clamp(candidate[P::kBlurV], kMinBlurPx, kMaxBlurPx);
-    Evaluation& trial = minimum->trial;
-    trial.Run(problem, candidate, max_pixels);
-    if (trial.num_pixels() > P::kCount && trial.Cost() < best.Cost()) {
-      minimum->parameters = candidate;
-      std::swap(best, trial);
-      damping *= 0.1;
-    } else {
-      damping *= 10;
-    }
-    if (moved_px < tolerance_px) break;
+void LimitBlur(P::Vector* parameters) {
+  for (const int index : {P::kBlurU, P::kBlurV}) {
+    (*parameters)[index] = std::clamp((*parameters)[index], kMinBlurPx, kMaxBlurPx);
   }
-  return true;
+}
+
+// Over about `max_pixels` pixels, until a step moves no corner further than `tolerance_px`. False
+// for too few pixels or a singular system.
+bool Minimize(const Problem& problem, int max_pixels, double tolerance_px, Minimum* minimum) {
+  const Pixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
+  LeastSquaresOptions options;
+  options.tolerance_px = tolerance_px;
+  options.new_hessian_px = 0.1;
+  return MinimizeSquares(
+      options,
+      [&](const P::Vector& parameters, bool with_hessian, Equations* equations) {
+        Evaluate(problem, pixels, parameters, with_hessian, equations);
+      },
+      [](const P::Vector& step) { return step.head<8>().cwiseAbs().maxCoeff(); }, LimitBlur,
+      &minimum->parameters, &minimum->equations);
 }
 
 // A quick fit on some pixels, then an exact one on more from there, with the surroundings read
@@ -204,22 +169,34 @@ bool MinimizeInTwoPasses(const cv::Mat& cells, Problem* problem, Minimum* minimu
     if (!Minimize(*problem, max_pixels, tolerance_px, minimum)) return false;
   }
   const double contrast = minimum->parameters[P::kLight] - minimum->parameters[P::kDark];
-  return contrast > kMinContrast && minimum->at_parameters.Rms() < kMaxRelativeRms * contrast;
+  return contrast > kMinContrast && minimum->equations.Rms() < kMaxRelativeRms * contrast;
 }
 
 // The priors hold weak parameters but are no observations: their own error does not count.
 std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Minimum& minimum) {
-  const P::Matrix& hessian = minimum.at_parameters.hessian();
+  const P::Matrix& hessian = minimum.equations.hessian();
   const P::Matrix inverse = hessian.ldlt().solve(P::Matrix::Identity());
   if (!inverse.allFinite()) return std::nullopt;
   P::Matrix observed = hessian;
   observed.diagonal() -= problem.weight;
-  const P::Matrix covariance = inverse * observed * inverse;
-  const double variance_gray = minimum.at_parameters.Noise(inverse).VarianceGray();
+  const Eigen::Matrix<double, 2 * kNumCorners, P::kCount> by_observed =
+      inverse.topRows<2 * kNumCorners>() * observed;
+  const Eigen::Matrix<double, 2 * kNumCorners, 1> variances =
+      by_observed.cwiseProduct(inverse.topRows<2 * kNumCorners>()).rowwise().sum();
+  const ResidualNoise noise =
+      minimum.equations.Noise(inverse, [](const Equations::Jacobian& jacobian) {
+        // All corners move: the slope of the grey values.
+        Floats slope_x{}, slope_y{};
+        for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
+          slope_x += jacobian[i];
+          slope_y += jacobian[i + 1];
+        }
+        return slope_x * slope_x + slope_y * slope_y;
+      });
   RefinedCorners refined{CornersOf(minimum.parameters), {}};
   for (int i = 0; i < kNumCorners; ++i) {
-    const double trace = covariance.diagonal().segment<2>(2 * i).sum();
-    refined.sigma_px[static_cast<std::size_t>(i)] = std::sqrt(0.5 * trace * variance_gray);
+    refined.sigma_px[static_cast<std::size_t>(i)] =
+        std::sqrt(0.5 * variances.segment<2>(2 * i).sum() * noise.VarianceGray());
   }
   return refined;
 }
@@ -252,7 +229,7 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const Quad& corner
       0.5 * ((corners_px[2] - corners_px[0]).norm() + (corners_px[3] - corners_px[1]).norm());
   const auto start = Start(cells, corners_px, &problem);
   if (!start) return std::nullopt;
-  Minimum minimum{*start, {}, {}};
+  Minimum minimum{*start, {}};
   if (!MinimizeInTwoPasses(cells, &problem, &minimum)) return std::nullopt;
   return WithUncertainty(problem, minimum);
 }

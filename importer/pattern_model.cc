@@ -13,11 +13,7 @@ using P = PatternParameters;
 constexpr double kMarginInCells = 0.75;  // how far outside the black square pixels are used
 
 // Zero at both ends of a side, one in its middle.
-double Hump(double place) { return 4 * place * (1 - place); }
-
-Eigen::Vector2d Bend(const P::Vector& p, const Eigen::Vector2d& uv) {
-  return Hump(uv.x()) * p.segment<2>(P::kBendU) + Hump(uv.y()) * p.segment<2>(P::kBendV);
-}
+Floats Hump(Floats place) { return 4.0f * place * (1.0f - place); }
 
 }  // namespace
 
@@ -35,12 +31,12 @@ void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMa
   for (int j = -kRing; j < n + kRing; ++j) {
     for (int i = -kRing; i < n + kRing; ++i) {
       const int outside = std::max({-i, i - n + 1, -j, j - n + 1});
-      double lightness = 0.0, ring = outside > 0, surround = 0.0;
+      float lightness = 0.0f, ring = outside > 0 ? 1.0f : 0.0f, surround = 0.0f;
       if (outside <= 0) {
-        lightness = cells.at<std::uint8_t>(j, i) != 0;
+        lightness = cells.at<std::uint8_t>(j, i) != 0 ? 1.0f : 0.0f;
       } else if (outside == kRing) {
         const double value = InterpolateGray(gray, map.ToImage((i + 0.5) / n, (j + 0.5) / n));
-        surround = std::clamp((value - light) / (light - dark), -1.0, 0.2);
+        surround = static_cast<float>(std::clamp((value - light) / (light - dark), -1.0, 0.2));
       }
       model->inner(j + kRing, i + kRing) = lightness;
       model->ring(j + kRing, i + kRing) = ring;
@@ -50,14 +46,18 @@ void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMa
 }
 
 PatternPicture::PatternPicture(const PatternModel& model, const P::Vector& parameters)
-    : model_(model), parameters_(parameters), map_(CornersOf(parameters)) {
+    : model_(model), parameters_(parameters) {
+  std::array<Eigen::Vector2d, kNumCorners> quad = CornersOf(parameters);
+  for (Eigen::Vector2d& corner : quad) corner -= model.center_px;
+  square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
   const int n = model.num_cells + 2 * kRing;
   print_.topLeftCorner(n, n) =
-      parameters[P::kInnerLight] * model.inner.topLeftCorner(n, n) + model.ring.topLeftCorner(n, n);
+      static_cast<float>(parameters[P::kInnerLight]) * model.inner.topLeftCorner(n, n) +
+      model.ring.topLeftCorner(n, n);
 }
 
-Blended PatternPicture::BlendAll(const Shares& u, const Shares& v, double correlation_px,
-                                 double* inner_value, double* surround_value) const {
+Blended PatternPicture::BlendAll(const Shares& u, const Shares& v, Floats correlation_px,
+                                 Floats* inner_value, Floats* surround_value) const {
   const int n = model_.num_cells;
   Blended pattern;
   if (Reaches(kRing, u, n) || Reaches(kRing, v, n)) {
@@ -65,64 +65,91 @@ Blended PatternPicture::BlendAll(const Shares& u, const Shares& v, double correl
     *inner_value = BlendValue(model_.inner, u, v);
   } else {
     const Blended inner = Blend(model_.inner, u, v);
-    Add(parameters_[P::kInnerLight], inner, &pattern);
+    Add(AllLanes(parameters_[P::kInnerLight]), inner, &pattern);
     *inner_value = inner.value;
   }
   AddCorrelation(correlation_px, &pattern);
-  *surround_value = 0.0;
+  *surround_value = Floats{};
   if (Reaches(1, u, n) || Reaches(1, v, n)) {
     const Blended around = Blend(model_.surround, u, v);
     *surround_value = around.value;
-    Add(parameters_[P::kSurround], around, &pattern);
+    Add(AllLanes(parameters_[P::kSurround]), around, &pattern);
   }
   return pattern;
 }
 
-bool PatternPicture::At(const Eigen::Vector2d& x_px, PatternPixel* pixel) const {
-  const P::Vector& p = parameters_;
-  Eigen::Vector2d flat_uv;
-  Eigen::Matrix2d flat_gradient;
-  map_.ToSquare(x_px, &flat_uv, &flat_gradient);
-  Eigen::Vector2d uv = flat_uv;
-  for (int i = 0; i < 2; ++i) uv = flat_uv - flat_gradient * Bend(p, uv);
-  const double n = model_.num_cells;
-  const double margin = kMarginInCells / n;
-  if (!(uv.minCoeff() > -margin && uv.maxCoeff() < 1 + margin)) return false;
-  const Eigen::Matrix2d gradient = n * flat_gradient;  // cells/px
-  const double cells_u = gradient.row(0).norm(), cells_v = gradient.row(1).norm();
-  Shares u, v;
-  ComputeShares(n * uv.x(), cells_u * p[P::kBlurU], model_.num_cells, &u);
-  ComputeShares(n * uv.y(), cells_v * p[P::kBlurV], model_.num_cells, &v);
-  double inner = 0.0, surround = 0.0;
-  const Blended pattern = BlendAll(
-      u, v, p[P::kBlurU] * p[P::kBlurV] * gradient.row(0).dot(gradient.row(1)), &inner, &surround);
-
-  const Eigen::Vector2d place = (x_px - model_.center_px) / model_.diagonal_px;
-  const double light = 1 + p[P::kGradientX] * place.x() + p[P::kGradientY] * place.y();
-  const double contrast = light * (p[P::kLight] - p[P::kDark]);
-  const double level = p[P::kDark] + (p[P::kLight] - p[P::kDark]) * pattern.value;
-  const Eigen::Vector2d by_place =
-      contrast * gradient.transpose() * Eigen::Vector2d(pattern.by_u, pattern.by_v);
-  // A corner that moves takes each place along by its bilinear share, nearly enough for a step.
-  const std::array<double, kNumCorners> share = {(1 - uv.x()) * (1 - uv.y()), uv.x() * (1 - uv.y()),
-                                                 uv.x() * uv.y(), (1 - uv.x()) * uv.y()};
-  pixel->gray = light * level;
-  P::Vector jacobian;
-  for (int i = 0; i < kNumCorners; ++i) {
-    jacobian.segment<2>(2 * i) = -share[static_cast<std::size_t>(i)] * by_place;
+PatternPicture::Place PatternPicture::ToSquare(Floats x, Floats y) const {
+  const Eigen::Matrix3f& m = square_from_image_;
+  const Floats scale = 1.0f / (m(2, 0) * x + m(2, 1) * y + m(2, 2));
+  const Floats flat_u = scale * (m(0, 0) * x + m(0, 1) * y + m(0, 2));
+  const Floats flat_v = scale * (m(1, 0) * x + m(1, 1) * y + m(1, 2));
+  Place place{flat_u,
+              flat_v,
+              scale * (m(0, 0) - flat_u * m(2, 0)),
+              scale * (m(0, 1) - flat_u * m(2, 1)),
+              scale * (m(1, 0) - flat_v * m(2, 0)),
+              scale * (m(1, 1) - flat_v * m(2, 1))};
+  const Eigen::Vector4f bends = parameters_.segment<4>(P::kBendU).cast<float>();
+  for (int i = 0; i < 2; ++i) {
+    const Floats hump_u = Hump(place.u), hump_v = Hump(place.v);
+    const Floats bend_x = hump_u * bends[0] + hump_v * bends[2];
+    const Floats bend_y = hump_u * bends[1] + hump_v * bends[3];
+    place.u = flat_u - place.u_by_x * bend_x - place.u_by_y * bend_y;
+    place.v = flat_v - place.v_by_x * bend_x - place.v_by_y * bend_y;
   }
-  jacobian.segment<2>(P::kBendU) = -Hump(uv.x()) * by_place;
-  jacobian.segment<2>(P::kBendV) = -Hump(uv.y()) * by_place;
+  return place;
+}
+
+Ints PatternPicture::Covers(Floats x, Floats y) const {
+  const Place place = ToSquare(x, y);
+  const auto margin = static_cast<float>(kMarginInCells / model_.num_cells);
+  return (Min(place.u, place.v) > -margin) & (Max(place.u, place.v) < 1.0f + margin);
+}
+
+void PatternPicture::At(Floats x, Floats y, PatternPixels* pixels) const {
+  const Eigen::Matrix<float, P::kCount, 1> p = parameters_.cast<float>();
+  const Place flat = ToSquare(x, y);
+  const auto n = static_cast<float>(model_.num_cells);
+  const Floats u_by_x = n * flat.u_by_x, u_by_y = n * flat.u_by_y;  // cells/px
+  const Floats v_by_x = n * flat.v_by_x, v_by_y = n * flat.v_by_y;
+  const Floats cells_u = Sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
+  const Floats cells_v = Sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
+  Shares u, v;
+  ComputeShares(n * flat.u, cells_u * p[P::kBlurU], model_.num_cells, &u);
+  ComputeShares(n * flat.v, cells_v * p[P::kBlurV], model_.num_cells, &v);
+  Floats inner{}, surround{};
+  const Blended pattern = BlendAll(
+      u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner, &surround);
+
+  const auto inverse_diagonal = static_cast<float>(1 / model_.diagonal_px);
+  const Floats place_x = inverse_diagonal * x, place_y = inverse_diagonal * y;
+  const Floats light = 1.0f + p[P::kGradientX] * place_x + p[P::kGradientY] * place_y;
+  const float step = p[P::kLight] - p[P::kDark];
+  const Floats contrast = light * step;
+  const Floats level = p[P::kDark] + step * pattern.value;
+  const Floats by_x = contrast * (u_by_x * pattern.by_u + v_by_x * pattern.by_v);
+  const Floats by_y = contrast * (u_by_y * pattern.by_u + v_by_y * pattern.by_v);
+  pixels->gray = light * level;
+  std::array<Floats, P::kCount>& jacobian = pixels->jacobian;
+  const auto set_place = [&](std::size_t index, Floats share) {
+    jacobian[index] = -share * by_x;
+    jacobian[index + 1] = -share * by_y;
+  };
+  // A corner that moves takes each place along by its bilinear share, nearly enough for a step.
+  set_place(P::kCorners, (1.0f - flat.u) * (1.0f - flat.v));
+  set_place(P::kCorners + 2, flat.u * (1.0f - flat.v));
+  set_place(P::kCorners + 4, flat.u * flat.v);
+  set_place(P::kCorners + 6, (1.0f - flat.u) * flat.v);
+  set_place(P::kBendU, Hump(flat.u));
+  set_place(P::kBendV, Hump(flat.v));
   jacobian[P::kBlurU] = contrast * cells_u * pattern.by_blur_u;
   jacobian[P::kBlurV] = contrast * cells_v * pattern.by_blur_v;
-  jacobian[P::kDark] = light * (1 - pattern.value);
+  jacobian[P::kDark] = light * (1.0f - pattern.value);
   jacobian[P::kLight] = light * pattern.value;
-  jacobian[P::kGradientX] = level * place.x();
-  jacobian[P::kGradientY] = level * place.y();
+  jacobian[P::kGradientX] = level * place_x;
+  jacobian[P::kGradientY] = level * place_y;
   jacobian[P::kSurround] = contrast * surround;
   jacobian[P::kInnerLight] = contrast * inner;
-  pixel->jacobian = jacobian.cast<float>();
-  return true;
 }
 
 }  // namespace velamap

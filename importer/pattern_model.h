@@ -50,27 +50,35 @@ struct PatternModel {
 void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMap& map, double dark,
                    double light, PatternModel* model);
 
-struct PatternPixel {
-  double gray = 0.0;  // of the model
-  // By the parameters; single precision is enough for a step and half the memory.
-  Eigen::Matrix<float, PatternParameters::kCount, 1> jacobian;
+// Four pixels of the model. Single precision is enough for a step.
+struct PatternPixels {
+  Floats gray;
+  std::array<Floats, PatternParameters::kCount> jacobian;  // by the parameters
 };
 
-// The model with its parameters, ready for many pixels.
+// The model with its parameters, ready for many pixels. Places are in OpenCV's pixel frame, less
+// the model's `center_px`.
 class PatternPicture {
  public:
   PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters);
 
-  // The model at a place in OpenCV's pixel frame; false too far outside the black square.
-  bool At(const Eigen::Vector2d& x_px, PatternPixel* pixel) const;
+  // Whether a place is no further outside the black square than the model says what is there.
+  Ints Covers(Floats x, Floats y) const;  // -1 for yes
+
+  void At(Floats x, Floats y, PatternPixels* pixels) const;
 
  private:
-  Blended BlendAll(const Shares& u, const Shares& v, double correlation_px, double* inner_value,
-                   double* surround_value) const;
+  // A place in the unit square and the derivatives of u and v on the flat marker, 1/px.
+  struct Place {
+    Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
+  };
+  Place ToSquare(Floats x, Floats y) const;
+  Blended BlendAll(const Shares& u, const Shares& v, Floats correlation_px, Floats* inner_value,
+                   Floats* surround_value) const;
 
   const PatternModel& model_;
   PatternParameters::Vector parameters_;
-  UnitSquareMap map_;
+  Eigen::Matrix3f square_from_image_;
   Lightness print_;  // the marker's own cells and the quiet zone, as light as the parameters say
 };
 

@@ -23,11 +23,11 @@ struct RefinedCorners {
 // beside them may have none where black and white are clipped.
 class ResidualNoise {
  public:
-  // `leverage`: the part of the pixel's own noise that the fit follows.
-  void Add(double weight, double residual, double leverage) {
-    weighted_squares_ += weight * residual * residual;
-    weights_ += weight * (1 - leverage);
-  }
+  ResidualNoise() = default;
+  // Sums over pixels: of weight * residual^2, and of weight * (1 - leverage), where leverage is the
+  // part of the pixel's own noise that the fit follows.
+  ResidualNoise(double weighted_squares, double weights)
+      : weighted_squares_(weighted_squares), weights_(weights) {}
 
   void Add(const ResidualNoise& other) {
     weighted_squares_ += other.weighted_squares_;

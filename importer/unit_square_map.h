@@ -34,14 +34,8 @@ class UnitSquareMap {
     return (square_from_image_ * x_px.homogeneous()).hnormalized();
   }
 
-  // The same with its derivative; the rows of `gradient` are those of u and v, 1/px.
-  void ToSquare(const Eigen::Vector2d& x_px, Eigen::Vector2d* uv, Eigen::Matrix2d* gradient) const {
-    const Eigen::Vector3d h = square_from_image_ * x_px.homogeneous();
-    const double inverse_z = 1 / h.z();
-    *uv = inverse_z * h.head<2>();
-    *gradient = inverse_z * (square_from_image_.topLeftCorner<2, 2>() -
-                             *uv * square_from_image_.bottomLeftCorner<1, 2>());
-  }
+  // Of homogeneous vectors.
+  const Eigen::Matrix3d& square_from_image() const { return square_from_image_; }
 
  private:
   Eigen::Matrix3d image_from_square_, square_from_image_;

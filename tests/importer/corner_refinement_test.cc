@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/blurred_cells.h"
 #include "importer/edge_fit.h"
+#include "importer/float_lanes.h"
 #include "importer/pattern_fit.h"
+#include "importer/pattern_model.h"
+#include "importer/unit_square_map.h"
 #include "tests/importer/marker_grid.h"
 
 namespace velamap {
@@ -152,27 +157,107 @@ TEST(RefineCorners, FailsWhereThereIsNothingToFit) {
   }
 }
 
+// Whether `jacobian`, four observations at once, agrees with what `value` changes by.
+template <typename Vector, typename Jacobian, typename Value>
+void ExpectDerivatives(const Vector& parameters, const Vector& steps, const Jacobian& jacobian,
+                       const Value& value, double relative_tolerance, double tolerance) {
+  for (int i = 0; i < parameters.size(); ++i) {
+    Vector above = parameters, below = parameters;
+    above[i] += steps[i];
+    below[i] -= steps[i];
+    const Floats difference = (value(above) - value(below)) / static_cast<float>(2 * steps[i]);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      EXPECT_NEAR(jacobian[static_cast<std::size_t>(i)][lane], difference[lane],
+                  relative_tolerance * std::abs(difference[lane]) + tolerance)
+          << "parameter " << i << ", lane " << lane;
+    }
+  }
+}
+
 TEST(EvaluateEdge, DerivativesAgreeWithDifferences) {
   EdgeParameters parameters;
   parameters.values << 0.2, -0.1, 0.15, 0.9, 40, 180, 5, -7, 0.8, 1.1;
-  for (const double distance_px : {-2.1, -0.4, 0.3, 1.7}) {
-    const EdgeSample sample{0.4, distance_px, 100, 0.9, 120, -110, 2.2, 2.4};
-    EdgeParameters::Vector jacobian;
-    EvaluateEdge(parameters, sample, &jacobian);
-    for (int i = 0; i < EdgeParameters::kCount; ++i) {
-      constexpr double kStep =
-          0.05;  // wide, because the tabulated distribution is piecewise linear
-      EdgeParameters above = parameters, below = parameters;
-      above.values[i] += kStep;
-      below.values[i] -= kStep;
-      EdgeParameters::Vector unused;
-      const double difference =
-          (EvaluateEdge(above, sample, &unused) - EvaluateEdge(below, sample, &unused)) /
-          (2 * kStep);
-      EXPECT_NEAR(jacobian[i], difference, 0.01 * std::max(1.0, std::abs(difference)) + 0.2)
-          << "parameter " << i << " at " << distance_px;
+  const EdgeSamples4 samples{AllLanes(0.4), Floats{-2.1f, -0.4f, 0.3f, 1.7f},
+                             AllLanes(100), AllLanes(0.9),
+                             AllLanes(120), AllLanes(-110),
+                             AllLanes(2.2), AllLanes(2.4)};
+  EdgeEquations::Jacobian jacobian;
+  EvaluateEdge(parameters, samples, &jacobian);
+  const auto value = [&](const EdgeParameters::Vector& values) {
+    EdgeEquations::Jacobian unused;
+    return EvaluateEdge(EdgeParameters{values}, samples, &unused);
+  };
+  ExpectDerivatives<EdgeParameters::Vector>(
+      parameters.values, EdgeParameters::Vector::Constant(0.01), jacobian, value, 0.002, 0.05);
+}
+
+// The share of a single corner is an approximation; all four together move the picture as it is.
+TEST(PatternPicture, DerivativesAgreeWithDifferences) {
+  using P = PatternParameters;
+  const MarkerGrid grid = MakeMarkerGrid(Chequered(20, 0.7));
+  PatternModel model;
+  model.num_cells = grid.cells[0].rows;
+  model.center_px = {300, 200};
+  model.diagonal_px = 20 * std::sqrt(2.0);
+  P::Vector parameters = P::Vector::Zero();
+  parameters.head<8>() << 290, 190, 310, 190, 310, 210, 290, 210;
+  parameters.segment<8>(P::kBlurU) << 0.8, 0.9, 40, 200, 0.05, -0.03, 0.9, 0.95;
+  FillLightness(grid.image, grid.cells[0], UnitSquareMap(CornersOf(parameters)), 40, 200, &model);
+  const Floats x = {-10.6f, -3.2f, 4.7f, 10.3f}, y = {0.4f, -9.8f, 5.1f, 10.9f};
+  ASSERT_EQ(Sum(__builtin_convertvector(PatternPicture(model, parameters).Covers(x, y), Floats)),
+            -4);
+  PatternPixels pixels;
+  PatternPicture(model, parameters).At(x, y, &pixels);
+  // Place of the whole marker, then all parameters but the corners.
+  using Changes = Eigen::Matrix<double, P::kCount - 6, 1>;
+  std::array<Floats, P::kCount - 6> jacobian{};
+  for (std::size_t i = 0; i < P::kCount; ++i) {
+    jacobian[i < P::kBlurU ? i % 2 : i - 6] += pixels.jacobian[i];
+  }
+  const auto value = [&](const Changes& changes) {
+    P::Vector changed = parameters;
+    for (int i = 0; i < P::kBlurU; ++i) changed[i] += changes[i % 2];
+    changed.tail<P::kCount - P::kBlurU>() += changes.tail<P::kCount - P::kBlurU>();
+    PatternPixels modelled;
+    PatternPicture(model, changed).At(x, y, &modelled);
+    return modelled.gray;
+  };
+  ExpectDerivatives<Changes>(Changes::Zero(), Changes::Constant(0.01), jacobian, value, 0.02, 0.3);
+}
+
+TEST(ComputeShares, StayInsideThePatternAndAddUpToOne) {
+  constexpr int kNumCells = 6;
+  const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
+  Shares shares;
+  for (const double blur : {0.1, 0.5, 3.0, 100.0}) {
+    ComputeShares(Floats{-0.7f, 1.3f, 6.6f, 1e9f}, AllLanes(blur), kNumCells, &shares);
+    Floats sum{};
+    for (int i = 0; i < shares.count; ++i) sum += shares.value[static_cast<std::size_t>(i)];
+    for (int lane = 0; lane < kLanes; ++lane) EXPECT_NEAR(sum[lane], 1.0f, 1e-5f);
+  }
+  for (const float blur : {0.5f, infinity, nan}) {
+    ComputeShares(Floats{nan, infinity, -infinity, 0.0f}, Floats{0.3f, blur, blur, 0.3f}, kNumCells,
+                  &shares);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      EXPECT_GE(shares.first[lane], 0);
+      EXPECT_LE(shares.first[lane] + shares.count, kNumCells + 2 * kRing);
     }
   }
+}
+
+TEST(PatternPicture, CoversTheMarkerAndMostOfTheQuietZone) {
+  PatternModel model;
+  model.num_cells = 6;
+  model.center_px = {300, 200};
+  model.diagonal_px = 12 * std::sqrt(2.0);
+  PatternParameters::Vector parameters = PatternParameters::Vector::Zero();
+  parameters.head<8>() << 294, 194, 306, 194, 306, 206, 294, 206;
+  const PatternPicture picture(model, parameters);
+  const Ints covered = picture.Covers(Floats{0, -7.4f, -7.6f, 7.4f}, Floats{0, 7.4f, 0, 7.6f});
+  EXPECT_TRUE(covered[0]);
+  EXPECT_TRUE(covered[1]);
+  EXPECT_FALSE(covered[2]);
+  EXPECT_FALSE(covered[3]);
 }
 
 }  // namespace

@@ -162,20 +162,25 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
       std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
   P::Matrix information = P::Matrix::Zero();
   const PatternPicture picture(model, p);
-  PatternPixel pixel;
+  PatternPixels pixels;
   for (int row = 0; row < grid.image.rows; ++row) {
     if (std::abs(row - model.center_px.y()) > 1.5 * model.diagonal_px) continue;
     for (int column = 0; column < grid.image.cols; ++column) {
       const Eigen::Vector2d x(column, row);
       if ((x - model.center_px).norm() > 1.5 * model.diagonal_px) continue;
-      if (!picture.At(x, &pixel)) continue;
+      const Floats from_center_x = AllLanes(x.x() - model.center_px.x());
+      const Floats from_center_y = AllLanes(x.y() - model.center_px.y());
+      if (!picture.Covers(from_center_x, from_center_y)[0]) continue;
       double distance_px = band_px + 1;
       for (std::size_t i = 0; i < kNumCorners; ++i) {
         distance_px =
             std::min(distance_px, DistanceFromSegment(x, truth[i], truth[(i + 1) % kNumCorners]));
       }
       if (by_edges && distance_px > band_px) continue;
-      const P::Vector jacobian = pixel.jacobian.cast<double>();
+      picture.At(from_center_x, from_center_y, &pixels);
+      P::Vector jacobian;
+      for (int i = 0; i < P::kCount; ++i)
+        jacobian[i] = pixels.jacobian[static_cast<std::size_t>(i)][0];
       information.noalias() += jacobian * jacobian.transpose();
     }
   }
