@@ -146,7 +146,25 @@ double MeanSidePx(const Quad& quad) {
   return perimeter_px / kNumCorners;
 }
 
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 }  // namespace
+
+bool HasClearSides(const Quad& quad, int num_cells, const EdgeFitOptions& options) {
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const Eigen::Vector2d next = quad[(i + 1) % kNumCorners] - quad[i];
+    const Eigen::Vector2d last = quad[(i + kNumCorners - 1) % kNumCorners] - quad[i];
+    const double area = std::abs(Cross(next, last));
+    const bool is_slanted = area < options.min_sine_of_corner * next.norm() * last.norm();
+    const double narrowest_cell_px = area / std::max(next.norm(), last.norm()) / num_cells;
+    if (narrowest_cell_px < (is_slanted ? options.min_slanted_cell_px : options.min_edge_cell_px)) {
+      return false;
+    }
+  }
+  return true;
+}
 
 std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray, const Quad& corners_px,
                                                    int num_cells, const EdgeFitOptions& options) {
@@ -173,7 +191,7 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray, const Qu
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const Quad& corners_px,
                                             const cv::Mat& cells, const EdgeFitOptions& options) {
   const double cell_px = MeanSidePx(corners_px) / cells.rows;
-  if (cell_px < options.min_edge_cell_px) {
+  if (!HasClearSides(corners_px, cells.rows, options)) {
     const auto fitted = FitPattern(gray, corners_px, cells);
     if (fitted &&
         MaxShiftPx(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {

@@ -27,9 +27,18 @@ struct EdgeFitOptions {
   double max_band_px = 6.0;
   // A corner that the fit moves further than this many cells (but at least 2 px) is a failure.
   double max_shift_in_cells = 0.8;
-  // Markers with smaller cells are fitted as a whole (pattern_fit.h).
+  // Markers with cells narrower than this anywhere are fitted as a whole (pattern_fit.h).
   double min_edge_cell_px = 5.0;
+  // The same for slanted ones: near an acute corner each side's band holds the other side's blur,
+  // which pulled corners of markers tilted by 60 to 70 degrees inwards by up to 0.2 px.
+  double min_slanted_cell_px = 7.0;
+  double min_sine_of_corner = 0.9;
 };
+
+// Whether every side stands far enough from what is beside it, and upright enough on its
+// neighbours, to be fitted on its own. Corners in px; `num_cells` along a side, with the border.
+bool HasClearSides(const std::array<Eigen::Vector2d, kNumCorners>& corners_px, int num_cells,
+                   const EdgeFitOptions& options = {});
 
 // `corners_px` in OpenCV's pixel frame (first pixel's centre at (0,0)), in order around the square,
 // the refined ones likewise, with their uncertainty. `num_cells` is the number of cells along a

@@ -159,14 +159,20 @@ bool Minimize(const Problem& problem, int max_pixels, double tolerance_px, Minim
 }
 
 // A quick fit on some pixels, then an exact one on more from there, with the surroundings read
-// anew. False if there is no marker like this.
-bool MinimizeInTwoPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) {
-  for (const auto& [max_pixels, tolerance_px] :
-       {std::pair(kFirstPixels, 0.05), std::pair(kPixels, 5e-3)}) {
-    const P::Vector& p = minimum->parameters;
-    FillLightness(*problem->gray, cells, UnitSquareMap(CornersOf(p)), p[P::kDark], p[P::kLight],
-                  &problem->model);
-    if (!Minimize(*problem, max_pixels, tolerance_px, minimum)) return false;
+// anew; and once more where the blur is wide, because then grey levels, blur and surroundings are
+// only found together. False if there is no marker like this.
+bool MinimizeInPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) {
+  constexpr double kWideBlur = 0.3;  // in cells
+  struct Pass {
+    int max_pixels;
+    double tolerance_px, min_blur_cells;
+  };
+  for (const Pass& pass :
+       {Pass{kFirstPixels, 0.05, 0.0}, {kPixels, 5e-3, 0.0}, {kPixels, 5e-3, kWideBlur}}) {
+    const double blur_cells =
+        FillLightness(*problem->gray, cells, minimum->parameters, &problem->model);
+    if (blur_cells < pass.min_blur_cells) break;
+    if (!Minimize(*problem, pass.max_pixels, pass.tolerance_px, minimum)) return false;
   }
   const double contrast = minimum->parameters[P::kLight] - minimum->parameters[P::kDark];
   return contrast > kMinContrast && minimum->equations.Rms() < kMaxRelativeRms * contrast;
@@ -230,7 +236,7 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const Quad& corner
   const auto start = Start(cells, corners_px, &problem);
   if (!start) return std::nullopt;
   Minimum minimum{*start, {}};
-  if (!MinimizeInTwoPasses(cells, &problem, &minimum)) return std::nullopt;
+  if (!MinimizeInPasses(cells, &problem, &minimum)) return std::nullopt;
   return WithUncertainty(problem, minimum);
 }
 

@@ -1,6 +1,7 @@
 #include "importer/pattern_model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "importer/interpolate.h"
@@ -15,6 +16,51 @@ constexpr double kMarginInCells = 0.75;  // how far outside the black square pix
 // Zero at both ends of a side, one in its middle.
 Floats Hump(Floats place) { return 4.0f * place * (1.0f - place); }
 
+// Sigma of the blur across columns and across rows, in cells of the marker's middle.
+Eigen::Vector2d BlurInCells(const P::Vector& parameters,
+                            const std::array<Eigen::Vector2d, kNumCorners>& quad, int num_cells) {
+  const Eigen::Vector2d along_u = 0.5 * (quad[1] - quad[0] + quad[2] - quad[3]);
+  const Eigen::Vector2d along_v = 0.5 * (quad[3] - quad[0] + quad[2] - quad[1]);
+  const double area = std::abs(along_u.x() * along_v.y() - along_u.y() * along_v.x());
+  return num_cells / area *
+         Eigen::Vector2d(parameters[P::kBlurU] * along_v.norm(),
+                         parameters[P::kBlurV] * along_u.norm());
+}
+
+// How much of a blurred place lies within the rows (or columns) of the black square, and within
+// those and the quiet zone's.
+struct Within {
+  double square = 1.0, quiet_zone = 1.0;
+};
+
+// Where the surroundings are read along one axis: the middle of their first cell, or a sigma of the
+// blur beyond the quiet zone if that is further out.
+class RingReading {
+ public:
+  explicit RingReading(double blur_cells)
+      : beyond_cells_(std::max(0.5, blur_cells)),
+        at_ring_{NormalDistribution(-(1 + beyond_cells_) / blur_cells),
+                 NormalDistribution(-beyond_cells_ / blur_cells)} {}
+
+  // Of cell `i` of `n`, in sides of the square.
+  double Place(int i, int n) const {
+    if (i == -kRing) return -(1 + beyond_cells_) / n;
+    if (i == n + kRing - 1) return 1 + (1 + beyond_cells_) / n;
+    return (i + 0.5) / n;
+  }
+
+  // The other cells are taken to lie deep within.
+  Within Weights(int i, int n) const {
+    return i == -kRing || i == n + kRing - 1 ? at_ring_ : Within{};
+  }
+
+ private:
+  static double NormalDistribution(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
+
+  double beyond_cells_;
+  Within at_ring_;
+};
+
 }  // namespace
 
 std::array<Eigen::Vector2d, kNumCorners> CornersOf(const P::Vector& parameters) {
@@ -25,9 +71,14 @@ std::array<Eigen::Vector2d, kNumCorners> CornersOf(const P::Vector& parameters) 
   return quad;
 }
 
-void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMap& map, double dark,
-                   double light, PatternModel* model) {
+double FillLightness(const cv::Mat& gray, const cv::Mat& cells, const P::Vector& parameters,
+                     PatternModel* model) {
+  const std::array<Eigen::Vector2d, kNumCorners> quad = CornersOf(parameters);
+  const UnitSquareMap map(quad);
   const int n = model->num_cells;
+  const Eigen::Vector2d blur_cells = BlurInCells(parameters, quad, n);
+  const RingReading across_u(blur_cells.x()), across_v(blur_cells.y());
+  const double dark = parameters[P::kDark], contrast = parameters[P::kLight] - dark;
   for (int j = -kRing; j < n + kRing; ++j) {
     for (int i = -kRing; i < n + kRing; ++i) {
       const int outside = std::max({-i, i - n + 1, -j, j - n + 1});
@@ -35,14 +86,19 @@ void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMa
       if (outside <= 0) {
         lightness = cells.at<std::uint8_t>(j, i) != 0 ? 1.0f : 0.0f;
       } else if (outside == kRing) {
-        const double value = InterpolateGray(gray, map.ToImage((i + 0.5) / n, (j + 0.5) / n));
-        surround = static_cast<float>(std::clamp((value - light) / (light - dark), -1.0, 0.2));
+        const Eigen::Vector2d uv(across_u.Place(i, n), across_v.Place(j, n));
+        const double value = InterpolateGray(gray, map.ToImage(uv.x(), uv.y()));
+        const Within u = across_u.Weights(i, n), v = across_v.Weights(j, n);
+        const double surround_share = 1 - u.quiet_zone * v.quiet_zone;
+        const double read = (value - dark) / contrast - 1 + u.square * v.square;
+        surround = static_cast<float>(std::clamp(read / surround_share, -1.0, 0.2));
       }
       model->inner(j + kRing, i + kRing) = lightness;
       model->ring(j + kRing, i + kRing) = ring;
       model->surround(j + kRing, i + kRing) = surround;
     }
   }
+  return blur_cells.maxCoeff();
 }
 
 PatternPicture::PatternPicture(const PatternModel& model, const P::Vector& parameters)

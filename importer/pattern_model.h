@@ -46,9 +46,11 @@ struct PatternModel {
 };
 
 // Fills the three pictures of cells: the marker's own (zero for black) and the quiet zone are
-// known, what surrounds them is read from the image.
-void FillLightness(const cv::Mat& gray, const cv::Mat& cells, const UnitSquareMap& map, double dark,
-                   double light, PatternModel* model);
+// known, what surrounds them is read from the image. Where it is read, blur also brings some of the
+// quiet zone and of the black border; that is taken off, with the corners, blurs and grey levels of
+// `parameters`. Returns the larger blur, in cells.
+double FillLightness(const cv::Mat& gray, const cv::Mat& cells,
+                     const PatternParameters::Vector& parameters, PatternModel* model);
 
 // Four pixels of the model. Single precision is enough for a step.
 struct PatternPixels {

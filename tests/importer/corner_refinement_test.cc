@@ -202,7 +202,7 @@ TEST(PatternPicture, DerivativesAgreeWithDifferences) {
   P::Vector parameters = P::Vector::Zero();
   parameters.head<8>() << 290, 190, 310, 190, 310, 210, 290, 210;
   parameters.segment<8>(P::kBlurU) << 0.8, 0.9, 40, 200, 0.05, -0.03, 0.9, 0.95;
-  FillLightness(grid.image, grid.cells[0], UnitSquareMap(CornersOf(parameters)), 40, 200, &model);
+  FillLightness(grid.image, grid.cells[0], parameters, &model);
   const Floats x = {-10.6f, -3.2f, 4.7f, 10.3f}, y = {0.4f, -9.8f, 5.1f, 10.9f};
   ASSERT_EQ(Sum(__builtin_convertvector(PatternPicture(model, parameters).Covers(x, y), Floats)),
             -4);

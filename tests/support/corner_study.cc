@@ -146,7 +146,6 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
   model.center_px = map.ToImage(0.5, 0.5);
   model.diagonal_px = std::sqrt(2.0) * MeanSide(truth);
   const RenderOptions rendering;
-  FillLightness(grid.image, grid.cells[k], map, rendering.black, rendering.white, &model);
   P::Vector p = P::Vector::Zero();
   for (int i = 0; i < kNumCorners; ++i) {
     p.segment<2>(2 * i) = truth[static_cast<std::size_t>(i)];
@@ -155,9 +154,10 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
   p[P::kDark] = rendering.black;
   p[P::kLight] = rendering.white;
   p[P::kSurround] = p[P::kInnerLight] = 1.0;
+  FillLightness(grid.image, grid.cells[k], p, &model);
   const EdgeFitOptions options;
   const double cell_px = MeanSide(truth) / model.num_cells;
-  const bool by_edges = cell_px >= options.min_edge_cell_px;
+  const bool by_edges = HasClearSides(truth, model.num_cells, options);
   const double band_px =
       std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
   P::Matrix information = P::Matrix::Zero();
