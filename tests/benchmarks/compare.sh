@@ -124,14 +124,13 @@ compare_adjustment() {
     "$velamap_benchmark" --benchmark_format=csv \
       --benchmark_filter='InTimeOrder/41/10/13|RegistrationAndAdjustment' 2>/dev/null |
       awk -F, '
-        /^name/ { for (i = 1; i <= NF; i++) column[$i] = i; next }
+        /^name/ { gsub(/"/, ""); for (i = 1; i <= NF; i++) column[$i] = i; next }
         /^"?BM_/ {
           gsub(/"/, "", $1)
           split($1, part, "/")
-          ms = $column["time_unit"] ~ /ms/ ? 1e-3 : 1e-9
           size = part[2] "/" part[3] "/" part[4]
-          if ($1 ~ /InTimeOrder/) colmap[size] = $column["cpu_time"] * ms
-          else { ours[size] = $column["cpu_time"] * ms; order[++n] = size }
+          if ($1 ~ /InTimeOrder/) colmap[size] = $column["cpu_s"]
+          else { ours[size] = $column["cpu_s"]; order[++n] = size }
         }
         END {
           for (i = 1; i <= n; i++) {
