@@ -56,24 +56,39 @@ std::string DescribeDetector(const FrameDetector& detector) {
   for (const auto& [id, neighbors] : detector.graph) {
     known += fmt::format("|{}: {}", id, fmt::join(neighbors, " "));
   }
+  // An exhaustive search is not named: it is how earlier versions searched.
+  const std::string search = detector.options.search == SearchMode::kExhaustive
+                                 ? ""
+                                 : fmt::format(" search={} full_search_interval={}",
+                                               SearchModeName(detector.options.search),
+                                               detector.options.full_search_interval);
   return fmt::format(
       "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
-      "error_correction_rate={} inverted={} dictionary_and_layout={:016x}",
+      "error_correction_rate={} inverted={} dictionary_and_layout={:016x}{}",
       detector.dictionary.name, detector.border_bits,
       CornerRefinementName(detector.options.corner_refinement),
       detector.options.min_marker_perimeter_rate, detector.options.error_correction_rate,
-      detector.options.inverted ? 1 : 0, Hash(known));
+      detector.options.inverted ? 1 : 0, Hash(known), search);
+}
+
+std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray) {
+  return SearchMarkers(gray, detector.dictionary, detector.border_bits, detector.options);
+}
+
+std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
+                                      const std::vector<cv::Rect>& regions) {
+  return SearchMarkers(gray, detector.dictionary, detector.border_bits, detector.options, regions);
 }
 
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
-                              const cv::Mat& gray) {
+                              const cv::Mat& gray, const std::vector<MarkerQuad>& quads) {
   FrameDetections detections;
   detections.image_name = frame.image_name;
   detections.frame_number = frame.frame_number;
   detections.time_s = frame.time_s;
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
-       DetectMarkers(gray, detector.dictionary, detector.border_bits, detector.options)) {
+       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options)) {
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;
     if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -12,6 +13,7 @@
 #include "importer/dictionary.h"
 #include "importer/frame_source.h"
 #include "importer/layout.h"
+#include "importer/marker_search.h"
 #include "importer/options.h"
 #include "importer/rotation_ambiguity.h"
 
@@ -26,19 +28,24 @@ struct FrameDetector {
   Dictionary dictionary;
   int border_bits = 1;
   AdjacencyGraph graph;
-  CodeSymmetries symmetries;  // of the markers that look the same when turned
+  CodeSymmetries symmetries;              // of the markers that look the same when turned
   std::map<int, std::string> part_of_id;  // empty: every id is welcome
 };
 
 // Throws InputError for a dictionary that does not exist or has wrong bits.
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options);
 
+// Where the markers of the whole frame, or of regions of it, are to a pixel. Thread-safe.
+std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray);
+std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
+                                      const std::vector<cv::Rect>& regions);
+
 // One line on everything that decides which detections a frame yields, so that one database never
 // mixes two ways. The dictionary's codes and the layout's parts and neighbours go in as a checksum.
 std::string DescribeDetector(const FrameDetector& detector);
 
-// `gray` is the frame in grey. Thread-safe.
+// All else. `gray` is the frame in grey, `quads` what was found in it. Thread-safe.
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
-                              const cv::Mat& gray);
+                              const cv::Mat& gray, const std::vector<MarkerQuad>& quads);
 
 }  // namespace velamap

@@ -1,4 +1,5 @@
-// Finds markers in one grey image; with dictionary.h the only user of cv::aruco.
+// The markers of one grey image: where they are (marker_search.h), and their corners to a fraction
+// of a pixel.
 
 #pragma once
 
@@ -8,6 +9,7 @@
 
 #include "importer/detection.h"
 #include "importer/dictionary.h"
+#include "importer/marker_search.h"
 #include "importer/options.h"
 
 namespace velamap {
@@ -18,5 +20,12 @@ namespace velamap {
 // Ids may occur more than once (duplicates.h). Thread-safe; colours are left zero.
 std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                            int border_bits, const ArucoDetectionOptions& options);
+
+// The second half of it: the corners of markers that have been found. One detection for each of
+// `quads`, in their order.
+std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
+                                           const std::vector<MarkerQuad>& quads,
+                                           const Dictionary& dictionary, int border_bits,
+                                           const ArucoDetectionOptions& options);
 
 }  // namespace velamap

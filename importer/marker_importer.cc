@@ -23,7 +23,9 @@
 #include "importer/frame_detector.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_source.h"
+#include "importer/frame_turns.h"
 #include "importer/import_completion.h"
+#include "importer/marker_tracking.h"
 
 namespace velamap {
 namespace {
@@ -194,11 +196,15 @@ class ImportRun {
 
   FrameResult Process(int frame_idx, Frame* frame) {
     FrameResult result;
+    std::optional<Turn> turn;
+    if (detector_.options.search == SearchMode::kTracked) turn.emplace(&turns_, frame_idx);
     result.detections.image_name = frame->image_name;
     if (Load(frame, &result.skipped_because)) {
       const StageTimer timer(ImportStage::kDetect);
       result.camera = CameraOfFrame(*frame);
-      result.detections = DetectInFrame(detector_, *frame, frame->gray);
+      const std::vector<MarkerQuad> quads =
+          turn ? SearchInTurn(frame_idx, *frame, &*turn) : SearchInFrame(detector_, frame->gray);
+      result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
       WriteImage(*frame, result.detections);
       AddToSample(frame_idx, frame->gray);
     }
@@ -254,6 +260,26 @@ class ImportRun {
   }
 
  private:
+  using Turn = FrameTurns<MarkerTracks>::Turn;
+
+  // Tracked from frame to frame, so in their order; a full search that is due waits for nobody.
+  std::vector<MarkerQuad> SearchInTurn(int frame_idx, const Frame& frame, Turn* turn) const {
+    std::vector<MarkerQuad> quads;
+    const bool is_full = frame_idx % detector_.options.full_search_interval == 0;
+    if (is_full) quads = SearchInFrame(detector_, frame.gray);
+    MarkerTracks* tracks = turn->Wait();
+    const int frame_number = frame.frame_number.value_or(frame_idx);
+    if (is_full) {
+      UpdateTracks(quads, frame.gray.size(), frame_number, tracks);
+    } else {
+      quads = SearchTracked(
+          [&](const auto& regions) { return SearchInFrame(detector_, frame.gray, regions); },
+          frame.gray.size(), frame_number, tracks);
+    }
+    turn->End();
+    return quads;
+  }
+
   bool Load(Frame* frame, std::string* reason) const {
     const StageTimer timer(ImportStage::kDecode);
     return source_->Load(frame, reason);
@@ -304,8 +330,9 @@ class ImportRun {
   const FrameDetector& detector_;
   FrameSource* source_;
   DatabaseWriter writer_;
-  bool held_markers_;            // before this run
-  std::atomic<bool> few_found_;  // so far, so that frames are sampled for a hint
+  FrameTurns<MarkerTracks> turns_;  // videos
+  bool held_markers_;               // before this run
+  std::atomic<bool> few_found_;     // so far, so that frames are sampled for a hint
   std::mutex sample_mutex_;
   ImageSample sample_;
   ImportReport report_;
@@ -330,7 +357,9 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   options.detection.Check();
   options.video.Check();
   const int num_threads = NumThreads(options.num_threads);
-  const FrameDetector detector = MakeFrameDetector(options.layout, options.detection);
+  ArucoDetectionOptions detection = options.detection;
+  if (fs::is_directory(options.image_path)) detection.search = SearchMode::kExhaustive;
+  const FrameDetector detector = MakeFrameDetector(options.layout, detection);
 
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);

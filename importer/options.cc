@@ -15,6 +15,9 @@ constexpr std::array<std::pair<CornerRefinement, const char*>, 3> kRefinements =
      {CornerRefinement::kSubpix, "subpix"},
      {CornerRefinement::kEdge, "edge"}}};
 
+constexpr std::array<std::pair<SearchMode, const char*>, 2> kSearchModes = {
+    {{SearchMode::kExhaustive, "exhaustive"}, {SearchMode::kTracked, "tracked"}}};
+
 // Written so that a NaN fails.
 void CheckRange(const char* option, double value, double min, double max) {
   if (!(value >= min && value <= max)) {
@@ -40,9 +43,29 @@ std::string CornerRefinementName(CornerRefinement refinement) {
   throw std::logic_error("unknown corner refinement");
 }
 
+SearchMode SearchModeFromName(const std::string& name) {
+  for (const auto& [mode, known_name] : kSearchModes) {
+    if (name == known_name) return mode;
+  }
+  throw InputError(
+      fmt::format("--ArucoDetection.search: '{}' is unknown; give tracked or exhaustive", name));
+}
+
+std::string SearchModeName(SearchMode mode) {
+  for (const auto& [known_mode, name] : kSearchModes) {
+    if (mode == known_mode) return name;
+  }
+  throw std::logic_error("unknown search mode");
+}
+
 void ArucoDetectionOptions::Check() const {
   CheckRange("ArucoDetection.min_marker_perimeter_rate", min_marker_perimeter_rate, 0.001, 4.0);
   CheckRange("ArucoDetection.error_correction_rate", error_correction_rate, 0.0, 1.0);
+  if (full_search_interval < 1) {
+    throw InputError(
+        fmt::format("--ArucoDetection.full_search_interval: {} is too small; give 1 or more",
+                    full_search_interval));
+  }
 }
 
 void VideoOptions::Check() const {

@@ -15,6 +15,14 @@ enum class CornerRefinement {
 CornerRefinement CornerRefinementFromName(const std::string& name);  // throws InputError
 std::string CornerRefinementName(CornerRefinement refinement);
 
+enum class SearchMode {
+  kExhaustive,  // the whole of every frame
+  kTracked,     // videos: around the markers of the frames before, marker_tracking.h
+};
+
+SearchMode SearchModeFromName(const std::string& name);  // throws InputError
+std::string SearchModeName(SearchMode mode);
+
 struct ArucoDetectionOptions {
   CornerRefinement corner_refinement = CornerRefinement::kEdge;
   // Smallest marker perimeter as a fraction of the larger image side. OpenCV's 0.03 loses a third
@@ -22,7 +30,9 @@ struct ArucoDetectionOptions {
   double min_marker_perimeter_rate = 0.01;
   // Fraction of the dictionary's error correction that is used. OpenCV's 0.6 lets false ids in.
   double error_correction_rate = 0.3;
-  bool inverted = false;  // white marker on black ground
+  bool inverted = false;                     // white marker on black ground
+  SearchMode search = SearchMode::kTracked;  // of videos; photographs are searched as a whole
+  int full_search_interval = 15;             // tracked: the whole of every k-th frame that is read
 
   void Check() const;  // throws InputError that names the option
 };

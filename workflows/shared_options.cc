@@ -83,6 +83,9 @@ OptionGroup ArucoDetectionGroup(ArucoDetectionOptions* options) {
                                   [options](const std::string& name) {
                                     options->corner_refinement = CornerRefinementFromName(name);
                                   }};
+  const ParsedValue search = {SearchModeName(options->search), [options](const std::string& name) {
+                                options->search = SearchModeFromName(name);
+                              }};
   return {
       "Marker detection",
       {{"ArucoDetection.corner_refinement", refinement, "none|subpix|edge",
@@ -91,7 +94,12 @@ OptionGroup ArucoDetectionGroup(ArucoDetectionOptions* options) {
         "smallest marker perimeter, of the larger image side"},
        {"ArucoDetection.error_correction_rate", &options->error_correction_rate, "fraction",
         "part of the dictionary's error correction that is used"},
-       {"ArucoDetection.inverted", &options->inverted, "0|1", "white markers on black ground"}}};
+       {"ArucoDetection.inverted", &options->inverted, "0|1", "white markers on black ground"},
+       {"ArucoDetection.search", search, "tracked|exhaustive",
+        "of a video: around the markers of the frames before, or the whole of every frame; images "
+        "are searched as a whole"},
+       {"ArucoDetection.full_search_interval", &options->full_search_interval, "frames",
+        "tracked: the whole of every k-th frame is searched"}}};
 }
 
 OptionGroup VideoGroup(VideoOptions* options) {

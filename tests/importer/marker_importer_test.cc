@@ -151,6 +151,31 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
   EXPECT_EQ(read(options_.database_path), bytes);
 }
 
+TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingInATrackedVideo) {
+  WriteVideo(40);
+  const auto run = [&](int num_threads, SearchMode search) {
+    fs::remove(options_.database_path);
+    options_.num_threads = num_threads;
+    options_.detection.search = search;
+    ImportMarkers(options_);
+    std::ifstream stream(options_.database_path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string bytes = run(1, SearchMode::kTracked);
+  for (const int num_threads : {2, 5}) EXPECT_EQ(run(num_threads, SearchMode::kTracked), bytes);
+  const std::vector<DatabaseImage> tracked = ReadImages();
+  run(2, SearchMode::kExhaustive);
+  const std::vector<DatabaseImage> exhaustive = ReadImages();
+  ASSERT_EQ(tracked.size(), exhaustive.size());
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    ASSERT_EQ(tracked[i].detections.markers.size(), exhaustive[i].detections.markers.size());
+    for (std::size_t m = 0; m < tracked[i].detections.markers.size(); ++m) {
+      EXPECT_EQ(tracked[i].detections.markers[m].corners_in_image_px,
+                exhaustive[i].detections.markers[m].corners_in_image_px);
+    }
+  }
+}
+
 TEST_F(MarkerImporterTest, OtherFramesTellHowASymmetricMarkerStands) {
   // Marker 2 looks the same upside down. Marker 0 stands as it does; marker 1 stands across, so
   // that it tells nothing in the frame without marker 0.

@@ -19,6 +19,14 @@ TEST(CornerRefinement, NamesRoundTrip) {
                            {"corner_refinement", "'magic'", "none, subpix or edge"});
 }
 
+TEST(SearchMode, NamesRoundTrip) {
+  for (const SearchMode mode : {SearchMode::kExhaustive, SearchMode::kTracked}) {
+    EXPECT_EQ(SearchModeFromName(SearchModeName(mode)), mode);
+  }
+  ExpectThrows<InputError>([] { SearchModeFromName("fast"); },
+                           {"ArucoDetection.search", "'fast'", "tracked or exhaustive"});
+}
+
 TEST(ArucoDetectionOptions, CheckNamesTheOption) {
   EXPECT_NO_THROW(ArucoDetectionOptions().Check());
   for (const double rate : {0.0, -1.0, 5.0, std::nan("")}) {
@@ -30,6 +38,9 @@ TEST(ArucoDetectionOptions, CheckNamesTheOption) {
   ArucoDetectionOptions options;
   options.error_correction_rate = 1.5;
   ExpectThrows<InputError>([&] { options.Check(); }, {"--ArucoDetection.error_correction_rate"});
+  options = {};
+  options.full_search_interval = 0;
+  ExpectThrows<InputError>([&] { options.Check(); }, {"--ArucoDetection.full_search_interval"});
 }
 
 TEST(VideoOptions, CheckNamesTheOption) {

@@ -1,0 +1,48 @@
+// Where the markers of one grey image are, to a pixel; with dictionary.h the only user of
+// cv::aruco. What is found is the same whether the whole image is searched or a region that holds
+// the marker with kSearchReachPx around it: threshold, contour, quadrilateral and code of a marker
+// depend on nothing farther away.
+
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/dictionary.h"
+#include "importer/ids.h"
+#include "importer/options.h"
+
+namespace velamap {
+
+// Corners in OpenCV's pixel frame: (0,0) is the first pixel's centre. Order as in detection.h.
+using QuadCorners = std::array<Eigen::Vector2d, kNumCorners>;
+
+struct MarkerQuad {
+  int marker_id = 0;
+  QuadCorners corners_px;
+};
+
+// Half the widest threshold window, and the band along a border in which OpenCV takes no corner.
+inline constexpr int kSearchReachPx = 6 + 4;
+
+Eigen::Vector2d QuadCenter(const QuadCorners& corners);
+double QuadMeanSide(const QuadCorners& corners);
+
+// The whole 8-bit grey image. Ids may occur more than once (duplicates.h); largest markers first.
+// Thread-safe.
+std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
+                                      int border_bits, const ArucoDetectionOptions& options);
+
+// Only within `regions`, which lie in the image. They may overlap: a marker is handed out once.
+std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
+                                      int border_bits, const ArucoDetectionOptions& options,
+                                      const std::vector<cv::Rect>& regions);
+
+// One marker may be found along the outer and the inner contour of its black border, or in two
+// regions. The marker's corners are those of the outer one.
+std::vector<MarkerQuad> RemoveNested(std::vector<MarkerQuad> quads);
+
+}  // namespace velamap

@@ -1,0 +1,351 @@
+#include "importer/marker_tracking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "importer/local_motion.h"
+
+namespace velamap {
+namespace {
+
+// A call of the detector for a region costs about as much as so many pixels more.
+constexpr int kCallCostPx = 4000;
+
+// Larger parts of the picture than this are left to a full search, which finds more.
+constexpr double kMaxSearchedPart = 0.6;
+
+// Fewer than this part of the markers that are to be expected is a jerk or a cut. Small markers are
+// found in some frames only, so each counts as often as it was found lately.
+constexpr double kMinFoundPart = 0.5;
+constexpr double kHitRateStep = 0.2;
+
+// A lost marker is looked for so many frames for each in which it was found, up to a limit: a false
+// one is soon forgotten.
+constexpr int kLostFramesPerFound = 5;
+constexpr int kMaxLostFrames = 90;
+
+// Inflow at which the band along a border is searched, as a part of the picture's width, and how
+// much farther than the largest marker it reaches.
+constexpr double kMinInflowPart = 0.004;
+constexpr double kBandPerMarker = 1.3;
+
+struct Box {
+  Eigen::Vector2d min, max;
+};
+
+Box BoundingBox(const QuadCorners& corners) {
+  Box box{corners[0], corners[0]};
+  for (const Eigen::Vector2d& corner : corners) {
+    box.min = box.min.cwiseMin(corner);
+    box.max = box.max.cwiseMax(corner);
+  }
+  return box;
+}
+
+void Move(const Eigen::Vector2d& displacement, QuadCorners* corners) {
+  for (Eigen::Vector2d& corner : *corners) corner += displacement;
+}
+
+// Whether a marker may lie in the image as a whole, its place known to `margin_px`; a negative one
+// asks whether it does for sure.
+bool FitsIn(const Box& box, const cv::Size& size, double margin_px) {
+  return box.min.x() >= -margin_px && box.min.y() >= -margin_px &&
+         box.max.x() <= size.width - 1 + margin_px && box.max.y() <= size.height - 1 + margin_px;
+}
+
+// Where a marker is to be found, its place known to `margin_px`.
+cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px) {
+  const double reach_px = margin_px + kSearchReachPx;
+  const cv::Point min(static_cast<int>(std::floor(box.min.x() - reach_px)),
+                      static_cast<int>(std::floor(box.min.y() - reach_px)));
+  const cv::Point max(static_cast<int>(std::ceil(box.max.x() + reach_px)) + 1,
+                      static_cast<int>(std::ceil(box.max.y() + reach_px)) + 1);
+  return cv::Rect(min, max) & cv::Rect({0, 0}, size);
+}
+
+double AreaOf(const std::vector<cv::Rect>& regions) {
+  double area = 0.0;
+  for (const cv::Rect& region : regions) area += region.area();
+  return area;
+}
+
+// A marker of the last frame, where it should be in this one.
+struct Prediction {
+  QuadCorners corners_px;
+  double margin_px = 0.0;
+};
+
+// Pass 1. Without a velocity of its own a marker moves as those around it did.
+Prediction PredictByVelocity(const MarkerTrack& track, const std::vector<PointMotion>& velocities,
+                             int num_frames) {
+  const Eigen::Vector2d velocity = track.velocity_px
+                                       ? *track.velocity_px
+                                       : LocalMotion(velocities, QuadCenter(track.corners_px));
+  Prediction prediction{track.corners_px, 0.0};
+  Move(velocity * num_frames, &prediction.corners_px);
+  prediction.margin_px = 6.0 + 0.2 * QuadMeanSide(track.corners_px) +
+                         0.5 * std::min(velocity.norm() * num_frames, 40.0);
+  return prediction;
+}
+
+// Pass 2.
+Prediction PredictByOthers(const MarkerTrack& track, const std::vector<PointMotion>& motions) {
+  Prediction prediction{track.corners_px, 0.0};
+  Move(LocalMotion(motions, QuadCenter(track.corners_px)), &prediction.corners_px);
+  prediction.margin_px = 6.0 + 0.4 * QuadMeanSide(track.corners_px) + std::min(track.num_lost, 20);
+  return prediction;
+}
+
+// For each track the quad that continues it, or -1: of the same id, the nearest first.
+std::vector<int> Associate(const std::vector<MarkerTrack>& tracks,
+                           const std::vector<MarkerQuad>& quads, const cv::Size& image_size) {
+  struct Pair {
+    double distance_px;
+    std::size_t track_idx, quad_idx;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    for (std::size_t q = 0; q < quads.size(); ++q) {
+      if (tracks[t].marker_id != quads[q].marker_id) continue;
+      const double distance_px =
+          (QuadCenter(tracks[t].corners_px) - QuadCenter(quads[q].corners_px)).norm();
+      const double limit_px = 2.0 * QuadMeanSide(tracks[t].corners_px) + 0.05 * image_size.width;
+      if (distance_px < limit_px) pairs.push_back({distance_px, t, q});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.distance_px < b.distance_px; });
+  std::vector<int> quad_of_track(tracks.size(), -1);
+  std::vector<bool> taken(quads.size(), false);
+  for (const Pair& pair : pairs) {
+    if (taken[pair.quad_idx] || quad_of_track[pair.track_idx] >= 0) continue;
+    quad_of_track[pair.track_idx] = static_cast<int>(pair.quad_idx);
+    taken[pair.quad_idx] = true;
+  }
+  return quad_of_track;
+}
+
+// How the markers of the last frame have moved since.
+std::vector<PointMotion> MotionsOf(const std::vector<MarkerTrack>& tracks,
+                                   const std::vector<MarkerQuad>& quads,
+                                   const std::vector<int>& quad_of_track) {
+  std::vector<PointMotion> motions;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (quad_of_track[t] < 0 || tracks[t].num_lost > 0) continue;
+    motions.push_back(
+        {QuadCenter(tracks[t].corners_px), QuadCenter(quads[quad_of_track[t]].corners_px)});
+  }
+  return motions;
+}
+
+// Left, top, right, bottom.
+std::array<double, 4> AddInflow(const std::vector<PointMotion>& motions, const cv::Size& size,
+                                std::array<double, 4> inflow_px) {
+  const double w = size.width, h = size.height;
+  inflow_px[0] += LocalMotion(motions, {0.0, 0.5 * h}).x();
+  inflow_px[1] += LocalMotion(motions, {0.5 * w, 0.0}).y();
+  inflow_px[2] -= LocalMotion(motions, {w, 0.5 * h}).x();
+  inflow_px[3] -= LocalMotion(motions, {0.5 * w, h}).y();
+  // What has gone out for long comes back with other things.
+  for (double& inflow : inflow_px) inflow = std::max(inflow, -0.02 * size.width);
+  return inflow_px;
+}
+
+double LargestMarker(const std::vector<MarkerTrack>& tracks) {
+  double largest_px = 0.0;
+  for (const MarkerTrack& track : tracks) {
+    const Box box = BoundingBox(track.corners_px);
+    if (track.num_lost == 0) largest_px = std::max(largest_px, (box.max - box.min).maxCoeff());
+  }
+  return largest_px;
+}
+
+// The bands along the borders at which new markers can have come in; their inflow starts again.
+std::vector<cv::Rect> BorderRegions(const std::vector<MarkerTrack>& tracks, const cv::Size& size,
+                                    std::array<double, 4>* inflow_px) {
+  const double marker_px = kBandPerMarker * LargestMarker(tracks);
+  std::vector<cv::Rect> regions;
+  for (std::size_t side = 0; side < inflow_px->size(); ++side) {
+    double& inflow = (*inflow_px)[side];
+    if (inflow < kMinInflowPart * size.width) continue;
+    const int depth_px = static_cast<int>(marker_px + inflow) + kSearchReachPx + 4;
+    cv::Rect band(0, 0, size.width, size.height);
+    (side % 2 == 0 ? band.width : band.height) = depth_px;
+    if (side == 2) band.x = size.width - depth_px;
+    if (side == 3) band.y = size.height - depth_px;
+    regions.push_back(band & cv::Rect({0, 0}, size));
+    inflow = 0.0;
+  }
+  return regions;
+}
+
+// The tracks after a frame with `quads`: those that go on, moved along where they are lost, and new
+// ones.
+std::vector<MarkerTrack> Continue(const std::vector<MarkerTrack>& tracks,
+                                  const std::vector<MarkerQuad>& quads,
+                                  const std::vector<int>& quad_of_track,
+                                  const std::vector<PointMotion>& motions, const cv::Size& size,
+                                  int num_frames) {
+  std::vector<MarkerTrack> next;
+  std::vector<bool> known(quads.size(), false);
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    MarkerTrack track = tracks[t];
+    if (quad_of_track[t] >= 0) {
+      known[quad_of_track[t]] = true;
+      const QuadCorners& corners = quads[quad_of_track[t]].corners_px;
+      track.velocity_px.reset();
+      if (track.num_lost == 0) {
+        track.velocity_px = (QuadCenter(corners) - QuadCenter(track.corners_px)) / num_frames;
+      }
+      track.corners_px = corners;
+      track.num_lost = 0;
+      ++track.num_found;
+      track.hit_rate += kHitRateStep * (1.0 - track.hit_rate);
+    } else {
+      track.hit_rate -= kHitRateStep * track.hit_rate;
+      Move(LocalMotion(motions, QuadCenter(track.corners_px)), &track.corners_px);
+      track.velocity_px.reset();
+      track.num_lost += num_frames;
+      const int patience = std::min(kMaxLostFrames, kLostFramesPerFound * track.num_found);
+      const bool is_near = FitsIn(BoundingBox(track.corners_px), size, 0.25 * size.width);
+      if (track.num_lost > patience || !is_near) continue;
+    }
+    next.push_back(track);
+  }
+  for (std::size_t q = 0; q < quads.size(); ++q) {
+    if (!known[q]) next.push_back({quads[q].marker_id, quads[q].corners_px});
+  }
+  return next;
+}
+
+// What pass 1 found, and what it says of all others.
+struct FirstPass {
+  std::vector<MarkerQuad> quads;
+  std::vector<int> quad_of_track;
+  std::vector<PointMotion> motions;
+};
+
+// Nothing if the places fill most of the picture, or there are none.
+std::optional<FirstPass> SearchByVelocity(const RegionSearch& search, const cv::Size& size,
+                                          int num_frames, const std::vector<MarkerTrack>& tracks) {
+  std::vector<PointMotion> velocities;
+  for (const MarkerTrack& track : tracks) {
+    const Eigen::Vector2d center = QuadCenter(track.corners_px);
+    if (track.velocity_px) velocities.push_back({center, center + *track.velocity_px});
+  }
+  std::vector<cv::Rect> regions;
+  for (const MarkerTrack& track : tracks) {
+    if (track.num_lost > 0) continue;
+    const Prediction prediction = PredictByVelocity(track, velocities, num_frames);
+    const Box box = BoundingBox(prediction.corners_px);
+    if (!FitsIn(box, size, prediction.margin_px)) continue;
+    regions.push_back(RegionAround(box, size, prediction.margin_px));
+  }
+  regions = MergeRegions(std::move(regions));
+  if (regions.empty() || AreaOf(regions) > kMaxSearchedPart * size.area()) return std::nullopt;
+  FirstPass pass;
+  pass.quads = search(regions);
+  pass.quad_of_track = Associate(tracks, pass.quads, size);
+  pass.motions = MotionsOf(tracks, pass.quads, pass.quad_of_track);
+  return pass;
+}
+
+// Whether fewer markers are found than their hit rates let expect.
+bool IsLost(const std::vector<MarkerTrack>& tracks, const std::vector<int>& quad_of_track,
+            const std::vector<PointMotion>& motions, const cv::Size& size) {
+  double num_expected = 0.0, num_found = 0.0;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    const bool is_found = quad_of_track[t] >= 0;
+    const Prediction prediction = PredictByOthers(tracks[t], motions);
+    const Box box = BoundingBox(prediction.corners_px);
+    if (!is_found && !FitsIn(box, size, -prediction.margin_px)) continue;
+    num_expected += tracks[t].hit_rate;
+    num_found += is_found;
+  }
+  return num_found < kMinFoundPart * num_expected;
+}
+
+// Both passes; nothing where a search of the whole frame is called for.
+std::optional<std::vector<MarkerQuad>> SearchPlaces(const RegionSearch& search,
+                                                    const cv::Size& size, int num_frames,
+                                                    MarkerTracks* tracks) {
+  const std::optional<FirstPass> first = SearchByVelocity(search, size, num_frames, tracks->tracks);
+  if (!first || first->motions.empty()) return std::nullopt;
+  std::array<double, 4> inflow_px = AddInflow(first->motions, size, tracks->inflow_px);
+  std::vector<cv::Rect> regions = BorderRegions(tracks->tracks, size, &inflow_px);
+  for (std::size_t t = 0; t < tracks->tracks.size(); ++t) {
+    if (first->quad_of_track[t] >= 0) continue;
+    const Prediction prediction = PredictByOthers(tracks->tracks[t], first->motions);
+    const Box box = BoundingBox(prediction.corners_px);
+    if (!FitsIn(box, size, prediction.margin_px)) continue;
+    regions.push_back(RegionAround(box, size, prediction.margin_px));
+  }
+  regions = MergeRegions(std::move(regions));
+  if (AreaOf(regions) > kMaxSearchedPart * size.area()) return std::nullopt;
+  std::vector<MarkerQuad> quads = first->quads;
+  if (!regions.empty()) {
+    const std::vector<MarkerQuad> second = search(regions);
+    quads.insert(quads.end(), second.begin(), second.end());
+    quads = RemoveNested(std::move(quads));
+  }
+  const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, size);
+  if (IsLost(tracks->tracks, quad_of_track, first->motions, size)) return std::nullopt;
+  tracks->inflow_px = inflow_px;
+  return quads;
+}
+
+void HandOn(const std::vector<MarkerQuad>& quads, const cv::Size& size, int frame_number,
+            MarkerTracks* tracks) {
+  const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, size);
+  const std::vector<PointMotion> motions = MotionsOf(tracks->tracks, quads, quad_of_track);
+  tracks->tracks = Continue(tracks->tracks, quads, quad_of_track, motions, size,
+                            std::max(1, frame_number - tracks->frame_number));
+  tracks->frame_number = frame_number;
+}
+
+}  // namespace
+
+std::vector<MarkerQuad> SearchTracked(const RegionSearch& search, const cv::Size& image_size,
+                                      int frame_number, MarkerTracks* tracks) {
+  const int num_frames = std::max(1, frame_number - tracks->frame_number);
+  std::optional<std::vector<MarkerQuad>> quads;
+  if (!tracks->has_new) quads = SearchPlaces(search, image_size, num_frames, tracks);
+  if (quads) {
+    HandOn(*quads, image_size, frame_number, tracks);
+    return *std::move(quads);
+  }
+  quads = search({cv::Rect({0, 0}, image_size)});
+  UpdateTracks(*quads, image_size, frame_number, tracks);
+  return *std::move(quads);
+}
+
+void UpdateTracks(const std::vector<MarkerQuad>& quads, const cv::Size& image_size,
+                  int frame_number, MarkerTracks* tracks) {
+  HandOn(quads, image_size, frame_number, tracks);
+  tracks->has_new = std::any_of(
+      tracks->tracks.begin(), tracks->tracks.end(),
+      [](const MarkerTrack& track) { return track.num_found == 1 && track.num_lost == 0; });
+  tracks->inflow_px = {};
+}
+
+std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions) {
+  for (bool merged = true; merged;) {
+    merged = false;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      for (std::size_t j = i + 1; j < regions.size();) {
+        const cv::Rect both = regions[i] | regions[j];
+        if (both.area() <= regions[i].area() + regions[j].area() + kCallCostPx) {
+          regions[i] = both;
+          regions.erase(regions.begin() + static_cast<std::ptrdiff_t>(j));
+          merged = true;
+        } else {
+          ++j;
+        }
+      }
+    }
+  }
+  return regions;
+}
+
+}  // namespace velamap

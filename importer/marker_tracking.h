@@ -1,0 +1,60 @@
+// Markers of a video from frame to frame: where those of the last frames should be now, so that
+// only these places are searched. Between full searches a frame is searched in two passes:
+//
+//   1. around every marker of the last frame, moved on by its velocity;
+//   2. around those that pass 1 missed and those lost earlier, moved on as the found ones around
+//      them have just moved; and along the borders, where the picture moves inwards.
+//
+// Where far fewer are found than usual, or the places fill most of the picture, the whole frame is
+// searched, and again the next one as long as this finds new markers. The result depends on the
+// frames and their order only.
+
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/marker_search.h"
+
+namespace velamap {
+
+// Corners in OpenCV's pixel frame, px.
+struct MarkerTrack {
+  int marker_id = 0;
+  QuadCorners corners_px;  // in the last frame: found there, or moved along with those around
+  std::optional<Eigen::Vector2d> velocity_px{};  // a frame; of one found in the last two searches
+  int num_lost = 0;                              // frames since it was found
+  int num_found = 1;                             // frames in which it was found
+  double hit_rate = 0.5;                         // part of the last frames in which it was found
+};
+
+// What one frame hands on to the next.
+struct MarkerTracks {
+  std::vector<MarkerTrack> tracks;
+  int frame_number = 0;  // of the last frame that was searched
+  bool has_new = false;  // the last full search found new markers, so the next may find more
+  // How far the picture has come in at the left, top, right and bottom border since the band along
+  // it was searched, px; negative: it went out.
+  std::array<double, 4> inflow_px{};
+};
+
+// Searches `regions` of a frame for markers.
+using RegionSearch = std::function<std::vector<MarkerQuad>(const std::vector<cv::Rect>& regions)>;
+
+// Searches the next frame of `tracks`' video and brings `tracks` up to it.
+std::vector<MarkerQuad> SearchTracked(const RegionSearch& search, const cv::Size& image_size,
+                                      int frame_number, MarkerTracks* tracks);
+
+// The same for a frame of which all markers are known by a search of the whole frame.
+void UpdateTracks(const std::vector<MarkerQuad>& quads, const cv::Size& image_size,
+                  int frame_number, MarkerTracks* tracks);
+
+// Rectangles that cover what `regions` cover, joined where one costs less than two.
+std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions);
+
+}  // namespace velamap
