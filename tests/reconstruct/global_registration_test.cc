@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -197,6 +198,27 @@ TEST_P(SpoiltCube, KeepsAllMarkers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SpoiltCube, testing::Values(0u, 2u, 5u));
+
+class SpoiltScene : public testing::TestWithParam<std::tuple<SceneKind, std::uint32_t>> {};
+
+TEST_P(SpoiltScene, KeepsNearlyAllMarkers) {
+  const auto [kind, number] = GetParam();
+  const std::uint32_t seed = 10 * number;
+  SyntheticScene scene = MakeScene(kind, 30, kind == SceneKind::kSail);
+  AddNoise({0.2, 0.0, 0.0, 0, seed + 3}, &scene);
+  const double clean_error = RmsError(Register(scene), scene);
+  ExchangeIds(0.2, seed + 4, &scene);
+  TurnCorners(0.1, seed + 5, &scene);
+  BlurFrames(3.0, seed + 6, &scene);
+  const Registration registration = Register(scene);
+  EXPECT_GE(ReconstructionRatio(registration, scene), 0.98);
+  EXPECT_LT(RmsError(registration, scene), 2 * clean_error);
+}
+
+INSTANTIATE_TEST_SUITE_P(KindsAndSeeds, SpoiltScene,
+                         testing::Combine(testing::Values(SceneKind::kSail, SceneKind::kPlane,
+                                                          SceneKind::kCube),
+                                          testing::Range(1u, 5u)));
 
 TEST(GlobalRegistration, RecurringFalseSquareIsOutvoted) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 20, false);

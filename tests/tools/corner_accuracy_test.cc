@@ -61,9 +61,10 @@ TEST_P(CornerAccuracyTest, UnbiasedBetterThanSubpixAndHonest) {
 }
 
 INSTANTIATE_TEST_SUITE_P(RenderedMarkers, CornerAccuracyTest,
-                         testing::Values(Case(12, 0.7), Case(16, 0.4), Case(16, 1.0), Case(25, 1.5),
-                                         Case(35, 0.7), Case(80, 0.4), Case(80, 1.5), Tilted(120),
-                                         Compressed(16), Compressed(65), Bent(30, 5)));
+                         testing::Values(Case(12, 0.7), Case(12, 1.5), Case(16, 0.4), Case(16, 1.0),
+                                         Case(25, 1.5), Case(35, 0.7), Case(80, 0.4), Case(80, 1.5),
+                                         Tilted(40), Tilted(65), Tilted(120), Compressed(16),
+                                         Compressed(65), Bent(30, 5)));
 
 }  // namespace
 }  // namespace velamap
