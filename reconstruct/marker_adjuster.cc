@@ -143,6 +143,10 @@ void MarkerAdjuster::AdjustTightly() {
     const int num_changes = ReviseCorners();
     if (num_changes == 0 && change < kEnough) break;
   }
+  if (RemoveUnprovenCorners(&model_, &summary_.removed)) {
+    RemoveUnderconstrainedParts();
+    Solve(1e-4);
+  }
 }
 
 bool MarkerAdjuster::AddScaleBars() {

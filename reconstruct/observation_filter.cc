@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 
@@ -161,6 +162,23 @@ int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
     }
   }
   return num_changes;
+}
+
+bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* removed) {
+  std::map<int, int> num_corners;
+  for (const auto& [point3D_id, point] : model->points3D) {
+    if (IsCornerPoint3DId(point3D_id)) ++num_corners[CornerFromPoint3DId(point3D_id).marker_id];
+  }
+  const auto is_unproven = [&](const ReprojectionError& error) {
+    return IsCornerPoint3DId(error.point3D_id) &&
+           num_corners[CornerFromPoint3DId(error.point3D_id).marker_id] < kNumCorners &&
+           model->points3D.at(error.point3D_id).track.size() <= 2;
+  };
+  std::vector<ReprojectionError> unproven = ComputeReprojectionErrors(*model);
+  unproven.erase(std::remove_if(unproven.begin(), unproven.end(), std::not_fn(is_unproven)),
+                 unproven.end());
+  for (const ReprojectionError& error : unproven) Remove(error, model, removed);
+  return !unproven.empty();
 }
 
 void RemoveUnderconstrained(int min_track_length, Model* model,

@@ -20,6 +20,11 @@ void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
 int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
                        std::vector<RemovedObservation>* removed);
 
+// Takes out all observations of corners that only two images see and whose marker is not whole. Two
+// images place a corner somewhere whatever is wrong with one of them; that its marker's other
+// corners were outliers says that something is. Appends to `removed`; returns whether it did.
+bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* removed);
+
 // Removes points with too short a track and images with fewer than four observations, until none is
 // left. Three fix a pose with nothing to check it; fewer make the normal equations singular.
 void RemoveUnderconstrained(int min_track_length, Model* model,

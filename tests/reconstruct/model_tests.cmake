@@ -5,6 +5,7 @@ velamap_test(NAME reconstruct_model_test LABEL unit
     gauge_test.cc
     model_io_test.cc
     model_test.cc
+    observation_filter_test.cc
     reprojection_test.cc
     sheet_model.cc
     statistics_test.cc
