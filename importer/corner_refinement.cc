@@ -172,8 +172,8 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray, const Qu
   const double cell_px = MeanSidePx(corners_px) / num_cells;
   const double band_px =
       std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
-  const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.05, false},
-                         {band_px, kMaxEdgeSamples, 5e-3, true}};
+  const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.1, false},
+                         {band_px, kMaxEdgeSamples, 0.02, true}};
   Fit fit{{corners_px, {}}, kFirstBlurPx};
   Workspace workspace;
   for (const Pass& pass : passes) {

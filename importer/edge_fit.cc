@@ -22,22 +22,23 @@ Vector PriorWeight(const EdgePrior& prior) {
   return (kPixelNoise * prior.sigma.values.cwiseInverse()).cwiseAbs2();
 }
 
-void Evaluate(const EdgeSamples& samples, const EdgePrior& prior, const Vector& weight,
-              const Vector& values, bool with_hessian, EdgeEquations* equations) {
+VELAMAP_CLONE_FOR_AVX2 void Evaluate(const EdgeSamples& samples, const EdgePrior& prior,
+                                     const Vector& weight, const Vector& values, bool with_hessian,
+                                     EdgeEquations* equations) {
   const EdgeParameters parameters{values};
   equations->Clear(with_hessian);
   EdgeEquations::Jacobian jacobian;
   for (int i = 0; i < samples.count; i += kLanes) {
-    const EdgeSamples4& four = samples.fours[static_cast<std::size_t>(i / kLanes)];
-    const Floats modelled = EvaluateEdge(parameters, four, &jacobian);
-    equations->Add(&jacobian, modelled - four.gray, samples.count - i);
+    const EdgeSampleGroup& group = samples.groups[static_cast<std::size_t>(i / kLanes)];
+    const Floats modelled = EvaluateEdge(parameters, group, &jacobian);
+    equations->Add(&jacobian, modelled - group.gray, samples.count - i);
   }
   equations->Finish(values - prior.mean.values, weight);
 }
 
 }  // namespace
 
-Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSamples4& samples,
+Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& samples,
                     EdgeEquations::Jacobian* jacobian) {
   using P = EdgeParameters;
   const Eigen::Matrix<float, P::kCount, 1> p = parameters.values.cast<float>();
@@ -91,14 +92,16 @@ bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double toleranc
 }
 
 std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior) {
-  const Matrix& hessian = fit.equations.hessian();
-  const Matrix inverse = hessian.ldlt().solve(Matrix::Identity());
+  const Eigen::LLT<Matrix> factors(fit.equations.hessian());
+  if (factors.info() != Eigen::Success) return std::nullopt;
+  const Matrix inverse = factors.solve(Matrix::Identity());
   if (!inverse.allFinite()) return std::nullopt;
-  Matrix observed = hessian;
-  observed.diagonal() -= PriorWeight(prior);
   EdgeUncertainty uncertainty;
+  // inverse * (hessian - weight) * inverse, of the first two parameters.
+  const auto place = inverse.leftCols<2>();
   uncertainty.place_covariance =
-      (inverse.topRows<2>() * observed * inverse.topRows<2>().transpose()).eval();
+      inverse.topLeftCorner<2, 2>() -
+      place.transpose().lazyProduct(PriorWeight(prior).asDiagonal() * place);
   uncertainty.noise = fit.equations.Noise(inverse, [](const EdgeEquations::Jacobian& jacobian) {
     return jacobian[EdgeParameters::kOffset] * jacobian[EdgeParameters::kOffset];
   });

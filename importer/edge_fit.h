@@ -18,14 +18,14 @@
 
 #include <Eigen/Core>
 
+#include "importer/fit_equations.h"
 #include "importer/float_lanes.h"
-#include "importer/normal_equations.h"
 #include "importer/refined_corners.h"
 
 namespace velamap {
 
-// Four pixels near a side.
-struct EdgeSamples4 {
+// A group of pixels near a side.
+struct EdgeSampleGroup {
   Floats s;            // -1 and 1 at the side's ends
   Floats distance_px;  // outwards from the sampled line
   Floats gray;
@@ -39,8 +39,8 @@ struct EdgeSamples4 {
 constexpr int kMaxEdgeSamples = 512;
 
 struct EdgeSamples {
-  std::array<EdgeSamples4, kMaxEdgeSamples / kLanes> fours;
-  int count = 0;  // of samples; the last four may have less
+  std::array<EdgeSampleGroup, kMaxEdgeSamples / kLanes> groups;
+  int count = 0;  // of samples; the last group may have less
 };
 
 struct EdgeParameters {
@@ -72,15 +72,15 @@ struct EdgePrior {
   EdgeParameters sigma;
 };
 
-using EdgeEquations = NormalEquations<EdgeParameters::kCount>;
+using EdgeEquations = FitEquations<EdgeParameters::kCount>;
 
 struct EdgeFit {
   EdgeParameters parameters;
   EdgeEquations equations;  // near the minimum
 };
 
-// Grey values of the model at four samples, and their derivatives by the parameters.
-Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSamples4& samples,
+// Grey values of the model at a group of samples, and their derivatives by the parameters.
+Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& samples,
                     EdgeEquations::Jacobian* jacobian);
 
 // Levenberg-Marquardt from the prior's mean until a step moves the edge no further than

@@ -88,7 +88,7 @@ Floats At(const LinearInS& line, Floats s) {
 }
 
 // Fills in what follows from the place of the samples: x and y from the middle of the side.
-void FillSamples(const SideModel& model, Floats x, Floats y, EdgeSamples4* samples) {
+void FillSamples(const SideModel& model, Floats x, Floats y, EdgeSampleGroup* samples) {
   const Side& side = model.side;
   const Eigen::Vector2f along = (side.along / side.half_length_px).cast<float>();
   const Eigen::Vector2f outward = side.outward.cast<float>();
@@ -134,8 +134,8 @@ SideModel MakeSideModel(const cv::Mat& gray, const Quad& quad, int side_idx, int
   return model;
 }
 
-void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int max_samples,
-                EdgeSamples* samples) {
+VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px,
+                                       int max_samples, EdgeSamples* samples) {
   const Side& side = model.side;
   const double margin_px =
       std::clamp(0.24 * side.half_length_px, model.blur_px, 2.5 * model.blur_px);
@@ -156,7 +156,7 @@ void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int
   Floats x{}, y{};
   const auto fill = [&] {
     FillSamples(model, x, y,
-                &samples->fours[static_cast<std::size_t>((samples->count - 1) / kLanes)]);
+                &samples->groups[static_cast<std::size_t>((samples->count - 1) / kLanes)]);
   };
   for (int i = first; i <= last; i += stride) {
     const double center =
@@ -171,8 +171,8 @@ void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int
       const double along_px = from_middle.dot(side.along);
       if (std::abs(along_px) > reach_px || samples->count == kMaxEdgeSamples) continue;
       const int lane = samples->count % kLanes;
-      Floats& values = samples->fours[static_cast<std::size_t>(samples->count++ / kLanes)].gray;
-      // What is missing of the last four is a copy of this pixel.
+      Floats& values = samples->groups[static_cast<std::size_t>(samples->count++ / kLanes)].gray;
+      // What is missing of the last group is a copy of this pixel.
       for (int k = lane; k < kLanes; ++k) {
         x[k] = static_cast<float>(from_middle.x());
         y[k] = static_cast<float>(from_middle.y());

@@ -1,22 +1,47 @@
-// Four numbers in single precision that go through the same arithmetic together: the vector
-// extension of GCC and Clang, which every processor of 64 bits has instructions for. Bytes are the
-// same on all of them, because each lane is rounded by itself and lanes are added in a fixed order.
+// Numbers in single precision that go through the same arithmetic together, a group of kLanes at a
+// time: the vector extension of GCC and Clang, which every processor of 64 bits has instructions
+// for. Bytes are the same on all of them, because each lane is rounded by itself and lanes are
+// added in a fixed order.
 
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+
+// Before a function that goes over many groups: it is compiled for processors with AVX2 and for any
+// of 64 bits, and the program takes the one that its processor can run. Functions that take or
+// return groups are called differently in the two, so `flatten` draws all of them in; they have to
+// be inline or in the same file.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define VELAMAP_CLONE_FOR_AVX2 __attribute__((target_clones("avx2", "default"), flatten))
+#else
+#define VELAMAP_CLONE_FOR_AVX2
+#endif
 
 namespace velamap {
 
-using Floats = float __attribute__((vector_size(16)));
-using Ints = std::int32_t __attribute__((vector_size(16)));
-constexpr int kLanes = 4;
+constexpr int kLanes = 8;
+constexpr std::size_t kGroupBytes = kLanes * sizeof(float);
+using Floats = float __attribute__((vector_size(kGroupBytes), aligned(kGroupBytes)));
+using Ints = std::int32_t __attribute__((vector_size(kGroupBytes), aligned(kGroupBytes)));
 
-inline Floats AllLanes(double value) {
-  const auto x = static_cast<float>(value);
-  return Floats{x, x, x, x};
-}
+// In std::array and std::vector groups would lose their alignment.
+template <std::size_t kSize>
+struct alignas(kGroupBytes) FloatsArray {
+  Floats groups[kSize];
+
+  const Floats& operator[](std::size_t index) const { return groups[index]; }
+  Floats& operator[](std::size_t index) { return groups[index]; }
+  const Floats* begin() const { return groups; }
+  const Floats* end() const { return groups + kSize; }
+  Floats* begin() { return groups; }
+  Floats* end() { return groups + kSize; }
+};
+
+inline Floats AllLanes(double value) { return Floats{} + static_cast<float>(value); }
+inline Floats LaneIndex() { return Floats{0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f}; }
 
 inline Floats Min(Floats a, Floats b) { return a < b ? a : b; }
 inline Floats Max(Floats a, Floats b) { return a < b ? b : a; }
@@ -34,16 +59,18 @@ inline Ints Floor(Floats x) {
   return truncated + (x < __builtin_convertvector(truncated, Floats));  // a true lane is -1
 }
 
-inline double Sum(Floats x) { return (x[0] + x[2]) + (x[1] + x[3]); }
+inline double Sum(Floats x) {
+  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+}
 inline float MaxLane(Floats x) {
-  const float a = x[0] < x[1] ? x[1] : x[0], b = x[2] < x[3] ? x[3] : x[2];
-  return a < b ? b : a;
+  float max = x[0];
+  for (int lane = 1; lane < kLanes; ++lane) max = max < x[lane] ? x[lane] : max;
+  return max;
 }
 
 // The first `count` lanes one, the others zero.
 inline Floats FirstLanes(int count) {
-  return Floats{count > 0 ? 1.0f : 0.0f, count > 1 ? 1.0f : 0.0f, count > 2 ? 1.0f : 0.0f,
-                count > 3 ? 1.0f : 0.0f};
+  return LaneIndex() < static_cast<float>(count) ? AllLanes(1.0) : Floats{};
 }
 
 }  // namespace velamap

@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "importer/normal_equations.h"
+#include "importer/fit_equations.h"
 
 namespace velamap {
 
@@ -13,7 +13,7 @@ struct LeastSquaresOptions {
   int max_iterations = 10;
   double first_damping = 1e-3;
   // Both by what a step moves in px. The Hessian of the last step serves again after a short one.
-  double tolerance_px = 5e-3;
+  double tolerance_px = 0.02;
   double new_hessian_px = 0.02;
 };
 
@@ -26,17 +26,18 @@ template <int kCount, typename Evaluate, typename MovedPx, typename Limit>
 bool MinimizeSquares(const LeastSquaresOptions& options, const Evaluate& evaluate,
                      const MovedPx& moved_px, const Limit& limit,
                      Eigen::Matrix<double, kCount, 1>* parameters,
-                     NormalEquations<kCount>* equations) {
-  using Vector = typename NormalEquations<kCount>::Vector;
-  using Matrix = typename NormalEquations<kCount>::Matrix;
+                     FitEquations<kCount>* equations) {
+  using Vector = typename FitEquations<kCount>::Vector;
+  using Matrix = typename FitEquations<kCount>::Matrix;
   evaluate(*parameters, true, equations);
   if (equations->num_observations() <= kCount) return false;
   double damping = options.first_damping;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     Matrix damped = equations->hessian();
     damped.diagonal() *= 1 + damping;
-    const Vector step =
-        -damped.template selfadjointView<Eigen::Lower>().ldlt().solve(equations->gradient());
+    const Eigen::LLT<Eigen::Ref<Matrix>> factors(damped);
+    if (factors.info() != Eigen::Success) return false;
+    const Vector step = -factors.solve(equations->gradient());
     if (!step.allFinite()) return false;
     Vector candidate = *parameters + step;
     limit(&candidate);

@@ -11,7 +11,7 @@
 #include "importer/error.h"
 #include "importer/interpolate.h"
 #include "importer/least_squares.h"
-#include "importer/pattern_model.h"
+#include "importer/pattern_picture.h"
 #include "importer/unit_square_map.h"
 
 namespace velamap {
@@ -29,7 +29,7 @@ constexpr double kBendOfDiagonal = 0.003;  // what cloth usually has; a can's la
 constexpr int kFirstPixels = 200;
 constexpr int kPixels = 1000;
 
-using Equations = NormalEquations<P::kCount>;
+using Equations = FitEquations<P::kCount>;
 
 struct Problem {
   const cv::Mat* gray;
@@ -38,26 +38,27 @@ struct Problem {
   P::Vector mean, weight;  // priors
 };
 
-// Pixels of a marker and around it, by fours.
+// Pixels of a marker and around it, in groups.
 struct Pixels {
-  struct Four {
+  struct Group {
     Floats x, y;  // less the model's center_px
     Floats gray;
   };
-  std::vector<Four> fours;
-  int count = 0;  // the last four may have less
+  std::vector<Group> groups;
+  int count = 0;  // the last group may have less
 };
 
 // Every k-th pixel that the model covers with these parameters, so many that about `max_pixels` are
 // used.
-Pixels ChoosePixels(const Problem& problem, const P::Vector& parameters, int max_pixels) {
+VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vector& parameters,
+                                           int max_pixels) {
   const PatternPicture picture(problem.model, parameters);
   const cv::Rect& box = problem.box;
   const Eigen::Vector2d& center = problem.model.center_px;
   const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
   const int stride = static_cast<int>(std::ceil(area_px / max_pixels));
   Pixels pixels;
-  pixels.fours.reserve(
+  pixels.groups.reserve(
       static_cast<std::size_t>(box.height * (box.width / stride + 1) / kLanes + 1));
   for (int row = box.y; row < box.y + box.height; ++row) {
     const std::uint8_t* values = problem.gray->ptr<std::uint8_t>(row);
@@ -65,20 +66,20 @@ Pixels ChoosePixels(const Problem& problem, const P::Vector& parameters, int max
     // Odd rows are shifted, so that every column has its share.
     const int first = box.x + (row * ((stride + 1) / 2)) % stride;
     for (int begin = first; begin < box.x + box.width; begin += kLanes * stride) {
-      const auto left = static_cast<float>(begin - center.x()), next = static_cast<float>(stride);
-      const Floats x = {left, left + next, left + 2 * next, left + 3 * next};
+      const Floats x =
+          static_cast<float>(begin - center.x()) + static_cast<float>(stride) * LaneIndex();
       const Ints covered = picture.Covers(x, y);
       for (int lane = 0; lane < kLanes; ++lane) {
         const int column = begin + lane * stride;
         if (!covered[lane] || column >= box.x + box.width) continue;
         const int place = pixels.count++ % kLanes;
-        if (place == 0) pixels.fours.emplace_back();
-        Pixels::Four& four = pixels.fours.back();
-        // What is missing of the last four is a copy of this pixel.
+        if (place == 0) pixels.groups.emplace_back();
+        Pixels::Group& group = pixels.groups.back();
+        // What is missing of the last group is a copy of this pixel.
         for (int i = place; i < kLanes; ++i) {
-          four.x[i] = x[lane];
-          four.y[i] = y[lane];
-          four.gray[i] = values[column];
+          group.x[i] = x[lane];
+          group.y[i] = y[lane];
+          group.gray[i] = values[column];
         }
       }
     }
@@ -86,15 +87,16 @@ Pixels ChoosePixels(const Problem& problem, const P::Vector& parameters, int max
   return pixels;
 }
 
-void Evaluate(const Problem& problem, const Pixels& pixels, const P::Vector& parameters,
-              bool with_hessian, Equations* equations) {
+VELAMAP_CLONE_FOR_AVX2 void Evaluate(const Problem& problem, const Pixels& pixels,
+                                     const P::Vector& parameters, bool with_hessian,
+                                     Equations* equations) {
   const PatternPicture picture(problem.model, parameters);
   equations->Clear(with_hessian);
   PatternPixels modelled;
   int left = pixels.count;
-  for (const Pixels::Four& four : pixels.fours) {
-    picture.At(four.x, four.y, &modelled);
-    equations->Add(&modelled.jacobian, modelled.gray - four.gray, left);
+  for (const Pixels::Group& group : pixels.groups) {
+    picture.At(group.x, group.y, &modelled);
+    equations->Add(&modelled.jacobian, modelled.gray - group.gray, left);
     left -= kLanes;
   }
   equations->Finish(parameters - problem.mean, problem.weight);
@@ -168,7 +170,7 @@ bool MinimizeInPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) 
     double tolerance_px, min_blur_cells;
   };
   for (const Pass& pass :
-       {Pass{kFirstPixels, 0.05, 0.0}, {kPixels, 5e-3, 0.0}, {kPixels, 5e-3, kWideBlur}}) {
+       {Pass{kFirstPixels, 0.1, 0.0}, {kPixels, 0.02, 0.0}, {kPixels, 0.02, kWideBlur}}) {
     const double blur_cells =
         FillLightness(*problem->gray, cells, minimum->parameters, &problem->model);
     if (blur_cells < pass.min_blur_cells) break;
@@ -180,15 +182,12 @@ bool MinimizeInPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) 
 
 // The priors hold weak parameters but are no observations: their own error does not count.
 std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Minimum& minimum) {
-  const P::Matrix& hessian = minimum.equations.hessian();
-  const P::Matrix inverse = hessian.ldlt().solve(P::Matrix::Identity());
+  const Eigen::LLT<P::Matrix> factors(minimum.equations.hessian());
+  if (factors.info() != Eigen::Success) return std::nullopt;
+  const P::Matrix inverse = factors.solve(P::Matrix::Identity());
   if (!inverse.allFinite()) return std::nullopt;
-  P::Matrix observed = hessian;
-  observed.diagonal() -= problem.weight;
-  const Eigen::Matrix<double, 2 * kNumCorners, P::kCount> by_observed =
-      inverse.topRows<2 * kNumCorners>() * observed;
-  const Eigen::Matrix<double, 2 * kNumCorners, 1> variances =
-      by_observed.cwiseProduct(inverse.topRows<2 * kNumCorners>()).rowwise().sum();
+  // The diagonal of inverse * (hessian - weight) * inverse.
+  const P::Vector variances = inverse.diagonal() - inverse.cwiseAbs2().lazyProduct(problem.weight);
   const ResidualNoise noise =
       minimum.equations.Noise(inverse, [](const Equations::Jacobian& jacobian) {
         // All corners move: the slope of the grey values.

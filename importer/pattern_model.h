@@ -1,5 +1,4 @@
-// The picture of a whole marker and its derivatives: the inner step of pattern_fit.h, which says
-// what the model is.
+// What the model of pattern_fit.h is made of: its parameters, and what a fit keeps fixed.
 
 #pragma once
 
@@ -51,37 +50,5 @@ struct PatternModel {
 // `parameters`. Returns the larger blur, in cells.
 double FillLightness(const cv::Mat& gray, const cv::Mat& cells,
                      const PatternParameters::Vector& parameters, PatternModel* model);
-
-// Four pixels of the model. Single precision is enough for a step.
-struct PatternPixels {
-  Floats gray;
-  std::array<Floats, PatternParameters::kCount> jacobian;  // by the parameters
-};
-
-// The model with its parameters, ready for many pixels. Places are in OpenCV's pixel frame, less
-// the model's `center_px`.
-class PatternPicture {
- public:
-  PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters);
-
-  // Whether a place is no further outside the black square than the model says what is there.
-  Ints Covers(Floats x, Floats y) const;  // -1 for yes
-
-  void At(Floats x, Floats y, PatternPixels* pixels) const;
-
- private:
-  // A place in the unit square and the derivatives of u and v on the flat marker, 1/px.
-  struct Place {
-    Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
-  };
-  Place ToSquare(Floats x, Floats y) const;
-  Blended BlendAll(const Shares& u, const Shares& v, Floats correlation_px, Floats* inner_value,
-                   Floats* surround_value) const;
-
-  const PatternModel& model_;
-  PatternParameters::Vector parameters_;
-  Eigen::Matrix3f square_from_image_;
-  Lightness print_;  // the marker's own cells and the quiet zone, as light as the parameters say
-};
 
 }  // namespace velamap

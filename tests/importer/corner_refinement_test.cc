@@ -8,11 +8,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/blurred_cells.h"
 #include "importer/edge_fit.h"
 #include "importer/float_lanes.h"
 #include "importer/pattern_fit.h"
-#include "importer/pattern_model.h"
+#include "importer/pattern_picture.h"
 #include "importer/unit_square_map.h"
 #include "tests/importer/marker_grid.h"
 
@@ -157,7 +156,7 @@ TEST(RefineCorners, FailsWhereThereIsNothingToFit) {
   }
 }
 
-// Whether `jacobian`, four observations at once, agrees with what `value` changes by.
+// Whether `jacobian`, a group of observations, agrees with what `value` changes by.
 template <typename Vector, typename Jacobian, typename Value>
 void ExpectDerivatives(const Vector& parameters, const Vector& steps, const Jacobian& jacobian,
                        const Value& value, double relative_tolerance, double tolerance) {
@@ -177,10 +176,11 @@ void ExpectDerivatives(const Vector& parameters, const Vector& steps, const Jaco
 TEST(EvaluateEdge, DerivativesAgreeWithDifferences) {
   EdgeParameters parameters;
   parameters.values << 0.2, -0.1, 0.15, 0.9, 40, 180, 5, -7, 0.8, 1.1;
-  const EdgeSamples4 samples{AllLanes(0.4), Floats{-2.1f, -0.4f, 0.3f, 1.7f},
-                             AllLanes(100), AllLanes(0.9),
-                             AllLanes(120), AllLanes(-110),
-                             AllLanes(2.2), AllLanes(2.4)};
+  const EdgeSampleGroup samples{
+      AllLanes(0.4), Floats{-2.1f, -0.4f, 0.3f, 1.7f, -1.2f, 0.0f, 0.8f, 2.3f},
+      AllLanes(100), AllLanes(0.9),
+      AllLanes(120), AllLanes(-110),
+      AllLanes(2.2), AllLanes(2.4)};
   EdgeEquations::Jacobian jacobian;
   EvaluateEdge(parameters, samples, &jacobian);
   const auto value = [&](const EdgeParameters::Vector& values) {
@@ -203,14 +203,15 @@ TEST(PatternPicture, DerivativesAgreeWithDifferences) {
   parameters.head<8>() << 290, 190, 310, 190, 310, 210, 290, 210;
   parameters.segment<8>(P::kBlurU) << 0.8, 0.9, 40, 200, 0.05, -0.03, 0.9, 0.95;
   FillLightness(grid.image, grid.cells[0], parameters, &model);
-  const Floats x = {-10.6f, -3.2f, 4.7f, 10.3f}, y = {0.4f, -9.8f, 5.1f, 10.9f};
+  const Floats x = {-10.6f, -3.2f, 4.7f, 10.3f, 9.8f, -9.1f, 0.3f, 2.6f};
+  const Floats y = {0.4f, -9.8f, 5.1f, 10.9f, -10.7f, 9.7f, -0.2f, 7.4f};
   ASSERT_EQ(Sum(__builtin_convertvector(PatternPicture(model, parameters).Covers(x, y), Floats)),
-            -4);
+            -kLanes);
   PatternPixels pixels;
   PatternPicture(model, parameters).At(x, y, &pixels);
   // Place of the whole marker, then all parameters but the corners.
   using Changes = Eigen::Matrix<double, P::kCount - 6, 1>;
-  std::array<Floats, P::kCount - 6> jacobian{};
+  FloatsArray<P::kCount - 6> jacobian{};
   for (std::size_t i = 0; i < P::kCount; ++i) {
     jacobian[i < P::kBlurU ? i % 2 : i - 6] += pixels.jacobian[i];
   }
@@ -230,14 +231,15 @@ TEST(ComputeShares, StayInsideThePatternAndAddUpToOne) {
   const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
   Shares shares;
   for (const double blur : {0.1, 0.5, 3.0, 100.0}) {
-    ComputeShares(Floats{-0.7f, 1.3f, 6.6f, 1e9f}, AllLanes(blur), kNumCells, &shares);
+    ComputeShares(Floats{-0.7f, 1.3f, 6.6f, 1e9f, -1e9f, 0.0f, 3.5f, 6.0f}, AllLanes(blur),
+                  kNumCells, &shares);
     Floats sum{};
     for (int i = 0; i < shares.count; ++i) sum += shares.value[static_cast<std::size_t>(i)];
     for (int lane = 0; lane < kLanes; ++lane) EXPECT_NEAR(sum[lane], 1.0f, 1e-5f);
   }
   for (const float blur : {0.5f, infinity, nan}) {
-    ComputeShares(Floats{nan, infinity, -infinity, 0.0f}, Floats{0.3f, blur, blur, 0.3f}, kNumCells,
-                  &shares);
+    ComputeShares(Floats{nan, infinity, -infinity, 0.0f, 2.0f, nan, nan, infinity},
+                  Floats{0.3f, blur, blur, 0.3f, blur, blur, 0.3f, 0.3f}, kNumCells, &shares);
     for (int lane = 0; lane < kLanes; ++lane) {
       EXPECT_GE(shares.first[lane], 0);
       EXPECT_LE(shares.first[lane] + shares.count, kNumCells + 2 * kRing);

@@ -11,14 +11,14 @@ namespace velamap {
 namespace {
 
 TEST(FloatLanes, RoundCompareAndAdd) {
-  const Floats x = {-1.5f, -1.0f, 0.25f, 7.0f};
+  const Floats x = {-1.5f, -1.0f, 0.25f, 7.0f, 0.0f, -0.25f, 3.5f, 2.0f};
   const Ints floor = Floor(x);
   const Floats root = Sqrt(Abs(x));
   for (int lane = 0; lane < kLanes; ++lane) {
     EXPECT_EQ(floor[lane], static_cast<int>(std::floor(x[lane])));
     EXPECT_EQ(root[lane], std::sqrt(std::abs(x[lane])));
   }
-  EXPECT_EQ(Sum(x), 4.75);
+  EXPECT_EQ(Sum(x), 10.0);
   EXPECT_EQ(MaxLane(x), 7.0f);
   EXPECT_EQ(MaxLane(-x), 1.5f);
   for (int count = 0; count <= kLanes; ++count) EXPECT_EQ(Sum(FirstLanes(count)), count);
@@ -33,7 +33,7 @@ TEST(NormalAt, AgreesWithTheStandardLibrary) {
 }
 
 // y = p0 exp(p1 t) + ..., ten parameters of which eight are held at zero by their priors.
-using Vector = NormalEquations<10>::Vector;
+using Vector = FitEquations<10>::Vector;
 
 struct Decay {
   Vector mean = Vector::Zero(), weight = Vector::Constant(1e6);
@@ -46,12 +46,12 @@ struct Decay {
     y = 3 * (-0.7 * t).exp();
   }
 
-  void operator()(const Vector& p, bool with_hessian, NormalEquations<10>* equations) {
+  void operator()(const Vector& p, bool with_hessian, FitEquations<10>* equations) {
     ++num_evaluations;
     equations->Clear(with_hessian);
     for (Eigen::Index begin = 0; begin < t.size(); begin += kLanes) {
-      NormalEquations<10>::Jacobian jacobian{};
-      Floats residual = AllLanes(1e6);  // what is missing of the last four does not count
+      FitEquations<10>::Jacobian jacobian{};
+      Floats residual = AllLanes(1e6);  // what is missing of the last group does not count
       for (int lane = 0; lane < std::min<Eigen::Index>(kLanes, t.size() - begin); ++lane) {
         const double x = t[begin + lane], decay = std::exp(p[1] * x);
         jacobian[0][lane] = static_cast<float>(decay);
@@ -64,18 +64,18 @@ struct Decay {
   }
 };
 
-TEST(NormalEquations, AreTheSumsOverAllObservations) {
+TEST(FitEquations, AreTheSumsOverAllObservations) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
-  constexpr int kNumObservations = 4 * 70 + 3;
+  constexpr int kNumObservations = kLanes * 70 + 3;
   Eigen::Matrix<double, Eigen::Dynamic, 20> jacobians(kNumObservations, 20);
   Eigen::VectorXd residuals(kNumObservations);
   for (auto& value : jacobians.reshaped()) value = static_cast<float>(normal(random));
   for (double& value : residuals) value = static_cast<float>(normal(random));
-  NormalEquations<20> equations;
+  FitEquations<20> equations;
   equations.Clear(true);
   for (int begin = 0; begin < kNumObservations; begin += kLanes) {
-    NormalEquations<20>::Jacobian jacobian{};
+    FitEquations<20>::Jacobian jacobian{};
     Floats residual = AllLanes(7);
     for (Floats& derivative : jacobian) derivative = AllLanes(5);
     for (int lane = 0; lane < kLanes && begin + lane < kNumObservations; ++lane) {
@@ -87,8 +87,8 @@ TEST(NormalEquations, AreTheSumsOverAllObservations) {
     }
     equations.Add(&jacobian, residual, kNumObservations - begin);
   }
-  const NormalEquations<20>::Vector departure = NormalEquations<20>::Vector::LinSpaced(0, 1);
-  const NormalEquations<20>::Vector weight = NormalEquations<20>::Vector::LinSpaced(1, 3);
+  const FitEquations<20>::Vector departure = FitEquations<20>::Vector::LinSpaced(0, 1);
+  const FitEquations<20>::Vector weight = FitEquations<20>::Vector::LinSpaced(1, 3);
   equations.Finish(departure, weight);
   Eigen::MatrixXd hessian = jacobians.transpose() * jacobians;
   hessian.diagonal() += weight;
@@ -102,7 +102,7 @@ TEST(NormalEquations, AreTheSumsOverAllObservations) {
   EXPECT_NEAR(equations.squared_residuals(), residuals.squaredNorm(), 1e-3);
   EXPECT_NEAR(equations.cost(),
               residuals.squaredNorm() + departure.cwiseAbs2().cwiseProduct(weight).sum(), 1e-3);
-  const NormalEquations<20>::Vector step = NormalEquations<20>::Vector::LinSpaced(-0.1, 0.1);
+  const FitEquations<20>::Vector step = FitEquations<20>::Vector::LinSpaced(-0.1, 0.1);
   equations.Predict(step);
   EXPECT_NEAR(equations.squared_residuals(), (residuals + jacobians * step).squaredNorm(), 1e-2);
 }
@@ -111,15 +111,13 @@ TEST(MinimizeSquares, FindsTheMinimumWithFewHessians) {
   Decay decay(41);
   Vector parameters = Vector::Zero();
   parameters[0] = 1.0;
-  NormalEquations<10> equations;
+  FitEquations<10> equations;
   LeastSquaresOptions options;
   options.max_iterations = 20;
   options.tolerance_px = 1e-4;
   EXPECT_TRUE(MinimizeSquares(
       options,
-      [&](const Vector& p, bool with_hessian, NormalEquations<10>* e) {
-        decay(p, with_hessian, e);
-      },
+      [&](const Vector& p, bool with_hessian, FitEquations<10>* e) { decay(p, with_hessian, e); },
       [](const Vector& step) { return step.head<2>().cwiseAbs().maxCoeff(); }, [](Vector*) {},
       &parameters, &equations));
   EXPECT_NEAR(parameters[0], 3.0, 1e-4);
@@ -131,12 +129,10 @@ TEST(MinimizeSquares, FindsTheMinimumWithFewHessians) {
 TEST(MinimizeSquares, RefusesTooFewObservations) {
   Decay decay(10);
   Vector parameters = Vector::Zero();
-  NormalEquations<10> equations;
+  FitEquations<10> equations;
   EXPECT_FALSE(MinimizeSquares(
       LeastSquaresOptions{},
-      [&](const Vector& p, bool with_hessian, NormalEquations<10>* e) {
-        decay(p, with_hessian, e);
-      },
+      [&](const Vector& p, bool with_hessian, FitEquations<10>* e) { decay(p, with_hessian, e); },
       [](const Vector& step) { return step.norm(); }, [](Vector*) {}, &parameters, &equations));
 }
 

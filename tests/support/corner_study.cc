@@ -11,7 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/corner_refinement.h"
-#include "importer/pattern_model.h"
+#include "importer/pattern_picture.h"
 #include "tests/importer/marker_grid.h"
 #include "tests/support/clip_scene_builder.h"
 #include "tests/support/surface_renderer.h"

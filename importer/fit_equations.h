@@ -1,5 +1,5 @@
-// Sums of a least-squares problem of few parameters and many observations, four at a time in single
-// precision: J^T J, J^T r and r^T r. The sums over all are kept in double precision.
+// Sums of a least-squares problem of few parameters and many observations, a group at a time in
+// single precision: J^T J, J^T r and r^T r. The sums over all are kept in double precision.
 
 #pragma once
 
@@ -16,23 +16,23 @@
 namespace velamap {
 
 template <int kCount>
-class NormalEquations {
+class FitEquations {
  public:
   using Vector = Eigen::Matrix<double, kCount, 1>;
   using Matrix = Eigen::Matrix<double, kCount, kCount>;
-  using Jacobian = std::array<Floats, kCount>;
+  using Jacobian = FloatsArray<kCount>;
 
   // Begins anew. Without the Hessian, the one from before stays, and so do the Jacobians.
   void Clear(bool with_hessian) {
     with_hessian_ = with_hessian;
     num_observations_ = 0;
-    gradient_lanes_.fill(Floats{});
+    gradient_lanes_ = {};
     squares_ = Floats{};
     residuals_.clear();
     if (with_hessian) jacobians_.clear();
   }
 
-  // Four observations, of which the first `num_valid` count. `jacobian` is used as scratch.
+  // A group of observations, of which the first `num_valid` count. `jacobian` is used as scratch.
   void Add(Jacobian* jacobian, Floats residual, int num_valid) {
     if (num_valid < kLanes) {
       const Floats mask = FirstLanes(num_valid);
@@ -42,7 +42,7 @@ class NormalEquations {
     num_observations_ += std::min(num_valid, kLanes);
     for (std::size_t i = 0; i < kCount; ++i) gradient_lanes_[i] += (*jacobian)[i] * residual;
     squares_ += residual * residual;
-    residuals_.push_back(residual);
+    residuals_.push_back({residual});
     if (with_hessian_) jacobians_.push_back(*jacobian);
   }
 
@@ -69,7 +69,7 @@ class NormalEquations {
     const Eigen::Matrix<float, kCount, 1> by = step.template cast<float>();
     squares_ = Floats{};
     for (std::size_t k = 0; k < jacobians_.size(); ++k) {
-      Floats& residual = residuals_[k];
+      Floats& residual = residuals_[k][0];
       for (std::size_t i = 0; i < kCount; ++i) {
         residual += jacobians_[k][i] * by[static_cast<Eigen::Index>(i)];
       }
@@ -94,7 +94,7 @@ class NormalEquations {
     for (std::size_t k = 0; k < jacobians_.size(); ++k) {
       const Floats weight = squared_slope(jacobians_[k]);
       weights += weight;
-      weighted_squares += weight * residuals_[k] * residuals_[k];
+      weighted_squares += weight * residuals_[k][0] * residuals_[k][0];
       if (k % kStride != 0) continue;
       some_weights += weight;
       followed += weight * Leverage(covariance, jacobians_[k]);
@@ -112,8 +112,8 @@ class NormalEquations {
       for (int column = 0; column < row + kRows; column += kColumns) {
         Floats sums[kRows][kColumns] = {};
         for (std::size_t k = begin; k < end; ++k) {
-          const Floats* a = jacobians_[k].data() + row;
-          const Floats* b = jacobians_[k].data() + column;
+          const Floats* a = jacobians_[k].begin() + row;
+          const Floats* b = jacobians_[k].begin() + column;
           for (int i = 0; i < kRows; ++i) {
             for (int j = 0; j < kColumns; ++j) sums[i][j] += a[i] * b[j];
           }
@@ -143,7 +143,7 @@ class NormalEquations {
   Jacobian gradient_lanes_;
   Floats squares_{};
   std::vector<Jacobian> jacobians_;
-  std::vector<Floats> residuals_;
+  std::vector<FloatsArray<1>> residuals_;
   Matrix hessian_ = Matrix::Zero();
   Vector gradient_ = Vector::Zero();
   double cost_ = 0.0;
