@@ -8,6 +8,7 @@
 #include "importer/edge_fit.h"
 #include "importer/edge_sampling.h"
 #include "importer/error.h"
+#include "importer/marker_alignment.h"
 #include "importer/pattern_fit.h"
 
 namespace velamap {
@@ -191,14 +192,15 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray, const Qu
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const Quad& corners_px,
                                             const cv::Mat& cells, const EdgeFitOptions& options) {
   const double cell_px = MeanSidePx(corners_px) / cells.rows;
-  if (!HasClearSides(corners_px, cells.rows, options)) {
-    const auto fitted = FitPattern(gray, corners_px, cells);
+  const Quad start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
+  if (!HasClearSides(start_px, cells.rows, options)) {
+    const auto fitted = FitPattern(gray, start_px, cells);
     if (fitted &&
         MaxShiftPx(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
       return fitted;
     }
   }
-  return RefineCornersByEdges(gray, corners_px, cells.rows, options);
+  return RefineCornersByEdges(gray, start_px, cells.rows, options);
 }
 
 }  // namespace velamap

@@ -188,4 +188,11 @@ std::vector<std::string> PredefinedDictionaryNames() {
   return names;
 }
 
+cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits) {
+  cv::Mat cells;
+  cv::aruco::drawMarker(dictionary.aruco, marker_id, dictionary.aruco->markerSize + 2 * border_bits,
+                        cells, border_bits);
+  return cells;
+}
+
 }  // namespace velamap

@@ -23,4 +23,8 @@ Dictionary LoadDictionary(const std::string& name_or_path);
 
 std::vector<std::string> PredefinedDictionaryNames();
 
+// One pixel a cell with the border, 8 bit, zero for black; row 0 runs from corner 0 to 1 and column
+// 0 from corner 0 to 3.
+cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits);
+
 }  // namespace velamap

@@ -149,7 +149,8 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
       static_cast<int>(std::ceil(4 * reach_px * band_px / std::min(max_samples, kMaxEdgeSamples)));
   const int major_size = major == 0 ? gray.cols : gray.rows;
   const int minor_size = major == 0 ? gray.rows : gray.cols;
-  const int first = std::max(0, static_cast<int>(std::ceil(side.middle_px[major] - major_reach)));
+  int first = std::max(0, static_cast<int>(std::ceil(side.middle_px[major] - major_reach)));
+  first += (stride - first % stride) % stride;  // the same lines wherever the band begins
   const int last =
       std::min(major_size - 1, static_cast<int>(std::floor(side.middle_px[major] + major_reach)));
   samples->count = 0;

@@ -41,7 +41,12 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
                          layout.border_bits,
                          BuildAdjacencyGraph(layout),
                          {},
+                         {},
                          {}};
+  for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
+    detector.looks.push_back(
+        {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
+  }
   detector.symmetries = FindCodeSymmetries(detector.dictionary);
   for (const int id : MarkerIds(layout)) detector.part_of_id[id] = PartOfMarker(layout, id);
   WarnOfSymmetries(detector);
@@ -78,6 +83,15 @@ std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::M
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                       const std::vector<cv::Rect>& regions) {
   return SearchMarkers(gray, detector.dictionary, detector.border_bits, detector.options, regions);
+}
+
+std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv::Mat& gray,
+                                         int marker_id, const QuadCorners& expected,
+                                         double reach_px) {
+  const MarkerLook& look = detector.looks[static_cast<std::size_t>(marker_id)];
+  const auto located = LocateMarker(gray, expected, look, reach_px);
+  if (!located || !SearchTakes(*located, gray.size(), detector.options)) return std::nullopt;
+  return located;
 }
 
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,

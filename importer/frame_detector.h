@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "importer/dictionary.h"
 #include "importer/frame_source.h"
 #include "importer/layout.h"
+#include "importer/marker_alignment.h"
 #include "importer/marker_search.h"
 #include "importer/options.h"
 #include "importer/rotation_ambiguity.h"
@@ -30,6 +32,7 @@ struct FrameDetector {
   AdjacencyGraph graph;
   CodeSymmetries symmetries;              // of the markers that look the same when turned
   std::map<int, std::string> part_of_id;  // empty: every id is welcome
+  std::vector<MarkerLook> looks;          // of every id of the dictionary
 };
 
 // Throws InputError for a dictionary that does not exist or has wrong bits.
@@ -39,6 +42,12 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray);
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                       const std::vector<cv::Rect>& regions);
+
+// One marker of which a search, or this, has told where it was a frame ago; as LocateMarker().
+// Nothing also where a search would take no marker. Thread-safe.
+std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv::Mat& gray,
+                                         int marker_id, const QuadCorners& expected,
+                                         double reach_px);
 
 // One line on everything that decides which detections a frame yields, so that one database never
 // mixes two ways. The dictionary's codes and the layout's parts and neighbours go in as a checksum.

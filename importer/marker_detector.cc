@@ -62,9 +62,8 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
     if (options.corner_refinement == CornerRefinement::kNone) {
       refined = RefinedCorners{quad.corners_px, {}};
     } else if (options.corner_refinement == CornerRefinement::kEdge) {
-      cv::Mat cells;  // one pixel a cell
-      cv::aruco::drawMarker(dictionary.aruco, quad.marker_id, num_cells, cells, border_bits);
-      refined = RefineCorners(dark_on_light, quad.corners_px, cells);
+      refined = RefineCorners(dark_on_light, quad.corners_px,
+                              MarkerCells(dictionary, quad.marker_id, border_bits));
       detection.is_fallback = !refined;
       num_fallbacks += !refined;
     }

@@ -272,9 +272,13 @@ class ImportRun {
     if (is_full) {
       UpdateTracks(quads, frame.gray.size(), frame_number, tracks);
     } else {
-      quads = SearchTracked(
+      const FrameSearch search{
+          frame.gray.size(),
           [&](const auto& regions) { return SearchInFrame(detector_, frame.gray, regions); },
-          frame.gray.size(), frame_number, tracks);
+          [&](int marker_id, const QuadCorners& expected, double reach_px) {
+            return LocateInFrame(detector_, frame.gray, marker_id, expected, reach_px);
+          }};
+      quads = SearchTracked(search, frame_number, tracks);
     }
     turn->End();
     return quads;

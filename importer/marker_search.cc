@@ -11,6 +11,8 @@
 namespace velamap {
 namespace {
 
+constexpr int kMinBorderDistancePx = 3;  // of a corner
+
 // `region_size_px` of an image of `image_size_px`: the smallest perimeter is the image's.
 cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
                                                       const ArucoDetectionOptions& options,
@@ -23,6 +25,7 @@ cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
   parameters->adaptiveThreshWinSizeMin = 5;
   parameters->adaptiveThreshWinSizeMax = 13;
   parameters->adaptiveThreshWinSizeStep = 8;
+  parameters->minDistanceToBorder = kMinBorderDistancePx;
   parameters->markerBorderBits = border_bits;
   parameters->minMarkerPerimeterRate = options.min_marker_perimeter_rate;
   parameters->errorCorrectionRate = options.error_correction_rate;
@@ -96,6 +99,18 @@ double QuadMeanSide(const QuadCorners& corners) {
     perimeter += (corners[(i + 1) % kNumCorners] - corners[i]).norm();
   }
   return perimeter / kNumCorners;
+}
+
+bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
+                 const ArucoDetectionOptions& options) {
+  const double min_perimeter_px =
+      options.min_marker_perimeter_rate * std::max(image_size.width, image_size.height);
+  const double min = kMinBorderDistancePx;
+  const double max_x = image_size.width - 1 - min, max_y = image_size.height - 1 - min;
+  return kNumCorners * QuadMeanSide(corners) > min_perimeter_px &&
+         std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
+           return corner.x() > min && corner.y() > min && corner.x() < max_x && corner.y() < max_y;
+         });
 }
 
 std::vector<MarkerQuad> RemoveNested(std::vector<MarkerQuad> quads) {

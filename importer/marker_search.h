@@ -36,6 +36,10 @@ double QuadMeanSide(const QuadCorners& corners);
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options);
 
+// Whether a marker there is large enough and far enough from the border for a search to take it.
+bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
+                 const ArucoDetectionOptions& options);
+
 // Only within `regions`, which lie in the image. They may overlap: a marker is handed out once.
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options,

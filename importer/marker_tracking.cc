@@ -219,6 +219,33 @@ std::vector<MarkerTrack> Continue(const std::vector<MarkerTrack>& tracks,
   return next;
 }
 
+// Looks for a marker where it should be; if it is not to be seen clearly, adds the region to
+// search.
+void LookFor(const FrameSearch& search, int marker_id, const Prediction& prediction,
+             std::vector<MarkerQuad>* quads, std::vector<cv::Rect>* regions) {
+  const Box box = BoundingBox(prediction.corners_px);
+  if (!FitsIn(box, search.image_size, prediction.margin_px)) return;
+  const auto located = search.locate(marker_id, prediction.corners_px, prediction.margin_px);
+  if (located) {
+    quads->push_back({marker_id, *located});
+  } else {
+    regions->push_back(RegionAround(box, search.image_size, prediction.margin_px));
+  }
+}
+
+// Adds what is found in the regions. False if they fill most of the picture.
+bool SearchAlso(const FrameSearch& search, std::vector<cv::Rect> regions,
+                std::vector<MarkerQuad>* quads) {
+  regions = MergeRegions(std::move(regions));
+  if (AreaOf(regions) > kMaxSearchedPart * search.image_size.area()) return false;
+  if (!regions.empty()) {
+    const std::vector<MarkerQuad> found = search.search_regions(regions);
+    quads->insert(quads->end(), found.begin(), found.end());
+  }
+  *quads = RemoveNested(std::move(*quads));
+  return true;
+}
+
 // What pass 1 found, and what it says of all others.
 struct FirstPass {
   std::vector<MarkerQuad> quads;
@@ -226,27 +253,23 @@ struct FirstPass {
   std::vector<PointMotion> motions;
 };
 
-// Nothing if the places fill most of the picture, or there are none.
-std::optional<FirstPass> SearchByVelocity(const RegionSearch& search, const cv::Size& size,
-                                          int num_frames, const std::vector<MarkerTrack>& tracks) {
+// Nothing if the places fill most of the picture.
+std::optional<FirstPass> SearchByVelocity(const FrameSearch& search, int num_frames,
+                                          const std::vector<MarkerTrack>& tracks) {
   std::vector<PointMotion> velocities;
   for (const MarkerTrack& track : tracks) {
     const Eigen::Vector2d center = QuadCenter(track.corners_px);
     if (track.velocity_px) velocities.push_back({center, center + *track.velocity_px});
   }
+  FirstPass pass;
   std::vector<cv::Rect> regions;
   for (const MarkerTrack& track : tracks) {
     if (track.num_lost > 0) continue;
-    const Prediction prediction = PredictByVelocity(track, velocities, num_frames);
-    const Box box = BoundingBox(prediction.corners_px);
-    if (!FitsIn(box, size, prediction.margin_px)) continue;
-    regions.push_back(RegionAround(box, size, prediction.margin_px));
+    LookFor(search, track.marker_id, PredictByVelocity(track, velocities, num_frames), &pass.quads,
+            &regions);
   }
-  regions = MergeRegions(std::move(regions));
-  if (regions.empty() || AreaOf(regions) > kMaxSearchedPart * size.area()) return std::nullopt;
-  FirstPass pass;
-  pass.quads = search(regions);
-  pass.quad_of_track = Associate(tracks, pass.quads, size);
+  if (!SearchAlso(search, std::move(regions), &pass.quads)) return std::nullopt;
+  pass.quad_of_track = Associate(tracks, pass.quads, search.image_size);
   pass.motions = MotionsOf(tracks, pass.quads, pass.quad_of_track);
   return pass;
 }
@@ -257,9 +280,10 @@ bool IsLost(const std::vector<MarkerTrack>& tracks, const std::vector<int>& quad
   double num_expected = 0.0, num_found = 0.0;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     const bool is_found = quad_of_track[t] >= 0;
-    const Prediction prediction = PredictByOthers(tracks[t], motions);
-    const Box box = BoundingBox(prediction.corners_px);
-    if (!is_found && !FitsIn(box, size, -prediction.margin_px)) continue;
+    if (!is_found) {
+      const Prediction prediction = PredictByOthers(tracks[t], motions);
+      if (!FitsIn(BoundingBox(prediction.corners_px), size, -prediction.margin_px)) continue;
+    }
     num_expected += tracks[t].hit_rate;
     num_found += is_found;
   }
@@ -267,28 +291,20 @@ bool IsLost(const std::vector<MarkerTrack>& tracks, const std::vector<int>& quad
 }
 
 // Both passes; nothing where a search of the whole frame is called for.
-std::optional<std::vector<MarkerQuad>> SearchPlaces(const RegionSearch& search,
-                                                    const cv::Size& size, int num_frames,
+std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, int num_frames,
                                                     MarkerTracks* tracks) {
-  const std::optional<FirstPass> first = SearchByVelocity(search, size, num_frames, tracks->tracks);
+  const cv::Size& size = search.image_size;
+  const std::optional<FirstPass> first = SearchByVelocity(search, num_frames, tracks->tracks);
   if (!first || first->motions.empty()) return std::nullopt;
   std::array<double, 4> inflow_px = AddInflow(first->motions, size, tracks->inflow_px);
   std::vector<cv::Rect> regions = BorderRegions(tracks->tracks, size, &inflow_px);
+  std::vector<MarkerQuad> quads = first->quads;
   for (std::size_t t = 0; t < tracks->tracks.size(); ++t) {
     if (first->quad_of_track[t] >= 0) continue;
-    const Prediction prediction = PredictByOthers(tracks->tracks[t], first->motions);
-    const Box box = BoundingBox(prediction.corners_px);
-    if (!FitsIn(box, size, prediction.margin_px)) continue;
-    regions.push_back(RegionAround(box, size, prediction.margin_px));
+    const MarkerTrack& track = tracks->tracks[t];
+    LookFor(search, track.marker_id, PredictByOthers(track, first->motions), &quads, &regions);
   }
-  regions = MergeRegions(std::move(regions));
-  if (AreaOf(regions) > kMaxSearchedPart * size.area()) return std::nullopt;
-  std::vector<MarkerQuad> quads = first->quads;
-  if (!regions.empty()) {
-    const std::vector<MarkerQuad> second = search(regions);
-    quads.insert(quads.end(), second.begin(), second.end());
-    quads = RemoveNested(std::move(quads));
-  }
+  if (!SearchAlso(search, std::move(regions), &quads)) return std::nullopt;
   const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, size);
   if (IsLost(tracks->tracks, quad_of_track, first->motions, size)) return std::nullopt;
   tracks->inflow_px = inflow_px;
@@ -306,17 +322,17 @@ void HandOn(const std::vector<MarkerQuad>& quads, const cv::Size& size, int fram
 
 }  // namespace
 
-std::vector<MarkerQuad> SearchTracked(const RegionSearch& search, const cv::Size& image_size,
-                                      int frame_number, MarkerTracks* tracks) {
+std::vector<MarkerQuad> SearchTracked(const FrameSearch& search, int frame_number,
+                                      MarkerTracks* tracks) {
   const int num_frames = std::max(1, frame_number - tracks->frame_number);
   std::optional<std::vector<MarkerQuad>> quads;
-  if (!tracks->has_new) quads = SearchPlaces(search, image_size, num_frames, tracks);
+  if (!tracks->has_new) quads = SearchPlaces(search, num_frames, tracks);
   if (quads) {
-    HandOn(*quads, image_size, frame_number, tracks);
+    HandOn(*quads, search.image_size, frame_number, tracks);
     return *std::move(quads);
   }
-  quads = search({cv::Rect({0, 0}, image_size)});
-  UpdateTracks(*quads, image_size, frame_number, tracks);
+  quads = search.search_regions({cv::Rect({0, 0}, search.image_size)});
+  UpdateTracks(*quads, search.image_size, frame_number, tracks);
   return *std::move(quads);
 }
 

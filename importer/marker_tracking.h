@@ -1,9 +1,12 @@
 // Markers of a video from frame to frame: where those of the last frames should be now, so that
-// only these places are searched. Between full searches a frame is searched in two passes:
+// only these places are looked at. Between full searches a frame is searched in two passes:
 //
 //   1. around every marker of the last frame, moved on by its velocity;
 //   2. around those that pass 1 missed and those lost earlier, moved on as the found ones around
 //      them have just moved; and along the borders, where the picture moves inwards.
+//
+// In both a marker is first looked for as what it is, and then, where it is not to be seen clearly,
+// as any marker within the region around it.
 //
 // Where far fewer are found than usual, or the places fill most of the picture, the whole frame is
 // searched, and again the next one as long as this finds new markers. The result depends on the
@@ -43,12 +46,20 @@ struct MarkerTracks {
   std::array<double, 4> inflow_px{};
 };
 
-// Searches `regions` of a frame for markers.
-using RegionSearch = std::function<std::vector<MarkerQuad>(const std::vector<cv::Rect>& regions)>;
+// What can be done with the picture of a frame.
+struct FrameSearch {
+  cv::Size image_size;
+  // All markers within the regions.
+  std::function<std::vector<MarkerQuad>(const std::vector<cv::Rect>& regions)> search_regions;
+  // The marker within `reach_px` of `expected`; nothing if in doubt.
+  std::function<std::optional<QuadCorners>(int marker_id, const QuadCorners& expected,
+                                           double reach_px)>
+      locate;
+};
 
 // Searches the next frame of `tracks`' video and brings `tracks` up to it.
-std::vector<MarkerQuad> SearchTracked(const RegionSearch& search, const cv::Size& image_size,
-                                      int frame_number, MarkerTracks* tracks);
+std::vector<MarkerQuad> SearchTracked(const FrameSearch& search, int frame_number,
+                                      MarkerTracks* tracks);
 
 // The same for a frame of which all markers are known by a search of the whole frame.
 void UpdateTracks(const std::vector<MarkerQuad>& quads, const cv::Size& image_size,

@@ -63,8 +63,10 @@ VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vect
   for (int row = box.y; row < box.y + box.height; ++row) {
     const std::uint8_t* values = problem.gray->ptr<std::uint8_t>(row);
     const Floats y = AllLanes(row - center.y());
-    // Odd rows are shifted, so that every column has its share.
-    const int first = box.x + (row * ((stride + 1) / 2)) % stride;
+    // Odd rows are shifted, so that every column has its share. Which pixels are used does not
+    // depend on where the box begins.
+    const int shift = row * ((stride + 1) / 2) % stride;
+    const int first = box.x + (shift + stride - box.x % stride) % stride;
     for (int begin = first; begin < box.x + box.width; begin += kLanes * stride) {
       const Floats x =
           static_cast<float>(begin - center.x()) + static_cast<float>(stride) * LaneIndex();

@@ -13,7 +13,8 @@ namespace {
 
 const cv::Size kSize(1920, 1080);
 
-// A world of square markers that shows those that lie in the searched regions, and counts.
+// A world of square markers that shows those that lie in the searched regions, and counts. They can
+// also be located, if it is told so.
 class FakeVideo {
  public:
   std::vector<MarkerQuad> Search(const std::vector<cv::Rect>& regions) {
@@ -23,26 +24,33 @@ class FakeVideo {
       area_px += region.area();
       EXPECT_EQ(region & cv::Rect({0, 0}, kSize), region);
       for (const auto& [id, center] : markers) {
-        if (std::count(hidden.begin(), hidden.end(), id) > 0) continue;
-        const Eigen::Vector2d at = center + offset_px;
-        if (at.x() - kHalf < region.x || at.y() - kHalf < region.y ||
-            at.x() + kHalf >= region.br().x || at.y() + kHalf >= region.br().y) {
-          continue;
-        }
-        found.push_back(
-            {id,
-             {at + Eigen::Vector2d(-kHalf, -kHalf), at + Eigen::Vector2d(kHalf, -kHalf),
-              at + Eigen::Vector2d(kHalf, kHalf), at + Eigen::Vector2d(-kHalf, kHalf)}});
+        const auto quad = Show(id, center, region);
+        if (quad) found.push_back({id, *quad});
       }
     }
     return RemoveNested(found);
+  }
+
+  std::optional<QuadCorners> Locate(int marker_id, const QuadCorners& expected, double reach_px) {
+    if (!can_locate) return std::nullopt;
+    for (const auto& [id, center] : markers) {
+      const auto quad = Show(id, center, {{0, 0}, kSize});
+      if (id != marker_id || !quad) continue;
+      if ((QuadCenter(*quad) - QuadCenter(expected)).norm() > reach_px) continue;
+      ++num_located;
+      return quad;
+    }
+    return std::nullopt;
   }
 
   // The ids found in the next frame, ascending.
   std::vector<int> Next() {
     std::vector<int> ids;
     for (const MarkerQuad& quad :
-         SearchTracked([this](const auto& regions) { return Search(regions); }, kSize,
+         SearchTracked({kSize, [this](const auto&regions) { return Search(regions); },
+                        [this](int id, const QuadCorners&expected, double reach_px) {
+                          return Locate(id, expected, reach_px);
+                        }},
                        frame_number++, &tracks)) {
       ids.push_back(quad.marker_id);
     }
@@ -50,12 +58,27 @@ class FakeVideo {
     return ids;
   }
 
+  // The marker, if the region holds it.
+  std::optional<QuadCorners> Show(int id, const Eigen::Vector2d& center,
+                                  const cv::Rect& region) const {
+    if (std::count(hidden.begin(), hidden.end(), id) > 0) return std::nullopt;
+    const Eigen::Vector2d at = center + offset_px;
+    if (at.x() - kHalf < region.x || at.y() - kHalf < region.y || at.x() + kHalf >= region.br().x ||
+        at.y() + kHalf >= region.br().y) {
+      return std::nullopt;
+    }
+    return QuadCorners{at + Eigen::Vector2d(-kHalf, -kHalf), at + Eigen::Vector2d(kHalf, -kHalf),
+                       at + Eigen::Vector2d(kHalf, kHalf), at + Eigen::Vector2d(-kHalf, kHalf)};
+  }
+
   static constexpr double kHalf = 20.0;
+  bool can_locate = false;
   std::vector<std::pair<int, Eigen::Vector2d>> markers;
   std::vector<int> hidden;
   Eigen::Vector2d offset_px{0, 0};
   int frame_number = 0;
   int num_full = 0;
+  int num_located = 0;
   double area_px = 0.0;
   MarkerTracks tracks;
 };
@@ -79,6 +102,19 @@ TEST(SearchTracked, AcceleratedMarkersAreFollowedInASmallPartOfThePicture) {
   }
   EXPECT_EQ(video.num_full, 2);
   EXPECT_LT(video.area_px, 0.25 * 19 * kSize.area());
+}
+
+TEST(SearchTracked, MarkersThatCanBeLocatedNeedNoRegion) {
+  FakeVideo video = GridVideo();
+  for (int i = 0; i < 2; ++i) video.Next();
+  video.can_locate = true;
+  video.area_px = 0;
+  for (int i = 1; i < 10; ++i) {
+    video.offset_px += Eigen::Vector2d(0.8 * i, 0.0);
+    EXPECT_EQ(video.Next().size(), 12u) << i;
+  }
+  EXPECT_EQ(video.num_located, 9 * 12);
+  EXPECT_LT(video.area_px, 0.5 * kSize.area());  // along the border where the picture comes in
 }
 
 TEST(SearchTracked, AJumpIsMetByAFullSearch) {

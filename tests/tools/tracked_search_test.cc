@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/marker_alignment.h"
 #include "importer/marker_detector.h"
 #include "importer/marker_tracking.h"
 #include "tests/support/surface_renderer.h"
@@ -61,12 +62,15 @@ Outcome Compare(const ClipOptions& clip) {
       for (const cv::Rect& region : regions) outcome.tracked.area_px += region.area();
       return SearchMarkers(gray, scene.dictionary, 1, {}, regions);
     };
+    const auto locate = [&](int id, const QuadCorners& expected, double reach_px) {
+      return LocateMarker(gray, expected, {MarkerCells(scene.dictionary, id, 1)}, reach_px);
+    };
     std::vector<MarkerQuad> found;
     if (i % kFullSearchInterval == 0) {
       found = search({cv::Rect({0, 0}, gray.size())});
       UpdateTracks(found, gray.size(), i, &tracks);
     } else {
-      found = SearchTracked(search, gray.size(), i, &tracks);
+      found = SearchTracked({gray.size(), search, locate}, i, &tracks);
     }
     Count(scene, i, all, &outcome.exhaustive);
     Count(scene, i, found, &outcome.tracked);
