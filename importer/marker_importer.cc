@@ -13,17 +13,17 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <opencv2/imgcodecs.hpp>
 
-#include "importer/atomic_output.h"
 #include "importer/calibration.h"
 #include "importer/colmap_database.h"
 #include "importer/dictionary_hint.h"
 #include "importer/error.h"
 #include "importer/frame_detector.h"
+#include "importer/frame_image.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_source.h"
 #include "importer/frame_turns.h"
+#include "importer/import_checks.h"
 #include "importer/import_completion.h"
 #include "importer/marker_tracking.h"
 
@@ -33,16 +33,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kBatchSize = 50;  // images a transaction
-constexpr int kJpegQuality = 92;
-
-void WriteJpeg(const fs::path& path, const cv::Mat& color) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", color, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
-  WriteFileAtomically(path, [&](std::ostream& stream) {
-    stream.write(reinterpret_cast<const char*>(bytes.data()),
-                 static_cast<std::streamsize>(bytes.size()));
-  });
-}
 
 // A database that this run creates goes again if the run fails.
 class NewDatabaseGuard {
@@ -87,78 +77,6 @@ class DatabaseWriter {
   std::optional<ColmapDatabase::Transaction> transaction_;
   int num_in_batch_ = 0;
 };
-
-// Refuses to add to a database that was made in another way.
-void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
-                   const ColmapDatabase& database) {
-  const std::string remedy = "delete it or give a new --database_path";
-  const std::optional<std::string> known_detector = database.ReadDetector();
-  const std::map<std::string, ImageId> names = database.ReadImageIdsByName();
-  if (!known_detector) {
-    if (names.empty()) return;
-    throw InputError(fmt::format("{}: holds images that velamap has not imported, such as {}; {}",
-                                 options.database_path, names.begin()->first, remedy));
-  }
-  if (*known_detector != detector) {
-    throw InputError(
-        fmt::format("{}: was made with other detection options or another layout "
-                    "({}; now {}); {}",
-                    options.database_path, *known_detector, detector, remedy));
-  }
-  for (const auto& [camera_id, camera] : database.ReadCameras()) {
-    const Camera expected =
-        ScaleToImageSize(options.camera, camera.width_px, camera.height_px, options.camera_path);
-    if (!(expected == camera)) {
-      throw InputError(fmt::format("{}: was made with another calibration than {}; {}",
-                                   options.database_path, options.camera_path, remedy));
-    }
-  }
-}
-
-// Fewer markers a frame than this are as good as none: false ones turn up in any picture.
-constexpr double kFewMarkersPerFrame = 0.5;
-
-// What another dictionary or polarity has to find more a frame to be the right one instead.
-constexpr double kConvincingRatio = 10.0;
-
-// Throws if the frames hold no marker, or hardly any while another dictionary finds many. What the
-// wrong dictionary or polarity finds are false ids, mostly some that the layout does not name; the
-// hint therefore comes before any complaint about ids.
-void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,
-                       const ImageSample& sample, const ImportReport& report) {
-  const std::vector<DictionaryHint> hints =
-      SuggestDictionaries(sample.Images(), options.layout.border_bits, options.detection);
-  const double rate = static_cast<double>(report.num_markers + report.num_rejected) /
-                      std::max(report.num_frames_read, 1);
-  const bool is_convincing =
-      !hints.empty() && static_cast<double>(hints.front().num_markers) >=
-                            kConvincingRatio * rate * hints.front().num_images;
-  if (is_convincing) {
-    throw DataError(fmt::format("{}: {} marker of {}{} found in {} frames; found with {}",
-                                options.image_path,
-                                report.num_markers + report.num_rejected > 0 ? "hardly any" : "no",
-                                dictionary_name, options.detection.inverted ? " (inverted)" : "",
-                                report.num_frames_read, DescribeHints(hints)));
-  }
-  if (report.num_markers > 0) return;
-  if (!report.ids_not_in_layout.empty()) {
-    throw DataError(
-        fmt::format("{}: no marker of the layout found, only other ids: {}; check the "
-                    "layout's dictionary and markers",
-                    options.image_path, fmt::join(report.ids_not_in_layout, " ")));
-  }
-  if (report.num_rejected > 0) {
-    throw DataError(
-        fmt::format("{}: only markers whose id is there more than once; give a layout "
-                    "(--layout_path) that tells them apart",
-                    options.image_path));
-  }
-  throw DataError(fmt::format(
-      "{}: no marker of {}{} found in {} frames; no predefined dictionary finds any: check focus, "
-      "size and border of the markers",
-      options.image_path, dictionary_name, options.detection.inverted ? " (inverted)" : "",
-      report.num_frames_read));
-}
 
 int NumThreads(int num_threads) {
   if (num_threads < 0) {
@@ -294,7 +212,7 @@ class ImportRun {
       return;
     }
     const StageTimer timer(ImportStage::kImages);
-    WriteJpeg(fs::path(options_.frame_output_path) / frame.image_name, ColorImage(frame));
+    WriteFrameImage(frame, fs::path(options_.frame_output_path) / frame.image_name);
   }
 
   // From sums over threads to what ImportReport::times promises.

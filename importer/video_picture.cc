@@ -62,6 +62,25 @@ void StretchLimitedRange(const std::uint8_t* luma, int num_pixels, std::uint8_t*
   }
 }
 
+// Whether the planes are luma, Cb and Cr, a byte each, chroma of half the size both ways.
+bool HasPlainHalfSizeChroma(const AVFrame& frame) {
+  return frame.format == AV_PIX_FMT_YUV420P || frame.format == AV_PIX_FMT_YUVJ420P;
+}
+
+// 16 to 240 becomes 0 to 255 around 128.
+cv::Mat FullRangeChroma(const AVFrame& frame, int plane) {
+  const cv::Mat limited((frame.height + 1) / 2, (frame.width + 1) / 2, CV_8UC1, frame.data[plane],
+                        static_cast<std::size_t>(frame.linesize[plane]));
+  if (IsFullRange(frame)) return limited.clone();
+  cv::Mat table(1, 256, CV_8UC1);
+  for (int i = 0; i < 256; ++i) {
+    table.at<std::uint8_t>(i) = cv::saturate_cast<std::uint8_t>(128 + (i - 128) * 255.0 / 224.0);
+  }
+  cv::Mat full;
+  cv::LUT(limited, table, full);
+  return full;
+}
+
 // A converter without a change of size; nothing if FFmpeg does not know the format.
 ScalerPtr MakeScaler(const AVFrame& frame, AVPixelFormat target, int flags) {
   ScalerPtr scaler(sws_alloc_context(), sws_freeContext);
@@ -147,6 +166,11 @@ cv::Mat VideoPicture::Gray() const {
 }
 
 cv::Mat VideoPicture::Color() const { return ConvertToColor(*frame_); }
+
+std::optional<ChromaPlanes> VideoPicture::HalfSizeChroma() const {
+  if (!HasPlainHalfSizeChroma(*frame_)) return std::nullopt;
+  return ChromaPlanes{FullRangeChroma(*frame_, 1), FullRangeChroma(*frame_, 2)};
+}
 
 std::vector<cv::Vec3b> VideoPicture::ColorsAt(const std::vector<cv::Point>& pixels) const {
   std::vector<cv::Vec3b> colors(pixels.size());

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -11,6 +12,11 @@
 struct AVFrame;
 
 namespace velamap {
+
+// 8 bit, a value for two by two pixels, 128 for grey and all of 0 to 255 in use (as in JPEG).
+struct ChromaPlanes {
+  cv::Mat cb, cr;
+};
 
 // A value that shares the decoder's memory; safe to read on many threads.
 class VideoPicture {
@@ -26,7 +32,10 @@ class VideoPicture {
   // BGR, 8 bit, of the whole picture; empty if FFmpeg cannot convert the pixel format.
   cv::Mat Color() const;
 
-  // The same of single pixels inside the picture, without converting the rest of it.
+  // The chroma that belongs to Gray(); nothing where the picture does not hold it in this way.
+  std::optional<ChromaPlanes> HalfSizeChroma() const;
+
+  // Color() of single pixels inside the picture, without converting the rest of it.
   std::vector<cv::Vec3b> ColorsAt(const std::vector<cv::Point>& pixels) const;
 
  private:

@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache pkg-config colmap
   libopencv-dev libopencv-contrib-dev libeigen3-dev
-  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
+  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libturbojpeg0-dev
   libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev
   libboost-program-options-dev libspdlog-dev libceres-dev nlohmann-json3-dev
   libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev

@@ -63,6 +63,32 @@ TEST(VideoPicture, GrayAgreesWithColorWhereThereIsNone) {
   }
 }
 
+// JPEG's own conversion (ITU-T T.871) of luma and chroma gives the colours.
+TEST(VideoPicture, ChromaAndGrayAreTheColors) {
+  for (const int format : {AV_PIX_FMT_YUV420P, AV_PIX_FMT_YUVJ420P}) {
+    const VideoPicture picture = MakePicture(format, [](int plane, int x, int y) {
+      return plane == 0 ? 90 + (x + y) / 2 : 100 + (plane == 1 ? x : y);
+    });
+    const cv::Mat gray = picture.Gray(), color = picture.Color();
+    const auto chroma = picture.HalfSizeChroma();
+    ASSERT_TRUE(chroma);
+    ASSERT_EQ(chroma->cb.size(), cv::Size(kWidth / 2, kHeight / 2));
+    for (int y = 2; y < kHeight - 2; ++y) {
+      for (int x = 2; x < kWidth - 2; ++x) {
+        const double cb = chroma->cb.at<std::uint8_t>(y / 2, x / 2) - 128.0;
+        const double cr = chroma->cr.at<std::uint8_t>(y / 2, x / 2) - 128.0;
+        const double luma = gray.at<std::uint8_t>(y, x);
+        const cv::Vec3b& bgr = color.at<cv::Vec3b>(y, x);
+        EXPECT_NEAR(bgr[0], luma + 1.772 * cb, 4.0);
+        EXPECT_NEAR(bgr[1], luma - 0.344136 * cb - 0.714136 * cr, 4.0);
+        EXPECT_NEAR(bgr[2], luma + 1.402 * cr, 4.0);
+      }
+    }
+  }
+  EXPECT_FALSE(
+      MakePicture(AV_PIX_FMT_YUV420P10LE, [](int, int, int) { return 0; }).HalfSizeChroma());
+}
+
 TEST(VideoPicture, SinglePixelsHaveTheColorsOfTheWholePicture) {
   const VideoPicture picture = MakePicture(AV_PIX_FMT_YUV420P, [](int plane, int x, int y) {
     return 60 + (7 * x + 13 * y + 50 * plane) % 120;
