@@ -94,6 +94,18 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
   return located;
 }
 
+std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray) {
+  constexpr double kReachPx = 3.0;  // a pixel and a half of the half resolution
+  std::vector<MarkerQuad> quads;
+  for (const MarkerQuad& coarse :
+       SearchMarkersCoarsely(gray, detector.dictionary, detector.border_bits, detector.options)) {
+    const auto located =
+        LocateInFrame(detector, gray, coarse.marker_id, coarse.corners_px, kReachPx);
+    if (located) quads.push_back({coarse.marker_id, *located});
+  }
+  return quads;
+}
+
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
                               const cv::Mat& gray, const std::vector<MarkerQuad>& quads) {
   FrameDetections detections;

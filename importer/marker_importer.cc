@@ -180,24 +180,28 @@ class ImportRun {
  private:
   using Turn = FrameTurns<MarkerTracks>::Turn;
 
-  // Tracked from frame to frame, so in their order; a full search that is due waits for nobody.
+  // Tracked from frame to frame, so in their order; a search of the whole frame that is due waits
+  // for nobody.
   std::vector<MarkerQuad> SearchInTurn(int frame_idx, const Frame& frame, Turn* turn) const {
-    std::vector<MarkerQuad> quads;
-    const bool is_full = frame_idx % detector_.options.full_search_interval == 0;
-    if (is_full) quads = SearchInFrame(detector_, frame.gray);
+    std::vector<MarkerQuad> quads, seen_coarsely;
+    const int interval = detector_.options.full_search_interval;
+    const bool is_full = frame_idx % interval == 0;
+    if (is_full) {
+      quads = SearchInFrame(detector_, frame.gray);
+    } else if (frame_idx % interval == (interval + 1) / 2) {
+      seen_coarsely = SearchInFrameCoarsely(detector_, frame.gray);
+    }
     MarkerTracks* tracks = turn->Wait();
     const int frame_number = frame.frame_number.value_or(frame_idx);
-    if (is_full) {
-      UpdateTracks(quads, frame.gray.size(), frame_number, tracks);
-    } else {
-      const FrameSearch search{
-          frame.gray.size(),
-          [&](const auto& regions) { return SearchInFrame(detector_, frame.gray, regions); },
-          [&](int marker_id, const QuadCorners& expected, double reach_px) {
-            return LocateInFrame(detector_, frame.gray, marker_id, expected, reach_px);
-          }};
-      quads = SearchTracked(search, frame_number, tracks);
-    }
+    const FrameSearch search{
+        frame.gray.size(),
+        [&](const auto& regions) { return SearchInFrame(detector_, frame.gray, regions); },
+        [&](int marker_id, const QuadCorners& expected, double reach_px) {
+          return LocateInFrame(detector_, frame.gray, marker_id, expected, reach_px);
+        },
+        std::move(seen_coarsely)};
+    quads = is_full ? CompleteFullSearch(search, std::move(quads), frame_number, tracks)
+                    : SearchTracked(search, frame_number, tracks);
     turn->End();
     return quads;
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "importer/error.h"
 
@@ -131,6 +132,20 @@ std::vector<MarkerQuad> RemoveNested(std::vector<MarkerQuad> quads) {
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options) {
   return SearchMarkers(gray, dictionary, border_bits, options, {{0, 0, gray.cols, gray.rows}});
+}
+
+std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Dictionary& dictionary,
+                                              int border_bits,
+                                              const ArucoDetectionOptions& options) {
+  cv::Mat half;
+  cv::resize(gray, half, {}, 0.5, 0.5, cv::INTER_AREA);
+  std::vector<MarkerQuad> quads = SearchMarkers(half, dictionary, border_bits, options);
+  for (MarkerQuad& quad : quads) {
+    for (Eigen::Vector2d& corner : quad.corners_px) {
+      corner = 2.0 * corner + Eigen::Vector2d(0.5, 0.5);  // places are of pixels' centres
+    }
+  }
+  return quads;
 }
 
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,

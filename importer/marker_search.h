@@ -40,6 +40,11 @@ std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dic
 bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
                  const ArucoDetectionOptions& options);
 
+// The same at half the resolution, in a quarter of the time: the large ones, to a few pixels.
+std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Dictionary& dictionary,
+                                              int border_bits,
+                                              const ArucoDetectionOptions& options);
+
 // Only within `regions`, which lie in the image. They may overlap: a marker is handed out once.
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options,

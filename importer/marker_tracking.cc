@@ -299,6 +299,7 @@ std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, i
   std::array<double, 4> inflow_px = AddInflow(first->motions, size, tracks->inflow_px);
   std::vector<cv::Rect> regions = BorderRegions(tracks->tracks, size, &inflow_px);
   std::vector<MarkerQuad> quads = first->quads;
+  quads.insert(quads.end(), search.seen_coarsely.begin(), search.seen_coarsely.end());
   for (std::size_t t = 0; t < tracks->tracks.size(); ++t) {
     if (first->quad_of_track[t] >= 0) continue;
     const MarkerTrack& track = tracks->tracks[t];
@@ -331,18 +332,29 @@ std::vector<MarkerQuad> SearchTracked(const FrameSearch& search, int frame_numbe
     HandOn(*quads, search.image_size, frame_number, tracks);
     return *std::move(quads);
   }
-  quads = search.search_regions({cv::Rect({0, 0}, search.image_size)});
-  UpdateTracks(*quads, search.image_size, frame_number, tracks);
-  return *std::move(quads);
+  return CompleteFullSearch(search, search.search_regions({cv::Rect({0, 0}, search.image_size)}),
+                            frame_number, tracks);
 }
 
-void UpdateTracks(const std::vector<MarkerQuad>& quads, const cv::Size& image_size,
-                  int frame_number, MarkerTracks* tracks) {
-  HandOn(quads, image_size, frame_number, tracks);
+std::vector<MarkerQuad> CompleteFullSearch(const FrameSearch& search, std::vector<MarkerQuad> quads,
+                                           int frame_number, MarkerTracks* tracks) {
+  const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, search.image_size);
+  const std::vector<PointMotion> motions = MotionsOf(tracks->tracks, quads, quad_of_track);
+  for (std::size_t t = 0; !motions.empty() && t < tracks->tracks.size(); ++t) {
+    if (quad_of_track[t] >= 0) continue;
+    const MarkerTrack& track = tracks->tracks[t];
+    const Prediction prediction = PredictByOthers(track, motions);
+    const auto located =
+        search.locate(track.marker_id, prediction.corners_px, prediction.margin_px);
+    if (located) quads.push_back({track.marker_id, *located});
+  }
+  quads = RemoveNested(std::move(quads));
+  HandOn(quads, search.image_size, frame_number, tracks);
   tracks->has_new = std::any_of(
       tracks->tracks.begin(), tracks->tracks.end(),
       [](const MarkerTrack& track) { return track.num_found == 1 && track.num_lost == 0; });
   tracks->inflow_px = {};
+  return quads;
 }
 
 std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions) {

@@ -8,9 +8,10 @@
 // In both a marker is first looked for as what it is, and then, where it is not to be seen clearly,
 // as any marker within the region around it.
 //
+// Halfway between two full searches a coarse one of the whole frame tells of new large markers.
 // Where far fewer are found than usual, or the places fill most of the picture, the whole frame is
-// searched, and again the next one as long as this finds new markers. The result depends on the
-// frames and their order only.
+// searched, and again the next one as long as this finds new markers. The result depends on
+// the frames and their order only.
 
 #pragma once
 
@@ -55,15 +56,18 @@ struct FrameSearch {
   std::function<std::optional<QuadCorners>(int marker_id, const QuadCorners& expected,
                                            double reach_px)>
       locate;
+  // What a coarse search of the whole frame has found, where there was one.
+  std::vector<MarkerQuad> seen_coarsely{};
 };
 
 // Searches the next frame of `tracks`' video and brings `tracks` up to it.
 std::vector<MarkerQuad> SearchTracked(const FrameSearch& search, int frame_number,
                                       MarkerTracks* tracks);
 
-// The same for a frame of which all markers are known by a search of the whole frame.
-void UpdateTracks(const std::vector<MarkerQuad>& quads, const cv::Size& image_size,
-                  int frame_number, MarkerTracks* tracks);
+// The same for a frame of which `quads` are known by a search of the whole frame: with the markers
+// that it missed, but that can be located.
+std::vector<MarkerQuad> CompleteFullSearch(const FrameSearch& search, std::vector<MarkerQuad> quads,
+                                           int frame_number, MarkerTracks* tracks);
 
 // Rectangles that cover what `regions` cover, joined where one costs less than two.
 std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions);

@@ -67,8 +67,8 @@ Outcome Compare(const ClipOptions& clip) {
     };
     std::vector<MarkerQuad> found;
     if (i % kFullSearchInterval == 0) {
-      found = search({cv::Rect({0, 0}, gray.size())});
-      UpdateTracks(found, gray.size(), i, &tracks);
+      found = CompleteFullSearch({gray.size(), search, locate},
+                                 search({cv::Rect({0, 0}, gray.size())}), i, &tracks);
     } else {
       found = SearchTracked({gray.size(), search, locate}, i, &tracks);
     }
