@@ -56,6 +56,8 @@ void Sizes(benchmark::internal::Benchmark* benchmark) {
       ->Args({164, 10, 13})
       ->Args({41, 5, 13})
       ->Args({41, 20, 13})
+      ->Args({41, 4, 5})
+      ->Args({41, 20, 25})
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();
 }

@@ -7,6 +7,8 @@
 #   main        automatic_reconstructor around a named central frame; decoding of those frames
 #   memory      peak memory of the import of a short and a long clip
 #   growth      import with twice the frames, and with larger ones
+#   markers     detection in one frame, registration and adjustment with 20 to 500 markers
+#   tracking    import with tracked and with exhaustive search: what both find, and their search
 #   sweep       central_frame_sweeper; as many single runs
 # Times are CPU seconds, user and system, of all threads and children: another program beside them
 # changes wall times more. Clips are rendered with fixed seeds and kept in WORK_FOLDER/clips.
@@ -25,7 +27,7 @@ work="workspace/compare"
 parts=()
 for argument in "$@"; do
   case "$argument" in
-    detection | adjustment | main | memory | growth | sweep) parts+=("$argument") ;;
+    detection | adjustment | main | memory | growth | markers | tracking | sweep) parts+=("$argument") ;;
     --help)
       sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "$0"
       exit 0
@@ -34,7 +36,7 @@ for argument in "$@"; do
     *) work="$argument" ;;
   esac
 done
-if [[ ${#parts[@]} -eq 0 ]]; then parts=(detection adjustment main memory growth sweep); fi
+if [[ ${#parts[@]} -eq 0 ]]; then parts=(detection adjustment main memory growth markers tracking sweep); fi
 read -ra widths <<<"${WIDTHS:-1920 3840}"
 num_frames="${NUM_FRAMES:-200}"
 long="${LONG:-2000}"
@@ -44,8 +46,10 @@ central_frames="${CENTRAL_FRAMES:-11}"
 velamap="$build/workflows/velamap"
 render_clip="$build/tests/tools/render_clip"
 plain_detection="$build/tests/benchmarks/plain_detection"
+compare_detections="$build/tests/benchmarks/compare_detections"
 velamap_benchmark="$build/tests/benchmarks/velamap_benchmark"
-for program in "$velamap" "$render_clip" "$plain_detection" "$velamap_benchmark"; do
+for program in "$velamap" "$render_clip" "$plain_detection" "$compare_detections" \
+  "$velamap_benchmark"; do
   [[ -x "$program" ]] || fail "$program is not built; cmake --build it, or set BUILD to the build's folder"
 done
 [[ -x /usr/bin/time ]] || fail "/usr/bin/time is missing (Debian package time)"
@@ -86,12 +90,24 @@ measure() {
 # value KEY: of the last command's stdout.
 value() { awk -F': ' -v key="$1" '$1 == key { print $2 }' "$work/out.txt"; }
 
+percent() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f %%", (b > 0 ? 100 * a / b : 0) }'; }
+
 ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (b > 0 ? a / b : 0) }'; }
 
+# import FOLDER [OPTION...]: of a clip into database.db.
 import() {
+  local folder="$1"
+  shift
   rm -f "$work/database.db"
-  measure "$velamap" marker_importer --image_path "$1/clip.mp4" --camera_path "$1/camera.yml" \
-    --layout_path "$1/layout.yml" --database_path "$work/database.db"
+  measure "$velamap" marker_importer --image_path "$folder/clip.mp4" \
+    --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
+    --database_path "$work/database.db" "$@"
+}
+
+# search_ms FRAMES: CPU time of the search a frame, in the last import.
+search_ms() {
+  awk -v frames="$1" '/ detect / { for (i = 1; i < NF; i++) if ($i == "detect") seconds = $(i + 2) }
+    END { printf "%.0f", 1000 * seconds / frames }' "$work/err.txt"
 }
 
 decode() { measure ffmpeg -v error -i "$1/clip.mp4" -an -f null -; }
@@ -189,6 +205,47 @@ compare_growth() {
       once="$cpu"
       import "$(looped "$folder" $((2 * num_frames)))"
       echo "| $width px, $num_frames frames | $once | $cpu | $(ratio "$cpu" "$once") |"
+    done
+  done
+}
+
+compare_markers() {
+  echo "| markers | detection at 4K ms | registration and adjustment of 41 frames ms |"
+  echo "|---|---|---|"
+  "$velamap_benchmark" --benchmark_format=csv \
+    --benchmark_filter='DetectManyMarkers|RegistrationAndAdjustment/41/' 2>/dev/null |
+    awk -F, '
+      /^name/ { gsub(/"/, ""); for (i = 1; i <= NF; i++) column[$i] = i; next }
+      /^"?BM_/ {
+        gsub(/"/, "", $1)
+        split($1, part, "/")
+        if ($1 ~ /Detect/) { n = part[2] * part[3]; detect[n] = $column["cpu_time"] }
+        else { n = part[3] * part[4]; adjust[n] = 1000 * $column["cpu_s"] }
+        seen[n] = 1
+      }
+      END {
+        for (n in seen) printf "| %d | %s | %s |\n", n, n in detect ? sprintf("%.0f", detect[n]) : "",
+          n in adjust ? sprintf("%.0f", adjust[n]) : "" | "sort -t \"|\" -k 2 -n"
+      }'
+}
+
+compare_tracking() {
+  local width kind folder exhaustive_ms
+  echo "| clip | exhaustive: markers | tracked: markers | found again | same corners to 0.01 px | search a frame, exhaustive ms | tracked ms |"
+  echo "|---|---|---|---|---|---|---|"
+  for width in "${widths[@]}"; do
+    for kind in calm busy; do
+      folder="$(clip "$kind" "$width")"
+      import "$folder" --ArucoDetection.search exhaustive
+      exhaustive_ms="$(search_ms "$num_frames")"
+      mv "$work/database.db" "$work/exhaustive.db"
+      import "$folder"
+      local tracked_ms
+      tracked_ms="$(search_ms "$num_frames")"
+      measure "$compare_detections" "$work/exhaustive.db" "$work/database.db"
+      echo "| $kind, $width px, $num_frames frames | $(value reference) | $(value other) | $(
+        percent "$(value found_again)" "$(value reference)") | $(
+        percent "$(value same_corners)" "$(value found_again)") | $exhaustive_ms | $tracked_ms |"
     done
   done
 }

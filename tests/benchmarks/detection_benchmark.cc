@@ -50,6 +50,34 @@ BENCHMARK(BM_DetectMarkers)
     ->ArgsProduct({{1280, 1920, 3840}, {0, 1, 2}})
     ->Unit(benchmark::kMillisecond);
 
+// The whole of a 4K frame; arguments: rows and columns of markers, which grow smaller.
+void BM_DetectManyMarkers(benchmark::State& state) {
+  SyntheticSceneOptions options;
+  options.num_rows = static_cast<int>(state.range(0));
+  options.num_columns = static_cast<int>(state.range(1));
+  options.num_frames = 1;
+  options.spacing_m = 3.0 / options.num_columns;
+  options.marker_length_m = 0.6 * options.spacing_m;
+  options.camera = {CameraModel::kPinhole, 3840, 2160, {2400, 2400, 1920, 1080}};
+  SyntheticScene scene = MakeSyntheticScene(options);
+  scene.layout.dictionary = "DICT_4X4_1000";
+  RenderOptions render;
+  render.noise_sigma = 2.0;
+  const Dictionary dictionary = LoadDictionary(scene.layout.dictionary);
+  const cv::Mat gray = RenderFrame(scene, 0, render);
+  std::size_t num_markers = 0;
+  cv::setNumThreads(1);
+  for (auto _ : state) num_markers = DetectMarkers(gray, dictionary, 1, {}).size();
+  state.counters["markers"] = static_cast<double>(num_markers);
+}
+BENCHMARK(BM_DetectManyMarkers)
+    ->Args({4, 5})
+    ->Args({5, 13})
+    ->Args({10, 13})
+    ->Args({20, 13})
+    ->Args({20, 25})
+    ->Unit(benchmark::kMillisecond);
+
 // All markers of a 1920x1080 frame, from corners off by 0.7 px.
 void BM_RefineCornersByEdges(benchmark::State& state) {
   const Eigen::Vector2d kOpenCvFromImagePx(-0.5, -0.5), kOffsetPx(0.5, -0.5);
