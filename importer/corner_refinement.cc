@@ -14,8 +14,6 @@
 namespace velamap {
 namespace {
 
-using Quad = std::array<Eigen::Vector2d, kNumCorners>;
-
 constexpr double kMinContrast = 12.0;    // grey levels
 constexpr double kMaxRelativeRms = 0.2;  // of the residuals, by contrast
 constexpr double kFirstBlurPx = 1.0;
@@ -60,12 +58,8 @@ std::optional<FittedSide> FitSide(const cv::Mat& gray, const SideModel& model, c
   return fitted;
 }
 
-struct Line {
-  Eigen::Vector2d point_px, direction;
-};
-
 // The tangent of the fitted edge at its end s = -1 or 1, where the bend adds nothing.
-Line TangentAtEnd(const FittedSide& fitted, double s) {
+ImageLine TangentAtEnd(const FittedSide& fitted, double s) {
   using P = EdgeParameters;
   const Side& side = fitted.side;
   const P& p = fitted.parameters;
@@ -79,13 +73,6 @@ Line TangentAtEnd(const FittedSide& fitted, double s) {
 double VarianceAtEnd(const FittedSide& fitted, double s) {
   const Eigen::Vector2d by_place(1, s);
   return by_place.dot(fitted.uncertainty.place_covariance * by_place);
-}
-
-std::optional<Eigen::Vector2d> Intersect(const Line& a, const Line& b) {
-  Eigen::Matrix2d directions;
-  directions << a.direction, -b.direction;
-  if (std::abs(directions.determinant()) < 0.05) return std::nullopt;
-  return a.point_px + a.direction * (directions.inverse() * (b.point_px - a.point_px)).x();
 }
 
 // Mean variance of the coordinates of the corner where `starting` begins and `ending` ends.
@@ -102,7 +89,7 @@ struct Fit {
   double blur_px;
 };
 
-std::optional<Fit> FitSides(const cv::Mat& gray, const Quad& corners_px, double blur_px,
+std::optional<Fit> FitSides(const cv::Mat& gray, const QuadCorners& corners_px, double blur_px,
                             int num_cells, const Pass& pass, Workspace* workspace) {
   std::array<FittedSide, kNumCorners> sides;
   ResidualNoise noise;
@@ -127,7 +114,7 @@ std::optional<Fit> FitSides(const cv::Mat& gray, const Quad& corners_px, double 
   return fit;
 }
 
-double MaxShiftPx(const Quad& a, const Quad& b) {
+double MaxShiftPx(const QuadCorners& a, const QuadCorners& b) {
   double max_shift_px = 0.0;
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     max_shift_px = std::max(max_shift_px, (a[i] - b[i]).norm());
@@ -139,21 +126,9 @@ double MaxAllowedShiftPx(double cell_px, const EdgeFitOptions& options) {
   return std::max(2.0, options.max_shift_in_cells * cell_px);
 }
 
-double MeanSidePx(const Quad& quad) {
-  double perimeter_px = 0.0;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    perimeter_px += (quad[(i + 1) % kNumCorners] - quad[i]).norm();
-  }
-  return perimeter_px / kNumCorners;
-}
-
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 }  // namespace
 
-bool HasClearSides(const Quad& quad, int num_cells, const EdgeFitOptions& options) {
+bool HasClearSides(const QuadCorners& quad, int num_cells, const EdgeFitOptions& options) {
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     const Eigen::Vector2d next = quad[(i + 1) % kNumCorners] - quad[i];
     const Eigen::Vector2d last = quad[(i + kNumCorners - 1) % kNumCorners] - quad[i];
@@ -167,10 +142,11 @@ bool HasClearSides(const Quad& quad, int num_cells, const EdgeFitOptions& option
   return true;
 }
 
-std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray, const Quad& corners_px,
-                                                   int num_cells, const EdgeFitOptions& options) {
+std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
+                                                   const QuadCorners& corners_px, int num_cells,
+                                                   const EdgeFitOptions& options) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
-  const double cell_px = MeanSidePx(corners_px) / num_cells;
+  const double cell_px = QuadMeanSide(corners_px) / num_cells;
   const double band_px =
       std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
   const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.1, false},
@@ -189,10 +165,10 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray, const Qu
   return fit.corners;
 }
 
-std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const Quad& corners_px,
+std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
                                             const cv::Mat& cells, const EdgeFitOptions& options) {
-  const double cell_px = MeanSidePx(corners_px) / cells.rows;
-  const Quad start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
+  const double cell_px = QuadMeanSide(corners_px) / cells.rows;
+  const QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
   if (!HasClearSides(start_px, cells.rows, options)) {
     const auto fitted = FitPattern(gray, start_px, cells);
     if (fitted &&

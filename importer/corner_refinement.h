@@ -15,7 +15,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "importer/ids.h"
+#include "importer/quad.h"
 #include "importer/refined_corners.h"
 
 namespace velamap {
@@ -37,20 +37,20 @@ struct EdgeFitOptions {
 
 // Whether every side stands far enough from what is beside it, and upright enough on its
 // neighbours, to be fitted on its own. Corners in px; `num_cells` along a side, with the border.
-bool HasClearSides(const std::array<Eigen::Vector2d, kNumCorners>& corners_px, int num_cells,
+bool HasClearSides(const QuadCorners& corners_px, int num_cells,
                    const EdgeFitOptions& options = {});
 
 // `corners_px` in OpenCV's pixel frame (first pixel's centre at (0,0)), in order around the square,
 // the refined ones likewise, with their uncertainty. `num_cells` is the number of cells along a
 // side with the border. Nothing if an edge has too little contrast, leaves the image, or the fit
 // moves a corner too far.
-std::optional<RefinedCorners> RefineCornersByEdges(
-    const cv::Mat& gray, const std::array<Eigen::Vector2d, kNumCorners>& corners_px, int num_cells,
-    const EdgeFitOptions& options = {});
+std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
+                                                   const QuadCorners& corners_px, int num_cells,
+                                                   const EdgeFitOptions& options = {});
 
 // The same for a marker whose cells are known (as in pattern_fit.h): the best way for its size.
-std::optional<RefinedCorners> RefineCorners(
-    const cv::Mat& gray, const std::array<Eigen::Vector2d, kNumCorners>& corners_px,
-    const cv::Mat& cells, const EdgeFitOptions& options = {});
+std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
+                                            const cv::Mat& cells,
+                                            const EdgeFitOptions& options = {});
 
 }  // namespace velamap

@@ -11,11 +11,9 @@
 namespace velamap {
 namespace {
 
-using Quad = std::array<Eigen::Vector2d, kNumCorners>;
-
 constexpr double kQuietZoneCells = 1.0;  // what every marker has; more does no harm
 
-Side MakeSide(const Quad& quad) {
+Side MakeSide(const QuadCorners& quad) {
   Side side{0.5 * (quad[0] + quad[1]),
             (quad[1] - quad[0]).normalized(),
             {},
@@ -107,17 +105,17 @@ void FillSamples(const SideModel& model, Floats x, Floats y, EdgeSampleGroup* sa
 
 }  // namespace
 
-SideModel MakeSideModel(const cv::Mat& gray, const Quad& quad, int side_idx, int num_cells,
+SideModel MakeSideModel(const cv::Mat& gray, const QuadCorners& quad, int side_idx, int num_cells,
                         double blur_px) {
   const auto turned = [&](int turns) {
-    Quad result;
+    QuadCorners result;
     for (int i = 0; i < kNumCorners; ++i) {
       result[static_cast<std::size_t>(i)] =
           quad[static_cast<std::size_t>((i + turns) % kNumCorners)];
     }
     return result;
   };
-  const Quad own = turned(side_idx);
+  const QuadCorners own = turned(side_idx);
   const UnitSquareMap map(own);
   const double cell = 1.0 / num_cells;
   SideModel model;

@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/edge_fit.h"
-#include "importer/ids.h"
+#include "importer/quad.h"
 
 namespace velamap {
 
@@ -44,8 +44,7 @@ struct SideModel {
 };
 
 // Side `side_idx` (from corner side_idx on) of a quad in OpenCV's pixel frame.
-SideModel MakeSideModel(const cv::Mat& gray,
-                        const std::array<Eigen::Vector2d, kNumCorners>& quad_px, int side_idx,
+SideModel MakeSideModel(const cv::Mat& gray, const QuadCorners& quad_px, int side_idx,
                         int num_cells, double blur_px);
 
 // All pixels no further than `band_px` from the side, or every k-th row or column of them, about

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "importer/error.h"
 #include "importer/interpolate.h"
 #include "importer/unit_square_map.h"
@@ -75,14 +73,10 @@ std::optional<Eigen::Vector2d> FindStep(const cv::Mat& gray, const Eigen::Vector
   return std::nullopt;
 }
 
-struct Line {
-  Eigen::Vector2d point_px, direction;
-};
-
 // Least squares; without those that depart by more than `max_departure_px`, of which there may be
 // some.
-std::optional<Line> FitLine(std::vector<Eigen::Vector2d> points_px, const Eigen::Vector2d& along,
-                            double max_departure_px) {
+std::optional<ImageLine> FitLine(std::vector<Eigen::Vector2d> points_px,
+                                 const Eigen::Vector2d& along, double max_departure_px) {
   const Eigen::Vector2d across(-along.y(), along.x());
   while (points_px.size() >= kMinScans) {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -101,14 +95,14 @@ std::optional<Line> FitLine(std::vector<Eigen::Vector2d> points_px, const Eigen:
     const auto worst =
         std::max_element(points_px.begin(), points_px.end(),
                          [&](const auto& a, const auto& b) { return departure(a) < departure(b); });
-    if (departure(*worst) <= max_departure_px) return Line{mean, along + slope * across};
+    if (departure(*worst) <= max_departure_px) return ImageLine{mean, along + slope * across};
     points_px.erase(worst);
   }
   return std::nullopt;
 }
 
-std::optional<Line> FindSide(const cv::Mat& gray, const QuadCorners& quad, int side,
-                             const MarkerLook& look) {
+std::optional<ImageLine> FindSide(const cv::Mat& gray, const QuadCorners& quad, int side,
+                                  const MarkerLook& look) {
   const UnitSquareMap map(quad);
   const double cell = 1.0 / look.cells.rows;
   std::vector<Eigen::Vector2d> steps;
@@ -126,16 +120,9 @@ std::optional<Line> FindSide(const cv::Mat& gray, const QuadCorners& quad, int s
                  std::max(kMaxDeparturePx, kMaxDepartureCells * cell * side_px.norm()));
 }
 
-std::optional<Eigen::Vector2d> Intersect(const Line& a, const Line& b) {
-  Eigen::Matrix2d directions;
-  directions << a.direction, -b.direction;
-  if (std::abs(directions.determinant()) < 0.05) return std::nullopt;
-  return a.point_px + a.direction * (directions.inverse() * (b.point_px - a.point_px)).x();
-}
-
 std::optional<QuadCorners> FindSides(const cv::Mat& gray, const QuadCorners& quad,
                                      const MarkerLook& look) {
-  std::array<Line, kNumCorners> lines;
+  std::array<ImageLine, kNumCorners> lines;
   for (int side = 0; side < kNumCorners; ++side) {
     const auto line = FindSide(gray, quad, side, look);
     if (!line) return std::nullopt;

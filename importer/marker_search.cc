@@ -39,23 +39,9 @@ cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
   return parameters;
 }
 
-double Area(const QuadCorners& quad) {
-  double doubled_area = 0.0;
-  for (int i = 0; i < kNumCorners; ++i) {
-    const Eigen::Vector2d& a = quad[i];
-    const Eigen::Vector2d& b = quad[(i + 1) % kNumCorners];
-    doubled_area += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * std::abs(doubled_area);
-}
-
 // The pixels within `reach_px` of a marker.
 cv::Rect Surroundings(const QuadCorners& corners, int reach_px) {
-  Eigen::Vector2d min = corners[0], max = corners[0];
-  for (const Eigen::Vector2d& corner : corners) {
-    min = min.cwiseMin(corner);
-    max = max.cwiseMax(corner);
-  }
+  const auto [min, max] = BoundingBox(corners);
   const cv::Point top_left(static_cast<int>(min.x()) - reach_px,
                            static_cast<int>(min.y()) - reach_px);
   const cv::Point bottom_right(static_cast<int>(max.x()) + reach_px + 1,
@@ -90,18 +76,6 @@ void SearchRegion(const cv::Mat& gray, const cv::Rect& region, const Dictionary&
 
 }  // namespace
 
-Eigen::Vector2d QuadCenter(const QuadCorners& corners) {
-  return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-}
-
-double QuadMeanSide(const QuadCorners& corners) {
-  double perimeter = 0.0;
-  for (int i = 0; i < kNumCorners; ++i) {
-    perimeter += (corners[(i + 1) % kNumCorners] - corners[i]).norm();
-  }
-  return perimeter / kNumCorners;
-}
-
 bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
                  const ArucoDetectionOptions& options) {
   const double min_perimeter_px =
@@ -116,7 +90,7 @@ bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
 
 std::vector<MarkerQuad> RemoveNested(std::vector<MarkerQuad> quads) {
   std::stable_sort(quads.begin(), quads.end(), [](const MarkerQuad& a, const MarkerQuad& b) {
-    return Area(a.corners_px) > Area(b.corners_px);
+    return QuadArea(a.corners_px) > QuadArea(b.corners_px);
   });
   std::vector<MarkerQuad> kept;
   for (const MarkerQuad& quad : quads) {

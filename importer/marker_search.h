@@ -5,20 +5,15 @@
 
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "importer/dictionary.h"
-#include "importer/ids.h"
 #include "importer/options.h"
+#include "importer/quad.h"
 
 namespace velamap {
-
-// Corners in OpenCV's pixel frame: (0,0) is the first pixel's centre. Order as in detection.h.
-using QuadCorners = std::array<Eigen::Vector2d, kNumCorners>;
 
 struct MarkerQuad {
   int marker_id = 0;
@@ -27,9 +22,6 @@ struct MarkerQuad {
 
 // Half the widest threshold window, and the band along a border in which OpenCV takes no corner.
 inline constexpr int kSearchReachPx = 6 + 4;
-
-Eigen::Vector2d QuadCenter(const QuadCorners& corners);
-double QuadMeanSide(const QuadCorners& corners);
 
 // The whole 8-bit grey image. Ids may occur more than once (duplicates.h); largest markers first.
 // Thread-safe.

@@ -1,16 +1,13 @@
 #include "importer/marker_tracking.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "importer/local_motion.h"
+#include "importer/search_regions.h"
 
 namespace velamap {
 namespace {
-
-// A call of the detector for a region costs about as much as so many pixels more.
-constexpr int kCallCostPx = 4000;
 
 // Larger parts of the picture than this are left to a full search, which finds more.
 constexpr double kMaxSearchedPart = 0.6;
@@ -25,49 +22,8 @@ constexpr double kHitRateStep = 0.2;
 constexpr int kLostFramesPerFound = 5;
 constexpr int kMaxLostFrames = 90;
 
-// Inflow at which the band along a border is searched, as a part of the picture's width, and how
-// much farther than the largest marker it reaches.
-constexpr double kMinInflowPart = 0.004;
-constexpr double kBandPerMarker = 1.3;
-
-struct Box {
-  Eigen::Vector2d min, max;
-};
-
-Box BoundingBox(const QuadCorners& corners) {
-  Box box{corners[0], corners[0]};
-  for (const Eigen::Vector2d& corner : corners) {
-    box.min = box.min.cwiseMin(corner);
-    box.max = box.max.cwiseMax(corner);
-  }
-  return box;
-}
-
 void Move(const Eigen::Vector2d& displacement, QuadCorners* corners) {
   for (Eigen::Vector2d& corner : *corners) corner += displacement;
-}
-
-// Whether a marker may lie in the image as a whole, its place known to `margin_px`; a negative one
-// asks whether it does for sure.
-bool FitsIn(const Box& box, const cv::Size& size, double margin_px) {
-  return box.min.x() >= -margin_px && box.min.y() >= -margin_px &&
-         box.max.x() <= size.width - 1 + margin_px && box.max.y() <= size.height - 1 + margin_px;
-}
-
-// Where a marker is to be found, its place known to `margin_px`.
-cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px) {
-  const double reach_px = margin_px + kSearchReachPx;
-  const cv::Point min(static_cast<int>(std::floor(box.min.x() - reach_px)),
-                      static_cast<int>(std::floor(box.min.y() - reach_px)));
-  const cv::Point max(static_cast<int>(std::ceil(box.max.x() + reach_px)) + 1,
-                      static_cast<int>(std::ceil(box.max.y() + reach_px)) + 1);
-  return cv::Rect(min, max) & cv::Rect({0, 0}, size);
-}
-
-double AreaOf(const std::vector<cv::Rect>& regions) {
-  double area = 0.0;
-  for (const cv::Rect& region : regions) area += region.area();
-  return area;
 }
 
 // A marker of the last frame, where it should be in this one.
@@ -139,19 +95,6 @@ std::vector<PointMotion> MotionsOf(const std::vector<MarkerTrack>& tracks,
   return motions;
 }
 
-// Left, top, right, bottom.
-std::array<double, 4> AddInflow(const std::vector<PointMotion>& motions, const cv::Size& size,
-                                std::array<double, 4> inflow_px) {
-  const double w = size.width, h = size.height;
-  inflow_px[0] += LocalMotion(motions, {0.0, 0.5 * h}).x();
-  inflow_px[1] += LocalMotion(motions, {0.5 * w, 0.0}).y();
-  inflow_px[2] -= LocalMotion(motions, {w, 0.5 * h}).x();
-  inflow_px[3] -= LocalMotion(motions, {0.5 * w, h}).y();
-  // What has gone out for long comes back with other things.
-  for (double& inflow : inflow_px) inflow = std::max(inflow, -0.02 * size.width);
-  return inflow_px;
-}
-
 double LargestMarker(const std::vector<MarkerTrack>& tracks) {
   double largest_px = 0.0;
   for (const MarkerTrack& track : tracks) {
@@ -159,25 +102,6 @@ double LargestMarker(const std::vector<MarkerTrack>& tracks) {
     if (track.num_lost == 0) largest_px = std::max(largest_px, (box.max - box.min).maxCoeff());
   }
   return largest_px;
-}
-
-// The bands along the borders at which new markers can have come in; their inflow starts again.
-std::vector<cv::Rect> BorderRegions(const std::vector<MarkerTrack>& tracks, const cv::Size& size,
-                                    std::array<double, 4>* inflow_px) {
-  const double marker_px = kBandPerMarker * LargestMarker(tracks);
-  std::vector<cv::Rect> regions;
-  for (std::size_t side = 0; side < inflow_px->size(); ++side) {
-    double& inflow = (*inflow_px)[side];
-    if (inflow < kMinInflowPart * size.width) continue;
-    const int depth_px = static_cast<int>(marker_px + inflow) + kSearchReachPx + 4;
-    cv::Rect band(0, 0, size.width, size.height);
-    (side % 2 == 0 ? band.width : band.height) = depth_px;
-    if (side == 2) band.x = size.width - depth_px;
-    if (side == 3) band.y = size.height - depth_px;
-    regions.push_back(band & cv::Rect({0, 0}, size));
-    inflow = 0.0;
-  }
-  return regions;
 }
 
 // The tracks after a frame with `quads`: those that go on, moved along where they are lost, and new
@@ -296,8 +220,8 @@ std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, i
   const cv::Size& size = search.image_size;
   const std::optional<FirstPass> first = SearchByVelocity(search, num_frames, tracks->tracks);
   if (!first || first->motions.empty()) return std::nullopt;
-  std::array<double, 4> inflow_px = AddInflow(first->motions, size, tracks->inflow_px);
-  std::vector<cv::Rect> regions = BorderRegions(tracks->tracks, size, &inflow_px);
+  BorderInflow inflow_px = AddInflow(first->motions, size, tracks->inflow_px);
+  std::vector<cv::Rect> regions = BorderRegions(LargestMarker(tracks->tracks), size, &inflow_px);
   std::vector<MarkerQuad> quads = first->quads;
   quads.insert(quads.end(), search.seen_coarsely.begin(), search.seen_coarsely.end());
   for (std::size_t t = 0; t < tracks->tracks.size(); ++t) {
@@ -355,25 +279,6 @@ std::vector<MarkerQuad> CompleteFullSearch(const FrameSearch& search, std::vecto
       [](const MarkerTrack& track) { return track.num_found == 1 && track.num_lost == 0; });
   tracks->inflow_px = {};
   return quads;
-}
-
-std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions) {
-  for (bool merged = true; merged;) {
-    merged = false;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-      for (std::size_t j = i + 1; j < regions.size();) {
-        const cv::Rect both = regions[i] | regions[j];
-        if (both.area() <= regions[i].area() + regions[j].area() + kCallCostPx) {
-          regions[i] = both;
-          regions.erase(regions.begin() + static_cast<std::ptrdiff_t>(j));
-          merged = true;
-        } else {
-          ++j;
-        }
-      }
-    }
-  }
-  return regions;
 }
 
 }  // namespace velamap

@@ -15,7 +15,6 @@
 
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -23,6 +22,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "importer/border_inflow.h"
 #include "importer/marker_search.h"
 
 namespace velamap {
@@ -44,7 +44,7 @@ struct MarkerTracks {
   bool has_new = false;  // the last full search found new markers, so the next may find more
   // How far the picture has come in at the left, top, right and bottom border since the band along
   // it was searched, px; negative: it went out.
-  std::array<double, 4> inflow_px{};
+  BorderInflow inflow_px{};
 };
 
 // What can be done with the picture of a frame.
@@ -68,8 +68,5 @@ std::vector<MarkerQuad> SearchTracked(const FrameSearch& search, int frame_numbe
 // that it missed, but that can be located.
 std::vector<MarkerQuad> CompleteFullSearch(const FrameSearch& search, std::vector<MarkerQuad> quads,
                                            int frame_number, MarkerTracks* tracks);
-
-// Rectangles that cover what `regions` cover, joined where one costs less than two.
-std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions);
 
 }  // namespace velamap

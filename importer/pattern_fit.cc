@@ -17,7 +17,6 @@
 namespace velamap {
 namespace {
 
-using Quad = std::array<Eigen::Vector2d, kNumCorners>;
 using P = PatternParameters;
 
 constexpr double kMinContrast = 12.0;    // grey levels
@@ -105,7 +104,7 @@ VELAMAP_CLONE_FOR_AVX2 void Evaluate(const Problem& problem, const Pixels& pixel
 }
 
 // Levels that explain the pixels best while the corners stay.
-std::optional<P::Vector> Start(const cv::Mat& cells, const Quad& corners, Problem* problem) {
+std::optional<P::Vector> Start(const cv::Mat& cells, const QuadCorners& corners, Problem* problem) {
   P::Vector p = P::Vector::Zero();
   for (int i = 0; i < kNumCorners; ++i) {
     p.segment<2>(2 * i) = corners[static_cast<std::size_t>(i)];
@@ -210,7 +209,7 @@ std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Mini
 
 }  // namespace
 
-std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const Quad& corners_px,
+std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
                                          const cv::Mat& cells) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && cells.type() == CV_8UC1 && cells.rows == cells.cols);
   Problem problem;

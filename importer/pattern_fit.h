@@ -21,7 +21,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "importer/ids.h"
+#include "importer/quad.h"
 #include "importer/refined_corners.h"
 
 namespace velamap {
@@ -29,8 +29,7 @@ namespace velamap {
 // `cells`: 8-bit, square, with the black border, zero for black; row 0 runs from corner 0 to 1 and
 // column 0 from corner 0 to 3. Corners in OpenCV's pixel frame. Nothing if the marker leaves the
 // image, has too little contrast or does not look like its cells.
-std::optional<RefinedCorners> FitPattern(const cv::Mat& gray,
-                                         const std::array<Eigen::Vector2d, kNumCorners>& corners_px,
+std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
                                          const cv::Mat& cells);
 
 }  // namespace velamap

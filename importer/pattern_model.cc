@@ -12,8 +12,7 @@ namespace {
 using P = PatternParameters;
 
 // Sigma of the blur across columns and across rows, in cells of the marker's middle.
-Eigen::Vector2d BlurInCells(const P::Vector& parameters,
-                            const std::array<Eigen::Vector2d, kNumCorners>& quad, int num_cells) {
+Eigen::Vector2d BlurInCells(const P::Vector& parameters, const QuadCorners& quad, int num_cells) {
   const Eigen::Vector2d along_u = 0.5 * (quad[1] - quad[0] + quad[2] - quad[3]);
   const Eigen::Vector2d along_v = 0.5 * (quad[3] - quad[0] + quad[2] - quad[1]);
   const double area = std::abs(along_u.x() * along_v.y() - along_u.y() * along_v.x());
@@ -58,8 +57,8 @@ class RingReading {
 
 }  // namespace
 
-std::array<Eigen::Vector2d, kNumCorners> CornersOf(const P::Vector& parameters) {
-  std::array<Eigen::Vector2d, kNumCorners> quad;
+QuadCorners CornersOf(const P::Vector& parameters) {
+  QuadCorners quad;
   for (int i = 0; i < kNumCorners; ++i) {
     quad[static_cast<std::size_t>(i)] = parameters.segment<2>(P::kCorners + 2 * i);
   }
@@ -68,7 +67,7 @@ std::array<Eigen::Vector2d, kNumCorners> CornersOf(const P::Vector& parameters) 
 
 double FillLightness(const cv::Mat& gray, const cv::Mat& cells, const P::Vector& parameters,
                      PatternModel* model) {
-  const std::array<Eigen::Vector2d, kNumCorners> quad = CornersOf(parameters);
+  const QuadCorners quad = CornersOf(parameters);
   const UnitSquareMap map(quad);
   const int n = model->num_cells;
   const Eigen::Vector2d blur_cells = BlurInCells(parameters, quad, n);

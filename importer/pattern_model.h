@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/blurred_cells.h"
-#include "importer/ids.h"
+#include "importer/quad.h"
 #include "importer/unit_square_map.h"
 
 namespace velamap {
@@ -32,7 +32,7 @@ struct PatternParameters {
   using Matrix = Eigen::Matrix<double, kCount, kCount>;
 };
 
-std::array<Eigen::Vector2d, kNumCorners> CornersOf(const PatternParameters::Vector& parameters);
+QuadCorners CornersOf(const PatternParameters::Vector& parameters);
 
 // What a fit keeps fixed.
 struct PatternModel {

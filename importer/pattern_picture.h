@@ -25,7 +25,7 @@ class PatternPicture {
  public:
   PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters)
       : model_(model), parameters_(parameters) {
-    std::array<Eigen::Vector2d, kNumCorners> quad = CornersOf(parameters);
+    QuadCorners quad = CornersOf(parameters);
     for (Eigen::Vector2d& corner : quad) corner -= model.center_px;
     square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
     const int n = model.num_cells + 2 * kRing;

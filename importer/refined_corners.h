@@ -8,12 +8,12 @@
 
 #include <Eigen/Core>
 
-#include "importer/ids.h"
+#include "importer/quad.h"
 
 namespace velamap {
 
 struct RefinedCorners {
-  std::array<Eigen::Vector2d, kNumCorners> corners_px;  // OpenCV's pixel frame
+  QuadCorners corners_px;  // OpenCV's pixel frame
   // 1 sigma of a coordinate by the image's noise: root mean square over x and y.
   std::array<double, kNumCorners> sigma_px{};
 };

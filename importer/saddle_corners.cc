@@ -13,7 +13,7 @@
 namespace velamap {
 namespace {
 
-using Quad = std::array<Eigen::Vector2d, kNumCorners>;
+using Quad = QuadCorners;
 
 constexpr double kMinCellPx = 4.0;
 constexpr double kMinContrast = 12.0;  // grey levels

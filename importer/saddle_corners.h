@@ -12,14 +12,13 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "importer/ids.h"
+#include "importer/quad.h"
 
 namespace velamap {
 
 // Moves those of the marker's corners (OpenCV's pixel frame, good to half a cell) that are saddle
 // points onto them, and leaves the others. `num_cells` is the number of cells along a side with the
 // border. Cells under 4 px are too small to tell. Returns how many were moved.
-int RefineSaddleCorners(const cv::Mat& gray, int num_cells,
-                        std::array<Eigen::Vector2d, kNumCorners>* corners_px);
+int RefineSaddleCorners(const cv::Mat& gray, int num_cells, QuadCorners* corners_px);
 
 }  // namespace velamap

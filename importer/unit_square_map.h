@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "importer/ids.h"
+#include "importer/quad.h"
 
 namespace velamap {
 
@@ -16,7 +16,7 @@ namespace velamap {
 // non-finite values.
 class UnitSquareMap {
  public:
-  explicit UnitSquareMap(const std::array<Eigen::Vector2d, kNumCorners>& quad) {
+  explicit UnitSquareMap(const QuadCorners& quad) {
     const Eigen::Vector2d sum = quad[0] - quad[1] + quad[2] - quad[3];
     Eigen::Matrix2d sides;
     sides << quad[1] - quad[2], quad[3] - quad[2];

@@ -7,6 +7,7 @@
 #include "importer/error.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
+#include "importer/search_regions.h"
 
 namespace velamap {
 namespace {

@@ -1,0 +1,37 @@
+// Geometry of a marker's outline in an image.
+
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "importer/ids.h"
+
+namespace velamap {
+
+// Corners in OpenCV's pixel frame: (0,0) is the first pixel's centre. Order as in detection.h.
+using QuadCorners = std::array<Eigen::Vector2d, kNumCorners>;
+
+Eigen::Vector2d QuadCenter(const QuadCorners& quad);
+double QuadMeanSide(const QuadCorners& quad);
+double QuadArea(const QuadCorners& quad);  // of a simple one, never negative
+
+struct Box {
+  Eigen::Vector2d min, max;
+};
+
+Box BoundingBox(const QuadCorners& quad);
+
+// The third component of the cross product.
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+
+struct ImageLine {
+  Eigen::Vector2d point_px, direction;
+};
+
+// Nothing if the lines are nearly parallel.
+std::optional<Eigen::Vector2d> Intersect(const ImageLine& a, const ImageLine& b);
+
+}  // namespace velamap
