@@ -11,27 +11,37 @@
 #include "importer/error.h"
 #include "reconstruct/covariance_update.h"
 #include "reconstruct/marker_uncertainty.h"
+#include "reconstruct/small_products.h"
 
 namespace velamap {
 namespace {
 
 // Few, so that errors that last for a tenth of a video still fall into one group.
 constexpr std::size_t kMaxNumGroups = 5;
-constexpr int kNumDraws = 40;
+// Draws go through the adjustment so many at a time, as columns, until their mean is known.
+constexpr int kNumDrawsAtOnce = 8;
+constexpr int kMinNumDraws = 16, kMaxNumDraws = 40;
+// 1 sigma of what chance moves the shape by, as a fraction.
+constexpr double kEnough = 0.005;
+
+// One case a column.
+template <int kNumCases>
+using Cases = Eigen::Matrix<double, Eigen::Dynamic, kNumCases,
+                            kNumCases == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
 
 // The linearised adjustment: from errors of the residuals to movements of the points.
 class LinearAdjustment {
  public:
   LinearAdjustment(const MarkerState& state, const MarkerProblem& problem,
                    const MarkerCovariance& covariance, const std::vector<int>& groups)
-      : covariance_(covariance), rows_(JacobianRows(problem, problem.corner_residuals)) {
-    num_corner_rows_ = rows_.size();
-    for (JacobianRow& row : JacobianRows(problem, problem.prior_residuals)) {
-      rows_.push_back(std::move(row));
+      : covariance_(covariance), blocks_(ResidualJacobians(problem, problem.corner_residuals)) {
+    num_corner_blocks_ = blocks_.size();
+    for (ResidualJacobian& prior : ResidualJacobians(problem, problem.prior_residuals)) {
+      blocks_.push_back(std::move(prior));
     }
-    for (const MarkerBlock& marker : state.markers) {
-      begins_.push_back(num_coordinates_);
-      num_coordinates_ += static_cast<Eigen::Index>(marker.x_in_world.size());
+    for (const ResidualJacobian& block : blocks_) {
+      begins_.push_back(num_rows_);
+      num_rows_ += NumRows(block);
     }
     const std::vector<Eigen::Vector3d> positions = Positions(state);
     motions_ = RigidMotions(positions);
@@ -42,96 +52,112 @@ class LinearAdjustment {
     for (std::size_t i = 0; i < groups.size(); ++i) {
       group_of_image[state.images[i].image_id] = groups[i];
     }
-    for (const auto& [point3D_id, element] : problem.corners) {
-      group_of_row_.insert(group_of_row_.end(), 2, group_of_image.at(element.image_id));
+    for (std::size_t i = 0, row = 0; i < num_corner_blocks_; ++i) {
+      group_of_block_.push_back(group_of_image.at(problem.corners[row / 2].second.image_id));
+      row += static_cast<std::size_t>(NumRows(blocks_[i]));
     }
   }
 
-  std::size_t NumRows() const { return rows_.size(); }
+  Eigen::Index NumRows() const { return num_rows_; }
 
   // Sum over the groups of the squared movement that the corners' residuals of the group alone
-  // make. Takes errors of corners and priors.
-  double OfResiduals(const Eigen::VectorXd& residuals) const {
-    double sum = 0.0;
-    for (int group = 0; group < num_groups_; ++group) {
-      sum += InShape(Step(Gradient(residuals, group)).of_points).squaredNorm();
+  // make, by case. Takes errors of corners and priors.
+  template <int kNumCases>
+  Eigen::Matrix<double, kNumCases, 1> OfResiduals(const Cases<kNumCases>& residuals) const {
+    Parameters parameters = Zero(num_groups_ * kNumCases);
+    for (std::size_t i = 0; i < num_corner_blocks_; ++i) {
+      AddGradient<kNumCases>(i, residuals, group_of_block_[i] * kNumCases, &parameters);
     }
-    return sum;
+    Solve(&parameters);
+    RowMajorMatrix& movements = parameters.of_points;
+    movements -= motions_ * (motions_.transpose() * movements).eval();
+    const Eigen::VectorXd squares = movements.colwise().squaredNorm().transpose();
+    return Eigen::Map<const Eigen::Matrix<double, kNumCases, Eigen::Dynamic>>(
+               squares.data(), kNumCases, num_groups_)
+        .rowwise()
+        .sum();
   }
 
   // What the adjustment leaves of such errors.
-  Eigen::VectorXd Residuals(const Eigen::VectorXd& errors) const {
-    const Parameters step = Step(Gradient(errors, -1));
-    Eigen::VectorXd residuals = errors;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const JacobianRow& row = rows_[i];
-      double& residual = residuals[static_cast<Eigen::Index>(i)];
-      if (row.marker_idx >= 0) {
-        residual -= row.by_marker.dot(
-            step.of_points.segment(begins_[row.marker_idx], row.by_marker.size()));
+  template <int kNumCases>
+  Cases<kNumCases> Residuals(const Cases<kNumCases>& errors) const {
+    Parameters step = Zero(kNumCases);
+    for (std::size_t i = 0; i < blocks_.size(); ++i) AddGradient<kNumCases>(i, errors, 0, &step);
+    Solve(&step);
+    Cases<kNumCases> residuals = errors;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      double* out = residuals.data() + begins_[i] * kNumCases;
+      const auto subtract = [out](const RowMajorMatrix& derivatives, const RowMajorMatrix& values,
+                                  Eigen::Index begin) {
+        AddProduct<kNumCases, -1>(derivatives, values.data() + begin * kNumCases, kNumCases, out,
+                                  kNumCases);
+      };
+      const ResidualJacobian& block = blocks_[i];
+      if (block.marker_idx >= 0) {
+        subtract(block.by_marker, step.of_points, covariance_.begins[block.marker_idx]);
       }
-      for (const auto& [column, value] : row.by_globals)
-        residual -= value * step.of_globals[column];
+      for (const auto& [column, derivatives] : block.by_globals) {
+        subtract(derivatives, step.of_globals, column);
+      }
     }
     return residuals;
   }
 
  private:
   struct Parameters {
-    Eigen::VectorXd of_points, of_globals;
+    RowMajorMatrix of_points, of_globals;
   };
 
-  // J^T residuals, of the corners of one group, or of all rows (-1).
-  Parameters Gradient(const Eigen::VectorXd& residuals, int group) const {
-    Parameters gradient{Eigen::VectorXd::Zero(num_coordinates_),
-                        Eigen::VectorXd::Zero(covariance_.root.rows())};
-    const std::size_t end = group < 0 ? rows_.size() : num_corner_rows_;
-    for (std::size_t i = 0; i < end; ++i) {
-      if (group >= 0 && group_of_row_[i] != group) continue;
-      const JacobianRow& row = rows_[i];
-      const double residual = residuals[static_cast<Eigen::Index>(i)];
-      if (row.marker_idx >= 0) {
-        gradient.of_points.segment(begins_[row.marker_idx], row.by_marker.size()) +=
-            residual * row.by_marker;
-      }
-      for (const auto& [column, value] : row.by_globals) {
-        gradient.of_globals[column] += residual * value;
-      }
-    }
-    return gradient;
+  static Eigen::Index NumRows(const ResidualJacobian& block) {
+    return block.marker_idx >= 0 ? block.by_marker.rows() : block.by_globals.front().second.rows();
   }
 
-  // Covariance times gradient: normal_equations.h.
-  Parameters Step(const Parameters& gradient) const {
-    Eigen::VectorXd globals = gradient.of_globals;
-    covariance_.root.triangularView<Eigen::Lower>().solveInPlace(globals);
-    for (std::size_t i = 0; i < begins_.size(); ++i) {
-      const Eigen::MatrixXd& factor = covariance_.factors[i];
-      globals -= factor.transpose() * gradient.of_points.segment(begins_[i], factor.rows());
-    }
-    Parameters step{Eigen::VectorXd(num_coordinates_), {}};
-    for (std::size_t i = 0; i < begins_.size(); ++i) {
-      const Eigen::MatrixXd& factor = covariance_.factors[i];
-      step.of_points.segment(begins_[i], factor.rows()) =
-          covariance_.marker_blocks[i] * gradient.of_points.segment(begins_[i], factor.rows()) -
-          factor * globals;
-    }
-    covariance_.root.triangularView<Eigen::Lower>().transpose().solveInPlace(globals);
-    step.of_globals = std::move(globals);
-    return step;
+  Parameters Zero(Eigen::Index num_columns) const {
+    return {RowMajorMatrix::Zero(covariance_.factor.rows(), num_columns),
+            RowMajorMatrix::Zero(covariance_.root.rows(), num_columns)};
   }
 
-  Eigen::VectorXd InShape(const Eigen::VectorXd& movement) const {
-    return movement - motions_ * (motions_.transpose() * movement);
+  // Adds J^T residuals of one block to the columns from `column` on.
+  template <int kNumCases>
+  void AddGradient(std::size_t block_idx, const Cases<kNumCases>& residuals, Eigen::Index column,
+                   Parameters* gradient) const {
+    const double* of_block = residuals.data() + begins_[block_idx] * kNumCases;
+    const auto add = [&](const RowMajorMatrix& derivatives, Eigen::Index begin,
+                         RowMajorMatrix* sums) {
+      AddTransposedProduct<kNumCases>(derivatives, of_block, kNumCases,
+                                      sums->data() + begin * sums->cols() + column, sums->cols());
+    };
+    const ResidualJacobian& block = blocks_[block_idx];
+    if (block.marker_idx >= 0) {
+      add(block.by_marker, covariance_.begins[block.marker_idx], &gradient->of_points);
+    }
+    for (const auto& [first, derivatives] : block.by_globals) {
+      add(derivatives, first, &gradient->of_globals);
+    }
+  }
+
+  // From a gradient to the covariance times it: normal_equations.h.
+  void Solve(Parameters* parameters) const {
+    auto& [points, globals] = *parameters;
+    const auto root = covariance_.root.triangularView<Eigen::Lower>();
+    root.solveInPlace(globals);
+    globals.noalias() -= covariance_.factor.transpose() * points;
+    for (std::size_t i = 0; i < covariance_.marker_blocks.size(); ++i) {
+      const Eigen::MatrixXd& block = covariance_.marker_blocks[i];
+      auto rows = points.middleRows(covariance_.begins[i], block.rows());
+      rows = (block * rows).eval();
+    }
+    points.noalias() -= covariance_.factor * globals;
+    root.transpose().solveInPlace(globals);
   }
 
   const MarkerCovariance& covariance_;
-  std::vector<JacobianRow> rows_;  // corners, then priors
-  std::size_t num_corner_rows_ = 0;
-  std::vector<int> group_of_row_;
+  std::vector<ResidualJacobian> blocks_;  // corners, then priors
+  std::size_t num_corner_blocks_ = 0;
+  std::vector<Eigen::Index> begins_;  // first row, by block
+  Eigen::Index num_rows_ = 0;
+  std::vector<int> group_of_block_;
   int num_groups_ = 0;
-  std::vector<Eigen::Index> begins_;  // first coordinate, by marker
-  Eigen::Index num_coordinates_ = 0;
   Eigen::MatrixXd motions_;  // orthonormal: rigid, and of scale
 };
 
@@ -154,28 +180,32 @@ std::vector<int> GroupImages(const Model& model, const MarkerState& state) {
 double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                          const MarkerCovariance& covariance, const std::vector<int>& groups) {
   const LinearAdjustment adjustment(state, problem, covariance, groups);
-  std::vector<double> residuals;
-  const auto append = [&residuals](const SchurResidual&, const Eigen::VectorXd& of_block,
-                                   const std::vector<SchurSystem::RowMajor>&) {
-    residuals.insert(residuals.end(), of_block.begin(), of_block.end());
+  Cases<1> residuals = Cases<1>::Zero(adjustment.NumRows());
+  Eigen::Index row = 0;
+  const auto append = [&](const SchurResidual&, const Eigen::VectorXd& of_block,
+                          const std::vector<SchurSystem::RowMajor>&) {
+    residuals.segment(row, of_block.size()) = of_block;
+    row += of_block.size();
   };
   VELAMAP_CHECK(VisitResiduals(problem.schur, problem.corner_residuals, false, append));
-  residuals.resize(adjustment.NumRows(), 0.0);
-  const double found =
-      adjustment.OfResiduals(Eigen::Map<const Eigen::VectorXd>(residuals.data(), residuals.size()));
+  const double found = adjustment.OfResiduals<1>(residuals)[0];
 
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  Eigen::VectorXd errors(static_cast<Eigen::Index>(adjustment.NumRows()));
-  double sum = 0.0, sum_of_squares = 0.0;
-  for (int draw = 0; draw < kNumDraws; ++draw) {
-    for (double& error : errors) error = normal(random);
-    const double value = adjustment.OfResiduals(adjustment.Residuals(errors));
-    sum += value;
-    sum_of_squares += value * value;
+  Cases<kNumDrawsAtOnce> errors(adjustment.NumRows(), kNumDrawsAtOnce);
+  double sum = 0.0, sum_of_squares = 0.0, mean = 0.0, sigma = 0.0;
+  for (int num_draws = kNumDrawsAtOnce; num_draws <= kMaxNumDraws; num_draws += kNumDrawsAtOnce) {
+    for (int draw = 0; draw < kNumDrawsAtOnce; ++draw) {
+      for (double& error : errors.col(draw)) error = normal(random);
+    }
+    const auto values =
+        adjustment.OfResiduals<kNumDrawsAtOnce>(adjustment.Residuals<kNumDrawsAtOnce>(errors));
+    sum += values.sum();
+    sum_of_squares += values.squaredNorm();
+    mean = sum / num_draws;
+    sigma = std::sqrt(std::max(0.0, sum_of_squares / num_draws - mean * mean));
+    if (num_draws >= kMinNumDraws && 0.5 * sigma <= kEnough * mean * std::sqrt(num_draws)) break;
   }
-  const double mean = sum / kNumDraws;
-  const double sigma = std::sqrt(std::max(0.0, sum_of_squares / kNumDraws - mean * mean));
   spdlog::debug("groups of images move the shape by {:.3f} times (+- {:.3f}) what chance does",
                 std::sqrt(found / mean), 0.5 * sigma / mean);
   return found > mean + 2.0 * sigma ? std::sqrt(found / mean) : 1.0;

@@ -46,7 +46,7 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
       gradient.segment<3>(3 * b) += weight * side.normalized();
     }
     size.block_variance = gradient.dot(covariance.marker_blocks[i] * gradient);
-    size.by_factor = covariance.factors[i].transpose() * gradient;
+    size.by_factor = covariance.FactorOf(i).transpose() * gradient;
     sizes.push_back(std::move(size));
   }
   return sizes;

@@ -57,26 +57,18 @@ PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covar
       points.point3D_ids.push_back(Point3DIdFromCorner({marker.marker_id, corner}));
     }
   }
-  points.factor.resize(3 * static_cast<Eigen::Index>(points.point3D_ids.size()),
-                       covariance.root.rows());
-  Eigen::Index begin = 0;
-  for (const Eigen::MatrixXd& factor : covariance.factors) {
-    points.factor.middleRows(begin, factor.rows()) = factor;
-    begin += factor.rows();
-  }
+  points.factor = covariance.factor;
   points.signs.setOnes(points.factor.cols());
   return points;
 }
 
 double CornerRedundancy(const MarkerProblem& problem, const MarkerCovariance& covariance) {
-  double num_parameters = static_cast<double>(covariance.root.rows());
-  for (const Eigen::MatrixXd& block : covariance.marker_blocks) {
-    num_parameters += static_cast<double>(block.rows());
-  }
+  const auto num_parameters =
+      static_cast<double>(covariance.root.rows() + covariance.factor.rows());
   // All leverages add up to the number of parameters; what the priors have is not the corners'.
   double of_priors = 0.0;
-  for (const JacobianRow& row : JacobianRows(problem, problem.prior_residuals)) {
-    of_priors += Leverage(covariance, row);
+  for (const ResidualJacobian& prior : ResidualJacobians(problem, problem.prior_residuals)) {
+    of_priors += Leverage(covariance, prior);
   }
   return 2.0 * static_cast<double>(problem.corners.size()) - (num_parameters - of_priors);
 }

@@ -1,6 +1,6 @@
 #include "reconstruct/normal_equations.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include <Eigen/Cholesky>
 
@@ -16,31 +16,27 @@ SchurProblem WithoutScaleBars(const MarkerProblem& problem) {
           {residuals.begin(), residuals.begin() + static_cast<std::ptrdiff_t>(num_residuals)}};
 }
 
-std::vector<JacobianRow> JacobianRows(const MarkerProblem& problem,
-                                      const std::vector<int>& residual_idxs) {
+std::vector<ResidualJacobian> ResidualJacobians(const MarkerProblem& problem,
+                                                const std::vector<int>& residual_idxs) {
   const SchurStructure structure = MakeSchurStructure(WithoutScaleBars(problem));
-  std::vector<JacobianRow> rows;
-  const auto add_rows = [&](const SchurResidual& residual, const Eigen::VectorXd& residuals,
-                            const std::vector<SchurSystem::RowMajor>& jacobians) {
-    for (Eigen::Index i = 0; i < residuals.size(); ++i) {
-      JacobianRow row;
-      for (std::size_t k = 0; k < residual.block_idxs.size(); ++k) {
-        const int block_idx = residual.block_idxs[k];
-        const int column = structure.column_of_block[static_cast<std::size_t>(block_idx)];
-        if (block_idx < problem.num_markers) {
-          row.marker_idx = block_idx;
-          row.by_marker = jacobians[k].row(i);
-        } else if (column >= 0) {
-          for (Eigen::Index j = 0; j < jacobians[k].cols(); ++j) {
-            row.by_globals.emplace_back(column + static_cast<int>(j), jacobians[k](i, j));
-          }
-        }
+  std::vector<ResidualJacobian> result;
+  result.reserve(residual_idxs.size());
+  const auto add = [&](const SchurResidual& residual, const Eigen::VectorXd&,
+                       const std::vector<SchurSystem::RowMajor>& jacobians) {
+    ResidualJacobian& of_residual = result.emplace_back();
+    for (std::size_t k = 0; k < residual.block_idxs.size(); ++k) {
+      const int block_idx = residual.block_idxs[k];
+      const int column = structure.column_of_block[static_cast<std::size_t>(block_idx)];
+      if (block_idx < problem.num_markers) {
+        of_residual.marker_idx = block_idx;
+        of_residual.by_marker = jacobians[k];
+      } else if (column >= 0) {
+        of_residual.by_globals.emplace_back(column, jacobians[k]);
       }
-      rows.push_back(std::move(row));
     }
   };
-  VELAMAP_CHECK(VisitResiduals(problem.schur, residual_idxs, true, add_rows));
-  return rows;
+  VELAMAP_CHECK(VisitResiduals(problem.schur, residual_idxs, true, add));
+  return result;
 }
 
 NormalEquations MakeNormalEquations(const MarkerProblem& problem) {
@@ -50,19 +46,24 @@ NormalEquations MakeNormalEquations(const MarkerProblem& problem) {
   VELAMAP_CHECK(Linearise(schur, structure, &system));
   NormalEquations equations;
   equations.globals = system.kept_hessian;
-  for (std::size_t i = 0; i < system.eliminated.size(); ++i) {
-    const SchurSystem::Eliminated& eliminated = system.eliminated[i];
+  Eigen::Index num_rows = 0;
+  for (const SchurSystem::Eliminated& eliminated : system.eliminated) {
     equations.marker_blocks.emplace_back(eliminated.hessian);
-    Eigen::MatrixXd coupling =
-        Eigen::MatrixXd::Zero(eliminated.hessian.rows(), structure.num_kept_columns);
+    num_rows += eliminated.hessian.rows();
+  }
+  equations.coupling.setZero(num_rows, structure.num_kept_columns);
+  Eigen::Index begin = 0;
+  for (std::size_t i = 0; i < system.eliminated.size(); ++i) {
+    const SchurSystem::RowMajor& coupling = system.eliminated[i].coupling;
     Eigen::Index from = 0;
     for (const int block_idx : structure.eliminated[i].kept_block_idxs) {
       const int size = schur.blocks[static_cast<std::size_t>(block_idx)].TangentSize();
-      coupling.middleCols(structure.column_of_block[static_cast<std::size_t>(block_idx)], size) =
-          eliminated.coupling.middleCols(from, size);
+      equations.coupling.block(begin,
+                               structure.column_of_block[static_cast<std::size_t>(block_idx)],
+                               coupling.rows(), size) = coupling.middleCols(from, size);
       from += size;
     }
-    equations.coupling.push_back(std::move(coupling));
+    begin += coupling.rows();
   }
   return equations;
 }
@@ -70,15 +71,22 @@ NormalEquations MakeNormalEquations(const MarkerProblem& problem) {
 std::optional<MarkerCovariance> Invert(const NormalEquations& equations) {
   const std::size_t num_markers = equations.marker_blocks.size();
   MarkerCovariance covariance;
+  covariance.begins.push_back(0);
+  covariance.factor = equations.coupling;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> roots(num_markers);
-  Eigen::MatrixXd schur = equations.globals;
-  std::vector<Eigen::MatrixXd>& factors = covariance.factors;
+  const auto rows_of = [&covariance](std::size_t i) {
+    const Eigen::Index begin = covariance.begins[i];
+    return covariance.factor.middleRows(begin, covariance.begins[i + 1] - begin);
+  };
   for (std::size_t i = 0; i < num_markers; ++i) {
+    covariance.begins.push_back(covariance.begins.back() + equations.marker_blocks[i].rows());
     roots[i].compute(equations.marker_blocks[i]);
     if (roots[i].info() != Eigen::Success) return std::nullopt;
-    factors.push_back(roots[i].matrixL().solve(equations.coupling[i]));
-    schur.selfadjointView<Eigen::Lower>().rankUpdate(factors[i].transpose(), -1.0);
+    auto rows = rows_of(i);
+    roots[i].matrixL().solveInPlace(rows);
   }
+  Eigen::MatrixXd schur = equations.globals;
+  schur.selfadjointView<Eigen::Lower>().rankUpdate(covariance.factor.transpose(), -1.0);
   // Of all sizes on the diagonal one scale, so that the test below means something.
   const Eigen::LLT<Eigen::MatrixXd> root(schur.selfadjointView<Eigen::Lower>());
   if (root.info() != Eigen::Success) return std::nullopt;
@@ -89,31 +97,40 @@ std::optional<MarkerCovariance> Invert(const NormalEquations& equations) {
     if (!(left > kMinShareOfInformation * equations.globals(i, i))) return std::nullopt;
   }
   for (std::size_t i = 0; i < num_markers; ++i) {
-    const Eigen::Index size = factors[i].rows();
-    covariance.marker_blocks.push_back(roots[i].solve(Eigen::MatrixXd::Identity(size, size)));
-    roots[i].matrixU().solveInPlace(factors[i]);
-    covariance.root.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(
-        factors[i]);
+    auto rows = rows_of(i);
+    covariance.marker_blocks.push_back(
+        roots[i].solve(Eigen::MatrixXd::Identity(rows.rows(), rows.rows())));
+    roots[i].matrixU().solveInPlace(rows);
   }
+  covariance.root.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(
+      covariance.factor);
   return covariance;
 }
 
-double Leverage(const MarkerCovariance& covariance, const JacobianRow& row) {
-  Eigen::VectorXd by_globals = Eigen::VectorXd::Zero(covariance.root.rows());
-  for (const auto& [column, value] : row.by_globals) by_globals[column] += value;
-  covariance.root.triangularView<Eigen::Lower>().solveInPlace(by_globals);
-  if (row.marker_idx < 0) return by_globals.squaredNorm();
+double Leverage(const MarkerCovariance& covariance, const ResidualJacobian& jacobian) {
+  const Eigen::Index num_globals = covariance.root.rows();
+  Eigen::Index num_rows = jacobian.by_marker.rows(), first = num_globals;
+  for (const auto& [column, derivatives] : jacobian.by_globals) {
+    num_rows = derivatives.rows();
+    first = std::min<Eigen::Index>(first, column);
+  }
+  // L^-1 by_globals^T, which is zero where by_globals begins with zeros.
+  Eigen::MatrixXd by_globals = Eigen::MatrixXd::Zero(num_globals, num_rows);
+  for (const auto& [column, derivatives] : jacobian.by_globals) {
+    by_globals.middleRows(column, derivatives.cols()) += derivatives.transpose();
+  }
+  const Eigen::Index num_left = num_globals - first;
+  auto left = by_globals.bottomRows(num_left);
+  covariance.root.bottomRightCorner(num_left, num_left)
+      .triangularView<Eigen::Lower>()
+      .solveInPlace(left);
+  if (jacobian.marker_idx < 0) return by_globals.squaredNorm();
   // cov(marker, globals) = -F L^-1.
-  const Eigen::MatrixXd& factor = covariance.factors[row.marker_idx];
-  return row.by_marker.dot(covariance.marker_blocks[row.marker_idx] * row.by_marker) +
-         (factor.transpose() * row.by_marker - by_globals).squaredNorm();
-}
-
-Eigen::MatrixXd GlobalCovariance(const MarkerCovariance& covariance, int begin, int size) {
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(covariance.root.rows(), size);
-  columns.middleRows(begin, size).setIdentity();
-  covariance.root.triangularView<Eigen::Lower>().solveInPlace(columns);
-  return columns.transpose() * columns;
+  const std::size_t marker_idx = static_cast<std::size_t>(jacobian.marker_idx);
+  by_globals -= covariance.FactorOf(marker_idx).transpose() * jacobian.by_marker.transpose();
+  return jacobian.by_marker.cwiseProduct(jacobian.by_marker * covariance.marker_blocks[marker_idx])
+             .sum() +
+         by_globals.squaredNorm();
 }
 
 }  // namespace velamap

@@ -20,18 +20,18 @@ namespace velamap {
 
 struct NormalEquations {
   std::vector<Eigen::MatrixXd> marker_blocks;  // D, by marker
-  std::vector<Eigen::MatrixXd> coupling;       // W, rows of each marker
+  Eigen::MatrixXd coupling;                    // W
   Eigen::MatrixXd globals;                     // B
 };
 
-// Jacobian rows of some residual blocks. A row touches one marker at most.
-struct JacobianRow {
+// Derivatives of one residual block, a row a residual. It touches one marker at most.
+struct ResidualJacobian {
   int marker_idx = -1;
-  Eigen::VectorXd by_marker;
-  std::vector<std::pair<int, double>> by_globals;  // column, value
+  SchurSystem::RowMajor by_marker;
+  std::vector<std::pair<int, SchurSystem::RowMajor>> by_globals;  // first column, derivatives
 };
-std::vector<JacobianRow> JacobianRows(const MarkerProblem& problem,
-                                      const std::vector<int>& residual_idxs);
+std::vector<ResidualJacobian> ResidualJacobians(const MarkerProblem& problem,
+                                                const std::vector<int>& residual_idxs);
 
 // With corners and priors only: no residual has two markers, all are eliminated.
 SchurProblem WithoutScaleBars(const MarkerProblem& problem);
@@ -41,17 +41,19 @@ NormalEquations MakeNormalEquations(const MarkerProblem& problem);
 
 struct MarkerCovariance {
   std::vector<Eigen::MatrixXd> marker_blocks;  // D^-1
-  std::vector<Eigen::MatrixXd> factors;        // F, rows of each marker
+  std::vector<Eigen::Index> begins;            // first row of each marker in F, and the end
+  Eigen::MatrixXd factor;                      // F
   Eigen::MatrixXd root;                        // L, lower triangular
+
+  auto FactorOf(std::size_t marker_idx) const {
+    return factor.middleRows(begins[marker_idx], begins[marker_idx + 1] - begins[marker_idx]);
+  }
 };
 
 // Nothing where the data leave a combination of parameters undetermined.
 std::optional<MarkerCovariance> Invert(const NormalEquations& equations);
 
-// Variance of the prediction of an observation with this row.
-double Leverage(const MarkerCovariance& covariance, const JacobianRow& row);
-
-// Columns of the globals' covariance for one parameter block's first `size` columns at `begin`.
-Eigen::MatrixXd GlobalCovariance(const MarkerCovariance& covariance, int begin, int size);
+// Sum of the variances of the predictions of the observations with these rows.
+double Leverage(const MarkerCovariance& covariance, const ResidualJacobian& jacobian);
 
 }  // namespace velamap

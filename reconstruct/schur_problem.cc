@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "importer/error.h"
+#include "reconstruct/small_products.h"
 
 namespace velamap {
 namespace {
@@ -13,29 +14,17 @@ namespace {
 using RowMajor = SchurSystem::RowMajor;
 using Kind = SchurBlock::Kind;
 
-// out += a^T b for row-major a, b with as many rows; kCols is b's width, known to the compiler.
-template <int kCols>
-void AddProduct(const RowMajor& a, const RowMajor& b, double* out, Eigen::Index out_stride) {
-  for (Eigen::Index i = 0; i < a.cols(); ++i) {
-    Eigen::Map<Eigen::Matrix<double, 1, kCols>> out_row(out + i * out_stride);
-    Eigen::Matrix<double, 1, kCols> sum = out_row;
-    for (Eigen::Index row = 0; row < a.rows(); ++row) {
-      sum += a(row, i) * Eigen::Map<const Eigen::Matrix<double, 1, kCols>>(b.data() + row * kCols);
-    }
-    out_row = sum;
-  }
-}
-
+// out += a^T b for row-major a, b with as many rows.
 void AddProduct(const RowMajor& a, const RowMajor& b, double* out, Eigen::Index out_stride) {
   switch (b.cols()) {
     case 1:
-      return AddProduct<1>(a, b, out, out_stride);
+      return AddTransposedProduct<1>(a, b.data(), 1, out, out_stride);
     case 6:
-      return AddProduct<6>(a, b, out, out_stride);
+      return AddTransposedProduct<6>(a, b.data(), 6, out, out_stride);
     case 7:
-      return AddProduct<7>(a, b, out, out_stride);
+      return AddTransposedProduct<7>(a, b.data(), 7, out, out_stride);
     case 12:
-      return AddProduct<12>(a, b, out, out_stride);
+      return AddTransposedProduct<12>(a, b.data(), 12, out, out_stride);
     default:
       Eigen::Map<RowMajor, 0, Eigen::OuterStride<>>(out, a.cols(), b.cols(),
                                                     Eigen::OuterStride<>(out_stride)) +=
