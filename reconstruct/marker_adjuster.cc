@@ -123,11 +123,9 @@ void MarkerAdjuster::AdjustLoosely() {
 }
 
 void MarkerAdjuster::JudgeMarkerSizes() {
-  MarkerState state = MakeState(model_);
-  const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
-  const MarkerCovariance covariance = Covariance(problem);
-  const MarkerSizeVerdict verdict =
-      velamap::JudgeMarkerSizes(state, covariance, options_.print_tolerance);
+  const auto linearisation = Linearise();
+  const MarkerSizeVerdict verdict = velamap::JudgeMarkerSizes(
+      linearisation->state, linearisation->covariance, options_.print_tolerance);
   weights_.print_tolerance = verdict.print_tolerance;
   weights_.markers_without_size = verdict.contradicting;
   summary_.warnings.insert(summary_.warnings.end(), verdict.warnings.begin(),
@@ -152,10 +150,9 @@ void MarkerAdjuster::AdjustTightly() {
 bool MarkerAdjuster::AddScaleBars() {
   const std::vector<ScaleBar> bars = FindScaleBars(state_, layout_);
   if (bars.empty()) return false;
-  MarkerState state = MakeState(model_);
-  const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
-  const MarkerCovariance covariance = Covariance(problem);
-  const PointCovariance points = PointsOf(state, covariance);
+  const auto linearisation = Linearise();
+  const MarkerState& state = linearisation->state;
+  const PointCovariance points = PointsOf(state, linearisation->covariance);
   for (const ScaleBar& bar : bars) {
     const std::string contradiction = FindContradiction(bar, state, points);
     if (contradiction.empty()) {
@@ -172,11 +169,21 @@ void MarkerAdjuster::Finish() {
   const Rigid3 first_from_world = model_.images.front().cam_from_world;
   TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, &model_);
   model_.images.front().cam_from_world = Rigid3{};
-  summary_.uncertainty.variance_factor = CalibrateCorners();
-  summary_.uncertainty.correlation_factor = FindCorrelation();
-  weights_.corner_factor *= summary_.uncertainty.correlation_factor;
-  if (summary_.uncertainty.correlation_factor > 1.0) Solve(1e-9);
-  ComputeUncertainty();
+  auto linearisation = CalibrateCorners();
+  const double correlation_factor =
+      CorrelationFactor(linearisation->state, linearisation->problem, linearisation->covariance,
+                        GroupImages(model_, linearisation->state));
+  if (correlation_factor > 1.0) {
+    weights_.corner_factor *= correlation_factor;
+    Solve(1e-9);
+    linearisation = Linearise();
+  }
+  AdjustmentUncertainty uncertainty = MakeUncertainty(
+      linearisation->state, weights_, linearisation->problem, linearisation->covariance);
+  uncertainty.variance_factor = summary_.uncertainty.variance_factor;
+  uncertainty.share_above_4_sigma = summary_.uncertainty.share_above_4_sigma;
+  uncertainty.correlation_factor = correlation_factor;
+  summary_.uncertainty = std::move(uncertainty);
   UpdatePointErrors(&model_);
   summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(model_));
   if (!(summary_.error_after_px.mean <= options_.max_mean_error_px)) {
@@ -190,17 +197,17 @@ void MarkerAdjuster::Finish() {
   }
 }
 
-double MarkerAdjuster::CalibrateCorners() {
+std::unique_ptr<const MarkerAdjuster::Linearisation> MarkerAdjuster::CalibrateCorners() {
   constexpr int kMaxNumRounds = 3;
   constexpr double kEnough = 0.01;
   constexpr double kManySigmas = 4.0;
   for (int round = 1; true; ++round) {
     Solve(1e-9);
-    MarkerState state = MakeState(model_);
-    const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
-    const double redundancy = CornerRedundancy(problem, Covariance(problem));
+    auto linearisation = Linearise();
+    const MarkerProblem& problem = linearisation->problem;
+    const double redundancy = CornerRedundancy(problem, linearisation->covariance);
     double sum = 0.0;
-    const std::vector<CornerResidual> corners = EvaluateCorners(model_);
+    const std::vector<CornerResidual> corners = EvaluateCorners(problem);
     for (const CornerResidual& corner : corners) sum += corner.sigmas * corner.sigmas;
     const double variance = sum / std::max(1.0, redundancy);
     const double factor = std::max(kMinCornerFactor, weights_.corner_factor * std::sqrt(variance));
@@ -215,25 +222,10 @@ double MarkerAdjuster::CalibrateCorners() {
         });
     summary_.uncertainty.share_above_4_sigma =
         static_cast<double>(num_above) / static_cast<double>(corners.size());
-    return variance * weights_.corner_factor * weights_.corner_factor;
+    summary_.uncertainty.variance_factor =
+        variance * weights_.corner_factor * weights_.corner_factor;
+    return linearisation;
   }
-}
-
-double MarkerAdjuster::FindCorrelation() {
-  MarkerState state = MakeState(model_);
-  const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
-  return CorrelationFactor(state, problem, Covariance(problem), GroupImages(model_, state));
-}
-
-void MarkerAdjuster::ComputeUncertainty() {
-  MarkerState state = MakeState(model_);
-  const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model_, &state);
-  AdjustmentUncertainty uncertainty =
-      MakeUncertainty(state, weights_, problem, Covariance(problem));
-  uncertainty.variance_factor = summary_.uncertainty.variance_factor;
-  uncertainty.correlation_factor = summary_.uncertainty.correlation_factor;
-  uncertainty.share_above_4_sigma = summary_.uncertainty.share_above_4_sigma;
-  summary_.uncertainty = std::move(uncertainty);
 }
 
 MarkerProblem MarkerAdjuster::MakeProblem(const MarkerWeights& weights, const Model& model,
@@ -261,9 +253,27 @@ void MarkerAdjuster::Solve(double function_tolerance) {
   WriteMarkerState(state_, &model_);
 }
 
+std::unique_ptr<const MarkerAdjuster::Linearisation> MarkerAdjuster::Linearise() {
+  auto linearisation = std::make_unique<Linearisation>();
+  linearisation->state = MakeState(model_);
+  linearisation->problem = MakeProblem(WithoutLoss(weights_), model_, &linearisation->state);
+  std::optional<MarkerCovariance> covariance = Invert(MakeNormalEquations(linearisation->problem));
+  if (!covariance) {
+    throw DataError(
+        "the images leave the shape undetermined: take them from more places, so that every marker "
+        "is seen from different sides");
+  }
+  linearisation->covariance = std::move(*covariance);
+  return linearisation;
+}
+
 std::vector<MarkerAdjuster::CornerResidual> MarkerAdjuster::EvaluateCorners(const Model& model) {
   MarkerState state = MakeState(model);
-  const MarkerProblem problem = MakeProblem(WithoutLoss(weights_), model, &state);
+  return EvaluateCorners(MakeProblem(WithoutLoss(weights_), model, &state));
+}
+
+std::vector<MarkerAdjuster::CornerResidual> MarkerAdjuster::EvaluateCorners(
+    const MarkerProblem& problem) {
   std::vector<double> residuals;
   const auto append = [&residuals](const SchurResidual&, const Eigen::VectorXd& of_view,
                                    const std::vector<SchurSystem::RowMajor>&) {
@@ -324,16 +334,6 @@ int MarkerAdjuster::ReviseCorners() {
 void MarkerAdjuster::RemoveUnderconstrainedParts() {
   RemoveUnderconstrained(options_.min_track_length, &model_, &summary_.removed_images);
   CheckEnough(model_, num_images_before_);
-}
-
-MarkerCovariance MarkerAdjuster::Covariance(const MarkerProblem& problem) const {
-  std::optional<MarkerCovariance> covariance = Invert(MakeNormalEquations(problem));
-  if (!covariance) {
-    throw DataError(
-        "the images leave the shape undetermined: take them from more places, so that every marker "
-        "is seen from different sides");
-  }
-  return std::move(*covariance);
 }
 
 }  // namespace velamap

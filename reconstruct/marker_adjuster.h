@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,21 +52,27 @@ class MarkerAdjuster {
     double sigmas = 0.0;  // length in calibrated sigmas
   };
 
+  // The problem at one state, without loss. Refers to itself, so it stays where it is.
+  struct Linearisation {
+    MarkerState state;
+    MarkerProblem problem;
+    MarkerCovariance covariance;
+  };
+
   MarkerProblem MakeProblem(const MarkerWeights& weights, const Model& model, MarkerState* state);
   MarkerState MakeState(const Model& model) const;
   void Solve(double function_tolerance);
+  // Throws DataError where a combination of parameters is undetermined.
+  std::unique_ptr<const Linearisation> Linearise();
   std::vector<CornerResidual> EvaluateCorners(const Model& model);
+  static std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem);
   // Sets the corners' factor by the median residual; returns the relative change.
   double CalibrateRobustly();
   int ReviseCorners();
   void RemoveUnderconstrainedParts();
-  // Corner sigmas by all residuals, solution, share of large residuals; returns the variance factor
-  // of the detector's sigmas.
-  double CalibrateCorners();
-  double FindCorrelation();
-  void ComputeUncertainty();
-  // Throws DataError where a combination of parameters is undetermined.
-  MarkerCovariance Covariance(const MarkerProblem& problem) const;
+  // Corner sigmas by all residuals, solution, variance factor of the detector's sigmas, share of
+  // large residuals.
+  std::unique_ptr<const Linearisation> CalibrateCorners();
 
   const MarkerAdjustmentOptions& options_;
   const Layout& layout_;
