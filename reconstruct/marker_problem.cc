@@ -33,7 +33,8 @@ int SlotOf(const MarkerBlock& marker, int corner) {
 
 // Sum of the unit vectors along both sides away from the corner, as the image shows them now.
 Eigen::Vector2d InsetDirection(const Camera& camera, const Rigid3& cam_from_world,
-                               const MarkerBlock& marker, int corner) {
+                               const MarkerBlock& marker, int slot_of_corner) {
+  const int corner = marker.corners[static_cast<std::size_t>(slot_of_corner)];
   const auto project = [&](int other) -> std::optional<Eigen::Vector2d> {
     const int slot = SlotOf(marker, other);
     if (slot < 0) return std::nullopt;
@@ -46,15 +47,13 @@ Eigen::Vector2d InsetDirection(const Camera& camera, const Rigid3& cam_from_worl
   return (*next - *here).normalized() + (*previous - *here).normalized();
 }
 
-double CornerSigma(const MarkerAdjustmentOptions& options, const CornerSigmas& corner_sigmas,
-                   const TrackElement& element) {
-  const auto image = corner_sigmas.find(element.image_id);
-  double sigma_px = 0.0;
-  if (image != corner_sigmas.end() && element.point2D_idx < image->second.size()) {
-    sigma_px = image->second[element.point2D_idx];
-  }
-  if (!(sigma_px > 0)) sigma_px = options.corner_sigma_px;
-  return std::hypot(sigma_px, options.corner_sigma_floor_px);
+// `of_image` may be null.
+double CornerSigma(const MarkerAdjustmentOptions& options, const std::vector<double>* of_image,
+                   std::size_t point2D_idx) {
+  const double known_px =
+      of_image != nullptr && point2D_idx < of_image->size() ? (*of_image)[point2D_idx] : 0.0;
+  return std::hypot(known_px > 0 ? known_px : options.corner_sigma_px,
+                    options.corner_sigma_floor_px);
 }
 
 // Puts a marker problem together.
@@ -73,9 +72,10 @@ class ProblemBuilder {
     result_.manifolds.push_back(std::make_unique<PoseManifold>());
     const ceres::Manifold* pose_manifold = result_.manifolds.back().get();
     for (ImageBlock& image : state_.images) {
-      AddBlock(image.cam_from_world.data(), 7, KeptIf(&image != &state_.images.front()),
-               pose_manifold);
-      AddBlock(image.velocity.data(), 6, KeptIf(options_.rolling_shutter_s > 0));
+      pose_idxs_.push_back(AddBlock(image.cam_from_world.data(), 7,
+                                    KeptIf(&image != &state_.images.front()), pose_manifold));
+      velocity_idxs_.push_back(
+          AddBlock(image.velocity.data(), 6, KeptIf(options_.rolling_shutter_s > 0)));
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
       const std::vector<int> held = HeldIntrinsics(model_.cameras.at(camera_id).model);
@@ -86,31 +86,43 @@ class ProblemBuilder {
             std::make_unique<ceres::SubsetManifold>(static_cast<int>(intrinsics.size()), held));
         manifold = result_.manifolds.back().get();
       }
-      AddBlock(intrinsics.data(), intrinsics.size(), KeptIf(refines), manifold);
+      intrinsics_idxs_[camera_id] =
+          AddBlock(intrinsics.data(), intrinsics.size(), KeptIf(refines), manifold);
     }
-    AddBlock(&state_.inset_px, 1, KeptIf(EstimatesInset()));
-    AddBlock(&state_.print_scale, 1, KeptIf(PrintScaleSigma() > 0 && !weights_.holds_print_scale));
+    inset_idx_ = AddBlock(&state_.inset_px, 1, KeptIf(EstimatesInset()));
+    print_scale_idx_ = AddBlock(&state_.print_scale, 1,
+                                KeptIf(PrintScaleSigma() > 0 && !weights_.holds_print_scale));
   }
 
   void AddCorners(const CornerSigmas& corner_sigmas) {
     std::unordered_map<ImageId, std::size_t> image_idxs;
-    for (std::size_t i = 0; i < state_.images.size(); ++i) {
-      image_idxs[state_.images[i].image_id] = i;
+    std::vector<const std::vector<double>*> sigmas;
+    for (const ImageBlock& image : state_.images) {
+      image_idxs[image.image_id] = sigmas.size();
+      const auto of_image = corner_sigmas.find(image.image_id);
+      sigmas.push_back(of_image == corner_sigmas.end() ? nullptr : &of_image->second);
     }
-    for (MarkerBlock& marker : state_.markers) {
-      std::map<std::size_t, std::vector<std::pair<int, TrackElement>>> views;  // by image
-      for (const int corner : marker.corners) {
+    std::vector<std::vector<SeenCorner>> views(state_.images.size());  // of one marker, by image
+    for (std::size_t marker_idx = 0; marker_idx < state_.markers.size(); ++marker_idx) {
+      const MarkerBlock& marker = state_.markers[marker_idx];
+      for (int slot = 0; slot < static_cast<int>(marker.corners.size()); ++slot) {
+        const int corner = marker.corners[static_cast<std::size_t>(slot)];
         const Point3DId point3D_id = Point3DIdFromCorner({marker.marker_id, corner});
         for (const TrackElement& element : model_.points3D.at(point3D_id).track) {
-          views[image_idxs.at(element.image_id)].emplace_back(corner, element);
+          views[image_idxs.at(element.image_id)].push_back({slot, point3D_id, element});
         }
       }
-      for (const auto& [image_idx, view] : views) AddView(image_idx, view, corner_sigmas, &marker);
+      for (std::size_t image_idx = 0; image_idx < views.size(); ++image_idx) {
+        if (views[image_idx].empty()) continue;
+        AddView(image_idx, views[image_idx], sigmas[image_idx], static_cast<int>(marker_idx));
+        views[image_idx].clear();
+      }
     }
   }
 
   void AddPriors(const std::map<CameraId, Camera>& calibration) {
-    for (MarkerBlock& marker : state_.markers) {
+    for (std::size_t marker_idx = 0; marker_idx < state_.markers.size(); ++marker_idx) {
+      const MarkerBlock& marker = state_.markers[marker_idx];
       const bool has_size = weights_.markers_without_size.count(marker.marker_id) == 0;
       const double flatness = marker.is_rigid ? options_.rigid_flatness : options_.cloth_flatness;
       const double side_sigma_m = weights_.print_tolerance * marker.length_m;
@@ -118,42 +130,44 @@ class ProblemBuilder {
                                       std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
       auto error = std::make_unique<MarkerPriorError>(knowledge, marker.corners);
       if (error->num_residuals() == 0) continue;
-      AddPrior(std::move(error), {marker.x_in_world.data(), &state_.print_scale});
+      AddPrior(std::move(error), {static_cast<int>(marker_idx), print_scale_idx_});
     }
     if (EstimatesInset()) {
-      AddPrior(MakePrior({0.0}, {options_.inset_sigma_px}), {&state_.inset_px});
+      AddPrior(MakePrior({0.0}, {options_.inset_sigma_px}), {inset_idx_});
     }
     if (PrintScaleSigma() > 0) {
-      AddPrior(MakePrior({0.0}, {PrintScaleSigma()}), {&state_.print_scale});
+      AddPrior(MakePrior({0.0}, {PrintScaleSigma()}), {print_scale_idx_});
     }
     if (options_.rolling_shutter_s > 0) {
       constexpr double v = kLinearVelocitySigma, w = kAngularVelocitySigma;
-      for (ImageBlock& image : state_.images) {
-        AddPrior(MakePrior({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}), {image.velocity.data()});
+      for (const int block_idx : velocity_idxs_) {
+        AddPrior(MakePrior({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}), {block_idx});
       }
     }
-    for (auto& [camera_id, intrinsics] : state_.intrinsics) {
+    for (const auto& [camera_id, intrinsics] : state_.intrinsics) {
       const Camera& camera = calibration.at(camera_id);
       if (HeldIntrinsics(camera.model).size() == intrinsics.size()) continue;
-      AddPrior(MakePrior(camera.params, IntrinsicsSigmas(camera)), {intrinsics.data()});
+      AddPrior(MakePrior(camera.params, IntrinsicsSigmas(camera)),
+               {intrinsics_idxs_.at(camera_id)});
     }
   }
 
   void AddScaleBars() {
     for (const ScaleBar& bar : weights_.scale_bars) {
-      std::vector<double*> blocks;
-      for (const int idx : bar.marker_idxs) {
-        blocks.push_back(state_.markers[idx].x_in_world.data());
-      }
       AddResidual(std::make_unique<ScaleBarError>(bar.distance.length_m, bar.distance.sigma_m,
                                                   bar.corner_weights),
-                  blocks);
+                  bar.marker_idxs);
     }
   }
 
   MarkerProblem Take() { return std::move(result_); }
 
  private:
+  struct SeenCorner {
+    int slot;
+    Point3DId point3D_id;
+    TrackElement element;
+  };
   using PoseManifold =
       ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
 
@@ -161,50 +175,48 @@ class ProblemBuilder {
     return varies ? SchurBlock::Kind::kKept : SchurBlock::Kind::kConstant;
   }
 
-  void AddBlock(double* values, std::size_t size, SchurBlock::Kind kind,
-                const ceres::Manifold* manifold = nullptr) {
-    block_idxs_[values] = static_cast<int>(result_.schur.blocks.size());
+  // These return indices.
+  int AddBlock(double* values, std::size_t size, SchurBlock::Kind kind,
+               const ceres::Manifold* manifold = nullptr) {
     result_.schur.blocks.push_back({values, static_cast<int>(size), kind, manifold});
+    return static_cast<int>(result_.schur.blocks.size()) - 1;
   }
 
-  // Returns its index.
-  int AddResidual(std::unique_ptr<ceres::CostFunction> error, const std::vector<double*>& blocks) {
-    SchurResidual residual{error.get(), nullptr, {}};
-    for (const double* block : blocks) residual.block_idxs.push_back(block_idxs_.at(block));
+  int AddResidual(std::unique_ptr<ceres::CostFunction> error, std::vector<int> block_idxs) {
+    result_.schur.residuals.push_back({error.get(), nullptr, std::move(block_idxs)});
     result_.errors.push_back(std::move(error));
-    result_.schur.residuals.push_back(std::move(residual));
     return static_cast<int>(result_.schur.residuals.size()) - 1;
   }
 
-  void AddPrior(std::unique_ptr<ceres::CostFunction> error, const std::vector<double*>& blocks) {
-    result_.prior_residuals.push_back(AddResidual(std::move(error), blocks));
+  void AddPrior(std::unique_ptr<ceres::CostFunction> error, std::vector<int> block_idxs) {
+    result_.prior_residuals.push_back(AddResidual(std::move(error), std::move(block_idxs)));
   }
 
-  void AddView(std::size_t image_idx, const std::vector<std::pair<int, TrackElement>>& view,
-               const CornerSigmas& corner_sigmas, MarkerBlock* marker) {
-    ImageBlock& image = state_.images[image_idx];
-    const ModelImage& model_image = model_.images[image_idx];
+  void AddView(std::size_t image_idx, const std::vector<SeenCorner>& view,
+               const std::vector<double>* sigmas_px, int marker_idx) {
+    const MarkerBlock& marker = state_.markers[static_cast<std::size_t>(marker_idx)];
+    const ModelImage& image = model_.images[image_idx];
     const Camera& camera = model_.cameras.at(image.camera_id);
-    std::vector<CornerObservation> observations;
-    for (const auto& [corner, element] : view) {
-      CornerObservation observation;
-      observation.slot = SlotOf(*marker, corner);
-      observation.x_in_image_px = model_image.points2D.at(element.point2D_idx).x_in_image_px;
-      observation.sigma_px = weights_.corner_factor * CornerSigma(options_, corner_sigmas, element);
+    std::vector<CornerObservation> observations(view.size());
+    for (std::size_t i = 0; i < view.size(); ++i) {
+      const auto& [slot, point3D_id, element] = view[i];
+      CornerObservation& observation = observations[i];
+      observation.slot = slot;
+      observation.x_in_image_px = image.points2D.at(element.point2D_idx).x_in_image_px;
+      observation.sigma_px =
+          weights_.corner_factor * CornerSigma(options_, sigmas_px, element.point2D_idx);
       if (EstimatesInset()) {
-        observation.inset_direction =
-            InsetDirection(camera, model_image.cam_from_world, *marker, corner);
+        observation.inset_direction = InsetDirection(camera, image.cam_from_world, marker, slot);
       }
       observation.row_time_s =
           options_.rolling_shutter_s * (observation.x_in_image_px.y() / camera.height_px - 0.5);
-      observations.push_back(observation);
-      result_.corners.emplace_back(Point3DIdFromCorner({marker->marker_id, corner}), element);
+      result_.corners.emplace_back(point3D_id, element);
     }
     result_.corner_residuals.push_back(AddResidual(
-        std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker->corners.size()),
+        std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker.corners.size()),
                                           std::move(observations), weights_.loss_sigmas),
-        {marker->x_in_world.data(), image.cam_from_world.data(), &state_.inset_px,
-         state_.intrinsics.at(image.camera_id).data(), image.velocity.data()}));
+        {marker_idx, pose_idxs_[image_idx], inset_idx_, intrinsics_idxs_.at(image.camera_id),
+         velocity_idxs_[image_idx]}));
   }
 
   static std::unique_ptr<ceres::CostFunction> MakePrior(std::vector<double> mean,
@@ -245,7 +257,10 @@ class ProblemBuilder {
   const Model& model_;
   const MarkerWeights& weights_;
   MarkerState& state_;
-  std::unordered_map<const double*, int> block_idxs_;
+  // Of blocks; those of the markers come first.
+  std::vector<int> pose_idxs_, velocity_idxs_;  // by image
+  std::map<CameraId, int> intrinsics_idxs_;
+  int inset_idx_ = 0, print_scale_idx_ = 0;
   MarkerProblem result_;
 };
 
