@@ -10,8 +10,8 @@
 
 #include "importer/error.h"
 #include "reconstruct/covariance_update.h"
+#include "reconstruct/double_lanes.h"
 #include "reconstruct/marker_uncertainty.h"
-#include "reconstruct/small_products.h"
 
 namespace velamap {
 namespace {

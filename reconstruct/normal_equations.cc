@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "importer/error.h"
+#include "reconstruct/gram_matrix.h"
 
 namespace velamap {
 
@@ -86,7 +87,7 @@ std::optional<MarkerCovariance> Invert(const NormalEquations& equations) {
     roots[i].matrixL().solveInPlace(rows);
   }
   Eigen::MatrixXd schur = equations.globals;
-  schur.selfadjointView<Eigen::Lower>().rankUpdate(covariance.factor.transpose(), -1.0);
+  SubtractGramMatrix(covariance.factor, &schur);
   // Of all sizes on the diagonal one scale, so that the test below means something.
   const Eigen::LLT<Eigen::MatrixXd> root(schur.selfadjointView<Eigen::Lower>());
   if (root.info() != Eigen::Success) return std::nullopt;

@@ -20,7 +20,7 @@ namespace velamap {
 
 struct NormalEquations {
   std::vector<Eigen::MatrixXd> marker_blocks;  // D, by marker
-  Eigen::MatrixXd coupling;                    // W
+  SchurSystem::RowMajor coupling;              // W
   Eigen::MatrixXd globals;                     // B
 };
 
@@ -42,7 +42,7 @@ NormalEquations MakeNormalEquations(const MarkerProblem& problem);
 struct MarkerCovariance {
   std::vector<Eigen::MatrixXd> marker_blocks;  // D^-1
   std::vector<Eigen::Index> begins;            // first row of each marker in F, and the end
-  Eigen::MatrixXd factor;                      // F
+  SchurSystem::RowMajor factor;                // F
   Eigen::MatrixXd root;                        // L, lower triangular
 
   auto FactorOf(std::size_t marker_idx) const {

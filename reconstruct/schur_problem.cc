@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "importer/error.h"
-#include "reconstruct/small_products.h"
+#include "reconstruct/double_lanes.h"
 
 namespace velamap {
 namespace {
@@ -14,7 +14,8 @@ namespace {
 using RowMajor = SchurSystem::RowMajor;
 using Kind = SchurBlock::Kind;
 
-// out += a^T b for row-major a, b with as many rows.
+// out += a^T b for row-major a, b with as many rows; the usual widths of b are known to the
+// compiler.
 void AddProduct(const RowMajor& a, const RowMajor& b, double* out, Eigen::Index out_stride) {
   switch (b.cols()) {
     case 1:

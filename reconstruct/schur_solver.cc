@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "importer/error.h"
+#include "reconstruct/gram_matrix.h"
 
 namespace velamap {
 namespace {
@@ -114,7 +115,7 @@ class Eliminator {
     std::vector<int> kept_block_idxs;
     std::vector<Eigen::Index> row_begins, column_begins;  // with the end
     // With D = L L^T by block: L^-1 W and L^-1 g.
-    Eigen::MatrixXd coupling;
+    SchurSystem::RowMajor coupling;
     Eigen::VectorXd gradient;
   };
 
@@ -184,12 +185,12 @@ class Eliminator {
   void Subtract(const Batch& batch, Eigen::VectorXd* right) {
     if (batch.coupling.cols() == 0) return;
     if (batch.coupling.cols() == schur_.cols()) {
-      schur_.selfadjointView<Eigen::Lower>().rankUpdate(batch.coupling.transpose(), -1.0);
+      SubtractGramMatrix(batch.coupling, &schur_);
       *right -= batch.coupling.transpose() * batch.gradient;
       return;
     }
     update_.setZero(batch.coupling.cols(), batch.coupling.cols());
-    update_.selfadjointView<Eigen::Lower>().rankUpdate(batch.coupling.transpose());
+    SubtractGramMatrix(batch.coupling, &update_);
     const Eigen::VectorXd of_gradient = batch.coupling.transpose() * batch.gradient;
     for (std::size_t a = 0; a < batch.kept_block_idxs.size(); ++a) {
       const Eigen::Index from = batch.column_begins[a], width = batch.column_begins[a + 1] - from;
@@ -197,7 +198,7 @@ class Eliminator {
       right->segment(to, width) -= of_gradient.segment(from, width);
       for (std::size_t b = a; b < batch.kept_block_idxs.size(); ++b) {
         const Eigen::Index row = batch.column_begins[b], height = batch.column_begins[b + 1] - row;
-        schur_.block(Column(batch.kept_block_idxs[b]), to, height, width) -=
+        schur_.block(Column(batch.kept_block_idxs[b]), to, height, width) +=
             update_.block(row, from, height, width);
       }
     }
