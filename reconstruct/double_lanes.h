@@ -106,17 +106,19 @@ VELAMAP_WITH_AVX2 void AddTilesWithAvx2(const double* a, std::ptrdiff_t a_step,
 // out += a^T b, or -= with kSign -1, for matrices that are too small for Eigen's kernels: these
 // split them into panels and copy, which takes longer than the product. kCols is the width of b;
 // rows of b and out are so far apart as the strides say.
-template <int kCols, int kSign = 1>
-void AddTransposedProduct(const RowMajorMatrix& a, const double* b, std::ptrdiff_t b_stride,
-                          double* out, std::ptrdiff_t out_stride) {
+template <int kCols, int kSign = 1, typename Matrix>
+void AddTransposedProduct(const Matrix& a, const double* b, std::ptrdiff_t b_stride, double* out,
+                          std::ptrdiff_t out_stride) {
+  static_assert(Matrix::IsRowMajor);
   const auto add = HasAvx2() ? AddTilesWithAvx2<kCols, kSign> : AddTiles<kCols, kSign, 2>;
   add(a.data(), 1, a.cols(), a.cols(), b, b_stride, a.rows(), out, out_stride);
 }
 
 // out += a b, or -=; as above.
-template <int kCols, int kSign = 1>
-void AddProduct(const RowMajorMatrix& a, const double* b, std::ptrdiff_t b_stride, double* out,
+template <int kCols, int kSign = 1, typename Matrix>
+void AddProduct(const Matrix& a, const double* b, std::ptrdiff_t b_stride, double* out,
                 std::ptrdiff_t out_stride) {
+  static_assert(Matrix::IsRowMajor);
   const auto add = HasAvx2() ? AddTilesWithAvx2<kCols, kSign> : AddTiles<kCols, kSign, 2>;
   add(a.data(), a.cols(), 1, a.rows(), b, b_stride, a.cols(), out, out_stride);
 }

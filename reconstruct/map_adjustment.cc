@@ -11,6 +11,7 @@
 #include <ceres/product_manifold.h>
 
 #include "reconstruct/map_refinement.h"
+#include "reconstruct/pose_step.h"
 #include "reconstruct/schur_solver.h"
 
 namespace velamap {
@@ -19,18 +20,13 @@ namespace {
 constexpr double kLossSigmas = 4.0;
 constexpr double kScaleLossSigmas = 1.0;
 
-Eigen::Matrix3d Cross(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
-
 // d(q x)/dq for a unit quaternion in the order x y z w, from q x = x + 2 w (v x) + 2 v (v x).
 Eigen::Matrix<double, 3, 4> RotatedFromQuaternion(const Eigen::Quaterniond& q,
                                                   const Eigen::Vector3d& x) {
   Eigen::Matrix<double, 3, 4> jacobian;
   const Eigen::Vector3d v = q.vec();
-  jacobian.leftCols<3>() = -2 * (q.w() * Cross(x) + Cross(v.cross(x)) + Cross(v) * Cross(x));
+  jacobian.leftCols<3>() =
+      -2 * (q.w() * CrossMatrix(x) + CrossMatrix(v.cross(x)) + CrossMatrix(v) * CrossMatrix(x));
   jacobian.col(3) = 2 * v.cross(x);
   return jacobian;
 }
@@ -173,9 +169,7 @@ bool MapReprojectionCost::Evaluate(double const* const* parameters, double* resi
     Eigen::Vector2d::Map(residuals + 2 * i) =
         px_from_ray * (x.hnormalized() - observation_.rays[corner_idx]);
     if (jacobians == nullptr) continue;
-    Eigen::Matrix<double, 2, 3> ray_from_x;
-    ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
-    const Eigen::Matrix<double, 2, 3> px_from_x = px_from_ray * ray_from_x;
+    const Eigen::Matrix<double, 2, 3> px_from_x = px_from_ray * RayFromPoint(x);
     if (jacobians[0] != nullptr) {
       Eigen::Map<FrameJacobian> jacobian(jacobians[0]);
       jacobian.middleRows<2>(2 * i).leftCols<4>() =

@@ -1,11 +1,13 @@
 #include "reconstruct/map_refinement.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
+
+#include "reconstruct/double_lanes.h"
+#include "reconstruct/pose_step.h"
 
 namespace velamap {
 namespace {
@@ -15,47 +17,40 @@ constexpr double kLossSigmas = 4.0;
 
 template <int N>
 struct NormalEquations {
-  Eigen::Matrix<double, N, N> hessian = Eigen::Matrix<double, N, N>::Zero();
-  Eigen::Matrix<double, N, 1> gradient = Eigen::Matrix<double, N, 1>::Zero();
+  // Sums of products of derivatives by the step and, in the column N, residuals.
+  using Products = Eigen::Matrix<double, 8, 8, Eigen::RowMajor>;
+  Products products = Products::Zero();
   double cost = 0.0;
+
+  auto Hessian() const { return products.template topLeftCorner<N, N>(); }
+  auto Gradient() const { return products.col(N).template head<N>(); }
 };
 
-Eigen::Matrix3d Cross(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
-
-// Adds one observation; `corner(i, x_in_cam, jacobian)` gives a corner and its derivative by the
-// step.
-template <int N, typename Corner>
-void AddObservation(const MapObservation& observation, const Corner& corner,
+// Adds one observation; `corner(i)` gives a corner in the cam frame, `by_step(i, by_x)` the
+// derivative by the step of what has the derivative `by_x` by that corner.
+template <int N, typename Corner, typename ByStep>
+void AddObservation(const MapObservation& observation, const Corner& corner, const ByStep& by_step,
                     NormalEquations<N>* equations) {
-  Eigen::Matrix<double, 2 * kNumCorners, N> jacobian;
-  Eigen::Matrix<double, 2 * kNumCorners, 1> residuals;
+  using Products = typename NormalEquations<N>::Products;
+  static_assert(N < Products::ColsAtCompileTime && 2 * kNumCorners == Products::RowsAtCompileTime);
+  Products rows = Products::Zero(), products = Products::Zero();
   for (int i = 0; i < kNumCorners; ++i) {
     const std::size_t corner_idx = static_cast<std::size_t>(i);
-    Eigen::Vector3d x;
-    Eigen::Matrix<double, 3, N> x_from_step;
-    corner(corner_idx, &x, &x_from_step);
+    const Eigen::Vector3d x = corner(corner_idx);
     if (!(x.z() > 0)) {
       equations->cost = std::numeric_limits<double>::infinity();
       return;
     }
-    Eigen::Matrix<double, 2, 3> ray_from_x;
-    ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
     const Eigen::Matrix2d scaled = observation.px_from_ray[corner_idx] / observation.sigma_px;
-    residuals.template segment<2>(2 * i) =
-        scaled * (x.hnormalized() - observation.rays[corner_idx]);
-    jacobian.template middleRows<2>(2 * i) = scaled * ray_from_x * x_from_step;
+    rows.template block<2, N>(2 * i, 0) = by_step(corner_idx, scaled * RayFromPoint(x));
+    rows.template block<2, 1>(2 * i, N) = scaled * (x.hnormalized() - observation.rays[corner_idx]);
   }
+  constexpr int kSize = Products::ColsAtCompileTime;
+  AddTransposedProduct<kSize>(rows, rows.data(), kSize, products.data(), kSize);
   constexpr double kScale = kLossSigmas * kLossSigmas * 2 * kNumCorners;
-  const double squared = residuals.squaredNorm();
-  const double weight = 1 / (1 + squared / kScale);
+  const double squared = products(N, N);
   equations->cost += 0.5 * kScale * std::log1p(squared / kScale);
-  // Small and fixed: Eigen's kernels for large products would only cost time.
-  equations->hessian += weight * jacobian.transpose().lazyProduct(jacobian);
-  equations->gradient += weight * jacobian.transpose().lazyProduct(residuals);
+  equations->products += products / (1 + squared / kScale);
 }
 
 // `equations_at(estimate)` linearises, `plus(estimate, step)` moves.
@@ -66,9 +61,9 @@ Estimate Minimise(Estimate estimate, const EquationsAt& equations_at, const Plus
   NormalEquations<N> equations = equations_at(estimate);
   double damping = 1e-4;
   for (int i = 0; i < kMaxIterations && std::isfinite(equations.cost); ++i) {
-    Eigen::Matrix<double, N, N> damped = equations.hessian;
+    Eigen::Matrix<double, N, N> damped = equations.Hessian();
     damped.diagonal() *= 1 + damping;
-    const Eigen::Matrix<double, N, 1> step = -damped.ldlt().solve(equations.gradient);
+    const Eigen::Matrix<double, N, 1> step = -damped.ldlt().solve(equations.Gradient());
     if (!step.allFinite() || step.norm() < kMinStep) break;
     const Estimate candidate = plus(estimate, step);
     const NormalEquations<N> at_candidate = equations_at(candidate);
@@ -86,12 +81,6 @@ Estimate Minimise(Estimate estimate, const EquationsAt& equations_at, const Plus
   return estimate;
 }
 
-Eigen::Quaterniond Turned(const Eigen::Vector3d& turn, const Eigen::Quaterniond& rotation) {
-  const double angle = turn.norm();
-  if (!(angle > 0)) return rotation;
-  return (Eigen::AngleAxisd(angle, turn / angle) * rotation).normalized();
-}
-
 }  // namespace
 
 Rigid3 RefineFramePose(const MapProblem& problem,
@@ -103,21 +92,21 @@ Rigid3 RefineFramePose(const MapProblem& problem,
     for (const PlacedObservation& placed : observations) {
       const auto corners =
           CornersInShape(problem.Marker(placed.observation->marker_idx), *placed.shape_from_marker);
-      AddObservation<6>(
+      std::array<Eigen::Vector3d, kNumCorners> rotated;
+      for (std::size_t i = 0; i < kNumCorners; ++i) rotated[i] = rotation * corners[i];
+      AddObservation(
           *placed.observation,
-          [&](std::size_t i, Eigen::Vector3d* x, Eigen::Matrix<double, 3, 6>* jacobian) {
-            const Eigen::Vector3d rotated = rotation * corners[i];
-            *x = rotated + pose.translation;
-            *jacobian << -Cross(rotated), Eigen::Matrix3d::Identity();
+          [&](std::size_t i) { return Eigen::Vector3d(rotated[i] + pose.translation); },
+          [&](std::size_t i, const Eigen::Matrix<double, 2, 3>& by_x) {
+            Eigen::Matrix<double, 2, 6> by_step;
+            by_step << ByTurn(by_x, rotated[i]), by_x;
+            return by_step;
           },
           &equations);
     }
     return equations;
   };
-  const auto plus = [](const Rigid3& pose, const Eigen::Matrix<double, 6, 1>& step) {
-    return Rigid3{Turned(step.head<3>(), pose.rotation), pose.translation + step.tail<3>()};
-  };
-  return Minimise<6>(cam_from_shape, equations_at, plus);
+  return Minimise<6>(cam_from_shape, equations_at, Moved);
 }
 
 Sim3 RefineMarkerPlace(const MapProblem& problem, const MapSolution& solution,
@@ -131,19 +120,26 @@ Sim3 RefineMarkerPlace(const MapProblem& problem, const MapSolution& solution,
           *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
       const Eigen::Matrix3d cam_rotation = pose.rotation.toRotationMatrix();
       const auto& corners = problem.Marker(observation.marker_idx).corners_in_marker;
-      AddObservation<7>(
+      std::array<Eigen::Vector3d, kNumCorners> rotated;
+      for (std::size_t i = 0; i < kNumCorners; ++i) rotated[i] = rotation * corners[i];
+      AddObservation(
           observation,
-          [&](std::size_t i, Eigen::Vector3d* x, Eigen::Matrix<double, 3, 7>* jacobian) {
-            const Eigen::Vector3d rotated = rotation * corners[i];
-            *x = cam_rotation * (rotated + place.translation) + pose.translation;
-            *jacobian << -cam_rotation * Cross(rotated), cam_rotation, cam_rotation * rotated;
+          [&](std::size_t i) {
+            return Eigen::Vector3d(cam_rotation * (rotated[i] + place.translation) +
+                                   pose.translation);
+          },
+          [&](std::size_t i, const Eigen::Matrix<double, 2, 3>& by_x) {
+            const Eigen::Matrix<double, 2, 3> by_x_in_shape = by_x * cam_rotation;
+            Eigen::Matrix<double, 2, 7> by_step;
+            by_step << ByTurn(by_x_in_shape, rotated[i]), by_x_in_shape, by_x_in_shape * rotated[i];
+            return by_step;
           },
           &equations);
     }
     const double log_scale = std::log(place.scale);
     equations.cost += 0.5 * std::pow(log_scale / kScaleSigma, 2);
-    equations.hessian(6, 6) += 1 / (kScaleSigma * kScaleSigma);
-    equations.gradient[6] += log_scale / (kScaleSigma * kScaleSigma);
+    equations.products(6, 6) += 1 / (kScaleSigma * kScaleSigma);
+    equations.products(6, 7) += log_scale / (kScaleSigma * kScaleSigma);
     return equations;
   };
   const auto plus = [](const Sim3& place, const Eigen::Matrix<double, 7, 1>& step) {

@@ -8,6 +8,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "reconstruct/map_refinement.h"
+#include "reconstruct/opencv_pose.h"
 
 namespace velamap {
 namespace {
@@ -91,17 +92,6 @@ std::vector<Rigid3> SingleMarkerPoses(const std::vector<KnownMarker>& known) {
 std::size_t RandomIndex(std::mt19937* generator, std::size_t size) {
   return static_cast<std::size_t>(
       (static_cast<std::uint64_t>((*generator)()) * static_cast<std::uint64_t>(size)) >> 32);
-}
-
-Rigid3 RigidFromOpenCV(const cv::Mat& rotation_vector, const cv::Mat& translation) {
-  cv::Matx33d matrix;
-  cv::Rodrigues(rotation_vector, matrix);
-  Eigen::Matrix3d rotation;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) rotation(row, column) = matrix(row, column);
-  }
-  return {Eigen::Quaterniond(rotation).normalized(),
-          {translation.at<double>(0), translation.at<double>(1), translation.at<double>(2)}};
 }
 
 std::vector<Rigid3> TriplePoses(const MapProblem& problem, const std::vector<KnownMarker>& known,

@@ -11,6 +11,7 @@
 #include "importer/camera_projection.h"
 #include "importer/error.h"
 #include "importer/ids.h"
+#include "reconstruct/pose_step.h"
 
 namespace velamap {
 namespace {
@@ -22,19 +23,13 @@ using RowMajor = Eigen::Matrix<double, 2, kCols, Eigen::RowMajor>;
 using JacobianMap =
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d skew;
-  skew << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return skew;
-}
-
 // Rotated point R(q) x = x + 2 w (u x x) + 2 u x (u x x), q = (u, w), derived by (u, w).
 Eigen::Matrix<double, 3, 4> RotationJacobian(const Eigen::Quaterniond& q,
                                              const Eigen::Vector3d& x) {
   const Eigen::Vector3d u = q.vec();
   Eigen::Matrix<double, 3, 4> jacobian;
   jacobian.leftCols<3>() = 2.0 * (u.dot(x) * Eigen::Matrix3d::Identity() + u * x.transpose() -
-                                  2.0 * x * u.transpose() - q.w() * Skew(x));
+                                  2.0 * x * u.transpose() - q.w() * CrossMatrix(x));
   jacobian.col(3) = 2.0 * u.cross(x);
   return jacobian;
 }
@@ -139,7 +134,7 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
     const Eigen::Matrix<double, 2, 3> by_cam =
         by_image * projection.by_ray * ray_by_cam / x_in_cam.z();
     const Eigen::Matrix<double, 2, 3> by_middle_row =
-        by_cam + corner.row_time_s * by_cam * Skew(angular);
+        by_cam + corner.row_time_s * by_cam * CrossMatrix(angular);
     if (maps[0].rows() > 0) {
       maps[0].block<2, 3>(2 * i, 3 * corner.slot) = by_middle_row * rotation_matrix;
     }
@@ -155,7 +150,7 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
     }
     if (maps[4].rows() > 0) {
       maps[4].block<2, 3>(2 * i, 0) = corner.row_time_s * by_cam;
-      maps[4].block<2, 3>(2 * i, 3) = -corner.row_time_s * by_cam * Skew(x_at_middle_row);
+      maps[4].block<2, 3>(2 * i, 3) = -corner.row_time_s * by_cam * CrossMatrix(x_at_middle_row);
     }
   }
   return true;

@@ -6,25 +6,15 @@
 #include <optional>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
 #include <opencv2/calib3d.hpp>
+
+#include "reconstruct/opencv_pose.h"
 
 namespace velamap {
 namespace {
 
-Rigid3 RigidFromOpenCV(const cv::Mat& rotation_vector, const cv::Mat& translation) {
-  const Eigen::Vector3d axis_angle(rotation_vector.at<double>(0), rotation_vector.at<double>(1),
-                                   rotation_vector.at<double>(2));
-  const double angle = axis_angle.norm();
-  Rigid3 b_from_a;
-  if (angle > 0) b_from_a.rotation = Eigen::AngleAxisd(angle, axis_angle / angle);
-  b_from_a.translation = {translation.at<double>(0), translation.at<double>(1),
-                          translation.at<double>(2)};
-  return b_from_a;
-}
-
-// Levenberg-Marquardt on the rays with analytic derivatives, the rotation perturbed on the left.
+// Levenberg-Marquardt on the rays with analytic derivatives.
 // IPPE alone is off by tenths of a pixel for a marker that faces the camera exactly; OpenCV's own
 // refinement takes 20 times as long.
 Rigid3 RefinePose(const std::array<Eigen::Vector3d, kNumCorners>& corners_in_marker,
@@ -44,29 +34,17 @@ Rigid3 RefinePose(const std::array<Eigen::Vector3d, kNumCorners>& corners_in_mar
   double damping = 1e-6;
   for (int iteration = 0; iteration < kMaxIterations && std::isfinite(cost); ++iteration) {
     Eigen::Matrix<double, 6, 6> hessian = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+    PoseStep gradient = PoseStep::Zero();
     for (std::size_t i = 0; i < kNumCorners; ++i) {
       const Eigen::Vector3d rotated = cam_from_marker.rotation * corners_in_marker[i];
       const Eigen::Vector3d x = rotated + cam_from_marker.translation;
-      Eigen::Matrix<double, 2, 3> ray_from_x;
-      ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
-      Eigen::Matrix<double, 3, 6> x_from_step;
-      x_from_step << 0, rotated.z(), -rotated.y(), 1, 0, 0, -rotated.z(), 0, rotated.x(), 0, 1, 0,
-          rotated.y(), -rotated.x(), 0, 0, 0, 1;
-      const Eigen::Matrix<double, 2, 6> jacobian = ray_from_x * x_from_step;
+      const Eigen::Matrix<double, 2, 6> jacobian = RayFromPoseStep(rotated, x);
       hessian += jacobian.transpose() * jacobian;
       gradient += jacobian.transpose() * (x.hnormalized() - rays[i]);
     }
     hessian.diagonal() *= 1 + damping;
-    const Eigen::Matrix<double, 6, 1> step = -hessian.ldlt().solve(gradient);
-    const double angle = step.head<3>().norm();
-    Rigid3 candidate = cam_from_marker;
-    if (angle > 0) {
-      candidate.rotation =
-          (Eigen::AngleAxisd(angle, step.head<3>() / angle) * cam_from_marker.rotation)
-              .normalized();
-    }
-    candidate.translation += step.tail<3>();
+    const PoseStep step = -hessian.ldlt().solve(gradient);
+    const Rigid3 candidate = Moved(cam_from_marker, step);
     const double candidate_cost = cost_of(candidate);
     if (candidate_cost < cost) {
       cam_from_marker = candidate;
@@ -75,7 +53,7 @@ Rigid3 RefinePose(const std::array<Eigen::Vector3d, kNumCorners>& corners_in_mar
     } else {
       damping = std::max(10 * damping, 1e-6);
     }
-    if (angle < kMinStep || !step.allFinite()) break;
+    if (step.head<3>().norm() < kMinStep || !step.allFinite()) break;
   }
   return cam_from_marker;
 }

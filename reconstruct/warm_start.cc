@@ -5,10 +5,10 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
 #include "reconstruct/alignment.h"
 #include "reconstruct/gauge.h"
+#include "reconstruct/pose_step.h"
 #include "reconstruct/reprojection.h"
 
 namespace velamap {
@@ -45,33 +45,20 @@ double Cost(const std::vector<ResectedCorner>& corners, const Rigid3& cam_from_w
   return cost;
 }
 
-// One Gauss-Newton step, the rotation perturbed on the left.
+// One Gauss-Newton step.
 Rigid3 Step(const std::vector<ResectedCorner>& corners, const Rigid3& cam_from_world) {
   Eigen::Matrix<double, 6, 6> hessian = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+  PoseStep gradient = PoseStep::Zero();
   for (const ResectedCorner& corner : corners) {
     const Eigen::Vector3d rotated = cam_from_world.rotation * corner.x_in_world;
     const Eigen::Vector3d x = rotated + cam_from_world.translation;
-    Eigen::Matrix<double, 2, 3> ray_from_x;
-    ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
-    Eigen::Matrix<double, 3, 6> x_from_step;
-    x_from_step << 0, rotated.z(), -rotated.y(), 1, 0, 0, -rotated.z(), 0, rotated.x(), 0, 1, 0,
-        rotated.y(), -rotated.x(), 0, 0, 0, 1;
-    const Eigen::Matrix<double, 2, 6> jacobian = ray_from_x * x_from_step;
+    const Eigen::Matrix<double, 2, 6> jacobian = RayFromPoseStep(rotated, x);
     const Eigen::Vector2d residual = x.hnormalized() - corner.ray;
     const double weight = 1 / (1 + residual.squaredNorm() / (kLossRay * kLossRay));
     hessian += weight * jacobian.transpose() * jacobian;
     gradient += weight * jacobian.transpose() * residual;
   }
-  const Eigen::Matrix<double, 6, 1> step = -hessian.ldlt().solve(gradient);
-  const double angle = step.head<3>().norm();
-  Rigid3 stepped = cam_from_world;
-  if (angle > 0) {
-    stepped.rotation = (Eigen::AngleAxisd(angle, step.head<3>() / angle) * stepped.rotation);
-    stepped.rotation.normalize();
-  }
-  stepped.translation += step.tail<3>();
-  return stepped;
+  return Moved(cam_from_world, -hessian.ldlt().solve(gradient));
 }
 
 // The seed's pose is good to some pixels, so that steps need no damping; one that does not help
