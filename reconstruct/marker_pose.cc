@@ -20,7 +20,7 @@ namespace {
 Rigid3 RefinePose(const std::array<Eigen::Vector3d, kNumCorners>& corners_in_marker,
                   const std::array<Eigen::Vector2d, kNumCorners>& rays, Rigid3 cam_from_marker) {
   constexpr int kMaxIterations = 20;
-  constexpr double kMinStep = 1e-13;
+  constexpr double kMinStep = 1e-10;  // rad; convergence is fast
   const auto cost_of = [&](const Rigid3& pose) {
     double cost = 0.0;
     for (std::size_t i = 0; i < kNumCorners; ++i) {
