@@ -15,7 +15,10 @@ namespace {
 
 // Few markers give hypotheses one by one; of many, triples of corners are far better.
 constexpr std::size_t kMaxSingles = 12;
-constexpr int kNumTriples = 50;  // with a third of wrong markers one in a billion misses
+// So many triples as it takes that one in a billion misses, with the share of markers that agree
+// with the best pose so far; 50 are enough for a third of wrong markers.
+constexpr int kMinTriples = 12, kMaxTriples = 50;
+constexpr double kMissRate = 1e-9;
 // Markers on which hypotheses are ranked before the best are refined on all.
 constexpr std::size_t kMaxRanking = 24;
 constexpr std::size_t kMaxRefined = 4;
@@ -94,37 +97,69 @@ std::size_t RandomIndex(std::mt19937* generator, std::size_t size) {
       (static_cast<std::uint64_t>((*generator)()) * static_cast<std::uint64_t>(size)) >> 32);
 }
 
+// Poses that see a corner of each of three markers where they are; none for a marker drawn twice.
 std::vector<Rigid3> TriplePoses(const MapProblem& problem, const std::vector<KnownMarker>& known,
-                                std::uint32_t random_seed) {
-  std::mt19937 generator(random_seed);
+                                std::mt19937* generator) {
   std::vector<Rigid3> poses;
-  for (int trial = 0; trial < kNumTriples && known.size() >= 3; ++trial) {
-    std::array<std::size_t, 3> idxs{};
-    std::vector<cv::Point3d> in_shape;
-    std::vector<cv::Point2d> in_image;
-    for (std::size_t& idx : idxs) {
-      idx = RandomIndex(&generator, known.size());
-      const std::size_t corner = RandomIndex(&generator, kNumCorners);
-      const KnownMarker& marker = known[idx];
-      const Eigen::Vector3d x =
-          marker.places->front() *
-          problem.Marker(marker.observation->marker_idx).corners_in_marker[corner];
-      in_shape.emplace_back(x.x(), x.y(), x.z());
-      in_image.emplace_back(marker.observation->rays[corner].x(),
-                            marker.observation->rays[corner].y());
-    }
-    if (idxs[0] == idxs[1] || idxs[1] == idxs[2] || idxs[0] == idxs[2]) continue;
-    std::vector<cv::Mat> rotation_vectors, translations;
-    cv::solveP3P(in_shape, in_image, cv::Matx33d::eye(), cv::noArray(), rotation_vectors,
-                 translations, cv::SOLVEPNP_AP3P);
-    for (std::size_t i = 0; i < rotation_vectors.size(); ++i) {
-      const Rigid3 pose = RigidFromOpenCV(rotation_vectors[i], translations[i]);
-      if (pose.translation.allFinite() && pose.rotation.coeffs().allFinite()) {
-        poses.push_back(pose);
-      }
-    }
+  std::array<std::size_t, 3> idxs{};
+  std::vector<cv::Point3d> in_shape;
+  std::vector<cv::Point2d> in_image;
+  for (std::size_t& idx : idxs) {
+    idx = RandomIndex(generator, known.size());
+    const std::size_t corner = RandomIndex(generator, kNumCorners);
+    const KnownMarker& marker = known[idx];
+    const Eigen::Vector3d x =
+        marker.places->front() *
+        problem.Marker(marker.observation->marker_idx).corners_in_marker[corner];
+    in_shape.emplace_back(x.x(), x.y(), x.z());
+    in_image.emplace_back(marker.observation->rays[corner].x(),
+                          marker.observation->rays[corner].y());
+  }
+  if (idxs[0] == idxs[1] || idxs[1] == idxs[2] || idxs[0] == idxs[2]) return poses;
+  std::vector<cv::Mat> rotation_vectors, translations;
+  cv::solveP3P(in_shape, in_image, cv::Matx33d::eye(), cv::noArray(), rotation_vectors,
+               translations, cv::SOLVEPNP_AP3P);
+  for (std::size_t i = 0; i < rotation_vectors.size(); ++i) {
+    const Rigid3 pose = RigidFromOpenCV(rotation_vectors[i], translations[i]);
+    if (pose.translation.allFinite() && pose.rotation.coeffs().allFinite()) poses.push_back(pose);
   }
   return poses;
+}
+
+// With the markers that agree with a pose, of so many. Where a marker has two places only one of
+// them is drawn, so that the share says less.
+int NumTriples(const std::vector<KnownMarker>& known, std::size_t num_agreeing, std::size_t count) {
+  const bool is_clear = std::all_of(known.begin(), known.end(), [](const KnownMarker& marker) {
+    return marker.places->size() == 1;
+  });
+  if (!is_clear) return kMaxTriples;
+  const double share = static_cast<double>(num_agreeing) / static_cast<double>(count);
+  const double log_miss = std::log1p(-std::pow(share, 3));
+  return log_miss * kMaxTriples >= std::log(kMissRate)
+             ? kMaxTriples
+             : std::max(kMinTriples, static_cast<int>(std::log(kMissRate) / log_miss) + 1);
+}
+
+// All poses that single markers and triples give, ranked on some of the markers.
+std::vector<PoseHypothesis> DrawHypotheses(const MapProblem& problem,
+                                           const std::vector<KnownMarker>& known,
+                                           const std::vector<KnownMarker>& ranking,
+                                           double tolerance_factor, std::uint32_t random_seed) {
+  std::vector<PoseHypothesis> hypotheses;
+  std::size_t most_agreeing = 0;
+  const auto add = [&](const std::vector<Rigid3>& poses) {
+    for (const Rigid3& pose : poses) {
+      hypotheses.push_back(Evaluate(problem, ranking, tolerance_factor, pose));
+      most_agreeing = std::max(most_agreeing, hypotheses.back().observation_idxs.size());
+    }
+  };
+  add(SingleMarkerPoses(Thinned(known, kMaxSingles)));
+  std::mt19937 generator(random_seed);
+  for (int trial = 0; known.size() >= 3; ++trial) {
+    if (trial >= kMinTriples && trial >= NumTriples(known, most_agreeing, ranking.size())) break;
+    add(TriplePoses(problem, known, &generator));
+  }
+  return hypotheses;
 }
 
 bool IsSame(const Rigid3& a, const Rigid3& b) {
@@ -177,15 +212,10 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
   // Hypotheses are coarse, so they are ranked with a wider tolerance before they are refined.
   constexpr double kCoarse = 3.0;
   const std::vector<KnownMarker> ranking = Thinned(known, kMaxRanking);
-  std::vector<PoseHypothesis> hypotheses;
-  for (const auto& poses :
-       {SingleMarkerPoses(Thinned(known, kMaxSingles)), TriplePoses(problem, known, random_seed)}) {
-    for (const Rigid3& pose : poses) {
-      hypotheses.push_back(Evaluate(problem, ranking, kCoarse * tolerance_factor, pose));
-    }
-  }
   std::vector<PoseHypothesis> refined;
-  for (PoseHypothesis& hypothesis : Distinct(std::move(hypotheses), kMaxRefined)) {
+  for (PoseHypothesis& hypothesis :
+       Distinct(DrawHypotheses(problem, known, ranking, kCoarse * tolerance_factor, random_seed),
+                kMaxRefined)) {
     const Rigid3 coarse =
         Refine(problem, ranking, kCoarse * tolerance_factor, std::move(hypothesis)).cam_from_shape;
     refined.push_back(Refine(problem, known, tolerance_factor,
