@@ -20,17 +20,6 @@ namespace {
 constexpr double kLossSigmas = 4.0;
 constexpr double kScaleLossSigmas = 1.0;
 
-// d(q x)/dq for a unit quaternion in the order x y z w, from q x = x + 2 w (v x) + 2 v (v x).
-Eigen::Matrix<double, 3, 4> RotatedFromQuaternion(const Eigen::Quaterniond& q,
-                                                  const Eigen::Vector3d& x) {
-  Eigen::Matrix<double, 3, 4> jacobian;
-  const Eigen::Vector3d v = q.vec();
-  jacobian.leftCols<3>() =
-      -2 * (q.w() * CrossMatrix(x) + CrossMatrix(v.cross(x)) + CrossMatrix(v) * CrossMatrix(x));
-  jacobian.col(3) = 2 * v.cross(x);
-  return jacobian;
-}
-
 struct ScalePrior {
   template <typename T>
   bool operator()(const T* marker, T* residual) const {

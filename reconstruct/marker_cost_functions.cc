@@ -23,17 +23,6 @@ using RowMajor = Eigen::Matrix<double, 2, kCols, Eigen::RowMajor>;
 using JacobianMap =
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-// Rotated point R(q) x = x + 2 w (u x x) + 2 u x (u x x), q = (u, w), derived by (u, w).
-Eigen::Matrix<double, 3, 4> RotationJacobian(const Eigen::Quaterniond& q,
-                                             const Eigen::Vector3d& x) {
-  const Eigen::Vector3d u = q.vec();
-  Eigen::Matrix<double, 3, 4> jacobian;
-  jacobian.leftCols<3>() = 2.0 * (u.dot(x) * Eigen::Matrix3d::Identity() + u * x.transpose() -
-                                  2.0 * x * u.transpose() - q.w() * CrossMatrix(x));
-  jacobian.col(3) = 2.0 * u.cross(x);
-  return jacobian;
-}
-
 struct Projection {
   Eigen::Vector2d x_in_image_px;
   Eigen::Matrix2d by_ray;
@@ -139,7 +128,7 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
       maps[0].block<2, 3>(2 * i, 3 * corner.slot) = by_middle_row * rotation_matrix;
     }
     if (maps[1].rows() > 0) {
-      maps[1].block<2, 4>(2 * i, 0) = by_middle_row * RotationJacobian(rotation, x_in_world);
+      maps[1].block<2, 4>(2 * i, 0) = by_middle_row * RotatedFromQuaternion(rotation, x_in_world);
       maps[1].block<2, 3>(2 * i, 4) = by_middle_row;
     }
     if (maps[2].rows() > 0) maps[2].block<2, 1>(2 * i, 0) = by_image * corner.inset_direction;

@@ -46,6 +46,18 @@ inline Eigen::Matrix<double, 2, 6> RayFromPoseStep(const Eigen::Vector3d& rotate
   return ray_from_step;
 }
 
+// Derivative of q x by a unit quaternion q = (v, w), in the order x y z w, from
+// q x = x + 2 w (v x x) + 2 v x (v x x).
+inline Eigen::Matrix<double, 3, 4> RotatedFromQuaternion(const Eigen::Quaterniond& q,
+                                                         const Eigen::Vector3d& x) {
+  const Eigen::Vector3d v = q.vec();
+  Eigen::Matrix<double, 3, 4> jacobian;
+  jacobian.leftCols<3>() = 2.0 * (v.dot(x) * Eigen::Matrix3d::Identity() + v * x.transpose() -
+                                  2.0 * x * v.transpose() - q.w() * CrossMatrix(x));
+  jacobian.col(3) = 2.0 * v.cross(x);
+  return jacobian;
+}
+
 inline Eigen::Quaterniond Turned(const Eigen::Vector3d& turn, const Eigen::Quaterniond& rotation) {
   const double angle = turn.norm();
   if (!(angle > 0)) return rotation;

@@ -16,7 +16,7 @@ using Kind = SchurBlock::Kind;
 
 // out += a^T b for row-major a, b with as many rows; the usual widths of b are known to the
 // compiler.
-void AddProduct(const RowMajor& a, const RowMajor& b, double* out, Eigen::Index out_stride) {
+void AddGramProduct(const RowMajor& a, const RowMajor& b, double* out, Eigen::Index out_stride) {
   switch (b.cols()) {
     case 1:
       return AddTransposedProduct<1>(a, b.data(), 1, out, out_stride);
@@ -33,23 +33,14 @@ void AddProduct(const RowMajor& a, const RowMajor& b, double* out, Eigen::Index 
   }
 }
 
-template <int kSize, int kTangentSize>
-void MultiplyFixed(const RowMajor& full, const RowMajor& plus_jacobian, RowMajor* jacobian) {
-  using Full = Eigen::Matrix<double, Eigen::Dynamic, kSize, Eigen::RowMajor>;
-  using Tangent = Eigen::Matrix<double, Eigen::Dynamic, kTangentSize, Eigen::RowMajor>;
-  using Plus = Eigen::Matrix<double, kSize, kTangentSize, Eigen::RowMajor>;
-  jacobian->resize(full.rows(), kTangentSize);
-  Eigen::Map<Tangent>(jacobian->data(), full.rows(), kTangentSize).noalias() =
-      Eigen::Map<const Full>(full.data(), full.rows(), kSize)
-          .lazyProduct(Eigen::Map<const Plus>(plus_jacobian.data()));
-}
-
 // *jacobian = full * plus_jacobian
 void ToTangentSpace(const RowMajor& full, const RowMajor& plus_jacobian, RowMajor* jacobian) {
-  if (full.cols() == 7 && plus_jacobian.cols() == 6) {
-    MultiplyFixed<7, 6>(full, plus_jacobian, jacobian);
-  } else if (full.cols() == 8 && plus_jacobian.cols() == 7) {
-    MultiplyFixed<8, 7>(full, plus_jacobian, jacobian);
+  const Eigen::Index size = plus_jacobian.cols();
+  jacobian->setZero(full.rows(), size);
+  if (size == 6) {
+    AddProduct<6>(full, plus_jacobian.data(), size, jacobian->data(), size);
+  } else if (size == 7) {
+    AddProduct<7>(full, plus_jacobian.data(), size, jacobian->data(), size);
   } else {
     jacobian->noalias() = full.lazyProduct(plus_jacobian);
   }
@@ -139,7 +130,7 @@ void AddResidual(const SchurResidual& residual, const Evaluator& evaluator,
     const std::size_t block_idx = static_cast<std::size_t>(residual.block_idxs[i]);
     const int column = structure.column_of_block[block_idx];
     if (block.kind == Kind::kEliminated) {
-      AddProduct(jacobian, jacobian, eliminated->hessian.data(), eliminated->hessian.cols());
+      AddGramProduct(jacobian, jacobian, eliminated->hessian.data(), eliminated->hessian.cols());
       eliminated->gradient += jacobian.transpose().lazyProduct(evaluator.Residuals());
     } else {
       system->kept_gradient.segment(column, jacobian.cols()) +=
@@ -149,13 +140,14 @@ void AddResidual(const SchurResidual& residual, const Evaluator& evaluator,
       if (evaluator.BlockOf(residual, j).kind != Kind::kKept) continue;
       const std::size_t other_idx = static_cast<std::size_t>(residual.block_idxs[j]);
       if (block.kind == Kind::kEliminated) {
-        AddProduct(jacobian, evaluator.Jacobian(j),
-                   eliminated->coupling.data() + columns[other_idx], eliminated->coupling.cols());
+        AddGramProduct(jacobian, evaluator.Jacobian(j),
+                       eliminated->coupling.data() + columns[other_idx],
+                       eliminated->coupling.cols());
       } else {
-        AddProduct(jacobian, evaluator.Jacobian(j),
-                   system->kept_hessian.data() + column * system->kept_hessian.cols() +
-                       structure.column_of_block[other_idx],
-                   system->kept_hessian.cols());
+        AddGramProduct(jacobian, evaluator.Jacobian(j),
+                       system->kept_hessian.data() + column * system->kept_hessian.cols() +
+                           structure.column_of_block[other_idx],
+                       system->kept_hessian.cols());
       }
     }
   }
