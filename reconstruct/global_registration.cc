@@ -99,16 +99,20 @@ MapSolution HoldContest(const GlobalRegistration& global) {
   return best;
 }
 
-// The other relief is adjusted too, and taken if it explains more.
+// The other relief is adjusted too, and taken if it explains more. One that explains less than half
+// after a first adjustment does not come to that: new places of markers and another adjustment add
+// less than a tenth of what the map explains.
 void TryReversedRelief(const MapProblem& problem, MapSolution* solution) {
-  constexpr double kRoughly = 4.0;
+  constexpr double kRoughly = 4.0, kHopeless = 0.5;
   MapSolution reversed = ReversedRelief(*solution);
   MarkFits(problem, kRoughly, &reversed);
   AdjustMap(problem, {15, 1e-3}, &reversed);
+  const double explained = ExplainedObservations(problem, *solution);
+  if (ExplainedObservations(problem, reversed) < kHopeless * explained) return;
   MarkFits(problem, 1.0, &reversed);
   PlaceUnsettledMarkers(problem, 1.0, 1.0, &reversed);
   AdjustMap(problem, {15, 1e-3}, &reversed);
-  if (ExplainedObservations(problem, reversed) > ExplainedObservations(problem, *solution)) {
+  if (ExplainedObservations(problem, reversed) > explained) {
     *solution = std::move(reversed);
     MarkFits(problem, 1.0, solution);
   }
