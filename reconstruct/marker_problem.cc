@@ -339,6 +339,8 @@ int SolveMarkerProblem(int max_num_iterations, double function_tolerance, Marker
   SchurSolverOptions options;
   options.max_num_iterations = max_num_iterations;
   options.function_tolerance = function_tolerance;
+  // So much is only asked for near the minimum, where damping would only add iterations.
+  if (function_tolerance < 1e-6) options.initial_radius = 1e8;
   SchurProblem schur = problem->schur;
   KeepCoupledBlocks(&schur);
   const SchurSummary summary = SolveSchur(options, schur);

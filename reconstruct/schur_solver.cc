@@ -315,6 +315,7 @@ SchurSummary SolveSchur(const SchurSolverOptions& options, const SchurProblem& p
   const TangentVector squared_scales = SquaredScales(system);
   Eliminator eliminator(problem, structure);
   TrustRegion region;
+  region.radius = options.initial_radius;
   Eigen::VectorXd values = Values(problem);
   const Eigen::VectorXd initial_values = values;
   int num_invalid_steps = 0;

@@ -17,6 +17,8 @@ struct SchurSolverOptions {
   double parameter_tolerance = 1e-14;
   // or no derivative is larger than this.
   double gradient_tolerance = 0.0;
+  // Ceres's initial_trust_region_radius.
+  double initial_radius = 1e4;
 };
 
 struct SchurSummary {
