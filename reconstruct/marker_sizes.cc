@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kMaxSigmas = 4.0;
 
-Eigen::Map<const Eigen::Vector3d> Corner(const MarkerBlock& marker, int slot) {
-  return Eigen::Map<const Eigen::Vector3d>(marker.x_in_world.data() + 3 * slot);
-}
-
 // A marker's mean side over its printed one, and how well the images know it.
 struct MarkerSize {
   int marker_id = 0;
@@ -40,7 +36,7 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
     const double weight = 1.0 / (size.num_sides * marker.length_m);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.x_in_world.size());
     for (const auto& [a, b] : sides) {
-      const Eigen::Vector3d side = Corner(marker, b) - Corner(marker, a);
+      const Eigen::Vector3d side = CornerPosition(marker, b) - CornerPosition(marker, a);
       size.ratio += weight * side.norm();
       gradient.segment<3>(3 * a) -= weight * side.normalized();
       gradient.segment<3>(3 * b) += weight * side.normalized();
@@ -119,7 +115,7 @@ Eigen::Vector3d BarVector(const ScaleBar& bar, const MarkerState& state) {
   for (std::size_t block = 0; block < bar.marker_idxs.size(); ++block) {
     const MarkerBlock& marker = state.markers[bar.marker_idxs[block]];
     for (std::size_t slot = 0; slot < marker.corners.size(); ++slot) {
-      vector += bar.corner_weights[block][slot] * Corner(marker, static_cast<int>(slot));
+      vector += bar.corner_weights[block][slot] * CornerPosition(marker, static_cast<int>(slot));
     }
   }
   return vector;
@@ -156,7 +152,7 @@ double MedianScale(const MarkerState& state) {
   std::vector<double> scales;
   for (const MarkerBlock& marker : state.markers) {
     for (const auto& [a, b] : MarkerPriorError::Sides(marker.corners)) {
-      const double side = (Corner(marker, b) - Corner(marker, a)).norm();
+      const double side = (CornerPosition(marker, b) - CornerPosition(marker, a)).norm();
       if (side > 0) scales.push_back(marker.length_m / side);
     }
   }
