@@ -50,6 +50,29 @@ VELAMAP_WITH_AVX2 void SubtractPanels(const double* panels, Eigen::Index count, 
   }
 }
 
+// Of row-major rows, `panel` of the columns from `begin` on: with all columns before it solved,
+// takes their part off and solves these. `panel` is root(begin + c, k) at k * kTileRows + c.
+VELAMAP_WITH_AVX2 void SolvePanel(const double* panel, Eigen::Index begin, Eigen::Index width,
+                                  Eigen::Index num_rows, Eigen::Index num_columns, double* rows) {
+  double* out = rows + begin;
+  if (width == kTileRows) {
+    AddTiles<kTileRows, -1, kTileCols>(rows, num_columns, 1, num_rows, panel, kTileRows, begin, out,
+                                       num_columns);
+  } else {
+    for (Eigen::Index c = 0; c < width; ++c) {
+      AddTiles<1, -1, kTileCols>(rows, num_columns, 1, num_rows, panel + c, kTileRows, begin,
+                                 out + c, num_columns);
+    }
+  }
+  const double* triangle = panel + begin * kTileRows;
+  for (Eigen::Index row = 0; row < num_rows; ++row, out += num_columns) {
+    for (Eigen::Index k = 0; k < width; ++k) {
+      out[k] /= triangle[k * kTileRows + k];
+      for (Eigen::Index c = k + 1; c < width; ++c) out[c] -= out[k] * triangle[k * kTileRows + c];
+    }
+  }
+}
+
 }  // namespace
 
 void SubtractGramMatrix(const RowMajorMatrix& rows, Eigen::MatrixXd* sum) {
@@ -63,6 +86,23 @@ void SubtractGramMatrix(const RowMajorMatrix& rows, Eigen::MatrixXd* sum) {
     const Eigen::Index count = std::min(kMaxNumSummands, rows.rows() - begin);
     PackPanels(rows, begin, count, &panels);
     SubtractPanels(panels.data(), count, rows.cols(), sum->data());
+  }
+}
+
+void SolveTransposedOnTheRight(const Eigen::MatrixXd& root, RowMajorMatrix* rows) {
+  VELAMAP_CHECK(root.rows() == rows->cols() && root.cols() == rows->cols());
+  if (!HasAvx2()) {
+    root.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(*rows);
+    return;
+  }
+  std::vector<double> panel;
+  for (Eigen::Index begin = 0; begin < root.rows(); begin += kTileRows) {
+    const Eigen::Index width = std::min(kTileRows, root.rows() - begin);
+    panel.assign(static_cast<std::size_t>((begin + width) * kTileRows), 0.0);
+    for (Eigen::Index k = 0; k < begin + width; ++k) {
+      for (Eigen::Index c = 0; c < width; ++c) panel[k * kTileRows + c] = root(begin + c, k);
+    }
+    SolvePanel(panel.data(), begin, width, rows->rows(), rows->cols(), rows->data());
   }
 }
 

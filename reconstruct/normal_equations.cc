@@ -103,8 +103,7 @@ std::optional<MarkerCovariance> Invert(const NormalEquations& equations) {
         roots[i].solve(Eigen::MatrixXd::Identity(rows.rows(), rows.rows())));
     roots[i].matrixU().solveInPlace(rows);
   }
-  covariance.root.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(
-      covariance.factor);
+  SolveTransposedOnTheRight(covariance.root, &covariance.factor);
   return covariance;
 }
 

@@ -30,6 +30,20 @@ TEST(SubtractGramMatrix, OfNothingChangesNothing) {
   EXPECT_EQ(sum, before);
 }
 
+TEST(SolveTransposedOnTheRight, UndoesTheProduct) {
+  std::srand(1);
+  for (const Eigen::Index size : {1, 5, 12, 13, 24, 50}) {
+    Eigen::MatrixXd root = Eigen::MatrixXd::Random(size, size).triangularView<Eigen::Lower>();
+    root.diagonal().array() = 3.0 + root.diagonal().array();
+    for (const Eigen::Index num_rows : {0, 1, 4, 7}) {
+      const RowMajorMatrix expected = RowMajorMatrix::Random(num_rows, size);
+      RowMajorMatrix rows = expected * root.transpose();
+      SolveTransposedOnTheRight(root, &rows);
+      EXPECT_LE((rows - expected).norm(), 1e-11 * expected.norm()) << num_rows << " x " << size;
+    }
+  }
+}
+
 template <int kCols>
 void CheckProducts() {
   const RowMajorMatrix a = RowMajorMatrix::Random(9, 7);
