@@ -37,9 +37,8 @@ std::string CommandLine(const std::string& program, const std::vector<std::strin
 class Pipe {
  public:
   Pipe() {
-    if (pipe2(ends_.data(), O_CLOEXEC) != 0) {
-      throw ExternalToolError(fmt::format("no pipe for COLMAP's output: {}", std::strerror(errno)));
-    }
+    if (pipe2(ends_.data(), O_CLOEXEC) != 0) Fail();
+    for (int& end : ends_) MoveBeyondStandardStreams(&end);
   }
   ~Pipe() {
     CloseWriteEnd();
@@ -65,6 +64,19 @@ class Pipe {
   }
 
  private:
+  [[noreturn]] static void Fail() {
+    throw ExternalToolError(fmt::format("no pipe for COLMAP's output: {}", std::strerror(errno)));
+  }
+
+  // Where our own stdin is closed an end would take its number, which the child's stdin needs.
+  static void MoveBeyondStandardStreams(int* end) {
+    if (*end > STDERR_FILENO) return;
+    const int moved = fcntl(*end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    if (moved < 0) Fail();
+    close(*end);
+    *end = moved;
+  }
+
   std::array<int, 2> ends_{};
 };
 

@@ -1,5 +1,8 @@
 // The program: finds the command, and turns what it throws into a line and an exit code.
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -14,6 +17,14 @@ namespace velamap {
 namespace {
 
 enum ExitCode { kOk = 0, kNoResult = 1, kBadInput = 2, kExternalTool = 3, kBrokenInvariant = 4 };
+
+// Where the caller has closed a standard stream, a file of ours would take its number, and text
+// that is meant for the terminal would go into it. What takes its place cannot be written to.
+void OccupyStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) < 0) open("/dev/null", O_RDONLY);  // takes the lowest free number
+  }
+}
 
 void Run(const Arguments& arguments) {
   const std::string name = arguments.empty() ? "help" : arguments.front();
@@ -34,6 +45,7 @@ int Main(int argc, char** argv) {
     return code;
   };
   try {
+    OccupyStandardStreams();
     SetUpLogging();
     Run({argv + 1, argv + argc});
     return kOk;

@@ -2,6 +2,8 @@
 
 #include "reconstruct/colmap_runner.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -71,6 +73,16 @@ TEST_F(ColmapRunnerTest, RunsWithoutADisplayOrInput) {
   const char* home = std::getenv("HOME");
   EXPECT_EQ(RunColmap(program, {}, log_path_).output,
             std::string("offscreen\n") + (home != nullptr ? home : "") + "\n");
+}
+
+TEST_F(ColmapRunnerTest, RunsWhereOurOwnStdinIsClosed) {
+  const std::string program = Script("cat; echo $1");
+  EXPECT_EXIT(
+      {
+        close(STDIN_FILENO);
+        std::exit(RunColmap(program, {"here"}, log_path_).output == "here\n" ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 TEST_F(ColmapRunnerTest, FailureNamesStatusCommandReasonAndLog) {
