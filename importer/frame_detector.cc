@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/duplicates.h"
+#include "importer/line_expectation.h"
 #include "importer/marker_detector.h"
 
 namespace velamap {
@@ -42,7 +43,8 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
                          BuildAdjacencyGraph(layout),
                          {},
                          {},
-                         {}};
+                         {},
+                         LinesOfLayout(layout)};
   for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
     detector.looks.push_back(
         {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
@@ -88,7 +90,9 @@ std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::M
 std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                          int marker_id, const QuadCorners& expected,
                                          double reach_px) {
-  const MarkerLook& look = detector.looks[static_cast<std::size_t>(marker_id)];
+  const auto idx = static_cast<std::size_t>(marker_id);
+  if (idx >= detector.looks.size()) return std::nullopt;  // a layout may name more than there are
+  const MarkerLook& look = detector.looks[idx];
   const auto located = LocateMarker(gray, expected, look, reach_px);
   if (!located || !SearchTakes(*located, gray.size(), detector.options)) return std::nullopt;
   return located;

@@ -33,6 +33,7 @@ struct FrameDetector {
   CodeSymmetries symmetries;              // of the markers that look the same when turned
   std::map<int, std::string> part_of_id;  // empty: every id is welcome
   std::vector<MarkerLook> looks;          // of every id of the dictionary
+  std::vector<std::vector<int>> lines;    // ids along those of the layout
 };
 
 // Throws InputError for a dictionary that does not exist or has wrong bits.

@@ -199,7 +199,7 @@ class ImportRun {
         [&](int marker_id, const QuadCorners& expected, double reach_px) {
           return LocateInFrame(detector_, frame.gray, marker_id, expected, reach_px);
         },
-        std::move(seen_coarsely)};
+        std::move(seen_coarsely), detector_.lines};
     quads = is_full ? CompleteFullSearch(search, std::move(quads), frame_number, tracks)
                     : SearchTracked(search, frame_number, tracks);
     turn->End();

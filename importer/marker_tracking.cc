@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "importer/line_expectation.h"
 #include "importer/local_motion.h"
 #include "importer/search_regions.h"
 
@@ -170,6 +171,15 @@ bool SearchAlso(const FrameSearch& search, std::vector<cv::Rect> regions,
   return true;
 }
 
+// Adds what is to be seen where the layout says that markers are missing.
+void LookOnLines(const FrameSearch& search, std::vector<MarkerQuad>* quads) {
+  for (const auto& [quad, reach_px] : ExpectOnLines(search.lines, *quads)) {
+    if (!FitsIn(BoundingBox(quad.corners_px), search.image_size, reach_px)) continue;
+    const auto located = search.locate(quad.marker_id, quad.corners_px, reach_px);
+    if (located) quads->push_back({quad.marker_id, *located});
+  }
+}
+
 // What pass 1 found, and what it says of all others.
 struct FirstPass {
   std::vector<MarkerQuad> quads;
@@ -233,6 +243,7 @@ std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, i
   const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, size);
   if (IsLost(tracks->tracks, quad_of_track, first->motions, size)) return std::nullopt;
   tracks->inflow_px = inflow_px;
+  LookOnLines(search, &quads);
   return quads;
 }
 
@@ -264,6 +275,9 @@ std::vector<MarkerQuad> CompleteFullSearch(const FrameSearch& search, std::vecto
                                            int frame_number, MarkerTracks* tracks) {
   const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, search.image_size);
   const std::vector<PointMotion> motions = MotionsOf(tracks->tracks, quads, quad_of_track);
+  const auto num_known = std::count_if(quad_of_track.begin(), quad_of_track.end(),
+                                       [](int quad_idx) { return quad_idx >= 0; });
+  const auto num_new = static_cast<std::ptrdiff_t>(quads.size()) - num_known;
   for (std::size_t t = 0; !motions.empty() && t < tracks->tracks.size(); ++t) {
     if (quad_of_track[t] >= 0) continue;
     const MarkerTrack& track = tracks->tracks[t];
@@ -273,10 +287,9 @@ std::vector<MarkerQuad> CompleteFullSearch(const FrameSearch& search, std::vecto
     if (located) quads.push_back({track.marker_id, *located});
   }
   quads = RemoveNested(std::move(quads));
+  LookOnLines(search, &quads);
   HandOn(quads, search.image_size, frame_number, tracks);
-  tracks->has_new = std::any_of(
-      tracks->tracks.begin(), tracks->tracks.end(),
-      [](const MarkerTrack& track) { return track.num_found == 1 && track.num_lost == 0; });
+  tracks->has_new = num_new > 0;
   tracks->inflow_px = {};
   return quads;
 }

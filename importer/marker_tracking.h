@@ -8,6 +8,8 @@
 // In both a marker is first looked for as what it is, and then, where it is not to be seen clearly,
 // as any marker within the region around it.
 //
+// What is missing on the layout's lines is looked for between and beside what is found.
+//
 // Halfway between two full searches a coarse one of the whole frame tells of new large markers.
 // Where far fewer are found than usual, or the places fill most of the picture, the whole frame is
 // searched, and again the next one as long as this finds new markers. The result depends on
@@ -58,6 +60,8 @@ struct FrameSearch {
       locate;
   // What a coarse search of the whole frame has found, where there was one.
   std::vector<MarkerQuad> seen_coarsely{};
+  // Ids along the lines of the layout: what is missing there is looked for too.
+  std::vector<std::vector<int>> lines{};
 };
 
 // Searches the next frame of `tracks`' video and brings `tracks` up to it.

@@ -48,10 +48,13 @@ class FakeVideo {
   std::vector<int> Next() {
     std::vector<int> ids;
     for (const MarkerQuad& quad :
-         SearchTracked({kSize, [this](const auto&regions) { return Search(regions); },
+         SearchTracked({kSize,
+                        [this](const auto&regions) { return Search(regions); },
                         [this](int id, const QuadCorners&expected, double reach_px) {
                           return Locate(id, expected, reach_px);
-                        }},
+                        },
+                        {},
+                        lines},
                        frame_number++, &tracks)) {
       ids.push_back(quad.marker_id);
     }
@@ -74,6 +77,7 @@ class FakeVideo {
 
   static constexpr double kHalf = 20.0;
   bool can_locate = false;
+  std::vector<std::vector<int>> lines;
   std::vector<std::pair<int, Eigen::Vector2d>> markers;
   std::vector<int> hidden;
   Eigen::Vector2d offset_px{0, 0};
@@ -116,6 +120,16 @@ TEST(SearchTracked, MarkersThatCanBeLocatedNeedNoRegion) {
   }
   EXPECT_EQ(video.num_located, 9 * 12);
   EXPECT_LT(video.area_px, 0.5 * kSize.area());  // along the border where the picture comes in
+}
+
+TEST(SearchTracked, WhatIsMissingOnALineIsLocated) {
+  FakeVideo video = GridVideo();
+  video.hidden = {1};  // between 0 and 2
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(video.Next().size(), 11u);
+  video.lines = {{0, 1, 2, 3}};
+  video.hidden.clear();
+  video.can_locate = true;
+  EXPECT_EQ(video.Next().size(), 12u);
 }
 
 TEST(SearchTracked, AJumpIsMetByAFullSearch) {

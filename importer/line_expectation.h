@@ -1,0 +1,28 @@
+// Where the layout says that markers should be to be seen: on its lines, between and beside those
+// that are found.
+
+#pragma once
+
+#include <vector>
+
+#include "importer/layout.h"
+#include "importer/marker_search.h"
+
+namespace velamap {
+
+// A marker that was not found, and how far it may be from its place.
+struct ExpectedMarker {
+  MarkerQuad quad;
+  double reach_px = 0.0;
+};
+
+// Ids along each line of the layout, horizontal and vertical.
+std::vector<std::vector<int>> LinesOfLayout(const Layout& layout);
+
+// Of every marker whose two neighbours on a line are found, or the next two on one side of it:
+// midway between them, or as far beyond as they are apart; none where the two stand differently.
+// An id that is found twice says nothing.
+std::vector<ExpectedMarker> ExpectOnLines(const std::vector<std::vector<int>>& lines,
+                                          const std::vector<MarkerQuad>& found);
+
+}  // namespace velamap
