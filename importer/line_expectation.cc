@@ -11,6 +11,9 @@ namespace {
 // Markers of one line stand alike when their first sides differ by less than 30 degrees.
 constexpr double kMinCosine = 0.87;
 
+// Of its neighbour; where perspective makes it smaller, the line's end is not to be foretold.
+constexpr double kMinSize = 0.6;
+
 // Spacing varies, and so does perspective.
 constexpr double kReachPerDistance = 0.12, kReachPerSide = 0.3;
 
@@ -43,6 +46,8 @@ std::optional<ExpectedMarker> Expect(int marker_id, const QuadById& quads, int i
   for (std::size_t c = 0; c < kNumCorners; ++c) {
     expected.quad.corners_px[c] = weight_a * a->second[c] + (1 - weight_a) * b->second[c];
   }
+  const double size = QuadMeanSide(expected.quad.corners_px) / QuadMeanSide(a->second);
+  if (size < kMinSize || size > 1 / kMinSize) return std::nullopt;
   const double distance_px = (QuadCenter(a->second) - QuadCenter(b->second)).norm();
   expected.reach_px =
       kReachPerDistance * distance_px + kReachPerSide * QuadMeanSide(expected.quad.corners_px);

@@ -282,6 +282,7 @@ bool ShowsItsCells(const cv::Mat& gray, const QuadCorners& quad, const MarkerLoo
 std::optional<QuadCorners> AlignSides(const cv::Mat& gray, const QuadCorners& quad,
                                       const MarkerLook& look) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && look.cells.type() == CV_8UC1);
+  if (!HasCells(quad, look.cells.total())) return std::nullopt;
   std::optional<QuadCorners> aligned = FindSides(gray, quad, look);
   // Once more, as the levels were read beside a side that was off.
   if (aligned) aligned = FindSides(gray, *aligned, look);
@@ -291,6 +292,7 @@ std::optional<QuadCorners> AlignSides(const cv::Mat& gray, const QuadCorners& qu
 std::optional<QuadCorners> LocateMarker(const cv::Mat& gray, const QuadCorners& expected,
                                         const MarkerLook& look, double reach_px) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && look.cells.type() == CV_8UC1);
+  if (!HasCells(expected, look.cells.total())) return std::nullopt;
   const double cell_px = QuadMeanSide(expected) / look.cells.rows;
   const auto shift = FindShift(gray, PlacesOfCells(expected, look), look, reach_px, cell_px);
   if (!shift) return std::nullopt;

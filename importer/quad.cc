@@ -1,5 +1,6 @@
 #include "importer/quad.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -24,6 +25,11 @@ double QuadArea(const QuadCorners& quad) {
     doubled_area += Cross(quad[i], quad[(i + 1) % kNumCorners]);
   }
   return 0.5 * std::abs(doubled_area);
+}
+
+bool HasCells(const QuadCorners& quad, std::size_t num_cells) {
+  return std::all_of(quad.begin(), quad.end(), [](const auto& x) { return x.allFinite(); }) &&
+         QuadArea(quad) >= static_cast<double>(num_cells);
 }
 
 Box BoundingBox(const QuadCorners& quad) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 
 #include <Eigen/Core>
@@ -17,6 +18,9 @@ using QuadCorners = std::array<Eigen::Vector2d, kNumCorners>;
 Eigen::Vector2d QuadCenter(const QuadCorners& quad);
 double QuadMeanSide(const QuadCorners& quad);
 double QuadArea(const QuadCorners& quad);  // of a simple one, never negative
+
+// Whether the corners are finite and the quad has room for so many cells of a pixel each.
+bool HasCells(const QuadCorners& quad, std::size_t num_cells);
 
 struct Box {
   Eigen::Vector2d min, max;

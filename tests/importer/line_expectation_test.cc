@@ -41,6 +41,9 @@ TEST(ExpectOnLines, NothingWhereLinesDoNotTell) {
   twice.push_back(Square(3, 800, 70, 20));
   EXPECT_TRUE(ExpectOnLines({{1, 2, 3}}, twice).empty());
 
+  const std::vector<MarkerQuad> shrinking = {Square(1, 100, 50, 40), Square(3, 300, 50, 20)};
+  EXPECT_TRUE(ExpectOnLines({{1, 3, 4}}, shrinking).empty());  // it would have no size
+
   std::vector<MarkerQuad> turned = found;
   std::rotate(turned[1].corners_px.begin(), turned[1].corners_px.begin() + 1,
               turned[1].corners_px.end());

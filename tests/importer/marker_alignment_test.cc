@@ -78,6 +78,19 @@ TEST(LocateMarker, TakesNoOtherMarkerNoTurnedOneAndNoneOutside) {
   EXPECT_FALSE(LocateMarker(grid.image, Moved(grid.truth[0], 1e4, 0), {grid.cells[0]}, 8));
 }
 
+TEST(LocateMarker, AQuadWithoutAreaOrPlaceIsNone) {
+  const MarkerGrid grid = MakeGrid(40, 0.0);
+  QuadCorners point;
+  point.fill(grid.truth[0][0]);
+  QuadCorners nowhere = grid.truth[0];
+  nowhere[2].x() = std::nan("");
+  for (const QuadCorners& quad : {point, nowhere}) {
+    EXPECT_FALSE(LocateMarker(grid.image, quad, {grid.cells[0]}, 8));
+    EXPECT_FALSE(AlignSides(grid.image, quad, {grid.cells[0]}));
+    EXPECT_FALSE(RefineCorners(grid.image, quad, grid.cells[0]));
+  }
+}
+
 // A marker with a cell of the other colour is another one, or half hidden.
 TEST(LocateMarker, EveryCellCounts) {
   MarkerGrid grid = MakeGrid(60, 0.0);
