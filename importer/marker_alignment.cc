@@ -101,9 +101,9 @@ std::optional<ImageLine> FitLine(std::vector<Eigen::Vector2d> points_px,
   return std::nullopt;
 }
 
-std::optional<ImageLine> FindSide(const cv::Mat& gray, const QuadCorners& quad, int side,
-                                  const MarkerLook& look) {
-  const UnitSquareMap map(quad);
+// `map` is the quad's.
+std::optional<ImageLine> FindSide(const cv::Mat& gray, const QuadCorners& quad,
+                                  const UnitSquareMap& map, int side, const MarkerLook& look) {
   const double cell = 1.0 / look.cells.rows;
   std::vector<Eigen::Vector2d> steps;
   for (int i = 0; i < kNumScans; ++i) {
@@ -122,17 +122,18 @@ std::optional<ImageLine> FindSide(const cv::Mat& gray, const QuadCorners& quad, 
 
 std::optional<QuadCorners> FindSides(const cv::Mat& gray, const QuadCorners& quad,
                                      const MarkerLook& look) {
+  const UnitSquareMap map(quad);
   std::array<ImageLine, kNumCorners> lines;
   for (int side = 0; side < kNumCorners; ++side) {
-    const auto line = FindSide(gray, quad, side, look);
+    const auto line = FindSide(gray, quad, map, side, look);
     if (!line) return std::nullopt;
     lines[static_cast<std::size_t>(side)] = *line;
   }
+  const double max_shift_px = std::max(2.0, QuadMeanSide(quad) / look.cells.rows);
   QuadCorners corners;
   for (std::size_t c = 0; c < kNumCorners; ++c) {
     const auto corner = Intersect(lines[(c + kNumCorners - 1) % kNumCorners], lines[c]);
-    const double cell_px = QuadMeanSide(quad) / look.cells.rows;
-    if (!corner || (*corner - quad[c]).norm() > std::max(2.0, cell_px)) return std::nullopt;
+    if (!corner || (*corner - quad[c]).norm() > max_shift_px) return std::nullopt;
     corners[c] = *corner;
   }
   return corners;
@@ -142,6 +143,7 @@ std::optional<QuadCorners> FindSides(const cv::Mat& gray, const QuadCorners& qua
 struct CellPlaces {
   std::vector<cv::Point> pixels;
   std::vector<int> is_light;
+  int num_light = 0;
   cv::Rect box;
 };
 
@@ -157,7 +159,9 @@ CellPlaces PlacesOfCells(const QuadCorners& quad, const MarkerLook& look) {
       const cv::Point pixel(static_cast<int>(std::lround(place.x())),
                             static_cast<int>(std::lround(place.y())));
       places.pixels.push_back(pixel);
-      places.is_light.push_back(!is_inside || look.cells.at<std::uint8_t>(row, column) != 0);
+      const bool is_light = !is_inside || look.cells.at<std::uint8_t>(row, column) != 0;
+      places.is_light.push_back(is_light);
+      places.num_light += is_light;
       min = {std::min(min.x, pixel.x), std::min(min.y, pixel.y)};
       max = {std::max(max.x, pixel.x), std::max(max.y, pixel.y)};
     }
@@ -169,16 +173,16 @@ CellPlaces PlacesOfCells(const QuadCorners& quad, const MarkerLook& look) {
 // Correlation of the grey values at the places, moved by so much, with what they should be.
 double Correlation(const cv::Mat& gray, const CellPlaces& places, const cv::Point& shift,
                    const MarkerLook& look) {
-  int sum = 0, light_sum = 0, square_sum = 0, num_light = 0;
+  int sum = 0, light_sum = 0, square_sum = 0;
   for (std::size_t i = 0; i < places.pixels.size(); ++i) {
     const int value = gray.at<std::uint8_t>(places.pixels[i] + shift);
     sum += value;
     square_sum += value * value;
     light_sum += places.is_light[i] * value;
-    num_light += places.is_light[i];
   }
   const double count = static_cast<double>(places.pixels.size());
   const double variance = square_sum - static_cast<double>(sum) * sum / count;
+  const double num_light = places.num_light;
   const double light_variance = num_light - num_light * (num_light / count);
   if (variance <= 0 || light_variance <= 0) return 0.0;
   const double covariance = light_sum - sum * (num_light / count);

@@ -28,10 +28,6 @@ inline constexpr int kSearchReachPx = 6 + 4;
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options);
 
-// Whether a marker there is large enough and far enough from the border for a search to take it.
-bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
-                 const ArucoDetectionOptions& options);
-
 // The same at half the resolution, in a quarter of the time: the large ones, to a few pixels.
 std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Dictionary& dictionary,
                                               int border_bits,
@@ -41,6 +37,10 @@ std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Diction
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options,
                                       const std::vector<cv::Rect>& regions);
+
+// Whether a marker there is large enough and far enough from the border for a search to take it.
+bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
+                 const ArucoDetectionOptions& options);
 
 // One marker may be found along the outer and the inner contour of its black border, or in two
 // regions. The marker's corners are those of the outer one.

@@ -144,16 +144,21 @@ std::vector<MarkerTrack> Continue(const std::vector<MarkerTrack>& tracks,
   return next;
 }
 
+// Adds the marker if it is to be seen at its place; false if not.
+bool AddLocated(const FrameSearch& search, int marker_id, const QuadCorners& expected,
+                double reach_px, std::vector<MarkerQuad>* quads) {
+  const auto located = search.locate(marker_id, expected, reach_px);
+  if (located) quads->push_back({marker_id, *located});
+  return located.has_value();
+}
+
 // Looks for a marker where it should be; if it is not to be seen clearly, adds the region to
 // search.
 void LookFor(const FrameSearch& search, int marker_id, const Prediction& prediction,
              std::vector<MarkerQuad>* quads, std::vector<cv::Rect>* regions) {
   const Box box = BoundingBox(prediction.corners_px);
   if (!FitsIn(box, search.image_size, prediction.margin_px)) return;
-  const auto located = search.locate(marker_id, prediction.corners_px, prediction.margin_px);
-  if (located) {
-    quads->push_back({marker_id, *located});
-  } else {
+  if (!AddLocated(search, marker_id, prediction.corners_px, prediction.margin_px, quads)) {
     regions->push_back(RegionAround(box, search.image_size, prediction.margin_px));
   }
 }
@@ -175,8 +180,7 @@ bool SearchAlso(const FrameSearch& search, std::vector<cv::Rect> regions,
 void LookOnLines(const FrameSearch& search, std::vector<MarkerQuad>* quads) {
   for (const auto& [quad, reach_px] : ExpectOnLines(search.lines, *quads)) {
     if (!FitsIn(BoundingBox(quad.corners_px), search.image_size, reach_px)) continue;
-    const auto located = search.locate(quad.marker_id, quad.corners_px, reach_px);
-    if (located) quads->push_back({quad.marker_id, *located});
+    AddLocated(search, quad.marker_id, quad.corners_px, reach_px, quads);
   }
 }
 
@@ -282,9 +286,7 @@ std::vector<MarkerQuad> CompleteFullSearch(const FrameSearch& search, std::vecto
     if (quad_of_track[t] >= 0) continue;
     const MarkerTrack& track = tracks->tracks[t];
     const Prediction prediction = PredictByOthers(track, motions);
-    const auto located =
-        search.locate(track.marker_id, prediction.corners_px, prediction.margin_px);
-    if (located) quads.push_back({track.marker_id, *located});
+    AddLocated(search, track.marker_id, prediction.corners_px, prediction.margin_px, &quads);
   }
   quads = RemoveNested(std::move(quads));
   LookOnLines(search, &quads);

@@ -126,13 +126,8 @@ std::vector<Rigid3> TriplePoses(const MapProblem& problem, const std::vector<Kno
   return poses;
 }
 
-// With the markers that agree with a pose, of so many. Where a marker has two places only one of
-// them is drawn, so that the share says less.
-int NumTriples(const std::vector<KnownMarker>& known, std::size_t num_agreeing, std::size_t count) {
-  const bool is_clear = std::all_of(known.begin(), known.end(), [](const KnownMarker& marker) {
-    return marker.places->size() == 1;
-  });
-  if (!is_clear) return kMaxTriples;
+// With the markers that agree with a pose, of so many.
+int NumTriples(std::size_t num_agreeing, std::size_t count) {
   const double share = static_cast<double>(num_agreeing) / static_cast<double>(count);
   const double log_miss = std::log1p(-std::pow(share, 3));
   return log_miss * kMaxTriples >= std::log(kMissRate)
@@ -154,9 +149,16 @@ std::vector<PoseHypothesis> DrawHypotheses(const MapProblem& problem,
     }
   };
   add(SingleMarkerPoses(Thinned(known, kMaxSingles)));
+  // Where a marker has two places only one of them is drawn, so that the share says less.
+  const bool is_clear = std::all_of(known.begin(), known.end(), [](const KnownMarker& marker) {
+    return marker.places->size() == 1;
+  });
+  const auto is_enough = [&](int num_trials) {
+    const int num_triples = is_clear ? NumTriples(most_agreeing, ranking.size()) : kMaxTriples;
+    return num_trials >= std::max(kMinTriples, num_triples);
+  };
   std::mt19937 generator(random_seed);
-  for (int trial = 0; known.size() >= 3; ++trial) {
-    if (trial >= kMinTriples && trial >= NumTriples(known, most_agreeing, ranking.size())) break;
+  for (int trial = 0; known.size() >= 3 && !is_enough(trial); ++trial) {
     add(TriplePoses(problem, known, &generator));
   }
   return hypotheses;

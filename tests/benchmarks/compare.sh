@@ -232,7 +232,7 @@ compare_markers() {
 }
 
 compare_tracking() {
-  local width kind folder exhaustive_ms
+  local width kind folder exhaustive_ms tracked_ms
   echo "| clip | exhaustive: markers | tracked: markers | found again | same corners to 0.01 px | search a frame, exhaustive ms | tracked ms |"
   echo "|---|---|---|---|---|---|---|"
   for width in "${widths[@]}"; do
@@ -242,7 +242,6 @@ compare_tracking() {
       exhaustive_ms="$(search_ms "$num_frames")"
       mv "$work/database.db" "$work/exhaustive.db"
       import "$folder"
-      local tracked_ms
       tracked_ms="$(search_ms "$num_frames")"
       measure "$compare_detections" "$work/exhaustive.db" "$work/database.db"
       echo "| $kind, $width px, $num_frames frames | $(value reference) | $(value other) | $(
