@@ -63,12 +63,17 @@ std::string DescribeDetector(const FrameDetector& detector) {
   for (const auto& [id, neighbors] : detector.graph) {
     known += fmt::format("|{}: {}", id, fmt::join(neighbors, " "));
   }
-  // An exhaustive search is not named: it is how earlier versions searched.
-  const std::string search = detector.options.search == SearchMode::kExhaustive
-                                 ? ""
-                                 : fmt::format(" search={} full_search_interval={}",
-                                               SearchModeName(detector.options.search),
-                                               detector.options.full_search_interval);
+  // An exhaustive search is not named: it is how earlier versions searched. Only a tracked one
+  // looks for markers along lines.
+  std::string search;
+  if (detector.options.search == SearchMode::kTracked) {
+    search =
+        fmt::format(" search={} full_search_interval={}", SearchModeName(detector.options.search),
+                    detector.options.full_search_interval);
+    for (const std::vector<int>& line : detector.lines) {
+      known += fmt::format("|line {}", fmt::join(line, " "));
+    }
+  }
   return fmt::format(
       "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
       "error_correction_rate={} inverted={} dictionary_and_layout={:016x}{}",
