@@ -218,38 +218,53 @@ void ColmapDatabase::ReplaceDetections(ImageId image_id, const FrameDetections& 
   });
 }
 
+struct ColmapDatabase::PairStatements {
+  SQLite::Statement find, insert_matches, insert_geometry;
+};
+
+ColmapDatabase::PairStatements& ColmapDatabase::Prepared() const {
+  if (!pair_statements_) {
+    pair_statements_.reset(new PairStatements{
+        {*database_, "SELECT 1 FROM two_view_geometries WHERE pair_id = ?"},
+        {*database_,
+         "INSERT OR REPLACE INTO matches(pair_id, rows, cols, data) VALUES(?, ?, 2, ?)"},
+        {*database_,
+         "INSERT OR REPLACE INTO two_view_geometries(pair_id, rows, cols, data, config)"
+         " VALUES(?, ?, 2, ?, ?)"}});
+  }
+  return *pair_statements_;
+}
+
 void ColmapDatabase::WriteMatches(ImageId image_id1, ImageId image_id2,
                                   const FeatureMatches& matches) {
   VELAMAP_CHECK(image_id1 != image_id2);
   std::vector<std::uint32_t> values;  // the column of the smaller image_id first
+  values.reserve(2 * matches.size());
   for (const auto& [idx1, idx2] : matches) {
     values.push_back(image_id1 < image_id2 ? idx1 : idx2);
     values.push_back(image_id1 < image_id2 ? idx2 : idx1);
   }
   Guarded(path_, [&] {
-    SQLite::Statement insert_matches(
-        *database_, "INSERT OR REPLACE INTO matches(pair_id, rows, cols, data) VALUES(?, ?, 2, ?)");
-    insert_matches.bind(1, PairId(image_id1, image_id2));
-    insert_matches.bind(2, static_cast<std::int64_t>(matches.size()));
-    BindBlob(insert_matches, 3, values);
-    insert_matches.exec();
-    SQLite::Statement insert_geometry(
-        *database_,
-        "INSERT OR REPLACE INTO two_view_geometries(pair_id, rows, cols, data, config)"
-        " VALUES(?, ?, 2, ?, ?)");
-    insert_geometry.bind(1, PairId(image_id1, image_id2));
-    insert_geometry.bind(2, static_cast<std::int64_t>(matches.size()));
-    BindBlob(insert_geometry, 3, values);
-    insert_geometry.bind(4, kTwoViewConfigCalibrated);
-    insert_geometry.exec();
+    PairStatements& prepared = Prepared();
+    for (SQLite::Statement* insert : {&prepared.insert_matches, &prepared.insert_geometry}) {
+      insert->tryReset();
+      insert->bind(1, PairId(image_id1, image_id2));
+      insert->bind(2, static_cast<std::int64_t>(matches.size()));
+      BindBlob(*insert, 3, values);
+    }
+    prepared.insert_geometry.bind(4, kTwoViewConfigCalibrated);
+    prepared.insert_matches.exec();
+    prepared.insert_geometry.exec();
   });
 }
 
 bool ColmapDatabase::HasMatches(ImageId image_id1, ImageId image_id2) const {
   return Guarded(path_, [&] {
-    SQLite::Statement query(*database_, "SELECT 1 FROM two_view_geometries WHERE pair_id = ?");
-    query.bind(1, PairId(image_id1, image_id2));
-    return query.executeStep();
+    SQLite::Statement& find = Prepared().find;
+    find.bind(1, PairId(image_id1, image_id2));
+    const bool has_matches = find.executeStep();
+    find.reset();
+    return has_matches;
   });
 }
 

@@ -86,8 +86,12 @@ class ColmapDatabase {
   std::optional<std::string> ReadDetector() const;
 
  private:
+  struct PairStatements;  // prepared once for all pairs
+  PairStatements& Prepared() const;
+
   std::string path_;
   std::unique_ptr<SQLite::Database> database_;
+  mutable std::unique_ptr<PairStatements> pair_statements_;
 };
 
 }  // namespace velamap

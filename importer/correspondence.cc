@@ -1,5 +1,7 @@
 #include "importer/correspondence.h"
 
+#include <algorithm>
+
 #include "importer/error.h"
 
 namespace velamap {
@@ -22,6 +24,7 @@ Descriptor EncodeDescriptor(const CornerId& id) {
 
 FeatureMatches MatchByMarkerId(const FrameDetections& image1, const FrameDetections& image2) {
   FeatureMatches matches;
+  matches.reserve(kNumCorners * std::min(image1.markers.size(), image2.markers.size()));
   std::uint32_t idx1 = 0, idx2 = 0;
   while (idx1 < image1.markers.size() && idx2 < image2.markers.size()) {
     const int id1 = image1.markers[idx1].marker_id, id2 = image2.markers[idx2].marker_id;
