@@ -51,15 +51,27 @@ bool HasPlainLuma(const AVFrame& frame) {
          luma.depth == 8;
 }
 
-// 16 to 235 becomes 0 to 255: (y - 16) 255 / 219 rounded down, which is what swscale and OpenCV
-// make of grey. Written as n + 36 n / 219 in 16 bits, so that the compiler takes many pixels at a
-// time.
-void StretchLimitedRange(const std::uint8_t* luma, int num_pixels, std::uint8_t* gray) {
-  constexpr std::uint16_t kFactor = 10774;  // 36 / 219 of 65536, rounded up
+// 16 to `high` becomes 0 to 255, as n + n (271 - high) / (high - 16) in 16 bits, so that the
+// compiler takes many pixels at a time.
+template <int kHigh, int kFactor, int kRoundUp>
+void StretchLimitedRange(const std::uint8_t* limited, int num_pixels, std::uint8_t* full) {
   for (int i = 0; i < num_pixels; ++i) {
-    const auto level = static_cast<std::uint16_t>(std::clamp<int>(luma[i], 16, 235) - 16);
-    gray[i] = static_cast<std::uint8_t>(level + (std::uint32_t{level} * kFactor >> 16));
+    const auto level = static_cast<std::uint16_t>(std::clamp<int>(limited[i], 16, kHigh) - 16);
+    full[i] = static_cast<std::uint8_t>(level + (std::uint32_t{level} * kFactor >> 16) +
+                                        (level > 0 ? kRoundUp : 0));
   }
+}
+
+// (y - 16) 255 / 219 rounded down, which is what swscale and OpenCV make of grey. The factor is
+// 36 / 219 of 65536, rounded up.
+void StretchLuma(const std::uint8_t* luma, int num_pixels, std::uint8_t* gray) {
+  StretchLimitedRange<235, 10774, 0>(luma, num_pixels, gray);
+}
+
+// 128 + (c - 128) 255 / 224, rounded: half a level more than (c - 16) 255 / 224, so that this is
+// rounded up. The factor is 31 / 224 of 65536, rounded down.
+void StretchChroma(const std::uint8_t* limited, int num_pixels, std::uint8_t* full) {
+  StretchLimitedRange<240, 9069, 1>(limited, num_pixels, full);
 }
 
 // Whether the planes are luma, Cb and Cr, a byte each, chroma of half the size both ways.
@@ -67,17 +79,12 @@ bool HasPlainHalfSizeChroma(const AVFrame& frame) {
   return frame.format == AV_PIX_FMT_YUV420P || frame.format == AV_PIX_FMT_YUVJ420P;
 }
 
-// 16 to 240 becomes 0 to 255 around 128.
 cv::Mat FullRangeChroma(const AVFrame& frame, int plane) {
   const cv::Mat limited((frame.height + 1) / 2, (frame.width + 1) / 2, CV_8UC1, frame.data[plane],
                         static_cast<std::size_t>(frame.linesize[plane]));
   if (IsFullRange(frame)) return limited.clone();
-  cv::Mat table(1, 256, CV_8UC1);
-  for (int i = 0; i < 256; ++i) {
-    table.at<std::uint8_t>(i) = cv::saturate_cast<std::uint8_t>(128 + (i - 128) * 255.0 / 224.0);
-  }
-  cv::Mat full;
-  cv::LUT(limited, table, full);
+  cv::Mat full(limited.size(), CV_8UC1);
+  for (int y = 0; y < full.rows; ++y) StretchChroma(limited.ptr(y), full.cols, full.ptr(y));
   return full;
 }
 
@@ -159,7 +166,7 @@ cv::Mat VideoPicture::Gray() const {
     if (is_full_range) {
       std::memcpy(gray.ptr(y), luma, static_cast<std::size_t>(gray.cols));
     } else {
-      StretchLimitedRange(luma, gray.cols, gray.ptr(y));
+      StretchLuma(luma, gray.cols, gray.ptr(y));
     }
   }
   return gray;
