@@ -114,14 +114,6 @@ std::optional<Fit> FitSides(const cv::Mat& gray, const QuadCorners& corners_px, 
   return fit;
 }
 
-double MaxShiftPx(const QuadCorners& a, const QuadCorners& b) {
-  double max_shift_px = 0.0;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    max_shift_px = std::max(max_shift_px, (a[i] - b[i]).norm());
-  }
-  return max_shift_px;
-}
-
 double MaxAllowedShiftPx(double cell_px, const EdgeFitOptions& options) {
   return std::max(2.0, options.max_shift_in_cells * cell_px);
 }
@@ -159,7 +151,7 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
     if (!next) return std::nullopt;
     fit = *next;
   }
-  if (MaxShiftPx(fit.corners.corners_px, corners_px) > MaxAllowedShiftPx(cell_px, options)) {
+  if (MaxCornerShift(fit.corners.corners_px, corners_px) > MaxAllowedShiftPx(cell_px, options)) {
     return std::nullopt;
   }
   return fit.corners;
@@ -173,7 +165,7 @@ std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorne
   if (!HasClearSides(start_px, cells.rows, options)) {
     const auto fitted = FitPattern(gray, start_px, cells);
     if (fitted &&
-        MaxShiftPx(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
+        MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
       return fitted;
     }
   }

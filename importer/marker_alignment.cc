@@ -26,6 +26,9 @@ constexpr int kMaxScanSteps = 40;
 constexpr double kMaxDeparturePx = 0.7;
 constexpr double kMaxDepartureCells = 0.12;
 
+// A quad that moves less stands where its sides are.
+constexpr double kSettledPx = 0.05;
+
 constexpr double kMinCorrelation = 0.8;
 constexpr double kSureCorrelation = 0.9;  // no other place does better than near this one
 
@@ -56,19 +59,15 @@ std::optional<Eigen::Vector2d> FindStep(const cv::Mat& gray, const Eigen::Vector
                                         const Eigen::Vector2d& outer_px, const MarkerLook& look) {
   const Eigen::Vector2d way = outer_px - inner_px;
   const int num_steps = std::clamp(static_cast<int>(std::ceil(way.norm() / 0.7)), 3, kMaxScanSteps);
-  std::array<double, kMaxScanSteps + 1> values;
-  for (int i = 0; i <= num_steps; ++i) {
-    values[static_cast<std::size_t>(i)] =
-        GrayAt(gray, inner_px + way * (static_cast<double>(i) / num_steps), look);
-  }
-  const double dark = values[0], light = values[static_cast<std::size_t>(num_steps)];
+  const double dark = GrayAt(gray, inner_px, look), light = GrayAt(gray, outer_px, look);
   if (light - dark < kMinContrast) return std::nullopt;
   const double middle = 0.5 * (dark + light);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(num_steps); ++i) {
-    if (values[i + 1] <= middle) continue;
-    const double place =
-        static_cast<double>(i) + (middle - values[i]) / (values[i + 1] - values[i]);
-    return inner_px + way * (place / num_steps);
+  double value = dark;
+  for (int i = 0; i < num_steps; ++i) {
+    const double next =
+        GrayAt(gray, inner_px + way * (static_cast<double>(i + 1) / num_steps), look);
+    if (next > middle) return inner_px + way * ((i + (middle - value) / (next - value)) / num_steps);
+    value = next;
   }
   return std::nullopt;
 }
@@ -287,10 +286,10 @@ std::optional<QuadCorners> AlignSides(const cv::Mat& gray, const QuadCorners& qu
                                       const MarkerLook& look) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && look.cells.type() == CV_8UC1);
   if (!HasCells(quad, look.cells.total())) return std::nullopt;
-  std::optional<QuadCorners> aligned = FindSides(gray, quad, look);
+  const std::optional<QuadCorners> aligned = FindSides(gray, quad, look);
+  if (!aligned || MaxCornerShift(*aligned, quad) < kSettledPx) return aligned;
   // Once more, as the levels were read beside a side that was off.
-  if (aligned) aligned = FindSides(gray, *aligned, look);
-  return aligned;
+  return FindSides(gray, *aligned, look);
 }
 
 std::optional<QuadCorners> LocateMarker(const cv::Mat& gray, const QuadCorners& expected,
@@ -302,7 +301,7 @@ std::optional<QuadCorners> LocateMarker(const cv::Mat& gray, const QuadCorners& 
   if (!shift) return std::nullopt;
   QuadCorners moved = expected;
   for (Eigen::Vector2d& corner : moved) corner += Eigen::Vector2d(shift->x, shift->y);
-  const auto aligned = AlignSides(gray, moved, look);
+  const auto aligned = FindSides(gray, moved, look);
   if (!aligned || !ShowsItsCells(gray, *aligned, look)) return std::nullopt;
   return aligned;
 }

@@ -26,7 +26,7 @@ std::optional<QuadCorners> AlignSides(const cv::Mat& gray, const QuadCorners& qu
                                       const MarkerLook& look);
 
 // The marker within `reach_px` of `expected`, whose shape is known to about a cell: where all of
-// its cells look as they should. Nothing if there is no such place; corners are AlignSides()'s.
+// its cells look as they should. Nothing if there is no such place; corners to a tenth of a pixel.
 std::optional<QuadCorners> LocateMarker(const cv::Mat& gray, const QuadCorners& expected,
                                         const MarkerLook& look, double reach_px);
 

@@ -32,6 +32,14 @@ bool HasCells(const QuadCorners& quad, std::size_t num_cells) {
          QuadArea(quad) >= static_cast<double>(num_cells);
 }
 
+double MaxCornerShift(const QuadCorners& a, const QuadCorners& b) {
+  double max_shift = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    max_shift = std::max(max_shift, (a[i] - b[i]).norm());
+  }
+  return max_shift;
+}
+
 Box BoundingBox(const QuadCorners& quad) {
   Box box{quad[0], quad[0]};
   for (const Eigen::Vector2d& corner : quad) {
