@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstring>
 
 #include <Eigen/Core>
 
@@ -21,12 +23,17 @@ constexpr int kMaxRingedCells = 32;  // along a side, with the rings
 // Of column i, row j at (j + kRing, i + kRing); 0 for dark, 1 for light.
 using Lightness = Eigen::Matrix<float, kMaxRingedCells, kMaxRingedCells, Eigen::RowMajor>;
 
+// The light ones among the cells: column i is bit i + kRing of the number at j + kRing.
+using LightCells = std::array<std::int32_t, kMaxRingedCells>;
+static_assert(kMaxRingedCells <= 32);
+
 // How the blurred columns (or rows) share a group of places, in cells: for each, weights of the
 // cells first ... first + count - 1, counted with the rings, and their derivatives by the place and
 // by the blur.
 struct Shares {
   int count = 0;
   Ints first;
+  int least_first = 0, largest_first = 0;  // of the places
   Floats blur;
   FloatsArray<kMaxRingedCells> value, by_x, by_blur;
 };
@@ -45,6 +52,8 @@ inline void ComputeShares(Floats x, Floats blur, int num_cells, Shares* shares) 
   low = low < 0 ? Ints{} : low;
   low = low > all_edges - num_edges ? Ints{} + (all_edges - num_edges) : low;
   shares->first = low;
+  shares->least_first = MinLane(low);
+  shares->largest_first = MaxLane(low);
   shares->blur = blur;
   shares->count = num_edges + 1;
   const Floats inverse_blur = 1.0f / blur;
@@ -72,12 +81,8 @@ inline void ComputeShares(Floats x, Floats blur, int num_cells, Shares* shares) 
 
 // Whether the blur of one of the places reaches one of the outermost `num_rings` rings.
 inline bool Reaches(int num_rings, const Shares& shares, int num_cells) {
-  int low = shares.first[0], high = low;
-  for (int lane = 1; lane < kLanes; ++lane) {
-    low = std::min(low, static_cast<int>(shares.first[lane]));
-    high = std::max(high, static_cast<int>(shares.first[lane]));
-  }
-  return low < num_rings || high + shares.count > num_cells + 2 * kRing - num_rings;
+  return shares.least_first < num_rings ||
+         shares.largest_first + shares.count > num_cells + 2 * kRing - num_rings;
 }
 
 // Lightness of the blurred pattern and its derivatives by u, v and the two blurs (all in cells).
@@ -88,64 +93,115 @@ struct Blended {
 
 namespace internal {
 
-// Of column `column` to the right of the first, in row `row` below the first, for each place.
-inline Floats Gather(const std::array<const float*, kLanes>& corners, int row, int column) {
-  const int offset = row * kMaxRingedCells + column;
-  Floats cells;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) cells[lane] = corners[lane][offset];
-  return cells;
-}
+// What a row, or all columns together, give a group of places, and its derivatives by the place and
+// by the blur.
+struct Sums {
+  Floats value{}, by_x{}, by_blur{};
+};
 
-inline std::array<const float*, kLanes> FirstCells(const Lightness& lightness, const Shares& u,
-                                                   const Shares& v) {
-  std::array<const float*, kLanes> corners;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    corners[static_cast<std::size_t>(lane)] =
-        lightness.data() + v.first[lane] * kMaxRingedCells + u.first[lane];
-  }
-  return corners;
-}
-
-}  // namespace internal
-
-inline Blended Blend(const Lightness& lightness, const Shares& u, const Shares& v) {
-  const std::array<const float*, kLanes> corners = internal::FirstCells(lightness, u, v);
+// `row(j)` gives the Sums of the j-th row that shares in the places.
+template <typename Row>
+Blended BlendRows(const Shares& u, const Shares& v, const Row& row) {
   Blended sum;
   Floats by_blur_u_v{};
   for (int j = 0; j < v.count; ++j) {
-    Floats value{}, by_u{}, by_blur_u{};
-    for (int i = 0; i < u.count; ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      const Floats cell = internal::Gather(corners, j, i);
-      value += cell * u.value[index];
-      by_u += cell * u.by_x[index];
-      by_blur_u += cell * u.by_blur[index];
-    }
+    const Sums columns = row(j);
     const auto index = static_cast<std::size_t>(j);
-    sum.value += value * v.value[index];
-    sum.by_u += by_u * v.value[index];
-    sum.by_blur_u += by_blur_u * v.value[index];
-    sum.by_v += value * v.by_x[index];
-    sum.by_blur_v += value * v.by_blur[index];
-    sum.by_u_v += by_u * v.by_x[index];
-    by_blur_u_v += by_blur_u * v.by_blur[index];
+    sum.value += columns.value * v.value[index];
+    sum.by_u += columns.by_x * v.value[index];
+    sum.by_blur_u += columns.by_blur * v.value[index];
+    sum.by_v += columns.value * v.by_x[index];
+    sum.by_blur_v += columns.value * v.by_blur[index];
+    sum.by_u_v += columns.by_x * v.by_x[index];
+    by_blur_u_v += columns.by_blur * v.by_blur[index];
   }
   sum.by_uu_vv = by_blur_u_v / (u.blur * v.blur);  // for a Gaussian, d/dblur = blur d2/dx2
   return sum;
 }
 
-// The value alone.
-inline Floats BlendValue(const Lightness& lightness, const Shares& u, const Shares& v) {
-  const std::array<const float*, kLanes> corners = internal::FirstCells(lightness, u, v);
-  Floats sum{};
-  for (int j = 0; j < v.count; ++j) {
-    Floats value{};
-    for (int i = 0; i < u.count; ++i) {
-      value += internal::Gather(corners, j, i) * u.value[static_cast<std::size_t>(i)];
-    }
-    sum += value * v.value[static_cast<std::size_t>(j)];
+// x where `is_chosen` is -1, zero where it is zero.
+inline Floats Choose(Ints is_chosen, Floats x) {
+  Ints bits;
+  std::memcpy(&bits, &x, sizeof(bits));
+  bits &= is_chosen;
+  std::memcpy(&x, &bits, sizeof(x));
+  return x;
+}
+
+// Of the columns that are the black square's.
+inline Sums WithinSquare(const Shares& shares, int num_cells) {
+  Sums sums;
+  for (int i = 0; i < shares.count; ++i) {
+    const Ints column = shares.first + i;
+    const Ints is_within = (column >= kRing) & (column < num_cells + kRing);
+    const auto index = static_cast<std::size_t>(i);
+    sums.value += Choose(is_within, shares.value[index]);
+    sums.by_x += Choose(is_within, shares.by_x[index]);
+    sums.by_blur += Choose(is_within, shares.by_blur[index]);
   }
-  return sum;
+  return sums;
+}
+
+}  // namespace internal
+
+// Of cells that are light or dark.
+inline Blended BlendLight(const LightCells& light, const Shares& u, const Shares& v) {
+  return internal::BlendRows(u, v, [&](int j) {
+    Ints columns;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      columns[lane] = light[static_cast<std::size_t>(v.first[lane] + j)];
+    }
+    columns >>= u.first;
+    internal::Sums sums;
+    for (int i = 0; i < u.count; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      const Ints is_light = -(columns >> i & 1);
+      sums.value += internal::Choose(is_light, u.value[index]);
+      sums.by_x += internal::Choose(is_light, u.by_x[index]);
+      sums.by_blur += internal::Choose(is_light, u.by_blur[index]);
+    }
+    return sums;
+  });
+}
+
+// Of a dark square on light ground: all but the rings are dark.
+inline Blended BlendGround(const Shares& u, const Shares& v, int num_cells) {
+  const internal::Sums a = internal::WithinSquare(u, num_cells);
+  const internal::Sums b = internal::WithinSquare(v, num_cells);
+  return {1.0f - a.value * b.value, -a.by_x * b.value,
+          -a.value * b.by_x,        -a.by_blur * b.value,
+          -a.value * b.by_blur,     -a.by_x * b.by_x,
+          -a.by_blur * b.by_blur / (u.blur * v.blur)};
+}
+
+// Of cells that are dark except in the outermost ring.
+inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const Shares& v,
+                              int num_cells) {
+  std::array<const float*, kLanes> corners;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    corners[static_cast<std::size_t>(lane)] =
+        lightness.data() + v.first[lane] * kMaxRingedCells + u.first[lane];
+  }
+  const int last = num_cells + 2 * kRing - 1;
+  const auto is_outermost = [&](const Shares& shares, int i) {
+    return shares.least_first + i == 0 || shares.largest_first + i == last;
+  };
+  return internal::BlendRows(u, v, [&](int j) {
+    const bool is_outermost_row = is_outermost(v, j);
+    internal::Sums sums;
+    for (int i = 0; i < u.count; ++i) {
+      if (!is_outermost_row && !is_outermost(u, i)) continue;
+      Floats cells;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        cells[lane] = corners[lane][j * kMaxRingedCells + i];
+      }
+      const auto index = static_cast<std::size_t>(i);
+      sums.value += cells * u.value[index];
+      sums.by_x += cells * u.by_x[index];
+      sums.by_blur += cells * u.by_blur[index];
+    }
+    return sums;
+  });
 }
 
 // *b += factor * a.

@@ -36,6 +36,14 @@ VELAMAP_CLONE_FOR_AVX2 void Evaluate(const EdgeSamples& samples, const EdgePrior
   equations->Finish(values - prior.mean.values, weight);
 }
 
+// `inverse` of the Hessian.
+VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const EdgeEquations& equations,
+                                             const Matrix& inverse) {
+  return equations.Noise(inverse, [](const EdgeEquations::Jacobian& jacobian) {
+    return jacobian[EdgeParameters::kOffset] * jacobian[EdgeParameters::kOffset];
+  });
+}
+
 }  // namespace
 
 Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& samples,
@@ -102,9 +110,7 @@ std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const Edg
   uncertainty.place_covariance =
       inverse.topLeftCorner<2, 2>() -
       place.transpose().lazyProduct(PriorWeight(prior).asDiagonal() * place);
-  uncertainty.noise = fit.equations.Noise(inverse, [](const EdgeEquations::Jacobian& jacobian) {
-    return jacobian[EdgeParameters::kOffset] * jacobian[EdgeParameters::kOffset];
-  });
+  uncertainty.noise = NoiseOf(fit.equations, inverse);
   return uncertainty;
 }
 

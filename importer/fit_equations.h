@@ -69,10 +69,11 @@ class FitEquations {
     const Eigen::Matrix<float, kCount, 1> by = step.template cast<float>();
     squares_ = Floats{};
     for (std::size_t k = 0; k < jacobians_.size(); ++k) {
-      Floats& residual = residuals_[k][0];
+      Floats residual = residuals_[k][0];
       for (std::size_t i = 0; i < kCount; ++i) {
         residual += jacobians_[k][i] * by[static_cast<Eigen::Index>(i)];
       }
+      residuals_[k][0] = residual;
       squares_ += residual * residual;
     }
   }

@@ -62,10 +62,31 @@ inline Ints Floor(Floats x) {
 inline double Sum(Floats x) {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
-inline float MaxLane(Floats x) {
-  float max = x[0];
-  for (int lane = 1; lane < kLanes; ++lane) max = max < x[lane] ? x[lane] : max;
-  return max;
+
+// The lanes with the halves, then quarters, then neighbours in each other's place.
+template <typename Lanes>
+Lanes SwapHalves(Lanes x) {
+  return __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
+}
+template <typename Lanes>
+Lanes SwapQuarters(Lanes x) {
+  return __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
+}
+template <typename Lanes>
+Lanes SwapNeighbours(Lanes x) {
+  return __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
+}
+
+template <typename Lanes>
+auto MaxLane(Lanes x) {
+  const auto larger = [](Lanes a, Lanes b) { return a < b ? b : a; };
+  x = larger(x, SwapHalves(x));
+  x = larger(x, SwapQuarters(x));
+  return larger(x, SwapNeighbours(x))[0];
+}
+template <typename Lanes>
+auto MinLane(Lanes x) {
+  return -MaxLane(-x);
 }
 
 // The first `count` lanes one, the others zero.

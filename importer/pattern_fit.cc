@@ -47,6 +47,16 @@ struct Pixels {
   int count = 0;  // the last group may have less
 };
 
+// What is missing of the last group becomes a copy of its first pixel.
+inline void FillUp(Pixels* pixels) {
+  for (int lane = pixels->count % kLanes; lane > 0 && lane < kLanes; ++lane) {
+    Pixels::Group& last = pixels->groups.back();
+    last.x[lane] = last.x[0];
+    last.y[lane] = last.y[0];
+    last.gray[lane] = last.gray[0];
+  }
+}
+
 // Every k-th pixel that the model covers with these parameters, so many that about `max_pixels` are
 // used.
 VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vector& parameters,
@@ -76,15 +86,13 @@ VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vect
         const int place = pixels.count++ % kLanes;
         if (place == 0) pixels.groups.emplace_back();
         Pixels::Group& group = pixels.groups.back();
-        // What is missing of the last group is a copy of this pixel.
-        for (int i = place; i < kLanes; ++i) {
-          group.x[i] = x[lane];
-          group.y[i] = y[lane];
-          group.gray[i] = values[column];
-        }
+        group.x[place] = x[lane];
+        group.y[place] = y[lane];
+        group.gray[place] = values[column];
       }
     }
   }
+  FillUp(&pixels);
   return pixels;
 }
 
@@ -181,6 +189,19 @@ bool MinimizeInPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) 
   return contrast > kMinContrast && minimum->equations.Rms() < kMaxRelativeRms * contrast;
 }
 
+// `inverse` of the Hessian.
+VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const Equations& equations, const P::Matrix& inverse) {
+  return equations.Noise(inverse, [](const Equations::Jacobian& jacobian) {
+    // All corners move: the slope of the grey values.
+    Floats slope_x{}, slope_y{};
+    for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
+      slope_x += jacobian[i];
+      slope_y += jacobian[i + 1];
+    }
+    return slope_x * slope_x + slope_y * slope_y;
+  });
+}
+
 // The priors hold weak parameters but are no observations: their own error does not count.
 std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Minimum& minimum) {
   const Eigen::LLT<P::Matrix> factors(minimum.equations.hessian());
@@ -189,16 +210,7 @@ std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Mini
   if (!inverse.allFinite()) return std::nullopt;
   // The diagonal of inverse * (hessian - weight) * inverse.
   const P::Vector variances = inverse.diagonal() - inverse.cwiseAbs2().lazyProduct(problem.weight);
-  const ResidualNoise noise =
-      minimum.equations.Noise(inverse, [](const Equations::Jacobian& jacobian) {
-        // All corners move: the slope of the grey values.
-        Floats slope_x{}, slope_y{};
-        for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
-          slope_x += jacobian[i];
-          slope_y += jacobian[i + 1];
-        }
-        return slope_x * slope_x + slope_y * slope_y;
-      });
+  const ResidualNoise noise = NoiseOf(minimum.equations, inverse);
   RefinedCorners refined{CornersOf(minimum.parameters), {}};
   for (int i = 0; i < kNumCorners; ++i) {
     refined.sigma_px[static_cast<std::size_t>(i)] =

@@ -73,12 +73,14 @@ double FillLightness(const cv::Mat& gray, const cv::Mat& cells, const P::Vector&
   const Eigen::Vector2d blur_cells = BlurInCells(parameters, quad, n);
   const RingReading across_u(blur_cells.x()), across_v(blur_cells.y());
   const double dark = parameters[P::kDark], contrast = parameters[P::kLight] - dark;
+  model->inner = {};
   for (int j = -kRing; j < n + kRing; ++j) {
     for (int i = -kRing; i < n + kRing; ++i) {
       const int outside = std::max({-i, i - n + 1, -j, j - n + 1});
-      float lightness = 0.0f, ring = outside > 0 ? 1.0f : 0.0f, surround = 0.0f;
+      float surround = 0.0f;
       if (outside <= 0) {
-        lightness = cells.at<std::uint8_t>(j, i) != 0 ? 1.0f : 0.0f;
+        const std::int32_t is_light = cells.at<std::uint8_t>(j, i) != 0;
+        model->inner[static_cast<std::size_t>(j + kRing)] |= is_light << (i + kRing);
       } else if (outside == kRing) {
         const Eigen::Vector2d uv(across_u.Place(i, n), across_v.Place(j, n));
         const double value = InterpolateGray(gray, map.ToImage(uv.x(), uv.y()));
@@ -87,8 +89,6 @@ double FillLightness(const cv::Mat& gray, const cv::Mat& cells, const P::Vector&
         const double read = (value - dark) / contrast - 1 + u.square * v.square;
         surround = static_cast<float>(std::clamp(read / surround_share, -1.0, 0.2));
       }
-      model->inner(j + kRing, i + kRing) = lightness;
-      model->ring(j + kRing, i + kRing) = ring;
       model->surround(j + kRing, i + kRing) = surround;
     }
   }

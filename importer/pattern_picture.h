@@ -28,10 +28,6 @@ class PatternPicture {
     QuadCorners quad = CornersOf(parameters);
     for (Eigen::Vector2d& corner : quad) corner -= model.center_px;
     square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
-    const int n = model.num_cells + 2 * kRing;
-    print_.topLeftCorner(n, n) =
-        static_cast<float>(parameters[P::kInnerLight]) * model.inner.topLeftCorner(n, n) +
-        model.ring.topLeftCorner(n, n);
   }
 
   // Whether a place is no further outside the black square than the model says what is there; -1
@@ -127,19 +123,15 @@ class PatternPicture {
   Blended BlendAll(const Shares& u, const Shares& v, Floats correlation_px, Floats* inner_value,
                    Floats* surround_value) const {
     const int n = model_.num_cells;
+    const Blended inner = BlendLight(model_.inner, u, v);
+    *inner_value = inner.value;
     Blended pattern;
-    if (Reaches(kRing, u, n) || Reaches(kRing, v, n)) {
-      pattern = Blend(print_, u, v);
-      *inner_value = BlendValue(model_.inner, u, v);
-    } else {
-      const Blended inner = Blend(model_.inner, u, v);
-      Add(AllLanes(parameters_[P::kInnerLight]), inner, &pattern);
-      *inner_value = inner.value;
-    }
+    if (Reaches(kRing, u, n) || Reaches(kRing, v, n)) pattern = BlendGround(u, v, n);
+    Add(AllLanes(parameters_[P::kInnerLight]), inner, &pattern);
     AddCorrelation(correlation_px, &pattern);
     *surround_value = Floats{};
     if (Reaches(1, u, n) || Reaches(1, v, n)) {
-      const Blended around = Blend(model_.surround, u, v);
+      const Blended around = BlendOutermost(model_.surround, u, v, n);
       *surround_value = around.value;
       Add(AllLanes(parameters_[P::kSurround]), around, &pattern);
     }
@@ -149,7 +141,6 @@ class PatternPicture {
   const PatternModel& model_;
   PatternParameters::Vector parameters_;
   Eigen::Matrix3f square_from_image_;
-  Lightness print_;  // the marker's own cells and the quiet zone, as light as the parameters say
 };
 
 }  // namespace velamap
