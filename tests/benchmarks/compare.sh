@@ -12,7 +12,8 @@
 #   sweep       central_frame_sweeper; as many single runs
 # Times are CPU seconds, user and system, of all threads and children: another program beside them
 # changes wall times more. Clips are rendered with fixed seeds and kept in WORK_FOLDER/clips.
-# BUILD: folder of the build (build/release). WIDTHS, NUM_FRAMES, LONG, REPEATS, CENTRAL_FRAMES: sizes.
+# BUILD: folder of the build (build/release). WIDTHS, NUM_FRAMES, MBIT, LONG, REPEATS,
+# CENTRAL_FRAMES: sizes.
 set -euo pipefail
 export LC_ALL=C
 
@@ -39,6 +40,7 @@ done
 if [[ ${#parts[@]} -eq 0 ]]; then parts=(detection adjustment main memory growth markers tracking sweep); fi
 read -ra widths <<<"${WIDTHS:-1920 3840}"
 num_frames="${NUM_FRAMES:-200}"
+mbit="${MBIT:-100}"
 long="${LONG:-2000}"
 repeats="${REPEATS:-3}"
 central_frames="${CENTRAL_FRAMES:-11}"
@@ -56,13 +58,15 @@ done
 mkdir -p "$work/clips"
 work="$(realpath "$work")"
 
-# clip KIND WIDTH: the folder of a rendered clip, calm or busy.
+# clip KIND WIDTH: the folder of a rendered clip, calm or busy. As action cameras compress: 4K to
+# MBIT Mbit/s, other sizes to as many a pixel.
 clip() {
-  local folder="$work/clips/$1_$2_$num_frames" busy=0
+  local bitrate="$((mbit * 1000 * $2 / 3840 * $2 / 3840))k" busy=0
+  local folder="$work/clips/$1_$2_${num_frames}_$bitrate"
   if [[ $1 == busy ]]; then busy=1; fi
   if [[ ! -f "$folder/whole" ]]; then
     "$render_clip" --output_path "$folder" --width "$2" --num_frames "$num_frames" --busy "$busy" \
-      --seed 1 >"$work/render.log" 2>&1 || fail "render_clip: $(tail -n 1 "$work/render.log")"
+      --bitrate "$bitrate" --seed 1 >"$work/render.log" 2>&1 || fail "render_clip: $(tail -n 1 "$work/render.log")"
     touch "$folder/whole"
   fi
   echo "$folder"
