@@ -77,6 +77,7 @@ std::vector<std::vector<int>> LinesOfLayout(const Layout& layout) {
   for (const LayoutPart& part : layout.parts) {
     for (const MarkerLine& line : part.horizontal) lines.push_back(line.marker_ids);
     for (const MarkerLine& line : part.vertical) lines.push_back(line.marker_ids);
+    if (!part.marker_ids.empty()) lines.push_back(part.marker_ids);
   }
   return lines;
 }

@@ -16,7 +16,8 @@ struct ExpectedMarker {
   double reach_px = 0.0;
 };
 
-// Ids along each line of the layout, horizontal and vertical.
+// Ids along each line of the layout, horizontal and vertical, and those that a part lists outside
+// its lines: most often they stand in a row as well, and where not, none is located there.
 std::vector<std::vector<int>> LinesOfLayout(const Layout& layout);
 
 // Of every marker whose two neighbours on a line are found, or the next two on one side of it:

@@ -176,12 +176,18 @@ bool SearchAlso(const FrameSearch& search, std::vector<cv::Rect> regions,
   return true;
 }
 
-// Adds what is to be seen where the layout says that markers are missing.
-void LookOnLines(const FrameSearch& search, std::vector<MarkerQuad>* quads) {
+// Looks where the layout says that markers are missing. Returns the regions where none is to be
+// seen clearly.
+std::vector<cv::Rect> LookOnLines(const FrameSearch& search, std::vector<MarkerQuad>* quads) {
+  std::vector<cv::Rect> unclear;
   for (const auto& [quad, reach_px] : ExpectOnLines(search.lines, *quads)) {
-    if (!FitsIn(BoundingBox(quad.corners_px), search.image_size, reach_px)) continue;
-    AddLocated(search, quad.marker_id, quad.corners_px, reach_px, quads);
+    const Box box = BoundingBox(quad.corners_px);
+    if (!FitsIn(box, search.image_size, reach_px)) continue;
+    if (!AddLocated(search, quad.marker_id, quad.corners_px, reach_px, quads)) {
+      unclear.push_back(RegionAround(box, search.image_size, reach_px));
+    }
   }
+  return unclear;
 }
 
 // What pass 1 found, and what it says of all others.
@@ -247,7 +253,7 @@ std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, i
   const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, size);
   if (IsLost(tracks->tracks, quad_of_track, first->motions, size)) return std::nullopt;
   tracks->inflow_px = inflow_px;
-  LookOnLines(search, &quads);
+  SearchAlso(search, LookOnLines(search, &quads), &quads);
   return quads;
 }
 

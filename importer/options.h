@@ -32,7 +32,7 @@ struct ArucoDetectionOptions {
   double error_correction_rate = 0.3;
   bool inverted = false;                     // white marker on black ground
   SearchMode search = SearchMode::kTracked;  // of videos; photographs are searched as a whole
-  int full_search_interval = 20;             // tracked: the whole of every k-th frame that is read
+  int full_search_interval = 15;             // tracked: the whole of every k-th frame that is read
 
   void Check() const;  // throws InputError that names the option
 };

@@ -56,10 +56,10 @@ TEST(ExpectOnLines, EachMarkerOnce) {
   EXPECT_EQ(ExpectOnLines({{1, 2, 3}, {11, 2, 13}}, found).size(), 1u);
 }
 
-TEST(LinesOfLayout, AreTheHorizontalAndTheVerticalOnes) {
+TEST(LinesOfLayout, AreTheHorizontalAndTheVerticalOnesAndTheOthersOfAPart) {
   Layout layout;
   layout.parts.push_back({"main", false, {{"h1", {1, 2}}}, {{"v1", {1, 4}}}, {9}});
-  EXPECT_EQ(LinesOfLayout(layout), (std::vector<std::vector<int>>{{1, 2}, {1, 4}}));
+  EXPECT_EQ(LinesOfLayout(layout), (std::vector<std::vector<int>>{{1, 2}, {1, 4}, {9}}));
 }
 
 }  // namespace

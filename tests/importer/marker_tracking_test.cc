@@ -132,6 +132,18 @@ TEST(SearchTracked, WhatIsMissingOnALineIsLocated) {
   EXPECT_EQ(video.Next().size(), 12u);
 }
 
+TEST(SearchTracked, WhatIsUnclearOnALineIsSearchedThere) {
+  FakeVideo video = GridVideo();
+  video.hidden = {1};
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(video.Next().size(), 11u);
+  video.hidden.clear();
+  FakeVideo without_lines = video;
+  video.lines = {{0, 1, 2, 3}};
+  EXPECT_EQ(video.Next().size(), 12u);
+  EXPECT_EQ(video.num_full, 2);
+  EXPECT_EQ(without_lines.Next().size(), 11u);
+}
+
 TEST(SearchTracked, AJumpIsMetByAFullSearch) {
   FakeVideo video = GridVideo();
   for (int i = 0; i < 3; ++i) video.Next();
