@@ -168,9 +168,12 @@ inline Blended BlendLight(const LightCells& light, const Shares& u, const Shares
 inline Blended BlendGround(const Shares& u, const Shares& v, int num_cells) {
   const internal::Sums a = internal::WithinSquare(u, num_cells);
   const internal::Sums b = internal::WithinSquare(v, num_cells);
-  return {1.0f - a.value * b.value, -a.by_x * b.value,
-          -a.value * b.by_x,        -a.by_blur * b.value,
-          -a.value * b.by_blur,     -a.by_x * b.by_x,
+  return {1.0f - a.value * b.value,
+          -a.by_x * b.value,
+          -a.value * b.by_x,
+          -a.by_blur * b.value,
+          -a.value * b.by_blur,
+          -a.by_x * b.by_x,
           -a.by_blur * b.by_blur / (u.blur * v.blur)};
 }
 

@@ -8,8 +8,8 @@
 // In both a marker is first looked for as what it is, and then, where it is not to be seen clearly,
 // as any marker within the region around it.
 //
-// What is missing on the layout's lines is looked for, in the same two ways, between and beside what
-// is found.
+// What is missing on the layout's lines is looked for, in the same two ways, between and beside
+// what is found.
 //
 // Halfway between two full searches a coarse one of the whole frame tells of new large markers.
 // Where far fewer are found than usual, or the places fill most of the picture, the whole frame is

@@ -36,17 +36,17 @@ QuadCorners CornersOf(const PatternParameters::Vector& parameters);
 
 // What a fit keeps fixed.
 struct PatternModel {
-  int num_cells = 0;  // along a side, with the border
+  int num_cells = 0;      // along a side, with the border
   LightCells inner = {};  // the marker's own cells
   Lightness surround;     // how far from light the outermost ring is; the other cells are zero
   Eigen::Vector2d center_px;
   double diagonal_px = 0.0;
 };
 
-// Fills the pictures of cells: the marker's own (zero for black) are known, what surrounds the quiet
-// zone is read from the image. Where it is read, blur also brings some of the
-// quiet zone and of the black border; that is taken off, with the corners, blurs and grey levels of
-// `parameters`. Returns the larger blur, in cells.
+// Fills the pictures of cells: the marker's own (zero for black) are known, what surrounds the
+// quiet zone is read from the image. Where it is read, blur also brings some of the quiet zone and
+// of the black border; that is taken off, with the corners, blurs and grey levels of `parameters`.
+// Returns the larger blur, in cells.
 double FillLightness(const cv::Mat& gray, const cv::Mat& cells,
                      const PatternParameters::Vector& parameters, PatternModel* model);
 

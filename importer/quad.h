@@ -22,7 +22,8 @@ double QuadArea(const QuadCorners& quad);  // of a simple one, never negative
 // Whether the corners are finite and the quad has room for so many cells of a pixel each.
 bool HasCells(const QuadCorners& quad, std::size_t num_cells);
 
-double MaxCornerShift(const QuadCorners& a, const QuadCorners& b);  // px
+// The longest way from a corner of one to the same of the other, px.
+double MaxCornerShift(const QuadCorners& a, const QuadCorners& b);
 
 struct Box {
   Eigen::Vector2d min, max;

@@ -21,6 +21,13 @@ TEST(FloatLanes, RoundCompareAndAdd) {
   EXPECT_EQ(Sum(x), 10.0);
   EXPECT_EQ(MaxLane(x), 7.0f);
   EXPECT_EQ(MaxLane(-x), 1.5f);
+  EXPECT_EQ(MinLane(x), -1.5f);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    Ints counts{};
+    counts[lane] = 3;
+    EXPECT_EQ(MaxLane(counts), 3) << lane;
+    EXPECT_EQ(MinLane(-counts), -3) << lane;
+  }
   for (int count = 0; count <= kLanes; ++count) EXPECT_EQ(Sum(FirstLanes(count)), count);
 }
 
