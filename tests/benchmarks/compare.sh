@@ -11,7 +11,8 @@
 #   tracking    import with tracked and with exhaustive search: what both find, and their search
 #   sweep       central_frame_sweeper; as many single runs
 # Times are CPU seconds, user and system, of all threads and children: another program beside them
-# changes wall times more. Clips are rendered with fixed seeds and kept in WORK_FOLDER/clips.
+# changes wall times more. Decoding is measured before and after what it is compared with. Clips are
+# rendered with fixed seeds and kept in WORK_FOLDER/clips.
 # BUILD: folder of the build (build/release). WIDTHS, NUM_FRAMES, MBIT, LONG, REPEATS,
 # CENTRAL_FRAMES: sizes.
 set -euo pipefail
@@ -94,6 +95,8 @@ measure() {
 # value KEY: of the last command's stdout.
 value() { awk -F': ' -v key="$1" '$1 == key { print $2 }' "$work/out.txt"; }
 
+mean() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (a + b) / 2 }'; }
+
 percent() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f %%", (b > 0 ? 100 * a / b : 0) }'; }
 
 ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (b > 0 ? a / b : 0) }'; }
@@ -117,20 +120,23 @@ search_ms() {
 decode() { measure ffmpeg -v error -i "$1/clip.mp4" -an -f null -; }
 
 compare_detection() {
-  local width kind folder repeat import_cpu import_markers plain_cpu plain_markers
+  local width kind folder repeat decoding_cpu import_cpu import_markers plain_cpu plain_markers
   echo "| clip | velamap CPU s | markers | plain loop CPU s | markers | decoding CPU s | plain / velamap | decoding / velamap |"
   echo "|---|---|---|---|---|---|---|---|"
   for width in "${widths[@]}"; do
     for kind in calm busy; do
       folder="$(clip "$kind" "$width")"
       for ((repeat = 0; repeat < repeats; repeat++)); do
+        decode "$folder"
+        decoding_cpu="$cpu"
         import "$folder"
         import_cpu="$cpu" import_markers="$(value markers)"
+        decode "$folder"
+        decoding_cpu="$(mean "$decoding_cpu" "$cpu")"
         measure "$plain_detection" "$folder/clip.mp4" \
           "$(sed -n 's/^dictionary: *//p' "$folder/layout.yml")"
         plain_cpu="$cpu" plain_markers="$(value markers)"
-        decode "$folder"
-        echo "| $kind, $width px, $num_frames frames | $import_cpu | $import_markers | $plain_cpu | $plain_markers | $cpu | $(ratio "$plain_cpu" "$import_cpu") | $(ratio "$cpu" "$import_cpu") |"
+        echo "| $kind, $width px, $num_frames frames | $import_cpu | $import_markers | $plain_cpu | $plain_markers | $decoding_cpu | $(ratio "$plain_cpu" "$import_cpu") | $(ratio "$decoding_cpu" "$import_cpu") |"
       done
     done
   done
@@ -164,12 +170,14 @@ compare_adjustment() {
 }
 
 compare_main() {
-  local width repeat folder main_cpu
+  local width repeat folder decoding_cpu main_cpu
   echo "| clip | automatic_reconstructor CPU s | decoding CPU s | ratio | import, register, adjust, export, report CPU s |"
   echo "|---|---|---|---|---|"
   for width in "${widths[@]}"; do
     folder="$(clip calm "$width")"
     for ((repeat = 0; repeat < repeats; repeat++)); do
+      decode "$folder"
+      decoding_cpu="$cpu"
       rm -rf "$work/result"
       measure "$velamap" automatic_reconstructor --image_path "$folder/clip.mp4" \
         --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
@@ -177,7 +185,8 @@ compare_main() {
         --central_frame $((num_frames / 2)) --backend ceres
       main_cpu="$cpu"
       decode "$folder"
-      echo "| calm, $width px, $num_frames frames | $main_cpu | $cpu | $(ratio "$main_cpu" "$cpu") | $(
+      decoding_cpu="$(mean "$decoding_cpu" "$cpu")"
+      echo "| calm, $width px, $num_frames frames | $main_cpu | $decoding_cpu | $(ratio "$main_cpu" "$decoding_cpu") | $(
         awk '/"stage"/ { gsub(/[",]/, ""); stage = $2 }
           /"cpu_s"/ && stage ~ /^(import|register|adjust|export|report)$/ {
             sub(/,/, "", $2); printf "%s%.2f", separator, $2; separator = ", " }' "$work/result/timing.json") |"
