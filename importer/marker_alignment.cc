@@ -26,8 +26,9 @@ constexpr int kMaxScanSteps = 40;
 constexpr double kMaxDeparturePx = 0.7;
 constexpr double kMaxDepartureCells = 0.12;
 
-// A quad that moves less stands where its sides are.
-constexpr double kSettledPx = 0.05;
+// A quad that moves less stands where its sides are, wherever it came from.
+constexpr double kSettledPx = 0.01;
+constexpr int kMaxLooks = 6;
 
 constexpr double kMinCorrelation = 0.8;
 constexpr double kSureCorrelation = 0.9;  // no other place does better than near this one
@@ -287,10 +288,14 @@ std::optional<QuadCorners> AlignSides(const cv::Mat& gray, const QuadCorners& qu
                                       const MarkerLook& look) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && look.cells.type() == CV_8UC1);
   if (!HasCells(quad, look.cells.total())) return std::nullopt;
-  const std::optional<QuadCorners> aligned = FindSides(gray, quad, look);
-  if (!aligned || MaxCornerShift(*aligned, quad) < kSettledPx) return aligned;
-  // Once more, as the levels were read beside a side that was off.
-  return FindSides(gray, *aligned, look);
+  // Again and again, as the levels were read beside sides that were off.
+  std::optional<QuadCorners> aligned = quad;
+  for (int look_idx = 0; look_idx < kMaxLooks; ++look_idx) {
+    const QuadCorners last = *aligned;
+    aligned = FindSides(gray, last, look);
+    if (!aligned || MaxCornerShift(*aligned, last) < kSettledPx) break;
+  }
+  return aligned;
 }
 
 std::optional<QuadCorners> LocateMarker(const cv::Mat& gray, const QuadCorners& expected,

@@ -174,7 +174,7 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingInATrackedVideo) {
         EXPECT_LT((tracked[i].detections.markers[m].corners_in_image_px[c] -
                    exhaustive[i].detections.markers[m].corners_in_image_px[c])
                       .norm(),
-                  0.005);
+                  0.002);
       }
     }
   }
