@@ -99,6 +99,15 @@ struct Sums {
   Floats value{}, by_x{}, by_blur{};
 };
 
+// Adds the i-th column that shares in the places; `weigh` says how much of its share counts.
+template <typename Weigh>
+void AddColumn(const Shares& shares, int i, const Weigh& weigh, Sums* sums) {
+  const auto index = static_cast<std::size_t>(i);
+  sums->value += weigh(shares.value[index]);
+  sums->by_x += weigh(shares.by_x[index]);
+  sums->by_blur += weigh(shares.by_blur[index]);
+}
+
 // `row(j)` gives the Sums of the j-th row that shares in the places.
 template <typename Row>
 Blended BlendRows(const Shares& u, const Shares& v, const Row& row) {
@@ -134,10 +143,8 @@ inline Sums WithinSquare(const Shares& shares, int num_cells) {
   for (int i = 0; i < shares.count; ++i) {
     const Ints column = shares.first + i;
     const Ints is_within = (column >= kRing) & (column < num_cells + kRing);
-    const auto index = static_cast<std::size_t>(i);
-    sums.value += Choose(is_within, shares.value[index]);
-    sums.by_x += Choose(is_within, shares.by_x[index]);
-    sums.by_blur += Choose(is_within, shares.by_blur[index]);
+    AddColumn(
+        shares, i, [&](Floats share) { return Choose(is_within, share); }, &sums);
   }
   return sums;
 }
@@ -154,11 +161,9 @@ inline Blended BlendLight(const LightCells& light, const Shares& u, const Shares
     columns >>= u.first;
     internal::Sums sums;
     for (int i = 0; i < u.count; ++i) {
-      const auto index = static_cast<std::size_t>(i);
       const Ints is_light = -(columns >> i & 1);
-      sums.value += internal::Choose(is_light, u.value[index]);
-      sums.by_x += internal::Choose(is_light, u.by_x[index]);
-      sums.by_blur += internal::Choose(is_light, u.by_blur[index]);
+      internal::AddColumn(
+          u, i, [&](Floats share) { return internal::Choose(is_light, share); }, &sums);
     }
     return sums;
   });
@@ -198,10 +203,8 @@ inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         cells[lane] = corners[lane][j * kMaxRingedCells + i];
       }
-      const auto index = static_cast<std::size_t>(i);
-      sums.value += cells * u.value[index];
-      sums.by_x += cells * u.by_x[index];
-      sums.by_blur += cells * u.by_blur[index];
+      internal::AddColumn(
+          u, i, [&](Floats share) { return cells * share; }, &sums);
     }
     return sums;
   });

@@ -67,8 +67,9 @@ std::optional<Eigen::Vector2d> FindStep(const cv::Mat& gray, const Eigen::Vector
   for (int i = 0; i < num_steps; ++i) {
     const double next =
         GrayAt(gray, inner_px + way * (static_cast<double>(i + 1) / num_steps), look);
-    if (next > middle)
+    if (next > middle) {
       return inner_px + way * ((i + (middle - value) / (next - value)) / num_steps);
+    }
     value = next;
   }
   return std::nullopt;
