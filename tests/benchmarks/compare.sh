@@ -45,6 +45,10 @@ mbit="${MBIT:-100}"
 long="${LONG:-2000}"
 repeats="${REPEATS:-3}"
 central_frames="${CENTRAL_FRAMES:-11}"
+for size in "${widths[@]}" "$num_frames" "$mbit" "$long" "$repeats" "$central_frames"; do
+  [[ "$size" =~ ^[1-9][0-9]*$ ]] ||
+    fail "$size: no size; WIDTHS, NUM_FRAMES, MBIT, LONG, REPEATS, CENTRAL_FRAMES take numbers from 1"
+done
 
 velamap="$build/workflows/velamap"
 render_clip="$build/tests/tools/render_clip"
