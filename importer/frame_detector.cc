@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <iterator>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "importer/duplicates.h"
 #include "importer/line_expectation.h"
 #include "importer/marker_detector.h"
+#include "importer/marker_search.h"
 
 namespace velamap {
 namespace {
@@ -21,6 +23,16 @@ std::uint64_t Hash(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   return hash;
+}
+
+std::string MapText(const MarkerMap& map) {
+  std::string text;
+  for (const auto& [id, in_shape_m] : map) {
+    text += fmt::format("|{}", id);
+    for (const Eigen::Vector3d& x : in_shape_m)
+      text += fmt::format(" {} {} {}", x.x(), x.y(), x.z());
+  }
+  return text;
 }
 
 void WarnOfSymmetries(const FrameDetector& detector) {
@@ -36,7 +48,8 @@ void WarnOfSymmetries(const FrameDetector& detector) {
 
 }  // namespace
 
-FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options) {
+FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
+                                const MarkerMap& map) {
   FrameDetector detector{options,
                          LoadDictionary(layout.dictionary),
                          layout.border_bits,
@@ -44,13 +57,19 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
                          {},
                          {},
                          {},
-                         LinesOfLayout(layout)};
+                         {},
+                         {}};
   for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
     detector.looks.push_back(
         {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
   }
   detector.symmetries = FindCodeSymmetries(detector.dictionary);
   for (const int id : MarkerIds(layout)) detector.part_of_id[id] = PartOfMarker(layout, id);
+  if (options.search == SearchMode::kTracked) detector.lines = LinesOfLayout(layout);
+  for (const auto& [id, in_shape_m] : map) {
+    const bool is_known = detector.part_of_id.empty() || detector.part_of_id.count(id) > 0;
+    if (is_known && id < detector.dictionary.aruco->bytesList.rows) detector.map[id] = in_shape_m;
+  }
   WarnOfSymmetries(detector);
   return detector;
 }
@@ -74,6 +93,7 @@ std::string DescribeDetector(const FrameDetector& detector) {
       known += fmt::format("|line {}", fmt::join(line, " "));
     }
   }
+  if (!detector.map.empty()) search += fmt::format(" map={:016x}", Hash(MapText(detector.map)));
   return fmt::format(
       "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
       "error_correction_rate={} inverted={} dictionary_and_layout={:016x}{}",
@@ -101,6 +121,37 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
   const auto located = LocateMarker(gray, expected, look, reach_px);
   if (!located || !SearchTakes(*located, gray.size(), detector.options)) return std::nullopt;
   return located;
+}
+
+std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const Camera& camera,
+                                          const std::vector<MarkerQuad>& found,
+                                          MapAgreement* agreement) {
+  std::vector<ExpectedMarker> all;
+  std::set<int> on_map;
+  const auto view = PlaceOnMap(detector.map, camera, found, agreement);
+  if (view) {
+    for (const ExpectedMarker& expected : ExpectOnMap(detector.map, camera, *view, found)) {
+      on_map.insert(expected.quad.marker_id);
+      if (IsLargeEnough(expected.quad.corners_px, {camera.width_px, camera.height_px},
+                        detector.options)) {
+        all.push_back(expected);
+      }
+    }
+  }
+  for (const ExpectedMarker& expected : ExpectOnLines(detector.lines, found)) {
+    if (on_map.count(expected.quad.marker_id) == 0) all.push_back(expected);
+  }
+  return all;
+}
+
+std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const Camera& camera,
+                                           const cv::Mat& gray, MapAgreement* agreement) {
+  std::vector<MarkerQuad> quads = SearchInFrame(detector, gray);
+  for (const auto& [quad, reach_px] : ExpectInFrame(detector, camera, quads, agreement)) {
+    const auto located = LocateInFrame(detector, gray, quad.marker_id, quad.corners_px, reach_px);
+    if (located) quads.push_back({quad.marker_id, *located});
+  }
+  return RemoveNested(std::move(quads));
 }
 
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray) {

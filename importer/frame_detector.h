@@ -10,12 +10,14 @@
 
 #include <opencv2/core.hpp>
 
+#include "importer/camera.h"
 #include "importer/detection.h"
 #include "importer/dictionary.h"
 #include "importer/frame_source.h"
 #include "importer/layout.h"
 #include "importer/marker_alignment.h"
-#include "importer/marker_search.h"
+#include "importer/marker_map.h"
+#include "importer/marker_quad.h"
 #include "importer/options.h"
 #include "importer/rotation_ambiguity.h"
 
@@ -33,16 +35,29 @@ struct FrameDetector {
   CodeSymmetries symmetries;              // of the markers that look the same when turned
   std::map<int, std::string> part_of_id;  // empty: every id is welcome
   std::vector<MarkerLook> looks;          // of every id of the dictionary
-  std::vector<std::vector<int>> lines;    // ids along those of the layout
+  std::vector<std::vector<int>> lines;    // ids along those of the layout; tracked search only
+  MarkerMap map;                          // of markers that can be detected; may be empty
 };
 
-// Throws InputError for a dictionary that does not exist or has wrong bits.
-FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options);
+// Throws InputError for a dictionary that does not exist or has wrong bits. Markers of `map` that
+// the dictionary lacks or the layout does not name are passed over.
+FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
+                                const MarkerMap& map = {});
 
 // Where the markers of the whole frame, or of regions of it, are to a pixel. Thread-safe.
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray);
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                       const std::vector<cv::Rect>& regions);
+
+// Where markers that are not found should be to be seen: on the map, and those of which it says
+// nothing on the layout's lines. None that is too small for a search to take. Thread-safe.
+std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const Camera& camera,
+                                          const std::vector<MarkerQuad>& found,
+                                          MapAgreement* agreement);
+
+// The whole frame, and what is expected in it and was missed. Thread-safe.
+std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const Camera& camera,
+                                           const cv::Mat& gray, MapAgreement* agreement);
 
 // Large markers of the whole frame, in a quarter of the time. Thread-safe.
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray);

@@ -8,6 +8,7 @@
 #include "importer/camera.h"
 #include "importer/detection.h"
 #include "importer/frame_source.h"
+#include "importer/marker_map.h"
 #include "importer/stage_timer.h"
 
 namespace velamap {
@@ -16,14 +17,15 @@ struct FrameResult {
   FrameDetections detections;
   Camera camera;                // for the frame's size
   std::string skipped_because;  // not empty: the file was no whole image
+  MapAgreement map;             // of what was found without it
   ImportTimes times;            // of the thread that processed it
   double reading_s = 0.0;       // Frame::decode_s
 };
 
 // Reads all frames of `source`, calls `process` for each on `num_threads` threads (frame_idx counts
 // from 0) and `consume` with the results in order on the calling thread. No more than
-// 2 num_threads + 1 frames are in memory. An exception of any of them ends all threads and is thrown
-// again here. OpenCV's own threads are switched off meanwhile.
+// 2 num_threads + 1 frames are in memory. An exception of any of them ends all threads and is
+// thrown again here. OpenCV's own threads are switched off meanwhile.
 void RunFramePipeline(FrameSource* source, int num_threads,
                       const std::function<FrameResult(int frame_idx, Frame* frame)>& process,
                       const std::function<void(int frame_idx, FrameResult result)>& consume);

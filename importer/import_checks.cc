@@ -31,8 +31,8 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
   }
   if (*known_detector != detector) {
     throw InputError(
-        fmt::format("{}: was made with other detection options or another layout "
-                    "({}; now {}); {}",
+        fmt::format("{}: was made with other detection options, another layout or "
+                    "another map ({}; now {}); {}",
                     options.database_path, *known_detector, detector, remedy));
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {

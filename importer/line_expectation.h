@@ -6,15 +6,9 @@
 #include <vector>
 
 #include "importer/layout.h"
-#include "importer/marker_search.h"
+#include "importer/marker_quad.h"
 
 namespace velamap {
-
-// A marker that was not found, and how far it may be from its place.
-struct ExpectedMarker {
-  MarkerQuad quad;
-  double reach_px = 0.0;
-};
 
 // Ids along each line of the layout, horizontal and vertical, and those that a part lists outside
 // its lines: most often they stand in a row as well, and where not, none is located there.

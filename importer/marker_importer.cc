@@ -119,7 +119,8 @@ class ImportRun {
       const StageTimer timer(ImportStage::kDetect);
       result.camera = CameraOfFrame(*frame);
       const std::vector<MarkerQuad> quads =
-          turn ? SearchInTurn(frame_idx, *frame, &*turn) : SearchInFrame(detector_, frame->gray);
+          turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
+               : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.map);
       result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
       WriteImage(*frame, result.detections);
       AddToSample(frame_idx, frame->gray);
@@ -141,6 +142,7 @@ class ImportRun {
     ++report_.num_frames_read;
     report_.num_markers += static_cast<int>(detections.markers.size());
     report_.num_rejected += static_cast<int>(detections.rejected.size());
+    report_.map += result.map;
     report_.num_images_without_markers += detections.markers.empty();
     report_.num_fallbacks += static_cast<int>(
         std::count_if(detections.markers.begin(), detections.markers.end(),
@@ -180,7 +182,8 @@ class ImportRun {
 
   // Tracked from frame to frame, so in their order; a search of the whole frame that is due waits
   // for nobody.
-  std::vector<MarkerQuad> SearchInTurn(int frame_idx, const Frame& frame, Turn* turn) const {
+  std::vector<MarkerQuad> SearchInTurn(int frame_idx, const Frame& frame, Turn* turn,
+                                       FrameResult* result) const {
     std::vector<MarkerQuad> quads, seen_coarsely;
     const int interval = detector_.options.full_search_interval;
     const bool is_full = frame_idx % interval == 0;
@@ -197,7 +200,10 @@ class ImportRun {
         [&](int marker_id, const QuadCorners& expected, double reach_px) {
           return LocateInFrame(detector_, frame.gray, marker_id, expected, reach_px);
         },
-        std::move(seen_coarsely), detector_.lines};
+        std::move(seen_coarsely),
+        [&](const std::vector<MarkerQuad>& found) {
+          return ExpectInFrame(detector_, result->camera, found, &result->map);
+        }};
     quads = is_full ? CompleteFullSearch(search, std::move(quads), frame_number, tracks)
                     : SearchTracked(search, frame_number, tracks);
     turn->End();
@@ -283,7 +289,7 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;
   if (fs::is_directory(options.image_path)) detection.search = SearchMode::kExhaustive;
-  const FrameDetector detector = MakeFrameDetector(options.layout, detection);
+  const FrameDetector detector = MakeFrameDetector(options.layout, detection, options.map);
 
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);

@@ -76,13 +76,17 @@ void SearchRegion(const cv::Mat& gray, const cv::Rect& region, const Dictionary&
 
 }  // namespace
 
+bool IsLargeEnough(const QuadCorners& corners, const cv::Size& image_size,
+                   const ArucoDetectionOptions& options) {
+  return kNumCorners * QuadMeanSide(corners) >
+         options.min_marker_perimeter_rate * std::max(image_size.width, image_size.height);
+}
+
 bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
                  const ArucoDetectionOptions& options) {
-  const double min_perimeter_px =
-      options.min_marker_perimeter_rate * std::max(image_size.width, image_size.height);
   const double min = kMinBorderDistancePx;
   const double max_x = image_size.width - 1 - min, max_y = image_size.height - 1 - min;
-  return kNumCorners * QuadMeanSide(corners) > min_perimeter_px &&
+  return IsLargeEnough(corners, image_size, options) &&
          std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
            return corner.x() > min && corner.y() > min && corner.x() < max_x && corner.y() < max_y;
          });

@@ -10,15 +10,10 @@
 #include <opencv2/core.hpp>
 
 #include "importer/dictionary.h"
+#include "importer/marker_quad.h"
 #include "importer/options.h"
-#include "importer/quad.h"
 
 namespace velamap {
-
-struct MarkerQuad {
-  int marker_id = 0;
-  QuadCorners corners_px;
-};
 
 // Half the widest threshold window, and the band along a border in which OpenCV takes no corner.
 inline constexpr int kSearchReachPx = 6 + 4;
@@ -37,6 +32,10 @@ std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Diction
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options,
                                       const std::vector<cv::Rect>& regions);
+
+// Whether a search takes a marker as small as this.
+bool IsLargeEnough(const QuadCorners& corners, const cv::Size& image_size,
+                   const ArucoDetectionOptions& options);
 
 // Whether a marker there is large enough and far enough from the border for a search to take it.
 bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,

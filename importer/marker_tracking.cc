@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "importer/line_expectation.h"
 #include "importer/local_motion.h"
+#include "importer/marker_search.h"
 #include "importer/search_regions.h"
 
 namespace velamap {
@@ -176,11 +176,12 @@ bool SearchAlso(const FrameSearch& search, std::vector<cv::Rect> regions,
   return true;
 }
 
-// Looks where the layout says that markers are missing. Returns the regions where none is to be
-// seen clearly.
-std::vector<cv::Rect> LookOnLines(const FrameSearch& search, std::vector<MarkerQuad>* quads) {
+// Looks for what is missing where it should be. Returns the regions where none is to be seen
+// clearly.
+std::vector<cv::Rect> LookWhereExpected(const FrameSearch& search, std::vector<MarkerQuad>* quads) {
   std::vector<cv::Rect> unclear;
-  for (const auto& [quad, reach_px] : ExpectOnLines(search.lines, *quads)) {
+  if (!search.expect) return unclear;
+  for (const auto& [quad, reach_px] : search.expect(*quads)) {
     const Box box = BoundingBox(quad.corners_px);
     if (!FitsIn(box, search.image_size, reach_px)) continue;
     if (!AddLocated(search, quad.marker_id, quad.corners_px, reach_px, quads)) {
@@ -253,7 +254,7 @@ std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, i
   const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, size);
   if (IsLost(tracks->tracks, quad_of_track, first->motions, size)) return std::nullopt;
   tracks->inflow_px = inflow_px;
-  SearchAlso(search, LookOnLines(search, &quads), &quads);
+  SearchAlso(search, LookWhereExpected(search, &quads), &quads);
   return quads;
 }
 
@@ -295,7 +296,7 @@ std::vector<MarkerQuad> CompleteFullSearch(const FrameSearch& search, std::vecto
     AddLocated(search, track.marker_id, prediction.corners_px, prediction.margin_px, &quads);
   }
   quads = RemoveNested(std::move(quads));
-  LookOnLines(search, &quads);
+  LookWhereExpected(search, &quads);
   HandOn(quads, search.image_size, frame_number, tracks);
   tracks->has_new = num_new > 0;
   tracks->inflow_px = {};

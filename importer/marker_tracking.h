@@ -8,8 +8,8 @@
 // In both a marker is first looked for as what it is, and then, where it is not to be seen clearly,
 // as any marker within the region around it.
 //
-// What is missing on the layout's lines is looked for, in the same two ways, between and beside
-// what is found.
+// What is missing where the map or the layout's lines say that it should be visible is looked for
+// in the same two ways.
 //
 // Halfway between two full searches a coarse one of the whole frame tells of new large markers.
 // Where far fewer are found than usual, or the places fill most of the picture, the whole frame is
@@ -26,7 +26,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/border_inflow.h"
-#include "importer/marker_search.h"
+#include "importer/marker_quad.h"
 
 namespace velamap {
 
@@ -61,8 +61,8 @@ struct FrameSearch {
       locate;
   // What a coarse search of the whole frame has found, where there was one.
   std::vector<MarkerQuad> seen_coarsely{};
-  // Ids along the lines of the layout: what is missing there is looked for too.
-  std::vector<std::vector<int>> lines{};
+  // Where markers that are not among `found` should be to be seen; may be empty.
+  std::function<std::vector<ExpectedMarker>(const std::vector<MarkerQuad>& found)> expect{};
 };
 
 // Searches the next frame of `tracks`' video and brings `tracks` up to it.

@@ -47,6 +47,7 @@ CommandSyntax Declare(Options* options) {
           {{"Input and output",
             {ImagePathOption(paths),
              CameraPathOption(paths),
+             MapPathOption(paths),
              {"workspace_path", &paths->workspace_path, "path",
               "folder of the result: new, empty, or of an earlier run, whose database is used on",
               true},
@@ -73,6 +74,7 @@ void Validate(Options* options) {
   options->importer.layout = LoadLayout(options->markers, true);
   options->importer.camera = ReadCalibration(options->paths.camera_path);
   options->importer.camera_path = options->paths.camera_path;
+  options->importer.map = LoadMap(options->paths.map_path);
   options->importer.image_path = options->paths.image_path;
   options->importer.video = NarrowToReach(options->importer.video, options->registration);
   options->importer.num_threads = options->general.num_threads;

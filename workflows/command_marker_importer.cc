@@ -30,6 +30,7 @@ CommandSyntax Declare(Options* options) {
           {{"Input and output",
             {ImagePathOption(paths),
              CameraPathOption(paths),
+             MapPathOption(paths),
              DatabasePathOption(paths, "COLMAP database, made new or added to"),
              {"frame_output_path", &paths->frame_output_path, "path",
               "folder for the frames of a video that hold markers, as JPEG; left out: none are "
@@ -48,13 +49,14 @@ void Validate(Options* options) {
   importer.layout = LoadLayout(options->markers, true);
   importer.camera = ReadCalibration(options->paths.camera_path);
   importer.camera_path = options->paths.camera_path;
+  importer.map = LoadMap(options->paths.map_path);
   importer.image_path = options->paths.image_path;
   importer.database_path = options->paths.database_path;
   importer.frame_output_path = options->paths.frame_output_path;
   importer.num_threads = options->general.num_threads;
 }
 
-void Print(const ImportReport& report, const std::string& database_path, std::ostream& out) {
+void Print(const ImportReport& report, const PathOptions& paths, std::ostream& out) {
   fmt::print(out, "images_added: {}\n", report.num_images_added);
   fmt::print(out, "images_present: {}\n", report.num_images_present);
   fmt::print(out, "images_without_markers: {}\n", report.num_images_without_markers);
@@ -66,8 +68,12 @@ void Print(const ImportReport& report, const std::string& database_path, std::os
              report.ids_not_in_layout.empty()
                  ? "none"
                  : fmt::format("{}", fmt::join(report.ids_not_in_layout, " ")));
+  if (!paths.map_path.empty()) {
+    fmt::print(out, "markers_of_map: {}\n", report.map.num_known);
+    fmt::print(out, "markers_agreeing_with_map: {}\n", report.map.num_agreeing);
+  }
   fmt::print(out, "pairs_with_matches: {}\n", report.num_pairs);
-  fmt::print(out, "database_path: {}\n", database_path);
+  fmt::print(out, "database_path: {}\n", paths.database_path);
 }
 
 }  // namespace
@@ -80,7 +86,7 @@ void RunMarkerImporter(const Arguments& arguments) {
   const ImportReport report = ImportImages(options.importer);
   clock.EndImport(report.times, report.num_frames_read);
   LogStageTimes(clock);
-  Print(report, options.paths.database_path, std::cout);
+  Print(report, options.paths, std::cout);
 }
 
 }  // namespace velamap

@@ -1,4 +1,3 @@
-#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -61,11 +60,6 @@ void Validate(const Options& options) {
   if (!options.csv_path.empty() && options.csv_path == options.json_path) {
     throw InputError("--json_path: " + options.json_path + " is the --csv_path too; give another");
   }
-}
-
-std::string ShapeFile(const std::string& path) {
-  const std::filesystem::path file = path;
-  return std::filesystem::is_directory(file) ? (file / "shape.csv").string() : path;
 }
 
 // A shape is similar to the corners of its model, or one of the two is of another run.

@@ -44,6 +44,16 @@ std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
   return left_out;
 }
 
+void LogMap(const MapAgreement& map) {
+  spdlog::info("{} of the {} markers found that the map holds are where it has them",
+               map.num_agreeing, map.num_known);
+  if (2 * map.num_agreeing < map.num_known || map.num_known == 0) {
+    spdlog::warn(
+        "--map_path: the map does not fit these images and was of little use; is it of this "
+        "surface, and is the calibration of these images?");
+  }
+}
+
 void LogSeed(const SeedResult& seed) {
   const Registration& registration = seed.registration;
   spdlog::info("central image {}: {}", registration.central_image_name,
@@ -136,6 +146,7 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
     spdlog::info("{} of them without a fit of their edges: corners from cv::cornerSubPix",
                  report.num_fallbacks);
   }
+  if (!options.map.empty()) LogMap(report.map);
   if (!report.ids_not_in_layout.empty()) {
     spdlog::warn("markers found that the layout does not name, left out: {}",
                  fmt::join(report.ids_not_in_layout, " "));

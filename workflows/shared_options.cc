@@ -1,12 +1,14 @@
 #include "workflows/shared_options.h"
 
 #include <array>
+#include <filesystem>
 #include <iostream>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "exporters/shape_csv.h"
 #include "importer/error.h"
 #include "workflows/logging.h"
 #include "workflows/sail_options.h"
@@ -47,6 +49,12 @@ Option ImagePathOption(PathOptions* paths) {
 Option CameraPathOption(PathOptions* paths) {
   return {"camera_path", &paths->camera_path, "path",
           "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt", true};
+}
+
+Option MapPathOption(PathOptions* paths) {
+  return {"map_path", &paths->map_path, "path",
+          "shape.csv of an earlier reconstruction of the surface, or the folder that holds it: "
+          "markers are also looked for where it says that they should be to be seen"};
 }
 
 Option DatabasePathOption(PathOptions* paths, const std::string& description) {
@@ -228,8 +236,8 @@ std::set<std::string> SharedOptionNames() {
   PathOptions paths;
   const OptionGroup path_group{
       "",
-      {ImagePathOption(&paths), CameraPathOption(&paths), DatabasePathOption(&paths, ""),
-       ModelInputOption(&paths), BackendOption(&backend)}};
+      {ImagePathOption(&paths), CameraPathOption(&paths), MapPathOption(&paths),
+       DatabasePathOption(&paths, ""), ModelInputOption(&paths), BackendOption(&backend)}};
   std::set<std::string> names;
   for (const OptionGroup& group :
        {GeneralGroup(&general), MarkerGroup(&markers, true), ArucoDetectionGroup(&detection),
@@ -268,6 +276,28 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
   }
   CheckMarkerLength(*options.marker_length_m, "--marker_length");
   return MakeLayout(options.dictionary, *options.marker_length_m);
+}
+
+std::string ShapeFile(const std::string& path) {
+  const std::filesystem::path file = path;
+  return std::filesystem::is_directory(file) ? (file / "shape.csv").string() : path;
+}
+
+MarkerMap LoadMap(const std::string& map_path) {
+  MarkerMap map;
+  if (map_path.empty()) return map;
+  const std::string file = ShapeFile(map_path);
+  for (const ShapeMarker& marker : ReadShapeCsv(file).markers) {
+    if (!marker.IsWhole()) continue;
+    const auto& x = marker.x_in_shape_m;
+    map[marker.marker_id] = {*x[1], *x[2], *x[3], *x[4]};
+  }
+  if (map.empty()) {
+    throw InputError(fmt::format(
+        "--map_path: {}: no marker has all four corners; give the shape.csv of a whole result",
+        file));
+  }
+  return map;
 }
 
 void ApplyGeneralOptions(const GeneralOptions& options) {

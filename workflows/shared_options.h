@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "importer/layout.h"
+#include "importer/marker_map.h"
 #include "importer/options.h"
 #include "reconstruct/bundle_adjustment.h"
 #include "reconstruct/marker_adjustment.h"
@@ -25,6 +26,7 @@ struct GeneralOptions {
 struct PathOptions {
   std::string image_path;
   std::string camera_path;
+  std::string map_path;
   std::string database_path;
   std::string frame_output_path;
   std::string workspace_path;
@@ -45,6 +47,7 @@ struct MarkerOptions {
 
 Option ImagePathOption(PathOptions* paths);
 Option CameraPathOption(PathOptions* paths);
+Option MapPathOption(PathOptions* paths);
 Option DatabasePathOption(PathOptions* paths, const std::string& description);
 Option ModelInputOption(PathOptions* paths);
 
@@ -68,6 +71,13 @@ bool HasMarkerOptions(const MarkerOptions& options);
 // Throws InputError unless a layout file alone, or a marker length (with a dictionary, where one is
 // needed) is given, and for what ReadLayout() refuses.
 Layout LoadLayout(const MarkerOptions& options, bool with_dictionary);
+
+// `path`, or the shape.csv in it if it is a folder.
+std::string ShapeFile(const std::string& path);
+
+// The whole markers of an earlier shape; none for an empty path. Throws InputError for a file that
+// is no shape.csv or has no whole marker.
+MarkerMap LoadMap(const std::string& map_path);
 
 // Sets the log level and the bounds that more than one library relies on. Throws InputError.
 void ApplyGeneralOptions(const GeneralOptions& options);

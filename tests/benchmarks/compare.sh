@@ -8,7 +8,8 @@
 #   memory      peak memory of the import of a short and a long clip
 #   growth      import with twice the frames, and with larger ones
 #   markers     detection in one frame, registration and adjustment with 20 to 500 markers
-#   tracking    import with tracked and with exhaustive search: what both find, and their search
+#   tracking    import with exhaustive search, with tracked, and with tracked and the map of an earlier
+#               reconstruction: what they find, and their search
 #   sweep       central_frame_sweeper; as many single runs
 # Times are CPU seconds, user and system, of all threads and children: another program beside them
 # changes wall times more. Decoding is measured before and after what it is compared with. Clips are
@@ -115,6 +116,16 @@ import() {
     --database_path "$work/database.db" "$@"
 }
 
+# reconstruct FOLDER [OPTION...]: the main job on a clip, into result/.
+reconstruct() {
+  local folder="$1"
+  shift
+  rm -rf "$work/result"
+  measure "$velamap" automatic_reconstructor --image_path "$folder/clip.mp4" \
+    --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
+    --workspace_path "$work/result" "$@"
+}
+
 # search_ms FRAMES: CPU time of the search a frame, in the last import.
 search_ms() {
   awk -v frames="$1" '/ detect / { for (i = 1; i < NF; i++) if ($i == "detect") seconds = $(i + 2) }
@@ -182,11 +193,8 @@ compare_main() {
     for ((repeat = 0; repeat < repeats; repeat++)); do
       decode "$folder"
       decoding_cpu="$cpu"
-      rm -rf "$work/result"
-      measure "$velamap" automatic_reconstructor --image_path "$folder/clip.mp4" \
-        --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
-        --workspace_path "$work/result" --Registration.method thesis \
-        --central_frame $((num_frames / 2)) --backend ceres
+      reconstruct "$folder" --Registration.method thesis --central_frame $((num_frames / 2)) \
+        --backend ceres
       main_cpu="$cpu"
       decode "$folder"
       decoding_cpu="$(mean "$decoding_cpu" "$cpu")"
@@ -249,21 +257,25 @@ compare_markers() {
 }
 
 compare_tracking() {
-  local width kind folder exhaustive_ms tracked_ms
-  echo "| clip | exhaustive: markers | tracked: markers | found again | same corners to 0.01 px | search a frame, exhaustive ms | tracked ms |"
-  echo "|---|---|---|---|---|---|---|"
+  local width kind folder way ms row
+  echo "| clip | search | markers | found again | same corners to 0.01 px | search ms a frame |"
+  echo "|---|---|---|---|---|---|"
   for width in "${widths[@]}"; do
     for kind in calm busy; do
       folder="$(clip "$kind" "$width")"
+      row="$kind, $width px, $num_frames frames"
       import "$folder" --ArucoDetection.search exhaustive
-      exhaustive_ms="$(search_ms "$num_frames")"
+      echo "| $row | exhaustive | $(value markers) | | | $(search_ms "$num_frames") |"
       mv "$work/database.db" "$work/exhaustive.db"
-      import "$folder"
-      tracked_ms="$(search_ms "$num_frames")"
-      measure "$compare_detections" "$work/exhaustive.db" "$work/database.db"
-      echo "| $kind, $width px, $num_frames frames | $(value reference) | $(value other) | $(
-        percent "$(value found_again)" "$(value reference)") | $(
-        percent "$(value same_corners)" "$(value found_again)") | $exhaustive_ms | $tracked_ms |"
+      reconstruct "$folder"
+      for way in "tracked" "tracked with map"; do
+        if [[ $way == tracked ]]; then import "$folder"; else import "$folder" --map_path "$work/result/shape"; fi
+        ms="$(search_ms "$num_frames")"
+        measure "$compare_detections" "$work/exhaustive.db" "$work/database.db"
+        echo "| $row | $way | $(value other) | $(
+          percent "$(value found_again)" "$(value reference)") | $(
+          percent "$(value same_corners)" "$(value found_again)") | $ms |"
+      done
     done
   done
 }

@@ -7,6 +7,8 @@
 #include "importer/error.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
+#include "importer/line_expectation.h"
+#include "importer/marker_search.h"
 #include "importer/search_regions.h"
 
 namespace velamap {
@@ -47,15 +49,15 @@ class FakeVideo {
   // The ids found in the next frame, ascending.
   std::vector<int> Next() {
     std::vector<int> ids;
-    for (const MarkerQuad& quad :
-         SearchTracked({kSize,
-                        [this](const auto&regions) { return Search(regions); },
-                        [this](int id, const QuadCorners&expected, double reach_px) {
-                          return Locate(id, expected, reach_px);
-                        },
-                        {},
-                        lines},
-                       frame_number++, &tracks)) {
+    for (const MarkerQuad& quad : SearchTracked(
+             {kSize,
+              [this](const auto&regions) { return Search(regions); },
+              [this](int id, const QuadCorners&expected, double reach_px) {
+                return Locate(id, expected, reach_px);
+              },
+              {},
+              [this](const std::vector<MarkerQuad>&found) { return ExpectOnLines(lines, found); }},
+             frame_number++, &tracks)) {
       ids.push_back(quad.marker_id);
     }
     std::sort(ids.begin(), ids.end());

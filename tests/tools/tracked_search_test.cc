@@ -7,6 +7,7 @@
 
 #include "importer/marker_alignment.h"
 #include "importer/marker_detector.h"
+#include "importer/marker_search.h"
 #include "importer/marker_tracking.h"
 #include "tests/support/surface_renderer.h"
 

@@ -106,6 +106,19 @@ TEST_F(BadInputTest, MissingOrIncompleteCalibration) {
   ExpectFailure(2, "camera_matrix");
 }
 
+TEST_F(BadInputTest, MapThatIsNone) {
+  arguments_["--map_path"] = (dir_ / "nowhere.csv").string();
+  ExpectFailure(2, "nowhere.csv");
+  arguments_["--map_path"] = images().string();
+  ExpectFailure(2, "shape.csv");
+  const std::string header = "marker_id,corner,x,y,z,sigma_x,sigma_y,sigma_z,num_frames,part\n";
+  WriteTextFile(dir_ / "map.csv", header + "1,1,0,0,0,,,,2,\n");
+  arguments_["--map_path"] = (dir_ / "map.csv").string();
+  ExpectFailure(2, "no marker has all four corners");
+  WriteTextFile(dir_ / "map.csv", header + "1,1,0,nan,0,,,,2,\n");
+  ExpectFailure(2, "map.csv:2");
+}
+
 TEST_F(BadInputTest, CalibrationForAnotherResolution) {
   std::string camera = kCamera;
   camera.replace(camera.find("320"), 3, "400");

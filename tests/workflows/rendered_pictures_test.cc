@@ -1,5 +1,7 @@
 // From rendered pictures of a sail, whose truth is known, to shape.csv.
 
+#include <algorithm>
+#include <map>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -10,6 +12,8 @@
 
 #include "exporters/shape_csv.h"
 #include "exporters/shape_metrics.h"
+#include "importer/colmap_database.h"
+#include "importer/quad.h"
 #include "tests/support/marker_renderer.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
@@ -19,6 +23,7 @@ namespace velamap {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 namespace fs = std::filesystem;
 
 constexpr double kMarkerLengthM = 0.1;
@@ -59,6 +64,23 @@ MarkerShape TrueShape(const SyntheticScene& scene) {
   return shape;
 }
 
+// A dark thread hangs from the middle of the marker's lower side, so that its outline is no
+// quadrilateral and the detector passes over it.
+std::vector<cv::Mat> WithThread(const SyntheticScene& scene, std::vector<cv::Mat> frames,
+                                int marker_id) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (const MarkerDetection& marker : scene.frames[i].markers) {
+      if (marker.marker_id != marker_id) continue;
+      const auto& corners = marker.corners_in_image_px;
+      const Eigen::Vector2d from = 0.5 * (corners[2] + corners[3]);
+      const Eigen::Vector2d to = from + 0.4 * (from - 0.5 * (corners[0] + corners[1]));
+      cv::line(frames[i], cv::Point2d(from.x(), from.y()), cv::Point2d(to.x(), to.y()),
+               cv::Scalar::all(40), 3);
+    }
+  }
+  return frames;
+}
+
 class RenderedPicturesTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -95,6 +117,58 @@ class RenderedPicturesTest : public ::testing::Test {
     return RunVelamap(arguments);
   }
 
+  ProgramRun Import(const fs::path& image_path, const std::string& database,
+                    const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"marker_importer",
+                                          "--image_path",
+                                          image_path.string(),
+                                          "--camera_path",
+                                          (dir_ / "cameras.txt").string(),
+                                          "--dictionary",
+                                          scene_->layout.dictionary,
+                                          "--marker_length",
+                                          std::to_string(kMarkerLengthM),
+                                          "--database_path",
+                                          (dir_ / database).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunVelamap(arguments);
+  }
+
+  fs::path WritePhotos(const std::string& name, const std::vector<cv::Mat>& photos) {
+    fs::create_directory(dir_ / name);
+    for (std::size_t i = 0; i < photos.size(); ++i) {
+      cv::imwrite((dir_ / name / (std::to_string(i) + ".png")).string(), photos[i]);
+    }
+    return dir_ / name;
+  }
+
+  std::string WriteVideo(const std::string& name, const std::vector<cv::Mat>& frames) {
+    cv::VideoWriter writer(dir_ / name, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
+                           frames[0].size());
+    EXPECT_TRUE(writer.isOpened());
+    for (const cv::Mat& frame : frames) writer.write(frame);
+    return dir_ / name;
+  }
+
+  // Of one marker by image: its corner that is farthest from the truth.
+  std::map<std::string, double> ErrorsOf(int marker_id, const std::string& database) {
+    std::map<std::string, double> errors_px;
+    std::size_t frame_idx = 0;
+    for (const DatabaseImage& image :
+         ColmapDatabase(dir_ / database, ColmapDatabase::Mode::kReadOnly).ReadImages()) {
+      const auto is_it = [=](const MarkerDetection& m) { return m.marker_id == marker_id; };
+      const auto& markers = image.detections.markers;
+      const auto& truths = scene_->frames[frame_idx++].markers;
+      const auto found = std::find_if(markers.begin(), markers.end(), is_it);
+      const auto truth = std::find_if(truths.begin(), truths.end(), is_it);
+      if (found == markers.end() || truth == truths.end()) continue;
+      errors_px[image.detections.image_name] =
+          MaxCornerShift(found->corners_in_image_px, truth->corners_in_image_px);
+    }
+    EXPECT_EQ(errors_px.size(), scene_->frames.size());
+    return errors_px;
+  }
+
   void ExpectTrueShape(double max_rms_m) {
     const ShapeComparison comparison = CompareShapes(
         ReadShapeCsv((dir_ / "workspace/shape/shape.csv").string()), TrueShape(*scene_));
@@ -111,10 +185,7 @@ SyntheticScene* RenderedPicturesTest::scene_ = nullptr;
 std::vector<cv::Mat>* RenderedPicturesTest::frames_ = nullptr;
 
 TEST_F(RenderedPicturesTest, PhotographsGiveTheTrueShape) {
-  fs::create_directory(dir_ / "photos");
-  for (std::size_t i = 0; i < frames_->size(); ++i) {
-    cv::imwrite((dir_ / ("photos/" + std::to_string(i) + ".png")).string(), (*frames_)[i]);
-  }
+  WritePhotos("photos", *frames_);
   WriteTextFile(dir_ / "photos/broken.png", "no picture");
   const ProgramRun run = Reconstruct(dir_ / "photos");
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -128,20 +199,52 @@ TEST_F(RenderedPicturesTest, PhotographsGiveTheTrueShape) {
 }
 
 TEST_F(RenderedPicturesTest, VideoGivesTheTrueShape) {
-  const std::string video = (dir_ / "sail.avi").string();
-  {
-    cv::VideoWriter writer(video, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
-                           (*frames_)[0].size());
-    ASSERT_TRUE(writer.isOpened());
-    for (const cv::Mat& frame : *frames_) writer.write(frame);
-  }
-  const ProgramRun run = Reconstruct(video);
+  const ProgramRun run = Reconstruct(WriteVideo("sail.avi", *frames_));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   ExpectTrueShape(0.0005);
   // images/ holds the frames of the model and no others.
   const std::string used =
       "images_used: " + std::to_string(ListFolder(dir_ / "workspace/images").size());
   EXPECT_THAT(run.out, HasSubstr(used + " of 12\n"));
+}
+
+TEST_F(RenderedPicturesTest, MapOfAnEarlierRunFindsWhatTheDetectorMisses) {
+  ASSERT_EQ(Reconstruct(WritePhotos("photos", *frames_)).exit_code, 0);
+  const std::string shape = (dir_ / "workspace/shape").string();
+  const int marker_id = scene_->x_in_world.begin()->first;
+  const std::vector<cv::Mat> frames = WithThread(*scene_, *frames_, marker_id);
+  for (const fs::path& input :
+       {WritePhotos("with_thread", frames), fs::path(WriteVideo("with_thread.avi", frames))}) {
+    const std::string name = input.filename().string();
+    const ProgramRun without = Import(input, name + "_without.db");
+    ASSERT_EQ(without.exit_code, 0) << without.err;
+    EXPECT_THAT(without.out, HasSubstr("\nmarkers: 132\n"));
+    EXPECT_THAT(without.out, Not(HasSubstr("_map: ")));
+    const ProgramRun with = Import(input, name + ".db", {"--map_path", shape});
+    ASSERT_EQ(with.exit_code, 0) << with.err;
+    EXPECT_THAT(with.out, HasSubstr("\nmarkers: 144\n"));
+    EXPECT_THAT(with.out, HasSubstr("\nmarkers_of_map: 1"));
+    for (const auto& [image_name, error_px] : ErrorsOf(marker_id, name + ".db")) {
+      EXPECT_LT(error_px, 1.0) << image_name;
+    }
+  }
+}
+
+TEST_F(RenderedPicturesTest, MapOfAnotherSurfaceIsWarnedOf) {
+  MarkerShape shuffled = TrueShape(*scene_);
+  for (ShapeMarker& marker : shuffled.markers) marker.marker_id = 11 - marker.marker_id;
+  std::ostringstream csv;
+  WriteShapeCsv(shuffled, csv);
+  WriteTextFile(dir_ / "other.csv", csv.str());
+  const fs::path photos = WritePhotos("photos", *frames_);
+  const ProgramRun run = Import(photos, "database.db", {"--map_path", dir_ / "other.csv"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("the map does not fit these images"));
+  EXPECT_THAT(run.out, HasSubstr("markers_agreeing_with_map: 0\n"));
+
+  const ProgramRun again = Import(photos, "database.db");
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, HasSubstr("another map"));
 }
 
 }  // namespace
