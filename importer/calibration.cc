@@ -15,8 +15,6 @@
 namespace velamap {
 namespace {
 
-// OpenCV counts from the first pixel's centre, COLMAP from the image's corner.
-constexpr double kImageFromOpenCvPx = 0.5;
 constexpr int kMaxImageSize = 100000;
 
 [[noreturn]] void Fail(const std::string& path, const std::string& message) {

@@ -15,6 +15,10 @@
 
 namespace velamap {
 
+// An image position is OpenCV's plus this, in x and in y: OpenCV has (0,0) at the first pixel's
+// centre.
+inline constexpr double kImageFromOpenCvPx = 0.5;
+
 // Values are COLMAP's model ids.
 enum class CameraModel {
   kSimplePinhole = 0,  // f, cx, cy

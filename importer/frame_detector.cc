@@ -12,6 +12,7 @@
 
 #include "importer/duplicates.h"
 #include "importer/line_expectation.h"
+#include "importer/map_expectation.h"
 #include "importer/marker_detector.h"
 #include "importer/marker_search.h"
 

@@ -7,15 +7,13 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/camera.h"
 #include "importer/corner_refinement.h"
 #include "importer/saddle_corners.h"
 #include "importer/stage_timer.h"
 
 namespace velamap {
 namespace {
-
-// OpenCV puts (0,0) at the first pixel's centre, COLMAP at the image's corner.
-const Eigen::Vector2d kImageFromOpenCvPx(0.5, 0.5);
 
 // The search window ends well within the cell that meets its neighbours at the corner.
 QuadCorners RefineSubpix(const cv::Mat& gray, const QuadCorners& quad, int num_cells) {
@@ -73,7 +71,7 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
     }
     detection.corner_sigma_px = refined->sigma_px;
     for (int c = 0; c < kNumCorners; ++c) {
-      detection.corners_in_image_px[c] = refined->corners_px[c] + kImageFromOpenCvPx;
+      detection.corners_in_image_px[c] = refined->corners_px[c].array() + kImageFromOpenCvPx;
     }
     detections.push_back(detection);
   }

@@ -1,50 +1,29 @@
-// Where an earlier reconstruction of the surface says that markers should be to be seen: they are
-// reprojected with the pose that the camera has by those that are found.
+// Where markers are on the surface, by an earlier reconstruction of it.
 
 #pragma once
 
 #include <array>
 #include <map>
-#include <optional>
-#include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
-#include "importer/camera.h"
 #include "importer/ids.h"
-#include "importer/local_motion.h"
-#include "importer/marker_quad.h"
 
 namespace velamap {
 
 // Corners 1..4 of each marker, by its id, in the shape frame, m; any other scale does as well.
 using MarkerMap = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 
-// How far what was found agrees with the map.
+// How far what is found in frames agrees with a map.
 struct MapAgreement {
   int num_known = 0;     // markers found that the map holds
-  int num_agreeing = 0;  // of these, those that one pose of the camera explains; 0 without one
+  int num_agreeing = 0;  // of these, those that one pose of their frame's camera explains
 
-  MapAgreement& operator+=(const MapAgreement& other);
+  MapAgreement& operator+=(const MapAgreement& other) {
+    num_known += other.num_known;
+    num_agreeing += other.num_agreeing;
+    return *this;
+  }
 };
-
-// A frame's camera in the map.
-struct MapView {
-  Eigen::Isometry3d cam_from_shape;
-  // From where the map has an agreeing marker to where it is, OpenCV's pixel frame: cloth moves.
-  std::vector<PointMotion> departures;
-};
-
-// The pose that has most found markers within their own side of their places, by RANSAC over
-// corners (cv::solvePnPRansac with AP3P) and a refinement on all of them that agree. Nothing unless
-// four markers and half of the known ones agree. An id that is found twice says nothing.
-std::optional<MapView> PlaceOnMap(const MarkerMap& map, const Camera& camera,
-                                  const std::vector<MarkerQuad>& found, MapAgreement* agreement);
-
-// Every marker of the map whose id is not found and which faces the camera: at its reprojection,
-// moved as the found ones around it depart from theirs. Some lie beyond the image's border.
-std::vector<ExpectedMarker> ExpectOnMap(const MarkerMap& map, const Camera& camera,
-                                        const MapView& view, const std::vector<MarkerQuad>& found);
 
 }  // namespace velamap

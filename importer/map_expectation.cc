@@ -1,4 +1,4 @@
-#include "importer/marker_map.h"
+#include "importer/map_expectation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,6 @@ constexpr double kMinAgreeingPart = 0.5;
 // be read.
 constexpr double kMinFacing = 0.17;
 
-const Eigen::Vector2d kFirstPixelCenter_px(0.5, 0.5);  // in COLMAP's image frame
-
 struct KnownMarker {
   const std::array<Eigen::Vector3d, kNumCorners>* in_shape_m;
   QuadCorners rays;  // (x/z, y/z) in the cam frame
@@ -27,7 +25,7 @@ struct KnownMarker {
 std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corners_px) {
   QuadCorners rays;
   for (std::size_t c = 0; c < kNumCorners; ++c) {
-    const auto ray = CamFromImage(camera, corners_px[c] + kFirstPixelCenter_px);
+    const auto ray = CamFromImage(camera, corners_px[c].array() + kImageFromOpenCvPx);
     if (!ray) return std::nullopt;
     rays[c] = *ray;
   }
@@ -67,8 +65,8 @@ std::optional<QuadCorners> Reproject(const Camera& camera, const Eigen::Isometry
     const auto in_image_px = ImageFromCam(camera, x_in_cam);
     if (!in_image_px) return std::nullopt;
     const auto ray = CamFromImage(camera, *in_image_px);
-    if (!ray || !ray->isApprox(x_in_cam.hnormalized(), 1e-6)) return std::nullopt;
-    corners_px[c] = *in_image_px - kFirstPixelCenter_px;
+    if (!ray || (*ray - x_in_cam.hnormalized()).norm() > 1e-6) return std::nullopt;
+    corners_px[c] = in_image_px->array() - kImageFromOpenCvPx;
   }
   return corners_px;
 }
@@ -141,12 +139,6 @@ bool FacesCamera(const QuadCorners& quad) {
 }
 
 }  // namespace
-
-MapAgreement& MapAgreement::operator+=(const MapAgreement& other) {
-  num_known += other.num_known;
-  num_agreeing += other.num_agreeing;
-  return *this;
-}
 
 std::optional<MapView> PlaceOnMap(const MarkerMap& map, const Camera& camera,
                                   const std::vector<MarkerQuad>& found, MapAgreement* agreement) {

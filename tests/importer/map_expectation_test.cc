@@ -1,4 +1,4 @@
-#include "importer/marker_map.h"
+#include "importer/map_expectation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -186,6 +186,39 @@ TEST(ExpectOnMap, FollowsClothThatHasMovedSince) {
               marker.reach_px)
         << marker.quad.marker_id;
   }
+}
+
+TEST(PlaceOnMap, MapsWithoutAShapeGiveNothing) {
+  const MarkerMap map = SheetMap();
+  const std::vector<MarkerQuad> found = SeenWithout(map, 4);
+  MarkerMap point = map, line = map, tiny = map, huge = map;
+  for (auto& [id, corners] : point) corners.fill({1, 2, 3});
+  for (auto& [id, corners] : line) {
+    for (Eigen::Vector3d& x : corners) x = {x.x(), 2 * x.x(), 0};
+  }
+  for (auto& [id, corners] : tiny) {
+    for (Eigen::Vector3d& x : corners) x *= 1e-200;
+  }
+  for (auto& [id, corners] : huge) {
+    for (Eigen::Vector3d& x : corners) x *= 1e200;
+  }
+  for (const MarkerMap& flawed : {point, line, tiny, huge}) {
+    MapAgreement agreement;
+    EXPECT_FALSE(PlaceOnMap(flawed, WideCamera(), found, &agreement));
+    EXPECT_EQ(agreement.num_known, 60);
+    EXPECT_EQ(agreement.num_agreeing, 0);
+  }
+}
+
+TEST(ExpectOnMap, TheMiddleOfThePictureIsInView) {
+  const MarkerMap map = SheetMap();
+  const Eigen::Isometry3d shape_from_cam = CameraPose().inverse();
+  MarkerMap with_middle = map;
+  const double h = 0.05;
+  with_middle[950] = {
+      shape_from_cam * Eigen::Vector3d(0, 0, 4), shape_from_cam * Eigen::Vector3d(h, 0, 4),
+      shape_from_cam * Eigen::Vector3d(h, h, 4), shape_from_cam * Eigen::Vector3d(0, h, 4)};
+  EXPECT_EQ(Expect(with_middle, SeenWithout(map, 4)).expected.back().quad.marker_id, 950);
 }
 
 TEST(PlaceOnMap, AnEmptyMapHoldsNothing) {
