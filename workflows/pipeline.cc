@@ -146,7 +146,7 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
     spdlog::info("{} of them without a fit of their edges: corners from cv::cornerSubPix",
                  report.num_fallbacks);
   }
-  if (!options.map.empty()) LogMap(report.map);
+  if (!options.map.empty() && report.num_frames_read > 0) LogMap(report.map);
   if (!report.ids_not_in_layout.empty()) {
     spdlog::warn("markers found that the layout does not name, left out: {}",
                  fmt::join(report.ids_not_in_layout, " "));

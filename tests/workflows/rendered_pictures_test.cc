@@ -242,6 +242,10 @@ TEST_F(RenderedPicturesTest, MapOfAnotherSurfaceIsWarnedOf) {
   EXPECT_THAT(run.err, HasSubstr("the map does not fit these images"));
   EXPECT_THAT(run.out, HasSubstr("markers_agreeing_with_map: 0\n"));
 
+  const ProgramRun nothing_new = Import(photos, "database.db", {"--map_path", dir_ / "other.csv"});
+  EXPECT_EQ(nothing_new.exit_code, 0) << nothing_new.err;
+  EXPECT_THAT(nothing_new.err, Not(HasSubstr("--map_path")));
+
   const ProgramRun again = Import(photos, "database.db");
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_THAT(again.err, HasSubstr("another map"));
