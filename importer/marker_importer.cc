@@ -270,6 +270,25 @@ class ImportRun {
   std::set<int> ids_not_in_layout_;
 };
 
+// All frames that the database does not hold. The decoder and its pictures are gone at the end:
+// what follows needs memory that grows with the number of frames.
+ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetector& detector,
+                          const std::vector<std::string>& known_names, int num_threads,
+                          const ProgressCallback& progress, ColmapDatabase* database) {
+  const double cpu_begin_s = ProcessCpuSeconds();
+  const std::unique_ptr<FrameSource> source =
+      OpenFrameSource(options.image_path, options.video, known_names, options.num_threads);
+  ImportRun run(options, detector, database, source.get());
+  RunFramePipeline(
+      source.get(), num_threads,
+      [&](int frame_idx, Frame* frame) { return run.Process(frame_idx, frame); },
+      [&](int frame_idx, const FrameResult& result) {
+        run.Consume(result);
+        if (progress) progress(frame_idx + 1, source->NumFrames(), ProgressLine(result));
+      });
+  return run.Finish(ProcessCpuSeconds() - cpu_begin_s, num_threads);
+}
+
 // What needs all frames.
 void CompleteDatabase(const FrameDetector& detector, ColmapDatabase* database,
                       ImportReport* report) {
@@ -296,19 +315,8 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   CheckExisting(options, DescribeDetector(detector), database);
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
-  const double cpu_begin_s = ProcessCpuSeconds();
-  const std::unique_ptr<FrameSource> source =
-      OpenFrameSource(options.image_path, options.video, known_names, options.num_threads);
-
-  ImportRun run(options, detector, &database, source.get());
-  RunFramePipeline(
-      source.get(), num_threads,
-      [&](int frame_idx, Frame* frame) { return run.Process(frame_idx, frame); },
-      [&](int frame_idx, const FrameResult& result) {
-        run.Consume(result);
-        if (progress) progress(frame_idx + 1, source->NumFrames(), ProgressLine(result));
-      });
-  ImportReport report = run.Finish(ProcessCpuSeconds() - cpu_begin_s, num_threads);
+  ImportReport report =
+      ImportFrames(options, detector, known_names, num_threads, progress, &database);
   report.num_images_present = static_cast<int>(known_names.size());
   CompleteDatabase(detector, &database, &report);
   report.times += TakeStageTimes();
