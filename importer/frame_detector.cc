@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <iterator>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -128,11 +127,9 @@ std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const C
                                           const std::vector<MarkerQuad>& found,
                                           MapAgreement* agreement) {
   std::vector<ExpectedMarker> all;
-  std::set<int> on_map;
   const auto view = PlaceOnMap(detector.map, camera, found, agreement);
   if (view) {
     for (const ExpectedMarker& expected : ExpectOnMap(detector.map, camera, *view, found)) {
-      on_map.insert(expected.quad.marker_id);
       if (IsLargeEnough(expected.quad.corners_px, {camera.width_px, camera.height_px},
                         detector.options)) {
         all.push_back(expected);
@@ -140,7 +137,8 @@ std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const C
     }
   }
   for (const ExpectedMarker& expected : ExpectOnLines(detector.lines, found)) {
-    if (on_map.count(expected.quad.marker_id) == 0) all.push_back(expected);
+    const bool is_on_map = detector.map.count(expected.quad.marker_id) > 0;
+    if (!view || !is_on_map) all.push_back(expected);
   }
   return all;
 }

@@ -49,8 +49,9 @@ std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::M
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                       const std::vector<cv::Rect>& regions);
 
-// Where markers that are not found should be to be seen: on the map, and those of which it says
-// nothing on the layout's lines. None that is too small for a search to take. Thread-safe.
+// Where markers that are not found should be visible: by the map, none that is too small for a
+// search to take; and those that it does not hold, or all if the frame has no place in it, on the
+// layout's lines. Thread-safe.
 std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const Camera& camera,
                                           const std::vector<MarkerQuad>& found,
                                           MapAgreement* agreement);
@@ -62,7 +63,7 @@ std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const 
 // Large markers of the whole frame, in a quarter of the time. Thread-safe.
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray);
 
-// One marker of which a search, or this, has told where it was a frame ago; as LocateMarker().
+// One marker whose place is known to `reach_px`; as LocateMarker().
 // Nothing also where a search would take no marker. Thread-safe.
 std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                          int marker_id, const QuadCorners& expected,

@@ -1,4 +1,4 @@
-// Where the layout says that markers should be to be seen: on its lines, between and beside those
+// Where the layout says that markers should be visible: on its lines, between and beside those
 // that are found.
 
 #pragma once

@@ -1,26 +1,20 @@
 #include "importer/map_expectation.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <map>
 #include <set>
+#include <utility>
 
-#include <opencv2/calib3d.hpp>
+#include "importer/consensus_pose.h"
+#include "importer/search_regions.h"
 
 namespace velamap {
 namespace {
 
-constexpr int kMinAgreeing = 4;
-constexpr double kMinAgreeingPart = 0.5;
-
 // Area over the square of the longest side: seen at 80 degrees from its normal, hardly a marker can
 // be read.
 constexpr double kMinFacing = 0.17;
-
-struct KnownMarker {
-  const std::array<Eigen::Vector3d, kNumCorners>* in_shape_m;
-  QuadCorners rays;  // (x/z, y/z) in the cam frame
-  QuadCorners corners_px;
-};
 
 std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corners_px) {
   QuadCorners rays;
@@ -32,27 +26,20 @@ std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corne
   return rays;
 }
 
-std::vector<KnownMarker> FindKnown(const MarkerMap& map, const Camera& camera,
-                                   const std::vector<MarkerQuad>& found) {
-  std::map<int, int> count;
-  for (const MarkerQuad& quad : found) ++count[quad.marker_id];
-  // In order of id, so that the draw does not depend on that of `found`.
-  std::map<int, KnownMarker> known;
+// Those of the map that are found once, by ascending id.
+std::vector<const MarkerQuad*> FindKnown(const MarkerMap& map,
+                                         const std::vector<MarkerQuad>& found) {
+  std::map<int, const MarkerQuad*> known;
+  std::set<int> ids, twice;
   for (const MarkerQuad& quad : found) {
-    const auto place = map.find(quad.marker_id);
-    if (place == map.end() || count.at(quad.marker_id) > 1) continue;
-    const auto rays = RaysOf(camera, quad.corners_px);
-    if (rays) known[quad.marker_id] = {&place->second, *rays, quad.corners_px};
+    if (!ids.insert(quad.marker_id).second) twice.insert(quad.marker_id);
+    if (map.count(quad.marker_id) > 0) known[quad.marker_id] = &quad;
   }
-  std::vector<KnownMarker> markers;
-  for (const auto& [marker_id, marker] : known) markers.push_back(marker);
-  return markers;
-}
-
-double MeanSide(const std::vector<KnownMarker>& known) {
-  double sum_px = 0.0;
-  for (const KnownMarker& marker : known) sum_px += QuadMeanSide(marker.corners_px);
-  return sum_px / static_cast<double>(known.size());
+  std::vector<const MarkerQuad*> quads;
+  for (const auto& [marker_id, quad] : known) {
+    if (twice.count(marker_id) == 0) quads.push_back(quad);
+  }
+  return quads;
 }
 
 // Nothing unless all of it is in front of the camera and within the field of view, beyond which a
@@ -69,61 +56,6 @@ std::optional<QuadCorners> Reproject(const Camera& camera, const Eigen::Isometry
     corners_px[c] = in_image_px->array() - kImageFromOpenCvPx;
   }
   return corners_px;
-}
-
-// Corners of markers as OpenCV takes them.
-struct Correspondences {
-  std::vector<cv::Point3d> in_shape_m;
-  std::vector<cv::Point2d> rays;
-};
-
-void Append(const KnownMarker& marker, std::size_t corner, Correspondences* all) {
-  const Eigen::Vector3d& x = (*marker.in_shape_m)[corner];
-  all->in_shape_m.emplace_back(x.x(), x.y(), x.z());
-  all->rays.emplace_back(marker.rays[corner].x(), marker.rays[corner].y());
-}
-
-Eigen::Isometry3d IsometryFromOpenCV(const cv::Vec3d& rotation_vector,
-                                     const cv::Vec3d& translation) {
-  const Eigen::Vector3d axis_angle(rotation_vector[0], rotation_vector[1], rotation_vector[2]);
-  Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
-  const double angle = axis_angle.norm();
-  if (angle > 0) isometry.linear() = Eigen::AngleAxisd(angle, axis_angle / angle).matrix();
-  isometry.translation() << translation[0], translation[1], translation[2];
-  return isometry;
-}
-
-// cv::solvePnPRansac ends with EPnP on all that agree, which is unsteady on a surface that is
-// nearly a plane; so only its consensus is taken.
-std::optional<Eigen::Isometry3d> FindPose(const std::vector<KnownMarker>& known,
-                                          double tolerance_in_rays) {
-  constexpr int kMaxDraws = 100;
-  constexpr double kConfidence = 0.9999;
-  Correspondences all;
-  for (const KnownMarker& marker : known) {
-    for (std::size_t c = 0; c < kNumCorners; ++c) Append(marker, c, &all);
-  }
-  cv::Vec3d rotation_vector, translation;
-  std::vector<int> consensus;
-  if (!cv::solvePnPRansac(all.in_shape_m, all.rays, cv::Matx33d::eye(), cv::noArray(),
-                          rotation_vector, translation, false, kMaxDraws,
-                          static_cast<float>(tolerance_in_rays), kConfidence, consensus,
-                          cv::SOLVEPNP_AP3P)) {
-    return std::nullopt;
-  }
-  if (consensus.size() < kMinAgreeing * kNumCorners) return std::nullopt;
-  Correspondences agreeing;
-  for (const int idx : consensus) {
-    const auto i = static_cast<std::size_t>(idx);
-    Append(known[i / kNumCorners], i % kNumCorners, &agreeing);
-  }
-  if (!cv::solvePnP(agreeing.in_shape_m, agreeing.rays, cv::Matx33d::eye(), cv::noArray(),
-                    rotation_vector, translation, false, cv::SOLVEPNP_SQPNP)) {
-    return std::nullopt;
-  }
-  cv::solvePnPRefineLM(agreeing.in_shape_m, agreeing.rays, cv::Matx33d::eye(), cv::noArray(),
-                       rotation_vector, translation);
-  return IsometryFromOpenCV(rotation_vector, translation);
 }
 
 double SignedArea(const QuadCorners& quad) {  // positive: clockwise on the screen, a face seen
@@ -143,23 +75,25 @@ bool FacesCamera(const QuadCorners& quad) {
 std::optional<MapView> PlaceOnMap(const MarkerMap& map, const Camera& camera,
                                   const std::vector<MarkerQuad>& found, MapAgreement* agreement) {
   *agreement = {};
-  const std::vector<KnownMarker> known = FindKnown(map, camera, found);
-  agreement->num_known = static_cast<int>(known.size());
-  if (agreement->num_known < kMinAgreeing) return std::nullopt;
-  const double tolerance_px = MeanSide(known);
-  const auto cam_from_shape = FindPose(known, tolerance_px / MeanFocalLength(camera));
-  if (!cam_from_shape) return std::nullopt;
-  MapView view{*cam_from_shape, {}};
-  for (const KnownMarker& marker : known) {
-    const auto place_px = Reproject(camera, view.cam_from_shape, *marker.in_shape_m);
-    if (!place_px || MaxCornerShift(*place_px, marker.corners_px) > tolerance_px) continue;
-    view.departures.push_back({QuadCenter(*place_px), QuadCenter(marker.corners_px)});
+  std::vector<const MarkerQuad*> known;
+  std::vector<MarkerRays> markers;
+  for (const MarkerQuad* quad : FindKnown(map, found)) {
+    const auto rays = RaysOf(camera, quad->corners_px);
+    if (!rays) continue;
+    known.push_back(quad);
+    markers.push_back({map.at(quad->marker_id), *rays});
   }
-  const auto num_agreeing = static_cast<int>(view.departures.size());
-  if (num_agreeing < kMinAgreeing || num_agreeing < kMinAgreeingPart * agreement->num_known) {
-    return std::nullopt;
+  if (markers.size() < kMinConsensus) return std::nullopt;
+  agreement->num_known = static_cast<int>(markers.size());
+  const auto pose = FindConsensusPose(std::move(markers));
+  if (!pose) return std::nullopt;
+  agreement->num_agreeing = static_cast<int>(pose->agreeing_idxs.size());
+  MapView view{pose->cam_from_space, {}};
+  for (const std::size_t i : pose->agreeing_idxs) {
+    const auto place_px = Reproject(camera, view.cam_from_shape, map.at(known[i]->marker_id));
+    if (!place_px) continue;
+    view.departures.push_back({QuadCenter(*place_px), QuadCenter(known[i]->corners_px)});
   }
-  agreement->num_agreeing = num_agreeing;
   return view;
 }
 
@@ -176,6 +110,7 @@ std::vector<ExpectedMarker> ExpectOnMap(const MarkerMap& map, const Camera& came
     for (Eigen::Vector2d& corner : *corners_px) corner += departure_px;
     const double reach_px =
         4.0 + 0.3 * QuadMeanSide(*corners_px) + 0.5 * std::min(departure_px.norm(), 40.0);
+    if (!FitsIn(BoundingBox(*corners_px), {camera.width_px, camera.height_px}, reach_px)) continue;
     all.push_back({{marker_id, *corners_px}, reach_px});
   }
   return all;

@@ -1,4 +1,4 @@
-// Where an earlier reconstruction of the surface says that markers should be to be seen: they are
+// Where an earlier reconstruction of the surface says that markers should be visible: they are
 // reprojected with the pose that the camera has by those that are found.
 
 #pragma once
@@ -23,15 +23,15 @@ struct MapView {
   std::vector<PointMotion> departures;
 };
 
-// The pose that has most found markers within their own side of their places, by RANSAC over
-// corners (cv::solvePnPRansac with AP3P) and a refinement on all of them that agree. Nothing unless
-// four markers and half of the known ones agree; then none is counted as agreeing. An id that is
-// found twice says nothing.
+// By the consensus of the found markers that the map holds (consensus_pose.h). An id that is found
+// twice says nothing, and neither is known nor agrees; a frame with fewer than kMinConsensus known
+// ones has none.
 std::optional<MapView> PlaceOnMap(const MarkerMap& map, const Camera& camera,
                                   const std::vector<MarkerQuad>& found, MapAgreement* agreement);
 
 // Every marker of the map whose id is not found and which faces the camera: at its reprojection,
-// moved as the found ones around it depart from theirs. Some lie beyond the image's border.
+// moved as the found ones around it depart from theirs. None farther beyond the image's border than
+// its reach.
 std::vector<ExpectedMarker> ExpectOnMap(const MarkerMap& map, const Camera& camera,
                                         const MapView& view, const std::vector<MarkerQuad>& found);
 

@@ -14,6 +14,7 @@
 
 #include "importer/calibration.h"
 #include "importer/colmap_database.h"
+#include "importer/database_writer.h"
 #include "importer/dictionary_hint.h"
 #include "importer/error.h"
 #include "importer/frame_detector.h"
@@ -29,52 +30,6 @@ namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kBatchSize = 50;  // images a transaction
-
-// A database that this run creates goes again if the run fails.
-class NewDatabaseGuard {
- public:
-  explicit NewDatabaseGuard(const std::string& path) : path_(path), is_new_(!fs::exists(path)) {}
-  ~NewDatabaseGuard() {
-    if (!is_new_) return;
-    std::error_code ignored;
-    for (const char* suffix : {"", "-journal"}) fs::remove(path_ + suffix, ignored);
-  }
-  NewDatabaseGuard(const NewDatabaseGuard&) = delete;
-  NewDatabaseGuard& operator=(const NewDatabaseGuard&) = delete;
-
-  void Keep() { is_new_ = false; }
-
- private:
-  std::string path_;
-  bool is_new_;
-};
-
-// The writing side: one transaction a batch.
-class DatabaseWriter {
- public:
-  DatabaseWriter(std::string detector, ColmapDatabase* database)
-      : detector_(std::move(detector)), database_(database) {}
-
-  void Add(const FrameDetections& detections, const Camera& camera) {
-    if (!transaction_) transaction_.emplace(database_);
-    database_->AddImage(database_->AddCamera(camera), detections, detector_);
-    if (++num_in_batch_ == kBatchSize) Commit();
-  }
-
-  void Commit() {
-    if (transaction_) transaction_->Commit();
-    transaction_.reset();
-    num_in_batch_ = 0;
-  }
-
- private:
-  std::string detector_;
-  ColmapDatabase* database_;
-  std::optional<ColmapDatabase::Transaction> transaction_;
-  int num_in_batch_ = 0;
-};
 
 int NumThreads(int num_threads) {
   if (num_threads < 0) {

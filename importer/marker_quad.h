@@ -11,7 +11,7 @@ struct MarkerQuad {
   QuadCorners corners_px;
 };
 
-// A marker that was not found, at a place where it should be to be seen.
+// A marker that was not found, at a place where it should be visible.
 struct ExpectedMarker {
   MarkerQuad quad;
   double reach_px = 0.0;  // how far it may be from its place

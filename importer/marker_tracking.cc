@@ -253,8 +253,8 @@ std::optional<std::vector<MarkerQuad>> SearchPlaces(const FrameSearch& search, i
   if (!SearchAlso(search, std::move(regions), &quads)) return std::nullopt;
   const std::vector<int> quad_of_track = Associate(tracks->tracks, quads, size);
   if (IsLost(tracks->tracks, quad_of_track, first->motions, size)) return std::nullopt;
+  if (!SearchAlso(search, LookWhereExpected(search, &quads), &quads)) return std::nullopt;
   tracks->inflow_px = inflow_px;
-  SearchAlso(search, LookWhereExpected(search, &quads), &quads);
   return quads;
 }
 

@@ -61,7 +61,7 @@ struct FrameSearch {
       locate;
   // What a coarse search of the whole frame has found, where there was one.
   std::vector<MarkerQuad> seen_coarsely{};
-  // Where markers that are not among `found` should be to be seen; may be empty.
+  // Where markers that are not among `found` should be visible; may be empty.
   std::function<std::vector<ExpectedMarker>(const std::vector<MarkerQuad>& found)> expect{};
 };
 

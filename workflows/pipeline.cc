@@ -45,9 +45,15 @@ std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
 }
 
 void LogMap(const MapAgreement& map) {
+  if (map.num_known == 0) {
+    spdlog::warn(
+        "--map_path: no frame shows four markers of the map, so that it was of no use; are its ids "
+        "those of the dictionary and the layout?");
+    return;
+  }
   spdlog::info("{} of the {} markers found that the map holds are where it has them",
                map.num_agreeing, map.num_known);
-  if (2 * map.num_agreeing < map.num_known || map.num_known == 0) {
+  if (2 * map.num_agreeing < map.num_known) {
     spdlog::warn(
         "--map_path: the map does not fit these images and was of little use; is it of this "
         "surface, and is the calibration of these images?");

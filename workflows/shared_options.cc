@@ -54,7 +54,7 @@ Option CameraPathOption(PathOptions* paths) {
 Option MapPathOption(PathOptions* paths) {
   return {"map_path", &paths->map_path, "path",
           "shape.csv of an earlier reconstruction of the surface, or the folder that holds it: "
-          "markers are also looked for where it says that they should be to be seen"};
+          "markers are also looked for where it says that they should be visible"};
 }
 
 Option DatabasePathOption(PathOptions* paths, const std::string& description) {
@@ -287,6 +287,12 @@ MarkerMap LoadMap(const std::string& map_path) {
   MarkerMap map;
   if (map_path.empty()) return map;
   const std::string file = ShapeFile(map_path);
+  if (!std::filesystem::is_regular_file(file)) {
+    throw InputError(fmt::format(
+        "--map_path: {}: there is no such file; give a shape.csv or the folder that holds it, such "
+        "as shape in a workspace",
+        file));
+  }
   for (const ShapeMarker& marker : ReadShapeCsv(file).markers) {
     if (!marker.IsWhole()) continue;
     const auto& x = marker.x_in_shape_m;

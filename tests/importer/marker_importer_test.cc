@@ -151,6 +151,43 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
   EXPECT_EQ(read(options_.database_path), bytes);
 }
 
+// 5 and 6 come and go beside the others.
+TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
+  options_.image_path = dir_ / "video.avi";
+  {
+    cv::VideoWriter writer(options_.image_path, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
+                           cv::Size(640, 480));
+    ASSERT_TRUE(writer.isOpened());
+    for (int i = 0; i < 40; ++i) {
+      std::vector<DrawnMarker> drawn;
+      for (int id = 1; id <= 6; ++id) {
+        if (id > 4 && i % 20 < 5) continue;
+        drawn.push_back({id, 30 + 200 * ((id - 1) % 3) + i, 60 + 220 * ((id - 1) / 3), 72});
+      }
+      writer << DrawMarkers(LoadDictionary("DICT_4X4_50").aruco, cv::Size(640, 480), drawn);
+    }
+  }
+  options_.camera = {CameraModel::kPinhole, 640, 480, {600, 600, 320, 240}};
+  for (int id = 1; id <= 6; ++id) {
+    const double x = 0.2 * ((id - 1) % 3), y = 0.22 * ((id - 1) / 3);
+    options_.map[id] = {Eigen::Vector3d(x, y, 0), Eigen::Vector3d(x + 0.072, y, 0),
+                        Eigen::Vector3d(x + 0.072, y + 0.072, 0), Eigen::Vector3d(x, y + 0.072, 0)};
+  }
+  std::string bytes;
+  for (const int num_threads : {1, 2, 5}) {
+    fs::remove(options_.database_path);
+    options_.num_threads = num_threads;
+    const ImportReport report = ImportMarkers(options_);
+    EXPECT_EQ(report.num_markers, 40 * 4 + 30 * 2);
+    EXPECT_EQ(report.map.num_agreeing, report.map.num_known);
+    EXPECT_GT(report.map.num_agreeing, 40 * 4);
+    std::ifstream stream(options_.database_path, std::ios::binary);
+    const std::string now(std::istreambuf_iterator<char>(stream), {});
+    if (num_threads == 1) bytes = now;
+    EXPECT_EQ(now, bytes) << num_threads;
+  }
+}
+
 TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingInATrackedVideo) {
   WriteVideo(40);
   const auto run = [&](int num_threads, SearchMode search) {

@@ -110,7 +110,7 @@ TEST_F(BadInputTest, MapThatIsNone) {
   arguments_["--map_path"] = (dir_ / "nowhere.csv").string();
   ExpectFailure(2, "nowhere.csv");
   arguments_["--map_path"] = images().string();
-  ExpectFailure(2, "shape.csv");
+  ExpectFailure(2, "--map_path: " + (images() / "shape.csv").string());
   const std::string header = "marker_id,corner,x,y,z,sigma_x,sigma_y,sigma_z,num_frames,part\n";
   WriteTextFile(dir_ / "map.csv", header + "1,1,0,0,0,,,,2,\n");
   arguments_["--map_path"] = (dir_ / "map.csv").string();
