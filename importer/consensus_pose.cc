@@ -7,15 +7,16 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "importer/triple_pose.h"
+
 namespace velamap {
 namespace {
 
 // Of adjustments to those that agree, each of which may make some more agree.
 constexpr int kNumRounds = 2;
 
-// Draws that it takes so that one frame in a billion misses, with half of the markers wrong.
+// 160 are enough for half of the markers wrong.
 constexpr int kMinDraws = 12, kMaxDraws = 160;
-constexpr double kMissRate = 1e-9;
 constexpr unsigned int kRandomSeed = 0;
 
 // x_in_unit = scale * (x_in_space - center_in_space)
@@ -30,8 +31,9 @@ std::optional<UnitFrame> CenterAndScale(std::vector<MarkerRays>* markers) {
   UnitFrame frame;
   const double num_corners = static_cast<double>(kNumCorners * markers->size());
   for (const MarkerRays& marker : *markers) {
-    for (const Eigen::Vector3d& x : marker.corners_in_space)
+    for (const Eigen::Vector3d& x : marker.corners_in_space) {
       frame.center_in_space += x / num_corners;
+    }
   }
   double squared_radius = 0.0;
   for (const MarkerRays& marker : *markers) {
@@ -42,8 +44,9 @@ std::optional<UnitFrame> CenterAndScale(std::vector<MarkerRays>* markers) {
   frame.scale = 1.0 / std::sqrt(squared_radius);
   if (!(frame.scale > 0) || !std::isfinite(frame.scale)) return std::nullopt;
   for (MarkerRays& marker : *markers) {
-    for (Eigen::Vector3d& x : marker.corners_in_space)
+    for (Eigen::Vector3d& x : marker.corners_in_space) {
       x = frame.scale * (x - frame.center_in_space);
+    }
   }
   return frame;
 }
@@ -75,54 +78,33 @@ std::vector<std::size_t> Agreeing(const std::vector<MarkerRays>& markers,
   return idxs;
 }
 
-// Corners as OpenCV takes them.
-struct Correspondences {
-  std::vector<cv::Point3d> in_unit;
-  std::vector<cv::Point2d> rays;
-
-  void Add(const MarkerRays& marker, std::size_t corner) {
-    const Eigen::Vector3d& x = marker.corners_in_space[corner];
-    in_unit.emplace_back(x.x(), x.y(), x.z());
-    rays.emplace_back(marker.rays[corner].x(), marker.rays[corner].y());
-  }
-};
-
-Eigen::Isometry3d IsometryFromOpenCV(const cv::Vec3d& rotation_vector,
-                                     const cv::Vec3d& translation) {
-  const Eigen::Vector3d axis_angle(rotation_vector[0], rotation_vector[1], rotation_vector[2]);
+Eigen::Isometry3d ToIsometry(const Eigen::Vector3d& rotation_vector,
+                             const Eigen::Vector3d& translation) {
   Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
-  const double angle = axis_angle.norm();
-  if (angle > 0) isometry.linear() = Eigen::AngleAxisd(angle, axis_angle / angle).matrix();
-  isometry.translation() << translation[0], translation[1], translation[2];
+  const double angle = rotation_vector.norm();
+  if (angle > 0) isometry.linear() = Eigen::AngleAxisd(angle, rotation_vector / angle).matrix();
+  isometry.translation() = translation;
   return isometry;
 }
 
 // Poses that see one corner of each of three markers where it is; none for a marker drawn twice.
 std::vector<Eigen::Isometry3d> DrawPoses(const std::vector<MarkerRays>& markers,
                                          std::mt19937* generator) {
-  std::array<std::size_t, 3> idxs{};
-  Correspondences drawn;
-  for (std::size_t& idx : idxs) {
-    idx = (*generator)() % markers.size();
-    drawn.Add(markers[idx], (*generator)() % kNumCorners);
-  }
   std::vector<Eigen::Isometry3d> poses;
+  std::array<std::size_t, 3> idxs{};
+  std::array<Eigen::Vector3d, 3> x_in_unit;
+  std::array<Eigen::Vector2d, 3> rays;
+  for (std::size_t i = 0; i < 3; ++i) {
+    idxs[i] = RandomIndex(generator, markers.size());
+    const std::size_t corner = RandomIndex(generator, kNumCorners);
+    x_in_unit[i] = markers[idxs[i]].corners_in_space[corner];
+    rays[i] = markers[idxs[i]].rays[corner];
+  }
   if (idxs[0] == idxs[1] || idxs[1] == idxs[2] || idxs[0] == idxs[2]) return poses;
-  std::vector<cv::Mat> rotation_vectors, translations;
-  cv::solveP3P(drawn.in_unit, drawn.rays, cv::Matx33d::eye(), cv::noArray(), rotation_vectors,
-               translations, cv::SOLVEPNP_AP3P);
-  for (std::size_t i = 0; i < rotation_vectors.size(); ++i) {
-    poses.push_back(IsometryFromOpenCV(cv::Vec3d(rotation_vectors[i].reshape(1, 3)),
-                                       cv::Vec3d(translations[i].reshape(1, 3))));
+  for (const TriplePose& pose : PosesOfTriple(x_in_unit, rays)) {
+    poses.push_back(ToIsometry(pose.rotation_vector, pose.translation));
   }
   return poses;
-}
-
-// So many that all draws hold a wrong marker once in 1 / kMissRate frames.
-int NumDraws(double agreeing_part) {
-  const double log_miss = std::log1p(-std::pow(agreeing_part, 3));
-  if (log_miss * kMaxDraws >= std::log(kMissRate)) return kMaxDraws;
-  return std::max(kMinDraws, static_cast<int>(std::log(kMissRate) / log_miss) + 1);
 }
 
 // The drawn pose with the least sum of squared errors, those of a side and more alike.
@@ -131,7 +113,7 @@ Eigen::Isometry3d FindConsensus(const std::vector<MarkerRays>& markers) {
   double least_cost = std::numeric_limits<double>::infinity();
   double agreeing_part = 0.0;
   std::mt19937 generator(kRandomSeed);
-  for (int draw = 0; draw < NumDraws(agreeing_part); ++draw) {
+  for (int draw = 0; draw < NumTriples(agreeing_part, kMinDraws, kMaxDraws); ++draw) {
     for (const Eigen::Isometry3d& pose : DrawPoses(markers, &generator)) {
       double cost = 0.0, num_agreeing = 0.0;
       for (const MarkerRays& marker : markers) {
@@ -151,18 +133,24 @@ Eigen::Isometry3d FindConsensus(const std::vector<MarkerRays>& markers) {
 Eigen::Isometry3d Refine(const std::vector<MarkerRays>& markers,
                          const std::vector<std::size_t>& agreeing_idxs,
                          const Eigen::Isometry3d& cam_from_unit) {
-  Correspondences all;
+  std::vector<cv::Point3d> in_unit;
+  std::vector<cv::Point2d> rays;
   for (const std::size_t i : agreeing_idxs) {
-    for (std::size_t c = 0; c < kNumCorners; ++c) all.Add(markers[i], c);
+    for (std::size_t c = 0; c < kNumCorners; ++c) {
+      const Eigen::Vector3d& x = markers[i].corners_in_space[c];
+      in_unit.emplace_back(x.x(), x.y(), x.z());
+      rays.emplace_back(markers[i].rays[c].x(), markers[i].rays[c].y());
+    }
   }
   const Eigen::AngleAxisd turn(cam_from_unit.linear());
   const Eigen::Vector3d axis_angle = turn.angle() * turn.axis();
   cv::Vec3d rotation_vector(axis_angle.x(), axis_angle.y(), axis_angle.z());
   const Eigen::Vector3d& t = cam_from_unit.translation();
   cv::Vec3d translation(t.x(), t.y(), t.z());
-  cv::solvePnPRefineLM(all.in_unit, all.rays, cv::Matx33d::eye(), cv::noArray(), rotation_vector,
+  cv::solvePnPRefineLM(in_unit, rays, cv::Matx33d::eye(), cv::noArray(), rotation_vector,
                        translation);
-  return IsometryFromOpenCV(rotation_vector, translation);
+  return ToIsometry({rotation_vector[0], rotation_vector[1], rotation_vector[2]},
+                    {translation[0], translation[1], translation[2]});
 }
 
 bool IsEnough(std::size_t num_agreeing, std::size_t num_markers) {

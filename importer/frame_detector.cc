@@ -29,8 +29,9 @@ std::string MapText(const MarkerMap& map) {
   std::string text;
   for (const auto& [id, in_shape_m] : map) {
     text += fmt::format("|{}", id);
-    for (const Eigen::Vector3d& x : in_shape_m)
+    for (const Eigen::Vector3d& x : in_shape_m) {
       text += fmt::format(" {} {} {}", x.x(), x.y(), x.z());
+    }
   }
   return text;
 }

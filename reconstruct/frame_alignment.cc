@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "importer/triple_pose.h"
 #include "reconstruct/alignment.h"
 
 namespace velamap {
@@ -33,8 +34,8 @@ std::vector<SharedMarker> FindShared(const FrameShape& frame, const ShapePoints&
     if (it == shape.end()) continue;
     const double own_max_error_m =
         std::max(MarkerLength(layout, marker.marker_id), 3 * marker.depth_sigma_m);
-    shared.push_back({marker.marker_id, &marker, &it->second,
-                      max_error_m > 0 ? max_error_m : own_max_error_m});
+    shared.push_back(
+        {marker.marker_id, &marker, &it->second, max_error_m > 0 ? max_error_m : own_max_error_m});
   }
   return shared;
 }
@@ -111,20 +112,16 @@ class AlignmentProblem {
   bool use_centers_ = false;
 };
 
-// std::uniform_int_distribution differs between standard libraries; this does not.
-int RandomIndex(std::mt19937* generator, int size) {
-  return static_cast<int>((static_cast<std::uint64_t>((*generator)()) *
-                           static_cast<std::uint64_t>(size)) >> 32);
-}
-
 std::vector<Rigid3> CenterHypotheses(const AlignmentProblem& problem, int max_num_trials,
                                      std::uint32_t seed) {
   std::mt19937 generator(seed);
+  const auto draw = [&] {
+    return static_cast<int>(
+        RandomIndex(&generator, static_cast<std::size_t>(problem.NumMarkers())));
+  };
   std::vector<Rigid3> hypotheses;
   for (int trial = 0; trial < max_num_trials; ++trial) {
-    const int a = RandomIndex(&generator, problem.NumMarkers());
-    const int b = RandomIndex(&generator, problem.NumMarkers());
-    const int c = RandomIndex(&generator, problem.NumMarkers());
+    const int a = draw(), b = draw(), c = draw();
     if (a == b || b == c || a == c) continue;
     const std::vector<Eigen::Vector3d> centers = {(*problem.Marker(a).in_shape)[0],
                                                   (*problem.Marker(b).in_shape)[0],
@@ -151,8 +148,7 @@ int BestSolution(const FrameMarker& marker, const Rigid3& shape_from_cam,
   int best = 0;
   double best_distance = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < marker.x_in_cam.size(); ++i) {
-    const double distance =
-        RmsDistance(Transform(shape_from_cam, marker.x_in_cam[i]), x_in_shape);
+    const double distance = RmsDistance(Transform(shape_from_cam, marker.x_in_cam[i]), x_in_shape);
     if (distance < best_distance) {
       best_distance = distance;
       best = static_cast<int>(i);
@@ -168,9 +164,8 @@ std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoi
   if (problem.NumMarkers() < options.min_num_inliers) return std::nullopt;
 
   const std::vector<Rigid3> hypotheses =
-      problem.UseCenters()
-          ? CenterHypotheses(problem, options.max_num_trials, options.random_seed)
-          : CornerHypotheses(problem);
+      problem.UseCenters() ? CenterHypotheses(problem, options.max_num_trials, options.random_seed)
+                           : CornerHypotheses(problem);
   Rigid3 best;
   Score best_score;
   for (const Rigid3& shape_from_cam : hypotheses) {
@@ -196,8 +191,8 @@ std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoi
   double sum = 0.0;
   std::size_t next_inlier = 0;
   for (int idx = 0; idx < problem.NumMarkers(); ++idx) {
-    const bool is_inlier = next_inlier < best_score.inlier_idxs.size() &&
-                           best_score.inlier_idxs[next_inlier] == idx;
+    const bool is_inlier =
+        next_inlier < best_score.inlier_idxs.size() && best_score.inlier_idxs[next_inlier] == idx;
     if (!is_inlier) {
       alignment.outlier_ids.push_back(problem.Marker(idx).marker_id);
       continue;

@@ -5,20 +5,18 @@
 #include <cmath>
 #include <random>
 
-#include <opencv2/calib3d.hpp>
-
+#include "importer/triple_pose.h"
 #include "reconstruct/map_refinement.h"
-#include "reconstruct/opencv_pose.h"
+#include "reconstruct/pose_step.h"
 
 namespace velamap {
 namespace {
 
 // Few markers give hypotheses one by one; of many, triples of corners are far better.
 constexpr std::size_t kMaxSingles = 12;
-// So many triples as it takes that one in a billion misses, with the share of markers that agree
-// with the best pose so far; 50 are enough for a third of wrong markers.
+// By the share of markers that agree with the best pose so far; 50 are enough for a third of wrong
+// markers.
 constexpr int kMinTriples = 12, kMaxTriples = 50;
-constexpr double kMissRate = 1e-9;
 // Markers on which hypotheses are ranked before the best are refined on all.
 constexpr std::size_t kMaxRanking = 24;
 constexpr std::size_t kMaxRefined = 4;
@@ -91,48 +89,28 @@ std::vector<Rigid3> SingleMarkerPoses(const std::vector<KnownMarker>& known) {
   return poses;
 }
 
-// std::uniform_int_distribution differs between standard libraries; this does not.
-std::size_t RandomIndex(std::mt19937* generator, std::size_t size) {
-  return static_cast<std::size_t>(
-      (static_cast<std::uint64_t>((*generator)()) * static_cast<std::uint64_t>(size)) >> 32);
-}
-
 // Poses that see a corner of each of three markers where they are; none for a marker drawn twice.
 std::vector<Rigid3> TriplePoses(const MapProblem& problem, const std::vector<KnownMarker>& known,
                                 std::mt19937* generator) {
   std::vector<Rigid3> poses;
   std::array<std::size_t, 3> idxs{};
-  std::vector<cv::Point3d> in_shape;
-  std::vector<cv::Point2d> in_image;
-  for (std::size_t& idx : idxs) {
-    idx = RandomIndex(generator, known.size());
+  std::array<Eigen::Vector3d, 3> x_in_shape;
+  std::array<Eigen::Vector2d, 3> rays;
+  for (std::size_t i = 0; i < 3; ++i) {
+    idxs[i] = RandomIndex(generator, known.size());
     const std::size_t corner = RandomIndex(generator, kNumCorners);
-    const KnownMarker& marker = known[idx];
-    const Eigen::Vector3d x =
-        marker.places->front() *
-        problem.Marker(marker.observation->marker_idx).corners_in_marker[corner];
-    in_shape.emplace_back(x.x(), x.y(), x.z());
-    in_image.emplace_back(marker.observation->rays[corner].x(),
-                          marker.observation->rays[corner].y());
+    const KnownMarker& marker = known[idxs[i]];
+    x_in_shape[i] = marker.places->front() *
+                    problem.Marker(marker.observation->marker_idx).corners_in_marker[corner];
+    rays[i] = marker.observation->rays[corner];
   }
   if (idxs[0] == idxs[1] || idxs[1] == idxs[2] || idxs[0] == idxs[2]) return poses;
-  std::vector<cv::Mat> rotation_vectors, translations;
-  cv::solveP3P(in_shape, in_image, cv::Matx33d::eye(), cv::noArray(), rotation_vectors,
-               translations, cv::SOLVEPNP_AP3P);
-  for (std::size_t i = 0; i < rotation_vectors.size(); ++i) {
-    const Rigid3 pose = RigidFromOpenCV(rotation_vectors[i], translations[i]);
-    if (pose.translation.allFinite() && pose.rotation.coeffs().allFinite()) poses.push_back(pose);
+  for (const TriplePose& pose : PosesOfTriple(x_in_shape, rays)) {
+    PoseStep step;
+    step << pose.rotation_vector, pose.translation;
+    poses.push_back(Moved({}, step));
   }
   return poses;
-}
-
-// With the markers that agree with a pose, of so many.
-int NumTriples(std::size_t num_agreeing, std::size_t count) {
-  const double share = static_cast<double>(num_agreeing) / static_cast<double>(count);
-  const double log_miss = std::log1p(-std::pow(share, 3));
-  return log_miss * kMaxTriples >= std::log(kMissRate)
-             ? kMaxTriples
-             : std::max(kMinTriples, static_cast<int>(std::log(kMissRate) / log_miss) + 1);
 }
 
 // All poses that single markers and triples give, ranked on some of the markers.
@@ -154,8 +132,10 @@ std::vector<PoseHypothesis> DrawHypotheses(const MapProblem& problem,
     return marker.places->size() == 1;
   });
   const auto is_enough = [&](int num_trials) {
-    const int num_triples = is_clear ? NumTriples(most_agreeing, ranking.size()) : kMaxTriples;
-    return num_trials >= std::max(kMinTriples, num_triples);
+    const double agreeing_part =
+        static_cast<double>(most_agreeing) / static_cast<double>(ranking.size());
+    return num_trials >=
+           (is_clear ? NumTriples(agreeing_part, kMinTriples, kMaxTriples) : kMaxTriples);
   };
   std::mt19937 generator(random_seed);
   for (int trial = 0; known.size() >= 3 && !is_enough(trial); ++trial) {

@@ -106,24 +106,24 @@ percent() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f %%", (b > 0 ? 100 * a 
 
 ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (b > 0 ? a / b : 0) }'; }
 
+# run_on_clip COMMAND FOLDER [OPTION...]: one of velamap's commands.
+run_on_clip() {
+  local command="$1" folder="$2"
+  shift 2
+  measure "$velamap" "$command" --image_path "$folder/clip.mp4" \
+    --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" "$@"
+}
+
 # import FOLDER [OPTION...]: of a clip into database.db.
 import() {
-  local folder="$1"
-  shift
   rm -f "$work/database.db"
-  measure "$velamap" marker_importer --image_path "$folder/clip.mp4" \
-    --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
-    --database_path "$work/database.db" "$@"
+  run_on_clip marker_importer "$@" --database_path "$work/database.db"
 }
 
 # reconstruct FOLDER [OPTION...]: the main job on a clip, into result/.
 reconstruct() {
-  local folder="$1"
-  shift
   rm -rf "$work/result"
-  measure "$velamap" automatic_reconstructor --image_path "$folder/clip.mp4" \
-    --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
-    --workspace_path "$work/result" "$@"
+  run_on_clip automatic_reconstructor "$@" --workspace_path "$work/result"
 }
 
 # search_ms FRAMES: CPU time of the search a frame, in the last import.

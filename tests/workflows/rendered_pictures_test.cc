@@ -110,25 +110,21 @@ class RenderedPicturesTest : public ::testing::Test {
     WriteTextFile(dir_ / "cameras.txt", line.str() + "\n");
   }
 
-  ProgramRun Reconstruct(const fs::path& image_path, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"automatic_reconstructor",
-                                          "--image_path",
-                                          image_path.string(),
-                                          "--camera_path",
-                                          (dir_ / "cameras.txt").string(),
-                                          "--dictionary",
-                                          scene_->layout.dictionary,
-                                          "--marker_length",
-                                          std::to_string(kMarkerLengthM),
-                                          "--workspace_path",
-                                          (dir_ / "workspace").string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return RunVelamap(arguments);
+  ProgramRun Reconstruct(const fs::path& image_path) {
+    return Run("automatic_reconstructor", image_path,
+               {"--workspace_path", (dir_ / "workspace").string()});
   }
 
   ProgramRun Import(const fs::path& image_path, const std::string& database,
-                    const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"marker_importer",
+                    const std::string& map_path = "") {
+    std::vector<std::string> options = {"--database_path", (dir_ / database).string()};
+    if (!map_path.empty()) options.insert(options.end(), {"--map_path", map_path});
+    return Run("marker_importer", image_path, options);
+  }
+
+  ProgramRun Run(const std::string& command, const fs::path& image_path,
+                 const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {command,
                                           "--image_path",
                                           image_path.string(),
                                           "--camera_path",
@@ -136,10 +132,8 @@ class RenderedPicturesTest : public ::testing::Test {
                                           "--dictionary",
                                           scene_->layout.dictionary,
                                           "--marker_length",
-                                          std::to_string(kMarkerLengthM),
-                                          "--database_path",
-                                          (dir_ / database).string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+                                          std::to_string(kMarkerLengthM)};
+    arguments.insert(arguments.end(), options.begin(), options.end());
     return RunVelamap(arguments);
   }
 
@@ -228,7 +222,7 @@ TEST_F(RenderedPicturesTest, MapOfAnEarlierRunFindsWhatTheDetectorMisses) {
     ASSERT_EQ(without.exit_code, 0) << without.err;
     EXPECT_THAT(without.out, HasSubstr("\nmarkers: 132\n"));
     EXPECT_THAT(without.out, Not(HasSubstr("_map: ")));
-    const ProgramRun with = Import(input, name + ".db", {"--map_path", shape});
+    const ProgramRun with = Import(input, name + ".db", shape);
     ASSERT_EQ(with.exit_code, 0) << with.err;
     EXPECT_THAT(with.out, HasSubstr("\nmarkers: 141\n"));
     EXPECT_THAT(with.out, HasSubstr("\nmarkers_agreeing_with_map: 1"));
@@ -247,12 +241,12 @@ TEST_F(RenderedPicturesTest, MapOfAnotherSurfaceIsWarnedOf) {
   WriteShapeCsv(shuffled, csv);
   WriteTextFile(dir_ / "other.csv", csv.str());
   const fs::path photos = WritePhotos("photos", *frames_);
-  const ProgramRun run = Import(photos, "database.db", {"--map_path", dir_ / "other.csv"});
+  const ProgramRun run = Import(photos, "database.db", dir_ / "other.csv");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("the map does not fit these images"));
   EXPECT_THAT(run.out, HasSubstr("markers_agreeing_with_map: 0\n"));
 
-  const ProgramRun nothing_new = Import(photos, "database.db", {"--map_path", dir_ / "other.csv"});
+  const ProgramRun nothing_new = Import(photos, "database.db", dir_ / "other.csv");
   EXPECT_EQ(nothing_new.exit_code, 0) << nothing_new.err;
   EXPECT_THAT(nothing_new.err, Not(HasSubstr("--map_path")));
 
