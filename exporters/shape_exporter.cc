@@ -5,16 +5,16 @@
 #include <map>
 #include <set>
 
-#include "exporters/metric_shape.h"
-#include "exporters/ply_writer.h"
-#include "exporters/scale_audit_report.h"
-#include "exporters/scale_csv.h"
-#include "exporters/shape_csv.h"
+#include "exporters/formats/ply_writer.h"
+#include "exporters/formats/shape_csv.h"
+#include "exporters/scale/metric_shape.h"
+#include "exporters/scale/scale_audit_report.h"
+#include "exporters/scale/scale_csv.h"
 #include "exporters/shape_report.h"
-#include "importer/atomic_output.h"
-#include "importer/error.h"
-#include "reconstruct/model_io.h"
-#include "reconstruct/reprojection.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "reconstruct/model/model_io.h"
+#include "reconstruct/model/reprojection.h"
 
 namespace velamap {
 namespace {

@@ -5,16 +5,16 @@
 #include <optional>
 #include <string>
 
-#include "exporters/metric_scale.h"
-#include "exporters/model_metrics.h"
-#include "exporters/sail_shape.h"
-#include "exporters/scale_audit.h"
-#include "exporters/shape_frame.h"
-#include "exporters/shape_metrics.h"
-#include "importer/frame_choice.h"
-#include "importer/layout.h"
-#include "reconstruct/adjustment_uncertainty.h"
-#include "reconstruct/model.h"
+#include "exporters/sail/sail_shape.h"
+#include "exporters/scale/metric_scale.h"
+#include "exporters/scale/model_metrics.h"
+#include "exporters/scale/scale_audit.h"
+#include "exporters/shape/shape_frame.h"
+#include "exporters/shape/shape_metrics.h"
+#include "importer/layout/frame_choice.h"
+#include "importer/layout/layout.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
+#include "reconstruct/model/model.h"
 
 namespace velamap {
 

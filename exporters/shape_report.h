@@ -5,15 +5,15 @@
 
 #include <vector>
 
-#include "exporters/adjacent_distances.h"
-#include "exporters/metric_scale.h"
-#include "exporters/metrics_report.h"
-#include "exporters/model_metrics.h"
-#include "exporters/part_planes.h"
-#include "exporters/sail_shape.h"
-#include "exporters/shape_frame.h"
-#include "exporters/shape_metrics.h"
-#include "reconstruct/adjustment_uncertainty.h"
+#include "exporters/formats/metrics_report.h"
+#include "exporters/sail/sail_shape.h"
+#include "exporters/scale/metric_scale.h"
+#include "exporters/scale/model_metrics.h"
+#include "exporters/shape/adjacent_distances.h"
+#include "exporters/shape/part_planes.h"
+#include "exporters/shape/shape_frame.h"
+#include "exporters/shape/shape_metrics.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
 
 namespace velamap {
 

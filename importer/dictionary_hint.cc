@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "importer/marker_detector.h"
+#include "importer/refine/marker_detector.h"
 
 namespace velamap {
 namespace {

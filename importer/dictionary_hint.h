@@ -8,7 +8,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "importer/options.h"
+#include "importer/detect/import_options.h"
 
 namespace velamap {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "importer/bounded_queue.h"
-#include "importer/error.h"
+#include "importer/base/bounded_queue.h"
+#include "importer/base/error.h"
 
 namespace velamap {
 namespace {

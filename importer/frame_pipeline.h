@@ -5,11 +5,11 @@
 #include <functional>
 #include <string>
 
-#include "importer/camera.h"
-#include "importer/detection.h"
-#include "importer/frame_source.h"
-#include "importer/marker_map.h"
-#include "importer/stage_timer.h"
+#include "importer/base/stage_timer.h"
+#include "importer/camera/camera.h"
+#include "importer/detect/detection.h"
+#include "importer/layout/prior_shape.h"
+#include "importer/video/frame_source.h"
 
 namespace velamap {
 

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "importer/calibration.h"
-#include "importer/error.h"
+#include "importer/base/error.h"
+#include "importer/camera/calibration.h"
 
 namespace velamap {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "importer/colmap_database.h"
+#include "importer/database/colmap_database.h"
 #include "importer/dictionary_hint.h"
 #include "importer/marker_importer.h"
 

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "importer/correspondence.h"
-#include "importer/natural_order.h"
-#include "importer/rotation_evidence.h"
+#include "importer/base/natural_order.h"
+#include "importer/database/correspondence.h"
+#include "importer/detect/rotation_evidence.h"
 
 namespace velamap {
 

@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include "importer/colmap_database.h"
-#include "importer/frame_detector.h"
+#include "importer/database/colmap_database.h"
+#include "importer/track/frame_detector.h"
 
 namespace velamap {
 

@@ -12,19 +12,19 @@
 
 #include <fmt/format.h>
 
-#include "importer/calibration.h"
-#include "importer/colmap_database.h"
-#include "importer/database_writer.h"
+#include "importer/base/error.h"
+#include "importer/camera/calibration.h"
+#include "importer/database/colmap_database.h"
+#include "importer/database/database_writer.h"
 #include "importer/dictionary_hint.h"
-#include "importer/error.h"
-#include "importer/frame_detector.h"
-#include "importer/frame_image.h"
 #include "importer/frame_pipeline.h"
-#include "importer/frame_source.h"
 #include "importer/frame_turns.h"
 #include "importer/import_checks.h"
 #include "importer/import_completion.h"
-#include "importer/marker_tracking.h"
+#include "importer/track/frame_detector.h"
+#include "importer/track/marker_tracking.h"
+#include "importer/video/frame_image.h"
+#include "importer/video/frame_source.h"
 
 namespace velamap {
 namespace {

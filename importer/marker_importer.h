@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "importer/camera.h"
-#include "importer/layout.h"
-#include "importer/marker_map.h"
-#include "importer/options.h"
-#include "importer/stage_timer.h"
+#include "importer/base/stage_timer.h"
+#include "importer/camera/camera.h"
+#include "importer/detect/import_options.h"
+#include "importer/layout/layout.h"
+#include "importer/layout/prior_shape.h"
 
 namespace velamap {
 

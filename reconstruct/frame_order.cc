@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "importer/error.h"
+#include "importer/base/error.h"
 
 namespace velamap {
 

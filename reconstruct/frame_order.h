@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "importer/colmap_database.h"
+#include "importer/database/colmap_database.h"
 #include "reconstruct/registration.h"
 
 namespace velamap {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "importer/error.h"
+#include "importer/base/error.h"
 #include "reconstruct/frame_order.h"
-#include "reconstruct/frame_selection.h"
-#include "reconstruct/global_registration.h"
-#include "reconstruct/registration_state.h"
+#include "reconstruct/global/global_registration.h"
+#include "reconstruct/thesis/frame_selection.h"
+#include "reconstruct/thesis/registration_state.h"
 
 namespace velamap {
 namespace {

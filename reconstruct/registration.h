@@ -1,5 +1,5 @@
 // Registers frames and places markers: the first guess of the surface. Two methods do it; the
-// global one is in reconstruct/global_registration.h.
+// global one is in reconstruct/global/global_registration.h.
 //
 // The thesis's (3.4 and 3.5) registers frames to a central frame and averages their markers. A
 // video is searched in time order. Photographs have no time order: there the central frame is the
@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "importer/camera.h"
-#include "importer/colmap_database.h"
-#include "importer/layout.h"
-#include "reconstruct/frame_alignment.h"
-#include "reconstruct/frame_shape.h"
-#include "reconstruct/posed_images.h"
-#include "reconstruct/shape_averaging.h"
+#include "importer/camera/camera.h"
+#include "importer/database/colmap_database.h"
+#include "importer/layout/layout.h"
+#include "reconstruct/geometry/frame_shape.h"
+#include "reconstruct/thesis/frame_alignment.h"
+#include "reconstruct/thesis/posed_images.h"
+#include "reconstruct/thesis/shape_averaging.h"
 
 namespace velamap {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <ostream>
 
-#include "importer/error.h"
-#include "reconstruct/gauge.h"
-#include "reconstruct/reprojection.h"
+#include "importer/base/error.h"
+#include "reconstruct/model/gauge.h"
+#include "reconstruct/model/reprojection.h"
 
 namespace velamap {
 namespace {
@@ -25,11 +25,11 @@ const DatabaseImage& FindImage(const std::vector<DatabaseImage>& images, ImageId
 // Adds the image's keypoints and, for the markers that stay, its track elements.
 void AddImage(const RegisteredFrame& frame, const DatabaseImage& database_image,
               const ShapePoints& shape, Model* model, ColorSums* color_sums) {
-  ModelImage image{frame.image_id, database_image.camera_id, frame.image_name,
-                   *frame.cam_from_shape, {}};
+  ModelImage image{
+      frame.image_id, database_image.camera_id, frame.image_name, *frame.cam_from_shape, {}};
   for (const MarkerDetection& marker : database_image.detections.markers) {
-    const bool stays = std::binary_search(frame.marker_ids.begin(), frame.marker_ids.end(),
-                                          marker.marker_id);
+    const bool stays =
+        std::binary_search(frame.marker_ids.begin(), frame.marker_ids.end(), marker.marker_id);
     for (int corner = 1; corner <= kNumCorners; ++corner) {
       const std::size_t corner_idx = static_cast<std::size_t>(corner - 1);
       Point2D point2D{marker.corners_in_image_px[corner_idx], kInvalidPoint3DId};

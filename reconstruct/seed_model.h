@@ -6,18 +6,18 @@
 #include <map>
 #include <vector>
 
-#include "importer/colmap_database.h"
-#include "reconstruct/model.h"
+#include "importer/database/colmap_database.h"
+#include "reconstruct/model/model.h"
 #include "reconstruct/registration.h"
 
 namespace velamap {
 
 // Every registered image with all keypoints of the database, every corner of the mean shape as
 // point 10*k + c with its complete track, coloured by the mean over the track. The central image
-// comes first (it is the origin) and the others in the order that reconstruct/gauge.h explains.
-// Images left with fewer than two markers, and points with fewer than two observations, stay out,
-// unless a single frame was asked for: its points have one each. Throws DataError when fewer than
-// two images are left.
+// comes first (it is the origin) and the others in the order that reconstruct/model/gauge.h
+// explains. Images left with fewer than two markers, and points with fewer than two observations,
+// stay out, unless a single frame was asked for: its points have one each. Throws DataError when
+// fewer than two images are left.
 Model MakeSeedModel(const Registration& registration, const std::vector<DatabaseImage>& images,
                     const std::map<CameraId, Camera>& cameras);
 

@@ -6,13 +6,13 @@ set(failures "")
 set(num_files 0)
 
 # SQL is known to the database's files only, cv::aruco to the detector and the dictionaries.
-set(SQL_FILES "^importer/(colmap_(database|schema)|marker_detections_table)\\.cc$")
-set(ARUCO_FILES "^importer/(marker_search|marker_detector|dictionary)\\.(h|cc)$")
+set(SQL_FILES "^importer/database/(colmap_(database|schema)|marker_detections_table)\\.cc$")
+set(ARUCO_FILES "^importer/(detect/marker_search|refine/marker_detector|layout/dictionary)\\.(h|cc)$")
 
 set(forbidden_rooms ${ROOMS} tests)
 foreach(room IN LISTS ROOMS)
   list(REMOVE_ITEM forbidden_rooms ${room})
-  file(GLOB files RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/${room}/*.h ${SOURCE_DIR}/${room}/*.cc)
+  file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/${room}/*.h ${SOURCE_DIR}/${room}/*.cc)
   list(LENGTH files num_room_files)
   if(num_room_files EQUAL 0)
     list(APPEND failures "${room}: no source files found")

@@ -9,9 +9,9 @@
 #include <new>
 #include <string>
 
-#include "importer/error.h"
-#include "workflows/commands.h"
-#include "workflows/logging.h"
+#include "importer/base/error.h"
+#include "workflows/commands/commands.h"
+#include "workflows/run/logging.h"
 
 namespace velamap {
 namespace {

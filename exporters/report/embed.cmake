@@ -4,7 +4,7 @@
 
 set(ASSETS kReportPage kReportStyle kReportScript kReportThree kReportChart kReportLicences)
 
-file(WRITE ${OUTPUT}.tmp "#include \"exporters/report_assets.h\"\n\nnamespace velamap {\n")
+file(WRITE ${OUTPUT}.tmp "#include \"exporters/report/report_assets.h\"\n\nnamespace velamap {\n")
 foreach(asset IN LISTS ASSETS)
   file(APPEND ${OUTPUT}.tmp "\nconst std::string_view ${asset} =")
   string(REPLACE "|" ";" files "${${asset}}")

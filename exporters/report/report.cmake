@@ -1,7 +1,7 @@
 # The report's page with the libraries inside, as part of the exporters.
 set(JAVASCRIPT_DIR /usr/share/javascript CACHE PATH
     "Where Debian's packages libjs-three and libjs-chart.js put their files")
-set(REPORT_DIR ${CMAKE_CURRENT_SOURCE_DIR}/report)
+set(REPORT_DIR ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
 set(REPORT_THREE ${JAVASCRIPT_DIR}/three/three.min.js
                  ${JAVASCRIPT_DIR}/three/examples/js/controls/OrbitControls.js)
 set(REPORT_CHART ${JAVASCRIPT_DIR}/chart.js/chart.min.js)
@@ -27,19 +27,19 @@ add_custom_command(
           -DkReportPage=${REPORT_DIR}/page.html -DkReportStyle=${REPORT_DIR}/style.css
           "-DkReportScript=${REPORT_SCRIPT}" "-DkReportThree=${REPORT_THREE}"
           -DkReportChart=${REPORT_CHART} -DkReportLicences=${REPORT_DIR}/licences.txt
-          -P ${REPORT_DIR}/embed.cmake
-  DEPENDS ${REPORT_FILES} ${REPORT_DIR}/embed.cmake
+          -P ${CMAKE_CURRENT_SOURCE_DIR}/report/embed.cmake
+  DEPENDS ${REPORT_FILES} ${CMAKE_CURRENT_SOURCE_DIR}/report/embed.cmake
   COMMENT "Building the report's page" VERBATIM)
 
 target_sources(velamap_exporters PRIVATE
-  report_data.cc
-  report_histogram.cc
-  report_images.cc
-  report_key_numbers.cc
-  report_markers.cc
-  report_picture.cc
-  report_sail.cc
-  report_writer.cc
+  report/report_data.cc
+  report/report_histogram.cc
+  report/report_images.cc
+  report/report_key_numbers.cc
+  report/report_markers.cc
+  report/report_picture.cc
+  report/report_sail.cc
+  report/report_writer.cc
   ${REPORT_ASSETS}
 )
 target_link_libraries(velamap_exporters PRIVATE ${OpenCV_LIBS} Boost::headers)

@@ -11,11 +11,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include "reconstruct/bundle_adjustment.h"
-#include "reconstruct/colmap_runner.h"
-#include "reconstruct/global_registration.h"
-#include "reconstruct/marker_adjustment.h"
-#include "reconstruct/model_io.h"
+#include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/colmap/bundle_adjustment.h"
+#include "reconstruct/colmap/colmap_runner.h"
+#include "reconstruct/global/global_registration.h"
+#include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "tests/reconstruct/registration_fixture.h"
 #include "tests/reconstruct/scene_model.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "importer/colmap_database.h"
+#include "importer/database/colmap_database.h"
 
 namespace velamap {
 namespace {

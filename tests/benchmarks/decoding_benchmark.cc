@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "importer/video_decoder.h"
+#include "importer/video/video_decoder.h"
 #include "tests/support/clip_writer.h"
 #include "tests/support/marker_renderer.h"
 #include "tests/support/temp_dir.h"

@@ -2,8 +2,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "importer/corner_refinement.h"
-#include "importer/marker_detector.h"
+#include "importer/refine/corner_refinement.h"
+#include "importer/refine/marker_detector.h"
 #include "tests/support/marker_renderer.h"
 
 namespace velamap {

@@ -12,8 +12,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "importer/dictionary.h"
-#include "importer/options.h"
+#include "importer/detect/import_options.h"
+#include "importer/layout/dictionary.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) {

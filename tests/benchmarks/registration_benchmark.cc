@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "exporters/shape_exporter.h"
-#include "reconstruct/bundle_adjustment.h"
-#include "reconstruct/global_registration.h"
+#include "reconstruct/colmap/bundle_adjustment.h"
+#include "reconstruct/global/global_registration.h"
 #include "reconstruct/registration.h"
 #include "reconstruct/seed_model.h"
 #include "tests/reconstruct/registration_fixture.h"

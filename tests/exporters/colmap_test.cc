@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 
 #include "exporters/shape_exporter.h"
-#include "reconstruct/colmap_runner.h"
-#include "reconstruct/gauge.h"
-#include "reconstruct/model_io.h"
-#include "reconstruct/reprojection.h"
+#include "reconstruct/colmap/colmap_runner.h"
+#include "reconstruct/model/gauge.h"
+#include "reconstruct/model/model_io.h"
+#include "reconstruct/model/reprojection.h"
 #include "tests/exporters/example_model.h"
 #include "tests/support/temp_dir.h"
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "reconstruct/statistics.h"
+#include "importer/base/statistics.h"
 
 namespace velamap {
 namespace {

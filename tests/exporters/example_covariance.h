@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "exporters/marker_shape.h"
-#include "reconstruct/adjustment_uncertainty.h"
-#include "reconstruct/model.h"
+#include "exporters/shape/marker_shape.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
+#include "reconstruct/model/model.h"
 
 namespace velamap {
 

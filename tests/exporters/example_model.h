@@ -8,9 +8,9 @@
 #include <iosfwd>
 #include <string>
 
-#include "exporters/marker_shape.h"
-#include "importer/layout.h"
-#include "reconstruct/model.h"
+#include "exporters/shape/marker_shape.h"
+#include "importer/layout/layout.h"
+#include "reconstruct/model/model.h"
 
 namespace velamap {
 

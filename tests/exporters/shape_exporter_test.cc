@@ -8,13 +8,13 @@
 
 #include <gmock/gmock.h>
 
-#include "exporters/metric_shape.h"
-#include "exporters/ply_writer.h"
-#include "exporters/scale_csv.h"
-#include "exporters/shape_csv.h"
-#include "importer/error.h"
-#include "reconstruct/gauge.h"
-#include "reconstruct/model_io.h"
+#include "exporters/formats/ply_writer.h"
+#include "exporters/formats/shape_csv.h"
+#include "exporters/scale/metric_shape.h"
+#include "exporters/scale/scale_csv.h"
+#include "importer/base/error.h"
+#include "reconstruct/model/gauge.h"
+#include "reconstruct/model/model_io.h"
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"

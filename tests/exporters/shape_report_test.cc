@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "exporters/metric_shape.h"
+#include "exporters/scale/metric_shape.h"
 #include "exporters/shape_exporter.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/golden_file.h"

@@ -2,8 +2,8 @@ velamap_test(
   NAME corner_refinement_test
   LABEL unit
   SOURCES
-    corner_refinement_test.cc
-    least_squares_test.cc
-    marker_alignment_test.cc
-    marker_grid.cc
-    marker_renderer_test.cc)
+    refine/corner_refinement_test.cc
+    refine/least_squares_test.cc
+    detect/marker_alignment_test.cc
+    refine/marker_grid.cc
+    ../support/marker_renderer_test.cc)

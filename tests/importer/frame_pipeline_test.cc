@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "importer/bounded_queue.h"
-#include "importer/error.h"
+#include "importer/base/bounded_queue.h"
+#include "importer/base/error.h"
 
 namespace velamap {
 namespace {

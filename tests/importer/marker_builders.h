@@ -7,7 +7,7 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/detection.h"
+#include "importer/detect/detection.h"
 
 namespace velamap {
 

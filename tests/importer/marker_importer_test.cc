@@ -9,11 +9,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "importer/colmap_database.h"
-#include "importer/dictionary.h"
-#include "importer/error.h"
-#include "tests/importer/error_matchers.h"
+#include "importer/base/error.h"
+#include "importer/database/colmap_database.h"
+#include "importer/layout/dictionary.h"
 #include "tests/importer/marker_builders.h"
+#include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "importer/colmap_database.h"
-#include "reconstruct/frame_shape.h"
+#include "importer/database/colmap_database.h"
+#include "reconstruct/geometry/frame_shape.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace velamap {

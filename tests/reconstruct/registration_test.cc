@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "importer/error.h"
-#include "reconstruct/frame_selection.h"
+#include "importer/base/error.h"
+#include "reconstruct/thesis/frame_selection.h"
 #include "tests/reconstruct/registration_fixture.h"
 
 namespace velamap {

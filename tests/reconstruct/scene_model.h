@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "reconstruct/model.h"
+#include "reconstruct/model/model.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace velamap {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "reconstruct/reprojection.h"
+#include "reconstruct/model/reprojection.h"
 #include "tests/reconstruct/registration_fixture.h"
 
 namespace velamap {

@@ -4,8 +4,8 @@
 #include <random>
 #include <sstream>
 
-#include "reconstruct/alignment.h"
-#include "reconstruct/model_io.h"
+#include "importer/geometry/alignment.h"
+#include "reconstruct/model/model_io.h"
 
 namespace velamap {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "reconstruct/model.h"
+#include "reconstruct/model/model.h"
 
 namespace velamap {
 

@@ -62,8 +62,8 @@ std::vector<Rigid3> MakeOrbit(const ClipOptions& options, const Eigen::Vector3d&
   for (int i = 0; i < options.num_frames; ++i) {
     const double time_s = i / options.fps;
     const double part = options.num_frames > 1 ? i / (options.num_frames - 1.0) : 0.5;
-    const double angle = kRadPerDeg * (options.angle_deg + drift_deg * (2 * part - 1) +
-                                       4 * Wave(time_s, 4.1, turn));
+    const double angle =
+        kRadPerDeg * (options.angle_deg + drift_deg * (2 * part - 1) + 4 * Wave(time_s, 4.1, turn));
     const double distance_m = options.distance_m * (1 + 0.07 * Wave(time_s, 6.3, range));
     const Eigen::Vector3d position_m(
         middle_m.x() + distance_m * std::sin(angle), middle_m.y() - distance_m * std::cos(angle),
@@ -86,8 +86,8 @@ std::vector<Rigid3> MakeBoardMotion(const ClipOptions& options) {
   std::vector<Rigid3> cam_from_world;
   for (int i = 0; i < options.num_frames; ++i) {
     const double time_s = i / options.fps;
-    const double about_y = (kind == 1 || kind == 3 ? swing : still) * Wave(time_s, 4.3, phase_y) +
-                           options.angle_deg;
+    const double about_y =
+        (kind == 1 || kind == 3 ? swing : still) * Wave(time_s, 4.3, phase_y) + options.angle_deg;
     const double about_x = (kind == 2 || kind == 3 ? swing : still) * Wave(time_s, 3.1, phase_x);
     const double about_z = (kind == 3 ? 60 : still) * Wave(time_s, 5.7, phase_z);
     const auto turned = [](double angle_deg, const Eigen::Vector3d& axis) {
@@ -99,10 +99,9 @@ std::vector<Rigid3> MakeBoardMotion(const ClipOptions& options) {
     pose.rotation = turned(about_x, Eigen::Vector3d::UnitX()) *
                     turned(about_y, Eigen::Vector3d::UnitY()) *
                     turned(about_z, Eigen::Vector3d::UnitZ()) * facing.rotation;
-    pose.translation =
-        options.distance_m * Eigen::Vector3d(0.02 * Wave(time_s, 3.9, phase_x),
-                                             0.02 * Wave(time_s, 2.9, phase_y),
-                                             1 + 0.05 * Wave(time_s, 4.9, phase_z));
+    pose.translation = options.distance_m * Eigen::Vector3d(0.02 * Wave(time_s, 3.9, phase_x),
+                                                            0.02 * Wave(time_s, 2.9, phase_y),
+                                                            1 + 0.05 * Wave(time_s, 4.9, phase_z));
     cam_from_world.push_back(pose);
   }
   return cam_from_world;

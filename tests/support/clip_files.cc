@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include "exporters/shape_csv.h"
-#include "importer/atomic_output.h"
+#include "exporters/formats/shape_csv.h"
+#include "importer/base/atomic_output.h"
 
 namespace velamap {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "importer/error.h"
+#include "importer/base/error.h"
 #include "tests/support/clip_camera.h"
 #include "tests/support/clip_scene_builder.h"
 
@@ -20,9 +20,9 @@ std::vector<Eigen::Vector2d> SpacedAlongLine(const Surface& surface, double v, d
   constexpr int kNumSteps = 1000;
   std::vector<double> length_m = {0.0};
   for (int i = 1; i <= kNumSteps; ++i) {
-    length_m.push_back(length_m.back() + (surface({double(i) / kNumSteps, v}) -
-                                          surface({double(i - 1) / kNumSteps, v}))
-                                             .norm());
+    length_m.push_back(
+        length_m.back() +
+        (surface({double(i) / kNumSteps, v}) - surface({double(i - 1) / kNumSteps, v})).norm());
   }
   const double usable_m = length_m.back() - 2 * margin_m;
   const int num_gaps = static_cast<int>(std::lround(usable_m / spacing_m));
@@ -139,9 +139,8 @@ ClipScene MakeSailScene(const ClipOptions& options) {
   scene.layout.reference_part = "hull";
   const double camera_height_m = 2.2 * options.sail_scale;
   const double look_up_m = options.distance_m * std::tan(9 * kPi / 180);
-  scene.cam_from_world =
-      MakeOrbit(options, {1.3 * options.sail_scale, -0.2, camera_height_m + look_up_m},
-                camera_height_m, 18);
+  scene.cam_from_world = MakeOrbit(
+      options, {1.3 * options.sail_scale, -0.2, camera_height_m + look_up_m}, camera_height_m, 18);
   return std::move(scene);
 }
 
@@ -193,15 +192,14 @@ ClipScene MakeWallsScene(const ClipOptions& options) {
     AddGrid(wall, left ? "left_wall" : "right_wall", 4, 5, {0.12, 0.12}, &builder);
     if (options.busy) AddClutter(wall, width_m, height_m, &builder);
   }
-  builder.scene().cam_from_world =
-      MakeOrbit(options, {0, -0.5, 1.2}, 1.3, 22);
+  builder.scene().cam_from_world = MakeOrbit(options, {0, -0.5, 1.2}, 1.3, 22);
   return std::move(builder.scene());
 }
 
 void CheckRange(const char* option, double value, double min, double max) {
   if (!(value >= min && value <= max)) {
-    throw InputError(fmt::format("--{}: {} is out of range; give {} to {}", option, value, min,
-                                 max));
+    throw InputError(
+        fmt::format("--{}: {} is out of range; give {} to {}", option, value, min, max));
   }
 }
 
@@ -209,9 +207,10 @@ void CheckOptions(const ClipOptions& options) {
   CheckRange("dictionary_bits", options.dictionary_bits, 3, 4);
   CheckRange("width", options.width_px, 320, 7680);
   if (options.width_px % 32 != 0) {
-    throw InputError(fmt::format("--width: {} is no multiple of 32, which 16:9 and the video need; "
-                                 "give 1280, 1920 or 3840",
-                                 options.width_px));
+    throw InputError(
+        fmt::format("--width: {} is no multiple of 32, which 16:9 and the video need; "
+                    "give 1280, 1920 or 3840",
+                    options.width_px));
   }
   CheckRange("num_frames", options.num_frames, 1, 100000);
   CheckRange("fps", options.fps, 0.1, 1000);

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "exporters/marker_shape.h"
-#include "importer/camera.h"
-#include "importer/dictionary.h"
-#include "importer/layout.h"
-#include "reconstruct/rigid3.h"
+#include "exporters/shape/marker_shape.h"
+#include "importer/camera/camera.h"
+#include "importer/geometry/rigid3.h"
+#include "importer/layout/dictionary.h"
+#include "importer/layout/layout.h"
 
 namespace velamap {
 
@@ -46,7 +46,7 @@ struct ClipOptions {
 struct ClipVertex {
   Eigen::Vector3d x_before_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d x_after_m = Eigen::Vector3d::Zero();
-  double flap = 0.0;            // amplitude as a part of the largest
+  double flap = 0.0;  // amplitude as a part of the largest
   double flap_phase_rad = 0.0;
 };
 

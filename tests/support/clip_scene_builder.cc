@@ -34,8 +34,8 @@ ClipSheet MakeSheet(const Ground& ground, int num_columns, int num_rows) {
   ClipSheet sheet{num_columns, num_rows, {}, ground.gray};
   for (int row = 0; row <= num_rows; ++row) {
     for (int column = 0; column <= num_columns; ++column) {
-      sheet.vertices.push_back(VertexAt(
-          ground, {double(column) / num_columns, 1.0 - double(row) / num_rows}));
+      sheet.vertices.push_back(
+          VertexAt(ground, {double(column) / num_columns, 1.0 - double(row) / num_rows}));
     }
   }
   return sheet;
@@ -60,8 +60,8 @@ std::vector<double> GridLines(int num_cells) {
 ClipSceneBuilder::ClipSceneBuilder(const ClipOptions& options, double marker_length_m) {
   scene_.options = options;
   scene_.camera = MakeClipCamera(options.wide_angle, options.width_px);
-  scene_.dictionary = options.dictionary_bits == 3 ? MakeNineBitDictionary()
-                                                   : LoadDictionary("DICT_4X4_250");
+  scene_.dictionary =
+      options.dictionary_bits == 3 ? MakeNineBitDictionary() : LoadDictionary("DICT_4X4_250");
   scene_.layout = MakeLayout(scene_.dictionary.name, marker_length_m);
 }
 

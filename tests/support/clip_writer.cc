@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "importer/error.h"
+#include "importer/base/error.h"
 
 namespace velamap {
 namespace {

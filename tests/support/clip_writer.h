@@ -15,8 +15,8 @@ enum class ClipFormat { kMp4, kPng, kJpg };
 struct ClipWriterOptions {
   ClipFormat format = ClipFormat::kMp4;
   double fps = 30.0;
-  int crf = 18;            // constant quality of the video, 0 (lossless) to 51
-  std::string bitrate{};   // instead of crf, as ffmpeg takes it: 30M
+  int crf = 18;                     // constant quality of the video, 0 (lossless) to 51
+  std::string bitrate{};            // instead of crf, as ffmpeg takes it: 30M
   std::string preset = "veryfast";  // of x264
 
   void Check() const;  // throws InputError

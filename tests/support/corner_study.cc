@@ -10,9 +10,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/corner_refinement.h"
-#include "importer/pattern_picture.h"
-#include "tests/importer/marker_grid.h"
+#include "importer/refine/corner_refinement.h"
+#include "importer/refine/pattern_picture.h"
+#include "tests/importer/refine/marker_grid.h"
 #include "tests/support/clip_scene_builder.h"
 #include "tests/support/surface_renderer.h"
 

@@ -10,7 +10,7 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/error.h"
+#include "importer/base/error.h"
 
 namespace velamap {
 namespace {

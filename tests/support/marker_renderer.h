@@ -11,8 +11,8 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "importer/camera.h"
-#include "importer/dictionary.h"
+#include "importer/camera/camera.h"
+#include "importer/layout/dictionary.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace velamap {

@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "importer/dictionary.h"
+#include "importer/layout/dictionary.h"
 
 namespace velamap {
 

@@ -20,8 +20,8 @@ cv::Mat MotionKernel(double length_px, double angle_rad) {
     const double fx = x - column, fy = y - row;
     for (int dy = 0; dy < 2; ++dy) {
       for (int dx = 0; dx < 2; ++dx) {
-        kernel.at<float>(row + dy, column + dx) += static_cast<float>(
-            (dx ? fx : 1 - fx) * (dy ? fy : 1 - fy) / kNumSamples);
+        kernel.at<float>(row + dy, column + dx) +=
+            static_cast<float>((dx ? fx : 1 - fx) * (dy ? fy : 1 - fy) / kNumSamples);
       }
     }
   }

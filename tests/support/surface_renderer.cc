@@ -4,11 +4,11 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/error.h"
+#include "importer/base/error.h"
 #include "tests/support/coverage_image.h"
 #include "tests/support/picture_effects.h"
 
@@ -159,8 +159,8 @@ void DrawClutter(const ClipScene& scene, const FrameView& view, cv::Mat* image) 
     return low + (high - low) * (random() / 4294967296.0);
   };
   const double behind_m = 0.8 * scene.options.distance_m;
-  const auto draw = [&](const Eigen::Vector2d& middle_m, const Eigen::Vector2d& half_m,
-                        double skew, const cv::Scalar& color) {
+  const auto draw = [&](const Eigen::Vector2d& middle_m, const Eigen::Vector2d& half_m, double skew,
+                        const cv::Scalar& color) {
     std::vector<cv::Point> corners;
     for (const auto& [right, up] : {std::pair{-1, 1}, {1, 1}, {1, -1}, {-1, -1}}) {
       const auto x = view.Image({middle_m.x() + right * half_m.x() + skew * up, behind_m,

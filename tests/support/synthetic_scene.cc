@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "reconstruct/marker_pose.h"
+#include "reconstruct/geometry/marker_pose.h"
 
 namespace velamap {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "exporters/shape_csv.h"
-#include "importer/calibration.h"
-#include "importer/error.h"
-#include "reconstruct/statistics.h"
+#include "exporters/formats/shape_csv.h"
+#include "importer/base/error.h"
+#include "importer/base/statistics.h"
+#include "importer/camera/calibration.h"
 #include "tests/support/clip_files.h"
 #include "tests/support/nine_bit_dictionary.h"
 #include "tests/support/temp_dir.h"

@@ -10,11 +10,11 @@
 #include <map>
 #include <thread>
 
-#include <boost/program_options.hpp>
 #include <fmt/format.h>
+#include <boost/program_options.hpp>
 
-#include "importer/atomic_output.h"
-#include "importer/error.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
 #include "tests/support/clip_files.h"
 #include "tests/support/clip_scene.h"
 #include "tests/support/clip_writer.h"
@@ -92,14 +92,13 @@ T Choose(const std::string& option, const std::string& text,
 
 void Complete(Options* options) {
   ClipOptions& clip = options->clip;
-  clip.kind = Choose<ClipKind>("scene", options->scene,
-                               {{"sail", ClipKind::kSail},
-                                {"board", ClipKind::kBoard},
-                                {"walls", ClipKind::kWalls}});
+  clip.kind = Choose<ClipKind>(
+      "scene", options->scene,
+      {{"sail", ClipKind::kSail}, {"board", ClipKind::kBoard}, {"walls", ClipKind::kWalls}});
   const bool board = clip.kind == ClipKind::kBoard;
-  clip.wide_angle = options->lens.empty() ? !board
-                                          : Choose<bool>("lens", options->lens,
-                                                         {{"wide", true}, {"webcam", false}});
+  clip.wide_angle = options->lens.empty()
+                        ? !board
+                        : Choose<bool>("lens", options->lens, {{"wide", true}, {"webcam", false}});
   clip.width_px = options->width_px != 0 ? options->width_px : board ? 1280 : 1920;
   const double own_distance_m = board ? 0.6 : clip.kind == ClipKind::kWalls ? 3.5 : 6.0;
   clip.distance_m = options->distance_m != 0 ? options->distance_m : own_distance_m;

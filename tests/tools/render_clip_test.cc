@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "exporters/shape_csv.h"
-#include "exporters/shape_metrics.h"
+#include "exporters/formats/shape_csv.h"
+#include "exporters/shape/shape_metrics.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 
@@ -24,9 +24,9 @@ TEST(RenderClipTest, SailComesBackFromItsVideo) {
       RenderClip({"--output_path", clip, "--width", "1280", "--num_frames", "80", "--sail_scale",
                   "0.5", "--distance", "3", "--fps", "15"});
   ASSERT_EQ(render.exit_code, 0) << render.err;
-  const ProgramRun run = RunVelamap(
-      {"automatic_reconstructor", "--image_path", clip + "/clip.mp4", "--camera_path",
-       clip + "/camera.yml", "--layout_path", clip + "/layout.yml", "--workspace_path", workspace});
+  const ProgramRun run = RunVelamap({"automatic_reconstructor", "--image_path", clip + "/clip.mp4",
+                                     "--camera_path", clip + "/camera.yml", "--layout_path",
+                                     clip + "/layout.yml", "--workspace_path", workspace});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const ShapeComparison comparison = CompareShapes(ReadShapeCsv(workspace + "/shape/shape.csv"),
                                                    ReadShapeCsv(clip + "/truth.csv"));
@@ -57,8 +57,7 @@ TEST(RenderClipTest, SameArgumentsSameBytes) {
 
 TEST(RenderClipTest, BadOptionsAreNamed) {
   TempDir dir;
-  const ProgramRun run =
-      RenderClip({"--output_path", (dir / "clip").string(), "--scene", "kite"});
+  const ProgramRun run = RenderClip({"--output_path", (dir / "clip").string(), "--scene", "kite"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("--scene: 'kite' is unknown"));
 }

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/marker_detector.h"
+#include "importer/refine/marker_detector.h"
 
 namespace velamap {
 namespace {

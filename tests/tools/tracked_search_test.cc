@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/marker_alignment.h"
-#include "importer/marker_detector.h"
-#include "importer/marker_search.h"
-#include "importer/marker_tracking.h"
+#include "importer/detect/marker_alignment.h"
+#include "importer/detect/marker_search.h"
+#include "importer/refine/marker_detector.h"
+#include "importer/track/marker_tracking.h"
 #include "tests/support/surface_renderer.h"
 
 namespace velamap {

@@ -1,11 +1,11 @@
 # velamap's files in the hands of the installed COLMAP, and the samples from end to end.
 velamap_test(NAME colmap_interop_test LABEL colmap
   SOURCES
-    colmap_gui_test.cc
-    colmap_pictures_test.cc
-    colmap_tools.cc
-    colmap_tracks_test.cc
-    colmap_truth_test.cc
+    interop/colmap_gui_test.cc
+    interop/colmap_pictures_test.cc
+    interop/colmap_tools.cc
+    interop/colmap_tracks_test.cc
+    interop/colmap_truth_test.cc
     run_velamap.cc
   LIBRARIES SQLiteCpp sqlite3
 )
@@ -13,7 +13,7 @@ velamap_test(NAME colmap_interop_test LABEL colmap
 velamap_test(NAME sample_test LABEL colmap
   SOURCES
     run_velamap.cc
-    sample_test.cc
+    commands/sample_test.cc
 )
 
 foreach(test colmap_interop_test sample_test)
@@ -25,5 +25,5 @@ endforeach()
 
 # Pictures of COLMAP's window stay here for whoever wants to look.
 target_compile_definitions(colmap_interop_test PRIVATE
-  VELAMAP_GUI_SCRIPT="${CMAKE_CURRENT_SOURCE_DIR}/gui_screenshot.sh"
+  VELAMAP_GUI_SCRIPT="${CMAKE_CURRENT_SOURCE_DIR}/interop/gui_screenshot.sh"
   VELAMAP_PICTURE_DIR="${CMAKE_CURRENT_BINARY_DIR}/pictures")

@@ -1,8 +1,8 @@
 # The report in headless Chromium; skipped where there is none.
 velamap_test(NAME report_browser_test LABEL browser
   SOURCES
-    ../exporters/report_example.cc
-    report_browser_test.cc
+    ../exporters/report/report_example.cc
+    interop/report_browser_test.cc
     run_velamap.cc
   LIBRARIES ${OpenCV_LIBS}
 )

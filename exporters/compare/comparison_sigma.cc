@@ -1,0 +1,163 @@
+#include "exporters/compare/comparison_sigma.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "exporters/shape/joint_covariance.h"
+
+namespace velamap {
+namespace {
+
+// Motions that change the sum of squares by less than this part of what the best known one does are
+// not known at all.
+constexpr double kMinEigenvalueRatio = 1e-9;
+
+// Of the corners that have a sigma, in order; 3c x 3c.
+Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& corners) {
+  const auto num_corners = static_cast<Eigen::Index>(corners.size());
+  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(3 * num_corners, 3 * num_corners);
+  const auto variance = [&](int corner, int axis) {
+    return std::pow((*marker.sigma_m[static_cast<std::size_t>(corner)])[axis], 2);
+  };
+  const bool has_center = num_corners == kNumCorners && marker.sigma_m[0].has_value();
+  for (int axis = 0; axis < 3; ++axis) {
+    double mean = 0.0;
+    for (const int corner : corners) mean += variance(corner, axis) / num_corners;
+    // Without a centre nothing is known to be common. With it, the corners' own parts do not move
+    // the centre: they have a sum of zero, each a variance of 3/4 of `own`.
+    const double common = has_center ? variance(0, axis) : 0.0;
+    const double own = std::max(0.0, mean - common) * 4.0 / 3.0;
+    for (Eigen::Index i = 0; i < num_corners; ++i) {
+      for (Eigen::Index j = 0; j < num_corners; ++j) {
+        double& entry = block(3 * i + axis, 3 * j + axis);
+        if (has_center) {
+          entry = common + own * ((i == j ? 1.0 : 0.0) - 1.0 / kNumCorners);
+        } else if (i == j) {
+          entry = variance(corners[static_cast<std::size_t>(i)], axis);
+        }
+      }
+    }
+  }
+  return block;
+}
+
+std::vector<PointGradient> TurnedInto(
+    const Eigen::Quaterniond& target_from_reference,
+    const std::array<std::map<CornerId, Eigen::Vector3d>, 3>& by) {
+  std::vector<PointGradient> gradients;
+  for (const auto& by_corner : by) {
+    gradients.emplace_back();
+    for (const auto& [corner, gradient] : by_corner) {
+      gradients.back().emplace_back(Point3DIdFromCorner(corner), target_from_reference * gradient);
+    }
+  }
+  return gradients;
+}
+
+bool HoldsAll(const PointCovariance& covariance,
+              const std::map<CornerId, Eigen::Vector3d>& by_corner) {
+  return std::all_of(by_corner.begin(), by_corner.end(), [&](const auto& entry) {
+    return covariance.IndexOf(Point3DIdFromCorner(entry.first)) >= 0;
+  });
+}
+
+}  // namespace
+
+PointCovariance CovarianceFromSigmas(const MarkerShape& shape) {
+  PointCovariance covariance;
+  for (const ShapeMarker& marker : shape.markers) {
+    std::vector<int> corners;
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      const auto idx = static_cast<std::size_t>(corner);
+      if (marker.x_in_shape_m[idx] && marker.sigma_m[idx]) corners.push_back(corner);
+    }
+    if (corners.empty()) continue;
+    for (const int corner : corners) {
+      covariance.point3D_ids.push_back(Point3DIdFromCorner({marker.marker_id, corner}));
+    }
+    covariance.blocks.push_back(MarkerBlock(marker, corners));
+  }
+  covariance.factor.setZero(3 * static_cast<Eigen::Index>(covariance.point3D_ids.size()), 0);
+  return covariance;
+}
+
+AlignmentSensitivity::AlignmentSensitivity(const Alignment& alignment) : alignment_(alignment) {
+  const auto& equations = alignment.equations;
+  if (equations.empty()) return;
+  for (const AlignmentEquation& equation : equations) {
+    center_ += equation.x_in_reference_m / static_cast<double>(equations.size());
+  }
+  double sum = 0.0;
+  for (const AlignmentEquation& equation : equations) {
+    sum += (equation.x_in_reference_m - center_).squaredNorm();
+  }
+  radius_m_ = std::max(std::sqrt(sum / static_cast<double>(equations.size())), 1e-12);
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  for (const AlignmentEquation& equation : equations) {
+    const Vector6d row = MotionGradient(equation.x_in_reference_m, equation.direction);
+    normal += equation.weight * row * row.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(normal);
+  const double largest = solver.eigenvalues()[5];
+  for (int i = 0; i < 6; ++i) {
+    const double value = solver.eigenvalues()[i];
+    if (value <= kMinEigenvalueRatio * largest) {
+      ++num_free_directions_;
+      continue;
+    }
+    const Vector6d motion = solver.eigenvectors().col(i);
+    inverse_normal_ += motion * motion.transpose() / value;
+  }
+}
+
+AlignmentSensitivity::Vector6d AlignmentSensitivity::MotionGradient(
+    const Eigen::Vector3d& x_in_reference_m, const Eigen::Vector3d& direction) const {
+  Vector6d gradient;
+  gradient << (x_in_reference_m - center_).cross(direction) / radius_m_, direction;
+  return gradient;
+}
+
+std::map<CornerId, Eigen::Vector3d> AlignmentSensitivity::CenterGradient(
+    int marker_id, const Eigen::Vector3d& center_in_reference_m,
+    const Eigen::Vector3d& direction) const {
+  std::map<CornerId, Eigen::Vector3d> sum;
+  const auto add = [&](const CornerId& corner, const Eigen::Vector3d& gradient) {
+    const auto [it, is_new] = sum.emplace(corner, gradient);
+    if (!is_new) it->second += gradient;
+  };
+  for (int corner = 1; corner <= kNumCorners; ++corner) {
+    add({marker_id, corner}, direction / kNumCorners);
+  }
+  const Vector6d by_motion = inverse_normal_ * MotionGradient(center_in_reference_m, direction);
+  for (const AlignmentEquation& equation : alignment_.equations) {
+    const Vector6d row = MotionGradient(equation.x_in_reference_m, equation.direction);
+    add(equation.corner, -equation.weight * by_motion.dot(row) * equation.direction);
+  }
+  return sum;
+}
+
+std::optional<Eigen::Matrix3d> AlignmentSensitivity::DifferenceCovariance(
+    int marker_id, const Eigen::Vector3d& center_in_reference_m, const PointCovariance& shape,
+    const PointCovariance* reference) const {
+  std::array<std::map<CornerId, Eigen::Vector3d>, 3> by_axis;
+  for (int axis = 0; axis < 3; ++axis) {
+    by_axis[static_cast<std::size_t>(axis)] =
+        CenterGradient(marker_id, center_in_reference_m, Eigen::Vector3d::Unit(axis));
+  }
+  if (!HoldsAll(shape, by_axis[0])) return std::nullopt;
+  Eigen::Matrix3d covariance_m2 = JointCovarianceOf(
+      shape, TurnedInto(alignment_.reference_from_shape.rotation.conjugate(), by_axis));
+  if (reference == nullptr) return covariance_m2;
+  if (!HoldsAll(*reference, by_axis[0])) return std::nullopt;
+  // Errors of the reference's corners count the other way, which no variance tells.
+  covariance_m2 +=
+      JointCovarianceOf(*reference, TurnedInto(Eigen::Quaterniond::Identity(), by_axis));
+  return covariance_m2;
+}
+
+}  // namespace velamap

@@ -1,0 +1,208 @@
+#include "exporters/compare/shape_alignment.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "exporters/shape/sail_lines.h"
+#include "importer/base/error.h"
+#include "importer/geometry/alignment.h"
+
+namespace velamap {
+namespace {
+
+constexpr std::size_t kMinCorners = 3;
+// Of the reference part, for it to be chosen unasked: a rotation from one or two small markers
+// would swing the far end of the sail.
+constexpr int kMinAutomaticMarkers = 3;
+
+constexpr std::array<std::pair<AlignmentMethod, const char*>, 5> kNames = {
+    {{AlignmentMethod::kAuto, "auto"},
+     {AlignmentMethod::kReferencePart, "reference_part"},
+     {AlignmentMethod::kMarkers, "markers"},
+     {AlignmentMethod::kBestFit, "best_fit"},
+     {AlignmentMethod::kNone, "none"}}};
+
+struct Choice {
+  AlignmentMethod method = AlignmentMethod::kBestFit;
+  std::vector<int> marker_ids;  // empty: all
+  std::string note;             // why it is not the reference part
+};
+
+std::vector<int> ReferencePartIds(const Layout& layout) {
+  if (!layout.reference_part) {
+    throw InputError(
+        "--align reference_part: the layout names no reference_part; give a layout that does "
+        "(--layout_path), or --align markers or best_fit");
+  }
+  return MarkersOfPart(layout, *layout.reference_part);
+}
+
+Choice ChooseAutomatically(const MarkerShape& shape, const MarkerShape& reference,
+                           const Layout& layout) {
+  Choice choice;
+  if (!layout.reference_part) {
+    choice.note = "the layout names no reference part";
+    return choice;
+  }
+  const std::vector<int> ids = ReferencePartIds(layout);
+  const auto num_common = std::count_if(ids.begin(), ids.end(), [&](int id) {
+    return FindWholeMarker(shape, id) != nullptr && FindWholeMarker(reference, id) != nullptr;
+  });
+  if (num_common < kMinAutomaticMarkers) {
+    choice.note = fmt::format("of the reference part '{}' {} whole marker{} in both, {} are needed",
+                              *layout.reference_part, num_common, num_common == 1 ? " is" : "s are",
+                              kMinAutomaticMarkers);
+    return choice;
+  }
+  choice.method = AlignmentMethod::kReferencePart;
+  choice.marker_ids = ids;
+  return choice;
+}
+
+std::vector<int> NamedMarkers(const MarkerShape& shape, const MarkerShape& reference,
+                              const std::vector<int>& ids) {
+  if (ids.empty()) {
+    throw InputError("--align_markers: missing; --align markers needs ids such as 120,121,122");
+  }
+  for (const int id : ids) {
+    const bool in_shape = FindMarker(shape, id) != nullptr;
+    if (in_shape && FindMarker(reference, id) != nullptr) continue;
+    throw InputError(
+        fmt::format("--align_markers: marker {} is not in the {}; name markers that "
+                    "both shapes have",
+                    id, in_shape ? "reference" : "shape"));
+  }
+  return ids;
+}
+
+Choice Choose(const MarkerShape& shape, const MarkerShape& reference, const Layout& layout,
+              const AlignmentOptions& options) {
+  switch (options.method) {
+    case AlignmentMethod::kAuto:
+      return ChooseAutomatically(shape, reference, layout);
+    case AlignmentMethod::kReferencePart:
+      return {options.method, ReferencePartIds(layout), ""};
+    case AlignmentMethod::kMarkers:
+      return {options.method, NamedMarkers(shape, reference, options.marker_ids), ""};
+    case AlignmentMethod::kBestFit:
+    case AlignmentMethod::kNone:
+      break;
+  }
+  return {options.method, {}, ""};
+}
+
+void CheckCorners(const CommonCorners& corners, const std::string& what) {
+  if (corners.ids.size() < kMinCorners) {
+    throw DataError(
+        fmt::format("the shape and its reference have {} marker corners in common{}, an alignment "
+                    "needs {}; are both of one layout?",
+                    corners.ids.size(), what, kMinCorners));
+  }
+  if (!HasSpread(corners.x_in_shape_m) || !HasSpread(corners.x_in_reference_m)) {
+    throw DataError(fmt::format(
+        "the corners that the shape and its reference share{} lie on one line, which leaves the "
+        "rotation about it open; align by more markers",
+        what));
+  }
+}
+
+std::string Describe(const Choice& choice, const Layout& layout, const CommonCorners& corners) {
+  std::set<int> marker_ids;
+  for (const CornerId& id : corners.ids) marker_ids.insert(id.marker_id);
+  const std::string size =
+      fmt::format("{} corners of {} markers", corners.ids.size(), marker_ids.size());
+  if (choice.method == AlignmentMethod::kReferencePart) {
+    return fmt::format("part {}, {}", *layout.reference_part, size);
+  }
+  if (choice.method == AlignmentMethod::kMarkers) {
+    return fmt::format("markers {}, {}", fmt::join(choice.marker_ids, " "), size);
+  }
+  return "all common corners, " + size;
+}
+
+}  // namespace
+
+const char* AlignmentMethodName(AlignmentMethod method) {
+  const auto it = std::find_if(kNames.begin(), kNames.end(),
+                               [&](const auto& entry) { return entry.first == method; });
+  VELAMAP_CHECK(it != kNames.end());
+  return it->second;
+}
+
+AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::string& what) {
+  for (const auto& [method, known_name] : kNames) {
+    if (name == known_name) return method;
+  }
+  throw InputError(fmt::format(
+      "{}: '{}' is unknown; give auto, reference_part, markers, best_fit or none", what, name));
+}
+
+std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& what) {
+  std::vector<int> ids;
+  const char* const end = text.data() + text.size();
+  for (const char* begin = text.data();; ++begin) {
+    int id = -1;
+    const auto [rest, error] = std::from_chars(begin, end, id);
+    if (error != std::errc() || id < 0 || id > kMaxMarkerId || (rest != end && *rest != ',')) {
+      throw InputError(
+          fmt::format("{}: '{}' is no list of marker ids such as 120,121,122", what, text));
+    }
+    ids.push_back(id);
+    if (rest == end) return ids;
+    begin = rest;
+  }
+}
+
+CommonCorners FindCommonCorners(const MarkerShape& shape, const MarkerShape& reference,
+                                const std::vector<int>& marker_ids) {
+  CommonCorners corners;
+  for (const ShapeMarker& marker : shape.markers) {
+    const bool is_wanted = marker_ids.empty() || std::find(marker_ids.begin(), marker_ids.end(),
+                                                           marker.marker_id) != marker_ids.end();
+    const ShapeMarker* other = FindMarker(reference, marker.marker_id);
+    if (!is_wanted || other == nullptr) continue;
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      const auto idx = static_cast<std::size_t>(corner);
+      if (!marker.x_in_shape_m[idx] || !other->x_in_shape_m[idx]) continue;
+      corners.ids.push_back({marker.marker_id, corner});
+      corners.x_in_shape_m.push_back(*marker.x_in_shape_m[idx]);
+      corners.x_in_reference_m.push_back(*other->x_in_shape_m[idx]);
+    }
+  }
+  return corners;
+}
+
+Alignment AlignShapes(const MarkerShape& shape, const MarkerShape& reference, const Layout& layout,
+                      const AlignmentOptions& options) {
+  Alignment alignment;
+  const Choice choice = Choose(shape, reference, layout, options);
+  alignment.method = choice.method;
+  if (!choice.note.empty()) alignment.notes.push_back(choice.note);
+  if (choice.method == AlignmentMethod::kNone) {
+    alignment.description = "both frames are taken as one";
+    alignment.notes.push_back("the sigmas do not hold how well each frame is known");
+    return alignment;
+  }
+  const CommonCorners corners = FindCommonCorners(shape, reference, choice.marker_ids);
+  CheckCorners(corners, choice.marker_ids.empty() ? "" : " among those to align by");
+  alignment.description = Describe(choice, layout, corners);
+  alignment.reference_from_shape = EstimateRigid3(corners.x_in_shape_m, corners.x_in_reference_m);
+  std::vector<double> residuals_m;
+  for (std::size_t i = 0; i < corners.ids.size(); ++i) {
+    const Eigen::Vector3d x = alignment.reference_from_shape * corners.x_in_shape_m[i];
+    residuals_m.push_back((x - corners.x_in_reference_m[i]).norm());
+    for (int axis = 0; axis < 3; ++axis) {
+      alignment.equations.push_back({corners.ids[i], x, Eigen::Vector3d::Unit(axis), 1.0});
+    }
+  }
+  alignment.residual_m = ComputeStatistics(std::move(residuals_m));
+  return alignment;
+}
+
+}  // namespace velamap

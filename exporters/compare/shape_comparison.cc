@@ -1,0 +1,240 @@
+#include "exporters/compare/shape_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include "exporters/compare/comparison_sigma.h"
+#include "exporters/compare/mesh_fit.h"
+#include "exporters/shape/shape_metrics.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kMmPerM = 1e3;
+
+MarkerShape Aligned(const Rigid3& reference_from_shape, MarkerShape shape) {
+  for (ShapeMarker& marker : shape.markers) {
+    marker.sigma_m = {};
+    for (auto& x : marker.x_in_shape_m) {
+      if (x) x = reference_from_shape * *x;
+    }
+  }
+  return shape;
+}
+
+std::string PartOf(const ShapeMarker& marker, const Layout& layout) {
+  return layout.HasMarkers() ? PartOfMarker(layout, marker.marker_id) : marker.part;
+}
+
+MarkerShape Keep(const MarkerShape& shape, const std::function<bool(const ShapeMarker&)>& keep) {
+  MarkerShape kept;
+  std::copy_if(shape.markers.begin(), shape.markers.end(), std::back_inserter(kept.markers), keep);
+  return kept;
+}
+
+MarkerShape OnPart(const MarkerShape& shape, const Layout& layout, const std::string& part) {
+  return part.empty() ? shape : MarkersOnPart(shape, layout, part);
+}
+
+void SetSigma(const std::optional<Eigen::Matrix3d>& covariance_m2, MarkerDeviation* marker) {
+  if (!covariance_m2) return;
+  const double variance = marker->normal.dot(*covariance_m2 * marker->normal);
+  marker->sigma_m = std::sqrt(std::max(0.0, variance));
+  if (*marker->sigma_m > 0) marker->significance = marker->distance_m / *marker->sigma_m;
+  if (marker->difference_m) {
+    marker->difference_sigma_m = covariance_m2->diagonal().cwiseMax(0.0).cwiseSqrt();
+  }
+}
+
+bool IsSignificant(const MarkerDeviation& marker) {
+  return marker.significance && std::abs(*marker.significance) > kSignificantSigmas;
+}
+
+DeviationGroup MakeGroup(const std::string& part, const std::string& line,
+                         const std::vector<const MarkerDeviation*>& markers) {
+  DeviationGroup group{part, line, {}, 0};
+  std::vector<double> distances_m;
+  for (const MarkerDeviation* marker : markers) {
+    if (!marker->is_over_surface) continue;
+    distances_m.push_back(marker->distance_m);
+    group.num_significant += IsSignificant(*marker) ? 1 : 0;
+  }
+  group.distance_m = ComputeStatistics(std::move(distances_m));
+  return group;
+}
+
+void AddGroups(const Layout& layout, ShapeDeviation* deviation) {
+  std::map<std::string, std::vector<const MarkerDeviation*>> parts;
+  std::map<int, const MarkerDeviation*> by_id;
+  for (const MarkerDeviation& marker : deviation->markers) {
+    parts[marker.part].push_back(&marker);
+    by_id[marker.marker_id] = &marker;
+  }
+  for (const auto& [part, markers] : parts) {
+    deviation->parts.push_back(MakeGroup(part, "", markers));
+  }
+  for (const LayoutPart& part : layout.parts) {
+    for (const auto* lines : {&part.horizontal, &part.vertical}) {
+      for (const MarkerLine& line : *lines) {
+        std::vector<const MarkerDeviation*> markers;
+        for (const int id : line.marker_ids) {
+          if (by_id.count(id) > 0) markers.push_back(by_id[id]);
+        }
+        if (!markers.empty()) deviation->lines.push_back(MakeGroup(part.name, line.name, markers));
+      }
+    }
+  }
+}
+
+void Summarize(const Layout& layout, ShapeDeviation* deviation) {
+  std::vector<double> distances_m, lengths_m;
+  for (const MarkerDeviation& marker : deviation->markers) {
+    if (!marker.is_over_surface) {
+      ++deviation->num_beside;
+      continue;
+    }
+    distances_m.push_back(marker.distance_m);
+    if (marker.difference_m) lengths_m.push_back(marker.difference_m->norm());
+    deviation->num_with_sigma += marker.sigma_m ? 1 : 0;
+    deviation->num_significant += IsSignificant(marker) ? 1 : 0;
+  }
+  deviation->distance_m = ComputeStatistics(std::move(distances_m));
+  deviation->difference_m = ComputeStatistics(std::move(lengths_m));
+  AddGroups(layout, deviation);
+}
+
+double ScaleOf(const Alignment& alignment, const MarkerShape& shape, const MarkerShape& reference) {
+  std::set<int> ids;
+  for (const AlignmentEquation& equation : alignment.equations)
+    ids.insert(equation.corner.marker_id);
+  const auto counts = [&](const ShapeMarker& marker) {
+    return ids.empty() || ids.count(marker.marker_id) > 0;
+  };
+  return CompareShapes(Keep(shape, counts), Keep(reference, counts)).scale;
+}
+
+// Largest distance between two corners of a box around all corners, m.
+double DiagonalOf(const MarkerShape& shape) {
+  std::optional<Eigen::Vector3d> low, high;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (const auto& x : marker.x_in_shape_m) {
+      if (!x) continue;
+      low = low ? low->cwiseMin(*x) : *x;
+      high = high ? high->cwiseMax(*x) : *x;
+    }
+  }
+  return low ? (*high - *low).norm() : 0.0;
+}
+
+}  // namespace
+
+MarkerShape MarkersOnPart(const MarkerShape& shape, const Layout& layout, const std::string& part) {
+  MarkerShape kept =
+      Keep(shape, [&](const ShapeMarker& marker) { return PartOf(marker, layout) == part; });
+  if (!kept.markers.empty()) return kept;
+  std::set<std::string> parts;
+  for (const ShapeMarker& marker : shape.markers) parts.insert(PartOf(marker, layout));
+  throw InputError(fmt::format("--part: no marker of part '{}' was reconstructed; there are: {}",
+                               part, fmt::join(parts, ", ")));
+}
+
+ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShape& reference,
+                                const Layout& layout, const AlignmentOptions& options,
+                                const std::string& part) {
+  ShapeDeviation deviation;
+  deviation.alignment = AlignShapes(shape.shape, reference.shape, layout, options);
+  const AlignmentSensitivity sensitivity(deviation.alignment);
+  deviation.aligned_shape =
+      Aligned(deviation.alignment.reference_from_shape, OnPart(shape.shape, layout, part));
+  for (const ShapeMarker& marker : deviation.aligned_shape.markers) {
+    if (!marker.IsWhole()) continue;
+    const ShapeMarker* other = FindWholeMarker(reference.shape, marker.marker_id);
+    if (other == nullptr) {
+      deviation.only_in_shape.push_back(marker.marker_id);
+      continue;
+    }
+    MarkerDeviation result;
+    result.marker_id = marker.marker_id;
+    result.part = PartOf(marker, layout);
+    result.x_in_reference_m = *marker.x_in_shape_m[0];
+    result.normal = MarkerNormal(*other);
+    result.difference_m = *marker.x_in_shape_m[0] - *other->x_in_shape_m[0];
+    result.distance_m = result.normal.dot(*result.difference_m);
+    SetSigma(sensitivity.DifferenceCovariance(marker.marker_id, result.x_in_reference_m,
+                                              shape.covariance, &reference.covariance),
+             &result);
+    deviation.markers.push_back(std::move(result));
+  }
+  for (const ShapeMarker& marker : reference.shape.markers) {
+    const bool is_of_part = part.empty() || PartOf(marker, layout) == part;
+    if (is_of_part && marker.IsWhole() &&
+        FindWholeMarker(shape.shape, marker.marker_id) == nullptr) {
+      deviation.only_in_reference.push_back(marker.marker_id);
+    }
+  }
+  if (deviation.markers.empty()) {
+    throw DataError(
+        "the shape and its reference have no whole marker in common; are both of one "
+        "layout?");
+  }
+  deviation.scale = ScaleOf(deviation.alignment, shape.shape, reference.shape);
+  Summarize(layout, &deviation);
+  return deviation;
+}
+
+ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& mesh,
+                               const Layout& layout, const AlignmentOptions& options,
+                               const std::string& part) {
+  ShapeDeviation deviation;
+  const MarkerShape compared = OnPart(shape.shape, layout, part);
+  deviation.alignment = AlignToMesh(compared, mesh, options);
+  const AlignmentSensitivity sensitivity(deviation.alignment);
+  deviation.aligned_shape = Aligned(deviation.alignment.reference_from_shape, compared);
+  for (const ShapeMarker& marker : deviation.aligned_shape.markers) {
+    if (!marker.IsWhole()) continue;
+    const MeshFoot foot = mesh.Project(*marker.x_in_shape_m[0]);
+    MarkerDeviation result;
+    result.marker_id = marker.marker_id;
+    result.part = PartOf(marker, layout);
+    result.x_in_reference_m = *marker.x_in_shape_m[0];
+    result.normal = foot.normal;
+    result.distance_m = foot.distance_m;
+    result.beside_m = foot.beside_m;
+    result.is_over_surface = foot.IsOverSurface(mesh.Diagonal_m());
+    SetSigma(sensitivity.DifferenceCovariance(marker.marker_id, result.x_in_reference_m,
+                                              shape.covariance, nullptr),
+             &result);
+    deviation.markers.push_back(std::move(result));
+  }
+  Summarize(layout, &deviation);
+  if (deviation.distance_m.count == 0) {
+    throw DataError(fmt::format(
+        "none of the {} whole markers lies over the reference's surface ({:.0f} mm beside it at "
+        "least); align them (--align best_fit) or give the surface of the same part",
+        deviation.markers.size(),
+        kMmPerM * (deviation.markers.empty()
+                       ? 0.0
+                       : std::min_element(
+                             deviation.markers.begin(), deviation.markers.end(),
+                             [](const auto& a, const auto& b) { return a.beside_m < b.beside_m; })
+                             ->beside_m)));
+  }
+  return deviation;
+}
+
+std::optional<double> UnitHint(const MarkerShape& shape, const MeshDistance& mesh) {
+  constexpr double kMuch = 100.0;
+  const double ratio = DiagonalOf(shape) / mesh.Diagonal_m();
+  if (ratio > kMuch) return 1e3;
+  if (ratio < 1 / kMuch) return 1e-3;
+  return std::nullopt;
+}
+
+}  // namespace velamap

@@ -1,0 +1,27 @@
+#include "exporters/formats/cad_library.h"
+
+#include <IGESControl_Controller.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <STEPControl_Controller.hxx>
+
+namespace velamap {
+namespace {
+
+std::mutex& GlobalMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+}  // namespace
+
+CadSession::CadSession() : lock_(GlobalMutex()) {
+  Message::DefaultMessenger()->ChangePrinters().Clear();
+  STEPControl_Controller::Init();
+  IGESControl_Controller::Init();
+  // Shapes in memory are in mm, whichever unit a file has.
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+}
+
+}  // namespace velamap

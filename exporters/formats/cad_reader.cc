@@ -1,0 +1,130 @@
+#include "exporters/formats/cad_reader.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+#include <BRepBndLib.hxx>
+#include <BRepGProp.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
+#include <IGESControl_Reader.hxx>
+#include <IGESData_GlobalSection.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Poly_Triangulation.hxx>
+#include <STEPControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+
+#include "exporters/formats/cad_library.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMPerMm = 1e-3;
+constexpr double kAngularDeflection = 0.2;  // rad; the chord deviation is what counts
+
+std::string LowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+[[noreturn]] void ThrowUnreadable(const fs::path& path, const char* format) {
+  throw InputError(fmt::format("{}: cannot be read as {}; export it again from the CAD program",
+                               path.string(), format));
+}
+
+TopoDS_Shape ReadStep(const fs::path& path, std::string* unit) {
+  STEPControl_Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, "STEP");
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.FileUnits(lengths, angles, solid_angles);
+  if (!lengths.IsEmpty()) *unit = lengths.First().ToCString();
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
+TopoDS_Shape ReadIges(const fs::path& path, std::string* unit) {
+  IGESControl_Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, "IGES");
+  const auto name = reader.IGESModel()->GlobalSection().UnitName();
+  if (!name.IsNull()) *unit = name->ToCString();
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
+void AddTriangles(const TopoDS_Face& face, TriangleMesh* mesh) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) triangles = BRep_Tool::Triangulation(face, location);
+  if (triangles.IsNull()) return;
+  const int first = static_cast<int>(mesh->vertices_m.size());
+  for (int i = 1; i <= triangles->NbNodes(); ++i) {
+    const gp_Pnt x = triangles->Node(i).Transformed(location.Transformation());
+    mesh->vertices_m.push_back(kMPerMm * Eigen::Vector3d(x.X(), x.Y(), x.Z()));
+  }
+  for (int i = 1; i <= triangles->NbTriangles(); ++i) {
+    int a = 0, b = 0, c = 0;
+    triangles->Triangle(i).Get(a, b, c);
+    if (face.Orientation() == TopAbs_REVERSED) std::swap(b, c);
+    mesh->triangles.push_back({first + a - 1, first + b - 1, first + c - 1});
+  }
+}
+
+CadShape Describe(const TopoDS_Shape& shape, double chord_deviation_mm) {
+  CadShape result;
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(shape, properties, 1e-6);
+  result.area_m2 = kMPerMm * kMPerMm * properties.Mass();
+  Bnd_Box box;
+  BRepBndLib::AddOptimal(shape, box, Standard_False, Standard_False);
+  const gp_Pnt low = box.CornerMin(), high = box.CornerMax();
+  result.min_m = kMPerMm * Eigen::Vector3d(low.X(), low.Y(), low.Z());
+  result.max_m = kMPerMm * Eigen::Vector3d(high.X(), high.Y(), high.Z());
+  BRepMesh_IncrementalMesh(shape, chord_deviation_mm, Standard_False, kAngularDeflection);
+  for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
+    ++result.num_faces;
+    AddTriangles(TopoDS::Face(faces.Current()), &result.mesh);
+  }
+  return result;
+}
+
+}  // namespace
+
+CadShape ReadCad(const fs::path& path, double chord_deviation_mm) {
+  VELAMAP_CHECK(chord_deviation_mm > 0);
+  const std::string extension = LowerExtension(path);
+  const bool is_step = extension == ".step" || extension == ".stp";
+  if (!is_step && extension != ".iges" && extension != ".igs") {
+    throw InputError(
+        fmt::format("{}: not a CAD file by its extension; expected .step, .stp, .iges "
+                    "or .igs",
+                    path.string()));
+  }
+  const CadSession session;
+  std::string unit;
+  try {
+    const TopoDS_Shape shape = is_step ? ReadStep(path, &unit) : ReadIges(path, &unit);
+    if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
+      throw InputError(fmt::format("{}: holds no faces; export the surface, not its curves or mesh",
+                                   path.string()));
+    }
+    CadShape result = Describe(shape, chord_deviation_mm);
+    result.length_unit = unit;
+    return result;
+  } catch (const Standard_Failure&) {
+    ThrowUnreadable(path, is_step ? "STEP" : "IGES");
+  }
+}
+
+}  // namespace velamap

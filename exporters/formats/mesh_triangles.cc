@@ -1,0 +1,158 @@
+#include "exporters/formats/mesh_triangles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+struct GridSize {
+  double num_u = 1, num_v = 1;  // cells; not int, so that the absurd can be counted
+};
+
+// Parameters for looking at the whole surface: this many a knot span.
+std::vector<double> Probes(const Eigen::ArrayXd& knots) {
+  constexpr int kPerSpan = 6;
+  std::vector<double> probes = {0.0};
+  for (Eigen::Index k = 0; k + 1 < knots.size(); ++k) {
+    if (knots(k + 1) <= knots(k)) continue;
+    for (int i = 1; i <= kPerSpan; ++i) {
+      probes.push_back(knots(k) + (knots(k + 1) - knots(k)) * i / kPerSpan);
+    }
+  }
+  return probes;
+}
+
+struct Extremes {
+  double speed_u = 0, speed_v = 0;               // largest |S_u|, |S_v|, m
+  double bend_uu = 0, bend_uv = 0, bend_vv = 0;  // largest |second derivative|, m
+};
+
+// Not only along the normal: near a fold of the parameters the whole derivative moves the chord.
+Extremes FindExtremes(const SplineSurface& surface) {
+  Extremes extremes;
+  const std::vector<double> vs = Probes(surface.knots_v);
+  for (const double u : Probes(surface.knots_u)) {
+    for (const double v : vs) {
+      const SurfaceJet jet = EvaluateJet(surface, u, v);
+      extremes.speed_u = std::max(extremes.speed_u, jet.x_u.norm());
+      extremes.speed_v = std::max(extremes.speed_v, jet.x_v.norm());
+      extremes.bend_uu = std::max(extremes.bend_uu, jet.x_uu.norm());
+      extremes.bend_uv = std::max(extremes.bend_uv, jet.x_uv.norm());
+      extremes.bend_vv = std::max(extremes.bend_vv, jet.x_vv.norm());
+    }
+  }
+  return extremes;
+}
+
+// A linear triangle with legs h and k deviates by at most (h^2 S_uu + 2 h k S_uv + k^2 S_vv) / 8.
+double Deviation(const Extremes& extremes, const GridSize& grid) {
+  return (extremes.bend_uu / (grid.num_u * grid.num_u) +
+          2 * extremes.bend_uv / (grid.num_u * grid.num_v) +
+          extremes.bend_vv / (grid.num_v * grid.num_v)) /
+         8;
+}
+
+GridSize ChooseGrid(const SplineSurface& surface, const MeshOptions& options) {
+  const Extremes extremes = FindExtremes(surface);
+  if (options.edge_length_mm) {
+    const double edge_m = *options.edge_length_mm / 1000;
+    return {std::max(1.0, std::ceil(extremes.speed_u / edge_m)),
+            std::max(1.0, std::ceil(extremes.speed_v / edge_m))};
+  }
+  // Cells that are about square bound the mixed term best.
+  const double deviation_m = *options.chord_deviation_mm / 1000;
+  const double ratio = std::clamp(extremes.speed_u / extremes.speed_v, 1e-2, 1e2);
+  const double needed = Deviation(extremes, {std::sqrt(ratio), 1 / std::sqrt(ratio)}) / deviation_m;
+  const double factor = std::sqrt(needed);
+  return {std::max(1.0, std::ceil(factor * std::sqrt(ratio))),
+          std::max(1.0, std::ceil(factor / std::sqrt(ratio)))};
+}
+
+void CheckCount(const GridSize& grid, const MeshOptions& options) {
+  const double num_triangles = 2 * grid.num_u * grid.num_v;
+  if (num_triangles <= kMaxTriangles) return;
+  const double excess = num_triangles / kMaxTriangles;
+  const double given =
+      options.edge_length_mm ? *options.edge_length_mm : *options.chord_deviation_mm;
+  // Triangles go with the inverse square of the edge, and with the inverse of the deviation.
+  const double possible = options.edge_length_mm ? given * std::sqrt(excess) : given * excess;
+  throw InputError(
+      fmt::format("a mesh with {} of {:.3g} mm would need {:.4g} triangles, more than {}; take "
+                  "{:.2g} mm or more",
+                  options.edge_length_mm ? "an edge length" : "a chord deviation", given,
+                  num_triangles, kMaxTriangles, 1.1 * possible));
+}
+
+// Where the surface shrinks to a point it has no normal; the one beside it is taken.
+Eigen::Vector3d NormalAt(const SplineSurface& surface, double u, double v, const SurfaceJet& jet) {
+  if (!jet.normal.isZero()) return jet.normal;
+  constexpr double kInward = 1e-4;
+  return EvaluateJet(surface, u + kInward * (0.5 - u), v + kInward * (0.5 - v)).normal;
+}
+
+}  // namespace
+
+void MeshOptions::Check() const {
+  if (edge_length_mm.has_value() == chord_deviation_mm.has_value()) {
+    throw InputError("a mesh needs its edge length or its chord deviation, and not both");
+  }
+  const double given = edge_length_mm ? *edge_length_mm : *chord_deviation_mm;
+  if (!(given > 0 && std::isfinite(given))) {
+    throw InputError(fmt::format("a mesh's {} is {} mm; it must be more than 0",
+                                 edge_length_mm ? "edge length" : "chord deviation", given));
+  }
+}
+
+double CountTriangles(const SplineSurface& surface, const MeshOptions& options) {
+  options.Check();
+  const GridSize grid = ChooseGrid(surface, options);
+  return 2 * grid.num_u * grid.num_v;
+}
+
+TriangleMesh MeshSurface(const SplineSurface& surface, const MeshOptions& options) {
+  options.Check();
+  const GridSize grid = ChooseGrid(surface, options);
+  CheckCount(grid, options);
+  const int num_u = static_cast<int>(grid.num_u), num_v = static_cast<int>(grid.num_v);
+  TriangleMesh mesh;
+  for (int i = 0; i <= num_u; ++i) {
+    for (int j = 0; j <= num_v; ++j) {
+      const double u = static_cast<double>(i) / num_u, v = static_cast<double>(j) / num_v;
+      const SurfaceJet jet = EvaluateJet(surface, u, v);
+      mesh.vertices_m.push_back(jet.x);
+      mesh.normals.push_back(NormalAt(surface, u, v, jet));
+      mesh.surface_parameters.emplace_back(u, v);
+    }
+  }
+  const auto add = [&mesh](int a, int b, int c) {
+    const auto& x = mesh.vertices_m;
+    if ((x[b] - x[a]).cross(x[c] - x[a]).norm() > 1e-15) mesh.triangles.push_back({a, b, c});
+  };
+  for (int i = 0; i < num_u; ++i) {
+    for (int j = 0; j < num_v; ++j) {
+      const int corner = i * (num_v + 1) + j, next = corner + num_v + 1;
+      add(corner, next, next + 1);
+      add(corner, next + 1, corner + 1);
+    }
+  }
+  return mesh;
+}
+
+MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_length_m) {
+  constexpr double kEnoughTriangles = 1e5, kCoarser = 1.5;
+  MeshOptions options;
+  options.edge_length_mm =
+      1e3 * std::max(marker_length_m / 2, std::sqrt(2 * SurfaceArea(surface) / kEnoughTriangles));
+  while (CountTriangles(surface, options) > 2 * kEnoughTriangles) {
+    *options.edge_length_mm *= kCoarser;
+  }
+  return options;
+}
+
+}  // namespace velamap

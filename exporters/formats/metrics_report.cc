@@ -1,0 +1,133 @@
+#include "exporters/formats/metrics_report.h"
+
+#include <ostream>
+#include <type_traits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "importer/base/csv.h"
+
+namespace velamap {
+namespace {
+
+// A line break would end the line of a key and its value.
+std::string OneLine(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string ValueText(const MetricValue& metric_value, const char* double_format) {
+  return std::visit(
+      [double_format](const auto& value) -> std::string {
+        using T = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<T, double>) {
+          return fmt::format(fmt::runtime(double_format), value);
+        } else if constexpr (std::is_same_v<T, std::vector<int>>) {
+          return fmt::format("{}", fmt::join(value, " "));
+        } else if constexpr (std::is_same_v<T, Statistics>) {
+          const auto number = [&](double x) { return fmt::format(fmt::runtime(double_format), x); };
+          if (value.count == 0) return "none";
+          return fmt::format("mean {} std {} median {} min {} max {}", number(value.mean),
+                             number(value.standard_deviation), number(value.median),
+                             number(value.min), number(value.max));
+        } else {
+          return fmt::format("{}", value);
+        }
+      },
+      metric_value);
+}
+
+std::string Text(const MetricValue& value) { return OneLine(ValueText(value, "{:.6g}")); }
+
+Metrics StatisticFigures(const std::string& key, const Statistics& statistics) {
+  Metrics metrics = {{key + "_count", statistics.count}};
+  if (statistics.count == 0) return metrics;
+  metrics.push_back({key + "_mean", statistics.mean});
+  metrics.push_back({key + "_std", statistics.standard_deviation});
+  metrics.push_back({key + "_median", statistics.median});
+  metrics.push_back({key + "_min", statistics.min});
+  metrics.push_back({key + "_max", statistics.max});
+  metrics.push_back({key + "_rms", statistics.rms});
+  return metrics;
+}
+
+// The metrics with every statistic taken apart into its figures.
+Metrics Figures(const Metrics& metrics) {
+  Metrics figures;
+  for (const Metric& metric : metrics) {
+    if (const auto* statistics = std::get_if<Statistics>(&metric.value)) {
+      for (Metric& figure : StatisticFigures(metric.key, *statistics)) {
+        figures.push_back(std::move(figure));
+      }
+    } else {
+      figures.push_back(metric);
+    }
+  }
+  return figures;
+}
+
+void WriteCsvRows(const std::string& table_and_row, const Metrics& metrics, std::ostream& out) {
+  for (const Metric& figure : Figures(metrics)) {
+    out << table_and_row << ',' << CsvField(figure.key) << ','
+        << CsvField(ValueText(figure.value, "{}")) << '\n';
+  }
+}
+
+nlohmann::ordered_json JsonObject(const Metrics& metrics) {
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  for (const Metric& figure : Figures(metrics)) {
+    std::visit(
+        [&](const auto& value) {
+          using T = std::decay_t<decltype(value)>;
+          if constexpr (!std::is_same_v<T, Statistics>) object[figure.key] = value;
+        },
+        figure.value);
+  }
+  return object;
+}
+
+}  // namespace
+
+void PrintMetrics(const MetricsReport& report, std::ostream& out) {
+  for (const Metric& figure : Figures(report.metrics)) {
+    out << figure.key << ": " << Text(figure.value) << '\n';
+  }
+  for (const MetricTable& table : report.tables) {
+    if (!table.in_text) continue;
+    for (const Metrics& row : table.rows) {
+      out << table.name << ':';
+      const char* separator = " ";
+      for (const Metric& metric : row) {
+        out << separator << metric.key << ' ' << Text(metric.value);
+        separator = ", ";
+      }
+      out << '\n';
+    }
+  }
+}
+
+void WriteMetricsCsv(const MetricsReport& report, std::ostream& out) {
+  out << "table,row,key,value\n";
+  WriteCsvRows(",", report.metrics, out);
+  for (const MetricTable& table : report.tables) {
+    for (std::size_t row_idx = 0; row_idx < table.rows.size(); ++row_idx) {
+      WriteCsvRows(fmt::format("{},{}", CsvField(table.name), row_idx), table.rows[row_idx], out);
+    }
+  }
+}
+
+void WriteMetricsJson(const MetricsReport& report, std::ostream& out) {
+  nlohmann::ordered_json json = JsonObject(report.metrics);
+  for (const MetricTable& table : report.tables) {
+    nlohmann::ordered_json& rows = json[table.name] = nlohmann::ordered_json::array();
+    for (const Metrics& row : table.rows) rows.push_back(JsonObject(row));
+  }
+  // A file name need not be UTF-8; what is not is replaced rather than refused.
+  constexpr int kIndent = 1;
+  out << json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
+}  // namespace velamap

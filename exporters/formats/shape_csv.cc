@@ -1,0 +1,211 @@
+#include "exporters/formats/shape_csv.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <istream>
+#include <limits>
+#include <map>
+#include <ostream>
+
+#include <fmt/format.h>
+
+#include "importer/base/csv.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+enum Column { kMarkerId, kCorner, kX, kSigmaX = kX + 3, kNumFrames = kSigmaX + 3, kPart };
+
+constexpr std::array<const char*, kPart + 1> kColumns = {
+    "marker_id", "corner", "x", "y", "z", "sigma_x", "sigma_y", "sigma_z", "num_frames", "part"};
+
+// A centre is the mean of its corners; files rounded to a millimetre still pass.
+constexpr double kCentreTolerance_m = 1e-3;
+
+std::string Header() { return fmt::format("{}", fmt::join(kColumns, ",")); }
+
+struct Row {
+  int line = 0;
+  int marker_id = 0;
+  int corner = 0;
+  Eigen::Vector3d x_in_shape_m;
+  std::optional<Eigen::Vector3d> sigma_m;
+  int num_frames = 0;
+  std::string part;
+};
+
+std::string_view Trim(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+// One record with the means to say where it stands.
+class RecordReader {
+ public:
+  RecordReader(const CsvRecord& record, const std::string& name) : record_(record), name_(name) {
+    if (record.fields.size() == kColumns.size()) return;
+    throw InputError(fmt::format("{}:{}: {} columns, expected the {} of {}", name, record.line,
+                                 record.fields.size(), kColumns.size(), Header()));
+  }
+
+  [[noreturn]] void Fail(int column, const std::string& problem) const {
+    throw InputError(
+        fmt::format("{}:{}: column {}: {}", name_, record_.line, kColumns.at(column), problem));
+  }
+
+  int ReadInt(int column, int min, int max) const {
+    const std::optional<int> value = Parse<int>(column);
+    if (!value || *value < min || *value > max) {
+      Fail(column, fmt::format("expected an integer from {} to {}, found '{}'", min, max,
+                               record_.fields[column]));
+    }
+    return *value;
+  }
+
+  double ReadDouble(int column, double min) const {
+    const std::optional<double> value = Parse<double>(column);
+    if (!value || !std::isfinite(*value) || *value < min) {
+      Fail(column, fmt::format("expected {} in metres with a decimal point, found '{}'",
+                               min == 0 ? "a number from 0" : "a number", record_.fields[column]));
+    }
+    return *value;
+  }
+
+  Eigen::Vector3d ReadVector(int first_column, double min) const {
+    return {ReadDouble(first_column, min), ReadDouble(first_column + 1, min),
+            ReadDouble(first_column + 2, min)};
+  }
+
+  bool IsEmpty(int column) const { return Trim(record_.fields[column]).empty(); }
+
+ private:
+  // Independent of the locale. Nothing unless the whole field is one number.
+  template <typename T>
+  std::optional<T> Parse(int column) const {
+    const std::string_view text = Trim(record_.fields[column]);
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+  }
+
+  const CsvRecord& record_;
+  const std::string& name_;
+};
+
+Row ReadRow(const CsvRecord& record, const RecordReader& reader) {
+  Row row;
+  row.line = record.line;
+  row.marker_id = reader.ReadInt(kMarkerId, 0, kMaxMarkerId);
+  row.corner = reader.ReadInt(kCorner, 0, kNumCorners);
+  row.x_in_shape_m = reader.ReadVector(kX, std::numeric_limits<double>::lowest());
+  if (!(reader.IsEmpty(kSigmaX) && reader.IsEmpty(kSigmaX + 1) && reader.IsEmpty(kSigmaX + 2))) {
+    row.sigma_m = reader.ReadVector(kSigmaX, 0.0);
+  }
+  row.num_frames = reader.ReadInt(kNumFrames, 0, std::numeric_limits<int>::max());
+  row.part = record.fields[kPart];
+  return row;
+}
+
+void AddRow(const Row& row, const RecordReader& reader, bool is_new, ShapeMarker* marker) {
+  if (is_new) {
+    marker->marker_id = row.marker_id;
+    marker->part = row.part;
+  }
+  if (marker->part != row.part) {
+    reader.Fail(kPart, fmt::format("marker {} is on '{}' here and on '{}' in a row before",
+                                   row.marker_id, row.part, marker->part));
+  }
+  if (marker->x_in_shape_m[row.corner]) {
+    reader.Fail(kCorner, fmt::format("corner {} of marker {} stands in a row before; remove one",
+                                     row.corner, row.marker_id));
+  }
+  marker->x_in_shape_m[row.corner] = row.x_in_shape_m;
+  marker->sigma_m[row.corner] = row.sigma_m;
+  marker->num_frames[row.corner] = row.num_frames;
+}
+
+// Makes the centre what marker_shape.h promises: there if and only if all corners are, their mean.
+// Returns what is wrong with the file's centre, or nothing.
+std::string SettleCentre(ShapeMarker* marker) {
+  auto& x = marker->x_in_shape_m;
+  if (!std::all_of(x.begin() + 1, x.end(), [](const auto& corner) { return bool(corner); })) {
+    return x[0] ? "a centre without its four corners; add them or remove this row" : "";
+  }
+  const Eigen::Vector3d mean = (*x[1] + *x[2] + *x[3] + *x[4]) / kNumCorners;
+  if (!x[0]) {
+    x[0] = mean;
+    marker->num_frames[0] =
+        *std::min_element(marker->num_frames.begin() + 1, marker->num_frames.end());
+    return "";
+  }
+  const double distance_m = (*x[0] - mean).norm();
+  if (distance_m <= kCentreTolerance_m) return "";
+  return fmt::format("the centre is {:.3g} m from the mean of its corners; remove this row",
+                     distance_m);
+}
+
+}  // namespace
+
+void WriteShapeCsv(const MarkerShape& shape, std::ostream& out, const std::string& frame) {
+  if (!frame.empty()) out << "# frame " << SingleLine(frame) << '\n';
+  out << Header() << '\n';
+  for (const ShapeMarker& marker : shape.markers) {
+    for (int corner = 0; corner <= kNumCorners; ++corner) {
+      if (!marker.x_in_shape_m[corner]) continue;
+      const Eigen::Vector3d& x = *marker.x_in_shape_m[corner];
+      std::string sigmas = ",,";
+      if (marker.sigma_m[corner]) {
+        const Eigen::Vector3d& sigma = *marker.sigma_m[corner];
+        sigmas = fmt::format("{},{},{}", sigma.x(), sigma.y(), sigma.z());
+      }
+      out << fmt::format("{},{},{},{},{},{},{},{}\n", marker.marker_id, corner, x.x(), x.y(), x.z(),
+                         sigmas, marker.num_frames[corner], CsvField(marker.part));
+    }
+  }
+}
+
+MarkerShape ReadShapeCsv(std::istream& in, const std::string& name) {
+  const std::vector<CsvRecord> records = ReadCsv(in, name);
+  if (records.empty() ||
+      !std::equal(records[0].fields.begin(), records[0].fields.end(), kColumns.begin(),
+                  kColumns.end(), [](const auto& a, const auto& b) { return Trim(a) == b; })) {
+    throw InputError(fmt::format("{}:{}: expected the header {} (comma-separated)", name,
+                                 records.empty() ? 1 : records[0].line, Header()));
+  }
+  if (records.size() == 1) throw InputError(name + ": no marker follows the header");
+
+  std::map<int, ShapeMarker> markers;
+  std::map<int, int> centre_lines;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const RecordReader reader(records[i], name);
+    const Row row = ReadRow(records[i], reader);
+    const auto [marker, is_new] = markers.try_emplace(row.marker_id);
+    AddRow(row, reader, is_new, &marker->second);
+    if (row.corner == 0) centre_lines[row.marker_id] = row.line;
+  }
+
+  MarkerShape shape;
+  for (auto& [marker_id, marker] : markers) {
+    const std::string problem = SettleCentre(&marker);
+    if (!problem.empty()) {
+      throw InputError(fmt::format("{}:{}: column {}: marker {}: {}", name,
+                                   centre_lines.at(marker_id), kColumns[kCorner], marker_id,
+                                   problem));
+    }
+    shape.markers.push_back(std::move(marker));
+  }
+  return shape;
+}
+
+MarkerShape ReadShapeCsv(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path + ": cannot be opened; expected a shape.csv");
+  return ReadShapeCsv(in, path);
+}
+
+}  // namespace velamap

@@ -1,0 +1,212 @@
+#include "exporters/report/report_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "exporters/report/report_histogram.h"
+#include "exporters/report/report_json.h"
+#include "exporters/report/report_key_numbers.h"
+#include "exporters/scale/scale_audit_report.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+using Json = ReportJsonValue;
+
+Json JsonOf(const ReportFrame& frame) {
+  return {
+      {"name", frame.name}, {"up", VectorJson(frame.up)}, {"forward", VectorJson(frame.forward)}};
+}
+
+ReportFrame FrameOfCentralCamera(const Model& model) {
+  const Eigen::Quaterniond world_from_cam =
+      model.images.front().cam_from_world.rotation.conjugate();
+  return {"axes of the model; up and front are those of the central camera",
+          world_from_cam * -Eigen::Vector3d::UnitY(), world_from_cam * Eigen::Vector3d::UnitZ()};
+}
+
+Json KeyNumbersJson(const ReportInput& input) {
+  Json numbers = Json::array();
+  for (const KeyNumber& number : MakeKeyNumbers(input)) {
+    numbers.push_back({{"name", number.name},
+                       {"value", number.value},
+                       {"meaning", number.meaning},
+                       {"status", StatusName(number.status)}});
+  }
+  return numbers;
+}
+
+Json JsonOf(const Histogram& histogram) {
+  return {{"first_border", histogram.first_border},
+          {"bin_width", histogram.bin_width},
+          {"counts", histogram.counts},
+          {"num_below", histogram.num_below},
+          {"num_above", histogram.num_above}};
+}
+
+Json HistogramsJson(const ReportInput& input, const std::vector<ReprojectionError>& errors) {
+  std::vector<double> deviations_percent, errors_px;
+  for (const ShapeMarker& marker : input.shape.markers) {
+    if (!marker.IsWhole()) continue;
+    deviations_percent.push_back(AreaDeviationPercent(marker, input.layout));
+  }
+  for (const ReprojectionError& error : errors) errors_px.push_back(error.error_px);
+  return {{"area_deviation_percent", JsonOf(MakeHistogram(std::move(deviations_percent)))},
+          {"error_px", JsonOf(MakeHistogram(std::move(errors_px)))}};
+}
+
+Json ScaleJson(const ScaleEstimate& scale) {
+  Json json = {{"m_per_unit", scale.m_per_unit},
+               {"spread_percent", 100 * scale.relative_spread},
+               {"num_markers", scale.num_markers}};
+  if (scale.relative_sigma) json["sigma_percent"] = 100 * *scale.relative_sigma;
+  return json;
+}
+
+// The lines of the audit's text form, as pairs of key and figures; the page has a histogram of its
+// own.
+Json AuditJson(const ScaleAudit& audit) {
+  MetricsReport report;
+  AddMetrics(audit, &report);
+  const auto is_histogram = [](const MetricTable& table) {
+    return table.name == "scale_histogram";
+  };
+  report.tables.erase(std::remove_if(report.tables.begin(), report.tables.end(), is_histogram),
+                      report.tables.end());
+  std::stringstream text;
+  PrintMetrics(report, text);
+  Json lines = Json::array();
+  for (std::string line; std::getline(text, line);) {
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) {
+      lines.push_back({line.substr(0, colon), line.substr(colon + 2)});
+    }
+  }
+  return lines;
+}
+
+Json PairsJson(const std::vector<std::pair<std::string, std::string>>& pairs) {
+  Json json = Json::array();
+  for (const auto& [name, value] : pairs) json.push_back({name, value});
+  return json;
+}
+
+Json JsonOf(const std::vector<ReportLeftOut>& left_out) {
+  Json json = Json::array();
+  for (const ReportLeftOut& entry : left_out) {
+    json.push_back({{"name", entry.name}, {"reason", entry.reason}});
+  }
+  return json;
+}
+
+// Those that the caller knows a reason for, then the layout's that miss all the same.
+std::vector<ReportLeftOut> MarkersLeftOut(const ReportInput& input) {
+  std::vector<ReportLeftOut> left_out = input.markers_left_out;
+  std::set<std::string> names;
+  for (const ReportLeftOut& entry : left_out) names.insert(entry.name);
+  std::map<int, int> num_corners_of;
+  for (const ShapeMarker& marker : input.shape.markers) {
+    num_corners_of[marker.marker_id] =
+        static_cast<int>(std::count_if(marker.x_in_shape_m.begin() + 1, marker.x_in_shape_m.end(),
+                                       [](const auto& x) { return x.has_value(); }));
+  }
+  for (const int marker_id : input.metrics.missing_marker_ids) {
+    const std::string name = std::to_string(marker_id);
+    if (names.count(name) > 0) continue;
+    const int num_corners = num_corners_of[marker_id];
+    left_out.push_back(
+        {name, num_corners == 0
+                   ? "no corner reconstructed: not seen, or not in two of the images used"
+                   : fmt::format("{} of its 4 corners reconstructed", num_corners)});
+  }
+  return left_out;
+}
+
+void AddFigure(const std::string& name, const std::string& sigma_name,
+               const std::optional<ReportFigure>& figure, Json* json) {
+  if (!figure) return;
+  (*json)[name] = figure->value;
+  if (figure->sigma) (*json)[sigma_name] = *figure->sigma;
+}
+
+Json JsonOf(const ReportSection& section) {
+  Json json = {{"name", section.name}, {"height_m", section.height_m}};
+  AddFigure("chord_m", "chord_sigma_m", section.chord_m, &json);
+  AddFigure("camber_percent", "camber_sigma_percent", section.camber_percent, &json);
+  AddFigure("draft_percent", "draft_sigma_percent", section.draft_percent, &json);
+  AddFigure("entry_deg", "entry_sigma_deg", section.entry_deg, &json);
+  AddFigure("exit_deg", "exit_sigma_deg", section.exit_deg, &json);
+  AddFigure("twist_deg", "twist_sigma_deg", section.twist_deg, &json);
+  json["profile"] = Json::array();
+  for (const Eigen::Vector2d& x : section.profile_m) json["profile"].push_back({x.x(), x.y()});
+  if (!section.profile_in_shape_m.empty()) {
+    json["profile_in_shape"] = Json::array();
+    for (const Eigen::Vector3d& x : section.profile_in_shape_m) {
+      json["profile_in_shape"].push_back(VectorJson(x));
+    }
+  }
+  return json;
+}
+
+// Flat lists, as the page hands them to the graphics card.
+Json JsonOf(const ReportSurface& surface) {
+  Json vertices = Json::array(), triangles = Json::array();
+  for (const Eigen::Vector3d& x : surface.x_in_shape_m) {
+    for (const double value : x) vertices.push_back(value);
+  }
+  for (const auto& triangle : surface.triangles) {
+    for (const int vertex : triangle) triangles.push_back(vertex);
+  }
+  return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}};
+}
+
+// Valid inside a script element: a `<` could end it or begin a comment.
+std::string EscapeForScript(const std::string& json) {
+  std::string escaped;
+  escaped.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      escaped += "\\u003c";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+}  // namespace
+
+std::string ReportJson(const ReportInput& input) {
+  if (input.metric_model.images.empty()) {
+    throw DataError("the model has no images, so there is nothing to report");
+  }
+  const std::vector<ReprojectionError> errors = ComputeReprojectionErrors(input.metric_model);
+  Json json = {{"title", input.title}, {"version", input.version}};
+  if (!input.created.empty()) json["created"] = input.created;
+  json["frame"] = JsonOf(input.frame.value_or(FrameOfCentralCamera(input.metric_model)));
+  json["key_numbers"] = KeyNumbersJson(input);
+  json["markers"] = MarkersJson(input, errors);
+  json["images"] = ImagesJson(input);
+  json["histograms"] = HistogramsJson(input, errors);
+  json["scale"] = ScaleJson(input.scale);
+  json["images_left_out"] = JsonOf(input.images_left_out);
+  json["markers_left_out"] = JsonOf(MarkersLeftOut(input));
+  if (input.audit != nullptr) json["scale_audit"] = AuditJson(*input.audit);
+  json["options"] = PairsJson(input.options);
+  json["versions"] = PairsJson(input.versions);
+  json["picture"] = PictureJson(input, errors);
+  if (!input.sections.empty()) {
+    json["sections"] = Json::array();
+    for (const ReportSection& section : input.sections) json["sections"].push_back(JsonOf(section));
+  }
+  if (input.surface) json["surface"] = JsonOf(*input.surface);
+  // Names of files need not be UTF-8; a browser shows what is not as a question mark.
+  return EscapeForScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace velamap

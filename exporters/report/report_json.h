@@ -1,0 +1,31 @@
+// The parts of the report's JSON. Only the report's own files include this.
+
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "exporters/report/report_data.h"
+#include "reconstruct/model/reprojection.h"
+
+namespace velamap {
+
+using ReportJsonValue = nlohmann::ordered_json;
+
+ReportJsonValue VectorJson(const Eigen::Vector3d& vector);
+
+// Signed deviation of a whole marker's area from the printed one, %.
+double AreaDeviationPercent(const ShapeMarker& marker, const Layout& layout);
+
+// One object a marker of the shape, by id.
+ReportJsonValue MarkersJson(const ReportInput& input, const std::vector<ReprojectionError>& errors);
+
+// One object an image of the model, by name.
+ReportJsonValue ImagesJson(const ReportInput& input);
+
+// The central image as a JPEG, detected and reprojected corners in its pixels.
+ReportJsonValue PictureJson(const ReportInput& input, const std::vector<ReprojectionError>& errors);
+
+}  // namespace velamap

@@ -1,0 +1,141 @@
+#include "exporters/report/report_key_numbers.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include "importer/base/statistics.h"
+
+namespace velamap {
+namespace {
+
+// Limits of the verdicts. Right reconstructions have reprojection errors of 0.1 to 0.3 px, wrong
+// shapes that register all the same 0.8 px and more. Prints and corners are good to about 1 % of an
+// area, a marker that is bent or misread is off by several.
+constexpr double kGoodError_px = 0.5, kBadError_px = 0.8;
+constexpr double kGoodAreaError_percent = 2, kBadAreaError_percent = 5;
+constexpr double kGoodRatio = 0.95, kBadRatio = 0.7;
+constexpr double kGoodScaleSpread_percent = 1, kBadScaleSpread_percent = 3;
+
+ReportStatus LowIsGood(double value, double good, double bad) {
+  if (value <= good) return ReportStatus::kGood;
+  return value <= bad ? ReportStatus::kCheck : ReportStatus::kBad;
+}
+
+ReportStatus HighIsGood(double value, double good, double bad) {
+  return LowIsGood(-value, -good, -bad);
+}
+
+KeyNumber MarkersNumber(const ShapeMetrics& metrics) {
+  KeyNumber number{"Markers", fmt::format("{}", metrics.num_markers),
+                   "whole markers: all four corners reconstructed", ReportStatus::kNone};
+  if (metrics.reconstruction_ratio) {
+    const double ratio = *metrics.reconstruction_ratio;
+    number.value = fmt::format("{} of {}, {:.1f} %", metrics.num_markers,
+                               metrics.num_layout_markers.value_or(0), 100 * ratio);
+    number.meaning = fmt::format(
+        "of the layout's markers with all four corners reconstructed; good from {:.0f} %",
+        100 * kGoodRatio);
+    number.status = HighIsGood(ratio, kGoodRatio, kBadRatio);
+  }
+  return number;
+}
+
+KeyNumber ImagesNumber(const ReportInput& input) {
+  const std::size_t num_used = input.metric_model.images.size();
+  const std::size_t num_all = num_used + input.images_left_out.size();
+  return {"Images", fmt::format("{} of {}", num_used, num_all),
+          "used; the others are listed below with the reason", ReportStatus::kNone};
+}
+
+KeyNumber ErrorNumber(const Statistics& error_px) {
+  return {"Reprojection error",
+          fmt::format("{:.3f} px mean, {:.2f} px at most", error_px.mean, error_px.max),
+          fmt::format("distance of each corner in the images from where the shape puts it; good up "
+                      "to {:g} px in the mean, above {:g} px the shape may be wrong",
+                      kGoodError_px, kBadError_px),
+          LowIsGood(error_px.mean, kGoodError_px, kBadError_px)};
+}
+
+KeyNumber AreaNumber(const ShapeMetrics& metrics) {
+  const Statistics& percent = metrics.area_error_percent;
+  return {"Marker area error",
+          fmt::format("{:.2f} % mean, {:.2f} % at most", percent.mean, percent.max),
+          fmt::format("of the markers' areas from the printed ones; good up to {:g} % in the mean",
+                      kGoodAreaError_percent),
+          LowIsGood(percent.mean, kGoodAreaError_percent, kBadAreaError_percent)};
+}
+
+KeyNumber ScaleNumber(const ScaleEstimate& scale) {
+  const double spread_percent = 100 * scale.relative_spread;
+  std::string value = fmt::format("{:.2f} % spread", spread_percent);
+  if (scale.relative_sigma) {
+    value = fmt::format("\u00b1{:.3f} %, {}", 100 * *scale.relative_sigma, value);
+  }
+  return {"Scale", value,
+          fmt::format("standard deviation of the metric scale, and of the scales that the {} "
+                      "markers give alone; good up to {:g} % spread",
+                      scale.num_markers, kGoodScaleSpread_percent),
+          LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent)};
+}
+
+KeyNumber SizeNumber(const MarkerShape& shape) {
+  Eigen::AlignedBox3d box;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (const auto& x : marker.x_in_shape_m) {
+      if (x) box.extend(*x);
+    }
+  }
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  if (!box.isEmpty()) size = box.sizes();
+  const bool is_small = size.maxCoeff() < 1;
+  const Eigen::Vector3d shown = is_small ? 1e3 * size : size;
+  return {"Size",
+          fmt::format("{:.4g} \u00d7 {:.4g} \u00d7 {:.4g} {}", shown.x(), shown.y(), shown.z(),
+                      is_small ? "mm" : "m"),
+          "of the box around all corners along x, y and z of the shape's frame",
+          ReportStatus::kNone};
+}
+
+std::optional<KeyNumber> PrecisionNumber(const MarkerShape& shape) {
+  std::vector<double> sigmas_mm;
+  for (const ShapeMarker& marker : shape.markers) {
+    if (marker.sigma_m[0]) sigmas_mm.push_back(1e3 * marker.sigma_m[0]->norm());
+  }
+  if (sigmas_mm.empty()) return std::nullopt;
+  return KeyNumber{"Precision",
+                   fmt::format("{:.3g} mm median, {:.3g} mm at most", Median(sigmas_mm),
+                               *std::max_element(sigmas_mm.begin(), sigmas_mm.end())),
+                   "1 sigma of a marker's centre in space, scale included", ReportStatus::kNone};
+}
+
+}  // namespace
+
+std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
+  std::vector<KeyNumber> numbers = {MarkersNumber(input.metrics), ImagesNumber(input)};
+  if (input.model_metrics.error_px.count > 0) {
+    numbers.push_back(ErrorNumber(input.model_metrics.error_px));
+  }
+  if (input.metrics.area_error_percent.count > 0) numbers.push_back(AreaNumber(input.metrics));
+  numbers.push_back(ScaleNumber(input.scale));
+  if (const auto precision = PrecisionNumber(input.shape)) numbers.push_back(*precision);
+  numbers.push_back(SizeNumber(input.shape));
+  return numbers;
+}
+
+std::string StatusName(ReportStatus status) {
+  switch (status) {
+    case ReportStatus::kGood:
+      return "good";
+    case ReportStatus::kCheck:
+      return "check";
+    case ReportStatus::kBad:
+      return "bad";
+    case ReportStatus::kNone:
+      return {};
+  }
+  return {};
+}
+
+}  // namespace velamap

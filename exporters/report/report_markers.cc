@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "exporters/report/report_json.h"
+
+namespace velamap {
+namespace {
+
+struct CornerErrors {
+  int count = 0;
+  double sum_px = 0.0;
+};
+
+// By marker id, of observations with a projection.
+std::map<int, CornerErrors> ErrorsByMarker(const std::vector<ReprojectionError>& errors) {
+  std::map<int, CornerErrors> errors_of;
+  for (const ReprojectionError& error : errors) {
+    if (!IsCornerPoint3DId(error.point3D_id) || !std::isfinite(error.error_px)) continue;
+    CornerErrors& marker = errors_of[CornerFromPoint3DId(error.point3D_id).marker_id];
+    ++marker.count;
+    marker.sum_px += error.error_px;
+  }
+  return errors_of;
+}
+
+// Joint covariance of the centre, m^2; nothing where the corners' is not known.
+std::optional<Eigen::Matrix3d> CentreCovariance(const PointCovariance& points, int marker_id) {
+  std::array<PointGradient, 3> gradients;
+  for (int corner = 1; corner <= kNumCorners; ++corner) {
+    const Point3DId id = Point3DIdFromCorner({marker_id, corner});
+    if (points.IndexOf(id) < 0) return std::nullopt;
+    for (int axis = 0; axis < 3; ++axis) {
+      gradients[axis].emplace_back(id, Eigen::Vector3d::Unit(axis) / kNumCorners);
+    }
+  }
+  Eigen::Matrix3d covariance;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      covariance(row, column) = CovarianceOf(points, gradients[row], gradients[column]);
+    }
+  }
+  return covariance;
+}
+
+// Columns are the half axes of the 1 sigma ellipsoid of the centre, m, longest last. Without a
+// joint covariance they are along x, y and z.
+std::optional<Eigen::Matrix3d> CentreEllipsoid(const ReportInput& input,
+                                               const ShapeMarker& marker) {
+  std::optional<Eigen::Matrix3d> covariance;
+  if (input.uncertainty != nullptr) {
+    covariance = CentreCovariance(input.uncertainty->points, marker.marker_id);
+  }
+  if (!covariance && marker.sigma_m[0]) {
+    covariance = marker.sigma_m[0]->cwiseAbs2().asDiagonal().toDenseMatrix();
+  }
+  if (!covariance) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(*covariance);
+  const Eigen::Vector3d sigmas = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
+  return eigen.eigenvectors() * sigmas.asDiagonal();
+}
+
+void AddWholeMarker(const ReportInput& input, const ShapeMarker& marker, ReportJsonValue* json) {
+  const double length_m = MarkerLength(input.layout, marker.marker_id);
+  double mean_side_m = 0;
+  for (const double side_m : MarkerSides(marker)) mean_side_m += side_m / kNumCorners;
+  (*json)["centre"] = VectorJson(*marker.x_in_shape_m[0]);
+  (*json)["length_mm"] = 1e3 * length_m;
+  (*json)["side_deviation_percent"] = 100 * (mean_side_m / length_m - 1);
+  (*json)["area_deviation_percent"] = AreaDeviationPercent(marker, input.layout);
+  if (const auto ellipsoid = CentreEllipsoid(input, marker)) {
+    (*json)["sigma_mm"] = 1e3 * ellipsoid->norm();
+    (*json)["ellipsoid"] = {VectorJson(ellipsoid->col(0)), VectorJson(ellipsoid->col(1)),
+                            VectorJson(ellipsoid->col(2))};
+  }
+}
+
+}  // namespace
+
+ReportJsonValue VectorJson(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+double AreaDeviationPercent(const ShapeMarker& marker, const Layout& layout) {
+  const double length_m = MarkerLength(layout, marker.marker_id);
+  return 100 * (MarkerArea(marker) / (length_m * length_m) - 1);
+}
+
+ReportJsonValue MarkersJson(const ReportInput& input,
+                            const std::vector<ReprojectionError>& errors) {
+  const std::map<int, CornerErrors> errors_of = ErrorsByMarker(errors);
+  ReportJsonValue markers = ReportJsonValue::array();
+  for (const ShapeMarker& marker : input.shape.markers) {
+    ReportJsonValue json = {{"id", marker.marker_id}, {"part", marker.part}};
+    ReportJsonValue corners = ReportJsonValue::array();
+    int num_frames = 0;
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      const auto& x = marker.x_in_shape_m[corner];
+      corners.push_back(x ? VectorJson(*x) : ReportJsonValue());
+      num_frames = std::max(num_frames, marker.num_frames[corner]);
+    }
+    json["corners"] = corners;
+    json["num_images"] = num_frames;
+    if (marker.IsWhole()) AddWholeMarker(input, marker, &json);
+    if (const auto found = errors_of.find(marker.marker_id); found != errors_of.end()) {
+      json["num_observations"] = found->second.count;
+      json["error_px"] = found->second.sum_px / found->second.count;
+    }
+    if (const auto found = input.scale.m_per_unit_of.find(marker.marker_id);
+        found != input.scale.m_per_unit_of.end()) {
+      json["scale_deviation_percent"] = 100 * (found->second / input.scale.m_per_unit - 1);
+    }
+    markers.push_back(std::move(json));
+  }
+  return markers;
+}
+
+}  // namespace velamap

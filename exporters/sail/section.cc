@@ -1,0 +1,364 @@
+#include "exporters/sail/section.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include "exporters/sail/section_lines.h"
+#include "exporters/sail/section_numbers.h"
+#include "exporters/shape/joint_covariance.h"
+#include "exporters/shape/sail_lines.h"
+#include "exporters/shape/shape_sigma.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kMinCamber = 1e-3;
+constexpr double kStep_m = 1e-5;  // of the numeric derivatives
+constexpr const char* kBoomPart = "boom";
+
+// Numbers of one section and their derivatives by all marker centres: one column a coordinate.
+struct NumbersWithGradient {
+  SectionNumbers numbers;
+  Eigen::MatrixXd gradient;
+};
+
+struct Boom {
+  int first_idx = 0, last_idx = 0;  // into the CenterSet, from the mast aft
+};
+
+// What all sections of one part have in common.
+struct PartContext {
+  const LayoutPart& part;
+  const CenterSet& centers;
+  SectionAxes axes;
+  PartCurves curves;
+};
+
+CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
+                         const PointCovariance* covariance) {
+  std::set<int> ids;
+  for (const LayoutPart& part : layout.parts) {
+    for (const MarkerLine& line : part.horizontal) {
+      ids.insert(line.marker_ids.begin(), line.marker_ids.end());
+    }
+  }
+  for (const int id : MarkersOfPart(layout, kBoomPart)) ids.insert(id);
+  CenterSet centers;
+  for (const int id : ids) {
+    if (FindWholeMarker(shape, id) != nullptr) centers.marker_ids.push_back(id);
+  }
+  const auto num_markers = static_cast<Eigen::Index>(centers.marker_ids.size());
+  centers.x_m.resize(3, num_markers);
+  centers.covariance_m2 = Eigen::MatrixXd::Zero(3 * num_markers, 3 * num_markers);
+  std::vector<PointGradient> gradients;
+  std::vector<int> rows;
+  for (Eigen::Index i = 0; i < num_markers; ++i) {
+    const ShapeMarker& marker =
+        *FindWholeMarker(shape, centers.marker_ids[static_cast<std::size_t>(i)]);
+    centers.x_m.col(i) = *marker.x_in_shape_m[0];
+    const bool in_covariance = PointSigma(covariance, marker.marker_id, 0).has_value();
+    centers.has_sigma.push_back(covariance != nullptr ? in_covariance
+                                                      : marker.sigma_m[0].has_value());
+    if (!centers.has_sigma.back()) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int row = static_cast<int>(3 * i) + axis;
+      if (covariance == nullptr) {
+        centers.covariance_m2(row, row) = std::pow((*marker.sigma_m[0])[axis], 2);
+        continue;
+      }
+      rows.push_back(row);
+      gradients.emplace_back();
+      AddPointGradient(marker.marker_id, 0, Eigen::Vector3d::Unit(axis), &gradients.back());
+    }
+  }
+  if (!rows.empty()) centers.covariance_m2(rows, rows) = JointCovarianceOf(*covariance, gradients);
+  return centers;
+}
+
+// The two markers of the boom that are farthest apart, the first nearer to the luff.
+std::optional<Boom> FindBoom(const Layout& layout, const CenterSet& centers,
+                             const Eigen::Vector3d& aft) {
+  std::vector<int> indices;
+  for (const int id : MarkersOfPart(layout, kBoomPart)) {
+    if (const auto index = centers.IndexOf(id)) indices.push_back(*index);
+  }
+  std::optional<Boom> boom;
+  double longest = 0.0;
+  for (const int a : indices) {
+    for (const int b : indices) {
+      const Eigen::Vector3d along = centers.x_m.col(b) - centers.x_m.col(a);
+      if (along.dot(aft) <= 0 || along.norm() <= longest) continue;
+      longest = along.norm();
+      boom = Boom{a, b};
+    }
+  }
+  return boom;
+}
+
+// Central differences of function(centers, index) by every coordinate of the listed markers; not
+// computed (NaN) where none of them has a sigma.
+template <typename Function>
+Eigen::MatrixXd Differentiate(const CenterSet& centers, const std::vector<int>& indices,
+                              const Function& function) {
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(kNumSectionNumbers, centers.x_m.size());
+  const auto has_sigma = [&](int index) {
+    return centers.has_sigma[static_cast<std::size_t>(index)];
+  };
+  if (std::none_of(indices.begin(), indices.end(), has_sigma)) {
+    gradient.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return gradient;
+  }
+  CenterSet moved = centers;
+  for (const int index : indices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      double& coordinate = moved.x_m(axis, index);
+      const double x = coordinate;
+      coordinate = x + kStep_m;
+      const SectionNumbers above = function(moved, index);
+      coordinate = x - kStep_m;
+      const SectionNumbers below = function(moved, index);
+      coordinate = x;
+      gradient.col(3 * index + axis) = (above - below) / (2 * kStep_m);
+    }
+  }
+  return gradient;
+}
+
+NumbersWithGradient NumbersOfLine(const PartContext& context, const LineCurve& line) {
+  return {ComputeNumbers(line.fit.curve, context.axes),
+          Differentiate(context.centers, line.indices, [&](const CenterSet& moved, int) {
+            return ComputeNumbers(line.Refit(moved), context.axes);
+          })};
+}
+
+std::vector<Eigen::Matrix3Xd> SampleLines(const std::vector<LineCurve>& lines) {
+  std::vector<Eigen::Matrix3Xd> samples;
+  for (const LineCurve& line : lines) samples.push_back(SampleForCut(line.fit.curve));
+  return samples;
+}
+
+NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& cut,
+                                 double height_m) {
+  const std::vector<LineCurve>& lines = context.curves.lines;
+  const std::vector<Eigen::Matrix3Xd> samples = SampleLines(lines);
+  std::set<int> indices;
+  for (const LineCurve& line : lines) indices.insert(line.indices.begin(), line.indices.end());
+  const auto numbers = [&](const CenterSet& moved, int index) -> SectionNumbers {
+    std::vector<Eigen::Matrix3Xd> moved_samples = samples;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::vector<int>& on_line = lines[i].indices;
+      if (std::find(on_line.begin(), on_line.end(), index) != on_line.end()) {
+        moved_samples[i] = SampleForCut(lines[i].Refit(moved));
+      }
+    }
+    const HeightCut moved_cut = CutAtHeight(moved_samples, context.axes.up, height_m);
+    // At the very end of the lines a step may leave them: there is no derivative then.
+    if (!moved_cut.curve) {
+      return SectionNumbers::Constant(std::numeric_limits<double>::quiet_NaN());
+    }
+    return ComputeNumbers(*moved_cut.curve, context.axes);
+  };
+  return {ComputeNumbers(cut, context.axes),
+          Differentiate(context.centers, {indices.begin(), indices.end()}, numbers)};
+}
+
+// Nothing where a marker without a sigma takes part.
+std::optional<double> SigmaOfGradient(const CenterSet& centers,
+                                      const Eigen::RowVectorXd& gradient) {
+  for (std::size_t i = 0; i < centers.has_sigma.size(); ++i) {
+    const auto by_marker = gradient.segment<3>(static_cast<Eigen::Index>(3 * i));
+    if (!by_marker.allFinite() || (!centers.has_sigma[i] && !by_marker.isZero(0.0))) {
+      return std::nullopt;
+    }
+  }
+  const double variance = gradient * centers.covariance_m2 * gradient.transpose();
+  return std::sqrt(std::max(0.0, variance));
+}
+
+// Azimuth of the boom with its gradient, in the place of a chord's.
+NumbersWithGradient NumbersOfBoom(const PartContext& context, const Boom& boom) {
+  const auto azimuth = [&](const CenterSet& centers, int) -> SectionNumbers {
+    SectionNumbers numbers = SectionNumbers::Zero();
+    numbers[kAzimuth] =
+        context.axes.leeward *
+        AngleAboutDeg(context.axes.up, context.axes.reference,
+                      centers.x_m.col(boom.last_idx) - centers.x_m.col(boom.first_idx));
+    return numbers;
+  };
+  return {azimuth(context.centers, 0),
+          Differentiate(context.centers, {boom.first_idx, boom.last_idx}, azimuth)};
+}
+
+Section DescribeSection(const PartContext& context, const SpaceCurve& curve,
+                        const NumbersWithGradient& own) {
+  const auto estimate = [&](SectionNumber number) {
+    return Estimate{own.numbers[number],
+                    SigmaOfGradient(context.centers, own.gradient.row(number))};
+  };
+  Section section;
+  section.part = context.part.name;
+  section.curve = curve;
+  const ProfileAxes axes = ProfileAxesOf(curve, context.axes);
+  section.chord_direction = axes.chord;
+  section.depth_direction = axes.depth;
+  section.height_m = context.axes.up.dot(EvaluateCurve(curve, 0.0) + EvaluateCurve(curve, 1.0)) / 2;
+  section.chord_m = estimate(kChord);
+  section.camber = estimate(kCamber);
+  if (std::abs(section.camber.value) >= kMinCamber)
+    section.draft_position = estimate(kDraftPosition);
+  section.entry_angle_deg = estimate(kEntryAngle);
+  section.exit_angle_deg = estimate(kExitAngle);
+  return section;
+}
+
+void AddMarkers(const PartContext& context, const LineCurve& line, Section* section) {
+  section->num_effective_parameters = line.fit.num_effective_parameters;
+  for (std::size_t i = 0; i < line.indices.size(); ++i) {
+    SectionMarker marker;
+    marker.marker_id = context.centers.marker_ids[static_cast<std::size_t>(line.indices[i])];
+    marker.x_in_frame_m = context.centers.x_m.col(line.indices[i]);
+    marker.residual_m = section->depth_direction.dot(
+        marker.x_in_frame_m -
+        EvaluateCurve(line.fit.curve, line.fit.parameters[static_cast<Eigen::Index>(i)]));
+    section->markers.push_back(marker);
+  }
+}
+
+void SetTwist(const CenterSet& centers, const NumbersWithGradient& own,
+              const NumbersWithGradient& reference, Section* section) {
+  section->twist_deg.value = own.numbers[kAzimuth] - reference.numbers[kAzimuth];
+  section->twist_deg.sigma =
+      SigmaOfGradient(centers, own.gradient.row(kAzimuth) - reference.gradient.row(kAzimuth));
+}
+
+void AddPartSections(const PartContext& context, const std::optional<Boom>& boom,
+                     const SectionOptions& options, SectionReport* report) {
+  const std::vector<LineCurve>& lines = context.curves.lines;
+  for (const MissingLine& line : context.curves.missing) {
+    report->missing.push_back({context.part.name, line.name, line.reason});
+  }
+  if (lines.empty()) return;
+  const std::vector<std::string> crossings = FindCrossings(lines, context.axes.up);
+  report->notes.insert(report->notes.end(), crossings.begin(), crossings.end());
+
+  std::vector<Section> sections;
+  std::vector<NumbersWithGradient> numbers;
+  for (const LineCurve& line : lines) {
+    numbers.push_back(NumbersOfLine(context, line));
+    sections.push_back(DescribeSection(context, line.fit.curve, numbers.back()));
+    sections.back().name = line.name;
+    AddMarkers(context, line, &sections.back());
+  }
+  const std::set<double> heights_m(options.heights_m.begin(), options.heights_m.end());
+  for (const double height_m : heights_m) {
+    const std::string name = fmt::format("z={:.6g}", height_m);
+    const HeightCut cut = crossings.empty()
+                              ? CutAtHeight(SampleLines(lines), context.axes.up, height_m)
+                              : HeightCut{std::nullopt, crossings.front()};
+    if (!cut.curve) {
+      report->missing.push_back({context.part.name, name, cut.reason});
+      continue;
+    }
+    numbers.push_back(NumbersOfCut(context, *cut.curve, height_m));
+    sections.push_back(DescribeSection(context, *cut.curve, numbers.back()));
+    sections.back().name = name;
+    sections.back().is_line = false;
+  }
+  // The lines come first and from the lowest up.
+  const NumbersWithGradient reference = boom ? NumbersOfBoom(context, *boom) : numbers.front();
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    SetTwist(context.centers, numbers[i], reference, &sections[i]);
+  }
+  std::stable_sort(sections.begin(), sections.end(),
+                   [](const Section& a, const Section& b) { return a.height_m < b.height_m; });
+  for (Section& section : sections) report->sections.push_back(std::move(section));
+}
+
+SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& up) {
+  // Azimuths count from the lowest chord, so that no angle is near 180 degrees.
+  const Eigen::Vector3d reference =
+      EvaluateCurve(lines.front().fit.curve, 1.0) - EvaluateCurve(lines.front().fit.curve, 0.0);
+  SectionAxes axes{up, reference, 1};
+  double depth_m = 0.0;
+  for (const LineCurve& line : lines) depth_m += MeanDepth(line.fit.curve, axes);
+  if (depth_m < 0) axes.leeward = -1;
+  return axes;
+}
+
+}  // namespace
+
+void SectionOptions::Check() const {
+  constexpr std::size_t kMaxHeights = 500;
+  if (heights_m.size() > kMaxHeights) {
+    throw InputError(
+        fmt::format("{} section heights: at most {} are drawn", heights_m.size(), kMaxHeights));
+  }
+  for (const double height_m : heights_m) {
+    if (!std::isfinite(height_m)) {
+      throw InputError(fmt::format("section height {}: a number of metres is expected", height_m));
+    }
+  }
+  if (min_markers < 4) {
+    throw InputError(
+        fmt::format("min_markers {}: a section needs at least 4 markers", min_markers));
+  }
+}
+
+SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
+                              const Layout& layout, const PointCovariance* covariance,
+                              const SectionOptions& options) {
+  options.Check();
+  SectionReport report;
+  if (FirstPartWithLines(layout) == nullptr) {
+    report.notes.push_back("no sections: the layout has no horizontal lines");
+    return report;
+  }
+  if (!frame.up_in_frame) {
+    report.notes.push_back("no sections: the markers of the lines do not tell where up is");
+    return report;
+  }
+  const CenterSet centers = CollectCenters(shape, layout, covariance);
+  const bool wants_boom = !MarkersOfPart(layout, kBoomPart).empty();
+  report.twist_reference = "lowest section";
+  for (const LayoutPart& part : layout.parts) {
+    if (part.horizontal.empty()) continue;
+    PartContext context{part, centers, {*frame.up_in_frame, {}, 1}, {}};
+    context.curves = FitPartLines(part, centers, *frame.up_in_frame, options.min_markers);
+    std::optional<Boom> boom;
+    if (!context.curves.lines.empty()) {
+      context.axes = AxesOf(context.curves.lines, *frame.up_in_frame);
+      boom = FindBoom(layout, centers, context.axes.reference);
+    }
+    if (boom) report.twist_reference = kBoomPart;
+    AddPartSections(context, boom, options, &report);
+  }
+  if (wants_boom && report.twist_reference != kBoomPart) {
+    report.notes.push_back(
+        "twist counts from the lowest section: fewer than two markers of the boom are whole");
+  }
+  return report;
+}
+
+ProfilePoint ProfilePointOf(const Section& section, const Eigen::Vector3d& x_in_frame_m) {
+  const Eigen::Vector3d rest = x_in_frame_m - EvaluateCurve(section.curve, 0.0);
+  return {x_in_frame_m, section.chord_direction.dot(rest), section.depth_direction.dot(rest)};
+}
+
+std::vector<ProfilePoint> SampleProfile(const Section& section, int num_points) {
+  VELAMAP_CHECK(num_points >= 2);
+  std::vector<ProfilePoint> points;
+  for (int i = 0; i < num_points; ++i) {
+    const double t = static_cast<double>(i) / (num_points - 1);
+    points.push_back(ProfilePointOf(section, EvaluateCurve(section.curve, t)));
+  }
+  return points;
+}
+
+}  // namespace velamap

@@ -1,0 +1,236 @@
+#include "exporters/sail/section_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kSamePlace_m = 1e-3;
+
+// Why no curve can be laid through the markers; empty if it can.
+std::string WhyNoCurve(const CenterSet& centers, const std::vector<int>& indices,
+                       const Eigen::Vector3d& up) {
+  constexpr double kMinSine = 0.1;  // about 6 degrees
+  const Eigen::Matrix3Xd x = centers.Points(indices);
+  const Eigen::Vector3d chord = x.col(x.cols() - 1) - x.col(0);
+  const auto id = [&](Eigen::Index i) {
+    return centers.marker_ids[static_cast<std::size_t>(indices[static_cast<std::size_t>(i)])];
+  };
+  if (up.cross(chord).norm() <= kMinSine * chord.norm()) {
+    return "it runs up, not across; list it under 'vertical', or name another frame";
+  }
+  for (Eigen::Index i = 1; i < x.cols(); ++i) {
+    const Eigen::Vector3d step = x.col(i) - x.col(i - 1);
+    if (step.norm() < kSamePlace_m) {
+      return fmt::format("markers {} and {} are in one place", id(i - 1), id(i));
+    }
+    if (step.dot(chord) <= 0) {
+      return fmt::format(
+          "marker {} does not lie behind marker {} on the way from luff to leech; "
+          "correct their order in the layout",
+          id(i), id(i - 1));
+    }
+  }
+  return "";
+}
+
+Eigen::Vector3d ChordOf(const LineCurve& line) {
+  return EvaluateCurve(line.fit.curve, 1.0) - EvaluateCurve(line.fit.curve, 0.0);
+}
+
+double MiddleHeight(const LineCurve& line, const Eigen::Vector3d& up) {
+  return up.dot(EvaluateCurve(line.fit.curve, 0.0) + EvaluateCurve(line.fit.curve, 1.0)) / 2;
+}
+
+// Lines against the sense of most, or of the lowest if as many run either way.
+void DropReversed(const Eigen::Vector3d& up, PartCurves* curves) {
+  if (curves->lines.empty()) return;
+  const auto flat = [&](const LineCurve& line) -> Eigen::Vector3d {
+    const Eigen::Vector3d chord = ChordOf(line);
+    return (chord - up * up.dot(chord)).normalized();
+  };
+  Eigen::Vector3d sense = 0.5 * flat(curves->lines.front());
+  for (const LineCurve& line : curves->lines) sense += flat(line);
+  std::vector<LineCurve> kept;
+  for (LineCurve& line : curves->lines) {
+    if (flat(line).dot(sense) > 0) {
+      kept.push_back(std::move(line));
+    } else {
+      curves->missing.push_back({line.name,
+                                 "it runs against the other lines; list its markers from luff to "
+                                 "leech"});
+    }
+  }
+  curves->lines = std::move(kept);
+}
+
+// Curve parameters at which lines are compared and joined.
+Eigen::ArrayXd Fractions() {
+  constexpr int kNumFractions = 25;
+  return Eigen::ArrayXd::LinSpaced(kNumFractions, 0.0, 1.0);
+}
+
+// Where the curve, which starts below the height and ends above it, passes it.
+double ParameterAtHeight(const SpaceCurve& curve, const Eigen::Vector3d& up, double height_m) {
+  constexpr int kMaxSteps = 60;
+  double low = 0.0, high = 1.0, t = 0.5;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const CurveJet jet = EvaluateCurveJet(curve, t);
+    const double excess_m = up.dot(jet.x) - height_m;
+    (excess_m < 0 ? low : high) = t;
+    const double newton = t - excess_m / up.dot(jet.x_t);
+    const double next = newton >= low && newton <= high ? newton : 0.5 * (low + high);
+    if (std::abs(next - t) < 1e-13) return next;
+    t = next;
+  }
+  return t;
+}
+
+// Mean distances between neighbouring lines, added up, over the whole.
+Eigen::ArrayXd SpanParameters(const std::vector<Eigen::Matrix3Xd>& samples) {
+  Eigen::ArrayXd parameters(static_cast<Eigen::Index>(samples.size()));
+  parameters[0] = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    parameters[static_cast<Eigen::Index>(i)] =
+        parameters[static_cast<Eigen::Index>(i) - 1] +
+        (samples[i] - samples[i - 1]).colwise().norm().mean();
+  }
+  return parameters / parameters[parameters.size() - 1];
+}
+
+// Fits the lines of which all markers have a sigma, or those of which some have none.
+void SmoothTogether(bool with_sigma, const CenterSet& centers, std::vector<LineCurve>* lines) {
+  std::vector<LineCurve*> alike;
+  std::vector<CurveData> data;
+  for (LineCurve& line : *lines) {
+    CurveData line_data = centers.Data(line.indices);
+    if ((line_data.covariance_m2.size() > 0) != with_sigma) continue;
+    alike.push_back(&line);
+    data.push_back(std::move(line_data));
+  }
+  if (alike.empty()) return;
+  const double smoothing = ChooseSmoothing(data);
+  for (std::size_t i = 0; i < alike.size(); ++i) {
+    alike[i]->smoothing = smoothing;
+    alike[i]->fit = FitCurve(data[i], smoothing);
+  }
+}
+
+}  // namespace
+
+std::optional<int> CenterSet::IndexOf(int marker_id) const {
+  const auto it = std::lower_bound(marker_ids.begin(), marker_ids.end(), marker_id);
+  if (it == marker_ids.end() || *it != marker_id) return std::nullopt;
+  return static_cast<int>(it - marker_ids.begin());
+}
+
+Eigen::Matrix3Xd CenterSet::Points(const std::vector<int>& indices) const {
+  return x_m(Eigen::all, indices);
+}
+
+CurveData CenterSet::Data(const std::vector<int>& indices) const {
+  CurveData data{Points(indices), {}};
+  std::vector<int> rows;
+  for (const int index : indices) {
+    if (!has_sigma[static_cast<std::size_t>(index)]) return data;
+    for (int axis = 0; axis < 3; ++axis) rows.push_back(3 * index + axis);
+  }
+  data.covariance_m2 = covariance_m2(rows, rows);
+  return data;
+}
+
+SpaceCurve LineCurve::Refit(const CenterSet& centers) const {
+  return FitCurveOnly(centers.Data(indices), smoothing);
+}
+
+PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const Eigen::Vector3d& up,
+                        int min_markers) {
+  PartCurves curves;
+  for (const MarkerLine& line : part.horizontal) {
+    LineCurve curve;
+    curve.name = line.name;
+    for (const int marker_id : line.marker_ids) {
+      if (const auto index = centers.IndexOf(marker_id)) curve.indices.push_back(*index);
+    }
+    if (static_cast<int>(curve.indices.size()) < min_markers) {
+      curves.missing.push_back(
+          {line.name, fmt::format("{} of its {} markers are reconstructed whole; {} are needed",
+                                  curve.indices.size(), line.marker_ids.size(), min_markers)});
+      continue;
+    }
+    const std::string problem = WhyNoCurve(centers, curve.indices, up);
+    if (!problem.empty()) {
+      curves.missing.push_back({line.name, problem});
+      continue;
+    }
+    curves.lines.push_back(std::move(curve));
+  }
+  for (const bool with_sigma : {false, true}) SmoothTogether(with_sigma, centers, &curves.lines);
+  std::stable_sort(curves.lines.begin(), curves.lines.end(),
+                   [&](const LineCurve& a, const LineCurve& b) {
+                     return MiddleHeight(a, up) < MiddleHeight(b, up);
+                   });
+  DropReversed(up, &curves);
+  return curves;
+}
+
+std::vector<std::string> FindCrossings(const std::vector<LineCurve>& lines,
+                                       const Eigen::Vector3d& up) {
+  std::vector<Eigen::Matrix3Xd> samples;
+  for (const LineCurve& line : lines) samples.push_back(SampleForCut(line.fit.curve));
+  std::vector<std::string> crossings;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    Eigen::Index place = 0;
+    const double gap_m = (up.transpose() * (samples[i] - samples[i - 1])).minCoeff(&place);
+    if (gap_m > 0) continue;
+    crossings.push_back(fmt::format(
+        "sections {} and {} cross: at {:.0f} % of their length {} is {:.1f} mm below {}",
+        lines[i - 1].name, lines[i].name, 100 * Fractions()[place], lines[i].name, -1e3 * gap_m,
+        lines[i - 1].name));
+  }
+  return crossings;
+}
+
+Eigen::Matrix3Xd SampleForCut(const SpaceCurve& line) {
+  const Eigen::ArrayXd fractions = Fractions();
+  Eigen::Matrix3Xd points(3, fractions.size());
+  for (Eigen::Index j = 0; j < fractions.size(); ++j) {
+    points.col(j) = EvaluateCurve(line, fractions[j]);
+  }
+  return points;
+}
+
+HeightCut CutAtHeight(const std::vector<Eigen::Matrix3Xd>& line_points, const Eigen::Vector3d& up,
+                      double height_m) {
+  constexpr double kTolerance_m = 1e-6;  // a height that is a line's own is within the lines
+  if (line_points.size() < 2) return {std::nullopt, "fewer than two lines have a section"};
+  const double lowest_m = (up.transpose() * line_points.front()).maxCoeff();
+  const double highest_m = (up.transpose() * line_points.back()).minCoeff();
+  if (height_m < lowest_m - kTolerance_m || height_m > highest_m + kTolerance_m) {
+    return {std::nullopt,
+            fmt::format("the lines give whole horizontal sections from {:.3f} to {:.3f} m only",
+                        lowest_m, highest_m)};
+  }
+  const Interpolation across = MakeInterpolation(SpanParameters(line_points));
+  const Eigen::Index num_fractions = line_points.front().cols();
+  Eigen::Matrix3Xd cut(3, num_fractions);
+  for (Eigen::Index j = 0; j < num_fractions; ++j) {
+    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(line_points.size()));
+    for (std::size_t i = 0; i < line_points.size(); ++i) {
+      points.col(static_cast<Eigen::Index>(i)) = line_points[i].col(j);
+    }
+    const SpaceCurve curve{across.degree, across.knots, points * across.poles_from_points};
+    cut.col(j) = EvaluateCurve(curve, ParameterAtHeight(curve, up, height_m));
+  }
+  const Interpolation along = MakeInterpolation(ChordLengthParameters(cut));
+  return {SpaceCurve{along.degree, along.knots, cut * along.poles_from_points}, ""};
+}
+
+}  // namespace velamap

@@ -1,0 +1,257 @@
+#include "exporters/sail/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/Geometry>
+
+#include "exporters/sail/surface_parameters.h"
+#include "exporters/sail/surface_smoother.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+constexpr std::size_t kMinMarkers = 3, kMinLines = 2;
+// Of the surface over straight strips from line to line: a half circle has 1.57 of its chord.
+constexpr double kMaxAreaRatio = 1.6, kMaxAreaRatioWithEdges = 4.0;
+// The feet of the markers between the lines move a little with every fit.
+constexpr int kNumFits = 4;
+// A foot this near to an edge, in parameters, is taken for one on the edge.
+constexpr double kInside = 1e-9;
+
+struct Given {
+  std::vector<SurfaceLine> lines;      // with enough markers
+  std::vector<SurfaceMarker> markers;  // all others
+  std::map<int, SurfaceMarker> by_id;  // every one
+  std::vector<std::string> notes;
+};
+
+Given SortInput(const SurfaceInput& input) {
+  Given given;
+  given.markers = input.markers;
+  for (const SurfaceMarker& marker : input.markers) given.by_id[marker.marker_id] = marker;
+  for (const SurfaceLine& line : input.lines) {
+    std::vector<SurfaceMarker> present;
+    for (const auto& marker : line.markers) {
+      if (!marker) continue;
+      present.push_back(*marker);
+      given.by_id[marker->marker_id] = *marker;
+    }
+    if (present.size() >= kMinMarkers) {
+      given.lines.push_back(line);
+      continue;
+    }
+    given.markers.insert(given.markers.end(), present.begin(), present.end());
+    given.notes.push_back(fmt::format("line {}: {} of its {} markers whole, {} needed; left out",
+                                      line.name, present.size(), line.markers.size(), kMinMarkers));
+  }
+  if (given.lines.size() < kMinLines) {
+    throw DataError(
+        fmt::format("no surface: {} of {} horizontal lines have {} whole markers, {} needed{}{}",
+                    given.lines.size(), input.lines.size(), kMinMarkers, kMinLines,
+                    given.notes.empty() ? "" : ": ", fmt::join(given.notes, "; ")));
+  }
+  return given;
+}
+
+// The sigma of every marker, and what it says about how to smooth.
+struct Noise {
+  std::map<int, double> sigma_m;
+  double edge_sigma_m = 1.0;
+  Smoothing smoothing = Smoothing::kCrossValidation;
+};
+
+Noise DescribeNoise(const Given& given, const SurfaceOptions& options) {
+  std::vector<double> known;
+  bool some_zero = false;
+  for (const auto& [id, marker] : given.by_id) {
+    const std::optional<double> sigma = marker.sigma_m ? marker.sigma_m : options.default_sigma_m;
+    if (sigma && *sigma > 0) known.push_back(*sigma);
+    some_zero = some_zero || (sigma && *sigma <= 0);
+  }
+  Noise noise;
+  if (some_zero || (known.empty() && given.by_id.size() < kMinCrossValidated)) {
+    noise.smoothing = Smoothing::kInterpolate;
+  } else if (!known.empty()) {
+    noise.smoothing = Smoothing::kKnownSigma;
+    noise.edge_sigma_m = Median(known);
+  }
+  for (const auto& [id, marker] : given.by_id) {
+    const std::optional<double> sigma = marker.sigma_m ? marker.sigma_m : options.default_sigma_m;
+    noise.sigma_m[id] =
+        noise.smoothing == Smoothing::kKnownSigma ? sigma.value_or(noise.edge_sigma_m) : 1.0;
+  }
+  return noise;
+}
+
+std::vector<double> Weights(const std::vector<SurfaceObservation>& observations,
+                            const Noise& noise) {
+  std::vector<double> weights;
+  for (const SurfaceObservation& observation : observations) {
+    const double sigma_m =
+        observation.marker_id < 0 ? noise.edge_sigma_m : noise.sigma_m.at(observation.marker_id);
+    weights.push_back(1.0 / (sigma_m * sigma_m));
+  }
+  return weights;
+}
+
+bool IsInside(const SurfaceFoot& foot) {
+  return std::min(foot.u, foot.v) > kInside && std::max(foot.u, foot.v) < 1 - kInside;
+}
+
+std::vector<Eigen::Vector3d> Centers(const std::vector<SurfaceMarker>& markers) {
+  std::vector<Eigen::Vector3d> centers;
+  for (const SurfaceMarker& marker : markers) centers.push_back(marker.x_in_shape_m);
+  return centers;
+}
+
+std::vector<SurfaceResidual> Residuals(const Given& given, const SurfaceParameters& parameters,
+                                       const SplineSurface& surface) {
+  std::map<int, const SurfaceObservation*> used;
+  for (const SurfaceObservation& observation : parameters.observations) {
+    if (observation.marker_id >= 0) used[observation.marker_id] = &observation;
+  }
+  std::vector<SurfaceMarker> markers;
+  for (const auto& [id, marker] : given.by_id) markers.push_back(marker);
+  const std::vector<SurfaceFoot> feet = ProjectOnSurface(surface, Centers(markers));
+  std::vector<SurfaceResidual> residuals;
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    const auto observation = used.find(markers[k].marker_id);
+    const bool is_used = observation != used.end();
+    residuals.push_back({markers[k].marker_id, is_used ? observation->second->line : "", feet[k].u,
+                         feet[k].v, feet[k].distance_m, feet[k].beyond_edge_m, is_used});
+  }
+  return residuals;
+}
+
+// Of the polyline through the points, at a fraction of its length.
+Eigen::Vector3d PointAt(const std::vector<Eigen::Vector3d>& points, double fraction) {
+  std::vector<double> lengths_m = {0.0};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    lengths_m.push_back(lengths_m.back() + (points[i] - points[i - 1]).norm());
+  }
+  const double wanted_m = fraction * lengths_m.back();
+  std::size_t i = 1;
+  while (i + 1 < points.size() && lengths_m[i] < wanted_m) ++i;
+  const double part = (wanted_m - lengths_m[i - 1]) / (lengths_m[i] - lengths_m[i - 1]);
+  return points[i - 1] + part * (points[i] - points[i - 1]);
+}
+
+// Of straight strips from line to line.
+double RuledArea(const std::vector<SurfaceLine>& lines) {
+  constexpr int kNumStrips = 50;
+  std::vector<std::vector<Eigen::Vector3d>> polylines;
+  for (const SurfaceLine& line : lines) {
+    polylines.emplace_back();
+    for (const auto& marker : line.markers) {
+      if (marker) polylines.back().push_back(marker->x_in_shape_m);
+    }
+  }
+  double area_m2 = 0.0;
+  for (std::size_t j = 1; j < polylines.size(); ++j) {
+    for (int i = 0; i < kNumStrips; ++i) {
+      const double from = i / static_cast<double>(kNumStrips);
+      const double to = (i + 1) / static_cast<double>(kNumStrips);
+      const Eigen::Vector3d a = PointAt(polylines[j - 1], from), b = PointAt(polylines[j - 1], to);
+      const Eigen::Vector3d c = PointAt(polylines[j], to), d = PointAt(polylines[j], from);
+      area_m2 += (c - a).cross(d - b).norm() / 2;
+    }
+  }
+  return area_m2;
+}
+
+// A surface through markers that lie scattered swings between them; better none than that.
+void CheckThatItIsCalm(const Given& given, const SurfaceOptions& options,
+                       const SplineSurface& surface) {
+  const SurfaceEdges& edges = options.edges;
+  const bool goes_on = options.luff_extension_m + options.leech_extension_m +
+                               options.foot_extension_m + options.head_extension_m >
+                           0 ||
+                       !edges.luff.empty() || !edges.leech.empty() || !edges.foot.empty() ||
+                       !edges.head.empty();
+  const double area_m2 = SurfaceArea(surface), ruled_area_m2 = RuledArea(given.lines);
+  if (area_m2 <= (goes_on ? kMaxAreaRatioWithEdges : kMaxAreaRatio) * ruled_area_m2) return;
+  throw DataError(fmt::format(
+      "it would swing between the markers ({:.3g} m2 instead of some {:.3g}): they do not lie on a "
+      "smooth surface, so check their errors and the order of the lines",
+      area_m2, ruled_area_m2));
+}
+
+}  // namespace
+
+void SurfaceOptions::Check() const {
+  if (default_sigma_m && !(*default_sigma_m >= 0 && std::isfinite(*default_sigma_m))) {
+    throw InputError(
+        fmt::format("the surface's default sigma is {} m; it must be 0 (interpolate) or more",
+                    *default_sigma_m));
+  }
+  const auto check_edge = [](const char* name, double extension_m,
+                             const std::vector<Eigen::Vector3d>& edge) {
+    if (!(extension_m >= 0 && std::isfinite(extension_m))) {
+      throw InputError(fmt::format(
+          "the surface's extension at the {} is {} m; it must be 0 or more", name, extension_m));
+    }
+    if (edge.size() == 1) {
+      throw InputError(fmt::format("the {} edge has one point; two or more are needed", name));
+    }
+    if (!edge.empty() && extension_m > 0) {
+      throw InputError(fmt::format(
+          "the surface shall go {} m beyond the {} and end at its edge; give one of the two",
+          extension_m, name));
+    }
+  };
+  check_edge("luff", luff_extension_m, edges.luff);
+  check_edge("leech", leech_extension_m, edges.leech);
+  check_edge("foot", foot_extension_m, edges.foot);
+  check_edge("head", head_extension_m, edges.head);
+}
+
+FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options) {
+  options.Check();
+  const Given given = SortInput(input);
+  const Noise noise = DescribeNoise(given, options);
+  SurfaceParameters parameters = AssignParameters(given.lines, !given.markers.empty(), options);
+  const std::size_t num_on_lines = parameters.observations.size();
+  SmoothSurface smooth =
+      SmoothObservations(parameters, Weights(parameters.observations, noise), noise.smoothing);
+  for (int fit = 1; fit < kNumFits && !given.markers.empty(); ++fit) {
+    parameters.observations.resize(num_on_lines);
+    const auto feet = ProjectOnSurface(smooth.surface, Centers(given.markers));
+    for (std::size_t k = 0; k < feet.size(); ++k) {
+      if (!IsInside(feet[k])) continue;
+      parameters.observations.push_back(
+          {given.markers[k].marker_id, "", given.markers[k].x_in_shape_m, feet[k].u, feet[k].v});
+    }
+    if (parameters.observations.size() == num_on_lines) break;
+    smooth =
+        SmoothObservations(parameters, Weights(parameters.observations, noise), noise.smoothing);
+  }
+  CheckThatItIsCalm(given, options, smooth.surface);
+  FittedSurface result;
+  result.surface = smooth.surface;
+  result.num_effective_parameters = smooth.num_effective_parameters;
+  result.residuals = Residuals(given, parameters, smooth.surface);
+  result.notes = given.notes;
+  result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());
+  std::vector<double> distances;
+  std::vector<int> beside;
+  for (const SurfaceResidual& residual : result.residuals) {
+    if (residual.is_used) {
+      distances.push_back(residual.distance_m);
+    } else {
+      beside.push_back(residual.marker_id);
+    }
+  }
+  result.distance_m = ComputeStatistics(distances);
+  if (!beside.empty()) {
+    result.notes.push_back(fmt::format("markers beside the surface, without a part in it: {}",
+                                       fmt::join(beside, " ")));
+  }
+  return result;
+}
+
+}  // namespace velamap

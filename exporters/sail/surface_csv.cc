@@ -1,0 +1,79 @@
+#include "exporters/sail/surface_csv.h"
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <ostream>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "importer/base/csv.h"
+#include "importer/base/error.h"
+#include "importer/base/yaml_item.h"
+
+namespace velamap {
+namespace {
+
+const std::vector<std::string> kEdgeColumns = {"edge", "x", "y", "z"};
+
+Eigen::Vector3d ReadPoint(const CsvRecord& record, const std::string& name) {
+  Eigen::Vector3d x_m;
+  for (std::size_t i = 1; i < kEdgeColumns.size(); ++i) {
+    double value = 0.0;
+    if (!ParseNumber(record.fields[i], &value) || !std::isfinite(value)) {
+      throw InputError(fmt::format("{}:{}: column {}: '{}' is no number; expected metres", name,
+                                   record.line, kEdgeColumns[i], record.fields[i]));
+    }
+    x_m[static_cast<Eigen::Index>(i) - 1] = value;
+  }
+  return x_m;
+}
+
+}  // namespace
+
+void WriteSurfaceResidualsCsv(const FittedSurface& surface, std::ostream& out) {
+  out << "marker_id,line,u,v,distance,beyond_edge,is_used\n";
+  for (const SurfaceResidual& residual : surface.residuals) {
+    out << fmt::format("{},{},{},{},{},{},{}\n", residual.marker_id, CsvField(residual.line),
+                       residual.u, residual.v, residual.distance_m, residual.beyond_edge_m,
+                       residual.is_used ? 1 : 0);
+  }
+}
+
+SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name) {
+  SurfaceEdges edges;
+  const std::map<std::string, std::vector<Eigen::Vector3d>*> edge_of = {
+      {"luff", &edges.luff}, {"leech", &edges.leech}, {"foot", &edges.foot}, {"head", &edges.head}};
+  const std::vector<CsvRecord> records = ReadCsv(in, name);
+  if (records.empty() || records.front().fields != kEdgeColumns) {
+    throw InputError(fmt::format("{}: expected the header edge,x,y,z", name));
+  }
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const CsvRecord& record = records[i];
+    if (record.fields.size() != kEdgeColumns.size()) {
+      throw InputError(fmt::format("{}:{}: {} columns, expected edge,x,y,z", name, record.line,
+                                   record.fields.size()));
+    }
+    const auto edge = edge_of.find(record.fields[0]);
+    if (edge == edge_of.end()) {
+      throw InputError(fmt::format("{}:{}: column edge: '{}'; expected luff, leech, foot or head",
+                                   name, record.line, record.fields[0]));
+    }
+    edge->second->push_back(ReadPoint(record, name));
+  }
+  for (const auto& [edge, points] : edge_of) {
+    if (points->size() == 1) {
+      throw InputError(fmt::format("{}: the {} has one point, an edge needs two", name, edge));
+    }
+  }
+  return edges;
+}
+
+SurfaceEdges ReadSurfaceEdges(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path + ": cannot be read; is there such a file?");
+  return ReadSurfaceEdges(in, path);
+}
+
+}  // namespace velamap

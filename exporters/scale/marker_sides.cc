@@ -1,0 +1,275 @@
+#include "exporters/scale/marker_sides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "exporters/scale/metric_shape.h"
+#include "exporters/shape/shape_sigma.h"
+#include "importer/base/statistics.h"
+
+namespace velamap {
+namespace {
+
+using Corners = std::array<Eigen::Vector2d, kNumCorners>;
+
+// The normal equations of one point, cameras held.
+struct PointEquations {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // of one px of noise
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();     // of half the sum of squares
+  double sum_of_squares_px2 = 0.0;
+  int num_observations = 0;
+};
+
+// d image / d cam by central differences; nothing for a point that is not in front of the camera.
+std::optional<Eigen::Matrix<double, 2, 3>> ProjectionJacobian(const Camera& camera,
+                                                              const Eigen::Vector3d& x_in_cam) {
+  const double step = 1e-6 * x_in_cam.norm();
+  Eigen::Matrix<double, 2, 3> jacobian;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d offset = step * Eigen::Vector3d::Unit(axis);
+    const auto after = ImageFromCam(camera, x_in_cam + offset);
+    const auto before = ImageFromCam(camera, x_in_cam - offset);
+    if (!after || !before) return std::nullopt;
+    jacobian.col(axis) = (*after - *before) / (2 * step);
+  }
+  return jacobian;
+}
+
+PointEquations EquationsOf(const Model& model, const std::map<ImageId, const ModelImage*>& images,
+                           const Point3D& point) {
+  PointEquations equations;
+  // By image, so that sums do not depend on the track's order.
+  std::map<ImageId, TrackElement> track;
+  for (const TrackElement& element : point.track) track[element.image_id] = element;
+  for (const auto& [image_id, element] : track) {
+    const ModelImage& image = *images.at(image_id);
+    const Camera& camera = model.cameras.at(image.camera_id);
+    const Eigen::Vector3d x_in_cam = image.cam_from_world * point.x_in_world;
+    const auto x_in_image_px = ImageFromCam(camera, x_in_cam);
+    const auto by_cam = x_in_image_px ? ProjectionJacobian(camera, x_in_cam) : std::nullopt;
+    if (!by_cam) continue;
+    const Eigen::Matrix<double, 2, 3> by_world =
+        *by_cam * image.cam_from_world.rotation.toRotationMatrix();
+    const Eigen::Vector2d residual_px =
+        *x_in_image_px - image.points2D.at(element.point2D_idx).x_in_image_px;
+    equations.information += by_world.transpose() * by_world;
+    equations.gradient += by_world.transpose() * residual_px;
+    equations.sum_of_squares_px2 += residual_px.squaredNorm();
+    ++equations.num_observations;
+  }
+  return equations;
+}
+
+std::map<ImageId, const ModelImage*> ImagesById(const Model& model) {
+  std::map<ImageId, const ModelImage*> images;
+  for (const ModelImage& image : model.images) images[image.image_id] = &image;
+  return images;
+}
+
+// The four image points of every marker that an image sees as a whole.
+std::map<int, Corners> WholeMarkersIn(const ModelImage& image) {
+  std::map<int, std::map<int, Eigen::Vector2d>> corners;
+  for (const Point2D& point : image.points2D) {
+    if (!IsCornerPoint3DId(point.point3D_id)) continue;
+    const CornerId id = CornerFromPoint3DId(point.point3D_id);
+    corners[id.marker_id][id.corner] = point.x_in_image_px;
+  }
+  std::map<int, Corners> whole;
+  for (const auto& [marker_id, by_corner] : corners) {
+    if (by_corner.size() < kNumCorners) continue;
+    for (const auto& [corner, x] : by_corner) whole[marker_id][corner - 1] = x;
+  }
+  return whole;
+}
+
+// By marker: sum of squares over sum of its mean side in the images, px.
+std::map<int, double> SidesInImages(const Model& model) {
+  std::map<int, std::pair<double, double>> sums;
+  for (const auto& [image_id, image] : ImagesById(model)) {
+    for (const auto& [marker_id, corners] : WholeMarkersIn(*image)) {
+      double side_px = 0.0;
+      for (int i = 0; i < kNumCorners; ++i) {
+        side_px += (corners[(i + 1) % kNumCorners] - corners[i]).norm() / kNumCorners;
+      }
+      sums[marker_id].first += side_px * side_px;
+      sums[marker_id].second += side_px;
+    }
+  }
+  std::map<int, double> sides_px;
+  for (const auto& [marker_id, sum] : sums) sides_px[marker_id] = sum.first / sum.second;
+  return sides_px;
+}
+
+struct MarkerEquations {
+  std::array<PointEquations, kNumCorners> corners;
+  double sum_of_squares_px2 = 0.0;
+  int redundancy = 0;  // residuals less the points' coordinates
+  double variance_px2 = 0.0;
+
+  bool IsDetermined() const {
+    return std::all_of(corners.begin(), corners.end(),
+                       [](const PointEquations& corner) { return corner.num_observations > 1; });
+  }
+};
+
+// What the cameras absorb of the residuals too, as a factor of the variance.
+double CameraFactor(const std::map<int, MarkerEquations>& markers, std::size_t num_images) {
+  constexpr double kMaxFactor = 3.0;
+  double redundancy = 0.0;
+  for (const auto& [marker_id, marker] : markers) redundancy += marker.redundancy;
+  const double left = redundancy - 6.0 * static_cast<double>(num_images);
+  return left * kMaxFactor > redundancy ? redundancy / left : kMaxFactor;
+}
+
+void SetVariances(std::size_t num_images, std::map<int, MarkerEquations>* markers) {
+  constexpr double kPriorRedundancy = 8.0;
+  std::vector<double> variances_px2;
+  for (const auto& [marker_id, marker] : *markers) {
+    if (marker.redundancy > 0) {
+      variances_px2.push_back(marker.sum_of_squares_px2 / marker.redundancy);
+    }
+  }
+  const double typical_px2 = variances_px2.empty() ? 0.0 : Median(variances_px2);
+  const double camera_factor = CameraFactor(*markers, num_images);
+  for (auto& [marker_id, marker] : *markers) {
+    marker.variance_px2 = camera_factor *
+                          (marker.sum_of_squares_px2 + kPriorRedundancy * typical_px2) /
+                          (marker.redundancy + kPriorRedundancy);
+  }
+}
+
+std::map<int, MarkerEquations> EquationsOfMarkers(const Model& model) {
+  const auto images = ImagesById(model);
+  std::map<int, MarkerEquations> markers;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    if (!IsCornerPoint3DId(point3D_id)) continue;
+    const CornerId id = CornerFromPoint3DId(point3D_id);
+    MarkerEquations& marker = markers[id.marker_id];
+    PointEquations& corner = marker.corners[id.corner - 1];
+    corner = EquationsOf(model, images, point);
+    marker.sum_of_squares_px2 += corner.sum_of_squares_px2;
+    marker.redundancy += std::max(0, 2 * corner.num_observations - 3);
+  }
+  SetVariances(model.images.size(), &markers);
+  return markers;
+}
+
+// 1 sigma of the function with this gradient by the four corners.
+double SigmaOf(const MarkerEquations& equations, const PointGradient& gradient) {
+  std::array<Eigen::Vector3d, kNumCorners> by_corner;
+  by_corner.fill(Eigen::Vector3d::Zero());
+  for (const auto& [point3D_id, weight] : gradient) {
+    by_corner[CornerFromPoint3DId(point3D_id).corner - 1] += weight;
+  }
+  double variance = 0.0;
+  for (int i = 0; i < kNumCorners; ++i) {
+    variance += equations.variance_px2 *
+                by_corner[i].dot(equations.corners[i].information.ldlt().solve(by_corner[i]));
+  }
+  return std::sqrt(std::max(0.0, variance));
+}
+
+PointGradient RatioGradient(const ShapeMarker& marker, const MarkerSidesMeasured& measured) {
+  const auto& sides = measured.sides;
+  PointGradient gradient;  // of the logarithm
+  for (int side = 1; side <= kNumCorners; ++side) {
+    const double weight =
+        side % 2 == 1 ? 1.0 / (sides[0] + sides[2]) : -1.0 / (sides[1] + sides[3]);
+    for (const auto& [point3D_id, by_point] : SideGradient(marker, side)) {
+      gradient.emplace_back(point3D_id, weight * by_point);
+    }
+  }
+  return gradient;
+}
+
+// Gauss and Newton's steps; the point stays where they do not converge.
+void IntersectPoint(const Model& model, const std::map<ImageId, const ModelImage*>& images,
+                    Point3D* point) {
+  constexpr int kMaxSteps = 20;
+  constexpr double kMinStep_px = 1e-7;
+  Point3D moved = *point;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const PointEquations equations = EquationsOf(model, images, moved);
+    if (equations.num_observations < 2) return;
+    const Eigen::Vector3d change = -equations.information.ldlt().solve(equations.gradient);
+    moved.x_in_world += change;
+    if (!moved.x_in_world.allFinite()) return;
+    const double change_px2 =
+        change.dot(equations.information * change) / equations.num_observations;
+    if (change_px2 > kMinStep_px * kMinStep_px) continue;
+    *point = moved;
+    return;
+  }
+}
+
+// The detector sees corners by `inset_px` too far inside along both sides of the marker.
+void MoveOut(double inset_px, ModelImage* image) {
+  const std::map<int, Corners> markers = WholeMarkersIn(*image);
+  for (Point2D& point : image->points2D) {
+    if (!IsCornerPoint3DId(point.point3D_id)) continue;
+    const CornerId id = CornerFromPoint3DId(point.point3D_id);
+    const auto marker = markers.find(id.marker_id);
+    if (marker == markers.end()) continue;
+    const Corners& corners = marker->second;
+    const Eigen::Vector2d& here = corners[id.corner - 1];
+    const Eigen::Vector2d& next = corners[id.corner % kNumCorners];
+    const Eigen::Vector2d& previous = corners[(id.corner + 2) % kNumCorners];
+    point.x_in_image_px -= inset_px * ((next - here).normalized() + (previous - here).normalized());
+  }
+}
+
+}  // namespace
+
+double MarkerSidesMeasured::Mean() const {
+  return std::accumulate(sides.begin(), sides.end(), 0.0) / kNumCorners;
+}
+
+double MarkerSidesMeasured::HorizontalOverVertical() const {
+  return (sides[0] + sides[2]) / (sides[1] + sides[3]);
+}
+
+std::vector<MarkerSidesMeasured> MeasureSides(const MarkerShape& shape) {
+  std::vector<MarkerSidesMeasured> markers;
+  for (const ShapeMarker& marker : shape.markers) {
+    if (!marker.IsWhole()) continue;
+    MarkerSidesMeasured measured;
+    measured.marker_id = marker.marker_id;
+    measured.part = marker.part;
+    measured.sides = MarkerSides(marker);
+    markers.push_back(measured);
+  }
+  return markers;
+}
+
+std::vector<MarkerSidesMeasured> MeasureSides(const Model& model, const Layout& layout) {
+  const MarkerShape shape = ShapeFromModel(model, layout);
+  const std::map<int, MarkerEquations> equations_of = EquationsOfMarkers(model);
+  const std::map<int, double> sides_px = SidesInImages(model);
+  std::vector<MarkerSidesMeasured> markers = MeasureSides(shape);
+  for (MarkerSidesMeasured& measured : markers) {
+    const auto side_px = sides_px.find(measured.marker_id);
+    if (side_px != sides_px.end()) measured.side_px = side_px->second;
+    const MarkerEquations& equations = equations_of.at(measured.marker_id);
+    const auto& sides = measured.sides;
+    if (!equations.IsDetermined() || *std::min_element(sides.begin(), sides.end()) == 0) continue;
+    const ShapeMarker& marker = *FindWholeMarker(shape, measured.marker_id);
+    measured.mean_sigma = SigmaOf(equations, MeanSideGradient(marker)) / measured.Mean();
+    measured.ratio_sigma = SigmaOf(equations, RatioGradient(marker, measured));
+  }
+  return markers;
+}
+
+void IntersectCorners(double apparent_inset_px, Model* model) {
+  if (apparent_inset_px != 0) {
+    for (ModelImage& image : model->images) MoveOut(apparent_inset_px, &image);
+  }
+  const auto images = ImagesById(*model);
+  for (auto& [point3D_id, point] : model->points3D) IntersectPoint(*model, images, &point);
+}
+
+}  // namespace velamap

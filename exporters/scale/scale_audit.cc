@@ -1,0 +1,218 @@
+#include "exporters/scale/scale_audit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "exporters/scale/marker_sides.h"
+#include "exporters/scale/metric_shape.h"
+#include "exporters/scale/robust_fit.h"
+#include "exporters/shape/shape_metrics.h"
+#include "importer/base/statistics.h"
+
+namespace velamap {
+namespace {
+
+std::vector<MarkerSidesMeasured> MeasureForShape(const MarkerShape& shape, const Layout& layout,
+                                                 const Model* model,
+                                                 const AdjustmentUncertainty* uncertainty) {
+  if (model == nullptr) return MeasureSides(shape);
+  const double units_per_m = CompareShapes(ShapeFromModel(*model, layout), shape).scale;
+  std::vector<MarkerSidesMeasured> markers;
+  if (uncertainty == nullptr) {
+    markers = MeasureSides(*model, layout);
+  } else {
+    Model intersected = *model;
+    IntersectCorners(uncertainty->apparent_inset_px, &intersected);
+    markers = MeasureSides(intersected, layout);
+  }
+  for (MarkerSidesMeasured& marker : markers) {
+    for (double& side : marker.sides) side /= units_per_m;
+  }
+  return markers;
+}
+
+// Markers in one point have no scale.
+void RemovePoints(std::vector<MarkerSidesMeasured>* markers) {
+  const auto is_point = [](const MarkerSidesMeasured& marker) {
+    return *std::min_element(marker.sides.begin(), marker.sides.end()) == 0;
+  };
+  markers->erase(std::remove_if(markers->begin(), markers->end(), is_point), markers->end());
+}
+
+std::vector<MarkerScale> ScalesOf(const std::vector<MarkerSidesMeasured>& measured,
+                                  const Layout& layout) {
+  std::vector<MarkerScale> markers;
+  for (const MarkerSidesMeasured& sides : measured) {
+    MarkerScale marker;
+    marker.marker_id = sides.marker_id;
+    marker.part = sides.part;
+    marker.length_m = MarkerLength(layout, sides.marker_id);
+    marker.side_m = sides.Mean();
+    marker.deviation = marker.length_m / marker.side_m - 1.0;
+    marker.sigma = sides.mean_sigma;
+    marker.side_px = sides.side_px;
+    markers.push_back(marker);
+  }
+  return markers;
+}
+
+// Logarithms of scales, so that a marker of half the size and one of twice the size are as far off.
+RobustMean MeanScale(const std::vector<const MarkerScale*>& markers, double marker_spread) {
+  std::vector<double> values, sigmas;
+  for (const MarkerScale* marker : markers) {
+    values.push_back(std::log1p(marker->deviation));
+    sigmas.push_back(std::hypot(marker->sigma.value_or(0.0), marker_spread));
+  }
+  return FitMeanRobustly(values, sigmas);
+}
+
+void JudgeMarkers(ScaleAudit* audit) {
+  std::vector<const MarkerScale*> all;
+  for (const MarkerScale& marker : audit->markers) all.push_back(&marker);
+  const RobustMean mean = MeanScale(all, 0.0);
+  audit->deviation = std::expm1(mean.mean);
+  audit->deviation_sigma = mean.sigma;
+  audit->marker_spread = mean.excess_sigma;
+  for (std::size_t i = 0; i < all.size(); ++i) audit->markers[i].sigmas_off = mean.sigmas_off[i];
+}
+
+// The least of 1, 2, 5, 10, 20, ... times a power of ten that is no less than `x`.
+double RoundUp(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= x) return step * power;
+  }
+  return 10.0 * power;
+}
+
+// Bins of about half a robust sigma, one of them around 0, within ten bins of the median; what lies
+// outside joins the first and the last.
+std::vector<HistogramBin> MakeHistogram(const std::vector<MarkerScale>& markers) {
+  constexpr double kLeastWidth = 1e-6;
+  constexpr int kMaxBinsASide = 10;
+  std::vector<double> deviations;
+  for (const MarkerScale& marker : markers) deviations.push_back(marker.deviation);
+  const double width = RoundUp(std::max(0.5 * RobustSigma(deviations), kLeastWidth));
+  const double median_bin = std::round(Median(deviations) / width);
+  const auto bin_of = [&](double deviation) {
+    return std::clamp(std::round(deviation / width), median_bin - kMaxBinsASide,
+                      median_bin + kMaxBinsASide);
+  };
+  const auto [least, greatest] = std::minmax_element(deviations.begin(), deviations.end());
+  const double first = bin_of(*least);
+  std::vector<HistogramBin> bins(static_cast<std::size_t>(bin_of(*greatest) - first) + 1);
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    bins[i].from = width * (first + static_cast<double>(i) - 0.5);
+    bins[i].to = width * (first + static_cast<double>(i) + 0.5);
+  }
+  for (const double deviation : deviations) {
+    ++bins[static_cast<std::size_t>(bin_of(deviation) - first)].num_markers;
+  }
+  bins.front().from = std::min(bins.front().from, *least);
+  bins.back().to = std::max(bins.back().to, *greatest);
+  return bins;
+}
+
+void CompareWidthAndHeight(const std::vector<MarkerSidesMeasured>& measured, ScaleAudit* audit) {
+  std::vector<double> values, sigmas;
+  for (const MarkerSidesMeasured& marker : measured) {
+    values.push_back(std::log(marker.HorizontalOverVertical()));
+    sigmas.push_back(marker.ratio_sigma.value_or(0.0));
+  }
+  const RobustMean mean = FitMeanRobustly(values, sigmas);
+  audit->x_over_y = std::exp(mean.mean);
+  audit->x_over_y_sigma = mean.sigma;
+}
+
+// Every group against all other markers; nothing where all are in one.
+template <typename Key>
+std::map<Key, GroupScale> CompareGroups(const ScaleAudit& audit,
+                                        const std::function<Key(const MarkerScale&)>& key_of) {
+  std::map<Key, std::vector<const MarkerScale*>> groups;
+  for (const MarkerScale& marker : audit.markers) groups[key_of(marker)].push_back(&marker);
+  std::map<Key, GroupScale> scales;
+  if (groups.size() < 2) return scales;
+  for (const auto& [key, group] : groups) {
+    std::vector<const MarkerScale*> others;
+    for (const auto& [other_key, other] : groups) {
+      if (other_key != key) others.insert(others.end(), other.begin(), other.end());
+    }
+    // The scatter of all markers, so that a group of two does not pass for exact by chance.
+    const RobustMean own = MeanScale(group, audit.marker_spread);
+    const RobustMean rest = MeanScale(others, audit.marker_spread);
+    GroupScale& scale = scales[key];
+    scale.num_markers = static_cast<int>(group.size());
+    scale.deviation = std::expm1(own.mean - rest.mean);
+    if (own.sigma && rest.sigma) scale.sigma = std::hypot(*own.sigma, *rest.sigma);
+  }
+  return scales;
+}
+
+void CompareParts(ScaleAudit* audit) {
+  const auto part_of = [](const MarkerScale& marker) { return marker.part; };
+  for (auto& [part, scale] : CompareGroups<std::string>(*audit, part_of)) {
+    audit->parts.push_back(scale);
+    audit->parts.back().part = part;
+  }
+}
+
+void CompareSizes(ScaleAudit* audit) {
+  const auto length_of = [](const MarkerScale& marker) { return marker.length_m; };
+  for (auto& [length_m, scale] : CompareGroups<double>(*audit, length_of)) {
+    audit->sizes.push_back(scale);
+    audit->sizes.back().length_m = length_m;
+  }
+}
+
+PrintSpread SpreadOf(const std::vector<MarkerScale>& markers) {
+  std::vector<SpreadSample> samples;
+  for (const MarkerScale& marker : markers) {
+    samples.push_back({-std::log1p(marker.deviation), marker.sigma.value_or(0.0), marker.length_m,
+                       marker.side_px});
+  }
+  return EstimateSpread(samples);
+}
+
+void SummarizeDistances(ScaleAudit* audit) {
+  std::vector<double> values, sigmas;
+  for (const CheckedDistance& checked : audit->distances) {
+    if (!checked.distance_m || *checked.distance_m == 0 || checked.known.is_scale_bar) continue;
+    values.push_back(std::log(*checked.distance_m / checked.known.length_m));
+    sigmas.push_back(checked.DifferenceSigma() / checked.known.length_m);
+  }
+  if (values.empty()) return;
+  const RobustMean mean = FitMeanRobustly(values, sigmas);
+  audit->distance_deviation = std::expm1(mean.mean);
+  audit->distance_deviation_sigma = mean.sigma;
+}
+
+}  // namespace
+
+bool MarkerScale::Disagrees() const { return std::abs(sigmas_off) > kMaxRobustSigmas; }
+
+ScaleAudit AuditScale(const MarkerShape& shape, const Layout& layout, const Model* model,
+                      const AdjustmentUncertainty* uncertainty) {
+  ScaleAudit audit;
+  audit.distances =
+      CheckDistances(shape, layout, uncertainty != nullptr ? &uncertainty->points : nullptr);
+  SummarizeDistances(&audit);
+  if (uncertainty != nullptr && uncertainty->apparent_inset_sigma_px > 0) {
+    audit.apparent_inset_px = {uncertainty->apparent_inset_px,
+                               uncertainty->apparent_inset_sigma_px};
+  }
+  std::vector<MarkerSidesMeasured> measured = MeasureForShape(shape, layout, model, uncertainty);
+  RemovePoints(&measured);
+  audit.markers = ScalesOf(measured, layout);
+  audit.spread = SpreadOf(audit.markers);
+  if (audit.markers.empty()) return audit;
+  JudgeMarkers(&audit);
+  audit.histogram = MakeHistogram(audit.markers);
+  CompareWidthAndHeight(measured, &audit);
+  CompareParts(&audit);
+  CompareSizes(&audit);
+  return audit;
+}
+
+}  // namespace velamap

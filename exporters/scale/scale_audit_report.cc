@@ -1,0 +1,201 @@
+#include "exporters/scale/scale_audit_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace velamap {
+namespace {
+
+constexpr double kMmPerM = 1e3;
+
+// `value` in percent under KEY_percent, its sigma, where it is known, under KEY_sigma_percent.
+void AddPercent(const std::string& key, double value, const std::optional<double>& sigma,
+                Metrics* metrics) {
+  metrics->push_back({key + "_percent", 100.0 * value});
+  if (sigma) metrics->push_back({key + "_sigma_percent", 100.0 * *sigma});
+}
+
+void AddEstimate(const std::string& key, const char* unit,
+                 const std::optional<UncertainValue>& estimate, Metrics* metrics) {
+  if (!estimate) return;
+  metrics->push_back({key + "_" + unit, estimate->value});
+  metrics->push_back({key + "_sigma_" + unit, estimate->sigma});
+}
+
+std::vector<const MarkerScale*> DisagreeingMarkers(const ScaleAudit& audit) {
+  std::vector<const MarkerScale*> markers;
+  for (const MarkerScale& marker : audit.markers) {
+    if (marker.Disagrees()) markers.push_back(&marker);
+  }
+  return markers;
+}
+
+Metrics MarkerRow(const MarkerScale& marker) {
+  Metrics row = {{"marker_id", marker.marker_id},
+                 {"part", marker.part},
+                 {"layout_length_mm", marker.length_m * kMmPerM},
+                 {"side_mm", marker.side_m * kMmPerM}};
+  AddPercent("deviation", marker.deviation, marker.sigma, &row);
+  row.push_back({"sigmas_off", marker.sigmas_off});
+  if (marker.side_px) row.push_back({"side_px", *marker.side_px});
+  return row;
+}
+
+Metrics GroupRow(Metric name, const GroupScale& group) {
+  Metrics row = {std::move(name), {"num_markers", group.num_markers}};
+  AddPercent("deviation_from_others", group.deviation, group.sigma, &row);
+  return row;
+}
+
+std::string PointName(int marker_id, int corner) {
+  return corner == 0 ? fmt::format("{}", marker_id) : fmt::format("{}.{}", marker_id, corner);
+}
+
+double DifferenceInSigmas(const CheckedDistance& checked) {
+  return (*checked.distance_m - checked.known.length_m) / checked.DifferenceSigma();
+}
+
+Metrics DistanceRow(const CheckedDistance& checked) {
+  const KnownDistance& known = checked.known;
+  Metrics row = {{"from", PointName(known.marker_id1, known.corner1)},
+                 {"to", PointName(known.marker_id2, known.corner2)},
+                 {"use", std::string(known.is_scale_bar ? "scale" : "check")},
+                 {"measured_mm", known.length_m * kMmPerM},
+                 {"measured_sigma_mm", known.sigma_m * kMmPerM}};
+  if (!checked.distance_m) return row;
+  row.push_back({"distance_mm", *checked.distance_m * kMmPerM});
+  if (checked.sigma_m) row.push_back({"distance_sigma_mm", *checked.sigma_m * kMmPerM});
+  row.push_back({"difference_mm", (*checked.distance_m - known.length_m) * kMmPerM});
+  row.push_back({"difference_sigma_mm", checked.DifferenceSigma() * kMmPerM});
+  row.push_back({"difference_in_sigmas", DifferenceInSigmas(checked)});
+  return row;
+}
+
+void AddFigures(const ScaleAudit& audit, Metrics* metrics) {
+  if (!audit.markers.empty()) {
+    AddPercent("marker_scale_deviation", audit.deviation, audit.deviation_sigma, metrics);
+    metrics->push_back({"marker_scale_spread_percent", 100.0 * audit.marker_spread});
+    std::vector<int> ids;
+    for (const MarkerScale* marker : DisagreeingMarkers(audit)) ids.push_back(marker->marker_id);
+    metrics->push_back({"num_disagreeing_markers", static_cast<int>(ids.size())});
+    metrics->push_back({"disagreeing_marker_ids", ids});
+  }
+  if (audit.x_over_y) AddPercent("x_over_y", *audit.x_over_y - 1, audit.x_over_y_sigma, metrics);
+  metrics->push_back({"spread_note", audit.spread.note});
+  AddEstimate("print_spread", "um", audit.spread.print_um, metrics);
+  AddEstimate("image_spread", "px", audit.spread.image_px, metrics);
+  AddEstimate("apparent_inset", "px", audit.apparent_inset_px, metrics);
+  if (audit.distance_deviation) {
+    AddPercent("known_distance_deviation", *audit.distance_deviation,
+               audit.distance_deviation_sigma, metrics);
+  }
+}
+
+std::string PercentText(double value, const std::optional<double>& sigma) {
+  std::string text = fmt::format("{:+.3f}", 100.0 * value);
+  if (sigma) text += fmt::format(" +- {:.3f}", 100.0 * *sigma);
+  return text + " %";
+}
+
+void PrintDisagreeingMarkers(const ScaleAudit& audit, std::ostream& out) {
+  constexpr std::size_t kMaxMarkers = 5;
+  std::vector<const MarkerScale*> markers = DisagreeingMarkers(audit);
+  std::stable_sort(markers.begin(), markers.end(), [](const MarkerScale* a, const MarkerScale* b) {
+    return std::abs(a->sigmas_off) > std::abs(b->sigmas_off);
+  });
+  out << fmt::format("scale_disagreeing_markers: {} of {}", markers.size(), audit.markers.size());
+  const std::size_t num_named = std::min(markers.size(), kMaxMarkers);
+  for (std::size_t i = 0; i < num_named; ++i) {
+    out << fmt::format("{} {} by {:+.2f} %", i == 0 ? ":" : ",", markers[i]->marker_id,
+                       100.0 * markers[i]->deviation);
+  }
+  out << (markers.size() > kMaxMarkers ? ", ...\n" : "\n");
+}
+
+void PrintParts(const ScaleAudit& audit, std::ostream& out) {
+  const auto size = [](const GroupScale& part) {
+    return std::abs(part.deviation) / part.sigma.value_or(1.0);
+  };
+  const auto worst =
+      std::max_element(audit.parts.begin(), audit.parts.end(),
+                       [&](const GroupScale& a, const GroupScale& b) { return size(a) < size(b); });
+  if (worst == audit.parts.end()) return;
+  out << fmt::format("scale_of_part_against_others: {} {} (of {} parts the one most off)\n",
+                     worst->part.empty() ? "without a part" : worst->part,
+                     PercentText(worst->deviation, worst->sigma), audit.parts.size());
+}
+
+void PrintDistances(const ScaleAudit& audit, std::ostream& out) {
+  const CheckedDistance* worst = nullptr;
+  int num_found = 0;
+  for (const CheckedDistance& checked : audit.distances) {
+    if (!checked.distance_m) continue;
+    ++num_found;
+    if (worst == nullptr ||
+        std::abs(DifferenceInSigmas(checked)) > std::abs(DifferenceInSigmas(*worst))) {
+      worst = &checked;
+    }
+  }
+  if (audit.distances.empty()) return;
+  out << fmt::format("known_distances: {} of {} reconstructed", num_found, audit.distances.size());
+  if (audit.distance_deviation) {
+    out << ", checks off by "
+        << PercentText(*audit.distance_deviation, audit.distance_deviation_sigma);
+  }
+  if (worst != nullptr) {
+    const KnownDistance& known = worst->known;
+    out << fmt::format(", worst {}-{} {:+.2f} mm ({:+.1f} sigmas)",
+                       PointName(known.marker_id1, known.corner1),
+                       PointName(known.marker_id2, known.corner2),
+                       (*worst->distance_m - known.length_m) * kMmPerM, DifferenceInSigmas(*worst));
+  }
+  out << '\n';
+}
+
+}  // namespace
+
+void AddMetrics(const ScaleAudit& audit, MetricsReport* report) {
+  AddFigures(audit, &report->metrics);
+  MetricTable histogram{"scale_histogram", true, {}}, disagreeing{"disagreeing_markers", true, {}},
+      markers{"scale_markers", false, {}}, parts{"scale_parts", true, {}},
+      sizes{"scale_sizes", true, {}}, distances{"known_distances", true, {}};
+  for (const HistogramBin& bin : audit.histogram) {
+    histogram.rows.push_back({{"from_percent", 100.0 * bin.from},
+                              {"to_percent", 100.0 * bin.to},
+                              {"num_markers", bin.num_markers}});
+  }
+  for (const MarkerScale* marker : DisagreeingMarkers(audit)) {
+    disagreeing.rows.push_back(MarkerRow(*marker));
+  }
+  for (const MarkerScale& marker : audit.markers) markers.rows.push_back(MarkerRow(marker));
+  for (const GroupScale& part : audit.parts) {
+    parts.rows.push_back(GroupRow({"part", part.part}, part));
+  }
+  for (const GroupScale& size : audit.sizes) {
+    sizes.rows.push_back(GroupRow({"layout_length_mm", size.length_m * kMmPerM}, size));
+  }
+  for (const CheckedDistance& checked : audit.distances) {
+    distances.rows.push_back(DistanceRow(checked));
+  }
+  for (MetricTable* table : {&histogram, &disagreeing, &markers, &parts, &sizes, &distances}) {
+    report->tables.push_back(std::move(*table));
+  }
+}
+
+void PrintScaleAudit(const ScaleEstimate& scale, const ScaleAudit& audit, std::ostream& out) {
+  if (scale.relative_sigma) {
+    out << fmt::format("scale_sigma: {:.4f} % ({} markers, which scatter by {:.3f} %)\n",
+                       100.0 * *scale.relative_sigma, scale.num_markers,
+                       100.0 * audit.marker_spread);
+  }
+  if (!audit.markers.empty()) PrintDisagreeingMarkers(audit, out);
+  PrintParts(audit, out);
+  PrintDistances(audit, out);
+}
+
+}  // namespace velamap

@@ -1,0 +1,48 @@
+// The metric result: where every marker's corners and centre are.
+
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/base/ids.h"
+
+namespace velamap {
+
+// Index 0 is the centre, the mean of the four corners; 1..4 the corners. Shape frame, m.
+struct ShapeMarker {
+  int marker_id = 0;
+  std::string part;
+  std::array<std::optional<Eigen::Vector3d>, kNumCorners + 1> x_in_shape_m;
+  // 1 sigma along x, y, z; nothing where no covariance was computed.
+  std::array<std::optional<Eigen::Vector3d>, kNumCorners + 1> sigma_m;
+  std::array<int, kNumCorners + 1> num_frames{};  // for the centre: the fewest of its corners
+
+  // All four corners are there, and with them the centre.
+  bool IsWhole() const { return x_in_shape_m[0].has_value(); }
+};
+
+struct MarkerShape {
+  std::vector<ShapeMarker> markers;  // by ascending marker id
+};
+
+// Null where there is no such marker.
+const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id);
+// Null where it is not whole either.
+const ShapeMarker* FindWholeMarker(const MarkerShape& shape, int marker_id);
+
+// Outward normal of the face (unit length): z of the marker frame. Needs a whole marker.
+Eigen::Vector3d MarkerNormal(const ShapeMarker& marker);
+
+// Area of the quadrilateral of the corners, half the length of the cross product of its diagonals,
+// m^2 (thesis section 4.3.2 compares it with the printed one). Needs a whole marker.
+double MarkerArea(const ShapeMarker& marker);
+
+// Lengths of the sides 1-2, 2-3, 3-4, 4-1, m. Needs a whole marker.
+std::array<double, kNumCorners> MarkerSides(const ShapeMarker& marker);
+
+}  // namespace velamap

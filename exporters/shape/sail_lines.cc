@@ -1,0 +1,132 @@
+#include "exporters/shape/sail_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <Eigen/Geometry>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+std::vector<Eigen::Vector3d> WholeCenters(const MarkerShape& shape, const MarkerLine& line) {
+  std::vector<Eigen::Vector3d> centers;
+  for (const int id : line.marker_ids) {
+    if (FindWholeMarker(shape, id) != nullptr) centers.push_back(CenterOf(shape, id));
+  }
+  return centers;
+}
+
+// Sum of the unit vectors from the first to the last whole marker of every line.
+Eigen::Vector3d SumOfDirections(const MarkerShape& shape, const std::vector<MarkerLine>& lines) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const MarkerLine& line : lines) {
+    const std::vector<Eigen::Vector3d> centers = WholeCenters(shape, line);
+    if (centers.size() >= 2) sum += (centers.back() - centers.front()).normalized();
+  }
+  return sum;
+}
+
+std::optional<Eigen::Vector3d> UnitOrNothing(const Eigen::Vector3d& direction) {
+  constexpr double kMinLength = 1e-6;
+  if (direction.norm() < kMinLength) return std::nullopt;
+  return direction.normalized();
+}
+
+Eigen::Vector3d FromLowestToHighest(const MarkerShape& shape,
+                                    const std::vector<MarkerLine>& lines) {
+  std::vector<Eigen::Vector3d> means;
+  for (const MarkerLine& line : lines) {
+    const std::vector<Eigen::Vector3d> centers = WholeCenters(shape, line);
+    if (centers.size() < 2) continue;
+    means.push_back((centers.front() + centers.back()) / 2);
+  }
+  if (means.size() < 2) return Eigen::Vector3d::Zero();
+  return means.back() - means.front();
+}
+
+}  // namespace
+
+Eigen::Vector3d CenterOf(const MarkerShape& shape, int marker_id) {
+  const ShapeMarker* marker = FindWholeMarker(shape, marker_id);
+  VELAMAP_CHECK(marker != nullptr);
+  return *marker->x_in_shape_m[0];
+}
+
+std::vector<int> MarkersOfPart(const Layout& layout, const std::string& part) {
+  std::vector<int> ids;
+  std::set<int> seen;
+  const auto add = [&](const std::vector<int>& more) {
+    for (const int id : more) {
+      if (seen.insert(id).second) ids.push_back(id);
+    }
+  };
+  for (const LayoutPart& candidate : layout.parts) {
+    if (candidate.name != part) continue;
+    for (const MarkerLine& line : candidate.horizontal) add(line.marker_ids);
+    for (const MarkerLine& line : candidate.vertical) add(line.marker_ids);
+    add(candidate.marker_ids);
+  }
+  return ids;
+}
+
+const LayoutPart* FirstPartWithLines(const Layout& layout) {
+  for (const LayoutPart& part : layout.parts) {
+    if (!part.horizontal.empty()) return &part;
+  }
+  return nullptr;
+}
+
+std::vector<const MarkerLine*> LinesWithEnds(const MarkerShape& shape,
+                                             const std::vector<MarkerLine>& lines) {
+  std::vector<const MarkerLine*> with_ends;
+  for (const MarkerLine& line : lines) {
+    if (line.marker_ids.size() < 2) continue;
+    if (FindWholeMarker(shape, line.marker_ids.front()) == nullptr) continue;
+    if (FindWholeMarker(shape, line.marker_ids.back()) == nullptr) continue;
+    with_ends.push_back(&line);
+  }
+  return with_ends;
+}
+
+LineEnds EndsOf(const MarkerShape& shape, const MarkerLine& line) {
+  return {CenterOf(shape, line.marker_ids.front()), CenterOf(shape, line.marker_ids.back())};
+}
+
+std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout) {
+  const LayoutPart* part = FirstPartWithLines(layout);
+  if (part == nullptr) return std::nullopt;
+  const auto up = UnitOrNothing(SumOfDirections(shape, part->vertical));
+  return up ? up : UnitOrNothing(FromLowestToHighest(shape, part->horizontal));
+}
+
+std::optional<Eigen::Vector3d> SailAft(const MarkerShape& shape, const Layout& layout) {
+  const LayoutPart* part = FirstPartWithLines(layout);
+  if (part == nullptr) return std::nullopt;
+  return UnitOrNothing(SumOfDirections(shape, part->horizontal));
+}
+
+int BulgeSide(const MarkerShape& shape, const Layout& layout, const Eigen::Vector3d& direction) {
+  constexpr double kMinBulge = 1e-3;
+  double bulge_m = 0.0, chord_m = 0.0;
+  const LayoutPart* part = FirstPartWithLines(layout);
+  if (part == nullptr) return 0;
+  for (const MarkerLine& line : part->horizontal) {
+    const std::vector<Eigen::Vector3d> centers = WholeCenters(shape, line);
+    if (centers.size() < 3) continue;
+    const Eigen::Vector3d chord = centers.back() - centers.front();
+    double depth_m = 0.0;
+    for (std::size_t i = 1; i + 1 < centers.size(); ++i) {
+      const Eigen::Vector3d rest = centers[i] - centers.front();
+      depth_m += direction.dot(rest - chord * (chord.dot(rest) / chord.squaredNorm()));
+    }
+    bulge_m += depth_m / static_cast<double>(centers.size() - 2);
+    chord_m += chord.norm();
+  }
+  if (std::abs(bulge_m) <= kMinBulge * chord_m) return 0;
+  return bulge_m > 0 ? 1 : -1;
+}
+
+}  // namespace velamap

@@ -1,0 +1,327 @@
+#include "exporters/shape/shape_frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "exporters/shape/sail_lines.h"
+#include "exporters/shape/shape_sigma.h"
+#include "importer/base/error.h"
+#include "reconstruct/model/gauge.h"
+
+namespace velamap {
+namespace {
+
+// Two directions that shall span a plane have at least this sine between them: 3 degrees.
+constexpr double kMinSine = 0.05;
+
+struct Attempt {
+  std::optional<ShapeFrame> frame;
+  std::string reason;  // why there is none
+};
+
+// x along `x_in_shape`, z as near to `up_in_shape` as a right angle allows.
+Rigid3 FrameFromAxes(const Eigen::Vector3d& origin_in_shape, const Eigen::Vector3d& x_in_shape,
+                     const Eigen::Vector3d& up_in_shape) {
+  const Eigen::Vector3d x = x_in_shape.normalized();
+  const Eigen::Vector3d y = up_in_shape.cross(x).normalized();
+  Eigen::Matrix3d axes;
+  axes << x, y, x.cross(y);
+  const Eigen::Quaterniond frame_from_shape(Eigen::Matrix3d(axes.transpose()));
+  return {frame_from_shape, -(frame_from_shape * origin_in_shape)};
+}
+
+bool SpanPlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.cross(b).norm() > kMinSine * a.norm() * b.norm();
+}
+
+std::string WhichMissing(const MarkerShape& shape, const std::vector<int>& ids) {
+  std::vector<int> missing;
+  for (const int id : ids) {
+    if (FindWholeMarker(shape, id) == nullptr) missing.push_back(id);
+  }
+  if (missing.empty()) return "";
+  return fmt::format("marker{} {} not reconstructed whole", missing.size() == 1 ? "" : "s",
+                     fmt::join(missing, " "));
+}
+
+ShapeFrame MakeUpright(FrameKind kind, const Rigid3& frame_from_shape, const std::string& name,
+                       const std::string& description) {
+  ShapeFrame frame;
+  frame.kind = kind;
+  frame.frame_from_shape = frame_from_shape;
+  frame.name = name;
+  frame.description = description;
+  frame.up_in_frame = Eigen::Vector3d::UnitZ();
+  return frame;
+}
+
+Attempt TryMarkers(const MarkerShape& shape, const FrameChoice& choice) {
+  const std::vector<int> ids = {choice.origin_id, choice.axis_id, choice.plane_id};
+  const std::string missing = WhichMissing(shape, ids);
+  if (!missing.empty()) return {std::nullopt, missing};
+  const Eigen::Vector3d origin = CenterOf(shape, ids[0]);
+  const Eigen::Vector3d x = CenterOf(shape, ids[1]) - origin;
+  const Eigen::Vector3d up = CenterOf(shape, ids[2]) - origin;
+  const std::string names = fmt::format("{}", fmt::join(ids, " "));
+  if (!SpanPlane(x, up)) {
+    return {std::nullopt, fmt::format("markers {} stand on one line, to 3 degrees", names)};
+  }
+  return {MakeUpright(FrameKind::kMarkers, FrameFromAxes(origin, x, up), "markers " + names,
+                      fmt::format("origin at marker {}, x to marker {}, z on the side of marker {}",
+                                  ids[0], ids[1], ids[2])),
+          ""};
+}
+
+// Three directions at right angles that belong to a rigid part alone.
+struct PartAxes {
+  Eigen::Vector3d center;
+  std::array<Eigen::Vector3d, 3> axes;  // first to last marker, normal, across
+  Eigen::Vector3d marker_up;            // sum of the markers' own y axes
+  bool is_flat = true;                  // false: the normal is the mean of the markers' own
+};
+
+std::optional<PartAxes> FitPartAxes(const MarkerShape& shape, const std::vector<int>& ids) {
+  PartAxes part{Eigen::Vector3d::Zero(), {}, Eigen::Vector3d::Zero()};
+  Eigen::Vector3d facing = Eigen::Vector3d::Zero();
+  for (const int id : ids) part.center += CenterOf(shape, id) / static_cast<double>(ids.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const int id : ids) {
+    const auto& x = FindWholeMarker(shape, id)->x_in_shape_m;
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      scatter += (*x[corner] - part.center) * (*x[corner] - part.center).transpose();
+    }
+    facing += MarkerNormal(*FindWholeMarker(shape, id));
+    part.marker_up += (*x[1] - *x[4] + *x[2] - *x[3]).normalized();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(scatter);
+  const Eigen::Vector3d along = CenterOf(shape, ids.back()) - CenterOf(shape, ids.front());
+  // A strip around a curved side is about as thick as it is wide: noise would turn its plane.
+  constexpr double kMinSpreadRatio = 4.0;  // of variances
+  part.is_flat = principal.eigenvalues()[1] >= kMinSpreadRatio * principal.eigenvalues()[0];
+  const Eigen::Vector3d normal =
+      part.is_flat ? principal.eigenvectors().col(0).eval() : facing.normalized();
+  if (!SpanPlane(along, normal)) return std::nullopt;
+  if (part.is_flat) {
+    part.axes[1] = normal;
+    part.axes[0] = (along - normal.dot(along) * normal).normalized();
+  } else {
+    part.axes[0] = along.normalized();
+    part.axes[1] = (normal - part.axes[0].dot(normal) * part.axes[0]).normalized();
+  }
+  part.axes[2] = part.axes[1].cross(part.axes[0]);
+  return part;
+}
+
+// Index of the axis that is nearest to the direction, either way round.
+int NearestAxis(const std::array<Eigen::Vector3d, 3>& axes, const Eigen::Vector3d& direction,
+                int except) {
+  int nearest = -1;
+  for (int i = 0; i < 3; ++i) {
+    if (i == except) continue;
+    const auto closeness = [&](int axis) {
+      return std::abs(axes[static_cast<std::size_t>(axis)].dot(direction));
+    };
+    if (nearest < 0 || closeness(i) > closeness(nearest)) nearest = i;
+  }
+  return nearest;
+}
+
+Attempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
+  if (!layout.reference_part) return {std::nullopt, "the layout names no reference_part"};
+  std::vector<int> ids, missing;
+  for (const int id : MarkersOfPart(layout, *layout.reference_part)) {
+    (FindWholeMarker(shape, id) != nullptr ? ids : missing).push_back(id);
+  }
+  const std::string& part = *layout.reference_part;
+  if (ids.size() < 2) {
+    return {std::nullopt,
+            fmt::format("of part '{}' {} whole marker{} reconstructed, two are needed", part,
+                        ids.size(), ids.size() == 1 ? " is" : "s are")};
+  }
+  const auto axes = FitPartAxes(shape, ids);
+  if (!axes) {
+    return {std::nullopt, fmt::format("part '{}' has no plane: marker {} stands before marker {}",
+                                      part, ids.front(), ids.back())};
+  }
+  const Eigen::Vector3d up = SailUp(shape, layout).value_or(axes->marker_up);
+  const Eigen::Vector3d aft = SailAft(shape, layout).value_or(axes->axes[0]);
+  const int z = NearestAxis(axes->axes, up, -1);
+  const int x = NearestAxis(axes->axes, aft, z);
+  const auto along = [&](int axis, const Eigen::Vector3d& direction) -> Eigen::Vector3d {
+    const Eigen::Vector3d& unit = axes->axes[static_cast<std::size_t>(axis)];
+    return unit.dot(direction) < 0 ? Eigen::Vector3d(-unit) : unit;
+  };
+  const std::array<const char*, 3> names = {
+      "its line from first to last marker",
+      axes->is_flat ? "the normal of its plane" : "where its markers face on the whole",
+      "at right angles to its line and its normal"};
+  const std::string by_facing = axes->is_flat ? "" : " by its markers' facing";
+  const std::string without =
+      missing.empty() ? "" : fmt::format(" without {}", fmt::join(missing, " "));
+  return {MakeUpright(
+              FrameKind::kReferencePart, FrameFromAxes(axes->center, along(x, aft), along(z, up)),
+              "reference part " + part + by_facing + without,
+              fmt::format("origin at the mean of the markers of '{}', x aft: {}, z up: {}", part,
+                          names[static_cast<std::size_t>(x)], names[static_cast<std::size_t>(z)])),
+          ""};
+}
+
+Attempt TryLines(const MarkerShape& shape, const Layout& layout) {
+  const LayoutPart* part = FirstPartWithLines(layout);
+  if (part == nullptr) return {std::nullopt, "the layout has no horizontal lines"};
+  const std::vector<const MarkerLine*> lines = LinesWithEnds(shape, part->horizontal);
+  if (lines.empty()) {
+    return {std::nullopt, "no horizontal line has both its luff and its leech marker"};
+  }
+  const MarkerLine& lowest = *lines.front();
+  const LineEnds ends = EndsOf(shape, lowest);
+  const Eigen::Vector3d x = ends.last - ends.first;
+  const std::vector<const MarkerLine*> verticals = LinesWithEnds(shape, part->vertical);
+  Eigen::Vector3d up;
+  std::string up_name;
+  if (!verticals.empty()) {
+    const LineEnds vertical = EndsOf(shape, *verticals.front());
+    up = vertical.last - vertical.first;
+    up_name = verticals.front()->name;
+  } else if (lines.size() > 1) {
+    up = EndsOf(shape, *lines.back()).Middle() - ends.Middle();
+    up_name = lines.back()->name;
+  } else {
+    return {std::nullopt, "there is neither a vertical line nor a second horizontal one"};
+  }
+  if (!SpanPlane(x, up)) {
+    return {std::nullopt, fmt::format("lines {} and {} are parallel", lowest.name, up_name)};
+  }
+  const Rigid3 frame_from_shape = FrameFromAxes(ends.first, x, up);
+  if (lines.size() > 1 && (frame_from_shape * EndsOf(shape, *lines.back()).Middle()).z() < 0) {
+    return {std::nullopt,
+            fmt::format("line {} says that up is where {} is below {}; list horizontal lines and "
+                        "the markers of vertical ones from foot to head",
+                        up_name, lines.back()->name, lowest.name)};
+  }
+  return {MakeUpright(FrameKind::kLines, frame_from_shape,
+                      fmt::format("lines {} {}", lowest.name, up_name),
+                      fmt::format("origin at marker {}, the luff of line {}, x to marker {}, its "
+                                  "leech, z up {} {}",
+                                  lowest.marker_ids.front(), lowest.name, lowest.marker_ids.back(),
+                                  verticals.empty() ? "to" : "along", up_name)),
+          ""};
+}
+
+ShapeFrame CameraFrame(const MarkerShape& shape, const Layout& layout) {
+  ShapeFrame frame;
+  frame.description =
+      "the model's own, by default of the central camera: x right, y down, z forward";
+  frame.up_in_frame = SailUp(shape, layout);
+  return frame;
+}
+
+Attempt Try(FrameKind kind, const FrameChoice& choice, const MarkerShape& shape,
+            const Layout& layout) {
+  switch (kind) {
+    case FrameKind::kMarkers:
+      return TryMarkers(shape, choice);
+    case FrameKind::kReferencePart:
+      return TryReferencePart(shape, layout);
+    case FrameKind::kLines:
+      return TryLines(shape, layout);
+    case FrameKind::kCamera:
+      break;
+  }
+  return {CameraFrame(shape, layout), ""};
+}
+
+std::string LeewardText(const MarkerShape& shape, const Layout& layout, const ShapeFrame& frame) {
+  const Eigen::Vector3d y_in_shape =
+      frame.frame_from_shape.rotation.conjugate() * Eigen::Vector3d::UnitY();
+  const int side = BulgeSide(shape, layout, y_in_shape);
+  if (side == 0) return ", y = z x x";
+  return side > 0 ? ", y to leeward (the side to which the sail bulges)"
+                  : ", y to windward (the sail bulges to -y)";
+}
+
+}  // namespace
+
+std::string FrameText(const ShapeFrame& frame) {
+  std::string text = frame.name + ": " + frame.description;
+  for (const std::string& reason : frame.reasons) text += "; " + reason;
+  return text;
+}
+
+ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
+                       const std::optional<FrameChoice>& choice) {
+  const FrameChoice wanted =
+      choice.value_or(layout.frame.value_or(FrameChoice{FrameKind::kReferencePart}));
+  std::vector<FrameKind> order = {wanted.kind};
+  for (const FrameKind kind : {FrameKind::kReferencePart, FrameKind::kLines, FrameKind::kCamera}) {
+    if (kind != wanted.kind) order.push_back(kind);
+  }
+  std::vector<std::string> reasons;
+  for (const FrameKind kind : order) {
+    Attempt attempt = Try(kind, wanted, shape, layout);
+    if (!attempt.frame) {
+      const std::string name =
+          kind == FrameKind::kMarkers
+              ? fmt::format("markers {} {} {}", wanted.origin_id, wanted.axis_id, wanted.plane_id)
+              : FrameKeyword(kind);
+      reasons.push_back(fmt::format("not by {}: {}", name, attempt.reason));
+      continue;
+    }
+    if (kind != FrameKind::kCamera) {
+      attempt.frame->description += LeewardText(shape, layout, *attempt.frame);
+    }
+    attempt.frame->reasons = reasons;
+    return *attempt.frame;
+  }
+  VELAMAP_CHECK(false && "the camera's frame is always there");
+  return {};
+}
+
+PointCovariance RotateCovariance(const Eigen::Quaterniond& frame_from_shape,
+                                 const PointCovariance& covariance) {
+  const Eigen::Matrix3d rotation = frame_from_shape.toRotationMatrix();
+  PointCovariance rotated = covariance;
+  for (Eigen::MatrixXd& block : rotated.blocks) {
+    for (Eigen::Index row = 0; row < block.rows(); row += 3) {
+      for (Eigen::Index column = 0; column < block.cols(); column += 3) {
+        const Eigen::Matrix3d turned =
+            rotation * block.block<3, 3>(row, column) * rotation.transpose();
+        block.block<3, 3>(row, column) = turned;
+      }
+    }
+  }
+  for (Eigen::Index row = 0; row < rotated.factor.rows(); row += 3) {
+    rotated.factor.middleRows<3>(row) = (rotation * covariance.factor.middleRows<3>(row)).eval();
+  }
+  return rotated;
+}
+
+void MoveShape(const Rigid3& frame_from_shape, const PointCovariance* covariance_in_frame,
+               MarkerShape* shape) {
+  const bool is_turned =
+      frame_from_shape.rotation.angularDistance(Eigen::Quaterniond::Identity()) > 0;
+  for (ShapeMarker& marker : shape->markers) {
+    for (int corner = 0; corner <= kNumCorners; ++corner) {
+      auto& x = marker.x_in_shape_m[static_cast<std::size_t>(corner)];
+      auto& sigma_m = marker.sigma_m[static_cast<std::size_t>(corner)];
+      if (!x) continue;
+      x = frame_from_shape * *x;
+      if (!sigma_m || !is_turned) continue;
+      const double largest = sigma_m->maxCoeff();
+      const bool is_round = largest - sigma_m->minCoeff() <= 1e-9 * largest;
+      const auto turned = PointSigma(covariance_in_frame, marker.marker_id, corner);
+      if (turned || !is_round) sigma_m = turned;
+    }
+  }
+}
+
+void MoveModel(const Rigid3& frame_from_shape, Model* model) {
+  TransformModel({1.0, frame_from_shape.rotation, frame_from_shape.translation}, model);
+}
+
+}  // namespace velamap

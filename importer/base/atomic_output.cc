@@ -1,0 +1,176 @@
+#include "importer/base/atomic_output.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <locale>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void ThrowCannotWrite(const fs::path& path, const std::string& why) {
+  throw InputError(fmt::format("{}: cannot be written: {}", path.string(), why));
+}
+
+// Absolute, without a trailing slash, so that a sibling's name can be derived.
+fs::path WithoutTrailingSlash(const fs::path& path) {
+  std::error_code error;
+  const fs::path normal = fs::absolute(path, error).lexically_normal();
+  if (error) ThrowCannotWrite(path, error.message());
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
+// Unique among the processes and threads of this machine.
+fs::path TemporarySibling(const fs::path& path) {
+  static std::atomic<int> counter{0};
+  return path.parent_path() /
+         fmt::format(".{}.tmp-{}-{}", path.filename().string(), getpid(), counter++);
+}
+
+// The path that a file in a temporary folder will have once the folder is renamed.
+fs::path FinalPath(const fs::path& path) {
+  fs::path final_path;
+  for (const fs::path& component : path) {
+    const std::string name = component.string();
+    const std::size_t suffix = name.rfind(".tmp-");
+    const bool is_temporary = name.front() == '.' && suffix != std::string::npos && suffix > 1;
+    final_path /= is_temporary ? name.substr(1, suffix - 1) : name;
+  }
+  return final_path;
+}
+
+void CreateParentFolder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) ThrowCannotWrite(path, error.message());
+}
+
+// A full disk may show itself no earlier than here.
+void SyncToDisk(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY);
+  const int status = file < 0 ? -1 : fsync(file);
+  const int saved_errno = errno;
+  if (file >= 0) close(file);
+  if (status != 0) ThrowCannotWrite(path, std::strerror(saved_errno));
+}
+
+void WriteStream(const fs::path& path, const fs::path& shown_path,
+                 const std::function<void(std::ostream&)>& write) {
+  errno = 0;
+  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  if (!stream) ThrowCannotWrite(shown_path, std::strerror(errno));
+  stream.imbue(std::locale::classic());
+  stream.precision(17);
+  write(stream);
+  stream.close();
+  if (!stream) {
+    ThrowCannotWrite(shown_path, errno != 0 ? std::strerror(errno) : "the stream failed");
+  }
+  SyncToDisk(path);
+}
+
+}  // namespace
+
+AtomicFolder::AtomicFolder(const fs::path& path) : path_(WithoutTrailingSlash(path)) {
+  std::error_code error;
+  if (fs::exists(path_, error) && !fs::is_directory(path_, error)) {
+    ThrowCannotWrite(path_, "it exists and is no folder; choose another output path");
+  }
+  CreateParentFolder(path_);
+  temporary_path_ = TemporarySibling(path_);
+  fs::create_directory(temporary_path_, error);
+  if (error) ThrowCannotWrite(path_, error.message());
+}
+
+AtomicFolder::~AtomicFolder() {
+  std::error_code ignored;
+  if (!committed_) fs::remove_all(temporary_path_, ignored);
+}
+
+void AtomicFolder::Commit() {
+  VELAMAP_CHECK(!committed_);
+  std::error_code error;
+  if (!fs::exists(path_, error)) {
+    fs::rename(temporary_path_, path_, error);
+    if (error) ThrowCannotWrite(path_, error.message());
+    committed_ = true;
+    return;
+  }
+  // The old folder and the new one change places in one step where the file system can, else the
+  // old one steps aside for the blink of an eye.
+  if (renameat2(AT_FDCWD, temporary_path_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0) {
+    committed_ = true;
+    fs::remove_all(temporary_path_, error);
+    return;
+  }
+  const fs::path old_path = TemporarySibling(path_);
+  fs::rename(path_, old_path, error);
+  if (error) ThrowCannotWrite(path_, error.message());
+  fs::rename(temporary_path_, path_, error);
+  if (error) {
+    std::error_code ignored;
+    fs::rename(old_path, path_, ignored);
+    ThrowCannotWrite(path_, error.message());
+  }
+  committed_ = true;
+  fs::remove_all(old_path, error);
+}
+
+void CheckReplaceableFolder(const fs::path& path, const std::set<std::string>& known_files) {
+  std::error_code error;
+  const bool exists = fs::exists(path, error);
+  if (error) ThrowCannotWrite(path, error.message());
+  if (!exists) return;
+  if (!fs::is_directory(path, error)) {
+    ThrowCannotWrite(path, "it exists and is no folder; choose another output path");
+  }
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (known_files.count(name) > 0 && entry->is_regular_file(error)) continue;
+    throw InputError(fmt::format(
+        "{}: the output folder holds {}, which velamap did not write there; choose another folder "
+        "or empty it",
+        path.string(), name));
+  }
+  if (error)
+    throw InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
+}
+
+void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  WriteStream(path, FinalPath(path), write);
+}
+
+void WriteFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  std::error_code error;
+  // A link stays a link: what it points at is replaced.
+  fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+  target = WithoutTrailingSlash(target);
+  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) {
+    ThrowCannotWrite(path, "it exists and is no regular file; choose another output path");
+  }
+  CreateParentFolder(target);
+  const fs::path temporary_path = TemporarySibling(target);
+  try {
+    WriteStream(temporary_path, path, write);
+    fs::rename(temporary_path, target, error);
+    if (error) ThrowCannotWrite(path, error.message());
+  } catch (...) {
+    fs::remove(temporary_path, error);
+    throw;
+  }
+}
+
+}  // namespace velamap

@@ -1,0 +1,50 @@
+#include "importer/base/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+
+Statistics ComputeStatistics(std::vector<double> values) {
+  Statistics statistics;
+  if (values.empty()) return statistics;
+  // Sorting first makes the sums independent of the order of the input.
+  std::sort(values.begin(), values.end());
+  const double count = static_cast<double>(values.size());
+  statistics.count = static_cast<int>(values.size());
+  statistics.mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double squares = 0.0, squared_deviations = 0.0;
+  for (const double value : values) {
+    squares += value * value;
+    squared_deviations += (value - statistics.mean) * (value - statistics.mean);
+  }
+  statistics.rms = std::sqrt(squares / count);
+  if (values.size() > 1) {
+    statistics.standard_deviation = std::sqrt(squared_deviations / (count - 1));
+  }
+  statistics.min = values.front();
+  statistics.max = values.back();
+  statistics.median = Median(std::move(values));
+  return statistics;
+}
+
+double Median(std::vector<double> values) {
+  VELAMAP_CHECK(!values.empty());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+double RobustSigma(const std::vector<double>& values) {
+  const double median = Median(values);
+  std::vector<double> deviations;
+  deviations.reserve(values.size());
+  for (const double value : values) deviations.push_back(std::abs(value - median));
+  return 1.4826 * Median(std::move(deviations));
+}
+
+}  // namespace velamap

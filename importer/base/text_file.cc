@@ -1,0 +1,30 @@
+#include "importer/base/text_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+
+std::string ReadTextFile(const std::string& path, const std::string& what) {
+  std::error_code error;
+  if (path.empty() || !std::filesystem::exists(path, error)) {
+    throw InputError(fmt::format("{}: there is no such {}", path.empty() ? "''" : path, what));
+  }
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw InputError(fmt::format("{}: the {} is no regular file", path, what));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream) throw InputError(fmt::format("{}: the {} cannot be read", path, what));
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw InputError(fmt::format("{}: the {} is empty", path, what));
+  }
+  return text;
+}
+
+}  // namespace velamap

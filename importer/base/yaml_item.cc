@@ -1,0 +1,67 @@
+#include "importer/base/yaml_item.h"
+
+#include <set>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+
+void FailYaml(const std::string& path, const YAML::Mark& mark, const std::string& message) {
+  if (mark.is_null()) throw InputError(fmt::format("{}: {}", path, message));
+  throw InputError(fmt::format("{}:{}: {}", path, mark.line + 1, message));
+}
+
+void YamlItem::Fail(const std::string& message) const {
+  FailYaml(path, node.Mark(), key.empty() ? message : key + ": " + message);
+}
+
+void ForEachKey(const YamlItem& map,
+                const std::function<void(const std::string&, const YamlItem&)>& handle) {
+  if (!map.node.IsMap()) map.Fail("a map of 'key: value' is expected");
+  std::set<std::string> seen;
+  for (const auto& entry : map.node) {
+    if (!entry.first.IsScalar()) FailYaml(map.path, entry.first.Mark(), "a plain key is expected");
+    const std::string name = entry.first.Scalar();
+    const std::string key = map.key.empty() ? name : map.key + "." + name;
+    if (!seen.insert(name).second) FailYaml(map.path, entry.first.Mark(), key + ": stands twice");
+    // An empty value has no mark of its own in yaml-cpp; the key's line serves.
+    if (entry.second.IsNull()) FailYaml(map.path, entry.first.Mark(), key + ": has no value");
+    handle(name, YamlItem{map.path, entry.second, key});
+  }
+}
+
+void ReadMap(const YamlItem& map, const KeyHandlers& handlers) {
+  ForEachKey(map, [&](const std::string& name, const YamlItem& value) {
+    const auto handler = handlers.find(name);
+    if (handler == handlers.end()) {
+      std::string known;
+      for (const auto& [known_name, function] : handlers) known += " " + known_name;
+      value.Fail("unknown key; known here:" + known);
+    }
+    handler->second(value);
+  });
+}
+
+void ForEachElement(const YamlItem& list, const std::function<void(const YamlItem&)>& handle) {
+  if (!list.node.IsSequence()) list.Fail("a list is expected, such as [1, 2, 3]");
+  for (std::size_t i = 0; i < list.node.size(); ++i) {
+    handle(YamlItem{list.path, list.node[i], fmt::format("{}[{}]", list.key, i)});
+  }
+}
+
+std::string ReadString(const YamlItem& item) {
+  if (item.Text().empty()) item.Fail("a name is expected");
+  return item.Text();
+}
+
+bool ReadBool(const YamlItem& item) {
+  bool value = false;
+  if (!item.node.IsScalar() || !YAML::convert<bool>::decode(item.node, value)) {
+    item.Fail("true or false is expected");
+  }
+  return value;
+}
+
+}  // namespace velamap

@@ -1,0 +1,235 @@
+#include "importer/camera/calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <locale>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include "importer/base/error.h"
+#include "importer/base/text_file.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kMaxImageSize = 100000;
+
+[[noreturn]] void Fail(const std::string& path, const std::string& message) {
+  throw InputError(fmt::format("{}: {}", path, message));
+}
+
+bool AllZero(const std::vector<double>& values, std::size_t begin) {
+  return std::all_of(values.begin() + static_cast<std::ptrdiff_t>(std::min(begin, values.size())),
+                     values.end(), [](double value) { return value == 0.0; });
+}
+
+cv::FileNode RequireKey(const cv::FileStorage& storage, const std::string& path,
+                        const std::string& key) {
+  const cv::FileNode node = storage[key];
+  if (node.empty()) {
+    Fail(path, fmt::format("key '{}' is missing; an OpenCV calibration has image_width, "
+                           "image_height, camera_matrix and distortion_coefficients",
+                           key));
+  }
+  return node;
+}
+
+int ReadImageSize(const cv::FileStorage& storage, const std::string& path, const std::string& key) {
+  const cv::FileNode node = RequireKey(storage, path, key);
+  const double size = node.isInt() || node.isReal() ? static_cast<double>(node) : 0.0;
+  if (!(size >= 1 && size <= kMaxImageSize) || size != std::floor(size)) {
+    Fail(path, fmt::format("key '{}': a whole number of pixels is expected", key));
+  }
+  return static_cast<int>(size);
+}
+
+std::vector<double> ReadMatrix(const cv::FileNode& node, const std::string& path,
+                               const std::string& key) {
+  cv::Mat matrix;
+  std::vector<double> values;
+  try {
+    if (node.isSeq()) {
+      node >> values;
+    } else if (node.isMap()) {
+      node >> matrix;
+      matrix = matrix.reshape(1, 1);
+      matrix.convertTo(matrix, CV_64F);
+      values.assign(matrix.begin<double>(), matrix.end<double>());
+    } else {
+      Fail(path, fmt::format("key '{}': a matrix is expected", key));
+    }
+  } catch (const cv::Exception& exception) {
+    Fail(path, fmt::format("key '{}': no readable matrix ({})", key, exception.err));
+  }
+  for (const double value : values) {
+    if (!std::isfinite(value)) Fail(path, fmt::format("key '{}': a value is not finite", key));
+  }
+  return values;
+}
+
+// fx, fy, cx, cy in the image frame.
+std::vector<double> ReadPinholeParams(const cv::FileStorage& storage, const std::string& path) {
+  const std::string key = "camera_matrix";
+  const std::vector<double> k = ReadMatrix(RequireKey(storage, path, key), path, key);
+  if (k.size() != 9) {
+    Fail(path, fmt::format("key '{}': 3x3 values are expected, found {}", key, k.size()));
+  }
+  const bool affine = k[3] == 0 && k[6] == 0 && k[7] == 0 && k[8] == 1;
+  if (!affine || k[1] != 0) {
+    Fail(path, fmt::format("key '{}': [fx 0 cx; 0 fy cy; 0 0 1] is expected (no skew)", key));
+  }
+  if (!(k[0] > 0 && k[4] > 0)) {
+    Fail(path,
+         fmt::format("key '{}': the focal lengths {} and {} must be positive", key, k[0], k[4]));
+  }
+  return {k[0], k[4], k[2] + kImageFromOpenCvPx, k[5] + kImageFromOpenCvPx};
+}
+
+bool ReadIsFisheye(const cv::FileStorage& storage, const std::string& path) {
+  const cv::FileNode node = storage["distortion_model"];
+  if (node.empty()) return false;
+  const std::string name = node.isString() ? node.string() : "";
+  if (name == "fisheye") return true;
+  if (name == "plumb_bob" || name == "rational_polynomial") return false;
+  Fail(path, fmt::format("key 'distortion_model': '{}' is unknown; give fisheye, plumb_bob or "
+                         "rational_polynomial, or leave the key out",
+                         name));
+}
+
+void AppendDistortion(std::vector<double> distortion, bool fisheye, const std::string& path,
+                      Camera* camera) {
+  const std::string key = "distortion_coefficients";
+  std::vector<double>& params = camera->params;
+  if (fisheye) {
+    if (distortion.size() != 4) {
+      Fail(path, fmt::format("key '{}': 4 values are expected for a fisheye camera, found {}", key,
+                             distortion.size()));
+    }
+    camera->model = CameraModel::kOpenCVFisheye;
+    params.insert(params.end(), distortion.begin(), distortion.end());
+    return;
+  }
+  const std::size_t size = distortion.size();
+  const bool known_size = size == 0 || size == 4 || size == 5 || size == 8;
+  if (!known_size && !((size == 12 || size == 14) && AllZero(distortion, 8))) {
+    Fail(path, fmt::format("key '{}': none, 4, 5 or 8 values are expected, found {} (thin prism "
+                           "and tilt have no COLMAP camera model; calibrate without them)",
+                           key, size));
+  }
+  distortion.resize(8, 0.0);
+  if (AllZero(distortion, 0)) {
+    camera->model = CameraModel::kPinhole;
+    return;
+  }
+  const bool full = !AllZero(distortion, 4);
+  camera->model = full ? CameraModel::kFullOpenCV : CameraModel::kOpenCV;
+  params.insert(params.end(), distortion.begin(), distortion.begin() + (full ? 8 : 4));
+}
+
+Camera ReadOpenCvCalibration(const std::string& text, const std::string& path) {
+  cv::FileStorage storage;
+  try {
+    storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+  } catch (const cv::Exception& exception) {
+    Fail(path, fmt::format("no readable OpenCV FileStorage file ({})", exception.err));
+  }
+  if (!storage.isOpened()) Fail(path, "no readable OpenCV FileStorage file");
+  Camera camera;
+  camera.width_px = ReadImageSize(storage, path, "image_width");
+  camera.height_px = ReadImageSize(storage, path, "image_height");
+  camera.params = ReadPinholeParams(storage, path);
+  const cv::FileNode distortion = RequireKey(storage, path, "distortion_coefficients");
+  AppendDistortion(ReadMatrix(distortion, path, "distortion_coefficients"),
+                   ReadIsFisheye(storage, path), path, &camera);
+  return camera;
+}
+
+Camera ParseColmapCameraLine(const std::string& line, const std::string& place) {
+  std::istringstream stream(line);
+  stream.imbue(std::locale::classic());
+  long long camera_id = 0;
+  std::string model_name;
+  Camera camera;
+  if (!(stream >> camera_id >> model_name >> camera.width_px >> camera.height_px)) {
+    Fail(place,
+         "CAMERA_ID MODEL WIDTH HEIGHT PARAMS... is expected (a COLMAP cameras.txt), or an "
+         "OpenCV calibration that begins with %YAML:1.0, <?xml or {");
+  }
+  const std::optional<CameraModel> model = CameraModelFromName(model_name);
+  if (!model) {
+    Fail(place, fmt::format("camera model '{}' is not supported; use SIMPLE_PINHOLE, PINHOLE, "
+                            "SIMPLE_RADIAL, RADIAL, OPENCV, OPENCV_FISHEYE or FULL_OPENCV",
+                            model_name));
+  }
+  camera.model = *model;
+  if (camera.width_px < 1 || camera.height_px < 1) Fail(place, "the image size must be positive");
+  double value = 0.0;
+  while (stream >> value) camera.params.push_back(value);
+  const std::size_t num_params = static_cast<std::size_t>(NumCameraParams(camera.model));
+  if (!stream.eof() || camera.params.size() != num_params) {
+    Fail(place, fmt::format("{} parameters are expected for {}, found {} numbers", num_params,
+                            model_name, camera.params.size()));
+  }
+  if (!(MeanFocalLength(camera) > 0)) Fail(place, "the focal length must be positive");
+  return camera;
+}
+
+Camera ReadColmapCamera(const std::string& text, const std::string& path) {
+  std::istringstream stream(text);
+  std::string line;
+  std::optional<Camera> camera;
+  for (int line_number = 1; std::getline(stream, line); ++line_number) {
+    const std::size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == std::string::npos || line[begin] == '#') continue;
+    const std::string place = fmt::format("{}:{}", path, line_number);
+    if (camera) Fail(place, "a second camera; all frames are of one camera, keep one line");
+    camera = ParseColmapCameraLine(line, place);
+  }
+  if (!camera) Fail(path, "holds no camera");
+  return *camera;
+}
+
+}  // namespace
+
+Camera ReadCalibration(const std::string& path) {
+  const std::string text = ReadTextFile(path, "calibration file (--camera_path)");
+  const std::size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  const bool storage = text.compare(begin, 5, "%YAML") == 0 || text.compare(begin, 1, "<") == 0 ||
+                       text.compare(begin, 1, "{") == 0;
+  return storage ? ReadOpenCvCalibration(text.substr(begin), path) : ReadColmapCamera(text, path);
+}
+
+Camera ScaleToImageSize(const Camera& camera, int width_px, int height_px,
+                        const std::string& calibration_path) {
+  VELAMAP_CHECK(camera.width_px > 0 && camera.height_px > 0 && width_px > 0 && height_px > 0);
+  if (camera.width_px == width_px && camera.height_px == height_px) return camera;
+  const double scale_x = static_cast<double>(width_px) / camera.width_px;
+  const double scale_y = static_cast<double>(height_px) / camera.height_px;
+  const bool pure_scale = std::abs(camera.height_px * scale_x - height_px) <= 0.5 ||
+                          std::abs(camera.width_px * scale_y - width_px) <= 0.5;
+  if (!pure_scale) {
+    const bool turned = (width_px < height_px) != (camera.width_px < camera.height_px);
+    Fail(calibration_path,
+         fmt::format("is for {}x{} px, the frames have {}x{}: {}; calibrate with frames of the "
+                     "same kind",
+                     camera.width_px, camera.height_px, width_px, height_px,
+                     turned ? "they are turned by 90 degrees" : "no pure scale"));
+  }
+  Camera scaled = camera;
+  scaled.width_px = width_px;
+  scaled.height_px = height_px;
+  const bool one_focal_length = camera.model == CameraModel::kSimplePinhole ||
+                                camera.model == CameraModel::kSimpleRadial ||
+                                camera.model == CameraModel::kRadial;
+  std::size_t i = 0;
+  scaled.params[i++] *= one_focal_length ? 0.5 * (scale_x + scale_y) : scale_x;
+  if (!one_focal_length) scaled.params[i++] *= scale_y;
+  scaled.params[i++] *= scale_x;
+  scaled.params[i++] *= scale_y;
+  return scaled;
+}
+
+}  // namespace velamap

@@ -1,0 +1,112 @@
+#include "importer/camera/camera.h"
+
+#include <array>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "importer/base/error.h"
+#include "importer/camera/camera_projection.h"
+
+namespace velamap {
+namespace {
+
+struct ModelEntry {
+  CameraModel model;
+  const char* name;
+  int num_params;
+};
+
+constexpr std::array<ModelEntry, 7> kModels = {{{CameraModel::kSimplePinhole, "SIMPLE_PINHOLE", 3},
+                                                {CameraModel::kPinhole, "PINHOLE", 4},
+                                                {CameraModel::kSimpleRadial, "SIMPLE_RADIAL", 4},
+                                                {CameraModel::kRadial, "RADIAL", 5},
+                                                {CameraModel::kOpenCV, "OPENCV", 8},
+                                                {CameraModel::kOpenCVFisheye, "OPENCV_FISHEYE", 8},
+                                                {CameraModel::kFullOpenCV, "FULL_OPENCV", 12}}};
+
+const ModelEntry& Entry(CameraModel model) {
+  for (const ModelEntry& entry : kModels) {
+    if (entry.model == model) return entry;
+  }
+  throw std::logic_error("unknown camera model");
+}
+
+// Affine part of the model: image = focal * distorted + principal point.
+struct Intrinsics {
+  Eigen::Vector2d focal_px;
+  Eigen::Vector2d principal_point_px;
+  const double* distortion;
+};
+
+Intrinsics GetIntrinsics(const Camera& camera) {
+  VELAMAP_CHECK(static_cast<int>(camera.params.size()) == NumCameraParams(camera.model));
+  const double* p = camera.params.data();
+  if (HasOneFocalLength(camera.model)) return {{p[0], p[0]}, {p[1], p[2]}, p + 3};
+  return {{p[0], p[1]}, {p[2], p[3]}, p + 4};
+}
+
+Eigen::Matrix2d DistortionJacobian(CameraModel model, const double* k, const Eigen::Vector2d& ray) {
+  constexpr double kStep = 1e-6;
+  Eigen::Matrix2d jacobian;
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
+    jacobian.col(axis) = (DistortRay<double, double>(model, k, ray + step) -
+                          DistortRay<double, double>(model, k, ray - step)) /
+                         (2 * kStep);
+  }
+  return jacobian;
+}
+
+}  // namespace
+
+std::string CameraModelName(CameraModel model) { return Entry(model).name; }
+
+int NumCameraParams(CameraModel model) { return Entry(model).num_params; }
+
+std::optional<CameraModel> CameraModelFromName(const std::string& name) {
+  for (const ModelEntry& entry : kModels) {
+    if (name == entry.name) return entry.model;
+  }
+  return std::nullopt;
+}
+
+std::optional<CameraModel> CameraModelFromId(int model_id) {
+  for (const ModelEntry& entry : kModels) {
+    if (model_id == static_cast<int>(entry.model)) return entry.model;
+  }
+  return std::nullopt;
+}
+
+double MeanFocalLength(const Camera& camera) { return GetIntrinsics(camera).focal_px.mean(); }
+
+std::optional<Eigen::Vector2d> ImageFromCam(const Camera& camera, const Eigen::Vector3d& x_in_cam) {
+  if (!(x_in_cam.z() > 0)) return std::nullopt;
+  const Intrinsics intrinsics = GetIntrinsics(camera);
+  const Eigen::Vector2d distorted =
+      DistortRay<double, double>(camera.model, intrinsics.distortion, x_in_cam.hnormalized());
+  return intrinsics.focal_px.cwiseProduct(distorted) + intrinsics.principal_point_px;
+}
+
+std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
+                                            const Eigen::Vector2d& x_in_image_px) {
+  constexpr int kMaxIterations = 100;
+  constexpr double kTolerance = 1e-12;
+  const Intrinsics intrinsics = GetIntrinsics(camera);
+  const Eigen::Vector2d distorted =
+      (x_in_image_px - intrinsics.principal_point_px).cwiseQuotient(intrinsics.focal_px);
+  Eigen::Vector2d ray = distorted;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const Eigen::Vector2d error =
+        DistortRay<double, double>(camera.model, intrinsics.distortion, ray) - distorted;
+    if (error.norm() < kTolerance) return ray;
+    const Eigen::Matrix2d jacobian = DistortionJacobian(camera.model, intrinsics.distortion, ray);
+    // Beyond the turning point of the distortion the map folds over and has no honest inverse.
+    if (!(jacobian.determinant() > 1e-6)) return std::nullopt;
+    ray -= jacobian.inverse() * error;
+  }
+  return std::nullopt;
+}
+
+}  // namespace velamap

@@ -1,0 +1,296 @@
+#include "importer/database/colmap_database.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include "importer/base/error.h"
+#include "importer/database/colmap_schema.h"
+#include "importer/database/correspondence.h"
+#include "importer/database/marker_detections_table.h"
+#include "importer/database/sqlite_blob.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr ImageId kMaxNumImages = 2147483647;
+constexpr int kTwoViewConfigCalibrated = 2;  // COLMAP's TwoViewGeometry::CALIBRATED
+
+// One clear line for what SQLite says.
+[[noreturn]] void ThrowInputError(const std::string& path, const SQLite::Exception& exception) {
+  std::string message;
+  switch (exception.getErrorCode()) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      message = "locked by another program; close it (the COLMAP GUI?) and run again";
+      break;
+    case SQLITE_FULL:
+      message = "cannot be written: the disk is full";
+      break;
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+      message = "cannot be opened for writing; check the folder and the rights";
+      break;
+    case SQLITE_NOTADB:
+      message = "no SQLite database";
+      break;
+    case SQLITE_CORRUPT:
+      message = "a damaged database; delete it and import again";
+      break;
+    default:
+      message = fmt::format("SQLite reports: {}", exception.what());
+  }
+  throw InputError(fmt::format("{}: {}", path, message));
+}
+
+template <typename Function>
+auto Guarded(const std::string& path, const Function& function) {
+  try {
+    return function();
+  } catch (const SQLite::Exception& exception) {
+    ThrowInputError(path, exception);
+  }
+}
+
+std::int64_t PairId(ImageId image_id1, ImageId image_id2) {
+  const auto [first, second] = std::minmax(image_id1, image_id2);
+  return static_cast<std::int64_t>(kMaxNumImages) * first + second;
+}
+
+void InsertKeypoints(SQLite::Database& database, ImageId image_id,
+                     const std::vector<MarkerDetection>& markers) {
+  std::vector<float> keypoints;
+  std::vector<std::uint8_t> descriptors;
+  for (const MarkerDetection& marker : markers) {
+    for (int i = 0; i < kNumCorners; ++i) {
+      const Eigen::Vector2d& x = marker.corners_in_image_px[i];
+      keypoints.insert(keypoints.end(), {static_cast<float>(x.x()), static_cast<float>(x.y())});
+      const Descriptor descriptor = EncodeDescriptor({marker.marker_id, i + 1});
+      descriptors.insert(descriptors.end(), descriptor.begin(), descriptor.end());
+    }
+  }
+  const std::int64_t num_keypoints = static_cast<std::int64_t>(keypoints.size() / 2);
+  SQLite::Statement insert_keypoints(
+      database, "INSERT INTO keypoints(image_id, rows, cols, data) VALUES(?, ?, 2, ?)");
+  insert_keypoints.bind(1, image_id);
+  insert_keypoints.bind(2, num_keypoints);
+  BindBlob(insert_keypoints, 3, keypoints);
+  insert_keypoints.exec();
+  SQLite::Statement insert_descriptors(
+      database, "INSERT INTO descriptors(image_id, rows, cols, data) VALUES(?, ?, 128, ?)");
+  insert_descriptors.bind(1, image_id);
+  insert_descriptors.bind(2, num_keypoints);
+  BindBlob(insert_descriptors, 3, descriptors);
+  insert_descriptors.exec();
+}
+
+}  // namespace
+
+ColmapDatabase::ColmapDatabase(const std::string& path, Mode mode, int busy_timeout_ms)
+    : path_(path) {
+  const bool writing = mode == Mode::kReadWriteCreate;
+  CheckDatabaseFile(path, writing);
+  std::error_code ignored;
+  const bool existed = fs::exists(path, ignored);
+  try {
+    Guarded(path, [&] {
+      // A reader that may not write would leave the -wal and -shm files of a database behind that
+      // COLMAP has put in write-ahead mode; SQLite itself falls back to reading a protected file.
+      const int flags = SQLite::OPEN_READWRITE | (writing ? SQLite::OPEN_CREATE : 0);
+      database_ = std::make_unique<SQLite::Database>(path, flags, busy_timeout_ms);
+      if (writing) {
+        // Takes the write lock at once, so that a locked or read-only file shows itself here.
+        SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
+        CreateMissingTables(path, database_.get());
+        transaction.commit();
+      } else {
+        database_->exec("PRAGMA query_only = 1");
+        CheckColmapTables(path, *database_);
+      }
+    });
+  } catch (...) {
+    database_.reset();
+    if (!existed) fs::remove(path, ignored);
+    throw;
+  }
+}
+
+ColmapDatabase::~ColmapDatabase() = default;
+
+struct ColmapDatabase::Transaction::Impl {
+  std::string path;
+  SQLite::Transaction transaction;
+};
+
+ColmapDatabase::Transaction::Transaction(ColmapDatabase* database) {
+  Guarded(database->path_, [&] {
+    impl_.reset(new Impl{
+        database->path_,
+        SQLite::Transaction(*database->database_, SQLite::TransactionBehavior::IMMEDIATE)});
+  });
+}
+
+ColmapDatabase::Transaction::~Transaction() = default;
+
+void ColmapDatabase::Transaction::Commit() {
+  Guarded(impl_->path, [&] { impl_->transaction.commit(); });
+}
+
+CameraId ColmapDatabase::AddCamera(const Camera& camera) {
+  for (const auto& [camera_id, known_camera] : ReadCameras()) {
+    if (known_camera == camera) return camera_id;
+  }
+  return Guarded(path_, [&] {
+    SQLite::Statement insert(*database_,
+                             "INSERT INTO cameras(model, width, height, params,"
+                             " prior_focal_length) VALUES(?, ?, ?, ?, 1)");
+    insert.bind(1, static_cast<int>(camera.model));
+    insert.bind(2, camera.width_px);
+    insert.bind(3, camera.height_px);
+    BindBlob(insert, 4, camera.params);
+    insert.exec();
+    return static_cast<CameraId>(database_->getLastInsertRowid());
+  });
+}
+
+std::map<CameraId, Camera> ColmapDatabase::ReadCameras() const {
+  return Guarded(path_, [&] {
+    std::map<CameraId, Camera> cameras;
+    SQLite::Statement query(*database_,
+                            "SELECT camera_id, model, width, height, params"
+                            " FROM cameras");
+    while (query.executeStep()) {
+      Camera camera;
+      const std::optional<CameraModel> model = CameraModelFromId(query.getColumn(1).getInt());
+      if (!model) continue;  // of an image that velamap has not imported
+      camera.model = *model;
+      camera.width_px = query.getColumn(2).getInt();
+      camera.height_px = query.getColumn(3).getInt();
+      camera.params = ReadBlob<double>(query.getColumn(4));
+      if (static_cast<int>(camera.params.size()) != NumCameraParams(*model)) {
+        throw InputError(fmt::format("{}: camera {} has a wrong number of parameters", path_,
+                                     query.getColumn(0).getInt()));
+      }
+      cameras.emplace(query.getColumn(0).getUInt(), camera);
+    }
+    return cameras;
+  });
+}
+
+ImageId ColmapDatabase::AddImage(CameraId camera_id, const FrameDetections& detections,
+                                 const std::string& detector) {
+  return Guarded(path_, [&] {
+    SQLite::Statement insert(*database_, "INSERT INTO images(name, camera_id) VALUES(?, ?)");
+    insert.bind(1, detections.image_name);
+    insert.bind(2, camera_id);
+    insert.exec();
+    const ImageId image_id = static_cast<ImageId>(database_->getLastInsertRowid());
+    InsertKeypoints(*database_, image_id, detections.markers);
+    InsertMarkerDetections(image_id, detections, detector, database_.get());
+    return image_id;
+  });
+}
+
+void ColmapDatabase::ReplaceDetections(ImageId image_id, const FrameDetections& detections,
+                                       const std::string& detector) {
+  Guarded(path_, [&] {
+    for (const char* table : {"keypoints", "descriptors"}) {
+      SQLite::Statement remove(*database_, fmt::format("DELETE FROM {} WHERE image_id = ?", table));
+      remove.bind(1, image_id);
+      remove.exec();
+    }
+    for (const char* table : {"matches", "two_view_geometries"}) {
+      SQLite::Statement remove(
+          *database_, fmt::format("DELETE FROM {} WHERE pair_id / {} = ?1 OR pair_id % {} = ?1",
+                                  table, kMaxNumImages, kMaxNumImages));
+      remove.bind(1, image_id);
+      remove.exec();
+    }
+    DeleteMarkerDetections(image_id, database_.get());
+    InsertKeypoints(*database_, image_id, detections.markers);
+    InsertMarkerDetections(image_id, detections, detector, database_.get());
+  });
+}
+
+struct ColmapDatabase::PairStatements {
+  SQLite::Statement find, insert_matches, insert_geometry;
+};
+
+ColmapDatabase::PairStatements& ColmapDatabase::Prepared() const {
+  if (!pair_statements_) {
+    pair_statements_.reset(new PairStatements{
+        {*database_, "SELECT 1 FROM two_view_geometries WHERE pair_id = ?"},
+        {*database_,
+         "INSERT OR REPLACE INTO matches(pair_id, rows, cols, data) VALUES(?, ?, 2, ?)"},
+        {*database_,
+         "INSERT OR REPLACE INTO two_view_geometries(pair_id, rows, cols, data, config)"
+         " VALUES(?, ?, 2, ?, ?)"}});
+  }
+  return *pair_statements_;
+}
+
+void ColmapDatabase::WriteMatches(ImageId image_id1, ImageId image_id2,
+                                  const FeatureMatches& matches) {
+  VELAMAP_CHECK(image_id1 != image_id2);
+  std::vector<std::uint32_t> values;  // the column of the smaller image_id first
+  values.reserve(2 * matches.size());
+  for (const auto& [idx1, idx2] : matches) {
+    values.push_back(image_id1 < image_id2 ? idx1 : idx2);
+    values.push_back(image_id1 < image_id2 ? idx2 : idx1);
+  }
+  Guarded(path_, [&] {
+    PairStatements& prepared = Prepared();
+    for (SQLite::Statement* insert : {&prepared.insert_matches, &prepared.insert_geometry}) {
+      insert->tryReset();
+      insert->bind(1, PairId(image_id1, image_id2));
+      insert->bind(2, static_cast<std::int64_t>(matches.size()));
+      BindBlob(*insert, 3, values);
+    }
+    prepared.insert_geometry.bind(4, kTwoViewConfigCalibrated);
+    prepared.insert_matches.exec();
+    prepared.insert_geometry.exec();
+  });
+}
+
+bool ColmapDatabase::HasMatches(ImageId image_id1, ImageId image_id2) const {
+  return Guarded(path_, [&] {
+    SQLite::Statement& find = Prepared().find;
+    find.bind(1, PairId(image_id1, image_id2));
+    const bool has_matches = find.executeStep();
+    find.reset();
+    return has_matches;
+  });
+}
+
+std::vector<DatabaseImage> ColmapDatabase::ReadImages() const {
+  if (!ReadDetector()) {
+    throw InputError(
+        fmt::format("{}: holds no marker detections of velamap; import the images "
+                    "with velamap marker_importer",
+                    path_));
+  }
+  return Guarded(path_, [&] { return ReadImagesWithDetections(path_, database_.get()); });
+}
+
+std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
+  return Guarded(path_, [&] {
+    std::map<std::string, ImageId> ids;
+    SQLite::Statement query(*database_, "SELECT name, image_id FROM images");
+    while (query.executeStep()) {
+      ids.emplace(query.getColumn(0).getString(), query.getColumn(1).getUInt());
+    }
+    return ids;
+  });
+}
+
+std::optional<std::string> ColmapDatabase::ReadDetector() const {
+  return Guarded(path_, [&] { return ReadDetectorOfDetections(database_.get()); });
+}
+
+}  // namespace velamap

@@ -1,0 +1,146 @@
+#include "importer/database/colmap_schema.h"
+
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+#include "importer/database/marker_detections_table.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 6> kColmapTables = {
+    "cameras", "images", "keypoints", "descriptors", "matches", "two_view_geometries"};
+
+constexpr char kColmapSchema[] = R"(
+CREATE TABLE cameras (
+    camera_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
+    model INTEGER NOT NULL,
+    width INTEGER NOT NULL,
+    height INTEGER NOT NULL,
+    params BLOB,
+    prior_focal_length INTEGER NOT NULL);
+CREATE TABLE images (
+    image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
+    name TEXT NOT NULL UNIQUE,
+    camera_id INTEGER NOT NULL,
+    prior_qw REAL,
+    prior_qx REAL,
+    prior_qy REAL,
+    prior_qz REAL,
+    prior_tx REAL,
+    prior_ty REAL,
+    prior_tz REAL,
+    CONSTRAINT image_id_check CHECK(image_id >= 0 and image_id < 2147483647),
+    FOREIGN KEY(camera_id) REFERENCES cameras(camera_id));
+CREATE UNIQUE INDEX index_name ON images(name);
+CREATE TABLE keypoints (
+    image_id INTEGER PRIMARY KEY NOT NULL,
+    rows INTEGER NOT NULL,
+    cols INTEGER NOT NULL,
+    data BLOB,
+    FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
+CREATE TABLE descriptors (
+    image_id INTEGER PRIMARY KEY NOT NULL,
+    rows INTEGER NOT NULL,
+    cols INTEGER NOT NULL,
+    data BLOB,
+    FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
+CREATE TABLE matches (
+    pair_id INTEGER PRIMARY KEY NOT NULL,
+    rows INTEGER NOT NULL,
+    cols INTEGER NOT NULL,
+    data BLOB);
+CREATE TABLE two_view_geometries (
+    pair_id INTEGER PRIMARY KEY NOT NULL,
+    rows INTEGER NOT NULL,
+    cols INTEGER NOT NULL,
+    data BLOB,
+    config INTEGER NOT NULL,
+    F BLOB,
+    E BLOB,
+    H BLOB,
+    qvec BLOB,
+    tvec BLOB);
+PRAGMA user_version = 3800;
+)";
+
+std::set<std::string> ColumnNames(SQLite::Database& database, const std::string& table) {
+  std::set<std::string> names;
+  SQLite::Statement query(database, "SELECT name FROM pragma_table_info(?)");
+  query.bind(1, table);
+  while (query.executeStep()) names.insert(query.getColumn(0).getString());
+  return names;
+}
+
+}  // namespace
+
+void CheckDatabaseFile(const std::string& path, bool writing) {
+  std::error_code error;
+  const bool exists = fs::exists(path, error);
+  if (!exists && !writing) {
+    throw InputError(
+        fmt::format("{}: there is no such database; make it with velamap "
+                    "marker_importer",
+                    path));
+  }
+  if (!exists) {
+    const fs::path folder = fs::absolute(path, error).parent_path();
+    if (!fs::is_directory(folder, error)) {
+      throw InputError(
+          fmt::format("{}: cannot be created: there is no folder {}", path, folder.string()));
+    }
+    return;
+  }
+  if (!fs::is_regular_file(path, error)) throw InputError(path + ": no regular file");
+  constexpr char kMagic[] = "SQLite format 3";
+  char begin[sizeof(kMagic)] = {};
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(begin, sizeof(begin));
+  const bool empty = stream.gcount() == 0 && stream.eof();
+  if (!empty && std::memcmp(begin, kMagic, sizeof(kMagic)) != 0) {
+    throw InputError(fmt::format("{}: no SQLite database; give another --database_path", path));
+  }
+}
+
+void CheckColmapTables(const std::string& path, const SQLite::Database& database) {
+  for (const char* table : kColmapTables) {
+    if (!database.tableExists(table)) {
+      throw InputError(
+          fmt::format("{}: a database of another program (no table '{}' of COLMAP); "
+                      "give another --database_path",
+                      path, table));
+    }
+  }
+}
+
+void CreateMissingTables(const std::string& path, SQLite::Database* database) {
+  const bool fresh = database->execAndGet("SELECT COUNT(*) FROM sqlite_master").getInt64() == 0;
+  if (fresh) database->exec(kColmapSchema);
+  CheckColmapTables(path, *database);
+  if (ColumnNames(*database, "images").count("prior_qw") == 0) {
+    throw InputError(
+        fmt::format("{}: made by COLMAP 3.10 or later, whose layout the other "
+                    "versions refuse; give a new --database_path (velamap writes the "
+                    "layout that COLMAP 3.5 to 4.x open)",
+                    path));
+  }
+  if (database->tableExists("frames") &&
+      database->execAndGet("SELECT COUNT(*) FROM frames").getInt64() > 0) {
+    throw InputError(
+        fmt::format("{}: holds frames of COLMAP 3.12 or later, which every image "
+                    "would need; give a new --database_path",
+                    path));
+  }
+  CreateMarkerDetectionsTable(database);
+}
+
+}  // namespace velamap

@@ -1,0 +1,58 @@
+#include "importer/database/correspondence.h"
+
+#include <algorithm>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+
+Descriptor EncodeDescriptor(const CornerId& id) {
+  constexpr int kNumSymbols = 32;
+  VELAMAP_CHECK(id.marker_id >= 0 && id.marker_id <= kMaxMarkerId);
+  VELAMAP_CHECK(id.corner >= 1 && id.corner <= kNumCorners);
+  const int code = kNumCorners * id.marker_id + id.corner - 1;
+  const int a = code % kNumSymbols;
+  const int b = code / kNumSymbols % kNumSymbols;
+  const int c = code / (kNumSymbols * kNumSymbols);
+  const std::array<int, 4> symbols = {a, b, c, (a + b + c) % kNumSymbols};
+  Descriptor descriptor{};
+  for (int block = 0; block < 4; ++block) {
+    descriptor[static_cast<std::size_t>(kNumSymbols * block + symbols[block])] = 255;
+  }
+  return descriptor;
+}
+
+FeatureMatches MatchByMarkerId(const FrameDetections& image1, const FrameDetections& image2) {
+  FeatureMatches matches;
+  matches.reserve(kNumCorners * std::min(image1.markers.size(), image2.markers.size()));
+  std::uint32_t idx1 = 0, idx2 = 0;
+  while (idx1 < image1.markers.size() && idx2 < image2.markers.size()) {
+    const int id1 = image1.markers[idx1].marker_id, id2 = image2.markers[idx2].marker_id;
+    if (id1 == id2) {
+      for (std::uint32_t corner = 0; corner < kNumCorners; ++corner) {
+        matches.emplace_back(kNumCorners * idx1 + corner, kNumCorners * idx2 + corner);
+      }
+    }
+    idx1 += id1 <= id2;
+    idx2 += id2 <= id1;
+  }
+  return matches;
+}
+
+std::vector<std::pair<int, int>> PairsToMatch(int num_images, int max_exhaustive) {
+  constexpr int kOverlap = 10;
+  std::vector<std::pair<int, int>> pairs;
+  for (int first = 0; first < num_images; ++first) {
+    for (int second = first + 1; second < num_images; ++second) {
+      const int distance = second - first;
+      if (num_images > max_exhaustive && distance > kOverlap) {
+        if (distance >= 1 << kOverlap) break;
+        if ((distance & (distance - 1)) != 0) continue;
+      }
+      pairs.emplace_back(first, second);
+    }
+  }
+  return pairs;
+}
+
+}  // namespace velamap

@@ -1,0 +1,39 @@
+#include "importer/database/database_writer.h"
+
+#include <filesystem>
+#include <system_error>
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBatchSize = 50;  // images a transaction
+
+}  // namespace
+
+NewDatabaseGuard::NewDatabaseGuard(const std::string& path)
+    : path_(path), is_new_(!fs::exists(path)) {}
+
+NewDatabaseGuard::~NewDatabaseGuard() {
+  if (!is_new_) return;
+  std::error_code ignored;
+  for (const char* suffix : {"", "-journal"}) fs::remove(path_ + suffix, ignored);
+}
+
+DatabaseWriter::DatabaseWriter(const std::string& detector, ColmapDatabase* database)
+    : detector_(detector), database_(database) {}
+
+void DatabaseWriter::Add(const FrameDetections& detections, const Camera& camera) {
+  if (!transaction_) transaction_.emplace(database_);
+  database_->AddImage(database_->AddCamera(camera), detections, detector_);
+  if (++num_in_batch_ == kBatchSize) Commit();
+}
+
+void DatabaseWriter::Commit() {
+  if (transaction_) transaction_->Commit();
+  transaction_.reset();
+  num_in_batch_ = 0;
+}
+
+}  // namespace velamap

@@ -1,0 +1,201 @@
+#include "importer/database/marker_detections_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+#include <utility>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+#include "importer/database/sqlite_blob.h"
+
+namespace velamap {
+namespace {
+
+constexpr char kSchema[] = R"(
+CREATE TABLE IF NOT EXISTS marker_detections (
+    detection_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
+    image_id INTEGER NOT NULL,
+    frame_number INTEGER,
+    time_s REAL,
+    detector TEXT NOT NULL,
+    marker_id INTEGER,
+    part TEXT,
+    first_keypoint_idx INTEGER,
+    corners BLOB,
+    colors BLOB,
+    rejected_because TEXT,
+    corner_sigmas BLOB,
+    is_fallback INTEGER,
+    FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
+CREATE INDEX IF NOT EXISTS index_marker_detections_image_id ON marker_detections(image_id);
+)";
+
+// Name and type of what later versions of velamap have added to the table.
+constexpr std::array<std::pair<const char*, const char*>, 2> kAddedColumns = {
+    {{"corner_sigmas", "BLOB"}, {"is_fallback", "INTEGER"}}};
+
+std::set<std::string> ColumnNames(const SQLite::Database& database) {
+  std::set<std::string> names;
+  SQLite::Statement query(database, "SELECT name FROM pragma_table_info('marker_detections')");
+  while (query.executeStep()) names.insert(query.getColumn(0).getString());
+  return names;
+}
+
+class RowWriter {
+ public:
+  RowWriter(ImageId image_id, const FrameDetections& detections, const std::string& detector,
+            SQLite::Database* database)
+      : insert_(*database,
+                "INSERT INTO marker_detections(image_id, frame_number, time_s, detector, marker_id,"
+                " part, first_keypoint_idx, corners, colors, rejected_because, corner_sigmas,"
+                " is_fallback) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+        image_id_(image_id),
+        detections_(detections),
+        detector_(detector) {}
+
+  // The row of an image without any detection: nothing but the image's own columns.
+  void InsertNone() {
+    BindImage();
+    insert_.exec();
+  }
+
+  void Insert(const MarkerDetection& marker, std::optional<int> first_keypoint_idx,
+              const std::string& rejected_because) {
+    BindImage();
+    std::vector<double> corners;
+    std::vector<std::uint8_t> colors;
+    for (int i = 0; i < kNumCorners; ++i) {
+      const Eigen::Vector2d& x = marker.corners_in_image_px[i];
+      corners.insert(corners.end(), {x.x(), x.y()});
+      colors.insert(colors.end(), marker.colors[i].begin(), marker.colors[i].end());
+    }
+    const std::vector<double> sigmas(marker.corner_sigma_px.begin(), marker.corner_sigma_px.end());
+    insert_.bind(5, marker.marker_id);
+    if (!marker.part.empty()) insert_.bind(6, marker.part);
+    if (first_keypoint_idx) insert_.bind(7, *first_keypoint_idx);
+    BindBlob(insert_, 8, corners);
+    BindBlob(insert_, 9, colors);
+    if (!rejected_because.empty()) insert_.bind(10, rejected_because);
+    if (*std::max_element(sigmas.begin(), sigmas.end()) > 0) BindBlob(insert_, 11, sigmas);
+    insert_.bind(12, marker.is_fallback ? 1 : 0);
+    insert_.exec();
+  }
+
+ private:
+  void BindImage() {
+    insert_.reset();
+    insert_.clearBindings();
+    insert_.bind(1, image_id_);
+    if (detections_.frame_number) insert_.bind(2, *detections_.frame_number);
+    if (detections_.time_s) insert_.bind(3, *detections_.time_s);
+    insert_.bind(4, detector_);
+  }
+
+  SQLite::Statement insert_;
+  ImageId image_id_;
+  const FrameDetections& detections_;
+  const std::string& detector_;
+};
+
+// Columns from `begin` on: marker_id, part, corners, colors, corner_sigmas, is_fallback.
+MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::string& path) {
+  MarkerDetection marker;
+  marker.marker_id = row.getColumn(begin).getInt();
+  marker.part = row.getColumn(begin + 1).getString();
+  const std::vector<double> corners = ReadBlob<double>(row.getColumn(begin + 2));
+  const std::vector<std::uint8_t> colors = ReadBlob<std::uint8_t>(row.getColumn(begin + 3));
+  const std::vector<double> sigmas = ReadBlob<double>(row.getColumn(begin + 4));
+  if (corners.size() != 2 * kNumCorners || colors.size() != 3 * kNumCorners ||
+      (!sigmas.empty() && sigmas.size() != kNumCorners)) {
+    throw InputError(
+        fmt::format("{}: table marker_detections: corners, colors or corner_sigmas of marker {} "
+                    "have a wrong size; delete the database and import again",
+                    path, marker.marker_id));
+  }
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    marker.corners_in_image_px[i] = {corners[2 * i], corners[2 * i + 1]};
+    marker.colors[i] = {colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]};
+  }
+  std::copy(sigmas.begin(), sigmas.end(), marker.corner_sigma_px.begin());
+  marker.is_fallback = row.getColumn(begin + 5).getInt() != 0;
+  return marker;
+}
+
+}  // namespace
+
+void CreateMarkerDetectionsTable(SQLite::Database* database) {
+  database->exec(kSchema);
+  const std::set<std::string> names = ColumnNames(*database);
+  for (const auto& [name, type] : kAddedColumns) {
+    if (names.count(name) > 0) continue;
+    database->exec(fmt::format("ALTER TABLE marker_detections ADD COLUMN {} {}", name, type));
+  }
+}
+
+void InsertMarkerDetections(ImageId image_id, const FrameDetections& detections,
+                            const std::string& detector, SQLite::Database* database) {
+  RowWriter writer(image_id, detections, detector, database);
+  for (std::size_t i = 0; i < detections.markers.size(); ++i) {
+    writer.Insert(detections.markers[i], kNumCorners * static_cast<int>(i), "");
+  }
+  for (const RejectedDetection& rejected : detections.rejected) {
+    writer.Insert(rejected.detection, std::nullopt, rejected.reason);
+  }
+  if (detections.markers.empty() && detections.rejected.empty()) writer.InsertNone();
+}
+
+void DeleteMarkerDetections(ImageId image_id, SQLite::Database* database) {
+  SQLite::Statement remove(*database, "DELETE FROM marker_detections WHERE image_id = ?");
+  remove.bind(1, image_id);
+  remove.exec();
+}
+
+std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
+                                                    SQLite::Database* database) {
+  const std::set<std::string> names = ColumnNames(*database);
+  std::string columns = "marker_id, part, corners, colors";
+  for (const auto& [name, type] : kAddedColumns) {
+    columns += std::string(", ") + (names.count(name) > 0 ? name : "NULL");
+  }
+  std::vector<DatabaseImage> images;
+  SQLite::Statement query(
+      *database,
+      fmt::format("SELECT images.image_id, camera_id, name, frame_number, time_s, rejected_because,"
+                  " {} FROM images JOIN marker_detections USING(image_id)"
+                  " ORDER BY images.image_id, detection_id",
+                  columns));
+  while (query.executeStep()) {
+    const ImageId image_id = query.getColumn(0).getUInt();
+    if (images.empty() || images.back().image_id != image_id) {
+      DatabaseImage image;
+      image.image_id = image_id;
+      image.camera_id = query.getColumn(1).getUInt();
+      image.detections.image_name = query.getColumn(2).getString();
+      if (!query.isColumnNull(3)) image.detections.frame_number = query.getColumn(3).getInt();
+      if (!query.isColumnNull(4)) image.detections.time_s = query.getColumn(4).getDouble();
+      images.push_back(std::move(image));
+    }
+    if (query.isColumnNull(6)) continue;
+    FrameDetections& detections = images.back().detections;
+    const MarkerDetection marker = ReadDetection(query, 6, path);
+    if (query.isColumnNull(5)) {
+      detections.markers.push_back(marker);
+    } else {
+      detections.rejected.push_back({marker, query.getColumn(5).getString()});
+    }
+  }
+  return images;
+}
+
+std::optional<std::string> ReadDetectorOfDetections(SQLite::Database* database) {
+  if (!database->tableExists("marker_detections")) return std::nullopt;
+  SQLite::Statement query(*database, "SELECT detector FROM marker_detections LIMIT 1");
+  if (!query.executeStep()) return std::nullopt;
+  return query.getColumn(0).getString();
+}
+
+}  // namespace velamap

@@ -1,0 +1,49 @@
+// What the detector finds in one image.
+
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/base/ids.h"
+
+namespace velamap {
+
+// One marker in one image. Corners are ordered top-left, top-right, bottom-right, bottom-left of
+// the upright marker, in the image frame (px).
+struct MarkerDetection {
+  int marker_id = 0;
+  std::array<Eigen::Vector2d, kNumCorners> corners_in_image_px;
+  std::array<Rgb, kNumCorners> colors{};  // of the image at the corners
+  std::string part{};                     // of the layout that names it; empty without a layout
+  // 1 sigma of a coordinate by the image's noise, px; 0 where unknown: no edge fit, or it failed.
+  std::array<double, kNumCorners> corner_sigma_px{};
+  // The corner fit failed here, so that cv::cornerSubPix had to do.
+  bool is_fallback = false;
+};
+
+struct RejectedDetection {
+  MarkerDetection detection;
+  std::string reason;
+};
+
+// All markers of one image; an id stands at most once in `markers`, ascending.
+struct FrameDetections {
+  std::string image_name;           // relative to the image folder, as COLMAP wants it
+  std::optional<int> frame_number;  // zero-based position in the video; none for photographs
+  std::optional<double> time_s;     // presentation time in the video
+  std::vector<MarkerDetection> markers;
+  std::vector<RejectedDetection> rejected;
+};
+
+// Mean of the four corners: good enough to compare places in an image, in px.
+inline Eigen::Vector2d CornerMean(const MarkerDetection& marker) {
+  return 0.25 * (marker.corners_in_image_px[0] + marker.corners_in_image_px[1] +
+                 marker.corners_in_image_px[2] + marker.corners_in_image_px[3]);
+}
+
+}  // namespace velamap

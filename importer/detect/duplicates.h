@@ -1,0 +1,24 @@
+// Duplicated marker ids within one image (thesis section 3.3, Algorithm 1).
+
+#pragma once
+
+#include <vector>
+
+#include "importer/detect/detection.h"
+#include "importer/layout/layout.h"
+
+namespace velamap {
+
+struct ResolvedDetections {
+  std::vector<MarkerDetection> markers;     // each id once, ascending
+  std::vector<RejectedDetection> rejected;  // with reasons, in order of id then position
+};
+
+// Of several candidates with one id, keeps the one whose centre has the smallest mean distance (px)
+// to the centres of the (at most) three topologically nearest markers that were found once. Where
+// the graph names no such neighbour nothing tells the candidates apart and all are left out.
+// The order of `candidates` does not matter.
+ResolvedDetections ResolveDuplicates(std::vector<MarkerDetection> candidates,
+                                     const AdjacencyGraph& graph);
+
+}  // namespace velamap

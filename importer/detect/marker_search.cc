@@ -1,0 +1,151 @@
+#include "importer/detect/marker_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kMinBorderDistancePx = 3;  // of a corner
+
+// `region_size_px` of an image of `image_size_px`: the smallest perimeter is the image's.
+cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
+                                                      const ArucoDetectionOptions& options,
+                                                      int image_size_px, int region_size_px) {
+  const auto parameters = cv::aruco::DetectorParameters::create();
+  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
+  // Windows of 5 and 13 px. Measured on photographs of 34 to 110 px markers and at 4K on 12 to 500
+  // px ones, sharp and blurred: no fewer markers than with OpenCV's 3, 13 and 23 px, small ones
+  // among other black squares more, in three quarters of the time.
+  parameters->adaptiveThreshWinSizeMin = 5;
+  parameters->adaptiveThreshWinSizeMax = 13;
+  parameters->adaptiveThreshWinSizeStep = 8;
+  parameters->minDistanceToBorder = kMinBorderDistancePx;
+  parameters->markerBorderBits = border_bits;
+  parameters->minMarkerPerimeterRate = options.min_marker_perimeter_rate;
+  parameters->errorCorrectionRate = options.error_correction_rate;
+  if (region_size_px != image_size_px) {
+    // OpenCV cuts the product of rate and size to whole pixels; half a pixel more comes out as the
+    // image's whole number.
+    const double perimeter_px = std::floor(options.min_marker_perimeter_rate * image_size_px);
+    parameters->minMarkerPerimeterRate = (perimeter_px + 0.5) / region_size_px;
+  }
+  return parameters;
+}
+
+// The pixels within `reach_px` of a marker.
+cv::Rect Surroundings(const QuadCorners& corners, int reach_px) {
+  const auto [min, max] = BoundingBox(corners);
+  const cv::Point top_left(static_cast<int>(min.x()) - reach_px,
+                           static_cast<int>(min.y()) - reach_px);
+  const cv::Point bottom_right(static_cast<int>(max.x()) + reach_px + 1,
+                               static_cast<int>(max.y()) + reach_px + 1);
+  return {top_left, bottom_right};
+}
+
+bool Contains(const cv::Rect& outer, const cv::Rect& inner) { return (outer & inner) == inner; }
+
+void SearchRegion(const cv::Mat& gray, const cv::Rect& region, const Dictionary& dictionary,
+                  int border_bits, const ArucoDetectionOptions& options,
+                  std::vector<MarkerQuad>* quads) {
+  cv::Mat dark_on_light = gray(region);
+  if (options.inverted) {
+    cv::Mat inverted;  // a fresh one, so that the caller's picture stays
+    cv::bitwise_not(dark_on_light, inverted);
+    dark_on_light = inverted;
+  }
+  std::vector<std::vector<cv::Point2f>> corners;
+  std::vector<int> ids;
+  cv::aruco::detectMarkers(dark_on_light, dictionary.aruco, corners, ids,
+                           MakeParameters(border_bits, options, std::max(gray.cols, gray.rows),
+                                          std::max(region.width, region.height)));
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    MarkerQuad quad;
+    quad.marker_id = ids[i];
+    for (int c = 0; c < kNumCorners; ++c)
+      quad.corners_px[c] = {corners[i][c].x + region.x, corners[i][c].y + region.y};
+    quads->push_back(quad);
+  }
+}
+
+}  // namespace
+
+bool IsLargeEnough(const QuadCorners& corners, const cv::Size& image_size,
+                   const ArucoDetectionOptions& options) {
+  return kNumCorners * QuadMeanSide(corners) >
+         options.min_marker_perimeter_rate * std::max(image_size.width, image_size.height);
+}
+
+bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
+                 const ArucoDetectionOptions& options) {
+  const double min = kMinBorderDistancePx;
+  const double max_x = image_size.width - 1 - min, max_y = image_size.height - 1 - min;
+  return IsLargeEnough(corners, image_size, options) &&
+         std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
+           return corner.x() > min && corner.y() > min && corner.x() < max_x && corner.y() < max_y;
+         });
+}
+
+std::vector<MarkerQuad> RemoveNested(std::vector<MarkerQuad> quads) {
+  std::stable_sort(quads.begin(), quads.end(), [](const MarkerQuad& a, const MarkerQuad& b) {
+    return QuadArea(a.corners_px) > QuadArea(b.corners_px);
+  });
+  std::vector<MarkerQuad> kept;
+  for (const MarkerQuad& quad : quads) {
+    const bool nested = std::any_of(kept.begin(), kept.end(), [&](const MarkerQuad& outer) {
+      const double distance = (QuadCenter(outer.corners_px) - QuadCenter(quad.corners_px)).norm();
+      return outer.marker_id == quad.marker_id && distance < 0.5 * QuadMeanSide(outer.corners_px);
+    });
+    if (!nested) kept.push_back(quad);
+  }
+  return kept;
+}
+
+std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
+                                      int border_bits, const ArucoDetectionOptions& options) {
+  return SearchMarkers(gray, dictionary, border_bits, options, {{0, 0, gray.cols, gray.rows}});
+}
+
+std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Dictionary& dictionary,
+                                              int border_bits,
+                                              const ArucoDetectionOptions& options) {
+  cv::Mat half;
+  cv::resize(gray, half, {}, 0.5, 0.5, cv::INTER_AREA);
+  std::vector<MarkerQuad> quads = SearchMarkers(half, dictionary, border_bits, options);
+  for (MarkerQuad& quad : quads) {
+    for (Eigen::Vector2d& corner : quad.corners_px) {
+      corner = 2.0 * corner + Eigen::Vector2d(0.5, 0.5);  // places are of pixels' centres
+    }
+  }
+  return quads;
+}
+
+std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
+                                      int border_bits, const ArucoDetectionOptions& options,
+                                      const std::vector<cv::Rect>& regions) {
+  VELAMAP_CHECK(gray.type() == CV_8UC1);
+  const cv::Rect image(0, 0, gray.cols, gray.rows);
+  std::vector<MarkerQuad> quads;
+  for (const cv::Rect& region : regions) {
+    std::vector<MarkerQuad> found;
+    SearchRegion(gray, region, dictionary, border_bits, options, &found);
+    for (const MarkerQuad& quad : found) {
+      if (Contains(region, Surroundings(quad.corners_px, kSearchReachPx) & image)) {
+        quads.push_back(quad);
+      } else {
+        // The border cut into what decides on it.
+        SearchRegion(gray, Surroundings(quad.corners_px, 2 * kSearchReachPx) & image, dictionary,
+                     border_bits, options, &quads);
+      }
+    }
+  }
+  return RemoveNested(std::move(quads));
+}
+
+}  // namespace velamap

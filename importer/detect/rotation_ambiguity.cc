@@ -1,0 +1,117 @@
+#include "importer/detect/rotation_ambiguity.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <opencv2/core.hpp>
+
+namespace velamap {
+namespace {
+
+constexpr std::size_t kNumNeighbors = 3;
+
+// The mean cosine between top sides by which the best turn must beat the second. For a half turn it
+// means that the marker stands within 75 degrees of its neighbours, for quarter turns within 24.
+constexpr double kMinMargin = 0.5;
+
+// Unit vector along the top side, from corner 1 to corner 2, after `turn` quarter turns.
+Eigen::Vector2d TopSide(const MarkerDetection& marker, int turn) {
+  const auto& corners = marker.corners_in_image_px;
+  const std::size_t first = static_cast<std::size_t>(turn);
+  return (corners[(first + 1) % kNumCorners] - corners[first]).normalized();
+}
+
+std::vector<const MarkerDetection*> NearestUnambiguous(
+    const MarkerDetection& marker, const CodeSymmetries& symmetries, const AdjacencyGraph& graph,
+    const std::vector<MarkerDetection>& markers) {
+  const std::map<int, int> steps = TopologicalDistances(graph, marker.marker_id);
+  std::vector<std::pair<double, const MarkerDetection*>> by_steps, by_distance;
+  for (const MarkerDetection& other : markers) {
+    if (symmetries.count(other.marker_id) > 0) continue;
+    const auto found = steps.find(other.marker_id);
+    if (found != steps.end()) by_steps.emplace_back(found->second, &other);
+    by_distance.emplace_back((CornerMean(other) - CornerMean(marker)).norm(), &other);
+  }
+  auto& nearest = by_steps.empty() ? by_distance : by_steps;
+  std::sort(nearest.begin(), nearest.end(), [](const auto& a, const auto& b) {
+    return std::make_pair(a.first, a.second->marker_id) <
+           std::make_pair(b.first, b.second->marker_id);
+  });
+  std::vector<const MarkerDetection*> neighbors;
+  for (std::size_t i = 0; i < std::min(nearest.size(), kNumNeighbors); ++i) {
+    neighbors.push_back(nearest[i].second);
+  }
+  return neighbors;
+}
+
+// The turn that fits the neighbours best, or -1 where they leave a doubt.
+int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_turns,
+               const std::vector<const MarkerDetection*>& neighbors) {
+  if (neighbors.empty()) return -1;
+  std::vector<std::pair<double, int>> scores;
+  const auto add = [&](int turn) {
+    double sum = 0.0;
+    for (const MarkerDetection* other : neighbors) {
+      sum += TopSide(marker, turn).dot(TopSide(*other, 0));
+    }
+    scores.emplace_back(sum / static_cast<double>(neighbors.size()), turn);
+  };
+  add(0);
+  for (const int turn : possible_turns) add(turn);
+  std::sort(scores.rbegin(), scores.rend());
+  return scores[0].first - scores[1].first >= kMinMargin ? scores[0].second : -1;
+}
+
+}  // namespace
+
+MarkerDetection Turned(const MarkerDetection& marker, int turn) {
+  MarkerDetection turned = marker;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const std::size_t from = (i + static_cast<std::size_t>(turn)) % kNumCorners;
+    turned.corners_in_image_px[i] = marker.corners_in_image_px[from];
+    turned.colors[i] = marker.colors[from];
+    turned.corner_sigma_px[i] = marker.corner_sigma_px[from];
+  }
+  return turned;
+}
+
+CodeSymmetries FindCodeSymmetries(const Dictionary& dictionary) {
+  CodeSymmetries symmetries;
+  const cv::Mat& codes = dictionary.aruco->bytesList;
+  for (int id = 0; id < codes.rows; ++id) {
+    const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(codes.rowRange(id, id + 1),
+                                                                    dictionary.aruco->markerSize);
+    cv::Mat turned = bits;
+    for (int turn = 1; turn < kNumCorners; ++turn) {
+      cv::Mat next;
+      cv::rotate(turned, next, cv::ROTATE_90_CLOCKWISE);
+      turned = next;
+      if (cv::countNonZero(turned != bits) == 0) symmetries[id].push_back(turn);
+    }
+  }
+  return symmetries;
+}
+
+void ResolveRotations(const CodeSymmetries& symmetries, const AdjacencyGraph& graph,
+                      std::vector<MarkerDetection>* markers,
+                      std::vector<RejectedDetection>* rejected) {
+  if (symmetries.empty()) return;
+  std::vector<MarkerDetection> resolved;
+  for (const MarkerDetection& marker : *markers) {
+    const auto symmetry = symmetries.find(marker.marker_id);
+    if (symmetry == symmetries.end()) {
+      resolved.push_back(marker);
+      continue;
+    }
+    const int turn = ChooseTurn(marker, symmetry->second,
+                                NearestUnambiguous(marker, symmetries, graph, *markers));
+    if (turn >= 0) {
+      resolved.push_back(Turned(marker, turn));
+    } else {
+      rejected->push_back({marker, kDoubtfulRotation});
+    }
+  }
+  *markers = std::move(resolved);
+}
+
+}  // namespace velamap

@@ -1,0 +1,198 @@
+#include "importer/layout/dictionary.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "importer/base/ids.h"
+#include "importer/base/text_file.h"
+
+namespace velamap {
+namespace {
+
+using PredefinedEntry = std::pair<const char*, cv::aruco::PREDEFINED_DICTIONARY_NAME>;
+
+constexpr std::array<PredefinedEntry, 21> kPredefined = {{
+    {"DICT_4X4_50", cv::aruco::DICT_4X4_50},
+    {"DICT_4X4_100", cv::aruco::DICT_4X4_100},
+    {"DICT_4X4_250", cv::aruco::DICT_4X4_250},
+    {"DICT_4X4_1000", cv::aruco::DICT_4X4_1000},
+    {"DICT_5X5_50", cv::aruco::DICT_5X5_50},
+    {"DICT_5X5_100", cv::aruco::DICT_5X5_100},
+    {"DICT_5X5_250", cv::aruco::DICT_5X5_250},
+    {"DICT_5X5_1000", cv::aruco::DICT_5X5_1000},
+    {"DICT_6X6_50", cv::aruco::DICT_6X6_50},
+    {"DICT_6X6_100", cv::aruco::DICT_6X6_100},
+    {"DICT_6X6_250", cv::aruco::DICT_6X6_250},
+    {"DICT_6X6_1000", cv::aruco::DICT_6X6_1000},
+    {"DICT_7X7_50", cv::aruco::DICT_7X7_50},
+    {"DICT_7X7_100", cv::aruco::DICT_7X7_100},
+    {"DICT_7X7_250", cv::aruco::DICT_7X7_250},
+    {"DICT_7X7_1000", cv::aruco::DICT_7X7_1000},
+    {"DICT_ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
+    {"DICT_APRILTAG_16h5", cv::aruco::DICT_APRILTAG_16h5},
+    {"DICT_APRILTAG_25h9", cv::aruco::DICT_APRILTAG_25h9},
+    {"DICT_APRILTAG_36h10", cv::aruco::DICT_APRILTAG_36h10},
+    {"DICT_APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11},
+}};
+
+std::string ToLower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+const PredefinedEntry* FindPredefined(const std::string& name) {
+  const std::string lower = ToLower(name);
+  for (const PredefinedEntry& entry : kPredefined) {
+    const std::string known = ToLower(entry.first);
+    if (lower == known || "dict_" + lower == known) return &entry;
+  }
+  return nullptr;
+}
+
+[[noreturn]] void Fail(const std::string& path, const std::string& key,
+                       const std::string& message) {
+  throw InputError(fmt::format("{}: key '{}': {}", path, key, message));
+}
+
+std::optional<int> ReadInt(const cv::FileStorage& storage, const std::string& path,
+                           const std::string& key, int min, int max) {
+  const cv::FileNode node = storage[key];
+  if (node.empty()) return std::nullopt;
+  const int value = node.isInt() ? static_cast<int>(node) : min - 1;
+  if (value < min || value > max) {
+    Fail(path, key, fmt::format("a whole number from {} to {} is expected", min, max));
+  }
+  return value;
+}
+
+int RequireInt(const cv::FileStorage& storage, const std::string& path, const std::string& key,
+               int min, int max) {
+  const std::optional<int> value = ReadInt(storage, path, key, min, max);
+  if (!value) {
+    Fail(path, key,
+         "missing; a cv::aruco dictionary file has nmarkers, markersize, "
+         "maxCorrectionBits and marker_0, marker_1 ...");
+  }
+  return *value;
+}
+
+cv::Mat ReadMarkerBits(const cv::FileStorage& storage, const std::string& path,
+                       const std::string& key, int marker_size) {
+  const cv::FileNode node = storage[key];
+  if (node.empty()) Fail(path, key, "missing, although nmarkers says that it is there");
+  if (!node.isString()) {
+    Fail(path, key, "the bits must be a string; put them in quotes");
+  }
+  const std::string text = node.string();
+  if (text.size() != static_cast<std::size_t>(marker_size * marker_size)) {
+    Fail(path, key,
+         fmt::format("{}x{} bits are expected, found {} characters", marker_size, marker_size,
+                     text.size()));
+  }
+  cv::Mat bits(marker_size, marker_size, CV_8UC1);
+  for (int i = 0; i < marker_size * marker_size; ++i) {
+    const char bit = text[static_cast<std::size_t>(i)];
+    if (bit != '0' && bit != '1') {
+      Fail(path, key, fmt::format("bits are 0 and 1, found '{}'", bit));
+    }
+    bits.at<std::uint8_t>(i / marker_size, i % marker_size) = bit == '1';
+  }
+  return bits;
+}
+
+cv::Mat Turned(const cv::Mat& bits, int quarter_turns) {
+  cv::Mat turned = bits.clone();
+  for (int i = 0; i < quarter_turns; ++i) cv::rotate(turned, turned, cv::ROTATE_90_CLOCKWISE);
+  return turned;
+}
+
+// Smallest number of bits in which two different markers differ, over all rotations. Throws for
+// two equal ones, which nothing could tell apart.
+int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
+  int min_distance = static_cast<int>(bits.front().total()) + 1;
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    for (int turns = 0; turns < 4; ++turns) {
+      const cv::Mat turned = Turned(bits[i], turns);
+      for (std::size_t j = i + 1; j < bits.size(); ++j) {
+        const int distance = static_cast<int>(cv::norm(turned, bits[j], cv::NORM_L1) + 0.5);
+        if (distance == 0) {
+          Fail(path, fmt::format("marker_{}", j),
+               fmt::format("the same as marker_{} turned by {} degrees", i, 90 * turns));
+        }
+        min_distance = std::min(min_distance, distance);
+      }
+    }
+  }
+  return min_distance;
+}
+
+Dictionary ReadDictionaryFile(const std::string& path) {
+  const std::string text = ReadTextFile(path, "dictionary file");
+  cv::FileStorage storage;
+  try {
+    storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+  } catch (const cv::Exception& exception) {
+    throw InputError(
+        fmt::format("{}: no readable cv::aruco dictionary file ({})", path, exception.err));
+  }
+  if (!storage.isOpened()) {
+    throw InputError(fmt::format("{}: no readable cv::aruco dictionary file", path));
+  }
+  const int num_markers = RequireInt(storage, path, "nmarkers", 1, kMaxMarkerId + 1);
+  const int marker_size = RequireInt(storage, path, "markersize", 3, 20);
+  const int max_bits = marker_size * marker_size;
+  int correction_bits = ReadInt(storage, path, "maxCorrectionBits", 0, max_bits).value_or(0);
+  std::vector<cv::Mat> bits;
+  cv::Mat bytes;
+  for (int id = 0; id < num_markers; ++id) {
+    bits.push_back(ReadMarkerBits(storage, path, fmt::format("marker_{}", id), marker_size));
+    bytes.push_back(cv::aruco::Dictionary::getByteListFromBits(bits.back()));
+  }
+  const int unique_bits = (MinDistance(bits, path) - 1) / 2;
+  if (correction_bits > unique_bits) {
+    spdlog::warn("{}: maxCorrectionBits {} would confuse markers; {} is used", path,
+                 correction_bits, unique_bits);
+    correction_bits = unique_bits;
+  }
+  return {std::filesystem::path(path).filename().string(),
+          cv::makePtr<cv::aruco::Dictionary>(bytes, marker_size, correction_bits)};
+}
+
+}  // namespace
+
+Dictionary LoadDictionary(const std::string& name_or_path) {
+  if (const PredefinedEntry* entry = FindPredefined(name_or_path)) {
+    return {entry->first, cv::aruco::getPredefinedDictionary(entry->second)};
+  }
+  std::error_code error;
+  if (name_or_path.empty() || !std::filesystem::exists(name_or_path, error)) {
+    throw InputError(fmt::format("dictionary '{}': neither a file nor one of {}", name_or_path,
+                                 fmt::join(PredefinedDictionaryNames(), " ")));
+  }
+  return ReadDictionaryFile(name_or_path);
+}
+
+std::vector<std::string> PredefinedDictionaryNames() {
+  std::vector<std::string> names;
+  for (const PredefinedEntry& entry : kPredefined) names.push_back(entry.first);
+  return names;
+}
+
+cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits) {
+  cv::Mat cells;
+  cv::aruco::drawMarker(dictionary.aruco, marker_id, dictionary.aruco->markerSize + 2 * border_bits,
+                        cells, border_bits);
+  return cells;
+}
+
+}  // namespace velamap

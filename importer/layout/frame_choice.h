@@ -1,0 +1,34 @@
+// Which frame the metric result is given in. How each is made from markers stands in
+// exporters/shape/shape_frame.h.
+
+#pragma once
+
+#include <string>
+
+namespace velamap {
+
+enum class FrameKind {
+  kMarkers,        // three named markers: origin, axis, plane
+  kReferencePart,  // the layout's reference part, such as the hull
+  kLines,          // the lowest horizontal line and a vertical line of the sail
+  kCamera,         // the model's own frame, in which velamap puts the central camera
+};
+
+struct FrameChoice {
+  FrameKind kind = FrameKind::kCamera;
+  // For kMarkers only. By their centres: the origin; the marker to which x points; a marker in the
+  // half plane of x and z with z > 0.
+  int origin_id = -1, axis_id = -1, plane_id = -1;
+};
+
+// "reference_part", "lines", "camera", or the ids of origin, axis and plane such as "12,15,40".
+// Throws InputError; `what` names the option.
+FrameChoice ParseFrameChoice(const std::string& text, const std::string& what);
+
+// Throws std::logic_error for kMarkers, which no single word says.
+std::string FrameKeyword(FrameKind kind);
+
+// The other way round; false for any other text.
+bool ParseFrameKeyword(const std::string& text, FrameKind* kind);
+
+}  // namespace velamap

@@ -1,0 +1,81 @@
+// What is known of the markers beforehand: dictionary, sizes, and where on the object they sit.
+//
+// The adjacency graph of thesis section 3.1 follows from the lines: neighbours on a line are
+// adjacent, and so are all markers of a rigid part.
+
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "importer/layout/frame_choice.h"
+
+namespace velamap {
+
+// Markers on one line, from luff to leech (horizontal) or from foot to head (vertical).
+struct MarkerLine {
+  std::string name;
+  std::vector<int> marker_ids;
+};
+
+struct LayoutPart {
+  std::string name;
+  bool rigid = false;
+  std::vector<MarkerLine> horizontal;
+  std::vector<MarkerLine> vertical;
+  std::vector<int> marker_ids;  // on the part, on no line
+};
+
+// A length measured by hand between two marker points (corner 0: the centre).
+struct KnownDistance {
+  int marker_id1 = 0, corner1 = 0;
+  int marker_id2 = 0, corner2 = 0;
+  double length_m = 0.0;
+  double sigma_m = 0.0;       // of the measurement
+  bool is_scale_bar = false;  // takes part in the adjustment; else it is only checked against
+};
+
+struct Layout {
+  // An OpenCV predefined name (DICT_4X4_50) or the path of a dictionary file.
+  std::string dictionary;
+  double marker_length_m = 0.0;               // outer edge of the black square
+  std::map<int, double> marker_lengths_m;     // exceptions
+  int border_bits = 1;                        // width of the black border, cells
+  std::vector<LayoutPart> parts;              // empty: every id found belongs to one part
+  std::optional<std::string> reference_part;  // what motion is measured against
+  std::vector<KnownDistance> distances;
+  std::optional<FrameChoice> frame;  // of the result; nothing: the best there is
+
+  // Whether the layout lists its markers; without a list every id is welcome.
+  bool HasMarkers() const { return !parts.empty(); }
+};
+
+// Reads a layout file (YAML; keys in the README of this room). A dictionary file is taken relative
+// to the layout file. Throws InputError that names file, line and key: unknown keys, a marker twice
+// on one line or in two parts, a length that is not between 0.1 mm and 10 m, a negative id, a
+// distance of a marker that no part names, of a point from itself, or without a sigma.
+Layout ReadLayout(const std::string& path);
+
+// The layout that --dictionary and --marker_length replace: no lines, every id welcome.
+Layout MakeLayout(const std::string& dictionary, double marker_length_m);
+
+// Throws InputError unless 0.0001 <= length <= 10 (metres); `what` names the key or option.
+void CheckMarkerLength(double length_m, const std::string& what);
+
+double MarkerLength(const Layout& layout, int marker_id);
+
+// All ids that the layout names, ascending, each once.
+std::vector<int> MarkerIds(const Layout& layout);
+
+// Name of the part that holds the marker; "" for an id that is in none.
+std::string PartOfMarker(const Layout& layout, int marker_id);
+
+using AdjacencyGraph = std::map<int, std::vector<int>>;
+AdjacencyGraph BuildAdjacencyGraph(const Layout& layout);
+
+// Number of edges from `marker_id` to every marker that can be reached from it.
+std::map<int, int> TopologicalDistances(const AdjacencyGraph& graph, int marker_id);
+
+}  // namespace velamap

@@ -1,0 +1,231 @@
+// A pattern of square cells blurred by a Gaussian, at a group of places at once, with derivatives.
+//
+// The blurred pattern is separable: sum_ij lightness_ij a_i(u) b_j(v), where a_i is the unit step
+// of column i blurred. Places and blurs are in cells, (0, 0) at the first cell's outer corner. The
+// pattern of n cells has kRing more around it; the outermost reach to infinity.
+
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include <Eigen/Core>
+
+#include "importer/refine/normal_lanes.h"
+
+namespace velamap {
+
+constexpr int kRing = 2;             // quiet zone, then its surroundings
+constexpr int kMaxRingedCells = 32;  // along a side, with the rings
+
+// Of column i, row j at (j + kRing, i + kRing); 0 for dark, 1 for light.
+using Lightness = Eigen::Matrix<float, kMaxRingedCells, kMaxRingedCells, Eigen::RowMajor>;
+
+// The light ones among the cells: column i is bit i + kRing of the number at j + kRing.
+using LightCells = std::array<std::int32_t, kMaxRingedCells>;
+static_assert(kMaxRingedCells <= 32);
+
+// How the blurred columns (or rows) share a group of places, in cells: for each, weights of the
+// cells first ... first + count - 1, counted with the rings, and their derivatives by the place and
+// by the blur.
+struct Shares {
+  int count = 0;
+  Ints first;
+  int least_first = 0, largest_first = 0;  // of the places
+  Floats blur;
+  FloatsArray<kMaxRingedCells> value, by_x, by_blur;
+};
+
+inline void ComputeShares(Floats x, Floats blur, int num_cells, Shares* shares) {
+  constexpr float kReach = 3.3f;  // sigmas
+  // Edge k lies between the ringed cells k and k + 1.
+  const int all_edges = num_cells + 2 * kRing - 1;
+  const Floats place = x + static_cast<float>(kRing - 1);
+  // Where a fit runs away these need not be finite: the limits keep the cells inside the pattern.
+  const Floats limit = AllLanes(2 * kMaxRingedCells);
+  const Floats reach = Min(kReach * blur, limit);
+  // As many edges for each of the places; those out of reach do no harm.
+  const int num_edges = std::min(static_cast<int>(2 * MaxLane(reach)) + 1, all_edges);
+  Ints low = Floor(Max(Min(place, limit), -limit) - reach) + 1;
+  low = low < 0 ? Ints{} : low;
+  low = low > all_edges - num_edges ? Ints{} + (all_edges - num_edges) : low;
+  shares->first = low;
+  shares->least_first = MinLane(low);
+  shares->largest_first = MaxLane(low);
+  shares->blur = blur;
+  shares->count = num_edges + 1;
+  const Floats inverse_blur = 1.0f / blur;
+  const Floats from_low = place - __builtin_convertvector(low, Floats);
+  // What one edge leaves, the next takes.
+  Floats distribution = AllLanes(1.0), density{}, moment{};
+  for (int i = 0; i < num_edges; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    const Floats z = (from_low - static_cast<float>(i)) * inverse_blur;
+    const NormalLanes normal = NormalAt(z);
+    const Floats next_density = normal.density * inverse_blur;
+    const Floats next_moment = -z * next_density;
+    shares->value[index] = distribution - normal.distribution;
+    shares->by_x[index] = density - next_density;
+    shares->by_blur[index] = moment - next_moment;
+    distribution = normal.distribution;
+    density = next_density;
+    moment = next_moment;
+  }
+  const auto last = static_cast<std::size_t>(num_edges);
+  shares->value[last] = distribution;
+  shares->by_x[last] = density;
+  shares->by_blur[last] = moment;
+}
+
+// Whether the blur of one of the places reaches one of the outermost `num_rings` rings.
+inline bool Reaches(int num_rings, const Shares& shares, int num_cells) {
+  return shares.least_first < num_rings ||
+         shares.largest_first + shares.count > num_cells + 2 * kRing - num_rings;
+}
+
+// Lightness of the blurred pattern and its derivatives by u, v and the two blurs (all in cells).
+struct Blended {
+  Floats value{}, by_u{}, by_v{}, by_blur_u{}, by_blur_v{};
+  Floats by_u_v{}, by_uu_vv{};
+};
+
+namespace internal {
+
+// What a row, or all columns together, give a group of places, and its derivatives by the place and
+// by the blur.
+struct Sums {
+  Floats value{}, by_x{}, by_blur{};
+};
+
+// Adds the i-th column that shares in the places; `weigh` says how much of its share counts.
+template <typename Weigh>
+void AddColumn(const Shares& shares, int i, const Weigh& weigh, Sums* sums) {
+  const auto index = static_cast<std::size_t>(i);
+  sums->value += weigh(shares.value[index]);
+  sums->by_x += weigh(shares.by_x[index]);
+  sums->by_blur += weigh(shares.by_blur[index]);
+}
+
+// `row(j)` gives the Sums of the j-th row that shares in the places.
+template <typename Row>
+Blended BlendRows(const Shares& u, const Shares& v, const Row& row) {
+  Blended sum;
+  Floats by_blur_u_v{};
+  for (int j = 0; j < v.count; ++j) {
+    const Sums columns = row(j);
+    const auto index = static_cast<std::size_t>(j);
+    sum.value += columns.value * v.value[index];
+    sum.by_u += columns.by_x * v.value[index];
+    sum.by_blur_u += columns.by_blur * v.value[index];
+    sum.by_v += columns.value * v.by_x[index];
+    sum.by_blur_v += columns.value * v.by_blur[index];
+    sum.by_u_v += columns.by_x * v.by_x[index];
+    by_blur_u_v += columns.by_blur * v.by_blur[index];
+  }
+  sum.by_uu_vv = by_blur_u_v / (u.blur * v.blur);  // for a Gaussian, d/dblur = blur d2/dx2
+  return sum;
+}
+
+// x where `is_chosen` is -1, zero where it is zero.
+inline Floats Choose(Ints is_chosen, Floats x) {
+  Ints bits;
+  std::memcpy(&bits, &x, sizeof(bits));
+  bits &= is_chosen;
+  std::memcpy(&x, &bits, sizeof(x));
+  return x;
+}
+
+// Of the columns that are the black square's.
+inline Sums WithinSquare(const Shares& shares, int num_cells) {
+  Sums sums;
+  for (int i = 0; i < shares.count; ++i) {
+    const Ints column = shares.first + i;
+    const Ints is_within = (column >= kRing) & (column < num_cells + kRing);
+    AddColumn(
+        shares, i, [&](Floats share) { return Choose(is_within, share); }, &sums);
+  }
+  return sums;
+}
+
+}  // namespace internal
+
+// Of cells that are light or dark.
+inline Blended BlendLight(const LightCells& light, const Shares& u, const Shares& v) {
+  return internal::BlendRows(u, v, [&](int j) {
+    Ints columns;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      columns[lane] = light[static_cast<std::size_t>(v.first[lane] + j)];
+    }
+    columns >>= u.first;
+    internal::Sums sums;
+    for (int i = 0; i < u.count; ++i) {
+      const Ints is_light = -(columns >> i & 1);
+      internal::AddColumn(
+          u, i, [&](Floats share) { return internal::Choose(is_light, share); }, &sums);
+    }
+    return sums;
+  });
+}
+
+// Of a dark square on light ground: all but the rings are dark.
+inline Blended BlendGround(const Shares& u, const Shares& v, int num_cells) {
+  const internal::Sums a = internal::WithinSquare(u, num_cells);
+  const internal::Sums b = internal::WithinSquare(v, num_cells);
+  return {1.0f - a.value * b.value,
+          -a.by_x * b.value,
+          -a.value * b.by_x,
+          -a.by_blur * b.value,
+          -a.value * b.by_blur,
+          -a.by_x * b.by_x,
+          -a.by_blur * b.by_blur / (u.blur * v.blur)};
+}
+
+// Of cells that are dark except in the outermost ring.
+inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const Shares& v,
+                              int num_cells) {
+  std::array<const float*, kLanes> corners;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    corners[static_cast<std::size_t>(lane)] =
+        lightness.data() + v.first[lane] * kMaxRingedCells + u.first[lane];
+  }
+  const int last = num_cells + 2 * kRing - 1;
+  const auto is_outermost = [&](const Shares& shares, int i) {
+    return shares.least_first + i == 0 || shares.largest_first + i == last;
+  };
+  return internal::BlendRows(u, v, [&](int j) {
+    const bool is_outermost_row = is_outermost(v, j);
+    internal::Sums sums;
+    for (int i = 0; i < u.count; ++i) {
+      if (!is_outermost_row && !is_outermost(u, i)) continue;
+      Floats cells;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        cells[lane] = corners[lane][j * kMaxRingedCells + i];
+      }
+      internal::AddColumn(
+          u, i, [&](Floats share) { return cells * share; }, &sums);
+    }
+    return sums;
+  });
+}
+
+// *b += factor * a.
+inline void Add(Floats factor, const Blended& a, Blended* b) {
+  b->value += factor * a.value;
+  b->by_u += factor * a.by_u;
+  b->by_v += factor * a.by_v;
+  b->by_blur_u += factor * a.by_blur_u;
+  b->by_blur_v += factor * a.by_blur_v;
+  b->by_u_v += factor * a.by_u_v;
+  b->by_uu_vv += factor * a.by_uu_vv;
+}
+
+// An oblique view makes the blur in u and v correlated: applies exp(covariance d/du d/dv) to the
+// value, to second order.
+inline void AddCorrelation(Floats covariance, Blended* blended) {
+  blended->value +=
+      covariance * blended->by_u_v + 0.5f * covariance * covariance * blended->by_uu_vv;
+}
+
+}  // namespace velamap

@@ -1,0 +1,175 @@
+#include "importer/refine/corner_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "importer/base/error.h"
+#include "importer/detect/marker_alignment.h"
+#include "importer/refine/edge_fit.h"
+#include "importer/refine/edge_sampling.h"
+#include "importer/refine/pattern_fit.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kMinContrast = 12.0;    // grey levels
+constexpr double kMaxRelativeRms = 0.2;  // of the residuals, by contrast
+constexpr double kFirstBlurPx = 1.0;
+
+struct Pass {
+  double band_px;
+  int max_samples;  // of a side
+  double tolerance_px;
+  bool is_last;  // the uncertainty of the others is of no use
+};
+
+struct FittedSide {
+  Side side;
+  EdgeParameters parameters;
+  EdgeUncertainty uncertainty;
+};
+
+// Room that the fits of a marker's sides use one after the other.
+struct Workspace {
+  EdgeSamples samples;
+  EdgeFit fit;
+};
+
+std::optional<FittedSide> FitSide(const cv::Mat& gray, const SideModel& model, const Pass& pass,
+                                  Workspace* workspace) {
+  if (!(model.light - model.dark > kMinContrast)) return std::nullopt;
+  SampleSide(gray, model, pass.band_px, pass.max_samples, &workspace->samples);
+  const EdgePrior prior = MakeEdgePrior(model);
+  EdgeFit& fit = workspace->fit;
+  if (!FitEdge(workspace->samples, prior, pass.tolerance_px, &fit)) return std::nullopt;
+  const EdgeParameters& p = fit.parameters;
+  if (!(p.Contrast() > kMinContrast) || fit.equations.Rms() > kMaxRelativeRms * p.Contrast() ||
+      std::abs(p[EdgeParameters::kOffset]) + std::abs(p[EdgeParameters::kSlope]) > pass.band_px) {
+    return std::nullopt;
+  }
+  FittedSide fitted{model.side, p, {}};
+  if (pass.is_last) {
+    const auto uncertainty = EstimateUncertainty(fit, prior);
+    if (!uncertainty) return std::nullopt;
+    fitted.uncertainty = *uncertainty;
+  }
+  return fitted;
+}
+
+// The tangent of the fitted edge at its end s = -1 or 1, where the bend adds nothing.
+ImageLine TangentAtEnd(const FittedSide& fitted, double s) {
+  using P = EdgeParameters;
+  const Side& side = fitted.side;
+  const P& p = fitted.parameters;
+  const double offset_px = p[P::kOffset] + p[P::kSlope] * s;
+  const double slope = (p[P::kSlope] - 2 * p[P::kBend] * s) / side.half_length_px;
+  return {side.middle_px + s * side.half_length_px * side.along + offset_px * side.outward,
+          side.along + slope * side.outward};
+}
+
+// Variance of the edge's place across the side at its end, by noise of one grey level, px^2.
+double VarianceAtEnd(const FittedSide& fitted, double s) {
+  const Eigen::Vector2d by_place(1, s);
+  return by_place.dot(fitted.uncertainty.place_covariance * by_place);
+}
+
+// Mean variance of the coordinates of the corner where `starting` begins and `ending` ends.
+double CornerVariance(const FittedSide& starting, const FittedSide& ending) {
+  Eigen::Matrix2d outwards;
+  outwards << starting.side.outward.transpose(), ending.side.outward.transpose();
+  const Eigen::Matrix2d by_places = outwards.inverse();
+  return 0.5 * (by_places.col(0).squaredNorm() * VarianceAtEnd(starting, -1) +
+                by_places.col(1).squaredNorm() * VarianceAtEnd(ending, 1));
+}
+
+struct Fit {
+  RefinedCorners corners;
+  double blur_px;
+};
+
+std::optional<Fit> FitSides(const cv::Mat& gray, const QuadCorners& corners_px, double blur_px,
+                            int num_cells, const Pass& pass, Workspace* workspace) {
+  std::array<FittedSide, kNumCorners> sides;
+  ResidualNoise noise;
+  Fit fit{{}, 0.0};
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const SideModel model =
+        MakeSideModel(gray, corners_px, static_cast<int>(i), num_cells, blur_px);
+    const auto side = FitSide(gray, model, pass, workspace);
+    if (!side) return std::nullopt;
+    sides[i] = *side;
+    noise.Add(side->uncertainty.noise);
+    fit.blur_px += side->parameters[EdgeParameters::kBlur] / kNumCorners;
+  }
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const FittedSide& ending = sides[(i + kNumCorners - 1) % kNumCorners];
+    const auto corner = Intersect(TangentAtEnd(sides[i], -1), TangentAtEnd(ending, 1));
+    if (!corner) return std::nullopt;
+    fit.corners.corners_px[i] = *corner;
+    if (!pass.is_last) continue;
+    fit.corners.sigma_px[i] = std::sqrt(noise.VarianceGray() * CornerVariance(sides[i], ending));
+  }
+  return fit;
+}
+
+double MaxAllowedShiftPx(double cell_px, const EdgeFitOptions& options) {
+  return std::max(2.0, options.max_shift_in_cells * cell_px);
+}
+
+}  // namespace
+
+bool HasClearSides(const QuadCorners& quad, int num_cells, const EdgeFitOptions& options) {
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const Eigen::Vector2d next = quad[(i + 1) % kNumCorners] - quad[i];
+    const Eigen::Vector2d last = quad[(i + kNumCorners - 1) % kNumCorners] - quad[i];
+    const double area = std::abs(Cross(next, last));
+    const bool is_slanted = area < options.min_sine_of_corner * next.norm() * last.norm();
+    const double narrowest_cell_px = area / std::max(next.norm(), last.norm()) / num_cells;
+    if (narrowest_cell_px < (is_slanted ? options.min_slanted_cell_px : options.min_edge_cell_px)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
+                                                   const QuadCorners& corners_px, int num_cells,
+                                                   const EdgeFitOptions& options) {
+  VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
+  const double cell_px = QuadMeanSide(corners_px) / num_cells;
+  const double band_px =
+      std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
+  const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.1, false},
+                         {band_px, kMaxEdgeSamples, 0.02, true}};
+  Fit fit{{corners_px, {}}, kFirstBlurPx};
+  Workspace workspace;
+  for (const Pass& pass : passes) {
+    const auto next =
+        FitSides(gray, fit.corners.corners_px, fit.blur_px, num_cells, pass, &workspace);
+    if (!next) return std::nullopt;
+    fit = *next;
+  }
+  if (MaxCornerShift(fit.corners.corners_px, corners_px) > MaxAllowedShiftPx(cell_px, options)) {
+    return std::nullopt;
+  }
+  return fit.corners;
+}
+
+std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
+                                            const cv::Mat& cells, const EdgeFitOptions& options) {
+  if (!HasCells(corners_px, cells.total())) return std::nullopt;
+  const double cell_px = QuadMeanSide(corners_px) / cells.rows;
+  const QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
+  if (!HasClearSides(start_px, cells.rows, options)) {
+    const auto fitted = FitPattern(gray, start_px, cells);
+    if (fitted &&
+        MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
+      return fitted;
+    }
+  }
+  return RefineCornersByEdges(gray, start_px, cells.rows, options);
+}
+
+}  // namespace velamap

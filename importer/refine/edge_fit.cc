@@ -1,0 +1,117 @@
+#include "importer/refine/edge_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "importer/refine/least_squares.h"
+#include "importer/refine/normal_lanes.h"
+
+namespace velamap {
+namespace {
+
+using Vector = EdgeParameters::Vector;
+using Matrix = EdgeEquations::Matrix;
+
+constexpr double kMinBlurPx = 0.3;
+constexpr double kMaxBlurPx = 5.0;
+constexpr double kPixelNoise = 3.0;  // grey levels, against which the priors weigh
+
+Vector PriorWeight(const EdgePrior& prior) {
+  return (kPixelNoise * prior.sigma.values.cwiseInverse()).cwiseAbs2();
+}
+
+VELAMAP_CLONE_FOR_AVX2 void Evaluate(const EdgeSamples& samples, const EdgePrior& prior,
+                                     const Vector& weight, const Vector& values, bool with_hessian,
+                                     EdgeEquations* equations) {
+  const EdgeParameters parameters{values};
+  equations->Clear(with_hessian);
+  EdgeEquations::Jacobian jacobian;
+  for (int i = 0; i < samples.count; i += kLanes) {
+    const EdgeSampleGroup& group = samples.groups[static_cast<std::size_t>(i / kLanes)];
+    const Floats modelled = EvaluateEdge(parameters, group, &jacobian);
+    equations->Add(&jacobian, modelled - group.gray, samples.count - i);
+  }
+  equations->Finish(values - prior.mean.values, weight);
+}
+
+// `inverse` of the Hessian.
+VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const EdgeEquations& equations,
+                                             const Matrix& inverse) {
+  return equations.Noise(inverse, [](const EdgeEquations::Jacobian& jacobian) {
+    return jacobian[EdgeParameters::kOffset] * jacobian[EdgeParameters::kOffset];
+  });
+}
+
+}  // namespace
+
+Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& samples,
+                    EdgeEquations::Jacobian* jacobian) {
+  using P = EdgeParameters;
+  const Eigen::Matrix<float, P::kCount, 1> p = parameters.values.cast<float>();
+  const Floats s = samples.s, hump = 1.0f - s * s;
+  const Floats dark = p[P::kDark] + p[P::kDarkSlope] * s;
+  const Floats light = p[P::kLight] + p[P::kLightSlope] * s;
+  const float inverse_blur = 1 / p[P::kBlur];
+  const Floats distance =
+      samples.distance_px - p[P::kOffset] - p[P::kSlope] * s - p[P::kBend] * hump;
+  const Floats z = distance * inverse_blur;
+  const Floats inner_z = (distance + samples.inner_depth_px) * inverse_blur;
+  const Floats outer_z = (distance - samples.outer_depth_px) * inverse_blur;
+  const NormalLanes edge = NormalAt(z), inner = NormalAt(inner_z), outer = NormalAt(outer_z);
+
+  const Floats darkness = samples.cover * (1.0f - edge.distribution);
+  const Floats inner_amount = samples.inner * (1.0f - inner.distribution);
+  const Floats outer_amount = samples.outer * outer.distribution;
+  const Floats by_edge = (light - dark) * samples.cover * edge.density;
+  const Floats by_inner = -p[P::kInnerGain] * samples.inner * inner.density;
+  const Floats by_outer = p[P::kOuterGain] * samples.outer * outer.density;
+  const Floats by_offset = -(by_edge + by_inner + by_outer) * inverse_blur;
+  *jacobian = {
+      by_offset,        by_offset * s,
+      by_offset * hump, -(by_edge * z + by_inner * inner_z + by_outer * outer_z) * inverse_blur,
+      darkness,         1.0f - darkness,
+      darkness * s,     (1.0f - darkness) * s,
+      inner_amount,     outer_amount};
+  return light - (light - dark) * darkness + p[P::kInnerGain] * inner_amount +
+         p[P::kOuterGain] * outer_amount;
+}
+
+bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double tolerance_px,
+             EdgeFit* fit) {
+  LeastSquaresOptions options;
+  options.max_iterations = 8;
+  options.first_damping = 1e-4;
+  options.tolerance_px = tolerance_px;
+  fit->parameters = prior.mean;
+  const Vector weight = PriorWeight(prior);
+  return MinimizeSquares(
+      options,
+      [&](const Vector& values, bool with_hessian, EdgeEquations* equations) {
+        Evaluate(samples, prior, weight, values, with_hessian, equations);
+      },
+      [](const Vector& step) { return step.head<3>().cwiseAbs().maxCoeff(); },
+      [](Vector* values) {
+        double& blur = (*values)[EdgeParameters::kBlur];
+        blur = std::clamp(blur, kMinBlurPx, kMaxBlurPx);
+      },
+      &fit->parameters.values, &fit->equations);
+}
+
+std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior) {
+  const Eigen::LLT<Matrix> factors(fit.equations.hessian());
+  if (factors.info() != Eigen::Success) return std::nullopt;
+  const Matrix inverse = factors.solve(Matrix::Identity());
+  if (!inverse.allFinite()) return std::nullopt;
+  EdgeUncertainty uncertainty;
+  // inverse * (hessian - weight) * inverse, of the first two parameters.
+  const auto place = inverse.leftCols<2>();
+  uncertainty.place_covariance =
+      inverse.topLeftCorner<2, 2>() -
+      place.transpose().lazyProduct(PriorWeight(prior).asDiagonal() * place);
+  uncertainty.noise = NoiseOf(fit.equations, inverse);
+  return uncertainty;
+}
+
+}  // namespace velamap

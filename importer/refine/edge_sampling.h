@@ -1,0 +1,59 @@
+// From the pixels around one side of a marker to the samples that edge_fit.h fits.
+
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/geometry/quad.h"
+#include "importer/refine/edge_fit.h"
+
+namespace velamap {
+
+// One side from corner 0 to 1 of a quad turned to start there; the marker lies inwards of it.
+struct Side {
+  Eigen::Vector2d middle_px, along, outward;  // unit vectors
+  double half_length_px;
+};
+
+// Linear in s along the side.
+struct LinearInS {
+  double middle, slope;
+  double operator()(double s) const { return middle + slope * s; }
+};
+
+// A line of the print parallel to the side, at v in the unit square: how far it is from the side,
+// and the place u on it that faces a place s of the side.
+struct Parallel {
+  LinearInS depth_px, u;
+};
+
+// Places along a side where the cells beyond the border and the quiet zone are looked up.
+constexpr int kNumPlaces = 33;
+using GrayLine = std::array<float, kNumPlaces>;
+
+// Everything about one side that a fit keeps fixed.
+struct SideModel {
+  Side side, previous, next;
+  GrayLine inner_gray, outer_gray;
+  Parallel inner, outer;
+  double dark, light;  // grey levels
+  double blur_px;
+};
+
+// Side `side_idx` (from corner side_idx on) of a quad in OpenCV's pixel frame.
+SideModel MakeSideModel(const cv::Mat& gray, const QuadCorners& quad_px, int side_idx,
+                        int num_cells, double blur_px);
+
+// All pixels no further than `band_px` from the side, or every k-th row or column of them, about
+// `max_samples`. Two sides' blur mixes near the corners, which are left out.
+void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int max_samples,
+                EdgeSamples* samples);
+
+// A lens or a curved cloth bends a side by some thousandths of its length; on a short side noise
+// would pass for a bend.
+EdgePrior MakeEdgePrior(const SideModel& model);
+
+}  // namespace velamap

@@ -1,0 +1,85 @@
+#include "importer/refine/marker_detector.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <spdlog/spdlog.h>
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "importer/base/stage_timer.h"
+#include "importer/camera/camera.h"
+#include "importer/refine/corner_refinement.h"
+#include "importer/refine/saddle_corners.h"
+
+namespace velamap {
+namespace {
+
+// The search window ends well within the cell that meets its neighbours at the corner.
+QuadCorners RefineSubpix(const cv::Mat& gray, const QuadCorners& quad, int num_cells) {
+  const double cell_px = QuadMeanSide(quad) / num_cells;
+  const int half_window = std::clamp(static_cast<int>(std::lround(0.4 * cell_px)), 1, 5);
+  std::vector<cv::Point2f> points;
+  for (const Eigen::Vector2d& corner : quad) {
+    points.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
+  }
+  cv::cornerSubPix(gray, points, cv::Size(half_window, half_window), cv::Size(-1, -1),
+                   cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 0.01));
+  QuadCorners refined;
+  for (int c = 0; c < kNumCorners; ++c) refined[c] = {points[c].x, points[c].y};
+  return refined;
+}
+
+}  // namespace
+
+std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
+                                           int border_bits, const ArucoDetectionOptions& options) {
+  return RefineMarkers(gray, SearchMarkers(gray, dictionary, border_bits, options), dictionary,
+                       border_bits, options);
+}
+
+std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
+                                           const std::vector<MarkerQuad>& quads,
+                                           const Dictionary& dictionary, int border_bits,
+                                           const ArucoDetectionOptions& options) {
+  VELAMAP_CHECK(gray.type() == CV_8UC1);
+  cv::Mat dark_on_light;  // a fresh one, so that the caller's picture stays
+  if (options.inverted) {
+    cv::bitwise_not(gray, dark_on_light);
+  } else {
+    dark_on_light = gray;
+  }
+  const int num_cells = dictionary.aruco->markerSize + 2 * border_bits;
+  std::vector<MarkerDetection> detections;
+  int num_fallbacks = 0;
+  for (const MarkerQuad& quad : quads) {
+    const StageTimer timer(ImportStage::kRefine);
+    std::optional<RefinedCorners> refined;
+    MarkerDetection detection;
+    detection.marker_id = quad.marker_id;
+    if (options.corner_refinement == CornerRefinement::kNone) {
+      refined = RefinedCorners{quad.corners_px, {}};
+    } else if (options.corner_refinement == CornerRefinement::kEdge) {
+      refined = RefineCorners(dark_on_light, quad.corners_px,
+                              MarkerCells(dictionary, quad.marker_id, border_bits));
+      detection.is_fallback = !refined;
+      num_fallbacks += !refined;
+    }
+    if (!refined) refined = {RefineSubpix(dark_on_light, quad.corners_px, num_cells), {}};
+    if (options.corner_refinement == CornerRefinement::kEdge) {
+      RefineSaddleCorners(dark_on_light, num_cells, &refined->corners_px);
+    }
+    detection.corner_sigma_px = refined->sigma_px;
+    for (int c = 0; c < kNumCorners; ++c) {
+      detection.corners_in_image_px[c] = refined->corners_px[c].array() + kImageFromOpenCvPx;
+    }
+    detections.push_back(detection);
+  }
+  if (num_fallbacks > 0) {
+    spdlog::debug("{} of {} markers: no edge fit, corners from cv::cornerSubPix", num_fallbacks,
+                  detections.size());
+  }
+  return detections;
+}
+
+}  // namespace velamap

@@ -1,0 +1,98 @@
+#include "importer/refine/pattern_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "importer/detect/interpolate.h"
+
+namespace velamap {
+namespace {
+
+using P = PatternParameters;
+
+// Sigma of the blur across columns and across rows, in cells of the marker's middle.
+Eigen::Vector2d BlurInCells(const P::Vector& parameters, const QuadCorners& quad, int num_cells) {
+  const Eigen::Vector2d along_u = 0.5 * (quad[1] - quad[0] + quad[2] - quad[3]);
+  const Eigen::Vector2d along_v = 0.5 * (quad[3] - quad[0] + quad[2] - quad[1]);
+  const double area = std::abs(along_u.x() * along_v.y() - along_u.y() * along_v.x());
+  return num_cells / area *
+         Eigen::Vector2d(parameters[P::kBlurU] * along_v.norm(),
+                         parameters[P::kBlurV] * along_u.norm());
+}
+
+// How much of a blurred place lies within the rows (or columns) of the black square, and within
+// those and the quiet zone's.
+struct Within {
+  double square = 1.0, quiet_zone = 1.0;
+};
+
+// Where the surroundings are read along one axis: the middle of their first cell, or a sigma of the
+// blur beyond the quiet zone if that is further out.
+class RingReading {
+ public:
+  explicit RingReading(double blur_cells)
+      : beyond_cells_(std::max(0.5, blur_cells)),
+        at_ring_{NormalDistribution(-(1 + beyond_cells_) / blur_cells),
+                 NormalDistribution(-beyond_cells_ / blur_cells)} {}
+
+  // Of cell `i` of `n`, in sides of the square.
+  double Place(int i, int n) const {
+    if (i == -kRing) return -(1 + beyond_cells_) / n;
+    if (i == n + kRing - 1) return 1 + (1 + beyond_cells_) / n;
+    return (i + 0.5) / n;
+  }
+
+  // The other cells are taken to lie deep within.
+  Within Weights(int i, int n) const {
+    return i == -kRing || i == n + kRing - 1 ? at_ring_ : Within{};
+  }
+
+ private:
+  static double NormalDistribution(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
+
+  double beyond_cells_;
+  Within at_ring_;
+};
+
+}  // namespace
+
+QuadCorners CornersOf(const P::Vector& parameters) {
+  QuadCorners quad;
+  for (int i = 0; i < kNumCorners; ++i) {
+    quad[static_cast<std::size_t>(i)] = parameters.segment<2>(P::kCorners + 2 * i);
+  }
+  return quad;
+}
+
+double FillLightness(const cv::Mat& gray, const cv::Mat& cells, const P::Vector& parameters,
+                     PatternModel* model) {
+  const QuadCorners quad = CornersOf(parameters);
+  const UnitSquareMap map(quad);
+  const int n = model->num_cells;
+  const Eigen::Vector2d blur_cells = BlurInCells(parameters, quad, n);
+  const RingReading across_u(blur_cells.x()), across_v(blur_cells.y());
+  const double dark = parameters[P::kDark], contrast = parameters[P::kLight] - dark;
+  model->inner = {};
+  for (int j = -kRing; j < n + kRing; ++j) {
+    for (int i = -kRing; i < n + kRing; ++i) {
+      const int outside = std::max({-i, i - n + 1, -j, j - n + 1});
+      float surround = 0.0f;
+      if (outside <= 0) {
+        const std::int32_t is_light = cells.at<std::uint8_t>(j, i) != 0;
+        model->inner[static_cast<std::size_t>(j + kRing)] |= is_light << (i + kRing);
+      } else if (outside == kRing) {
+        const Eigen::Vector2d uv(across_u.Place(i, n), across_v.Place(j, n));
+        const double value = InterpolateGray(gray, map.ToImage(uv.x(), uv.y()));
+        const Within u = across_u.Weights(i, n), v = across_v.Weights(j, n);
+        const double surround_share = 1 - u.quiet_zone * v.quiet_zone;
+        const double read = (value - dark) / contrast - 1 + u.square * v.square;
+        surround = static_cast<float>(std::clamp(read / surround_share, -1.0, 0.2));
+      }
+      model->surround(j + kRing, i + kRing) = surround;
+    }
+  }
+  return blur_cells.maxCoeff();
+}
+
+}  // namespace velamap

@@ -1,0 +1,146 @@
+// The picture of a whole marker and its derivatives: the inner step of pattern_fit.h, which says
+// what the model is. Inline as a whole, for VELAMAP_CLONE_FOR_AVX2.
+
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "importer/geometry/unit_square_map.h"
+#include "importer/refine/blurred_cells.h"
+#include "importer/refine/pattern_model.h"
+
+namespace velamap {
+
+// A group of pixels of the model. Single precision is enough for a step.
+struct PatternPixels {
+  Floats gray;
+  FloatsArray<PatternParameters::kCount> jacobian;  // by the parameters
+};
+
+// The model with its parameters, ready for many pixels. Places are in OpenCV's pixel frame, less
+// the model's `center_px`.
+class PatternPicture {
+ public:
+  PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters)
+      : model_(model), parameters_(parameters) {
+    QuadCorners quad = CornersOf(parameters);
+    for (Eigen::Vector2d& corner : quad) corner -= model.center_px;
+    square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
+  }
+
+  // Whether a place is no further outside the black square than the model says what is there; -1
+  // for yes.
+  Ints Covers(Floats x, Floats y) const {
+    const Place place = ToSquare(x, y);
+    const auto margin = static_cast<float>(kMarginInCells / model_.num_cells);
+    return (Min(place.u, place.v) > -margin) & (Max(place.u, place.v) < 1.0f + margin);
+  }
+
+  void At(Floats x, Floats y, PatternPixels* pixels) const {
+    const Eigen::Matrix<float, P::kCount, 1> p = parameters_.cast<float>();
+    const Place flat = ToSquare(x, y);
+    const auto n = static_cast<float>(model_.num_cells);
+    const Floats u_by_x = n * flat.u_by_x, u_by_y = n * flat.u_by_y;  // cells/px
+    const Floats v_by_x = n * flat.v_by_x, v_by_y = n * flat.v_by_y;
+    const Floats cells_u = Sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
+    const Floats cells_v = Sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
+    Shares u, v;
+    ComputeShares(n * flat.u, cells_u * p[P::kBlurU], model_.num_cells, &u);
+    ComputeShares(n * flat.v, cells_v * p[P::kBlurV], model_.num_cells, &v);
+    Floats inner{}, surround{};
+    const Blended pattern = BlendAll(
+        u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner, &surround);
+
+    const auto inverse_diagonal = static_cast<float>(1 / model_.diagonal_px);
+    const Floats place_x = inverse_diagonal * x, place_y = inverse_diagonal * y;
+    const Floats light = 1.0f + p[P::kGradientX] * place_x + p[P::kGradientY] * place_y;
+    const float step = p[P::kLight] - p[P::kDark];
+    const Floats contrast = light * step;
+    const Floats level = p[P::kDark] + step * pattern.value;
+    const Floats by_x = contrast * (u_by_x * pattern.by_u + v_by_x * pattern.by_v);
+    const Floats by_y = contrast * (u_by_y * pattern.by_u + v_by_y * pattern.by_v);
+    pixels->gray = light * level;
+    FloatsArray<P::kCount>& jacobian = pixels->jacobian;
+    const auto set_place = [&](std::size_t index, Floats share) {
+      jacobian[index] = -share * by_x;
+      jacobian[index + 1] = -share * by_y;
+    };
+    // A corner that moves takes each place along by its bilinear share, nearly enough for a step.
+    set_place(P::kCorners, (1.0f - flat.u) * (1.0f - flat.v));
+    set_place(P::kCorners + 2, flat.u * (1.0f - flat.v));
+    set_place(P::kCorners + 4, flat.u * flat.v);
+    set_place(P::kCorners + 6, (1.0f - flat.u) * flat.v);
+    set_place(P::kBendU, Hump(flat.u));
+    set_place(P::kBendV, Hump(flat.v));
+    jacobian[P::kBlurU] = contrast * cells_u * pattern.by_blur_u;
+    jacobian[P::kBlurV] = contrast * cells_v * pattern.by_blur_v;
+    jacobian[P::kDark] = light * (1.0f - pattern.value);
+    jacobian[P::kLight] = light * pattern.value;
+    jacobian[P::kGradientX] = level * place_x;
+    jacobian[P::kGradientY] = level * place_y;
+    jacobian[P::kSurround] = contrast * surround;
+    jacobian[P::kInnerLight] = contrast * inner;
+  }
+
+ private:
+  using P = PatternParameters;
+
+  static constexpr double kMarginInCells =
+      0.75;  // how far outside the black square pixels are used
+
+  // A place in the unit square and the derivatives of u and v on the flat marker, 1/px.
+  struct Place {
+    Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
+  };
+
+  // Zero at both ends of a side, one in its middle.
+  static Floats Hump(Floats place) { return 4.0f * place * (1.0f - place); }
+
+  Place ToSquare(Floats x, Floats y) const {
+    const Eigen::Matrix3f& m = square_from_image_;
+    const Floats scale = 1.0f / (m(2, 0) * x + m(2, 1) * y + m(2, 2));
+    const Floats flat_u = scale * (m(0, 0) * x + m(0, 1) * y + m(0, 2));
+    const Floats flat_v = scale * (m(1, 0) * x + m(1, 1) * y + m(1, 2));
+    Place place{flat_u,
+                flat_v,
+                scale * (m(0, 0) - flat_u * m(2, 0)),
+                scale * (m(0, 1) - flat_u * m(2, 1)),
+                scale * (m(1, 0) - flat_v * m(2, 0)),
+                scale * (m(1, 1) - flat_v * m(2, 1))};
+    const Eigen::Vector4f bends = parameters_.segment<4>(P::kBendU).cast<float>();
+    for (int i = 0; i < 2; ++i) {
+      const Floats hump_u = Hump(place.u), hump_v = Hump(place.v);
+      const Floats bend_x = hump_u * bends[0] + hump_v * bends[2];
+      const Floats bend_y = hump_u * bends[1] + hump_v * bends[3];
+      place.u = flat_u - place.u_by_x * bend_x - place.u_by_y * bend_y;
+      place.v = flat_v - place.v_by_x * bend_x - place.v_by_y * bend_y;
+    }
+    return place;
+  }
+
+  Blended BlendAll(const Shares& u, const Shares& v, Floats correlation_px, Floats* inner_value,
+                   Floats* surround_value) const {
+    const int n = model_.num_cells;
+    const Blended inner = BlendLight(model_.inner, u, v);
+    *inner_value = inner.value;
+    Blended pattern;
+    if (Reaches(kRing, u, n) || Reaches(kRing, v, n)) pattern = BlendGround(u, v, n);
+    Add(AllLanes(parameters_[P::kInnerLight]), inner, &pattern);
+    AddCorrelation(correlation_px, &pattern);
+    *surround_value = Floats{};
+    if (Reaches(1, u, n) || Reaches(1, v, n)) {
+      const Blended around = BlendOutermost(model_.surround, u, v, n);
+      *surround_value = around.value;
+      Add(AllLanes(parameters_[P::kSurround]), around, &pattern);
+    }
+    return pattern;
+  }
+
+  const PatternModel& model_;
+  PatternParameters::Vector parameters_;
+  Eigen::Matrix3f square_from_image_;
+};
+
+}  // namespace velamap

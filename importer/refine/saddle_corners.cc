@@ -1,0 +1,80 @@
+#include "importer/refine/saddle_corners.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include "importer/base/error.h"
+#include "importer/detect/interpolate.h"
+#include "importer/geometry/unit_square_map.h"
+
+namespace velamap {
+namespace {
+
+using Quad = QuadCorners;
+
+constexpr double kMinCellPx = 4.0;
+constexpr double kMinContrast = 12.0;  // grey levels
+// The touching square is as dark as the marker to this part of the contrast. A quiet zone that is
+// blurred by dark squares around it stays lighter.
+constexpr double kMaxDarkness = 0.35;
+
+double MeanCellPx(const Quad& quad, int num_cells) {
+  double perimeter_px = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    perimeter_px += (quad[(i + 1) % kNumCorners] - quad[i]).norm();
+  }
+  return perimeter_px / kNumCorners / num_cells;
+}
+
+// Corner i stands at (u, v) of the unit square.
+constexpr std::array<std::array<double, 2>, kNumCorners> kCornersInSquare = {
+    {{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+
+// Half a cell from the corner along both sides: within the marker, beside it twice, and opposite.
+bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner, int num_cells) {
+  const auto [u, v] = kCornersInSquare[corner];
+  const double out_u = (u > 0.5 ? 0.5 : -0.5) / num_cells;
+  const double out_v = (v > 0.5 ? 0.5 : -0.5) / num_cells;
+  const auto gray_at = [&](double du, double dv) {
+    return InterpolateGray(gray, map.ToImage(u + du, v + dv));
+  };
+  const double dark = gray_at(-out_u, -out_v);
+  const double light = std::min(gray_at(out_u, -out_v), gray_at(-out_u, out_v));
+  const double opposite = gray_at(out_u, out_v);
+  return light - dark > kMinContrast && opposite - dark < kMaxDarkness * (light - dark);
+}
+
+}  // namespace
+
+int RefineSaddleCorners(const cv::Mat& gray, int num_cells, Quad* corners_px) {
+  VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
+  const double cell_px = MeanCellPx(*corners_px, num_cells);
+  if (cell_px < kMinCellPx) return 0;
+  const UnitSquareMap map(*corners_px);
+  std::vector<std::size_t> saddles;
+  std::vector<cv::Point2f> points;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    if (!IsSaddle(gray, map, i, num_cells)) continue;
+    saddles.push_back(i);
+    points.emplace_back(static_cast<float>((*corners_px)[i].x()),
+                        static_cast<float>((*corners_px)[i].y()));
+  }
+  if (saddles.empty()) return 0;
+  // The window ends within the cell beside the corner, whose other edges are none of the saddle's.
+  const int half_window = std::clamp(static_cast<int>(std::lround(0.7 * cell_px)), 2, 8);
+  cv::cornerSubPix(gray, points, cv::Size(half_window, half_window), cv::Size(-1, -1),
+                   cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 1e-3));
+  int num_moved = 0;
+  for (std::size_t k = 0; k < saddles.size(); ++k) {
+    const Eigen::Vector2d moved_px(points[k].x, points[k].y);
+    if ((moved_px - (*corners_px)[saddles[k]]).norm() > 0.5 * cell_px) continue;
+    (*corners_px)[saddles[k]] = moved_px;
+    ++num_moved;
+  }
+  return num_moved;
+}
+
+}  // namespace velamap

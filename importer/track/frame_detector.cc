@@ -1,0 +1,195 @@
+#include "importer/track/frame_detector.h"
+
+#include <cstdint>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/detect/duplicates.h"
+#include "importer/detect/marker_search.h"
+#include "importer/refine/marker_detector.h"
+#include "importer/track/line_expectation.h"
+#include "importer/track/prior_shape_expectation.h"
+
+namespace velamap {
+namespace {
+
+// FNV-1a, 64 bit: short, and the same on every machine.
+std::uint64_t Hash(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+std::string MapText(const MarkerMap& map) {
+  std::string text;
+  for (const auto& [id, in_shape_m] : map) {
+    text += fmt::format("|{}", id);
+    for (const Eigen::Vector3d& x : in_shape_m) {
+      text += fmt::format(" {} {} {}", x.x(), x.y(), x.z());
+    }
+  }
+  return text;
+}
+
+void WarnOfSymmetries(const FrameDetector& detector) {
+  std::vector<int> ids;
+  for (const auto& [id, turns] : detector.symmetries) {
+    if (detector.part_of_id.empty() || detector.part_of_id.count(id) > 0) ids.push_back(id);
+  }
+  if (ids.empty()) return;
+  spdlog::warn(
+      "{}: markers {} look the same when turned: their corners are numbered by their neighbours",
+      detector.dictionary.name, fmt::join(ids, " "));
+}
+
+}  // namespace
+
+FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
+                                const MarkerMap& map) {
+  FrameDetector detector{options,
+                         LoadDictionary(layout.dictionary),
+                         layout.border_bits,
+                         BuildAdjacencyGraph(layout),
+                         {},
+                         {},
+                         {},
+                         {},
+                         {}};
+  for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
+    detector.looks.push_back(
+        {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
+  }
+  detector.symmetries = FindCodeSymmetries(detector.dictionary);
+  for (const int id : MarkerIds(layout)) detector.part_of_id[id] = PartOfMarker(layout, id);
+  if (options.search == SearchMode::kTracked) detector.lines = LinesOfLayout(layout);
+  for (const auto& [id, in_shape_m] : map) {
+    const bool is_known = detector.part_of_id.empty() || detector.part_of_id.count(id) > 0;
+    if (is_known && id < detector.dictionary.aruco->bytesList.rows) detector.map[id] = in_shape_m;
+  }
+  WarnOfSymmetries(detector);
+  return detector;
+}
+
+std::string DescribeDetector(const FrameDetector& detector) {
+  std::string known;
+  const cv::Mat& bytes = detector.dictionary.aruco->bytesList;
+  known.append(reinterpret_cast<const char*>(bytes.data), bytes.total() * bytes.elemSize());
+  for (const auto& [id, part] : detector.part_of_id) known += fmt::format("|{} {}", id, part);
+  for (const auto& [id, neighbors] : detector.graph) {
+    known += fmt::format("|{}: {}", id, fmt::join(neighbors, " "));
+  }
+  // An exhaustive search is not named: it is how earlier versions searched. Only a tracked one
+  // looks for markers along lines.
+  std::string search;
+  if (detector.options.search == SearchMode::kTracked) {
+    search =
+        fmt::format(" search={} full_search_interval={}", SearchModeName(detector.options.search),
+                    detector.options.full_search_interval);
+    for (const std::vector<int>& line : detector.lines) {
+      known += fmt::format("|line {}", fmt::join(line, " "));
+    }
+  }
+  if (!detector.map.empty()) search += fmt::format(" map={:016x}", Hash(MapText(detector.map)));
+  return fmt::format(
+      "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
+      "error_correction_rate={} inverted={} dictionary_and_layout={:016x}{}",
+      detector.dictionary.name, detector.border_bits,
+      CornerRefinementName(detector.options.corner_refinement),
+      detector.options.min_marker_perimeter_rate, detector.options.error_correction_rate,
+      detector.options.inverted ? 1 : 0, Hash(known), search);
+}
+
+std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray) {
+  return SearchMarkers(gray, detector.dictionary, detector.border_bits, detector.options);
+}
+
+std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
+                                      const std::vector<cv::Rect>& regions) {
+  return SearchMarkers(gray, detector.dictionary, detector.border_bits, detector.options, regions);
+}
+
+std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv::Mat& gray,
+                                         int marker_id, const QuadCorners& expected,
+                                         double reach_px) {
+  const auto idx = static_cast<std::size_t>(marker_id);
+  if (idx >= detector.looks.size()) return std::nullopt;  // a layout may name more than there are
+  const MarkerLook& look = detector.looks[idx];
+  const auto located = LocateMarker(gray, expected, look, reach_px);
+  if (!located || !SearchTakes(*located, gray.size(), detector.options)) return std::nullopt;
+  return located;
+}
+
+std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const Camera& camera,
+                                          const std::vector<MarkerQuad>& found,
+                                          MapAgreement* agreement) {
+  std::vector<ExpectedMarker> all;
+  const auto view = PlaceOnMap(detector.map, camera, found, agreement);
+  if (view) {
+    for (const ExpectedMarker& expected : ExpectOnMap(detector.map, camera, *view, found)) {
+      if (IsLargeEnough(expected.quad.corners_px, {camera.width_px, camera.height_px},
+                        detector.options)) {
+        all.push_back(expected);
+      }
+    }
+  }
+  for (const ExpectedMarker& expected : ExpectOnLines(detector.lines, found)) {
+    const bool is_on_map = detector.map.count(expected.quad.marker_id) > 0;
+    if (!view || !is_on_map) all.push_back(expected);
+  }
+  return all;
+}
+
+std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const Camera& camera,
+                                           const cv::Mat& gray, MapAgreement* agreement) {
+  std::vector<MarkerQuad> quads = SearchInFrame(detector, gray);
+  for (const auto& [quad, reach_px] : ExpectInFrame(detector, camera, quads, agreement)) {
+    const auto located = LocateInFrame(detector, gray, quad.marker_id, quad.corners_px, reach_px);
+    if (located) quads.push_back({quad.marker_id, *located});
+  }
+  return RemoveNested(std::move(quads));
+}
+
+std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray) {
+  constexpr double kReachPx = 3.0;  // a pixel and a half of the half resolution
+  std::vector<MarkerQuad> quads;
+  for (const MarkerQuad& coarse :
+       SearchMarkersCoarsely(gray, detector.dictionary, detector.border_bits, detector.options)) {
+    const auto located =
+        LocateInFrame(detector, gray, coarse.marker_id, coarse.corners_px, kReachPx);
+    if (located) quads.push_back({coarse.marker_id, *located});
+  }
+  return quads;
+}
+
+FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
+                              const cv::Mat& gray, const std::vector<MarkerQuad>& quads) {
+  FrameDetections detections;
+  detections.image_name = frame.image_name;
+  detections.frame_number = frame.frame_number;
+  detections.time_s = frame.time_s;
+  std::vector<MarkerDetection> candidates;
+  for (MarkerDetection& marker :
+       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options)) {
+    const auto part = detector.part_of_id.find(marker.marker_id);
+    if (part != detector.part_of_id.end()) marker.part = part->second;
+    if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {
+      candidates.push_back(marker);
+    } else {
+      detections.rejected.push_back({marker, kNotInLayout});
+    }
+  }
+  ResolvedDetections resolved = ResolveDuplicates(std::move(candidates), detector.graph);
+  detections.markers = std::move(resolved.markers);
+  std::move(resolved.rejected.begin(), resolved.rejected.end(),
+            std::back_inserter(detections.rejected));
+  ResolveRotations(detector.symmetries, detector.graph, &detections.markers, &detections.rejected);
+  AddColors(frame, &detections);
+  return detections;
+}
+
+}  // namespace velamap

@@ -1,0 +1,262 @@
+#include "importer/video/frame_source.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "importer/base/error.h"
+#include "importer/base/natural_order.h"
+#include "importer/video/image_file.h"
+#include "importer/video/video_decoder.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Our one line about a broken file shall stand alone.
+void SilenceOpenCv() {
+  static std::once_flag once;
+  std::call_once(once,
+                 [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
+}
+
+bool IsHidden(const fs::path& path) { return path.filename().string().rfind('.', 0) == 0; }
+
+// Names relative to the folder, in natural order; files that are no images by name are told of.
+std::vector<std::string> ListImages(const fs::path& folder) {
+  std::vector<std::string> names, others;
+  std::error_code error;
+  const auto flags = fs::directory_options::follow_directory_symlink;
+  fs::recursive_directory_iterator it(folder, flags, error);
+  if (error) {
+    throw InputError(
+        fmt::format("{}: the folder cannot be read: {}", folder.string(), error.message()));
+  }
+  for (; it != fs::recursive_directory_iterator(); it.increment(error)) {
+    if (IsHidden(it->path())) {
+      it.disable_recursion_pending();
+    } else if (it->is_regular_file(error)) {
+      const std::string name = it->path().lexically_relative(folder).generic_string();
+      (HasImageExtension(name) ? names : others).push_back(name);
+    }
+  }
+  if (error) {
+    throw InputError(
+        fmt::format("{}: the folder cannot be read: {}", folder.string(), error.message()));
+  }
+  std::sort(names.begin(), names.end(), NaturalLess);
+  std::sort(others.begin(), others.end(), NaturalLess);
+  if (names.empty()) {
+    throw InputError(
+        fmt::format("{}: the folder holds no images (.jpg, .png, .tif ...); give a "
+                    "folder of images or a video file",
+                    folder.string()));
+  }
+  if (!others.empty()) {
+    spdlog::warn("{}: left out, no images by their names: {}, such as {}", folder.string(),
+                 others.size(), others.front());
+  }
+  return names;
+}
+
+class ImageFolder : public FrameSource {
+ public:
+  ImageFolder(fs::path folder, std::vector<std::string> names)
+      : folder_(std::move(folder)), names_(std::move(names)) {}
+
+  std::optional<Frame> Next() override {
+    if (next_idx_ == names_.size()) return std::nullopt;
+    Frame frame;
+    frame.image_name = names_[next_idx_++];
+    return frame;
+  }
+
+  bool Load(Frame* frame, std::string* reason) const override {
+    const fs::path path = folder_ / frame->image_name;
+    frame->color = DecodeImageFile(path.string(), reason);
+    if (frame->color.empty()) {
+      spdlog::warn("{}: skipped: {}", path.string(), *reason);
+      return false;
+    }
+    cv::cvtColor(frame->color, frame->gray, cv::COLOR_BGR2GRAY);
+    return true;
+  }
+
+  bool IsVideo() const override { return false; }
+  int NumFrames() const override { return static_cast<int>(names_.size()); }
+
+ private:
+  fs::path folder_;
+  std::vector<std::string> names_;
+  std::size_t next_idx_ = 0;
+};
+
+std::string VideoFrameName(int frame_number) {
+  return fmt::format("frame_{:06}.jpg", frame_number);
+}
+
+class VideoFile : public FrameSource {
+ public:
+  VideoFile(const std::string& path, const VideoOptions& options,
+            const std::vector<std::string>& known_names, int num_threads)
+      : path_(path),
+        options_(options),
+        known_names_(known_names.begin(), known_names.end()),
+        decoder_(path, num_threads),
+        num_container_frames_(decoder_.NumContainerFrames()),
+        num_frames_(CountFrames()) {
+    decoder_.SkipTo(options_.first_frame);
+  }
+
+  std::optional<Frame> Next() override {
+    const auto begin = std::chrono::steady_clock::now();
+    while (!ended_ && (options_.last_frame < 0 || num_read_ <= options_.last_frame)) {
+      std::optional<VideoFrame> read = decoder_.Next();
+      if (!read) {
+        End();
+        break;
+      }
+      num_read_ = read->number + 1;
+      const bool wanted = read->number >= options_.first_frame &&
+                          (read->number - options_.first_frame) % options_.frame_step == 0;
+      if (!wanted || known_names_.count(VideoFrameName(read->number)) > 0) continue;
+      Frame frame;
+      frame.image_name = VideoFrameName(read->number);
+      frame.frame_number = read->number;
+      frame.time_s = read->time_s;
+      frame.picture = std::move(read->picture);
+      const std::chrono::duration<double> decoding = std::chrono::steady_clock::now() - begin;
+      frame.decode_s = decoding.count();
+      return frame;
+    }
+    return std::nullopt;
+  }
+
+  bool Load(Frame* frame, std::string* reason) const override {
+    frame->gray = frame->picture->Gray();
+    if (!frame->gray.empty()) return true;
+    *reason = "its pixel format cannot be converted to grey";
+    spdlog::warn("{}: {} is skipped: {}", path_, frame->image_name, *reason);
+    return false;
+  }
+
+  bool IsVideo() const override { return true; }
+
+  int NumFrames() const override { return num_frames_; }
+
+ private:
+  int CountFrames() const {
+    if (num_container_frames_ == 0 && options_.last_frame < 0) return 0;
+    int end = num_container_frames_;
+    if (options_.last_frame >= 0 && (end == 0 || options_.last_frame < end)) {
+      end = options_.last_frame + 1;
+    }
+    const int num_frames = end - options_.first_frame;
+    if (num_frames <= 0) return 0;
+    const int num_wanted = (num_frames + options_.frame_step - 1) / options_.frame_step;
+    return std::max(0, num_wanted - NumKnownBefore(end));
+  }
+
+  int NumKnownBefore(int end) const {
+    int num_known = 0;
+    for (int i = options_.first_frame; i < end; i += options_.frame_step) {
+      num_known += known_names_.count(VideoFrameName(i)) > 0;
+    }
+    return num_known;
+  }
+
+  void End() {
+    ended_ = true;
+    if (num_read_ <= options_.first_frame) {
+      throw InputError(fmt::format(
+          "{}: the video has {} frames, none at or after frame {} (--Video.first_frame, "
+          "or the first that the search around --central_frame can reach)",
+          path_, num_read_, options_.first_frame));
+    }
+    // Counts that a container derives from its duration are off by a frame or so.
+    const int tolerance = std::max(2, num_container_frames_ / 100);
+    if (num_read_ < num_container_frames_ - tolerance) {
+      spdlog::warn("{}: the video breaks off after {} of {} frames; what is there is used", path_,
+                   num_read_, num_container_frames_);
+    }
+  }
+
+  std::string path_;
+  VideoOptions options_;
+  std::set<std::string> known_names_;
+  VideoDecoder decoder_;
+  int num_container_frames_;
+  int num_frames_;    // that are to come at most
+  int num_read_ = 0;  // from the video's start, also where decoding began later
+  bool ended_ = false;
+};
+
+// The pixel in which an image position lies.
+cv::Point PixelAt(const cv::Size& size, const Eigen::Vector2d& x_in_image_px) {
+  return {std::clamp(static_cast<int>(std::floor(x_in_image_px.x())), 0, size.width - 1),
+          std::clamp(static_cast<int>(std::floor(x_in_image_px.y())), 0, size.height - 1)};
+}
+
+}  // namespace
+
+cv::Mat ColorImage(const Frame& frame) {
+  return frame.picture ? frame.picture->Color() : frame.color;
+}
+
+void AddColors(const Frame& frame, FrameDetections* detections) {
+  std::vector<MarkerDetection*> markers;
+  for (MarkerDetection& marker : detections->markers) markers.push_back(&marker);
+  for (RejectedDetection& rejected : detections->rejected) markers.push_back(&rejected.detection);
+  std::vector<cv::Point> pixels;
+  for (const MarkerDetection* marker : markers) {
+    for (const Eigen::Vector2d& corner : marker->corners_in_image_px) {
+      pixels.push_back(PixelAt(frame.gray.size(), corner));
+    }
+  }
+  std::vector<cv::Vec3b> colors;
+  if (frame.picture) {
+    colors = frame.picture->ColorsAt(pixels);
+  } else {
+    for (const cv::Point& pixel : pixels) colors.push_back(frame.color.at<cv::Vec3b>(pixel));
+  }
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const cv::Vec3b& bgr = colors[i];
+    markers[i / kNumCorners]->colors[i % kNumCorners] = {bgr[2], bgr[1], bgr[0]};
+  }
+}
+
+std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const VideoOptions& options,
+                                             const std::vector<std::string>& known_names,
+                                             int num_threads) {
+  options.Check();
+  SilenceOpenCv();
+  std::error_code error;
+  if (path.empty() || !fs::exists(path, error)) {
+    throw InputError(fmt::format("--image_path '{}': there is no such folder or video", path));
+  }
+  if (!fs::is_directory(path, error)) {
+    if (fs::file_size(path, error) == 0) throw InputError(path + ": the file is empty");
+    if (HasImageExtension(path)) {
+      throw InputError(path + ": a single image; give the folder that holds the images");
+    }
+    return std::make_unique<VideoFile>(path, options, known_names, num_threads);
+  }
+  std::vector<std::string> names = ListImages(path);
+  const std::set<std::string> known(known_names.begin(), known_names.end());
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [&](const std::string& name) { return known.count(name) > 0; }),
+              names.end());
+  return std::make_unique<ImageFolder>(path, std::move(names));
+}
+
+}  // namespace velamap

@@ -1,0 +1,97 @@
+#include "importer/video/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace velamap {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+bool StartsWith(const Bytes& bytes, const std::vector<std::uint8_t>& signature) {
+  return bytes.size() >= signature.size() &&
+         std::equal(signature.begin(), signature.end(), bytes.begin());
+}
+
+// Walks the segments of a JPEG up to its end-of-image marker (ITU T.81, annex B). Looking for the
+// marker's two bytes alone would find the end of an embedded preview.
+bool JpegHasEnd(const Bytes& bytes) {
+  constexpr std::uint8_t kEndOfImage = 0xD9, kStartOfScan = 0xDA;
+  std::size_t i = 2;  // behind the start-of-image marker
+  while (i + 1 < bytes.size()) {
+    if (bytes[i] != 0xFF) return false;
+    const std::uint8_t marker = bytes[i + 1];
+    if (marker == 0xFF) {  // fill byte
+      ++i;
+      continue;
+    }
+    if (marker == kEndOfImage) return true;
+    if (i + 3 >= bytes.size()) return false;
+    i += 2 + (static_cast<std::size_t>(bytes[i + 2]) << 8 | bytes[i + 3]);
+    if (marker != kStartOfScan) continue;
+    // Compressed data: a stuffed FF 00 and the restart markers D0 to D7 are part of them.
+    while (i + 1 < bytes.size() && !(bytes[i] == 0xFF && bytes[i + 1] != 0 &&
+                                     (bytes[i + 1] < 0xD0 || bytes[i + 1] > 0xD7))) {
+      ++i;
+    }
+  }
+  return false;
+}
+
+// Walks the chunks of a PNG up to IEND: 4 bytes length, 4 bytes type, data, 4 bytes checksum.
+bool PngHasEnd(const Bytes& bytes) {
+  std::size_t i = 8;
+  while (i + 12 <= bytes.size()) {
+    std::size_t length = 0;
+    for (std::size_t k = 0; k < 4; ++k) length = length << 8 | bytes[i + k];
+    if (std::memcmp(&bytes[i + 4], "IEND", 4) == 0) return true;
+    i += 12 + length;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool HasImageExtension(const std::string& path) {
+  static constexpr std::array<const char*, 16> kExtensions = {
+      ".jpg",  ".jpeg", ".jpe", ".png", ".tif", ".tiff", ".bmp", ".dib",
+      ".webp", ".jp2",  ".pgm", ".ppm", ".pbm", ".pnm",  ".ras", ".exr"};
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+}
+
+cv::Mat DecodeImageFile(const std::string& path, std::string* reason) {
+  std::ifstream stream(path, std::ios::binary);
+  const Bytes bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream.is_open() || stream.bad()) {
+    *reason = "cannot be read";
+  } else if (bytes.empty()) {
+    *reason = "the file is empty";
+  } else if ((StartsWith(bytes, {0xFF, 0xD8}) && !JpegHasEnd(bytes)) ||
+             (StartsWith(bytes, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'}) &&
+              !PngHasEnd(bytes))) {
+    *reason = "the file is cut off";
+  } else {
+    try {
+      const cv::Mat color = cv::imdecode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+      if (!color.empty()) return color;
+    } catch (const cv::Exception&) {
+      // Falls through: OpenCV throws for some damaged files and returns nothing for others.
+    }
+    *reason = "no image that can be decoded";
+  }
+  return {};
+}
+
+}  // namespace velamap

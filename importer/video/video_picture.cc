@@ -1,0 +1,203 @@
+#include "importer/video/video_picture.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <new>
+
+extern "C" {
+#include <libavutil/frame.h>
+#include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
+#include <libswscale/swscale.h>
+}
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+using FramePtr = std::unique_ptr<AVFrame, void (*)(AVFrame*)>;
+using ScalerPtr = std::unique_ptr<SwsContext, void (*)(SwsContext*)>;
+
+FramePtr Reference(const AVFrame& frame) {
+  FramePtr copy(av_frame_clone(&frame), [](AVFrame* owned) { av_frame_free(&owned); });
+  if (copy == nullptr) throw std::bad_alloc();
+  return copy;
+}
+
+const AVPixFmtDescriptor* Format(const AVFrame& frame) {
+  return av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+}
+
+bool HasFlag(const AVPixFmtDescriptor& format, int flags) {
+  return (format.flags & static_cast<std::uint64_t>(flags)) != 0;
+}
+
+// Grey formats are always taken as full, as swscale does.
+bool IsFullRange(const AVFrame& frame) {
+  const AVPixFmtDescriptor* format = Format(frame);
+  return frame.color_range == AVCOL_RANGE_JPEG || format->nb_components <= 2 ||
+         std::strncmp(format->name, "yuvj", 4) == 0;
+}
+
+// Whether the first plane is the luma, a byte a pixel.
+bool HasPlainLuma(const AVFrame& frame) {
+  const AVPixFmtDescriptor* format = Format(frame);
+  const AVComponentDescriptor& luma = format->comp[0];
+  return !HasFlag(*format, AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM |
+                               AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BAYER) &&
+         luma.plane == 0 && luma.step == 1 && luma.offset == 0 && luma.shift == 0 &&
+         luma.depth == 8;
+}
+
+// 16 to `high` becomes 0 to 255, as n + n (271 - high) / (high - 16) in 16 bits, so that the
+// compiler takes many pixels at a time.
+template <int kHigh, int kFactor, int kRoundUp>
+void StretchLimitedRange(const std::uint8_t* limited, int num_pixels, std::uint8_t* full) {
+  for (int i = 0; i < num_pixels; ++i) {
+    const auto level = static_cast<std::uint16_t>(std::clamp<int>(limited[i], 16, kHigh) - 16);
+    full[i] = static_cast<std::uint8_t>(level + (std::uint32_t{level} * kFactor >> 16) +
+                                        (level > 0 ? kRoundUp : 0));
+  }
+}
+
+// (y - 16) 255 / 219 rounded down, which is what swscale and OpenCV make of grey. The factor is
+// 36 / 219 of 65536, rounded up.
+void StretchLuma(const std::uint8_t* luma, int num_pixels, std::uint8_t* gray) {
+  StretchLimitedRange<235, 10774, 0>(luma, num_pixels, gray);
+}
+
+// 128 + (c - 128) 255 / 224, rounded: half a level more than (c - 16) 255 / 224, so that this is
+// rounded up. The factor is 31 / 224 of 65536, rounded down.
+void StretchChroma(const std::uint8_t* limited, int num_pixels, std::uint8_t* full) {
+  StretchLimitedRange<240, 9069, 1>(limited, num_pixels, full);
+}
+
+// Whether the planes are luma, Cb and Cr, a byte each, chroma of half the size both ways.
+bool HasPlainHalfSizeChroma(const AVFrame& frame) {
+  return frame.format == AV_PIX_FMT_YUV420P || frame.format == AV_PIX_FMT_YUVJ420P;
+}
+
+cv::Mat FullRangeChroma(const AVFrame& frame, int plane) {
+  const cv::Mat limited((frame.height + 1) / 2, (frame.width + 1) / 2, CV_8UC1, frame.data[plane],
+                        static_cast<std::size_t>(frame.linesize[plane]));
+  if (IsFullRange(frame)) return limited.clone();
+  cv::Mat full(limited.size(), CV_8UC1);
+  for (int y = 0; y < full.rows; ++y) StretchChroma(limited.ptr(y), full.cols, full.ptr(y));
+  return full;
+}
+
+// A converter without a change of size; nothing if FFmpeg does not know the format.
+ScalerPtr MakeScaler(const AVFrame& frame, AVPixelFormat target, int flags) {
+  ScalerPtr scaler(sws_alloc_context(), sws_freeContext);
+  if (scaler == nullptr) throw std::bad_alloc();
+  for (const auto& [name, value] :
+       std::initializer_list<std::pair<const char*, int>>{{"srcw", frame.width},
+                                                          {"srch", frame.height},
+                                                          {"src_format", frame.format},
+                                                          {"src_range", IsFullRange(frame) ? 1 : 0},
+                                                          {"dstw", frame.width},
+                                                          {"dsth", frame.height},
+                                                          {"dst_format", target},
+                                                          {"sws_flags", flags}}) {
+    VELAMAP_CHECK(av_opt_set_int(scaler.get(), name, value, 0) >= 0);
+  }
+  if (sws_init_context(scaler.get(), nullptr, nullptr) < 0) scaler.reset();
+  return scaler;
+}
+
+// Rows begin at multiples of 64 bytes, so that swscale's fast loops do not need an end of their
+// own.
+cv::Mat MakeImage(int width, int height, int type) {
+  constexpr int kAlignment = 64;
+  return cv::Mat(height, (width + kAlignment - 1) / kAlignment * kAlignment, type)
+      .colRange(0, width);
+}
+
+bool Scale(SwsContext* scaler, const AVFrame& frame, cv::Mat* image) {
+  std::uint8_t* const planes[] = {image->data, nullptr, nullptr, nullptr};
+  const int strides[] = {static_cast<int>(image->step), 0, 0, 0};
+  return sws_scale(scaler, frame.data, frame.linesize, 0, frame.height, planes, strides) ==
+         frame.height;
+}
+
+cv::Mat Convert(const AVFrame& frame, AVPixelFormat target, int type, int flags) {
+  const ScalerPtr scaler = MakeScaler(frame, target, flags);
+  if (scaler == nullptr) return {};
+  cv::Mat image = MakeImage(frame.width, frame.height, type);
+  return Scale(scaler.get(), frame, &image) ? image : cv::Mat();
+}
+
+// What OpenCV's VideoCapture converts with; colours stay the same.
+cv::Mat ConvertToColor(const AVFrame& frame) {
+  return Convert(frame, AV_PIX_FMT_BGR24, CV_8UC3, SWS_BICUBIC);
+}
+
+// The pixels around one, on the grid of the coarsest chroma (4 px) and far enough for the filter.
+cv::Rect PatchAround(const cv::Point& pixel, const cv::Rect& bounds) {
+  const cv::Rect patch(pixel.x / 8 * 8 - 8, pixel.y / 4 * 4 - 8, 24, 20);
+  return patch & bounds;
+}
+
+FramePtr Crop(const AVFrame& frame, const cv::Rect& patch) {
+  FramePtr part = Reference(frame);
+  part->crop_left = static_cast<std::size_t>(patch.x);
+  part->crop_top = static_cast<std::size_t>(patch.y);
+  part->crop_right = static_cast<std::size_t>(frame.width - patch.br().x);
+  part->crop_bottom = static_cast<std::size_t>(frame.height - patch.br().y);
+  VELAMAP_CHECK(av_frame_apply_cropping(part.get(), AV_FRAME_CROP_UNALIGNED) >= 0);
+  return part;
+}
+
+}  // namespace
+
+VideoPicture::VideoPicture(const AVFrame& frame) : frame_(Reference(frame)) {}
+
+cv::Mat VideoPicture::Gray() const {
+  if (!HasPlainLuma(*frame_)) {
+    return Convert(*frame_, AV_PIX_FMT_GRAY8, CV_8UC1, SWS_BICUBIC);
+  }
+  cv::Mat gray(frame_->height, frame_->width, CV_8UC1);
+  const bool is_full_range = IsFullRange(*frame_);
+  for (int y = 0; y < gray.rows; ++y) {
+    const std::uint8_t* luma =
+        frame_->data[0] + static_cast<std::ptrdiff_t>(y) * frame_->linesize[0];
+    if (is_full_range) {
+      std::memcpy(gray.ptr(y), luma, static_cast<std::size_t>(gray.cols));
+    } else {
+      StretchLuma(luma, gray.cols, gray.ptr(y));
+    }
+  }
+  return gray;
+}
+
+cv::Mat VideoPicture::Color() const { return ConvertToColor(*frame_); }
+
+std::optional<ChromaPlanes> VideoPicture::HalfSizeChroma() const {
+  if (!HasPlainHalfSizeChroma(*frame_)) return std::nullopt;
+  return ChromaPlanes{FullRangeChroma(*frame_, 1), FullRangeChroma(*frame_, 2)};
+}
+
+std::vector<cv::Vec3b> VideoPicture::ColorsAt(const std::vector<cv::Point>& pixels) const {
+  std::vector<cv::Vec3b> colors(pixels.size());
+  const cv::Rect bounds(0, 0, frame_->width, frame_->height);
+  // Such pixels begin at no byte of their own, so no part can be cut out.
+  const bool is_whole = HasFlag(*Format(*frame_), AV_PIX_FMT_FLAG_BITSTREAM);
+  ScalerPtr scaler(nullptr, sws_freeContext);
+  cv::Mat image;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    VELAMAP_CHECK(bounds.contains(pixels[i]));
+    const cv::Rect patch = is_whole ? bounds : PatchAround(pixels[i], bounds);
+    const FramePtr part = Crop(*frame_, patch);
+    if (image.size() != patch.size()) {
+      scaler = MakeScaler(*part, AV_PIX_FMT_BGR24, SWS_BICUBIC);
+      if (scaler == nullptr) return colors;
+      image = MakeImage(patch.width, patch.height, CV_8UC3);
+    }
+    if (Scale(scaler.get(), *part, &image)) colors[i] = image.at<cv::Vec3b>(pixels[i] - patch.tl());
+  }
+  return colors;
+}
+
+}  // namespace velamap

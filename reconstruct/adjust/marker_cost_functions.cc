@@ -1,0 +1,276 @@
+#include "reconstruct/adjust/marker_cost_functions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <ceres/jet.h>
+#include <Eigen/Geometry>
+
+#include "importer/base/error.h"
+#include "importer/base/ids.h"
+#include "importer/camera/camera_projection.h"
+#include "importer/geometry/pose_step.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kMaxNumIntrinsics = 12;
+
+template <int kCols>
+using RowMajor = Eigen::Matrix<double, 2, kCols, Eigen::RowMajor>;
+using JacobianMap =
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+struct Projection {
+  Eigen::Vector2d x_in_image_px;
+  Eigen::Matrix2d by_ray;
+};
+
+Projection Project(CameraModel model, const double* intrinsics, const Eigen::Vector2d& ray) {
+  using Jet = ceres::Jet<double, 2>;
+  const Eigen::Matrix<Jet, 2, 1> x =
+      ImageFromRay<Jet, double>(model, intrinsics, {Jet(ray.x(), 0), Jet(ray.y(), 1)});
+  Projection projection{{x[0].a, x[1].a}, {}};
+  projection.by_ray.row(0) = x[0].v;
+  projection.by_ray.row(1) = x[1].v;
+  return projection;
+}
+
+// Derivative of the projection by the camera's parameters.
+RowMajor<kMaxNumIntrinsics> ProjectionByIntrinsics(CameraModel model, const double* intrinsics,
+                                                   const Eigen::Vector2d& ray) {
+  using Jet = ceres::Jet<double, kMaxNumIntrinsics>;
+  std::array<Jet, kMaxNumIntrinsics> params;
+  for (int i = 0; i < NumCameraParams(model); ++i) params[i] = Jet(intrinsics[i], i);
+  const Eigen::Matrix<Jet, 2, 1> x =
+      ImageFromRay<Jet, Jet>(model, params.data(), {Jet(ray.x()), Jet(ray.y())});
+  RowMajor<kMaxNumIntrinsics> jacobian;
+  jacobian.row(0) = x[0].v;
+  jacobian.row(1) = x[1].v;
+  return jacobian;
+}
+
+}  // namespace
+
+Eigen::Vector2d RobustResidual(const Eigen::Vector2d& whitened, double loss_sigmas,
+                               Eigen::Matrix2d* jacobian) {
+  if (jacobian != nullptr) jacobian->setIdentity();
+  if (std::isinf(loss_sigmas)) return whitened;
+  // With q = |r|^2 / a^2: g = sqrt(log(1 + q) / q).
+  const double q = whitened.squaredNorm() / (loss_sigmas * loss_sigmas);
+  const bool is_small = q < 1e-5;
+  const double squared_g = is_small ? 1.0 - 0.5 * q : std::log1p(q) / q;
+  const double g = std::sqrt(squared_g);
+  if (jacobian != nullptr) {
+    const double dsquared_g = is_small ? -0.5 + 2.0 / 3.0 * q : (1.0 / (1.0 + q) - squared_g) / q;
+    *jacobian = g * Eigen::Matrix2d::Identity() +
+                dsquared_g / (g * loss_sigmas * loss_sigmas) * whitened * whitened.transpose();
+  }
+  return g * whitened;
+}
+
+MarkerViewError::MarkerViewError(CameraModel camera_model, int num_corners_in_block,
+                                 std::vector<CornerObservation> corners, double loss_sigmas)
+    : camera_model_(camera_model), corners_(std::move(corners)), loss_sigmas_(loss_sigmas) {
+  set_num_residuals(2 * static_cast<int>(corners_.size()));
+  *mutable_parameter_block_sizes() = {3 * num_corners_in_block, 7, 1, NumCameraParams(camera_model),
+                                      6};
+}
+
+bool MarkerViewError::Evaluate(double const* const* parameters, double* residuals,
+                               double** jacobians) const {
+  const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[1]);
+  const Eigen::Map<const Eigen::Vector3d> translation(parameters[1] + 4);
+  const double inset_px = parameters[2][0];
+  const double* intrinsics = parameters[3];
+  const Eigen::Map<const Eigen::Vector3d> linear(parameters[4]), angular(parameters[4] + 3);
+  const Eigen::Matrix3d rotation_matrix = rotation.toRotationMatrix();
+
+  const auto map = [&](std::size_t i) {
+    double* data = jacobians == nullptr ? nullptr : jacobians[i];
+    return JacobianMap(data, data == nullptr ? 0 : num_residuals(), parameter_block_sizes()[i]);
+  };
+  std::array<JacobianMap, 5> maps = {map(0), map(1), map(2), map(3), map(4)};
+  if (maps[0].rows() > 0) maps[0].setZero();
+  const int num_corners = static_cast<int>(corners_.size());
+  for (int i = 0; i < num_corners; ++i) {
+    const CornerObservation& corner = corners_[i];
+    const Eigen::Map<const Eigen::Vector3d> x_in_world(parameters[0] + 3 * corner.slot);
+    const Eigen::Vector3d x_at_middle_row = rotation_matrix * x_in_world + translation;
+    const Eigen::Vector3d x_in_cam =
+        x_at_middle_row + corner.row_time_s * (linear + angular.cross(x_at_middle_row));
+    if (!(x_in_cam.z() > 0)) return false;
+    const Eigen::Vector2d ray = x_in_cam.hnormalized();
+    const Eigen::Vector2d offset_px = inset_px * corner.inset_direction - corner.x_in_image_px;
+    if (jacobians == nullptr) {
+      const Eigen::Vector2d projected =
+          ImageFromRay<double, double>(camera_model_, intrinsics, ray);
+      Eigen::Map<Eigen::Vector2d>(residuals + 2 * i) =
+          RobustResidual((projected + offset_px) / corner.sigma_px, loss_sigmas_, nullptr);
+      continue;
+    }
+    const Projection projection = Project(camera_model_, intrinsics, ray);
+    const Eigen::Vector2d error_px = projection.x_in_image_px + offset_px;
+    Eigen::Matrix2d by_whitened;
+    Eigen::Map<Eigen::Vector2d>(residuals + 2 * i) =
+        RobustResidual(error_px / corner.sigma_px, loss_sigmas_, &by_whitened);
+
+    const Eigen::Matrix2d by_image = by_whitened / corner.sigma_px;
+    Eigen::Matrix<double, 2, 3> ray_by_cam;
+    ray_by_cam << 1, 0, -ray.x(), 0, 1, -ray.y();
+    const Eigen::Matrix<double, 2, 3> by_cam =
+        by_image * projection.by_ray * ray_by_cam / x_in_cam.z();
+    const Eigen::Matrix<double, 2, 3> by_middle_row =
+        by_cam + corner.row_time_s * by_cam * CrossMatrix(angular);
+    if (maps[0].rows() > 0) {
+      maps[0].block<2, 3>(2 * i, 3 * corner.slot) = by_middle_row * rotation_matrix;
+    }
+    if (maps[1].rows() > 0) {
+      maps[1].block<2, 4>(2 * i, 0) = by_middle_row * RotatedFromQuaternion(rotation, x_in_world);
+      maps[1].block<2, 3>(2 * i, 4) = by_middle_row;
+    }
+    if (maps[2].rows() > 0) maps[2].block<2, 1>(2 * i, 0) = by_image * corner.inset_direction;
+    if (maps[3].rows() > 0) {
+      maps[3].middleRows<2>(2 * i) =
+          by_image *
+          ProjectionByIntrinsics(camera_model_, intrinsics, ray).leftCols(maps[3].cols());
+    }
+    if (maps[4].rows() > 0) {
+      maps[4].block<2, 3>(2 * i, 0) = corner.row_time_s * by_cam;
+      maps[4].block<2, 3>(2 * i, 3) = -corner.row_time_s * by_cam * CrossMatrix(x_at_middle_row);
+    }
+  }
+  return true;
+}
+
+std::vector<std::pair<int, int>> MarkerPriorError::Sides(const std::vector<int>& corners) {
+  std::vector<std::pair<int, int>> sides;
+  const int count = static_cast<int>(corners.size());
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) {
+      if (corners[j] == corners[i] % kNumCorners + 1) sides.emplace_back(i, j);
+    }
+  }
+  return sides;
+}
+
+MarkerPriorError::MarkerPriorError(const MarkerKnowledge& knowledge,
+                                   const std::vector<int>& corners)
+    : knowledge_(knowledge) {
+  if (knowledge.side_sigma_m > 0) sides_ = Sides(corners);
+  const bool is_whole = corners.size() == kNumCorners;
+  has_diagonals_ = is_whole && knowledge.diagonals_sigma_m > 0;
+  has_flatness_ = is_whole && knowledge.flatness_sigma_m > 0;
+  set_num_residuals(static_cast<int>(sides_.size()) + (has_diagonals_ ? 1 : 0) +
+                    (has_flatness_ ? 1 : 0));
+  *mutable_parameter_block_sizes() = {3 * static_cast<int>(corners.size()), 1};
+}
+
+bool MarkerPriorError::Evaluate(double const* const* parameters, double* residuals,
+                                double** jacobians) const {
+  const auto corner = [&](int slot) {
+    return Eigen::Map<const Eigen::Vector3d>(parameters[0] + 3 * slot);
+  };
+  const int num_sides = static_cast<int>(sides_.size()),
+            num_coordinates = parameter_block_sizes()[0];
+  double* by_marker = jacobians == nullptr ? nullptr : jacobians[0];
+  double* by_scale = jacobians == nullptr ? nullptr : jacobians[1];
+  JacobianMap marker_map(by_marker, by_marker == nullptr ? 0 : num_residuals(), num_coordinates);
+  marker_map.setZero();
+  for (int i = 0; i < num_sides; ++i) {
+    const auto [a, b] = sides_[i];
+    const Eigen::Vector3d side = corner(b) - corner(a);
+    const double length_m = side.norm();
+    residuals[i] =
+        (length_m - (1.0 + parameters[1][0]) * knowledge_.length_m) / knowledge_.side_sigma_m;
+    if (by_marker != nullptr) {
+      const Eigen::RowVector3d direction = side.transpose() / (length_m * knowledge_.side_sigma_m);
+      marker_map.block<1, 3>(i, 3 * a) = -direction;
+      marker_map.block<1, 3>(i, 3 * b) = direction;
+    }
+    if (by_scale != nullptr) by_scale[i] = -knowledge_.length_m / knowledge_.side_sigma_m;
+  }
+  if (!has_diagonals_ && !has_flatness_) return true;
+  if (by_scale != nullptr) {
+    std::fill(by_scale + num_sides, by_scale + num_residuals(), 0.0);
+  }
+  const Eigen::Vector3d diagonal1 = corner(2) - corner(0), diagonal2 = corner(3) - corner(1);
+  if (has_diagonals_) {
+    residuals[num_sides] = (diagonal1.norm() - diagonal2.norm()) / knowledge_.diagonals_sigma_m;
+    if (by_marker != nullptr) {
+      const Eigen::Vector3d direction1 = diagonal1.normalized() / knowledge_.diagonals_sigma_m;
+      const Eigen::Vector3d direction2 = diagonal2.normalized() / knowledge_.diagonals_sigma_m;
+      marker_map.row(num_sides) << -direction1.transpose(), direction2.transpose(),
+          direction1.transpose(), -direction2.transpose();
+    }
+  }
+  if (!has_flatness_) return true;
+  const int last = num_residuals() - 1;
+  // The best plane leaves the four corners by h, -h, h, -h.
+  const Eigen::Vector3d alternating = corner(0) - corner(1) + corner(2) - corner(3);
+  const Eigen::Vector3d cross = diagonal1.cross(diagonal2);
+  const Eigen::Vector3d normal = cross.normalized();
+  const double factor = 0.25 / knowledge_.flatness_sigma_m;
+  residuals[last] = factor * alternating.dot(normal);
+  if (by_marker != nullptr) {
+    const Eigen::Vector3d by_cross =
+        factor * (alternating - alternating.dot(normal) * normal) / cross.norm();
+    const Eigen::Vector3d by_diagonal1 = diagonal2.cross(by_cross);
+    const Eigen::Vector3d by_diagonal2 = by_cross.cross(diagonal1);
+    marker_map.block<1, 3>(last, 0) = factor * normal - by_diagonal1;
+    marker_map.block<1, 3>(last, 3) = -factor * normal - by_diagonal2;
+    marker_map.block<1, 3>(last, 6) = factor * normal + by_diagonal1;
+    marker_map.block<1, 3>(last, 9) = -factor * normal + by_diagonal2;
+  }
+  return true;
+}
+
+ScaleBarError::ScaleBarError(double length_m, double sigma_m,
+                             std::vector<std::vector<double>> corner_weights)
+    : length_m_(length_m), sigma_m_(sigma_m), corner_weights_(std::move(corner_weights)) {
+  set_num_residuals(1);
+  for (const std::vector<double>& weights : corner_weights_) {
+    mutable_parameter_block_sizes()->push_back(3 * static_cast<int>(weights.size()));
+  }
+}
+
+bool ScaleBarError::Evaluate(double const* const* parameters, double* residuals,
+                             double** jacobians) const {
+  Eigen::Vector3d bar = Eigen::Vector3d::Zero();
+  for (std::size_t block = 0; block < corner_weights_.size(); ++block) {
+    for (std::size_t i = 0; i < corner_weights_[block].size(); ++i) {
+      bar +=
+          corner_weights_[block][i] * Eigen::Map<const Eigen::Vector3d>(parameters[block] + 3 * i);
+    }
+  }
+  residuals[0] = (bar.norm() - length_m_) / sigma_m_;
+  const Eigen::Vector3d direction = bar.normalized() / sigma_m_;
+  for (std::size_t block = 0; jacobians != nullptr && block < corner_weights_.size(); ++block) {
+    for (std::size_t i = 0; jacobians[block] != nullptr && i < corner_weights_[block].size(); ++i) {
+      Eigen::Map<Eigen::Vector3d>(jacobians[block] + 3 * i) = corner_weights_[block][i] * direction;
+    }
+  }
+  return true;
+}
+
+ParameterPriorError::ParameterPriorError(std::vector<double> mean, std::vector<double> sigma)
+    : mean_(std::move(mean)), sigma_(std::move(sigma)) {
+  VELAMAP_CHECK(mean_.size() == sigma_.size());
+  set_num_residuals(static_cast<int>(mean_.size()));
+  *mutable_parameter_block_sizes() = {static_cast<int>(mean_.size())};
+}
+
+bool ParameterPriorError::Evaluate(double const* const* parameters, double* residuals,
+                                   double** jacobians) const {
+  const int count = num_residuals();
+  for (int i = 0; i < count; ++i) residuals[i] = (parameters[0][i] - mean_[i]) / sigma_[i];
+  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+  JacobianMap map(jacobians[0], count, count);
+  map.setZero();
+  for (int i = 0; i < count; ++i) map(i, i) = 1.0 / sigma_[i];
+  return true;
+}
+
+}  // namespace velamap

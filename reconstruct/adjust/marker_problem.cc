@@ -1,0 +1,295 @@
+#include "reconstruct/adjust/marker_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+#include <ceres/manifold.h>
+#include <ceres/product_manifold.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "importer/camera/camera_projection.h"
+#include "reconstruct/solve/schur_solver.h"
+
+namespace velamap {
+namespace {
+
+// Sigmas that the motion of a hand or a boat does not exceed; they only matter for images that say
+// nothing about their own velocity.
+constexpr double kLinearVelocitySigma = 3.0;   // m/s
+constexpr double kAngularVelocitySigma = 1.0;  // rad/s
+
+int SlotOf(const MarkerBlock& marker, int corner) {
+  const auto it = std::find(marker.corners.begin(), marker.corners.end(), corner);
+  return it == marker.corners.end() ? -1 : static_cast<int>(it - marker.corners.begin());
+}
+
+// Sum of the unit vectors along both sides away from the corner, as the image shows them now.
+Eigen::Vector2d InsetDirection(const Camera& camera, const Rigid3& cam_from_world,
+                               const MarkerBlock& marker, int slot_of_corner) {
+  const int corner = marker.corners[static_cast<std::size_t>(slot_of_corner)];
+  const auto project = [&](int other) -> std::optional<Eigen::Vector2d> {
+    const int slot = SlotOf(marker, other);
+    if (slot < 0) return std::nullopt;
+    return ImageFromCam(camera, cam_from_world * CornerPosition(marker, slot));
+  };
+  const auto here = project(corner);
+  const auto next = project(corner % kNumCorners + 1);
+  const auto previous = project((corner + kNumCorners - 2) % kNumCorners + 1);
+  if (!here || !next || !previous) return Eigen::Vector2d::Zero();
+  return (*next - *here).normalized() + (*previous - *here).normalized();
+}
+
+// `of_image` may be null.
+double CornerSigma(const MarkerAdjustmentOptions& options, const std::vector<double>* of_image,
+                   std::size_t point2D_idx) {
+  const double known_px =
+      of_image != nullptr && point2D_idx < of_image->size() ? (*of_image)[point2D_idx] : 0.0;
+  return std::hypot(known_px > 0 ? known_px : options.corner_sigma_px,
+                    options.corner_sigma_floor_px);
+}
+
+// Puts a marker problem together.
+class ProblemBuilder {
+ public:
+  ProblemBuilder(const MarkerAdjustmentOptions& options, const Model& model,
+                 const MarkerWeights& weights, MarkerState* state)
+      : options_(options), model_(model), weights_(weights), state_(*state) {}
+
+  void AddParameters() {
+    using Kind = SchurBlock::Kind;
+    for (MarkerBlock& marker : state_.markers) {
+      AddBlock(marker.x_in_world.data(), marker.x_in_world.size(), Kind::kEliminated);
+    }
+    result_.num_markers = static_cast<int>(state_.markers.size());
+    result_.manifolds.push_back(std::make_unique<PoseManifold>());
+    const ceres::Manifold* pose_manifold = result_.manifolds.back().get();
+    for (ImageBlock& image : state_.images) {
+      pose_idxs_.push_back(AddBlock(image.cam_from_world.data(), 7,
+                                    KeptIf(&image != &state_.images.front()), pose_manifold));
+      velocity_idxs_.push_back(
+          AddBlock(image.velocity.data(), 6, KeptIf(options_.rolling_shutter_s > 0)));
+    }
+    for (auto& [camera_id, intrinsics] : state_.intrinsics) {
+      const std::vector<int> held = HeldIntrinsics(model_.cameras.at(camera_id).model);
+      const bool refines = held.size() < intrinsics.size();
+      const ceres::Manifold* manifold = nullptr;
+      if (refines && !held.empty()) {
+        result_.manifolds.push_back(
+            std::make_unique<ceres::SubsetManifold>(static_cast<int>(intrinsics.size()), held));
+        manifold = result_.manifolds.back().get();
+      }
+      intrinsics_idxs_[camera_id] =
+          AddBlock(intrinsics.data(), intrinsics.size(), KeptIf(refines), manifold);
+    }
+    inset_idx_ = AddBlock(&state_.inset_px, 1, KeptIf(EstimatesInset()));
+    print_scale_idx_ = AddBlock(&state_.print_scale, 1,
+                                KeptIf(PrintScaleSigma() > 0 && !weights_.holds_print_scale));
+  }
+
+  void AddCorners(const CornerSigmas& corner_sigmas) {
+    std::unordered_map<ImageId, std::size_t> image_idxs;
+    std::vector<const std::vector<double>*> sigmas;
+    for (const ImageBlock& image : state_.images) {
+      image_idxs[image.image_id] = sigmas.size();
+      const auto of_image = corner_sigmas.find(image.image_id);
+      sigmas.push_back(of_image == corner_sigmas.end() ? nullptr : &of_image->second);
+    }
+    std::vector<std::vector<SeenCorner>> views(state_.images.size());  // of one marker, by image
+    for (std::size_t marker_idx = 0; marker_idx < state_.markers.size(); ++marker_idx) {
+      const MarkerBlock& marker = state_.markers[marker_idx];
+      for (int slot = 0; slot < static_cast<int>(marker.corners.size()); ++slot) {
+        const int corner = marker.corners[static_cast<std::size_t>(slot)];
+        const Point3DId point3D_id = Point3DIdFromCorner({marker.marker_id, corner});
+        for (const TrackElement& element : model_.points3D.at(point3D_id).track) {
+          views[image_idxs.at(element.image_id)].push_back({slot, point3D_id, element});
+        }
+      }
+      for (std::size_t image_idx = 0; image_idx < views.size(); ++image_idx) {
+        if (views[image_idx].empty()) continue;
+        AddView(image_idx, views[image_idx], sigmas[image_idx], static_cast<int>(marker_idx));
+        views[image_idx].clear();
+      }
+    }
+  }
+
+  void AddPriors(const std::map<CameraId, Camera>& calibration) {
+    for (std::size_t marker_idx = 0; marker_idx < state_.markers.size(); ++marker_idx) {
+      const MarkerBlock& marker = state_.markers[marker_idx];
+      const bool has_size = weights_.markers_without_size.count(marker.marker_id) == 0;
+      const double flatness = marker.is_rigid ? options_.rigid_flatness : options_.cloth_flatness;
+      const double side_sigma_m = weights_.print_tolerance * marker.length_m;
+      const MarkerKnowledge knowledge{marker.length_m, has_size ? side_sigma_m : 0.0,
+                                      std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
+      auto error = std::make_unique<MarkerPriorError>(knowledge, marker.corners);
+      if (error->num_residuals() == 0) continue;
+      AddPrior(std::move(error), {static_cast<int>(marker_idx), print_scale_idx_});
+    }
+    if (EstimatesInset()) {
+      AddPrior(MakePrior({0.0}, {options_.inset_sigma_px}), {inset_idx_});
+    }
+    if (PrintScaleSigma() > 0) {
+      AddPrior(MakePrior({0.0}, {PrintScaleSigma()}), {print_scale_idx_});
+    }
+    if (options_.rolling_shutter_s > 0) {
+      constexpr double v = kLinearVelocitySigma, w = kAngularVelocitySigma;
+      for (const int block_idx : velocity_idxs_) {
+        AddPrior(MakePrior({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}), {block_idx});
+      }
+    }
+    for (const auto& [camera_id, intrinsics] : state_.intrinsics) {
+      const Camera& camera = calibration.at(camera_id);
+      if (HeldIntrinsics(camera.model).size() == intrinsics.size()) continue;
+      AddPrior(MakePrior(camera.params, IntrinsicsSigmas(camera)),
+               {intrinsics_idxs_.at(camera_id)});
+    }
+  }
+
+  void AddScaleBars() {
+    for (const ScaleBar& bar : weights_.scale_bars) {
+      AddResidual(std::make_unique<ScaleBarError>(bar.distance.length_m, bar.distance.sigma_m,
+                                                  bar.corner_weights),
+                  bar.marker_idxs);
+    }
+  }
+
+  MarkerProblem Take() { return std::move(result_); }
+
+ private:
+  struct SeenCorner {
+    int slot;
+    Point3DId point3D_id;
+    TrackElement element;
+  };
+  using PoseManifold =
+      ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
+
+  static SchurBlock::Kind KeptIf(bool varies) {
+    return varies ? SchurBlock::Kind::kKept : SchurBlock::Kind::kConstant;
+  }
+
+  // These return indices.
+  int AddBlock(double* values, std::size_t size, SchurBlock::Kind kind,
+               const ceres::Manifold* manifold = nullptr) {
+    result_.schur.blocks.push_back({values, static_cast<int>(size), kind, manifold});
+    return static_cast<int>(result_.schur.blocks.size()) - 1;
+  }
+
+  int AddResidual(std::unique_ptr<ceres::CostFunction> error, std::vector<int> block_idxs) {
+    result_.schur.residuals.push_back({error.get(), nullptr, std::move(block_idxs)});
+    result_.errors.push_back(std::move(error));
+    return static_cast<int>(result_.schur.residuals.size()) - 1;
+  }
+
+  void AddPrior(std::unique_ptr<ceres::CostFunction> error, std::vector<int> block_idxs) {
+    result_.prior_residuals.push_back(AddResidual(std::move(error), std::move(block_idxs)));
+  }
+
+  void AddView(std::size_t image_idx, const std::vector<SeenCorner>& view,
+               const std::vector<double>* sigmas_px, int marker_idx) {
+    const MarkerBlock& marker = state_.markers[static_cast<std::size_t>(marker_idx)];
+    const ModelImage& image = model_.images[image_idx];
+    const Camera& camera = model_.cameras.at(image.camera_id);
+    std::vector<CornerObservation> observations(view.size());
+    for (std::size_t i = 0; i < view.size(); ++i) {
+      const auto& [slot, point3D_id, element] = view[i];
+      CornerObservation& observation = observations[i];
+      observation.slot = slot;
+      observation.x_in_image_px = image.points2D.at(element.point2D_idx).x_in_image_px;
+      observation.sigma_px =
+          weights_.corner_factor * CornerSigma(options_, sigmas_px, element.point2D_idx);
+      if (EstimatesInset()) {
+        observation.inset_direction = InsetDirection(camera, image.cam_from_world, marker, slot);
+      }
+      observation.row_time_s =
+          options_.rolling_shutter_s * (observation.x_in_image_px.y() / camera.height_px - 0.5);
+      result_.corners.emplace_back(point3D_id, element);
+    }
+    result_.corner_residuals.push_back(AddResidual(
+        std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker.corners.size()),
+                                          std::move(observations), weights_.loss_sigmas),
+        {marker_idx, pose_idxs_[image_idx], inset_idx_, intrinsics_idxs_.at(image.camera_id),
+         velocity_idxs_[image_idx]}));
+  }
+
+  static std::unique_ptr<ceres::CostFunction> MakePrior(std::vector<double> mean,
+                                                        std::vector<double> sigma) {
+    return std::make_unique<ParameterPriorError>(std::move(mean), std::move(sigma));
+  }
+
+  bool EstimatesInset() const { return options_.estimate_inset && options_.inset_sigma_px > 0; }
+
+  double PrintScaleSigma() const {
+    return std::hypot(options_.common_print_tolerance, weights_.inset_as_scale);
+  }
+
+  std::vector<int> HeldIntrinsics(CameraModel model) const {
+    const int num_focal = NumFocalLengths(model);
+    std::vector<int> held;
+    for (int i = 0; i < NumCameraParams(model); ++i) {
+      const bool is_refined = i < num_focal       ? options_.refine_focal_length
+                              : i < num_focal + 2 ? options_.refine_principal_point
+                                                  : options_.refine_extra_params;
+      if (!is_refined) held.push_back(i);
+    }
+    return held;
+  }
+
+  std::vector<double> IntrinsicsSigmas(const Camera& camera) const {
+    const int num_focal = NumFocalLengths(camera.model);
+    std::vector<double> sigmas(camera.params.size(), options_.intrinsics_sigma);
+    for (int i = 0; i < num_focal + 2; ++i) {
+      sigmas[i] *= i < num_focal ? camera.params[i] : MeanFocalLength(camera);
+    }
+    return sigmas;
+  }
+
+  static int NumFocalLengths(CameraModel model) { return HasOneFocalLength(model) ? 1 : 2; }
+
+  const MarkerAdjustmentOptions& options_;
+  const Model& model_;
+  const MarkerWeights& weights_;
+  MarkerState& state_;
+  // Of blocks; those of the markers come first.
+  std::vector<int> pose_idxs_, velocity_idxs_;  // by image
+  std::map<CameraId, int> intrinsics_idxs_;
+  int inset_idx_ = 0, print_scale_idx_ = 0;
+  MarkerProblem result_;
+};
+
+}  // namespace
+
+MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Model& model,
+                                const CornerSigmas& corner_sigmas,
+                                const std::map<CameraId, Camera>& calibration,
+                                const MarkerWeights& weights, MarkerState* state) {
+  ProblemBuilder builder(options, model, weights, state);
+  builder.AddParameters();
+  builder.AddCorners(corner_sigmas);
+  builder.AddPriors(calibration);
+  builder.AddScaleBars();
+  return builder.Take();
+}
+
+int SolveMarkerProblem(int max_num_iterations, double function_tolerance, MarkerProblem* problem) {
+  SchurSolverOptions options;
+  options.max_num_iterations = max_num_iterations;
+  options.function_tolerance = function_tolerance;
+  // So much is only asked for near the minimum, where damping would only add iterations.
+  if (function_tolerance < 1e-6) options.initial_radius = 1e8;
+  SchurProblem schur = problem->schur;
+  KeepCoupledBlocks(&schur);
+  const SchurSummary summary = SolveSchur(options, schur);
+  spdlog::debug("{} iterations, cost {:.6g} -> {:.6g}", summary.num_iterations,
+                summary.initial_cost, summary.final_cost);
+  if (!summary.is_usable) {
+    throw DataError(
+        "the bundle adjustment finds no step: a corner lies behind the camera that sees it, or a "
+        "number is not finite");
+  }
+  return summary.num_iterations;
+}
+
+}  // namespace velamap

@@ -1,0 +1,104 @@
+#include "reconstruct/adjust/marker_uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "reconstruct/adjust/marker_sizes.h"
+#include "reconstruct/geometry/covariance_update.h"
+
+namespace velamap {
+namespace {
+
+// First column of a global block that varies; -1 for others.
+int GlobalColumn(const MarkerProblem& problem, const double* values) {
+  const SchurStructure structure = MakeSchurStructure(WithoutScaleBars(problem));
+  for (std::size_t idx = 0; idx < problem.schur.blocks.size(); ++idx) {
+    if (problem.schur.blocks[idx].values == values) return structure.column_of_block[idx];
+  }
+  return -1;
+}
+
+// 1 sigma of the global in `column`, once scale bars have been measured too.
+double GlobalSigma(const MarkerCovariance& covariance, int column, const PointCovariance& points,
+                   const Eigen::MatrixXd& bar_gradients, const Eigen::VectorXd& bar_sigmas) {
+  Eigen::VectorXd unit = Eigen::VectorXd::Unit(covariance.root.rows(), column);
+  covariance.root.triangularView<Eigen::Lower>().solveInPlace(unit);
+  double variance = unit.squaredNorm();
+  if (bar_gradients.cols() > 0) {
+    // cov(points, global) = -factor * unit.
+    const Eigen::VectorXd with_bars = -bar_gradients.transpose() * (points.factor * unit);
+    Eigen::MatrixXd innovation = bar_gradients.transpose() * Multiply(points, bar_gradients);
+    innovation.diagonal() += bar_sigmas.cwiseAbs2();
+    variance -= with_bars.dot(innovation.llt().solve(with_bars));
+  }
+  return std::sqrt(std::max(0.0, variance));
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> Positions(const MarkerState& state) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const MarkerBlock& marker : state.markers) {
+    for (std::size_t i = 0; i < marker.x_in_world.size(); i += 3) {
+      positions.emplace_back(marker.x_in_world[i], marker.x_in_world[i + 1],
+                             marker.x_in_world[i + 2]);
+    }
+  }
+  return positions;
+}
+
+PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covariance) {
+  PointCovariance points;
+  points.blocks = covariance.marker_blocks;
+  for (const MarkerBlock& marker : state.markers) {
+    for (const int corner : marker.corners) {
+      points.point3D_ids.push_back(Point3DIdFromCorner({marker.marker_id, corner}));
+    }
+  }
+  points.factor = covariance.factor;
+  points.signs.setOnes(points.factor.cols());
+  return points;
+}
+
+double CornerRedundancy(const MarkerProblem& problem, const MarkerCovariance& covariance) {
+  const auto num_parameters =
+      static_cast<double>(covariance.root.rows() + covariance.factor.rows());
+  // All leverages add up to the number of parameters; what the priors have is not the corners'.
+  double of_priors = 0.0;
+  for (const ResidualJacobian& prior : ResidualJacobians(problem, problem.prior_residuals)) {
+    of_priors += Leverage(covariance, prior);
+  }
+  return 2.0 * static_cast<double>(problem.corners.size()) - (num_parameters - of_priors);
+}
+
+AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeights& weights,
+                                      const MarkerProblem& problem,
+                                      const MarkerCovariance& covariance) {
+  AdjustmentUncertainty uncertainty;
+  PointCovariance& points = uncertainty.points;
+  points = PointsOf(state, covariance);
+  const auto num_bars = static_cast<Eigen::Index>(weights.scale_bars.size());
+  Eigen::MatrixXd bar_gradients(points.factor.rows(), num_bars);
+  Eigen::VectorXd bar_sigmas(num_bars);
+  for (Eigen::Index i = 0; i < num_bars; ++i) {
+    bar_gradients.col(i) = BarGradient(weights.scale_bars[i], state);
+    bar_sigmas[i] = weights.scale_bars[i].distance.sigma_m;
+  }
+  const int inset_column = GlobalColumn(problem, &state.inset_px);
+  if (inset_column >= 0) {
+    uncertainty.apparent_inset_px = state.inset_px;
+    uncertainty.apparent_inset_sigma_px =
+        GlobalSigma(covariance, inset_column, points, bar_gradients, bar_sigmas);
+  }
+  AddMeasurements(bar_gradients, bar_sigmas, &points);
+  const std::vector<Eigen::Vector3d> positions = Positions(state);
+  ToInnerConstraints(positions, &points);
+  const Eigen::VectorXd by_scale = ScaleGradient(positions);
+  uncertainty.relative_scale_sigma =
+      std::sqrt(std::max(0.0, by_scale.dot(Multiply(points, by_scale).col(0))));
+  return uncertainty;
+}
+
+}  // namespace velamap

@@ -1,0 +1,151 @@
+#include "reconstruct/adjust/weak_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+#include "importer/base/error.h"
+#include "importer/base/statistics.h"
+
+namespace velamap {
+namespace {
+
+// Points known so much worse along one direction than across. Where corners are very good and
+// prints are not, points may be long for another reason, so that the angle of the views counts too.
+constexpr double kMaxElongation = 10.0;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegree = kPi / 180.0;
+constexpr double kMaxWeakParallax = 20.0 * kDegree;
+
+// Longest and shortest half-axis of the points' 1-sigma ellipsoids, medians, m.
+struct Ellipsoid {
+  double longest_m = 0.0;
+  double shortest_m = 0.0;
+  double elongation = 1.0;
+};
+
+Ellipsoid MedianEllipsoid(const PointCovariance& points) {
+  std::vector<double> longest_m, shortest_m, elongations;
+  for (const Point3DId point3D_id : points.point3D_ids) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
+        PointCovarianceOf(points, point3D_id), Eigen::EigenvaluesOnly);
+    const Eigen::Vector3d variances = solver.eigenvalues().cwiseMax(1e-30);
+    shortest_m.push_back(std::sqrt(variances[0]));
+    longest_m.push_back(std::sqrt(variances[2]));
+    elongations.push_back(std::sqrt(variances[2] / variances[0]));
+  }
+  return {Median(std::move(longest_m)), Median(std::move(shortest_m)),
+          Median(std::move(elongations))};
+}
+
+// How the images see the points.
+struct Views {
+  double camera_extent_m = 0.0;  // largest distance between two cameras
+  double distance_m = 0.0;       // median, camera to middle of the points
+  double parallax_rad = 0.0;     // median over the points of the largest angle between two views
+  double object_extent_m = 0.0;  // RMS distance of the points from their middle
+  bool is_flat = false;
+  double max_tilt_rad = 0.0;  // of a flat object: largest angle of a view to its normal
+};
+
+double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+double MedianParallax(const Model& model, const std::vector<Eigen::Vector3d>& camera_centers) {
+  std::map<ImageId, std::size_t> image_idxs;
+  for (std::size_t i = 0; i < model.images.size(); ++i) {
+    image_idxs[model.images[i].image_id] = i;
+  }
+  std::vector<double> parallaxes;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    std::vector<Eigen::Vector3d> rays;
+    for (const TrackElement& element : point.track) {
+      rays.push_back(camera_centers[image_idxs.at(element.image_id)] - point.x_in_world);
+    }
+    double parallax = 0.0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) parallax = std::max(parallax, Angle(rays[i], rays[j]));
+    }
+    parallaxes.push_back(parallax);
+  }
+  return Median(std::move(parallaxes));
+}
+
+Views DescribeViews(const Model& model) {
+  constexpr double kFlat = 0.02;  // thickness over extent
+  std::vector<Eigen::Vector3d> centers;
+  for (const ModelImage& image : model.images) {
+    centers.push_back(Inverse(image.cam_from_world).translation);
+  }
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  const double count = static_cast<double>(model.points3D.size());
+  for (const auto& [point3D_id, point] : model.points3D) middle += point.x_in_world / count;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const auto& [point3D_id, point] : model.points3D) {
+    const Eigen::Vector3d offset = point.x_in_world - middle;
+    scatter += offset * offset.transpose() / count;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
+  Views views;
+  views.object_extent_m = std::sqrt(scatter.trace());
+  views.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < kFlat * views.object_extent_m;
+  std::vector<double> distances_m;
+  for (const Eigen::Vector3d& center : centers) {
+    distances_m.push_back((center - middle).norm());
+    const double angle = Angle(center - middle, axes.eigenvectors().col(0));
+    views.max_tilt_rad = std::max(views.max_tilt_rad, std::min(angle, kPi - angle));
+    for (const Eigen::Vector3d& other : centers) {
+      views.camera_extent_m = std::max(views.camera_extent_m, (center - other).norm());
+    }
+  }
+  views.distance_m = Median(std::move(distances_m));
+  views.parallax_rad = MedianParallax(model, centers);
+  return views;
+}
+
+std::string Reason(const Views& views) {
+  constexpr double kOnePlace = 0.02;
+  constexpr double kHeadOn = 20.0 * kDegree;
+  if (views.camera_extent_m < kOnePlace * views.distance_m) {
+    return fmt::format(
+        "all images are taken from one place (within {:.2g} m, at a distance of {:.2g} m): the "
+        "camera only turned, or moved hardly",
+        views.camera_extent_m, views.distance_m);
+  }
+  if (views.is_flat && views.max_tilt_rad < kHeadOn) {
+    return fmt::format(
+        "a flat object is seen head-on in all images (within {:.0f} degrees of its normal)",
+        views.max_tilt_rad / kDegree);
+  }
+  return fmt::format(
+      "there is hardly any parallax: half of the points are seen under less than "
+      "{:.1f} degrees",
+      views.parallax_rad / kDegree);
+}
+
+}  // namespace
+
+std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovariance& points) {
+  // Beyond this part of the object's extent there is no shape to speak of.
+  constexpr double kMaxRelativeSigma = 0.2;
+  if (points.IsEmpty()) return {};
+  const Ellipsoid ellipsoid = MedianEllipsoid(points);
+  if (ellipsoid.elongation < kMaxElongation) return {};
+  const Views views = DescribeViews(model);
+  if (views.parallax_rad > kMaxWeakParallax) return {};
+  const std::string text = fmt::format(
+      "{}; so the points are known to {:.2g} mm along the line of sight and to {:.2g} mm across: "
+      "take images from places more than 30 degrees apart",
+      Reason(views), 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m);
+  if (ellipsoid.longest_m > kMaxRelativeSigma * views.object_extent_m) {
+    throw DataError("the images leave the shape undetermined: " + text);
+  }
+  return {text};
+}
+
+}  // namespace velamap

@@ -1,0 +1,232 @@
+#include "reconstruct/colmap/bundle_adjustment.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "reconstruct/colmap/colmap_runner.h"
+#include "reconstruct/colmap/observation_filter.h"
+#include "reconstruct/model/gauge.h"
+#include "reconstruct/model/model_io.h"
+#include "reconstruct/model/reprojection.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where COLMAP reads and writes; removed with everything in it.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (fs::temp_directory_path() / "velamap_XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw InputError(fmt::format("{}: no folder for temporary files: {}; set TMPDIR", pattern,
+                                   std::strerror(errno)));
+    }
+    path_ = pattern;
+    fs::create_directory(path_ / "out");
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  std::string InputPath() const { return path_ / "in"; }
+  std::string OutputPath() const { return path_ / "out"; }
+
+ private:
+  fs::path path_;
+};
+
+std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& options,
+                                                 const ScratchFolder& scratch) {
+  std::vector<std::string> arguments = {"bundle_adjuster", "--input_path", scratch.InputPath(),
+                                        "--output_path", scratch.OutputPath()};
+  const auto add = [&](const std::string& name, const std::string& value) {
+    // Options of the solver changed their prefix in COLMAP 4.
+    for (const char* prefix : {"BundleAdjustment.", "BundleAdjustmentCeres."}) {
+      if (ColmapHasOption(options.colmap_path, "bundle_adjuster", prefix + name)) {
+        arguments.insert(arguments.end(), {"--" + (prefix + name), value});
+        return;
+      }
+    }
+    spdlog::warn("{} bundle_adjuster has no option for {}: its default is used",
+                 options.colmap_path, name);
+  };
+  add("refine_focal_length", options.refine_focal_length ? "1" : "0");
+  add("refine_principal_point", options.refine_principal_point ? "1" : "0");
+  add("refine_extra_params", options.refine_extra_params ? "1" : "0");
+  add("max_num_iterations", std::to_string(options.max_num_iterations));
+  add("function_tolerance", fmt::format("{}", options.function_tolerance));
+  return arguments;
+}
+
+[[noreturn]] void ThrowImplausible(const std::string& what, const std::string& log_path) {
+  throw ExternalToolError(fmt::format(
+      "COLMAP's bundle_adjuster gave an implausible result: {}; log: {}", what, log_path));
+}
+
+bool RefinesCameras(const BundleAdjustmentOptions& options) {
+  return options.refine_focal_length || options.refine_principal_point ||
+         options.refine_extra_params;
+}
+
+// COLMAP exits with 0 whatever happened, so that its files are proof of nothing. `before` is what
+// it was given.
+void JudgeStructure(const Model& before, const Model& after, bool refines_cameras,
+                    const std::string& log_path) {
+  if (after.images.size() != before.images.size()) {
+    ThrowImplausible(
+        fmt::format("{} of {} images came back", after.images.size(), before.images.size()),
+        log_path);
+  }
+  if (after.points3D.size() != before.points3D.size()) {
+    ThrowImplausible(
+        fmt::format("{} of {} points came back", after.points3D.size(), before.points3D.size()),
+        log_path);
+  }
+  for (const ModelImage& image : before.images) {
+    if (after.FindImage(image.image_id) == nullptr) {
+      ThrowImplausible(fmt::format("image {} is lost", image.image_id), log_path);
+    }
+  }
+  for (const auto& [point3D_id, point] : before.points3D) {
+    const auto it = after.points3D.find(point3D_id);
+    if (it == after.points3D.end() || it->second.track.size() != point.track.size()) {
+      ThrowImplausible(fmt::format("point {} or some of its observations are lost", point3D_id),
+                       log_path);
+    }
+  }
+  for (const auto& [camera_id, camera] : before.cameras) {
+    const auto it = after.cameras.find(camera_id);
+    if (it == after.cameras.end() || it->second.model != camera.model) {
+      ThrowImplausible(fmt::format("camera {} is lost", camera_id), log_path);
+    }
+    if (refines_cameras ? !(MeanFocalLength(it->second) > 0) : !(it->second == camera)) {
+      ThrowImplausible(fmt::format("camera {} has parameters that cannot be", camera_id), log_path);
+    }
+  }
+}
+
+// Over the points in front of their cameras; the others are left to the judgement of observations.
+double RmsError(const Model& model) {
+  std::vector<double> errors_px;
+  for (const ReprojectionError& error : ComputeReprojectionErrors(model)) {
+    if (std::isfinite(error.error_px)) errors_px.push_back(error.error_px);
+  }
+  return ComputeStatistics(std::move(errors_px)).rms;
+}
+
+// Poses, points and cameras of COLMAP's result; order, names and colours stay ours.
+void TakeOver(const Model& result, Model* model) {
+  model->cameras = result.cameras;
+  for (ModelImage& image : model->images) {
+    image.cam_from_world = result.FindImage(image.image_id)->cam_from_world;
+  }
+  for (auto& [point3D_id, point] : model->points3D) {
+    point.x_in_world = result.points3D.at(point3D_id).x_in_world;
+  }
+  // Where the first image's camera is already, unless this COLMAP fixes the gauge another way.
+  const Rigid3 first_from_world = model->images.front().cam_from_world;
+  TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
+}
+
+Model ReadResult(const std::string& path, const std::string& log_path) {
+  try {
+    return ReadModel(path);
+  } catch (const InputError& error) {
+    ThrowImplausible(error.what(), log_path);
+  }
+}
+
+void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_path, Model* model) {
+  const ScratchFolder scratch;
+  OrderForGauge(model->images.front().image_id, model);
+  WriteModel(*model, scratch.InputPath(), ModelFormat::kBinary);
+  RunColmap(options.colmap_path, BundleAdjusterArguments(options, scratch), log_path);
+
+  const Model result = ReadResult(scratch.OutputPath(), log_path);
+  JudgeStructure(*model, result, RefinesCameras(options), log_path);
+  const double rms_before_px = RmsError(*model);
+  TakeOver(result, model);
+  const double rms_after_px = RmsError(*model);
+  constexpr double kRounding = 1e-6;
+  if (!(rms_after_px <= (1.0 + kRounding) * rms_before_px + kRounding)) {
+    ThrowImplausible(fmt::format("the RMS reprojection error grew from {:.6f} to {:.6f} px",
+                                 rms_before_px, rms_after_px),
+                     log_path);
+  }
+}
+
+void CheckEnough(const Model& model, int num_images_before, std::size_t num_outliers) {
+  if (model.images.size() >= 2 && !model.points3D.empty()) return;
+  throw DataError(fmt::format(
+      "nothing is left to adjust: {} of {} images share enough points with others ({} outliers "
+      "removed)",
+      model.images.size(), num_images_before, num_outliers));
+}
+
+void CheckAtLeast(const char* option, double value, double min) {
+  if (!(value >= min) || !std::isfinite(value)) {
+    throw InputError(fmt::format("--BundleAdjustment.{}: {} is out of range; give {} or more",
+                                 option, value, min));
+  }
+}
+
+}  // namespace
+
+void BundleAdjustmentOptions::Check() const {
+  if (colmap_path.empty()) throw InputError("--colmap_path: is empty; give COLMAP's program");
+  CheckAtLeast("max_num_iterations", max_num_iterations, 1);
+  CheckAtLeast("function_tolerance", function_tolerance, 0);
+  CheckAtLeast("max_num_rounds", max_num_rounds, 1);
+  CheckAtLeast("outlier_ratio", outlier_ratio, 2);
+  CheckAtLeast("min_outlier_error", min_outlier_error_px, 0);
+  CheckAtLeast("min_track_length", min_track_length, 2);
+  CheckAtLeast("max_mean_error", max_mean_error_px, 0);
+}
+
+BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
+                                         const std::string& log_path, Model* model) {
+  options.Check();
+  CheckModel(*model);
+  const int num_images = static_cast<int>(model->images.size());
+  Model adjusted = *model;
+  BundleAdjustmentSummary summary;
+  summary.error_before_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(adjusted));
+  RemoveSeedOutliers(options, &adjusted, &summary.removed);
+  while (true) {
+    RemoveUnderconstrained(options.min_track_length, &adjusted, &summary.removed_images);
+    CheckEnough(adjusted, num_images, summary.removed.size());
+    AdjustOnce(options, log_path, &adjusted);
+    ++summary.num_rounds;
+    if (summary.num_rounds == options.max_num_rounds) break;
+    const int num_changes = ReviseObservations(options, &adjusted, &summary.removed);
+    spdlog::debug("round {}: {} observations changed sides", summary.num_rounds, num_changes);
+    if (num_changes == 0) break;
+  }
+  UpdatePointErrors(&adjusted);
+  summary.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(adjusted));
+  if (!(summary.error_after_px.mean <= options.max_mean_error_px)) {
+    throw DataError(fmt::format(
+        "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
+        "of --BundleAdjustment.max_mean_error; is the calibration of these images?",
+        summary.error_after_px.mean, options.max_mean_error_px));
+  }
+  *model = std::move(adjusted);
+  return summary;
+}
+
+}  // namespace velamap

@@ -1,0 +1,200 @@
+#include "reconstruct/colmap/observation_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "importer/base/error.h"
+#include "reconstruct/model/reprojection.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kMinImageObservations = 4;
+
+// Residuals along both axes, px.
+using AxisResiduals = std::vector<double>;
+
+void AddResidual(const ReprojectionError& error, AxisResiduals* residuals) {
+  if (!std::isfinite(error.error_px)) return;
+  residuals->push_back(error.residual_in_image_px.x());
+  residuals->push_back(error.residual_in_image_px.y());
+}
+
+// As RobustSigma, but about zero: a shift of all residuals counts as their error. Infinite when
+// there are no residuals.
+double RobustSigmaAboutZero(AxisResiduals residuals) {
+  if (residuals.empty()) return std::numeric_limits<double>::infinity();
+  for (double& residual : residuals) residual = std::abs(residual);
+  return 1.4826 * Median(std::move(residuals));
+}
+
+double OutlierThreshold(const BundleAdjustmentOptions& options, double sigma_px) {
+  return std::max(options.min_outlier_error_px, options.outlier_ratio * sigma_px);
+}
+
+void Remove(const ReprojectionError& error, Model* model,
+            std::vector<RemovedObservation>* removed) {
+  RemoveObservation(model, error.point3D_id, error.element);
+  removed->push_back({error.point3D_id, error.element, error.error_px});
+}
+
+// Outliers among the observations of one point. A gross one drags the point along and makes good
+// observations look bad, so that only those of its size go with it, and it goes alone where most of
+// them stand out; the others are judged again after the next adjustment. Points behind the camera
+// go at once: COLMAP would drop them.
+std::vector<ReprojectionError> FindOutliers(const std::vector<ReprojectionError>& track,
+                                            double threshold_px) {
+  constexpr double kFractionOfWorst = 0.3;
+  const auto less = [](const ReprojectionError& a, const ReprojectionError& b) {
+    return a.error_px < b.error_px;
+  };
+  const auto worst = std::max_element(track.begin(), track.end(), less);
+  if (worst->error_px <= threshold_px) return {};
+  std::vector<ReprojectionError> outliers;
+  for (const ReprojectionError& error : track) {
+    if (error.error_px > std::max(threshold_px, kFractionOfWorst * worst->error_px) ||
+        std::isinf(error.error_px)) {
+      outliers.push_back(error);
+    }
+  }
+  const bool is_dragged = 2 * outliers.size() > track.size();
+  return is_dragged && std::isfinite(worst->error_px) ? std::vector{*worst} : outliers;
+}
+
+// Puts an observation back into the track and the image. False where one of them is gone or the
+// observation does not fit.
+bool RestoreIfFits(const RemovedObservation& observation, double threshold_px, Model* model) {
+  const auto point = model->points3D.find(observation.point3D_id);
+  const auto image = std::find_if(model->images.begin(), model->images.end(),
+                                  [&observation](const ModelImage& other) {
+                                    return other.image_id == observation.element.image_id;
+                                  });
+  if (point == model->points3D.end() || image == model->images.end()) return false;
+  Point2D& point2D = image->points2D.at(observation.element.point2D_idx);
+  const auto projection = ImageFromCam(model->cameras.at(image->camera_id),
+                                       image->cam_from_world * point->second.x_in_world);
+  if (!projection || !((*projection - point2D.x_in_image_px).norm() <= threshold_px)) return false;
+  VELAMAP_CHECK(point2D.point3D_id == kInvalidPoint3DId);
+  point2D.point3D_id = observation.point3D_id;
+  point->second.track.push_back(observation.element);
+  return true;
+}
+
+int RestoreFitting(double threshold_px, Model* model, std::vector<RemovedObservation>* removed) {
+  const auto restored = std::stable_partition(removed->begin(), removed->end(),
+                                              [threshold_px, model](const RemovedObservation& o) {
+                                                return !RestoreIfFits(o, threshold_px, model);
+                                              });
+  const auto num_restored = removed->end() - restored;
+  removed->erase(restored, removed->end());
+  return static_cast<int>(num_restored);
+}
+
+void RemoveImage(const ModelImage& image, Model* model) {
+  for (const Point2D& point2D : image.points2D) {
+    if (point2D.point3D_id == kInvalidPoint3DId) continue;
+    std::vector<TrackElement>& track = model->points3D.at(point2D.point3D_id).track;
+    track.erase(std::remove_if(track.begin(), track.end(),
+                               [&image](const TrackElement& element) {
+                                 return element.image_id == image.image_id;
+                               }),
+                track.end());
+  }
+}
+
+bool HasFewObservations(const ModelImage& image) {
+  return std::count_if(image.points2D.begin(), image.points2D.end(), [](const Point2D& point2D) {
+           return point2D.point3D_id != kInvalidPoint3DId;
+         }) < kMinImageObservations;
+}
+
+}  // namespace
+
+void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
+                        std::vector<RemovedObservation>* removed) {
+  const std::vector<ReprojectionError> errors = ComputeReprojectionErrors(*model);
+  AxisResiduals all;
+  std::map<ImageId, AxisResiduals> by_image;
+  std::map<Point3DId, AxisResiduals> by_point;
+  for (const ReprojectionError& error : errors) {
+    AddResidual(error, &all);
+    AddResidual(error, &by_image[error.element.image_id]);
+    AddResidual(error, &by_point[error.point3D_id]);
+  }
+  const double model_sigma_px = RobustSigmaAboutZero(std::move(all));
+  std::map<ImageId, double> image_sigma_px;
+  for (const auto& [image_id, residuals] : by_image) {
+    image_sigma_px[image_id] = RobustSigmaAboutZero(residuals);
+  }
+  std::map<Point3DId, double> point_sigma_px;
+  for (const auto& [point3D_id, residuals] : by_point) {
+    point_sigma_px[point3D_id] = RobustSigmaAboutZero(residuals);
+  }
+  for (const ReprojectionError& error : errors) {
+    const double sigma_px = std::max({model_sigma_px, image_sigma_px.at(error.element.image_id),
+                                      point_sigma_px.at(error.point3D_id)});
+    if (std::isfinite(error.error_px) && error.error_px <= OutlierThreshold(options, sigma_px)) {
+      continue;
+    }
+    Remove(error, model, removed);
+  }
+}
+
+int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
+                       std::vector<RemovedObservation>* removed) {
+  std::map<Point3DId, std::vector<ReprojectionError>> tracks;
+  AxisResiduals residuals;
+  for (const ReprojectionError& error : ComputeReprojectionErrors(*model)) {
+    tracks[error.point3D_id].push_back(error);
+    AddResidual(error, &residuals);
+  }
+  if (residuals.empty()) return 0;
+  const double threshold_px = OutlierThreshold(options, RobustSigma(residuals));
+  // First, so that what is taken out below is not judged again.
+  int num_changes = RestoreFitting(threshold_px, model, removed);
+  for (const auto& [point3D_id, track] : tracks) {
+    for (const ReprojectionError& outlier : FindOutliers(track, threshold_px)) {
+      Remove(outlier, model, removed);
+      ++num_changes;
+    }
+  }
+  return num_changes;
+}
+
+bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* removed) {
+  std::map<int, int> num_corners;
+  for (const auto& [point3D_id, point] : model->points3D) {
+    if (IsCornerPoint3DId(point3D_id)) ++num_corners[CornerFromPoint3DId(point3D_id).marker_id];
+  }
+  const auto is_unproven = [&](const ReprojectionError& error) {
+    return IsCornerPoint3DId(error.point3D_id) &&
+           num_corners[CornerFromPoint3DId(error.point3D_id).marker_id] < kNumCorners &&
+           model->points3D.at(error.point3D_id).track.size() <= 2;
+  };
+  std::vector<ReprojectionError> unproven = ComputeReprojectionErrors(*model);
+  unproven.erase(std::remove_if(unproven.begin(), unproven.end(), std::not_fn(is_unproven)),
+                 unproven.end());
+  for (const ReprojectionError& error : unproven) Remove(error, model, removed);
+  return !unproven.empty();
+}
+
+void RemoveUnderconstrained(int min_track_length, Model* model,
+                            std::vector<ImageId>* removed_images) {
+  while (true) {
+    RemoveShortTracks(model, min_track_length);
+    const auto first_removed =
+        std::stable_partition(model->images.begin(), model->images.end(),
+                              [](const ModelImage& image) { return !HasFewObservations(image); });
+    if (first_removed == model->images.end()) return;
+    for (auto image = first_removed; image != model->images.end(); ++image) {
+      RemoveImage(*image, model);
+      removed_images->push_back(image->image_id);
+    }
+    model->images.erase(first_removed, model->images.end());
+  }
+}
+
+}  // namespace velamap

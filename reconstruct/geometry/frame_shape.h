@@ -1,0 +1,50 @@
+// What a single frame says about the surface: its markers' points in the cam frame (thesis 3.3).
+
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/database/colmap_database.h"
+#include "importer/geometry/rigid3.h"
+#include "importer/layout/layout.h"
+
+namespace velamap {
+
+// Centre (index 0) and corners 1..4 of one marker in a frame named by the variable, m.
+using MarkerPoints = std::array<Eigen::Vector3d, kNumCorners + 1>;
+
+MarkerPoints Transform(const Rigid3& b_from_a, const MarkerPoints& x_in_a);
+
+// Root mean square distance of corresponding points, m.
+double RmsDistance(const MarkerPoints& a, const MarkerPoints& b);
+
+struct FrameMarker {
+  int marker_id = 0;
+  std::vector<MarkerPoints> x_in_cam;  // one or two solutions, better reprojection first
+  std::array<Eigen::Vector2d, kNumCorners> corners_in_image_px;
+  // Expected error of the distance from the camera, m: distance^2 * sigma_px / (focal * length) for
+  // corners good to a quarter of a pixel. It dwarfs the error across the line of sight.
+  double depth_sigma_m = 0.0;
+};
+
+struct FrameShape {
+  ImageId image_id = 0;
+  std::string image_name;
+  std::optional<int> frame_number;
+  std::vector<FrameMarker> markers;  // by ascending id
+
+  const FrameMarker* Find(int marker_id) const;  // null where not seen
+};
+
+// Poses every marker of the image on its own, with its own length. Markers without a pose are left
+// out.
+FrameShape EstimateFrameShape(const DatabaseImage& image, const Camera& camera,
+                              const Layout& layout);
+
+}  // namespace velamap

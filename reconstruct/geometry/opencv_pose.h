@@ -1,0 +1,20 @@
+// OpenCV's poses as ours. Private to this room: it shows OpenCV.
+
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "importer/geometry/pose_step.h"
+
+namespace velamap {
+
+inline Rigid3 RigidFromOpenCV(const cv::Mat& rotation_vector, const cv::Mat& translation) {
+  PoseStep step;
+  for (int i = 0; i < 3; ++i) {
+    step[i] = rotation_vector.at<double>(i);
+    step[3 + i] = translation.at<double>(i);
+  }
+  return Moved({}, step);
+}
+
+}  // namespace velamap

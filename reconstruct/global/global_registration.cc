@@ -1,0 +1,230 @@
+#include "reconstruct/global/global_registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "reconstruct/frame_order.h"
+#include "reconstruct/global/global_registration_report.h"
+#include "reconstruct/global/global_registration_state.h"
+#include "reconstruct/global/map_adjustment.h"
+#include "reconstruct/global/map_cleanup.h"
+#include "reconstruct/global/map_growth.h"
+#include "reconstruct/global/map_start.h"
+#include "reconstruct/global/map_verdict.h"
+#include "reconstruct/global/view_selection.h"
+
+namespace velamap {
+namespace {
+
+// Frames on which starts compete.
+constexpr int kMaxContestFrames = 32;
+
+// Twice as many frames of a video as may stay are registered, so that there is a choice.
+void ChooseFrames(GlobalRegistration* global) {
+  constexpr int kCandidatesPerFrame = 2;
+  std::vector<int> chosen(global->images.size());
+  std::iota(chosen.begin(), chosen.end(), 0);
+  const int max_num_candidates = kCandidatesPerFrame * global->options.max_num_frames;
+  if (global->is_video && static_cast<int>(chosen.size()) > max_num_candidates) {
+    chosen = ChooseCandidateFrames(global->images, max_num_candidates);
+    const auto place = std::lower_bound(chosen.begin(), chosen.end(), global->central_image_idx);
+    if (global->central_image_idx >= 0 &&
+        (place == chosen.end() || *place != global->central_image_idx)) {
+      chosen.insert(place, global->central_image_idx);
+    }
+  }
+  global->reason_of_image.assign(global->images.size(),
+                                 "not chosen: frames next to it show more or are sharper");
+  for (const int idx : chosen) global->reason_of_image[static_cast<std::size_t>(idx)].clear();
+  global->image_idx_of_frame = std::move(chosen);
+}
+
+// Frames of the contest: evenly over a video; of photographs all, because any may be the only link.
+std::vector<int> ContestFrames(const GlobalRegistration& global) {
+  const int num_frames = static_cast<int>(global.problem.frames.size());
+  const int step =
+      global.is_video ? std::max(1, (num_frames + kMaxContestFrames - 1) / kMaxContestFrames) : 1;
+  std::vector<int> frame_idxs;
+  for (int idx = 0; idx < num_frames; idx += step) frame_idxs.push_back(idx);
+  return frame_idxs;
+}
+
+MapSolution GrowFromStart(const GlobalRegistration& global, const std::vector<int>& frame_idxs,
+                          const std::pair<int, int>& pair) {
+  MapGrowthOptions growth = global.Growth();
+  growth.max_num_frames = kMaxContestFrames;
+  MapSolution solution = StartFromPair(global.problem, pair, growth.random_seed);
+  if (solution.NumRegistered() == 2) GrowMap(global.problem, frame_idxs, growth, &solution);
+  return solution;
+}
+
+// Grows a map from every start, two at a time, and returns the one that explains most. Two starts
+// that come to the same end without doubt decide the contest.
+MapSolution HoldContest(const GlobalRegistration& global) {
+  constexpr double kSame = 0.01;
+  const MapProblem& problem = global.problem;
+  const std::vector<int> frame_idxs = ContestFrames(global);
+  const auto pairs = ChooseStartPairs(problem, frame_idxs, global.options.num_starts,
+                                      global.options.min_num_inliers);
+  MapSolution best = EmptySolution(problem);
+  double most_explained = 0.0;
+  for (std::size_t i = 0; i < pairs.size(); i += 2) {
+    std::future<MapSolution> second;
+    if (i + 1 < pairs.size()) {
+      second = std::async(std::launch::async,
+                          [&, i] { return GrowFromStart(global, frame_idxs, pairs[i + 1]); });
+    }
+    std::vector<MapSolution> solutions = {GrowFromStart(global, frame_idxs, pairs[i])};
+    if (second.valid()) solutions.push_back(second.get());
+    int num_same = 0;
+    for (std::size_t k = 0; k < solutions.size(); ++k) {
+      const double explained = ExplainedObservations(problem, solutions[k]);
+      spdlog::debug("start from {} and {}: {} frames, {:.1f} observations explained",
+                    problem.Frame(pairs[i + k].first).image->detections.image_name,
+                    problem.Frame(pairs[i + k].second).image->detections.image_name,
+                    solutions[k].NumRegistered(), explained);
+      num_same += std::abs(explained - most_explained) < kSame * most_explained;
+      if (explained <= most_explained) continue;
+      most_explained = explained;
+      best = std::move(solutions[k]);
+    }
+    if (num_same > 0 && !IsSuspicious(EstimateNoise(problem, best))) break;
+  }
+  return best;
+}
+
+// The other relief is adjusted too, and taken if it explains more. One that explains less than half
+// after a first adjustment does not come to that: new places of markers and another adjustment add
+// less than a tenth of what the map explains.
+void TryReversedRelief(const MapProblem& problem, MapSolution* solution) {
+  constexpr double kRoughly = 4.0, kHopeless = 0.5;
+  MapSolution reversed = ReversedRelief(*solution);
+  MarkFits(problem, kRoughly, &reversed);
+  AdjustMap(problem, {15, 1e-3}, &reversed);
+  const double explained = ExplainedObservations(problem, *solution);
+  if (ExplainedObservations(problem, reversed) < kHopeless * explained) return;
+  MarkFits(problem, 1.0, &reversed);
+  PlaceUnsettledMarkers(problem, 1.0, 1.0, &reversed);
+  AdjustMap(problem, {15, 1e-3}, &reversed);
+  if (ExplainedObservations(problem, reversed) > explained) {
+    *solution = std::move(reversed);
+    MarkFits(problem, 1.0, solution);
+  }
+}
+
+// Registers all that can be, leaves out what adds little or nothing, and places markers by all
+// frames.
+void Complete(GlobalRegistration* global) {
+  constexpr double kSettledRatio = 0.9;
+  const MapProblem& problem = global->problem;
+  TryReversedRelief(problem, &global->solution);
+  std::vector<int> all(problem.frames.size());
+  std::iota(all.begin(), all.end(), 0);
+  MapGrowthOptions growth = global->Growth();
+  // Of a video more frames are registered than stay; those that go need no adjustment.
+  growth.adjust = !global->is_video;
+  GrowMap(problem, all, growth, &global->solution);
+  PlaceUnsettledMarkers(problem, kSettledRatio, 1.0, &global->solution);
+  VoteOnIds(global);
+  global->noise = EstimateNoise(problem, global->solution);
+  LeaveOutBlurredFrames(global);
+  LimitFrames(global);
+  AdjustMap(problem, {10, 1e-3}, &global->solution);
+  MarkFits(problem, 1.0, &global->solution);
+}
+
+void Finish(GlobalRegistration* global) {
+  const MapProblem& problem = global->problem;
+  DropWrongSizes(global);
+  global->noise = EstimateNoise(problem, global->solution);
+  LeaveOutBlurredFrames(global);
+  MarkFinalFits(problem, global->noise, &global->solution);
+  DropRest(global);
+  for (const double tolerance : {1e-3, 1e-6}) {
+    AdjustMap(problem, {50, tolerance}, &global->solution);
+    global->noise = EstimateNoise(problem, global->solution);
+    MarkFinalFits(problem, global->noise, &global->solution);
+    DropRest(global);
+  }
+}
+
+int ChooseCentralFrame(const GlobalRegistration& global) {
+  int central_idx = -1, most_shared = -1;
+  for (int idx = 0; idx < static_cast<int>(global.problem.frames.size()); ++idx) {
+    if (!global.solution.cam_from_shape[static_cast<std::size_t>(idx)]) continue;
+    int shared = 0;
+    for (const int observation_idx : global.problem.Frame(idx).observation_idxs) {
+      if (!global.solution.fits[static_cast<std::size_t>(observation_idx)]) continue;
+      shared += global.NumFits(global.problem.Observation(observation_idx).marker_idx) - 1;
+    }
+    if (shared > most_shared) {
+      most_shared = shared;
+      central_idx = idx;
+    }
+  }
+  return central_idx;
+}
+
+}  // namespace
+
+Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
+                                    const std::map<CameraId, Camera>& cameras, const Layout& layout,
+                                    const RegistrationOptions& options) {
+  options.Check();
+  GlobalRegistration global{options, CanonicalOrder(images), {}, false, -1, {}, {}, {}, {}, {}, {}};
+  if (global.images.size() < 2) {
+    throw DataError("a shape needs at least two images with markers, the database has " +
+                    std::to_string(global.images.size()) +
+                    "; take pictures from several positions");
+  }
+  global.is_video = UseTimeOrder(global.images, options.frame_order);
+  if (!options.central_frame.empty()) {
+    global.central_image_idx = FindCentralFrame(global.images, options);
+  }
+  ChooseFrames(&global);
+  std::vector<const DatabaseImage*> chosen;
+  for (const int idx : global.image_idx_of_frame) {
+    chosen.push_back(global.images[static_cast<std::size_t>(idx)]);
+  }
+  global.problem = MakeMapProblem(chosen, cameras, layout);
+  global.solution = HoldContest(global);
+  if (global.solution.NumRegistered() >= 2) {
+    Complete(&global);
+    Finish(&global);
+  }
+  if (global.solution.NumRegistered() < 2) {
+    throw DataError("no two images agree on the places of at least " +
+                    std::to_string(options.min_num_inliers) +
+                    " markers that both see: is the camera calibration of these images, the marker "
+                    "length right, and do the pictures overlap?");
+  }
+  if (IsSuspicious(global.noise)) {
+    global.notes.push_back(fmt::format(
+        "the errors of the registered map ({:.2f} px) are larger than the noise of the corners "
+        "({:.2f} px) explains: the shape may be a wrong one, or the surface moved; take views from "
+        "more directions",
+        global.noise.sigma_px, global.noise.alone_sigma_px));
+  }
+  spdlog::debug("noise of the map {:.3f} px, of single markers {:.3f} px", global.noise.sigma_px,
+                global.noise.alone_sigma_px);
+  int central_idx = ChooseCentralFrame(global);
+  if (global.central_image_idx >= 0) {
+    const auto named = std::find(global.image_idx_of_frame.begin(), global.image_idx_of_frame.end(),
+                                 global.central_image_idx);
+    central_idx = static_cast<int>(named - global.image_idx_of_frame.begin());
+    if (!global.solution.cam_from_shape[static_cast<std::size_t>(central_idx)]) {
+      throw DataError("--Registration.central_frame " + options.central_frame +
+                      ": the image cannot be registered with the others; leave the option out to "
+                      "let the best one be chosen");
+    }
+  }
+  return MakeRegistration(central_idx, std::move(global));
+}
+
+}  // namespace velamap

@@ -1,0 +1,135 @@
+#include "reconstruct/global/global_registration_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace velamap {
+namespace {
+
+// Moves the solution so that the central frame's camera is the origin, and to metres by the median
+// marker.
+void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
+  MapSolution& solution = global->solution;
+  const double scale = 1 / global->MedianScale();
+  const Rigid3 central = *solution.cam_from_shape[static_cast<std::size_t>(central_idx)];
+  for (auto& pose : solution.cam_from_shape) {
+    if (!pose) continue;
+    *pose = *pose * Inverse(central);
+    pose->translation *= scale;
+  }
+  for (auto& places : solution.shape_from_marker) {
+    for (Sim3& place : places) {
+      place = central * place;
+      place.translation *= scale;
+      place.scale *= scale;
+    }
+  }
+}
+
+std::string ReasonLeftOut(const GlobalRegistration& global, int frame_idx) {
+  const auto& observation_idxs = global.problem.Frame(frame_idx).observation_idxs;
+  const auto num_shared =
+      std::count_if(observation_idxs.begin(), observation_idxs.end(), [&global](int idx) {
+        return !global.solution
+                    .shape_from_marker[static_cast<std::size_t>(
+                        global.problem.Observation(idx).marker_idx)]
+                    .empty();
+      });
+  if (num_shared < global.options.min_num_inliers) {
+    return fmt::format("shares {} of its {} markers with the registered images, {} are needed",
+                       num_shared, observation_idxs.size(), global.options.min_num_inliers);
+  }
+  return fmt::format("its {} shared markers do not agree on a position of the camera", num_shared);
+}
+
+void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
+  const auto& pose = global.solution.cam_from_shape[static_cast<std::size_t>(frame_idx)];
+  if (!pose) {
+    if (frame->reason.empty()) frame->reason = ReasonLeftOut(global, frame_idx);
+    return;
+  }
+  frame->cam_from_shape = *pose;
+  double sum = 0.0;
+  for (const int idx : global.problem.Frame(frame_idx).observation_idxs) {
+    const MapObservation& observation = global.problem.Observation(idx);
+    const auto& places =
+        global.solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)];
+    if (places.empty()) continue;
+    const int marker_id = global.problem.Marker(observation.marker_idx).marker_id;
+    if (!global.solution.fits[static_cast<std::size_t>(idx)]) {
+      frame->outlier_ids.push_back(marker_id);
+      frame->outlier_reasons.push_back(
+          WhyOutlier(global.problem, global.solution, global.noise, observation));
+      continue;
+    }
+    frame->marker_ids.push_back(marker_id);
+    const double m_per_px = (*pose * places.front().translation).z() /
+                            MeanFocalLength(*global.problem.Frame(frame_idx).camera);
+    const double error_px = ReprojectionError(global.problem, global.solution, observation);
+    sum += std::pow(error_px * m_per_px, 2);
+  }
+  if (!frame->marker_ids.empty()) {
+    frame->rms_error_m = std::sqrt(sum / static_cast<double>(frame->marker_ids.size()));
+  }
+}
+
+void AddMarkers(const GlobalRegistration& global, Registration* registration) {
+  for (std::size_t idx = 0; idx < global.problem.markers.size(); ++idx) {
+    const MapMarker& marker = global.problem.markers[idx];
+    const auto& places = global.solution.shape_from_marker[idx];
+    const auto dropped = global.dropped_markers.find(static_cast<int>(idx));
+    if (!places.empty()) {
+      MarkerPoints points;
+      points[0] = places.front().translation;
+      const auto corners = CornersInShape(marker, places.front());
+      std::copy(corners.begin(), corners.end(), points.begin() + 1);
+      registration->shape.emplace(marker.marker_id, points);
+    } else if (dropped != global.dropped_markers.end()) {
+      registration->dropped_markers.push_back(dropped->second);
+    } else {
+      const auto num_seen = std::count_if(
+          marker.observation_idxs.begin(), marker.observation_idxs.end(), [&global](int i) {
+            return global.solution
+                .cam_from_shape[static_cast<std::size_t>(global.problem.Observation(i).frame_idx)]
+                .has_value();
+          });
+      registration->dropped_markers.push_back(
+          {marker.marker_id, static_cast<int>(num_seen),
+           fmt::format("seen in {} registered frames, no two of which agree on its place",
+                       num_seen)});
+    }
+  }
+}
+
+}  // namespace
+
+Registration MakeRegistration(int central_idx, GlobalRegistration global) {
+  SetFrameAndScale(central_idx, &global);
+  Registration registration;
+  const DatabaseImage& central = *global.problem.Frame(central_idx).image;
+  registration.central_image_id = central.image_id;
+  registration.central_image_name = central.detections.image_name;
+  registration.central_reason = global.central_image_idx >= 0
+                                    ? "named by option"
+                                    : "its markers are seen most often in the other images";
+  std::vector<int> frame_idx_of_image(global.images.size(), -1);
+  for (std::size_t idx = 0; idx < global.image_idx_of_frame.size(); ++idx) {
+    frame_idx_of_image[static_cast<std::size_t>(global.image_idx_of_frame[idx])] =
+        static_cast<int>(idx);
+  }
+  for (std::size_t idx = 0; idx < global.images.size(); ++idx) {
+    RegisteredFrame frame;
+    frame.image_id = global.images[idx]->image_id;
+    frame.image_name = global.images[idx]->detections.image_name;
+    frame.reason = global.reason_of_image[idx];
+    if (frame_idx_of_image[idx] >= 0) DescribeFrame(global, frame_idx_of_image[idx], &frame);
+    registration.frames.push_back(std::move(frame));
+  }
+  AddMarkers(global, &registration);
+  registration.notes = global.notes;
+  return registration;
+}
+
+}  // namespace velamap

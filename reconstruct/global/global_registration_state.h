@@ -1,0 +1,41 @@
+// The state of a global registration while it is made.
+
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "reconstruct/global/map_growth.h"
+#include "reconstruct/global/map_problem.h"
+#include "reconstruct/global/map_verdict.h"
+#include "reconstruct/registration.h"
+
+namespace velamap {
+
+// What global registration decides, with the reasons.
+struct GlobalRegistration {
+  const RegistrationOptions& options;
+  std::vector<const DatabaseImage*> images;  // all with markers
+  std::vector<int> image_idx_of_frame;       // by frame_idx of the problem
+  bool is_video = false;
+  int central_image_idx = -1;  // named by option; -1: none
+  MapProblem problem;
+  MapSolution solution;
+  MapNoise noise;
+  std::vector<std::string> reason_of_image;      // why an image is left out, by index in `images`
+  std::map<int, DroppedMarker> dropped_markers;  // by marker_idx
+  std::vector<std::string> notes;
+
+  MapGrowthOptions Growth() const {
+    return {options.min_num_inliers, 0, true, static_cast<std::uint32_t>(options.random_seed)};
+  }
+  int NumFits(int marker_idx) const;  // observations of the marker that fit
+  int NumFitsInFrame(int frame_idx) const;
+  double MedianScale() const;  // over the markers that two frames at least see
+  // Take a frame or a marker out of the solution.
+  void LeaveOut(int frame_idx, const std::string& reason);
+  void Drop(int marker_idx, const std::string& reason);
+};
+
+}  // namespace velamap

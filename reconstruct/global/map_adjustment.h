@@ -1,0 +1,41 @@
+// Adjustment of a whole map: all frames' poses and all markers' places at once.
+//
+// Residuals of an observation: (projected - seen corner) / sigma_px, 8 numbers with one Cauchy
+// loss; of a marker: log(scale) / kScaleSigma, with a Cauchy loss too, so that the scale of the
+// whole is near the median of what the markers say. Markers stay squares here: that keeps a map of
+// few views well-posed. Cloth bends them by little, which the bundle adjustment that follows finds.
+
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include "reconstruct/global/map_problem.h"
+
+namespace velamap {
+
+struct MapAdjustmentOptions {
+  int max_num_iterations = 10;
+  double tolerance = 1e-4;  // relative change of the cost that ends it
+};
+
+// Uses observations that fit, of registered frames and placed markers that at least two of them
+// see. A marker with two places takes part with the better one. The first registered frame stays
+// where it is.
+void AdjustMap(const MapProblem& problem, const MapAdjustmentOptions& options,
+               MapSolution* solution);
+
+// Residuals and analytic derivatives of one observation. Parameters: the frame's rotation (x y z w)
+// and translation; the marker's rotation, translation and log(scale).
+class MapReprojectionCost : public ceres::SizedCostFunction<2 * kNumCorners, 7, 8> {
+ public:
+  MapReprojectionCost(const MapObservation& observation, const MapMarker& marker)
+      : observation_(observation), marker_(marker) {}
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  const MapObservation& observation_;
+  const MapMarker& marker_;
+};
+
+}  // namespace velamap

@@ -1,0 +1,190 @@
+#include "reconstruct/global/map_cleanup.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "reconstruct/global/map_intersection.h"
+#include "reconstruct/global/view_selection.h"
+
+namespace velamap {
+namespace {
+
+// A side that differs from the others' median by more than this factor is no matter of print.
+constexpr double kMaxSizeRatio = 1.25;
+// An id stands at two places when the second has this part of the support of the first.
+constexpr double kRivalRatio = 0.6;
+// A frame whose corners scatter this many times as much as all is blurred.
+constexpr double kBlurRatio = 3.0;
+constexpr int kMinViewsWithoutBlurred = 3;
+
+// As if its square were marker `as_marker_idx`, with `quarters` turns in the numbers of its
+// corners.
+bool FitsAs(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
+            int quarters) {
+  MapObservation observation = global.problem.Observation(observation_idx);
+  observation.marker_idx = as_marker_idx;
+  std::rotate(observation.rays.begin(), observation.rays.begin() + quarters,
+              observation.rays.end());
+  std::rotate(observation.px_from_ray.begin(), observation.px_from_ray.begin() + quarters,
+              observation.px_from_ray.end());
+  const auto frame_idx = static_cast<std::size_t>(observation.frame_idx);
+  const auto& places = global.solution.shape_from_marker[static_cast<std::size_t>(as_marker_idx)];
+  return ReprojectionError(global.problem, observation, *global.solution.cam_from_shape[frame_idx],
+                           places.front()) <= GrowthTolerance(observation);
+}
+
+// These observations of one marker see a square that is known by another id, from so many more
+// frames that here it was misread.
+bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
+                      const std::vector<int>& observation_idxs) {
+  const auto count = static_cast<double>(observation_idxs.size());
+  for (int other_idx = 0; other_idx < static_cast<int>(global.problem.markers.size());
+       ++other_idx) {
+    if (other_idx == marker_idx ||
+        global.solution.shape_from_marker[static_cast<std::size_t>(other_idx)].empty() ||
+        count >= kRivalRatio * global.NumFits(other_idx)) {
+      continue;
+    }
+    if (std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
+          return FitsAs(global, observation_idx, other_idx, 0);
+        })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// They see the marker where it stands, but number its corners from a wrong one: no second place.
+bool SeeItTurned(const GlobalRegistration& global, int marker_idx,
+                 const std::vector<int>& observation_idxs) {
+  if (global.solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].empty()) return false;
+  return std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
+    for (int quarters = 1; quarters < kNumCorners; ++quarters) {
+      if (FitsAs(global, observation_idx, marker_idx, quarters)) return true;
+    }
+    return false;
+  });
+}
+
+}  // namespace
+
+void VoteOnIds(GlobalRegistration* global) {
+  constexpr double kBeyondDoubt = 0.8;
+  for (std::size_t idx = 0; idx < global->problem.markers.size(); ++idx) {
+    const int marker_idx = static_cast<int>(idx);
+    if (IsSettled(global->problem, global->solution, marker_idx, kBeyondDoubt)) continue;
+    const MarkerPlacement placement =
+        PlaceMarker(global->problem, global->solution, marker_idx, 1.0);
+    if (placement.places.empty()) continue;
+    const int num_here = static_cast<int>(placement.places.front().observation_idxs.size());
+    const std::vector<int>& elsewhere_idxs = placement.elsewhere_idxs;
+    const int num_elsewhere = static_cast<int>(elsewhere_idxs.size());
+    if (num_elsewhere < kRivalRatio * num_here ||
+        SeeAnotherMarker(*global, marker_idx, elsewhere_idxs) ||
+        (num_elsewhere < num_here && SeeItTurned(*global, marker_idx, elsewhere_idxs))) {
+      continue;
+    }
+    global->Drop(marker_idx, fmt::format("its id stands at two places, in {} and in {} frames, "
+                                         "and nothing tells which is right",
+                                         num_here, num_elsewhere));
+  }
+}
+
+void DropWrongSizes(GlobalRegistration* global) {
+  const double median_scale = global->MedianScale();
+  for (std::size_t idx = 0; idx < global->problem.markers.size(); ++idx) {
+    const auto& places = global->solution.shape_from_marker[idx];
+    if (places.empty()) continue;
+    const double ratio = places.front().scale / median_scale;
+    if (ratio < kMaxSizeRatio && ratio > 1 / kMaxSizeRatio) continue;
+    global->Drop(
+        static_cast<int>(idx),
+        fmt::format("its side comes out {:.2f} times as long as marker_length says: a wrong "
+                    "length in the layout, or a false square with its id",
+                    ratio));
+  }
+}
+
+void LeaveOutBlurredFrames(GlobalRegistration* global) {
+  constexpr double kMinFactor = 0.3;  // nothing is blurred by a part of the nominal noise
+  const double general_factor = std::max(global->noise.factor, kMinFactor);
+  for (std::size_t idx = 0; idx < global->problem.frames.size(); ++idx) {
+    const double factor = global->noise.factor_of_frame[idx];
+    if (!global->solution.cam_from_shape[idx] || factor < kBlurRatio * general_factor ||
+        global->image_idx_of_frame[idx] == global->central_image_idx) {
+      continue;
+    }
+    const auto& observation_idxs = global->problem.frames[idx].observation_idxs;
+    const bool is_needed = std::any_of(
+        observation_idxs.begin(), observation_idxs.end(), [global](int observation_idx) {
+          return global->solution.fits[static_cast<std::size_t>(observation_idx)] &&
+                 global->NumFits(global->problem.Observation(observation_idx).marker_idx) <=
+                     kMinViewsWithoutBlurred;
+        });
+    if (is_needed) continue;
+    global->LeaveOut(static_cast<int>(idx),
+                     fmt::format("its corners scatter {:.0f} times as much as the other images': "
+                                 "blurred, or the surface moved",
+                                 factor / general_factor));
+  }
+}
+
+void LimitFrames(GlobalRegistration* global) {
+  const MapProblem& problem = global->problem;
+  if (!global->is_video || global->solution.NumRegistered() <= global->options.max_num_frames) {
+    return;
+  }
+  std::vector<double> sigma_of_frame;
+  int first_idx = -1, most_fits = -1;
+  for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
+    sigma_of_frame.push_back(std::max(global->noise.factor_of_frame[idx], 1e-9));
+    if (!global->solution.cam_from_shape[idx]) continue;
+    const bool is_named = global->image_idx_of_frame[idx] == global->central_image_idx;
+    const int num_fits = is_named ? static_cast<int>(problem.observations.size()) + 1
+                                  : global->NumFitsInFrame(static_cast<int>(idx));
+    if (num_fits > most_fits) {
+      most_fits = num_fits;
+      first_idx = static_cast<int>(idx);
+    }
+  }
+  const std::vector<int> chosen = ChooseViews(problem, global->solution, sigma_of_frame, first_idx,
+                                              global->options.max_num_frames);
+  for (int idx = 0; idx < static_cast<int>(problem.frames.size()); ++idx) {
+    if (global->solution.cam_from_shape[static_cast<std::size_t>(idx)] &&
+        !std::binary_search(chosen.begin(), chosen.end(), idx)) {
+      global->LeaveOut(idx, "not chosen: adds less to the precision than the chosen frames");
+    }
+  }
+}
+
+void DropRest(GlobalRegistration* global) {
+  const int min_num_frames =
+      std::min(global->options.min_num_frames, global->solution.NumRegistered());
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (int idx = 0; idx < static_cast<int>(global->problem.markers.size()); ++idx) {
+      if (global->solution.shape_from_marker[static_cast<std::size_t>(idx)].empty() ||
+          global->NumFits(idx) >= min_num_frames) {
+        continue;
+      }
+      global->Drop(idx, fmt::format("seen in {} registered frames, {} are needed",
+                                    global->NumFits(idx), min_num_frames));
+      changed = true;
+    }
+    for (int idx = 0; idx < static_cast<int>(global->problem.frames.size()); ++idx) {
+      if (!global->solution.cam_from_shape[static_cast<std::size_t>(idx)] ||
+          global->NumFitsInFrame(idx) >= global->options.min_num_inliers) {
+        continue;
+      }
+      global->LeaveOut(idx, fmt::format("{} of its {} markers agree with the other images, {} are "
+                                        "needed",
+                                        global->NumFitsInFrame(idx),
+                                        global->problem.Frame(idx).observation_idxs.size(),
+                                        global->options.min_num_inliers));
+      changed = true;
+    }
+  }
+}
+
+}  // namespace velamap

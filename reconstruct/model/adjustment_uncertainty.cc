@@ -1,0 +1,178 @@
+#include "reconstruct/model/adjustment_uncertainty.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+// File: magic, version, six doubles, then points, blocks and factor; all little-endian.
+constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
+constexpr std::uint32_t kVersion = 2;
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is written as memory holds it");
+
+std::filesystem::path FilePath(const std::string& folder) {
+  return std::filesystem::path(folder) / kUncertaintyFileName;
+}
+
+template <typename T>
+void Write(const T* values, std::size_t count, std::ostream* out) {
+  out->write(reinterpret_cast<const char*>(values),
+             static_cast<std::streamsize>(count * sizeof(T)));
+}
+
+template <typename T>
+void Write(const T& value, std::ostream* out) {
+  Write(&value, 1, out);
+}
+
+void WriteCount(std::size_t count, std::ostream* out) {
+  Write(static_cast<std::uint64_t>(count), out);
+}
+
+// Reads what Write wrote; every count is held against what the file can still hold, so that a
+// broken one cannot ask for all memory.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path)
+      : path_(path.string()), in_(path, std::ios::binary) {
+    if (!in_) throw InputError(path_ + ": cannot be read");
+    in_.seekg(0, std::ios::end);
+    left_ = static_cast<std::uint64_t>(in_.tellg());
+    in_.seekg(0);
+  }
+
+  template <typename T>
+  void Read(T* values, std::uint64_t count) {
+    if (count > left_ / sizeof(T)) Fail("is truncated");
+    in_.read(reinterpret_cast<char*>(values), static_cast<std::streamsize>(count * sizeof(T)));
+    if (!in_) Fail("is truncated");
+    left_ -= count * sizeof(T);
+  }
+
+  template <typename T>
+  T Read() {
+    T value;
+    Read(&value, 1);
+    return value;
+  }
+
+  std::uint64_t ReadCount(std::uint64_t bytes_each) {
+    const auto count = Read<std::uint64_t>();
+    if (count > left_ / bytes_each) Fail("is truncated or broken");
+    return count;
+  }
+
+  Eigen::MatrixXd ReadMatrix() {
+    constexpr std::uint64_t kMaxSize = 1u << 30;
+    const auto rows = Read<std::uint64_t>(), cols = Read<std::uint64_t>();
+    if (rows > kMaxSize || cols > kMaxSize) Fail("is truncated or broken");
+    if (rows * cols > left_ / sizeof(double)) Fail("is truncated or broken");
+    Eigen::MatrixXd matrix(rows, cols);
+    Read(matrix.data(), rows * cols);
+    return matrix;
+  }
+
+  void ExpectEnd() {
+    if (left_ != 0) Fail("has more data than expected");
+  }
+
+  [[noreturn]] void Fail(const std::string& what) const {
+    throw InputError(
+        fmt::format("{}: {}; run velamap bundle_adjuster --backend ceres again, or remove the file",
+                    path_, what));
+  }
+
+ private:
+  std::string path_;
+  std::ifstream in_;
+  std::uint64_t left_ = 0;
+};
+
+void WriteMatrix(const Eigen::MatrixXd& matrix, std::ostream* out) {
+  WriteCount(static_cast<std::size_t>(matrix.rows()), out);
+  WriteCount(static_cast<std::size_t>(matrix.cols()), out);
+  Write(matrix.data(), static_cast<std::size_t>(matrix.size()), out);
+}
+
+void CheckShapes(const PointCovariance& points, const Reader& reader) {
+  const auto num_rows = static_cast<Eigen::Index>(3 * points.point3D_ids.size());
+  Eigen::Index num_block_rows = 0;
+  for (const Eigen::MatrixXd& block : points.blocks) {
+    if (block.rows() != block.cols() || block.rows() % 3 != 0) reader.Fail("is broken");
+    num_block_rows += block.rows();
+  }
+  for (std::size_t i = 1; i < points.point3D_ids.size(); ++i) {
+    if (points.point3D_ids[i] <= points.point3D_ids[i - 1]) reader.Fail("is broken");
+  }
+  if (num_block_rows != num_rows || points.factor.rows() != num_rows ||
+      points.signs.size() != points.factor.cols()) {
+    reader.Fail("is broken");
+  }
+}
+
+}  // namespace
+
+void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder) {
+  const std::filesystem::path path = FilePath(folder);
+  std::ofstream out(path, std::ios::binary);
+  Write(kMagic, sizeof(kMagic), &out);
+  Write(kVersion, &out);
+  for (const double value : {uncertainty.relative_scale_sigma, uncertainty.variance_factor,
+                             uncertainty.apparent_inset_px, uncertainty.apparent_inset_sigma_px,
+                             uncertainty.correlation_factor, uncertainty.share_above_4_sigma}) {
+    Write(value, &out);
+  }
+  const PointCovariance& points = uncertainty.points;
+  WriteCount(points.point3D_ids.size(), &out);
+  Write(points.point3D_ids.data(), points.point3D_ids.size(), &out);
+  WriteCount(points.blocks.size(), &out);
+  for (const Eigen::MatrixXd& block : points.blocks) WriteMatrix(block, &out);
+  WriteMatrix(points.factor, &out);
+  WriteMatrix(points.signs, &out);
+  out.close();
+  if (!out) throw InputError(path.string() + ": cannot be written");
+}
+
+bool HasUncertainty(const std::string& folder) {
+  return std::filesystem::is_regular_file(FilePath(folder));
+}
+
+AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
+  Reader reader(FilePath(folder));
+  char magic[sizeof(kMagic)];
+  reader.Read(magic, sizeof(magic));
+  if (!std::equal(magic, magic + sizeof(magic), kMagic))
+    reader.Fail("is no uncertainty of velamap");
+  const auto version = reader.Read<std::uint32_t>();
+  if (version != kVersion) reader.Fail(fmt::format("has the unknown version {}", version));
+  AdjustmentUncertainty uncertainty;
+  uncertainty.relative_scale_sigma = reader.Read<double>();
+  uncertainty.variance_factor = reader.Read<double>();
+  uncertainty.apparent_inset_px = reader.Read<double>();
+  uncertainty.apparent_inset_sigma_px = reader.Read<double>();
+  uncertainty.correlation_factor = reader.Read<double>();
+  uncertainty.share_above_4_sigma = reader.Read<double>();
+  PointCovariance& points = uncertainty.points;
+  points.point3D_ids.resize(reader.ReadCount(sizeof(Point3DId)));
+  reader.Read(points.point3D_ids.data(), points.point3D_ids.size());
+  points.blocks.resize(reader.ReadCount(2 * sizeof(std::uint64_t)));
+  for (Eigen::MatrixXd& block : points.blocks) block = reader.ReadMatrix();
+  points.factor = reader.ReadMatrix();
+  const Eigen::MatrixXd signs = reader.ReadMatrix();
+  if (signs.cols() != 1) reader.Fail("is broken");
+  points.signs = signs;
+  reader.ExpectEnd();
+  CheckShapes(points, reader);
+  return uncertainty;
+}
+
+}  // namespace velamap

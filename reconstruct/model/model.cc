@@ -1,0 +1,164 @@
+#include "reconstruct/model/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+using ImagesById = std::unordered_map<ImageId, const ModelImage*>;
+
+std::string FindCameraFault(CameraId camera_id, const Camera& camera) {
+  if (camera.width_px <= 0 || camera.height_px <= 0) {
+    return fmt::format("camera {} has the size {} x {}", camera_id, camera.width_px,
+                       camera.height_px);
+  }
+  if (static_cast<int>(camera.params.size()) != NumCameraParams(camera.model)) {
+    return fmt::format("camera {} has {} parameters, {} takes {}", camera_id, camera.params.size(),
+                       CameraModelName(camera.model), NumCameraParams(camera.model));
+  }
+  if (!std::all_of(camera.params.begin(), camera.params.end(),
+                   [](double param) { return std::isfinite(param); })) {
+    return fmt::format("camera {} has a parameter that is not finite", camera_id);
+  }
+  return "";
+}
+
+// References from images to points. That they come back is checked by the tracks: as every track
+// element is proven and none is there twice, it suffices that the numbers agree.
+std::string FindImageFault(const Model& model, const ModelImage& image) {
+  if (model.cameras.count(image.camera_id) == 0) {
+    return fmt::format("image {} has camera {}, which is not there", image.image_id,
+                       image.camera_id);
+  }
+  constexpr double kMaxNormError = 1e-6;
+  if (!image.cam_from_world.translation.allFinite() ||
+      !(std::abs(image.cam_from_world.rotation.norm() - 1.0) <= kMaxNormError)) {
+    return fmt::format("image {} has a pose that is not finite or no rotation", image.image_id);
+  }
+  for (std::size_t idx = 0; idx < image.points2D.size(); ++idx) {
+    const Point2D& point2D = image.points2D[idx];
+    if (!point2D.x_in_image_px.allFinite()) {
+      return fmt::format("2D point {} of image {} is not finite", idx, image.image_id);
+    }
+    if (point2D.point3D_id != kInvalidPoint3DId && model.points3D.count(point2D.point3D_id) == 0) {
+      return fmt::format("2D point {} of image {} observes point {}, which is not there", idx,
+                         image.image_id, point2D.point3D_id);
+    }
+  }
+  return "";
+}
+
+std::string FindPointFault(const ImagesById& images, Point3DId point3D_id, const Point3D& point) {
+  if (!point.x_in_world.allFinite()) return fmt::format("point {} is not finite", point3D_id);
+  if (std::isnan(point.mean_error_px)) {
+    return fmt::format("the error of point {} is not a number", point3D_id);
+  }
+  std::set<std::pair<ImageId, std::uint32_t>> elements;
+  for (const TrackElement& element : point.track) {
+    const auto image = images.find(element.image_id);
+    if (image == images.end()) {
+      return fmt::format("the track of point {} has image {}, which is not there", point3D_id,
+                         element.image_id);
+    }
+    const std::vector<Point2D>& points2D = image->second->points2D;
+    if (element.point2D_idx >= points2D.size() ||
+        points2D[element.point2D_idx].point3D_id != point3D_id) {
+      return fmt::format(
+          "the track of point {} has 2D point {} of image {}, which does not "
+          "observe it",
+          point3D_id, element.point2D_idx, element.image_id);
+    }
+    if (!elements.insert({element.image_id, element.point2D_idx}).second) {
+      return fmt::format("the track of point {} has 2D point {} of image {} twice", point3D_id,
+                         element.point2D_idx, element.image_id);
+    }
+  }
+  return "";
+}
+
+std::string FindUntrackedObservation(const Model& model) {
+  std::unordered_map<Point3DId, std::size_t> num_observations;
+  for (const ModelImage& image : model.images) {
+    for (const Point2D& point2D : image.points2D) ++num_observations[point2D.point3D_id];
+  }
+  for (const auto& [point3D_id, point] : model.points3D) {
+    if (num_observations[point3D_id] != point.track.size()) {
+      return fmt::format("point {} is observed by {} 2D points, but its track has {}", point3D_id,
+                         num_observations[point3D_id], point.track.size());
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+const ModelImage* Model::FindImage(ImageId image_id) const {
+  const auto it = std::find_if(images.begin(), images.end(), [image_id](const ModelImage& image) {
+    return image.image_id == image_id;
+  });
+  return it == images.end() ? nullptr : &*it;
+}
+
+std::string FindModelFault(const Model& model) {
+  for (const auto& [camera_id, camera] : model.cameras) {
+    const std::string fault = FindCameraFault(camera_id, camera);
+    if (!fault.empty()) return fault;
+  }
+  ImagesById images;
+  for (const ModelImage& image : model.images) {
+    if (!images.emplace(image.image_id, &image).second) {
+      return fmt::format("image {} is there twice", image.image_id);
+    }
+    const std::string fault = FindImageFault(model, image);
+    if (!fault.empty()) return fault;
+  }
+  for (const auto& [point3D_id, point] : model.points3D) {
+    const std::string fault = FindPointFault(images, point3D_id, point);
+    if (!fault.empty()) return fault;
+  }
+  return FindUntrackedObservation(model);
+}
+
+void CheckModel(const Model& model) {
+  const std::string fault = FindModelFault(model);
+  if (!fault.empty()) throw std::logic_error("broken model: " + fault);
+}
+
+void RemoveObservation(Model* model, Point3DId point3D_id, const TrackElement& element) {
+  std::vector<TrackElement>& track = model->points3D.at(point3D_id).track;
+  const auto it = std::find_if(track.begin(), track.end(), [&element](const TrackElement& other) {
+    return other.image_id == element.image_id && other.point2D_idx == element.point2D_idx;
+  });
+  const auto image = std::find_if(
+      model->images.begin(), model->images.end(),
+      [&element](const ModelImage& other) { return other.image_id == element.image_id; });
+  VELAMAP_CHECK(it != track.end() && image != model->images.end());
+  image->points2D.at(element.point2D_idx).point3D_id = kInvalidPoint3DId;
+  track.erase(it);
+}
+
+void RemoveShortTracks(Model* model, int min_track_length) {
+  const auto is_short = [min_track_length](const Point3D& point) {
+    return static_cast<int>(point.track.size()) < min_track_length;
+  };
+  for (ModelImage& image : model->images) {
+    for (Point2D& point2D : image.points2D) {
+      const auto point = model->points3D.find(point2D.point3D_id);
+      if (point != model->points3D.end() && is_short(point->second)) {
+        point2D.point3D_id = kInvalidPoint3DId;
+      }
+    }
+  }
+  for (auto it = model->points3D.begin(); it != model->points3D.end();) {
+    it = is_short(it->second) ? model->points3D.erase(it) : std::next(it);
+  }
+}
+
+}  // namespace velamap

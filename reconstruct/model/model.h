@@ -1,0 +1,69 @@
+// A COLMAP model: cameras, posed images with their 2D points, 3D points with tracks.
+
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/base/ids.h"
+#include "importer/camera/camera.h"
+#include "importer/geometry/rigid3.h"
+
+namespace velamap {
+
+struct Point2D {
+  Eigen::Vector2d x_in_image_px = Eigen::Vector2d::Zero();
+  Point3DId point3D_id = kInvalidPoint3DId;
+};
+
+struct ModelImage {
+  ImageId image_id = 0;
+  CameraId camera_id = 0;
+  std::string name;
+  Rigid3 cam_from_world;
+  std::vector<Point2D> points2D;  // by keypoint_idx of the database
+};
+
+struct TrackElement {
+  ImageId image_id = 0;
+  std::uint32_t point2D_idx = 0;
+};
+
+struct Point3D {
+  Eigen::Vector3d x_in_world = Eigen::Vector3d::Zero();
+  Rgb color{};
+  double mean_error_px = 0.0;  // mean reprojection error over the track
+  std::vector<TrackElement> track;
+};
+
+// The order of `images` matters: COLMAP fixes the gauge by the first two
+// (reconstruct/model/gauge.h).
+struct Model {
+  std::map<CameraId, Camera> cameras;
+  std::vector<ModelImage> images;
+  std::map<Point3DId, Point3D> points3D;
+
+  // Null where there is no such image.
+  const ModelImage* FindImage(ImageId image_id) const;
+};
+
+// What is wrong with the model, in a line that names the ids; empty for a sound one. Ids must be
+// unique, every 2D point and track element refer to each other, every image have its camera, every
+// rotation unit length, and all numbers be finite (but mean_error_px, which a point behind its
+// camera makes infinite).
+std::string FindModelFault(const Model& model);
+
+// Throws std::logic_error for a model with a fault.
+void CheckModel(const Model& model);
+
+// Takes one observation out of the track and the image. A point that loses its last observation
+// stays until RemoveShortTracks.
+void RemoveObservation(Model* model, Point3DId point3D_id, const TrackElement& element);
+
+// Removes points with fewer than `min_track_length` observations, and the references to them.
+void RemoveShortTracks(Model* model, int min_track_length);
+
+}  // namespace velamap

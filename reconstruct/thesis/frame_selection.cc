@@ -1,0 +1,194 @@
+#include "reconstruct/thesis/frame_selection.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+ShapePoints PointsOf(const FrameShape& frame) {
+  ShapePoints points;
+  for (const FrameMarker& marker : frame.markers) {
+    points.emplace(marker.marker_id, marker.x_in_cam.front());
+  }
+  return points;
+}
+
+// Indices of the frames whose number lies within [first, last].
+std::pair<int, int> FramesInWindow(const std::vector<FrameShape>& frames, int first, int last) {
+  const auto by_number = [](const FrameShape& frame, int number) {
+    return *frame.frame_number < number;
+  };
+  const auto begin = std::lower_bound(frames.begin(), frames.end(), first, by_number);
+  const auto end = std::lower_bound(begin, frames.end(), last + 1, by_number);
+  return {static_cast<int>(begin - frames.begin()), static_cast<int>(end - frames.begin())};
+}
+
+// One search: the thesis aligns every frame with the central one. Where the camera has moved on so
+// far that no frame of a window shares enough with it, `extended` (the central frame's markers and
+// those of the frames found so far) takes its place.
+struct Search {
+  const std::vector<FrameShape>& frames;
+  const FrameSearchOptions& options;
+  const Layout& layout;
+  const FrameAlignmentOptions& alignment;
+  ShapePoints central;
+  ShapePoints extended;
+
+  int Number(int frame_idx) const {
+    return *frames[static_cast<std::size_t>(frame_idx)].frame_number;
+  }
+};
+
+std::optional<SelectedFrame> BestInWindow(const Search& search, const ShapePoints& shape,
+                                          int first_number, int last_number, int target_number) {
+  std::optional<SelectedFrame> best;
+  const auto [begin, end] = FramesInWindow(search.frames, first_number, last_number);
+  for (int idx = begin; idx < end; ++idx) {
+    auto candidate = AlignFrame(search.frames[static_cast<std::size_t>(idx)], shape, search.layout,
+                                search.alignment);
+    if (!candidate) continue;
+    const std::size_t num_inliers = candidate->inlier_ids.size();
+    const bool better = !best || num_inliers > best->alignment.inlier_ids.size() ||
+                        (num_inliers == best->alignment.inlier_ids.size() &&
+                         std::abs(search.Number(idx) - target_number) <
+                             std::abs(search.Number(best->frame_idx) - target_number));
+    if (better) best = SelectedFrame{idx, std::move(*candidate)};
+  }
+  return best;
+}
+
+// Walks from the central frame in one direction (+1 or -1).
+void SearchOneSide(int central_idx, int direction, Search* search,
+                   std::vector<SelectedFrame>* selected) {
+  const FrameSearchOptions& options = search->options;
+  const int first_number = search->Number(0) - options.neighborhood;
+  const int last_number = *search->frames.back().frame_number + options.neighborhood;
+  int from_number = search->Number(central_idx);
+  for (int count = 0; count < options.num_frames;) {
+    const int target = from_number + direction * options.skip;
+    if (target < first_number || target > last_number) return;
+    // Never back across the frame that the skip started from.
+    const int nearest = direction > 0 ? std::max(target - options.neighborhood, from_number + 1)
+                                      : std::min(target + options.neighborhood, from_number - 1);
+    const int furthest = target + direction * options.neighborhood;
+    const auto [first, last] = std::minmax(nearest, furthest);
+    auto best = BestInWindow(*search, search->central, first, last, target);
+    if (!best) best = BestInWindow(*search, search->extended, first, last, target);
+    if (!best) {
+      from_number = target;
+      continue;
+    }
+    const FrameShape& frame = search->frames[static_cast<std::size_t>(best->frame_idx)];
+    for (const FrameMarker& marker : frame.markers) {
+      search->extended.emplace(marker.marker_id,
+                               Transform(best->alignment.shape_from_cam, marker.x_in_cam.front()));
+    }
+    from_number = search->Number(best->frame_idx);
+    selected->push_back(std::move(*best));
+    ++count;
+  }
+}
+
+}  // namespace
+
+int NumSharedMarkers(const FrameShape& a, const FrameShape& b) {
+  int count = 0;
+  auto in_a = a.markers.begin();
+  auto in_b = b.markers.begin();
+  while (in_a != a.markers.end() && in_b != b.markers.end()) {
+    if (in_a->marker_id == in_b->marker_id) {
+      ++count, ++in_a, ++in_b;
+    } else if (in_a->marker_id < in_b->marker_id) {
+      ++in_a;
+    } else {
+      ++in_b;
+    }
+  }
+  return count;
+}
+
+CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames) {
+  VELAMAP_CHECK(!frames.empty());
+  // How often each marker is seen gives every frame's shared markers in one pass.
+  std::map<int, int> num_frames_of;
+  for (const FrameShape& frame : frames) {
+    for (const FrameMarker& marker : frame.markers) ++num_frames_of[marker.marker_id];
+  }
+  int best_idx = 0, best_shared = -1;
+  for (std::size_t idx = 0; idx < frames.size(); ++idx) {
+    int shared = 0;
+    for (const FrameMarker& marker : frames[idx].markers) {
+      shared += num_frames_of[marker.marker_id] - 1;
+    }
+    if (shared > best_shared) {
+      best_shared = shared;
+      best_idx = static_cast<int>(idx);
+    }
+  }
+  return {best_idx, "its markers are seen " + std::to_string(best_shared) +
+                        " times in the other images, more than any other image's"};
+}
+
+FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side) {
+  FrameSearchOptions fitted = options;
+  // Rounded: a frame less on a side costs less than half a clip left aside.
+  const int num_frames = std::max(options.num_frames, 1);
+  fitted.skip = std::clamp((num_frames_on_side + num_frames / 2) / num_frames, 1, options.skip);
+  if (fitted.skip < options.skip) {
+    fitted.neighborhood = std::min(options.neighborhood, fitted.skip / 2);
+  }
+  return fitted;
+}
+
+std::pair<int, int> ReachableFrames(int central_frame_number, const FrameSearchOptions& options) {
+  const int reach = options.num_frames * (options.skip + options.neighborhood);
+  return {central_frame_number - reach, central_frame_number + reach};
+}
+
+CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,
+                                     const FrameSearchOptions& options) {
+  VELAMAP_CHECK(!frames.empty());
+  int best_idx = 0, best_shared = -1;
+  for (std::size_t idx = 0; idx < frames.size(); ++idx) {
+    int shared = 0;
+    for (int step = -options.num_frames; step <= options.num_frames; ++step) {
+      if (step == 0) continue;
+      const int target = *frames[idx].frame_number + step * options.skip;
+      const auto [begin, end] =
+          FramesInWindow(frames, target - options.neighborhood, target + options.neighborhood);
+      int most = 0;
+      for (int other = begin; other < end; ++other) {
+        most =
+            std::max(most, NumSharedMarkers(frames[idx], frames[static_cast<std::size_t>(other)]));
+      }
+      shared += most;
+    }
+    if (shared > best_shared) {
+      best_shared = shared;
+      best_idx = static_cast<int>(idx);
+    }
+  }
+  return {best_idx, "the best frames around it share " + std::to_string(best_shared) +
+                        " markers with it, more than with any other frame"};
+}
+
+std::vector<SelectedFrame> SearchFrames(const std::vector<FrameShape>& frames, int central_idx,
+                                        const FrameSearchOptions& search, const Layout& layout,
+                                        const FrameAlignmentOptions& alignment) {
+  VELAMAP_CHECK(search.num_frames >= 0 && search.skip >= 1 && search.neighborhood >= 0);
+  const ShapePoints central = PointsOf(frames[static_cast<std::size_t>(central_idx)]);
+  std::vector<SelectedFrame> selected;
+  for (const int direction : {-1, 1}) {
+    Search one_side{frames, search, layout, alignment, central, central};
+    SearchOneSide(central_idx, direction, &one_side, &selected);
+  }
+  std::sort(selected.begin(), selected.end(), [](const SelectedFrame& a, const SelectedFrame& b) {
+    return a.frame_idx < b.frame_idx;
+  });
+  return selected;
+}
+
+}  // namespace velamap

@@ -1,0 +1,119 @@
+#include "reconstruct/thesis/registration_state.h"
+
+#include <algorithm>
+#include <map>
+
+namespace velamap {
+namespace {
+
+// Alternations of aligning every frame with the mean shape and averaging anew.
+constexpr int kNumRefinements = 4;
+
+// Images that reach this part of the best image's inliers join in the same round of growing.
+constexpr double kJoinRatio = 0.8;
+
+bool IsOutlier(const FrameAlignment& alignment, int marker_id) {
+  return std::binary_search(alignment.outlier_ids.begin(), alignment.outlier_ids.end(), marker_id);
+}
+
+// Solutions of every marker in the shape frame, from all registered frames that agree with it.
+std::map<int, std::vector<MarkerSolutions>> CollectSolutions(const RegistrationState& state) {
+  std::map<int, std::vector<MarkerSolutions>> solutions_of;
+  for (std::size_t idx = 0; idx < state.frames.size(); ++idx) {
+    const auto& alignment = state.alignments[idx];
+    if (!alignment) continue;
+    for (const FrameMarker& marker : state.frames[idx].markers) {
+      if (IsOutlier(*alignment, marker.marker_id)) continue;
+      MarkerSolutions solutions;
+      for (const MarkerPoints& x_in_cam : marker.x_in_cam) {
+        solutions.push_back(Transform(alignment->shape_from_cam, x_in_cam));
+      }
+      solutions_of[marker.marker_id].push_back(std::move(solutions));
+    }
+  }
+  return solutions_of;
+}
+
+void AverageShape(RegistrationState* state) {
+  const ShapeAveragingOptions averaging{state->options.num_mean_iterations,
+                                        state->options.mean_sigma_m};
+  state->shape.clear();
+  for (const auto& [marker_id, solutions] : CollectSolutions(*state)) {
+    state->shape.emplace(marker_id, AverageMarker(solutions, averaging));
+  }
+}
+
+void StartAtCentralFrame(int central_idx, RegistrationState* state) {
+  state->alignments.assign(state->frames.size(), std::nullopt);
+  state->alignments[static_cast<std::size_t>(central_idx)] = FrameAlignment{};
+  AverageShape(state);
+}
+
+}  // namespace
+
+FrameAlignmentOptions RegistrationState::AlignmentOptions() const {
+  FrameAlignmentOptions alignment;
+  alignment.ransac_max_error_m = options.ransac_max_error_m;
+  alignment.min_num_inliers = options.min_num_inliers;
+  alignment.random_seed = static_cast<std::uint32_t>(options.random_seed);
+  return alignment;
+}
+
+int RegistrationState::NumRegistered() const {
+  return static_cast<int>(std::count_if(alignments.begin(), alignments.end(),
+                                        [](const auto& a) { return a.has_value(); }));
+}
+
+void GrowFromCentralFrame(int central_idx, RegistrationState* state) {
+  StartAtCentralFrame(central_idx, state);
+  while (true) {
+    std::map<std::size_t, FrameAlignment> candidates;
+    std::size_t most_inliers = 0;
+    for (std::size_t idx = 0; idx < state->frames.size(); ++idx) {
+      if (state->alignments[idx]) continue;
+      auto alignment =
+          AlignFrame(state->frames[idx], state->shape, state->layout, state->AlignmentOptions());
+      if (!alignment) continue;
+      most_inliers = std::max(most_inliers, alignment->inlier_ids.size());
+      candidates.emplace(idx, std::move(*alignment));
+    }
+    if (candidates.empty()) return;
+    for (auto& [idx, alignment] : candidates) {
+      if (static_cast<double>(alignment.inlier_ids.size()) >=
+          kJoinRatio * static_cast<double>(most_inliers)) {
+        state->alignments[idx] = std::move(alignment);
+      }
+    }
+    AverageShape(state);
+  }
+}
+
+void SearchInTimeOrder(int central_idx, const FrameSearchOptions& search, RegistrationState* state,
+                       std::vector<std::string>* notes) {
+  StartAtCentralFrame(central_idx, state);
+  auto selected_frames =
+      SearchFrames(state->frames, central_idx, search, state->layout, state->AlignmentOptions());
+  if (static_cast<int>(selected_frames.size()) < 2 * search.num_frames) {
+    notes->push_back("the search found " + std::to_string(selected_frames.size()) + " of " +
+                     std::to_string(2 * search.num_frames) +
+                     " frames around the central one: the video ends, or no frame aligns");
+  }
+  for (SelectedFrame& selected : selected_frames) {
+    state->alignments[static_cast<std::size_t>(selected.frame_idx)] = std::move(selected.alignment);
+  }
+  AverageShape(state);
+}
+
+void RefineShape(RegistrationState* state) {
+  for (int round = 0; round < kNumRefinements; ++round) {
+    for (std::size_t idx = 0; idx < state->frames.size(); ++idx) {
+      auto& alignment = state->alignments[idx];
+      if (!alignment) continue;
+      alignment =
+          AlignFrame(state->frames[idx], state->shape, state->layout, state->AlignmentOptions());
+    }
+    AverageShape(state);
+  }
+}
+
+}  // namespace velamap

@@ -1,0 +1,147 @@
+// What a comparison is written as: keys and PLY.
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/compare/comparison_ply.h"
+#include "exporters/compare/comparison_report.h"
+#include "exporters/compare/comparison_sigma.h"
+#include "tests/exporters/comma_locale.h"
+#include "tests/exporters/compare/example_comparison.h"
+#include "tests/exporters/formats/ply_reader.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+UncertainShape Uncertain(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
+
+// Marker 33 stands out by 20 mm, marker 44 stands back by 10 mm.
+ShapeDeviation Example(double sigma_m = 0.0) {
+  const MarkerShape reference = BoatShape(sigma_m);
+  const auto normal = [&](int id) { return MarkerNormal(*FindWholeMarker(reference, id)); };
+  const MarkerShape shape =
+      Shifted({33}, 0.02 * normal(33), Shifted({44}, -0.01 * normal(44), reference));
+  return CompareWithShape(Uncertain(shape), Uncertain(reference), BoatLayout(), {});
+}
+
+std::string Ply(const ShapeDeviation& deviation, std::optional<double> limit_m = std::nullopt) {
+  std::ostringstream out;
+  WriteComparisonPly(deviation, limit_m, out);
+  return out.str();
+}
+
+TEST(ComparisonPly, HoldsDistanceColourAndPlace) {
+  const ShapeDeviation deviation = Example(0.001);
+  const std::string text = Ply(deviation);
+  EXPECT_THAT(text, HasSubstr("alignment: reference_part"));
+  EXPECT_THAT(text, HasSubstr("blue -20 mm, white 0, red +20 mm"));
+  const PlyFile ply = ReadPly(text);
+  const PlyReadElement& vertices = ply.elements[0];
+  ASSERT_EQ(vertices.rows.size(), 4u * 36);
+  ASSERT_EQ(ply.elements[1].rows.size(), 36u);
+  for (std::size_t i = 0; i < vertices.rows.size(); ++i) {
+    const MarkerDeviation& marker = deviation.markers[i / 4];
+    EXPECT_EQ(vertices.Column("marker_id")[i], marker.marker_id);
+    EXPECT_NEAR(vertices.Column("distance")[i], marker.distance_m, 1e-8);
+    EXPECT_NEAR(vertices.Column("sigma")[i], *marker.sigma_m, 1e-8);
+    const auto& x =
+        *FindWholeMarker(deviation.aligned_shape, marker.marker_id)->x_in_shape_m[i % 4 + 1];
+    EXPECT_EQ(vertices.Column("x")[i], x.x());
+    const double red = vertices.Column("red")[i], blue = vertices.Column("blue")[i];
+    if (marker.marker_id == 33) {
+      EXPECT_EQ(red, 178);
+      EXPECT_EQ(blue, 43);
+    } else if (marker.marker_id == 44) {
+      EXPECT_GT(blue, red);
+      EXPECT_EQ(red, 140);  // halfway from white to blue
+    } else {
+      EXPECT_EQ(red, 247);
+    }
+  }
+  // Counter-clockwise seen from the front: the face looks where the marker does.
+  const std::vector<double> face = ply.elements[1].ListColumn("vertex_indices")[0];
+  const auto corner = [&](std::size_t k) {
+    const auto row = static_cast<std::size_t>(face[k]);
+    return Eigen::Vector3d(vertices.Column("x")[row], vertices.Column("y")[row],
+                           vertices.Column("z")[row]);
+  };
+  const Eigen::Vector3d normal(vertices.Column("nx")[0], vertices.Column("ny")[0],
+                               vertices.Column("nz")[0]);
+  EXPECT_GT((corner(1) - corner(0)).cross(corner(2) - corner(0)).dot(normal), 0);
+}
+
+TEST(ComparisonPly, LimitClampsAndNoSigmaIsNoProperty) {
+  const std::string text = Ply(Example(), 0.005);
+  EXPECT_THAT(text, HasSubstr("red +5 mm"));
+  EXPECT_THAT(text, Not(HasSubstr("sigma")));
+  const PlyReadElement vertices = ReadPly(text).elements[0];
+  const std::vector<double> ids = vertices.Column("marker_id"), blue = vertices.Column("blue");
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (ids[i] != 44) continue;
+    EXPECT_EQ(blue[i], 172);
+  }
+}
+
+TEST(ComparisonPly, DoesNotFollowTheLocale) {
+  const std::string text = Ply(Example());
+  const CommaLocale locale;
+  EXPECT_EQ(Ply(Example()), text);
+}
+
+TEST(ComparisonPly, EqualShapesAreWhite) {
+  const UncertainShape boat = Uncertain(BoatShape());
+  AlignmentOptions none;
+  none.method = AlignmentMethod::kNone;
+  const PlyReadElement vertices =
+      ReadPly(Ply(CompareWithShape(boat, boat, BoatLayout(), none))).elements[0];
+  for (const double red : vertices.Column("red")) EXPECT_EQ(red, 247);
+}
+
+TEST(ComparisonReport, HasTheKeysThatTheReadmeLists) {
+  MetricsReport report;
+  AddMetrics(Example(0.001), &report);
+  std::ostringstream text, csv, json;
+  PrintMetrics(report, text);
+  WriteMetricsCsv(report, csv);
+  WriteMetricsJson(report, json);
+  EXPECT_THAT(text.str(), HasSubstr("alignment: reference_part\n"));
+  EXPECT_THAT(text.str(), HasSubstr("alignment_by: part hull"));
+  EXPECT_THAT(text.str(), HasSubstr("num_markers: 36\n"));
+  EXPECT_THAT(text.str(), HasSubstr("distance_mm_max: 20\n"));
+  EXPECT_THAT(text.str(), HasSubstr("distance_mm_min: -10\n"));
+  EXPECT_THAT(text.str(), HasSubstr("difference_mm_max: 20\n"));
+  EXPECT_THAT(text.str(), HasSubstr("num_with_sigma: 36\n"));
+  EXPECT_THAT(text.str(), HasSubstr("num_significant: 2\n"));
+  EXPECT_THAT(text.str(), HasSubstr("lines: part sail, line h3, distance_mm mean 3.33333"));
+  EXPECT_THAT(text.str(), HasSubstr("parts: part hull, distance_mm mean"));
+  EXPECT_THAT(text.str(), HasSubstr("scale_difference_percent: "));
+  EXPECT_THAT(csv.str(), HasSubstr("markers,0,difference_x_mm,"));
+  EXPECT_THAT(csv.str(), HasSubstr("markers,0,significance,"));
+  EXPECT_THAT(csv.str(), HasSubstr("reference_from_shape,0,qw,"));
+  EXPECT_THAT(json.str(), HasSubstr("\"difference_sigma_z_mm\""));
+}
+
+TEST(ComparisonReport, OfASurfaceHasNoVectors) {
+  AlignmentOptions none;
+  none.method = AlignmentMethod::kNone;
+  MetricsReport report;
+  AddMetrics(
+      CompareWithMesh(Uncertain(BoatShape()), MeshDistance(SailMesh()), BoatLayout(), none, "sail"),
+      &report);
+  std::ostringstream csv;
+  WriteMetricsCsv(report, csv);
+  EXPECT_THAT(csv.str(), HasSubstr(",,num_beside_surface,0\n"));
+  EXPECT_THAT(csv.str(), HasSubstr("markers,0,beside_mm,"));
+  EXPECT_THAT(csv.str(), Not(HasSubstr("difference")));
+  EXPECT_THAT(csv.str(), Not(HasSubstr("significan")));
+}
+
+}  // namespace
+}  // namespace velamap

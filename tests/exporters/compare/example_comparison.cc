@@ -1,0 +1,186 @@
+#include "tests/exporters/compare/example_comparison.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace velamap {
+namespace {
+
+constexpr int kNumLines = 5, kNumOnLine = 6;
+constexpr double kFootM = 3.0, kHeightM = 4.0, kMarkerM = 0.1;
+
+// Chord fraction u in 0..1 from luff to leech, height fraction v in 0..1.
+Eigen::Vector3d SailPoint(double u, double v) {
+  const double chord = kFootM * (1 - 0.5 * v);
+  const double twist = 0.2 * v;
+  const double depth = 0.45 * chord * u * (1 - u) * (1.4 - 0.6 * u);
+  const Eigen::Vector3d across(-std::sin(twist), std::cos(twist), 0);
+  const Eigen::Vector3d along(std::cos(twist), std::sin(twist), 0);
+  return u * chord * along + depth * across + kHeightM * v * Eigen::Vector3d::UnitZ() +
+         0.3 * v * Eigen::Vector3d::UnitX();
+}
+
+Eigen::Matrix3d FrameAt(double u, double v) {
+  constexpr double kStep = 1e-5;
+  const Eigen::Vector3d by_u = SailPoint(u + kStep, v) - SailPoint(u - kStep, v);
+  const Eigen::Vector3d by_v = SailPoint(u, v + kStep) - SailPoint(u, v - kStep);
+  Eigen::Matrix3d axes;
+  axes.col(0) = by_u.normalized();
+  axes.col(2) = by_u.cross(by_v).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+ShapeMarker MakeMarker(int id, const std::string& part, const Eigen::Vector3d& center,
+                       const Eigen::Matrix3d& axes, double sigma_m) {
+  ShapeMarker marker;
+  marker.marker_id = id;
+  marker.part = part;
+  const double signs[4][2] = {{-1, 1}, {1, 1}, {1, -1}, {-1, -1}};
+  marker.x_in_shape_m[0] = center;
+  for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+    const double* sign = signs[corner - 1];
+    marker.x_in_shape_m[corner] =
+        center + kMarkerM / 2 * (sign[0] * axes.col(0) + sign[1] * axes.col(1));
+  }
+  marker.num_frames.fill(10);
+  if (sigma_m > 0) {
+    marker.sigma_m.fill(Eigen::Vector3d::Constant(sigma_m));
+    marker.sigma_m[0] = Eigen::Vector3d::Constant(sigma_m / 2);  // of four independent corners
+  }
+  return marker;
+}
+
+int SailId(int line, int place) { return 10 * (line + 1) + place + 1; }
+
+}  // namespace
+
+Layout BoatLayout() {
+  Layout layout;
+  layout.marker_length_m = kMarkerM;
+  LayoutPart sail{"sail", false, {}, {}, {}};
+  for (int line = 0; line < kNumLines; ++line) {
+    MarkerLine horizontal{"h" + std::to_string(line + 1), {}};
+    for (int place = 0; place < kNumOnLine; ++place) {
+      horizontal.marker_ids.push_back(SailId(line, place));
+    }
+    sail.horizontal.push_back(horizontal);
+  }
+  layout.parts = {sail, {"hull", true, {}, {}, {120, 121, 122, 123, 124, 125}}};
+  layout.reference_part = "hull";
+  return layout;
+}
+
+MarkerShape BoatShape(double sigma_m) {
+  MarkerShape shape;
+  for (int line = 0; line < kNumLines; ++line) {
+    for (int place = 0; place < kNumOnLine; ++place) {
+      const double u = 0.05 + 0.9 * place / (kNumOnLine - 1), v = line / (kNumLines - 1.0);
+      shape.markers.push_back(
+          MakeMarker(SailId(line, place), "sail", SailPoint(u, v), FrameAt(u, v), sigma_m));
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::Vector3d center(0.8 * (i % 3), i < 3 ? -0.2 : 0.3, -1.0 - 0.1 * (i % 2));
+    shape.markers.push_back(
+        MakeMarker(120 + i, "hull", center, Eigen::Matrix3d::Identity(), sigma_m));
+  }
+  return shape;
+}
+
+TriangleMesh SailMesh(double margin_m) {
+  constexpr int kCells = 120;
+  const double edge_u = margin_m / kFootM, edge_v = margin_m / kHeightM;
+  TriangleMesh mesh;
+  for (int j = 0; j <= kCells; ++j) {
+    for (int i = 0; i <= kCells; ++i) {
+      const double u = 0.05 - edge_u + (0.9 + 2 * edge_u) * i / kCells;
+      const double v = -edge_v + (1 + 2 * edge_v) * j / kCells;
+      mesh.vertices_m.push_back(SailPoint(u, v));
+    }
+  }
+  for (int j = 0; j < kCells; ++j) {
+    for (int i = 0; i < kCells; ++i) {
+      const int a = j * (kCells + 1) + i, b = a + 1, c = a + kCells + 1, d = c + 1;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, c});
+    }
+  }
+  return mesh;
+}
+
+MarkerShape Moved(const Rigid3& b_from_a, MarkerShape shape) {
+  for (ShapeMarker& marker : shape.markers) {
+    for (auto& x : marker.x_in_shape_m) {
+      if (x) x = b_from_a * *x;
+    }
+  }
+  return shape;
+}
+
+MarkerShape Shifted(const std::set<int>& ids, const Eigen::Vector3d& shift_m, MarkerShape shape) {
+  for (ShapeMarker& marker : shape.markers) {
+    if (ids.count(marker.marker_id) == 0) continue;
+    for (auto& x : marker.x_in_shape_m) {
+      if (x) *x += shift_m;
+    }
+  }
+  return shape;
+}
+
+std::set<int> IdsOf(const std::string& part) {
+  std::set<int> ids;
+  for (const ShapeMarker& marker : BoatShape().markers) {
+    if (marker.part == part) ids.insert(marker.marker_id);
+  }
+  return ids;
+}
+
+Rigid3 FarPose() {
+  return {Eigen::Quaterniond(
+              Eigen::AngleAxisd(70 * M_PI / 180, Eigen::Vector3d(1, -2, 0.5).normalized())),
+          {4, -7, 2}};
+}
+
+TriangleMesh PlaneMesh(double half_m, int num_cells) {
+  TriangleMesh mesh;
+  for (int j = 0; j <= num_cells; ++j) {
+    for (int i = 0; i <= num_cells; ++i) {
+      mesh.vertices_m.emplace_back(half_m * (2.0 * i / num_cells - 1),
+                                   half_m * (2.0 * j / num_cells - 1), 0.0);
+    }
+  }
+  for (int j = 0; j < num_cells; ++j) {
+    for (int i = 0; i < num_cells; ++i) {
+      const int a = j * (num_cells + 1) + i, b = a + 1, c = a + num_cells + 1, d = c + 1;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, c});
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh SphereMesh(double radius_m, int num_rings) {
+  const int num_around = 2 * num_rings;
+  TriangleMesh mesh;
+  for (int ring = 0; ring <= num_rings; ++ring) {
+    const double polar = M_PI * ring / num_rings;
+    for (int i = 0; i < num_around; ++i) {
+      const double around = 2 * M_PI * i / num_around;
+      mesh.vertices_m.emplace_back(radius_m * std::sin(polar) * std::cos(around),
+                                   radius_m * std::sin(polar) * std::sin(around),
+                                   radius_m * std::cos(polar));
+    }
+  }
+  for (int ring = 0; ring < num_rings; ++ring) {
+    for (int i = 0; i < num_around; ++i) {
+      const int a = ring * num_around + i, b = ring * num_around + (i + 1) % num_around;
+      mesh.triangles.push_back({a, a + num_around, b + num_around});
+      mesh.triangles.push_back({a, b + num_around, b});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace velamap

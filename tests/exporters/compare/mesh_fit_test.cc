@@ -1,0 +1,187 @@
+#include "exporters/compare/mesh_fit.h"
+
+#include <cmath>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "exporters/compare/comparison_sigma.h"
+#include "exporters/compare/shape_comparison.h"
+#include "importer/base/error.h"
+#include "tests/exporters/compare/example_comparison.h"
+#include "tests/exporters/example_covariance.h"
+#include "tests/exporters/example_model.h"
+#include "tests/support/error_matchers.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+AlignmentOptions By(AlignmentMethod method, bool starts_as_is = false) {
+  AlignmentOptions options;
+  options.method = method;
+  options.starts_as_is = starts_as_is;
+  return options;
+}
+
+UncertainShape Exact(const MarkerShape& shape) { return {shape, {}}; }
+
+MarkerShape Sail() { return MarkersOnPart(BoatShape(), BoatLayout(), "sail"); }
+
+// Marker of 0.1 m on a sphere about the origin, centre `radius_m` away, looking outwards.
+ShapeMarker MarkerOnSphere(int id, const Eigen::Vector3d& direction, double radius_m) {
+  const Eigen::Quaterniond rotation =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction);
+  ShapeMarker marker = SquareMarker(id, 0.1, {rotation, radius_m * direction.normalized()});
+  marker.part = "ball";
+  return marker;
+}
+
+MarkerShape Ball(double radius_m) {
+  MarkerShape shape;
+  for (int i = 0; i < 20; ++i) {
+    const double z = -0.9 + 1.8 * i / 19, around = 2.4 * i, r = std::sqrt(1 - z * z);
+    shape.markers.push_back(
+        MarkerOnSphere(i, {r * std::cos(around), r * std::sin(around), z}, radius_m));
+  }
+  return shape;
+}
+
+TEST(ShapeComparisonMesh, DistancesToASphereWithoutAlignment) {
+  const MeshDistance mesh(SphereMesh(1.0, 150));
+  for (const double offset_m : {0.03, -0.02}) {
+    const ShapeDeviation deviation =
+        CompareWithMesh(Exact(Ball(1.0 + offset_m)), mesh, {}, By(AlignmentMethod::kNone));
+    EXPECT_EQ(deviation.distance_m.count, 20);
+    EXPECT_NEAR(deviation.distance_m.min, offset_m, 3e-4);
+    EXPECT_NEAR(deviation.distance_m.max, offset_m, 3e-4);
+    EXPECT_FALSE(deviation.scale.has_value());
+    EXPECT_EQ(deviation.parts.front().part, "ball");
+  }
+}
+
+TEST(ShapeComparisonMesh, FindsItsPlaceFromFarAway) {
+  const MeshDistance mesh(SailMesh());
+  const MarkerShape far = Moved(FarPose(), Sail());
+  const ShapeDeviation deviation = CompareWithMesh(Exact(far), mesh, BoatLayout(), {});
+  EXPECT_EQ(deviation.alignment.method, AlignmentMethod::kBestFit);
+  // Corners of flat markers stand off a curved surface by 1 mm: that is what is left.
+  EXPECT_LT(deviation.distance_m.rms, 1e-3);
+  EXPECT_EQ(deviation.distance_m.count, 30);
+  for (const MarkerDeviation& marker : deviation.markers) {
+    EXPECT_LT(
+        (marker.x_in_reference_m - *FindWholeMarker(Sail(), marker.marker_id)->x_in_shape_m[0])
+            .norm(),
+        0.02);
+  }
+  EXPECT_THAT(deviation.alignment.notes, IsEmpty());
+}
+
+TEST(ShapeComparisonMesh, AFewMarkersThatDifferDoNotPullTheRestAlong) {
+  const MeshDistance mesh(SailMesh());
+  const Eigen::Vector3d normal = MarkerNormal(*FindWholeMarker(Sail(), 33));
+  const MarkerShape dented = Shifted({33}, -0.08 * normal, Sail());
+  const ShapeDeviation deviation =
+      CompareWithMesh(Exact(Moved(FarPose(), dented)), mesh, BoatLayout(), {});
+  for (const MarkerDeviation& marker : deviation.markers) {
+    EXPECT_NEAR(marker.distance_m, marker.marker_id == 33 ? -0.08 : 0.0, 3e-3) << marker.marker_id;
+  }
+}
+
+TEST(ShapeComparisonMesh, AsIsStaysNearTheStart) {
+  const MeshDistance mesh(SailMesh());
+  const Rigid3 near{Eigen::Quaterniond(Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitX())),
+                    {0.02, 0.03, -0.02}};
+  const ShapeDeviation deviation = CompareWithMesh(Exact(Moved(near, Sail())), mesh, BoatLayout(),
+                                                   By(AlignmentMethod::kBestFit, true));
+  EXPECT_LT(deviation.distance_m.rms, 1e-3);
+  EXPECT_LT(AngularDistance(deviation.alignment.reference_from_shape, Inverse(near)), 0.01);
+}
+
+// The surface ends where the sail's lower half does: no number for the other half.
+TEST(ShapeComparisonMesh, MarkersBesideTheSurfaceAreNotMeasured) {
+  TriangleMesh half = SailMesh();
+  auto& t = half.triangles;
+  t.erase(std::remove_if(t.begin(), t.end(),
+                         [&](const auto& triangle) {
+                           return half.vertices_m[static_cast<std::size_t>(triangle[0])].z() > 2.5;
+                         }),
+          t.end());
+  const ShapeDeviation deviation =
+      CompareWithMesh(Exact(Sail()), MeshDistance(half), BoatLayout(), By(AlignmentMethod::kNone));
+  EXPECT_EQ(deviation.num_beside, 12);
+  EXPECT_EQ(deviation.distance_m.count, 18);
+  EXPECT_LT(deviation.distance_m.rms, 1e-3);
+  EXPECT_EQ(deviation.lines[4].distance_m.count, 0);
+  EXPECT_FALSE(deviation.markers.back().is_over_surface);
+  EXPECT_GT(deviation.markers.back().beside_m, 1.0);
+  ExpectThrows<DataError>(
+      [&] {
+        CompareWithMesh(Exact(Shifted(IdsOf("sail"), {20, 0, 0}, Sail())), MeshDistance(half),
+                        BoatLayout(), By(AlignmentMethod::kNone));
+      },
+      {"none of the 30 whole markers", "best_fit"});
+}
+
+TEST(ShapeComparisonMesh, SaysWhichMotionsTheSurfaceLeavesOpen) {
+  const ShapeDeviation ball =
+      CompareWithMesh(Exact(Ball(1.0)), MeshDistance(SphereMesh(1.0, 40)), {}, {});
+  MarkerShape board;
+  for (int i = 0; i < 9; ++i) {
+    board.markers.push_back(SquareMarker(
+        i, 0.1, {Eigen::Quaterniond::Identity(), {0.3 * (i % 3), 0.2 * (i / 3), 0.4}}));
+  }
+  const ShapeDeviation plane =
+      CompareWithMesh(Exact(board), MeshDistance(PlaneMesh(2.0, 3)), {}, {});
+  EXPECT_LT(plane.distance_m.rms, 1e-9);
+  EXPECT_THAT(plane.alignment.notes, Contains(HasSubstr("leaves 3 of 6 rigid motions open")));
+  EXPECT_THAT(plane.alignment.notes, Contains(HasSubstr("fits as well")));
+  EXPECT_LT(ball.distance_m.rms, 5e-3);
+}
+
+TEST(ShapeComparisonMesh, SigmasAreWhatRepetitionsScatterBy) {
+  const MeshDistance mesh(SailMesh());
+  const MarkerShape sail = MarkersOnPart(BoatShape(0.002), BoatLayout(), "sail");
+  const UncertainShape uncertain{sail, CovarianceFromSigmas(sail)};
+  const AlignmentOptions options = By(AlignmentMethod::kBestFit, true);
+  const ShapeDeviation deviation = CompareWithMesh(uncertain, mesh, BoatLayout(), options);
+  ASSERT_EQ(deviation.num_with_sigma, 30);
+  std::vector<std::vector<double>> distances_m(30);
+  SampleShapes(sail, uncertain.covariance, 100, [&](const MarkerShape& sample) {
+    const ShapeDeviation sampled = CompareWithMesh(Exact(sample), mesh, BoatLayout(), options);
+    for (std::size_t i = 0; i < 30; ++i) distances_m[i].push_back(sampled.markers[i].distance_m);
+  });
+  double predicted = 0.0, sampled = 0.0;
+  for (std::size_t i = 0; i < 30; ++i) {
+    predicted += std::pow(*deviation.markers[i].sigma_m, 2);
+    sampled += std::pow(ComputeStatistics(distances_m[i]).standard_deviation, 2);
+  }
+  EXPECT_NEAR(std::sqrt(predicted / sampled), 1.0, 0.08);
+}
+
+TEST(ShapeComparisonMesh, UnitHintForAWrongUnit) {
+  TriangleMesh mesh = SailMesh();
+  EXPECT_FALSE(UnitHint(BoatShape(), MeshDistance(mesh)).has_value());
+  for (Eigen::Vector3d& x : mesh.vertices_m) x *= 1e3;
+  EXPECT_EQ(UnitHint(BoatShape(), MeshDistance(mesh)), 1e-3);
+  for (Eigen::Vector3d& x : mesh.vertices_m) x *= 1e-6;
+  EXPECT_EQ(UnitHint(BoatShape(), MeshDistance(mesh)), 1e3);
+}
+
+TEST(ShapeComparisonMesh, RefusesWhatASurfaceCannotDo) {
+  const MeshDistance mesh(SailMesh());
+  ExpectThrows<InputError>(
+      [&] { AlignToMesh(BoatShape(), mesh, By(AlignmentMethod::kReferencePart)); },
+      {"--align reference_part", "best_fit"});
+  MarkerShape one;
+  one.markers = {BoatShape().markers.front()};
+  ExpectThrows<DataError>([&] { AlignToMesh(one, mesh, {}); }, {"4 marker corners", "needs 6"});
+}
+
+}  // namespace
+}  // namespace velamap

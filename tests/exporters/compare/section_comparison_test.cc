@@ -1,0 +1,103 @@
+#include "exporters/compare/section_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/compare/comparison_sigma.h"
+#include "tests/exporters/compare/example_comparison.h"
+#include "tests/exporters/example_covariance.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::HasSubstr;
+
+UncertainShape Uncertain(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
+
+SectionComparison Compare(const MarkerShape& shape, const MarkerShape& reference) {
+  const Alignment alignment = AlignShapes(shape, reference, BoatLayout(), {});
+  return CompareSections(Uncertain(shape), Uncertain(reference), alignment, BoatLayout());
+}
+
+const SectionDifference& Find(const SectionComparison& comparison, const std::string& section,
+                              const std::string& number) {
+  const auto it =
+      std::find_if(comparison.differences.begin(), comparison.differences.end(),
+                   [&](const auto& d) { return d.section == section && d.number == number; });
+  if (it == comparison.differences.end()) throw std::runtime_error("no " + section + number);
+  return *it;
+}
+
+// Depths of a line's markers above its chord, times this.
+MarkerShape WithMoreCamber(double factor, const std::vector<int>& ids, MarkerShape shape) {
+  const Eigen::Vector3d first = *FindWholeMarker(shape, ids.front())->x_in_shape_m[0];
+  const Eigen::Vector3d chord = *FindWholeMarker(shape, ids.back())->x_in_shape_m[0] - first;
+  const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(chord).normalized();
+  for (const int id : ids) {
+    const double depth_m = across.dot(*FindWholeMarker(shape, id)->x_in_shape_m[0] - first);
+    shape = Shifted({id}, (factor - 1) * depth_m * across, shape);
+  }
+  return shape;
+}
+
+TEST(ComparisonSections, AShapeMovedRigidlyHasTheSameSections) {
+  const SectionComparison comparison =
+      Compare(Moved(FarPose(), BoatShape(0.001)), BoatShape(0.001));
+  EXPECT_EQ(comparison.differences.size(), 5u * 6);
+  EXPECT_THAT(comparison.frame_name, HasSubstr("reference part hull"));
+  for (const SectionDifference& d : comparison.differences) {
+    EXPECT_NEAR(d.Difference(), 0, 1e-6) << d.section << " " << d.number;
+    ASSERT_TRUE(d.sigma.has_value()) << d.section << " " << d.number;
+    // The lowest section's twist is 0 by definition.
+    const bool is_defined = d.section == "h1" && d.number == "twist_deg";
+    EXPECT_EQ(*d.sigma > 0, !is_defined) << d.section << " " << d.number;
+    EXPECT_FALSE(d.IsSignificant());
+  }
+}
+
+TEST(ComparisonSections, MoreCamberInOneLineShowsThereAndOnlyThere) {
+  const MarkerShape reference = BoatShape(0.001);
+  const MarkerShape fuller = WithMoreCamber(1.2, {31, 32, 33, 34, 35, 36}, reference);
+  const SectionComparison comparison = Compare(fuller, reference);
+  const SectionDifference& camber = Find(comparison, "h3", "camber_percent");
+  EXPECT_NEAR(camber.value / camber.reference, 1.2, 0.02);
+  EXPECT_TRUE(camber.IsSignificant());
+  EXPECT_GT(*camber.significance, 2);
+  EXPECT_NEAR(Find(comparison, "h3", "twist_deg").Difference(), 0, 1e-3);
+  EXPECT_FALSE(Find(comparison, "h2", "camber_percent").IsSignificant());
+}
+
+TEST(ComparisonSections, SigmaIsOfBothTogether) {
+  const MarkerShape a = BoatShape(0.001), b = BoatShape(0.003);
+  const double both = *Find(Compare(a, b), "h2", "camber_percent").sigma;
+  const double of_a = *Find(Compare(a, a), "h2", "camber_percent").sigma / std::sqrt(2.0);
+  const double of_b = *Find(Compare(b, b), "h2", "camber_percent").sigma / std::sqrt(2.0);
+  EXPECT_NEAR(both, std::hypot(of_a, of_b), 0.02 * both);
+}
+
+TEST(ComparisonSections, WhatOneLacksIsSaid) {
+  MarkerShape reference = BoatShape();
+  auto& markers = reference.markers;
+  markers.erase(std::remove_if(markers.begin(), markers.end(),
+                               [](const auto& m) { return m.marker_id >= 11 && m.marker_id < 15; }),
+                markers.end());
+  const SectionComparison comparison = Compare(BoatShape(), reference);
+  EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("reference: sail h1")));
+  EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("twists do not compare")));
+  EXPECT_EQ(comparison.differences.size(), 4u * 5);
+  EXPECT_FALSE(comparison.differences.front().sigma.has_value());
+}
+
+TEST(ComparisonSections, ALayoutWithoutLinesHasNone) {
+  const MarkerShape boat = BoatShape();
+  const SectionComparison comparison =
+      CompareSections(Uncertain(boat), Uncertain(boat), Alignment(), Layout());
+  EXPECT_TRUE(comparison.differences.empty());
+  EXPECT_FALSE(comparison.notes.empty());
+}
+
+}  // namespace
+}  // namespace velamap

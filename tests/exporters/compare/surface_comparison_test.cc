@@ -1,0 +1,93 @@
+#include "exporters/compare/surface_comparison.h"
+
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/formats/diverging_color.h"
+#include "tests/exporters/compare/example_comparison.h"
+#include "tests/exporters/formats/ply_reader.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(ComparisonSurface, AShapeIsNowhereFromItself) {
+  const SurfaceComparison comparison = CompareSurfaces(BoatShape(), BoatShape(), BoatLayout());
+  ASSERT_EQ(comparison.parts.size(), 1u);
+  EXPECT_EQ(comparison.parts[0].part, "sail");
+  EXPECT_EQ(comparison.parts[0].statistics_m.count,
+            static_cast<int>(comparison.parts[0].mesh.vertices_m.size()));
+  EXPECT_LT(LargestDistance(comparison), 1e-9);
+}
+
+// All lines pushed out by 20 mm along the mean normal: the middle of the sail moves by that.
+TEST(ComparisonSurface, APushedSailIsAsFarOffAllOver) {
+  const Eigen::Vector3d push(0.0, 0.02, 0.0);
+  const SurfaceComparison comparison =
+      CompareSurfaces(Shifted(IdsOf("sail"), push, BoatShape()), BoatShape(), BoatLayout());
+  const SurfaceDeviation& sail = comparison.parts.at(0);
+  const double sign = sail.statistics_m.mean > 0 ? 1 : -1;
+  EXPECT_NEAR(sail.statistics_m.mean, sign * 0.019, 0.002);  // the sail is not all across y
+  EXPECT_LE(sail.statistics_m.max, 0.0201);
+  // Pushed aft, a strip along the leech lies beside the reference.
+  const SurfaceDeviation aft =
+      CompareSurfaces(Shifted(IdsOf("sail"), {0.3, 0, 0}, BoatShape()), BoatShape(), BoatLayout())
+          .parts.at(0);
+  EXPECT_LT(aft.statistics_m.count, static_cast<int>(0.95 * aft.mesh.vertices_m.size()));
+  EXPECT_GT(aft.statistics_m.count, static_cast<int>(0.5 * aft.mesh.vertices_m.size()));
+}
+
+TEST(ComparisonSurface, OfADesignIsMeasuredOnItsFaces) {
+  const SurfaceComparison comparison =
+      CompareSurfaces(BoatShape(), MeshDistance(SailMesh()), BoatLayout());
+  ASSERT_EQ(comparison.parts.size(), 1u);
+  EXPECT_LT(LargestDistance(comparison), 0.005);  // what a spline through six markers a line leaves
+  EXPECT_GT(LargestDistance(comparison), 1e-6);
+  EXPECT_THAT(CompareSurfaces(BoatShape(), MeshDistance(SailMesh()), BoatLayout(), "hull").parts,
+              IsEmpty());
+}
+
+TEST(ComparisonSurface, SaysWhyAPartHasNone) {
+  MarkerShape shape = BoatShape();
+  shape.markers.erase(shape.markers.begin() + 6, shape.markers.begin() + 30);  // h1 is left
+  const SurfaceComparison comparison = CompareSurfaces(shape, BoatShape(), BoatLayout());
+  EXPECT_THAT(comparison.parts, IsEmpty());
+  EXPECT_THAT(comparison.notes, ElementsAre(HasSubstr("sail: no surface: ")));
+}
+
+TEST(ComparisonSurface, PlyHoldsDistanceAndColour) {
+  const SurfaceComparison comparison =
+      CompareSurfaces(Shifted(IdsOf("sail"), {0, 0.02, 0}, BoatShape()), BoatShape(), BoatLayout());
+  std::ostringstream out;
+  WriteComparisonSurfacePly(comparison, 0.01, out);
+  EXPECT_THAT(out.str(), HasSubstr("blue -10 mm, white 0, red +10 mm"));
+  const SurfaceDeviation& sail = comparison.parts[0];
+  const PlyFile ply = ReadPly(out.str());
+  ASSERT_EQ(ply.elements[0].rows.size(), sail.mesh.vertices_m.size());
+  EXPECT_EQ(ply.elements[1].rows.size(), sail.mesh.triangles.size());
+  for (std::size_t i = 0; i < sail.distance_m.size(); ++i) {
+    const Eigen::Array3d color = DivergingColor(sail.distance_m[i], 0.01);
+    EXPECT_EQ(ply.elements[0].Column("red")[i], color[0]);
+    if (!sail.distance_m[i]) continue;
+    EXPECT_NEAR(ply.elements[0].Column("distance")[i], *sail.distance_m[i], 1e-8);
+  }
+}
+
+TEST(DivergingColor, IsWhiteInTheMiddleAndClamps) {
+  const auto is = [](const Eigen::Array3d& color, double red, double green, double blue) {
+    return color[0] == red && color[1] == green && color[2] == blue;
+  };
+  EXPECT_TRUE(is(DivergingColor(0.0, 1.0), 247, 247, 247));
+  EXPECT_TRUE(is(DivergingColor(5.0, 1.0), 178, 24, 43));
+  EXPECT_TRUE(is(DivergingColor(-1.0, 1.0), 33, 102, 172));
+  EXPECT_TRUE(is(DivergingColor(0.3, 0.0), 247, 247, 247));
+  EXPECT_TRUE(is(DivergingColor(std::nullopt, 1.0), 128, 128, 128));
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,193 @@
+// STEP and IGES, read back by Open CASCADE's own readers.
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "exporters/formats/cad_reader.h"
+#include "exporters/formats/cad_writer.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "tests/exporters/comma_locale.h"
+#include "tests/exporters/sail/example_surface.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+constexpr double kAnyChordMm = 1.0;
+
+std::string Step(const SplineSurface& surface, const std::string& name = "sail") {
+  std::ostringstream out;
+  WriteStep(surface, name, out);
+  return out.str();
+}
+
+std::string Iges(const SplineSurface& surface, const std::string& name = "sail") {
+  std::ostringstream out;
+  WriteIges(surface, name, out);
+  return out.str();
+}
+
+void WriteText(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::string ReadErrorOf(const std::filesystem::path& path) {
+  try {
+    ReadCad(path, kAnyChordMm);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no InputError";
+}
+
+// Extents of the surface itself, from a dense mesh.
+void Extents(const SplineSurface& surface, Eigen::Vector3d* min_m, Eigen::Vector3d* max_m) {
+  MeshOptions options;
+  options.edge_length_mm = 20;
+  const TriangleMesh mesh = MeshSurface(surface, options);
+  *min_m = *max_m = mesh.vertices_m.front();
+  for (const Eigen::Vector3d& x : mesh.vertices_m) {
+    *min_m = min_m->cwiseMin(x);
+    *max_m = max_m->cwiseMax(x);
+  }
+}
+
+double Area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& x = mesh.vertices_m;
+    area += (x[b] - x[a]).cross(x[c] - x[a]).norm() / 2;
+  }
+  return area;
+}
+
+TEST(Cad, ReadBackWithSameAreaExtentsAndUnit) {
+  TempDir dir;
+  for (const auto& truth : {BilinearPatch, CylinderSail, TwistedSail}) {
+    const SplineSurface surface = FitSurface(MarkersOn(truth, 6, 7)).surface;
+    Eigen::Vector3d min_m, max_m;
+    Extents(surface, &min_m, &max_m);
+    WriteText(dir / "sail.step", Step(surface));
+    WriteText(dir / "sail.igs", Iges(surface));
+    for (const char* name : {"sail.step", "sail.igs"}) {
+      const CadShape shape = ReadCad(dir / name, kAnyChordMm);
+      EXPECT_THAT(shape.length_unit, AnyOf("MM", "millimetre")) << name;
+      EXPECT_EQ(shape.num_faces, 1);
+      EXPECT_NEAR(shape.area_m2, SurfaceArea(surface), 1e-7 * shape.area_m2) << name;
+      EXPECT_LT((shape.min_m - min_m).cwiseAbs().maxCoeff(), 1e-4) << name;
+      EXPECT_LT((shape.max_m - max_m).cwiseAbs().maxCoeff(), 1e-4) << name;
+      EXPECT_NEAR(Area(shape.mesh), shape.area_m2, 1e-3 * shape.area_m2) << name;
+      double largest_mm = 0;
+      for (const SurfaceFoot& foot : ProjectOnSurface(surface, shape.mesh.vertices_m)) {
+        largest_mm = std::max(largest_mm, 1000 * std::abs(foot.distance_m));
+      }
+      EXPECT_LT(largest_mm, 1e-3) << name;
+    }
+  }
+}
+
+TEST(Cad, HeadersSayMillimetresAndTheSchema) {
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  const std::string step = Step(surface);
+  EXPECT_THAT(step, HasSubstr("SI_UNIT(.MILLI.,.METRE.)"));
+  EXPECT_THAT(step, HasSubstr("AUTOMOTIVE_DESIGN { 1 0 10303 214"));
+  EXPECT_THAT(step, HasSubstr("PRODUCT('sail','sail'"));
+  const std::string iges = Iges(surface);
+  EXPECT_THAT(iges, HasSubstr("2HMM"));
+  EXPECT_THAT(iges, HasSubstr("4Hsail"));
+}
+
+TEST(Cad, UnitOfTheFileIsObeyed) {
+  TempDir dir;
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  std::string step = Step(surface);
+  const std::string millimetre = "SI_UNIT(.MILLI.,.METRE.)";
+  step.replace(step.find(millimetre), millimetre.size(), "SI_UNIT($,.METRE.)");
+  WriteText(dir / "in_metres.stp", step);
+  // The same numbers, now metres; a coarse mesh, for it is 6 km high.
+  EXPECT_NEAR(ReadCad(dir / "in_metres.stp", 1e5).area_m2, 1e6 * SurfaceArea(surface),
+              1 * SurfaceArea(surface));
+}
+
+TEST(Cad, SameSurfaceSameBytes) {
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  const std::string step = Step(surface), iges = Iges(surface);
+  EXPECT_EQ(step, Step(surface));
+  EXPECT_EQ(iges, Iges(surface));
+  const CommaLocale comma;
+  EXPECT_EQ(step, Step(surface));
+  EXPECT_EQ(iges, Iges(surface));
+}
+
+TEST(Cad, NamesThatAreNotAsciiAreWrittenSo) {
+  TempDir dir;
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  WriteText(dir / "a.step", Step(surface, "gro\xC3\x9Fsegel 'A'"));
+  WriteText(dir / "a.iges", Iges(surface, "gro\xC3\x9Fsegel 'A'"));
+  for (const char* name : {"a.step", "a.iges"}) {
+    EXPECT_NEAR(ReadCad(dir / name, kAnyChordMm).area_m2, SurfaceArea(surface), 1e-5);
+  }
+}
+
+TEST(Cad, SaysNothingOnStandardOutput) {
+  TempDir dir;
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  ::testing::internal::CaptureStdout();
+  WriteText(dir / "a.step", Step(surface));
+  WriteText(dir / "a.iges", Iges(surface));
+  ReadCad(dir / "a.step", kAnyChordMm);
+  ReadCad(dir / "a.iges", kAnyChordMm);
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(Cad, UnreadableFilesAreNamed) {
+  TempDir dir;
+  EXPECT_THAT(ReadErrorOf(dir / "not_there.step"), HasSubstr("not_there.step: cannot be read"));
+  WriteText(dir / "bad.step", "nothing of the kind\n");
+  EXPECT_THAT(ReadErrorOf(dir / "bad.step"), HasSubstr("bad.step: "));
+  WriteText(dir / "bad.IGS", "nothing of the kind\n");
+  EXPECT_THAT(ReadErrorOf(dir / "bad.IGS"), HasSubstr("bad.IGS: "));
+  WriteText(dir / "sail.obj", "v 0 0 0\n");
+  EXPECT_THAT(ReadErrorOf(dir / "sail.obj"), HasSubstr("expected .step, .stp, .iges or .igs"));
+  const std::string step = Step(FitSurface(MarkersOn(TwistedSail, 4, 5)).surface);
+  WriteText(dir / "half.step", step.substr(0, step.size() / 2));
+  EXPECT_THAT(ReadErrorOf(dir / "half.step"), HasSubstr("half.step: "));
+}
+
+TEST(Cad, UnwritableOutputIsNamedAndNothingIsLeft) {
+  TempDir dir;
+  WriteText(dir / "file", "in the way");
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  const auto path = dir / "file" / "sail.step";
+  try {
+    WriteFileAtomically(path, [&](std::ostream& out) { WriteStep(surface, "sail", out); });
+    ADD_FAILURE() << "no InputError";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("sail.step: cannot be written"));
+  }
+}
+
+TEST(Cad, FullStreamIsNoBrokenInvariant) {
+  std::ofstream full("/dev/full");
+  if (!full) GTEST_SKIP() << "no /dev/full";
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 12, 12)).surface;
+  WriteStep(surface, "sail", full);
+  full.flush();
+  EXPECT_FALSE(full.good());
+  std::ofstream full_again("/dev/full");
+  WriteIges(surface, "sail", full_again);
+  full_again.flush();
+  EXPECT_FALSE(full_again.good());
+}
+
+}  // namespace
+}  // namespace velamap

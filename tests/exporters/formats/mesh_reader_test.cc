@@ -1,0 +1,121 @@
+#include "exporters/formats/mesh_reader.h"
+
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "exporters/formats/cad_writer.h"
+#include "exporters/formats/mesh_writer.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "tests/exporters/compare/example_comparison.h"
+#include "tests/exporters/sail/example_surface.h"
+#include "tests/support/error_matchers.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+double Area(const TriangleMesh& mesh) {
+  double area = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const auto x = [&](std::size_t k) { return mesh.vertices_m[static_cast<std::size_t>(t[k])]; };
+    area += (x(1) - x(0)).cross(x(2) - x(0)).norm() / 2;
+  }
+  return area;
+}
+
+class MeshReaderTest : public ::testing::Test {
+ protected:
+  fs::path Write(const std::string& name, const std::string& text) {
+    std::ofstream(dir_ / name, std::ios::binary) << text;
+    return dir_ / name;
+  }
+  void ExpectRefused(const fs::path& path, std::initializer_list<std::string> parts) {
+    ExpectThrows<InputError>([&] { ReadMesh(path); }, parts);
+  }
+
+  TempDir dir_;
+};
+
+TEST_F(MeshReaderTest, ReadsBackWhatVelamapWritesInTheRightUnit) {
+  const TriangleMesh mesh = SailMesh();
+  const std::vector<
+      std::pair<std::string, void (*)(const TriangleMesh&, const std::string&, std::ostream&)>>
+      writers = {{"a.ply", WriteMeshPly}, {"a.OBJ", WriteMeshObj}, {"a.stl", WriteMeshStl}};
+  for (const auto& [name, writer] : writers) {
+    WriteFileAtomically(dir_ / name,
+                        [&, write = writer](std::ostream& out) { write(mesh, "sail", out); });
+    const TriangleMesh read = ReadMesh(dir_ / name);
+    EXPECT_EQ(read.triangles.size(), mesh.triangles.size()) << name;
+    EXPECT_NEAR(Area(read), Area(mesh), 1e-4) << name;
+    // Looks to the same side at the same place.
+    const auto& [a, b, c] = read.triangles.front();
+    const auto& [d, e, f] = mesh.triangles.front();
+    EXPECT_LT((read.vertices_m[a] - mesh.vertices_m[d]).norm(), 1e-5) << name;
+    EXPECT_GT((read.vertices_m[b] - read.vertices_m[a])
+                  .cross(read.vertices_m[c] - read.vertices_m[a])
+                  .dot((mesh.vertices_m[e] - mesh.vertices_m[d])
+                           .cross(mesh.vertices_m[f] - mesh.vertices_m[d])),
+              0)
+        << name;
+  }
+}
+
+TEST_F(MeshReaderTest, StepAndIgesHaveTheirUnit) {
+  const SplineSurface surface = FitSurface(MarkersOn(BilinearPatch, 4, 5)).surface;
+  WriteFileAtomically(dir_ / "a.step", [&](std::ostream& out) { WriteStep(surface, "a", out); });
+  WriteFileAtomically(dir_ / "a.igs", [&](std::ostream& out) { WriteIges(surface, "a", out); });
+  for (const char* name : {"a.step", "a.igs"}) {
+    EXPECT_NEAR(Area(ReadMesh(dir_ / name)), SurfaceArea(surface), 0.01) << name;
+    EXPECT_TRUE(HasOwnUnit(dir_ / name));
+  }
+}
+
+TEST_F(MeshReaderTest, UnitThatIsGivenCounts) {
+  const fs::path path = Write("a.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n");
+  EXPECT_NEAR(Area(ReadMesh(path)), 6e-6, 1e-12);
+  MeshReadOptions options;
+  options.m_per_unit = MPerUnitFromName("m", "--reference_unit");
+  EXPECT_NEAR(Area(ReadMesh(path, options)), 6.0, 1e-6);  // the quadrilateral whole
+  ExpectThrows<InputError>([] { MPerUnitFromName("inch", "--reference_unit"); },
+                           {"--reference_unit", "inch", "mm"});
+}
+
+TEST_F(MeshReaderTest, BadFiles) {
+  ExpectRefused(dir_ / "no.stl", {"no.stl", "no such file"});
+  ExpectRefused(Write("a.xyz", "0 0 0\n"), {"a.xyz", "expected .ply"});
+  ExpectRefused(Write("a", "0 0 0\n"), {"expected .ply"});
+  fs::create_directory(dir_ / "folder.stl");
+  ExpectRefused(dir_ / "folder.stl", {"folder.stl", "no regular file"});
+  ExpectRefused(Write("empty.ply", ""), {"empty.ply", "cannot be read as ply"});
+  ExpectRefused(Write("text.stl", "this is no mesh\n"), {"text.stl"});
+  ExpectRefused(Write("text.step", "this is no mesh\n"), {"text.step", "STEP"});
+  ExpectRefused(Write("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"),
+                {"cut.ply"});
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+      "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  ExpectRefused(Write("head.ply", header), {"head.ply"});
+  ExpectRefused(Write("body.ply", header + "0 0 0\n1 1 1\n"), {"body.ply"});
+  std::string binary = header + std::string(20, '\0');
+  binary.replace(binary.find("ascii"), 5, "binary_little_endian");
+  ExpectRefused(Write("binary.ply", binary), {"binary.ply"});
+  ExpectRefused(Write("points.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float "
+                      "y\nproperty float z\nend_header\n0 0 0\n1 1 1\n"),
+                {"points.ply"});
+  ExpectRefused(Write("lines.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nl 1 2 3\n"), {"lines.obj"});
+  ExpectRefused(Write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"),
+                {"flat.obj", "holds no triangles"});
+  ExpectRefused(Write("nan.obj", "v 0 0 0\nv nan 0 0\nv 2 1 0\nf 1 2 3\n"), {"nan.obj"});
+  ExpectRefused(Write("range.obj", "v 0 0 0\nv 1 0 0\nv 2 1 0\nf 1 2 9\n"), {"range.obj"});
+}
+
+}  // namespace
+}  // namespace velamap

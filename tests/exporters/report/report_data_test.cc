@@ -1,0 +1,234 @@
+#include "exporters/report/report_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "importer/base/error.h"
+#include "tests/exporters/report/report_example.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+double Number(const json& value) { return value.get<double>(); }
+
+Eigen::Vector3d VectorOf(const json& value) {
+  return {Number(value.at(0)), Number(value.at(1)), Number(value.at(2))};
+}
+
+class ReportData : public testing::Test {
+ protected:
+  json Parsed() const { return json::parse(ReportJson(example_.Input())); }
+
+  const ReportExample example_ = MakeReportExample(2, 4);
+};
+
+TEST_F(ReportData, HasEveryMarkerWithItsNumbers) {
+  const json markers = Parsed().at("markers");
+  ASSERT_EQ(markers.size(), example_.shape.markers.size());
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    const ShapeMarker& marker = example_.shape.markers[i];
+    EXPECT_EQ(markers[i].at("id"), marker.marker_id);
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      EXPECT_EQ(VectorOf(markers[i].at("corners").at(corner - 1)), marker.x_in_shape_m[corner]);
+    }
+    EXPECT_NEAR(markers[i].at("area_deviation_percent").get<double>(), 0, 1e-9);
+    EXPECT_NEAR(markers[i].at("scale_deviation_percent").get<double>(), 0, 1e-9);
+    EXPECT_FALSE(markers[i].contains("sigma_mm"));
+  }
+}
+
+TEST_F(ReportData, MarkerErrorsAverageToTheModels) {
+  double sum_px = 0;
+  int count = 0;
+  const json data = Parsed();
+  for (const json& marker : data.at("markers")) {
+    const int num_observations = marker.at("num_observations");
+    sum_px += num_observations * Number(marker.at("error_px"));
+    count += num_observations;
+  }
+  EXPECT_EQ(count, example_.model_metrics.error_px.count);
+  EXPECT_NEAR(sum_px / count, example_.model_metrics.error_px.mean, 1e-12);
+}
+
+TEST_F(ReportData, AMarkerTooSmallByTwoPercentSaysSo) {
+  ReportExample example = example_;
+  ShapeMarker& marker = example.shape.markers.front();
+  const Eigen::Vector3d centre = *marker.x_in_shape_m[0];
+  for (auto& x : marker.x_in_shape_m) x = centre + 0.98 * (*x - centre);
+  const json first = json::parse(ReportJson(example.Input())).at("markers").at(0);
+  EXPECT_NEAR(Number(first.at("side_deviation_percent")), -2, 1e-9);
+  EXPECT_NEAR(Number(first.at("area_deviation_percent")), -3.96, 1e-9);
+}
+
+TEST_F(ReportData, CamerasStandAndLookWhereTheModelHasThem) {
+  const json images = Parsed().at("images");
+  ASSERT_EQ(images.size(), 4u);
+  EXPECT_TRUE(images[0].contains("central"));
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const ModelImage& image = example_.model.images[i];
+    EXPECT_EQ(images[i].at("name"), image.name);
+    const Eigen::Vector3d centre = VectorOf(images[i].at("centre"));
+    EXPECT_LT((image.cam_from_world * centre).norm(), 1e-12);
+    const Eigen::Vector3d top_left_in_cam =
+        image.cam_from_world * (centre + VectorOf(images[i].at("frustum").at(0)));
+    EXPECT_NEAR(top_left_in_cam.z(), 1, 1e-12);
+    EXPECT_LT(top_left_in_cam.x(), 0);
+    EXPECT_LT(top_left_in_cam.y(), 0);
+  }
+}
+
+TEST_F(ReportData, HistogramsCountAllMarkersAndCorners) {
+  const json data = Parsed();
+  const auto total = [&](const char* name) {
+    const json& histogram = data.at("histograms").at(name);
+    const std::vector<int> counts = histogram.at("counts");
+    return std::accumulate(counts.begin(), counts.end(), 0) + histogram.at("num_below").get<int>() +
+           histogram.at("num_above").get<int>();
+  };
+  EXPECT_EQ(total("area_deviation_percent"), example_.metrics.num_markers);
+  EXPECT_EQ(total("error_px"), example_.model_metrics.error_px.count);
+}
+
+TEST_F(ReportData, EllipsoidsHaveTheCovarianceOfTheCentre) {
+  ReportExample example = example_;
+  const int marker_id = example.shape.markers.front().marker_id;
+  // All corners move together: the centre's covariance is theirs.
+  AdjustmentUncertainty uncertainty;
+  Eigen::Matrix3d factor;
+  factor << 3e-3, 0, 0, 1e-3, 2e-3, 0, 0.5e-3, 0, 1e-3;
+  uncertainty.points.blocks = {Eigen::MatrixXd::Zero(12, 12)};
+  uncertainty.points.factor.resize(12, 3);
+  uncertainty.points.signs = Eigen::VectorXd::Ones(3);
+  for (int corner = 1; corner <= kNumCorners; ++corner) {
+    uncertainty.points.point3D_ids.push_back(Point3DIdFromCorner({marker_id, corner}));
+    uncertainty.points.factor.middleRows<3>(3 * (corner - 1)) = factor;
+  }
+  ReportInput input = example.Input();
+  input.uncertainty = &uncertainty;
+  const json markers = json::parse(ReportJson(input)).at("markers");
+  Eigen::Matrix3d axes;
+  for (int i = 0; i < 3; ++i) axes.col(i) = VectorOf(markers.at(0).at("ellipsoid").at(i));
+  const Eigen::Matrix3d covariance = factor * factor.transpose();
+  EXPECT_LT((axes * axes.transpose() - covariance).norm(), 1e-12);
+  EXPECT_NEAR(Number(markers.at(0).at("sigma_mm")), 1e3 * std::sqrt(covariance.trace()), 1e-9);
+  EXPECT_FALSE(markers.at(1).contains("ellipsoid"));
+}
+
+TEST_F(ReportData, EllipsoidsFollowTheSigmasWhereThereIsNoCovariance) {
+  ReportExample example = example_;
+  example.shape.markers.front().sigma_m[0] = Eigen::Vector3d(3e-3, 1e-3, 2e-3);
+  const json marker = json::parse(ReportJson(example.Input())).at("markers").at(0);
+  EXPECT_NEAR(VectorOf(marker.at("ellipsoid").at(2)).cwiseAbs().x(), 3e-3, 1e-12);
+  EXPECT_NEAR(VectorOf(marker.at("ellipsoid").at(0)).cwiseAbs().y(), 1e-3, 1e-12);
+}
+
+TEST_F(ReportData, MissingMarkersHaveReasons) {
+  ReportInput input = example_.Input();
+  EXPECT_EQ(Parsed().at("markers_left_out").at(0).at("name"), "8000");
+  EXPECT_THAT(Parsed().at("markers_left_out").at(0).at("reason"), HasSubstr("no corner"));
+  input.markers_left_out = {{"8000", "seen in one image"}};
+  const json left_out = json::parse(ReportJson(input)).at("markers_left_out");
+  ASSERT_EQ(left_out.size(), 1u);
+  EXPECT_EQ(left_out.at(0).at("reason"), "seen in one image");
+}
+
+TEST_F(ReportData, ThePictureHasEveryCornerOfTheCentralImage) {
+  const TempDir dir;
+  DrawCentralImage(example_.model, dir.path());
+  ReportInput input = example_.Input();
+  input.image_path = dir.path().string();
+  const json picture = json::parse(ReportJson(input)).at("picture");
+  EXPECT_FALSE(picture.contains("problem"));
+  EXPECT_GT(picture.at("jpeg").get<std::string>().size(), 1000u);
+  const ModelImage& image = example_.model.images.front();
+  ASSERT_EQ(picture.at("points").size(), image.points2D.size());
+  for (const json& point : picture.at("points")) {
+    const Eigen::Vector2d detected(Number(point.at(1)), Number(point.at(2)));
+    const Eigen::Vector2d residual(Number(point.at(3)), Number(point.at(4)));
+    const auto projected = ImageFromCam(
+        example_.model.cameras.at(1),
+        image.cam_from_world * example_.model.points3D.at(point.at(0).get<Point3DId>()).x_in_world);
+    EXPECT_LT((detected + residual - projected.value()).norm(), 1e-9);
+  }
+}
+
+TEST_F(ReportData, SaysWhyThereIsNoPicture) {
+  EXPECT_THAT(Parsed().at("picture").at("problem"), HasSubstr("folder of the images"));
+  ReportInput input = example_.Input();
+  input.image_path = "nowhere";
+  EXPECT_EQ(json::parse(ReportJson(input)).at("picture").at("problem"), "cannot be read");
+}
+
+TEST_F(ReportData, UpAndFrontAreTheCentralCamerasUnlessGiven) {
+  const Rigid3& cam_from_world = example_.model.images.front().cam_from_world;
+  const json frame = Parsed().at("frame");
+  EXPECT_LT((cam_from_world.rotation * VectorOf(frame.at("up")) + Eigen::Vector3d::UnitY()).norm(),
+            1e-12);
+  EXPECT_LT(
+      (cam_from_world.rotation * VectorOf(frame.at("forward")) - Eigen::Vector3d::UnitZ()).norm(),
+      1e-12);
+  ReportInput input = example_.Input();
+  input.frame = {"hull", Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX()};
+  EXPECT_EQ(json::parse(ReportJson(input)).at("frame").at("name"), "hull");
+}
+
+TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
+  EXPECT_FALSE(Parsed().contains("sections"));
+  EXPECT_FALSE(Parsed().contains("surface"));
+  ReportInput input = example_.Input();
+  ReportSection section;
+  section.name = "h1";
+  section.height_m = 1.5;
+  section.chord_m = ReportFigure{2.0, 0.001};
+  section.profile_m = {{0, 0}, {1, 0.2}, {2, 0}};
+  input.sections = {section};
+  input.surface = ReportSurface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}};
+  const json data = json::parse(ReportJson(input));
+  EXPECT_EQ(data.at("sections").at(0).at("chord_sigma_m"), 0.001);
+  EXPECT_EQ(data.at("sections").at(0).at("profile").size(), 3u);
+  EXPECT_FALSE(data.at("sections").at(0).contains("camber_percent"));
+  EXPECT_EQ(data.at("surface").at("vertices").size(), 9u);
+  EXPECT_EQ(data.at("surface").at("triangles").size(), 3u);
+}
+
+TEST_F(ReportData, TheAuditIsThatOfTheMetrics) {
+  const ScaleAudit audit = AuditScale(example_.shape, example_.layout, &example_.model, nullptr);
+  ReportInput input = example_.Input();
+  EXPECT_FALSE(json::parse(ReportJson(input)).contains("scale_audit"));
+  input.audit = &audit;
+  const json data = json::parse(ReportJson(input));
+  const auto has = [&](const std::string& key) {
+    const json& lines = data.at("scale_audit");
+    return std::any_of(lines.begin(), lines.end(),
+                       [&](const json& line) { return line.at(0) == key; });
+  };
+  EXPECT_TRUE(has("num_disagreeing_markers"));
+  EXPECT_TRUE(has("x_over_y_percent"));
+  EXPECT_FALSE(has("scale_histogram"));
+}
+
+TEST_F(ReportData, CanStandInsideAScript) {
+  ReportInput input = example_.Input();
+  input.title = "</script><!-- \xff";
+  const std::string text = ReportJson(input);
+  EXPECT_THAT(text, Not(HasSubstr("<")));
+  EXPECT_THAT(json::parse(text).at("title"), HasSubstr("</script><!-- "));
+}
+
+TEST_F(ReportData, AModelWithoutImagesIsRefused) {
+  ReportExample example = example_;
+  example.model.images.clear();
+  EXPECT_THROW(ReportJson(example.Input()), DataError);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,82 @@
+#include "tests/exporters/report/report_example.h"
+
+#include <map>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "exporters/scale/metric_shape.h"
+#include "tests/support/synthetic_scene.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kUnseenMarkerId = 8000;
+
+Model ModelOf(const SyntheticScene& scene) {
+  Model model;
+  model.cameras[1] = scene.camera;
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    ModelImage image;
+    image.image_id = static_cast<ImageId>(i + 1);
+    image.camera_id = 1;
+    image.name = scene.frames[i].image_name;
+    image.cam_from_world = scene.cam_from_world[i];
+    for (const MarkerDetection& marker : scene.frames[i].markers) {
+      for (int corner = 1; corner <= kNumCorners; ++corner) {
+        const Point3DId id = Point3DIdFromCorner({marker.marker_id, corner});
+        Point3D& point = model.points3D[id];
+        point.x_in_world = scene.x_in_world.at(marker.marker_id)[corner];
+        point.track.push_back({image.image_id, static_cast<std::uint32_t>(image.points2D.size())});
+        image.points2D.push_back({marker.corners_in_image_px[corner - 1], id});
+      }
+    }
+    model.images.push_back(std::move(image));
+  }
+  return model;
+}
+
+}  // namespace
+
+ReportInput ReportExample::Input() const {
+  ReportInput input{model, layout, shape, metrics, model_metrics, scale};
+  input.title = "Example of a sail";
+  input.version = "1.2.3";
+  input.options = {{"image_path", "images"}, {"Registration.method", "global"}};
+  return input;
+}
+
+ReportExample MakeReportExample(int num_rows, int num_images) {
+  SyntheticSceneOptions options;
+  options.num_rows = num_rows;
+  options.num_columns = 13;
+  options.num_frames = num_images;
+  SyntheticScene scene = MakeSyntheticScene(options);
+  SyntheticNoiseOptions noise;
+  noise.corner_sigma_px = 0.2;
+  AddNoise(noise, &scene);
+  ReportExample example;
+  example.layout = scene.layout;
+  example.layout.parts.front().marker_ids.push_back(kUnseenMarkerId);
+  example.model = ModelOf(scene);
+  example.shape = ShapeFromModel(example.model, example.layout);
+  example.metrics = ComputeShapeMetrics(example.shape, example.layout);
+  example.model_metrics = ComputeModelMetrics(example.model, MarkerIds(example.layout));
+  example.scale = EstimateScale(example.model, example.layout);
+  return example;
+}
+
+void DrawCentralImage(const Model& model, const std::filesystem::path& folder) {
+  const ModelImage& image = model.images.front();
+  const Camera& camera = model.cameras.at(image.camera_id);
+  cv::Mat picture(camera.height_px, camera.width_px, CV_8UC3, cv::Scalar(190, 195, 200));
+  std::map<int, std::vector<cv::Point>> outlines;
+  for (const Point2D& point : image.points2D) {
+    outlines[CornerFromPoint3DId(point.point3D_id).marker_id].emplace_back(
+        cvRound(point.x_in_image_px.x()), cvRound(point.x_in_image_px.y()));
+  }
+  for (const auto& [marker_id, outline] : outlines) cv::fillConvexPoly(picture, outline, {0, 0, 0});
+  cv::imwrite((folder / image.name).string(), picture);
+}
+
+}  // namespace velamap

@@ -1,0 +1,31 @@
+// Models of a synthetic sail with all that a report shows, for the tests of the report.
+
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "exporters/report/report_data.h"
+
+namespace velamap {
+
+struct ReportExample {
+  Layout layout;
+  Model model;  // metric
+  MarkerShape shape;
+  ShapeMetrics metrics;
+  ModelMetrics model_metrics;
+  ScaleEstimate scale;
+
+  // Refers to this object; title, version and options set.
+  ReportInput Input() const;
+};
+
+// `num_rows` lines of 13 markers of 100 mm, seen by `num_images` cameras with corner noise of
+// 0.2 px; the layout names marker 8000 too, which nobody sees.
+ReportExample MakeReportExample(int num_rows, int num_images);
+
+// A grey picture of the central image's size, black where its markers are, in `folder`.
+void DrawCentralImage(const Model& model, const std::filesystem::path& folder);
+
+}  // namespace velamap

@@ -1,0 +1,64 @@
+#include "tests/exporters/sail/example_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace velamap {
+namespace {
+
+constexpr double kPi = 3.14159265358979;
+
+}  // namespace
+
+Eigen::Vector3d BilinearPatch(double u, double v) {
+  const Eigen::Vector3d a(0, 0, 0), b(3, 0.2, 0), c(0.3, -0.1, 5), d(2.5, 1, 5.2);
+  return (1 - u) * (1 - v) * a + u * (1 - v) * b + (1 - u) * v * c + u * v * d;
+}
+
+Eigen::Vector3d CylinderSail(double u, double v) {
+  const double angle = 40 * kPi / 180 * (u - 0.5);
+  return {4 * std::sin(angle), 4 * std::cos(angle), 3 * v};
+}
+
+Eigen::Vector3d TwistedSail(double u, double v) {
+  const double chord = 3 - 2 * v;
+  const double camber = (0.10 + 0.02 * v) * chord;
+  const double twist = 15 * kPi / 180 * v;
+  // A quartic profile, fuller in front, with its draft at 43 % of the chord.
+  const double along = chord * u;
+  const double depth = camber * 4 * u * (1 - u) * (1 + 0.3 * (1 - 2 * u));
+  return {std::cos(twist) * along - std::sin(twist) * depth,
+          std::sin(twist) * along + std::cos(twist) * depth, 6 * v};
+}
+
+SurfaceInput MarkersOn(const SurfaceTruth& truth, int num_lines, int num_markers) {
+  SurfaceInput input;
+  int marker_id = 0;
+  for (int j = 0; j < num_lines; ++j) {
+    SurfaceLine line{"h" + std::to_string(j + 1), {}};
+    for (int k = 0; k < num_markers; ++k) {
+      const double u = static_cast<double>(k) / (num_markers - 1);
+      const double v = static_cast<double>(j) / (num_lines - 1);
+      line.markers.push_back(SurfaceMarker{marker_id++, truth(u, v), std::nullopt});
+    }
+    input.lines.push_back(line);
+  }
+  return input;
+}
+
+double LargestDistance(const SplineSurface& surface, const SurfaceTruth& truth) {
+  constexpr int kSteps = 30;
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      points.push_back(truth(static_cast<double>(i) / kSteps, static_cast<double>(j) / kSteps));
+    }
+  }
+  double largest = 0.0;
+  for (const SurfaceFoot& foot : ProjectOnSurface(surface, points)) {
+    largest = std::max(largest, std::hypot(foot.distance_m, foot.beyond_edge_m));
+  }
+  return largest;
+}
+
+}  // namespace velamap

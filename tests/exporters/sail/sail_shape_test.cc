@@ -1,0 +1,196 @@
+#include "exporters/sail/sail_shape.h"
+
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/formats/cad_reader.h"
+#include "exporters/sail/surface_csv.h"
+#include "exporters/scale/metric_shape.h"
+#include "exporters/shape_exporter.h"
+#include "importer/base/error.h"
+#include "reconstruct/model/gauge.h"
+#include "tests/exporters/example_model.h"
+#include "tests/exporters/golden_file.h"
+#include "tests/exporters/sail/sail_shapes.h"
+#include "tests/support/error_matchers.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+
+std::set<std::string> FilesIn(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+SailShape Compute(const Sail& sail, const SailOptions& options = {}) {
+  const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
+  return ComputeSail(sail.shape, frame, sail.layout, nullptr, options);
+}
+
+// Main and jib: the same sail twice, the second one 5 m ahead with other ids.
+Sail TwoSails() {
+  Sail main = ExampleSail(), jib = ExampleSail();
+  for (LayoutPart& part : jib.layout.parts) {
+    part.name = "jib";
+    part.vertical.clear();
+    for (MarkerLine& line : part.horizontal) {
+      for (int& id : line.marker_ids) id += 1000;
+    }
+    main.layout.parts.push_back(part);
+  }
+  for (ShapeMarker marker : jib.shape.markers) {
+    marker.marker_id += 1000;
+    marker.part = "jib";
+    for (auto& x : marker.x_in_shape_m) x->x() -= 5.0;
+    main.shape.markers.push_back(marker);
+  }
+  return main;
+}
+
+TEST(SailShape, HasSectionsAndASurfaceOfEachPartWithLines) {
+  const SailShape one = Compute(ExampleSail());
+  EXPECT_EQ(one.sections.sections.size(), 3u);
+  ASSERT_EQ(one.surfaces.size(), 1u);
+  EXPECT_EQ(one.surfaces[0].part, "sail");
+  EXPECT_LT(one.surfaces[0].fit.distance_m.rms, 1e-6);
+  EXPECT_THAT(one.surface_notes, IsEmpty());
+  const SailShape two = Compute(TwoSails());
+  EXPECT_EQ(two.sections.sections.size(), 6u);
+  ASSERT_EQ(two.surfaces.size(), 2u);
+  EXPECT_NEAR(two.surfaces[1].area_m2, two.surfaces[0].area_m2, 1e-9);
+}
+
+TEST(SailShape, FilesAreThoseThatItNames) {
+  const TempDir dir;
+  const Sail sails = TwoSails();
+  const ShapeFrame frame = ChooseFrame(sails.shape, sails.layout);
+  const SailShape sail = ComputeSail(sails.shape, frame, sails.layout, nullptr, {});
+  WriteSailFiles(sail, frame, dir.path());
+  const std::set<std::string> files = FilesIn(dir.path());
+  EXPECT_THAT(files, IsSupersetOf({"sections.csv", "section_profiles.svg", "surface.step",
+                                   "surface_2.igs", "surface_residuals_2.csv", "surface_2.stl"}));
+  EXPECT_THAT(SailFileNames(), IsSupersetOf(files));
+  for (const char* name : {"surface.step", "surface_2.igs"}) {
+    EXPECT_NEAR(ReadCad(dir / name, 0.1).area_m2, sail.surfaces[0].area_m2, 1e-6) << name;
+  }
+  EXPECT_THAT(ReadBytes(dir / "surface.step"), HasSubstr("frame: lines h1 v1"));
+  EXPECT_THAT(ReadBytes(dir / "surface_2.obj"), HasSubstr("jib (frame: lines h1 v1)"));
+}
+
+TEST(SailShape, SaysWhyThereIsNoSurface) {
+  Sail sail = TwoSails();
+  for (const LayoutPart& part : sail.layout.parts) {
+    if (part.name != "jib") continue;
+    for (const MarkerLine& line : part.horizontal) {
+      for (std::size_t i = 2; i < line.marker_ids.size(); ++i) {
+        RemoveMarker(line.marker_ids[i], &sail.shape);
+      }
+    }
+  }
+  const SailShape result = Compute(sail);
+  EXPECT_EQ(result.surfaces.size(), 1u);
+  EXPECT_THAT(result.surface_notes, ElementsAre(HasSubstr("jib: no surface: ")));
+  EXPECT_EQ(result.sections.missing.size(), 3u);
+}
+
+TEST(SailShape, WithoutLinesThereIsOneNote) {
+  Sail sail = ExampleSail();
+  for (LayoutPart& part : sail.layout.parts) part.horizontal.clear();
+  const SailShape result = Compute(sail);
+  EXPECT_THAT(result.sections.notes, ElementsAre(HasSubstr("no horizontal lines")));
+  EXPECT_THAT(result.surfaces, IsEmpty());
+  EXPECT_THAT(result.surface_notes, IsEmpty());
+  const TempDir dir;
+  WriteSailFiles(result, {}, dir.path());
+  EXPECT_THAT(FilesIn(dir.path()), IsEmpty());
+}
+
+TEST(SailShape, ResolutionIsAsAskedForAndNotAbsurd) {
+  SailOptions options;
+  options.mesh = MeshOptions{20.0, std::nullopt};
+  const std::size_t fine = Compute(ExampleSail(), options).surfaces[0].mesh.triangles.size();
+  EXPECT_GT(fine, 4 * Compute(ExampleSail()).surfaces[0].mesh.triangles.size());
+  options.mesh->edge_length_mm = 1e-3;
+  ExpectThrows<InputError>([&] { Compute(ExampleSail(), options); }, {"triangles"});
+  options.mesh->chord_deviation_mm = 1.0;
+  EXPECT_THROW(options.Check(), InputError);
+}
+
+TEST(SurfaceEdges, AreReadAndRefusedWithLineAndColumn) {
+  const auto read = [](const std::string& text) {
+    std::istringstream in(text);
+    return ReadSurfaceEdges(in, "edges.csv");
+  };
+  const SurfaceEdges edges =
+      read("# measured\nedge,x,y,z\nluff,0,0,0\nfoot,0,0,0\nluff,0,0.5,4\nfoot,3,0,0\n");
+  ASSERT_EQ(edges.luff.size(), 2u);
+  EXPECT_EQ(edges.luff[1], Eigen::Vector3d(0, 0.5, 4));
+  EXPECT_EQ(edges.foot.size(), 2u);
+  EXPECT_THAT(edges.head, IsEmpty());
+  const std::string header = "edge,x,y,z\n";
+  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
+           {"", "expected the header"},
+           {"edge,x,y\n", "expected the header"},
+           {header + "keel,1,2,3\n", "edges.csv:2: column edge: 'keel'"},
+           {header + "luff,1,2\n", "edges.csv:2: 3 columns"},
+           {header + "luff,1,x,3\n", "edges.csv:2: column y: 'x'"},
+           {header + "luff,1,nan,3\n", "column y"},
+           {header + "luff,1,2,3\n", "the luff has one point"}}) {
+    ExpectThrows<InputError>([&, t = text] { read(t); }, {part});
+  }
+  ExpectThrows<InputError>([] { ReadSurfaceEdges("no/such.csv"); }, {"no/such.csv"});
+}
+
+// Two clips of one boat: other cameras, other scales, one frame.
+TEST(ShapeExporterFrame, ResultsOfDifferentWorldsAreInOneFrame) {
+  Model moved = ExampleModel();
+  TransformModel(ExampleSim3(7.0), &moved);
+  Layout layout = ExampleLayout();
+  layout.reference_part = "hull";
+  for (const char* text : {"reference_part", "lines", "1,3,6"}) {
+    ShapeExporterOptions options;
+    options.frame = ParseFrameChoice(text, "--frame");
+    const ShapeExportReport a = ExportShape(ExampleModel(), layout, options);
+    const ShapeExportReport b = ExportShape(moved, layout, options);
+    EXPECT_EQ(a.frame.name, b.frame.name);
+    EXPECT_EQ(a.frame.kind, options.frame->kind) << text;
+    ASSERT_EQ(a.shape.markers.size(), b.shape.markers.size());
+    for (std::size_t i = 0; i < a.shape.markers.size(); ++i) {
+      for (std::size_t corner = 0; corner <= kNumCorners; ++corner) {
+        EXPECT_LT(
+            (*a.shape.markers[i].x_in_shape_m[corner] - *b.shape.markers[i].x_in_shape_m[corner])
+                .norm(),
+            1e-9);
+      }
+    }
+    EXPECT_TRUE(IsShapeOf(a.shape, a.metric_model));
+    EXPECT_LT(a.model_metrics.error_px.max, 1e-8);  // the cameras moved along
+  }
+}
+
+TEST(ShapeExporterFrame, IsNamedInTheFiles) {
+  const TempDir dir;
+  ShapeExporterOptions options;
+  options.shape_output_path = dir / "shape";
+  ExportShape(ExampleModel(), ExampleLayout(), options);
+  for (const char* file : {"shape.csv", "shape.ply", "markers.ply", "metrics.json", "sections.csv",
+                           "surface.ply", "surface.igs"}) {
+    EXPECT_NE(ReadBytes(dir / "shape" / file).find("lines h1 h2"), std::string::npos) << file;
+  }
+}
+
+}  // namespace
+}  // namespace velamap

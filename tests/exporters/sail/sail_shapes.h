@@ -1,0 +1,56 @@
+// Sails with known sections, as marker shapes with layouts: for the frame and the section tests.
+
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "exporters/shape/marker_shape.h"
+#include "importer/geometry/rigid3.h"
+#include "importer/layout/layout.h"
+
+namespace velamap {
+
+// A section of chord 1 from luff (0, 0) to leech (1, 0) at a fraction of its length: chordwise,
+// depth.
+using UnitProfile = std::function<Eigen::Vector2d(double fraction)>;
+
+UnitProfile CircularArc(double camber);
+// Camber line of the four-digit NACA sections, at equal steps of x.
+UnitProfile NacaCamberLine(double camber, double position);
+
+// A marker of 100 mm, upright, its centre here; z is up.
+ShapeMarker UprightMarker(int marker_id, const std::string& part, const Eigen::Vector3d& center_m);
+
+struct SailLine {
+  double height_m = 0.0;
+  double chord_m = 1.0;
+  double twist_deg = 0.0;  // to +y
+  UnitProfile profile;
+};
+
+struct Sail {
+  MarkerShape shape;
+  Layout layout;
+};
+
+// Part "sail": lines h1, h2, ... with markers 100, 101, ..., 200, 201, ...; the luff straight up
+// from the origin, the first line's chord along x, bulging to +y (leeward 1) or -y. Vertical line
+// v1 holds the luff markers.
+Sail MakeSailOfLines(const std::vector<SailLine>& lines, int num_markers, int leeward = 1);
+
+// Three lines of circular arcs whose chord, camber and twist change with height.
+Sail ExampleSail(int num_markers = 12, int leeward = 1);
+
+// Moves corners, centres; sigmas stay with their axes.
+MarkerShape Moved(const Rigid3& new_from_shape, const MarkerShape& shape);
+Rigid3 OddMotion();
+
+// Moves corner and centre alike.
+void ShiftMarker(int marker_id, const Eigen::Vector3d& shift_m, MarkerShape* shape);
+void RemoveMarker(int marker_id, MarkerShape* shape);
+void SetSigma(double sigma_m, MarkerShape* shape);
+
+}  // namespace velamap

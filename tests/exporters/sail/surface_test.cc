@@ -1,0 +1,399 @@
+#include "exporters/sail/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "exporters/sail/surface_csv.h"
+#include "importer/base/error.h"
+#include "tests/exporters/sail/example_surface.h"
+#include "tests/support/error_matchers.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+SurfaceOptions Interpolating() {
+  SurfaceOptions options;
+  options.default_sigma_m = 0.0;
+  return options;
+}
+
+double LargestResidual(const FittedSurface& fitted) {
+  return std::max(-fitted.distance_m.min, fitted.distance_m.max);
+}
+
+template <typename Function>
+void ForEachMarker(SurfaceInput* input, const Function& function) {
+  for (SurfaceLine& line : input->lines) {
+    for (auto& marker : line.markers) function(&*marker);
+  }
+  for (SurfaceMarker& marker : input->markers) function(&marker);
+}
+
+void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, sigma_m);
+  ForEachMarker(input, [&](SurfaceMarker* marker) {
+    for (double& x : marker->x_in_shape_m) x += normal(random);
+    if (with_sigma) marker->sigma_m = sigma_m;
+  });
+}
+
+// Root mean square distance of the truth, away from the edges.
+double TruthRms(const SplineSurface& surface, const SurfaceTruth& truth) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 1; i < 20; ++i) {
+    for (int j = 1; j < 20; ++j) points.push_back(truth(i / 20.0, j / 20.0));
+  }
+  std::vector<double> distances;
+  for (const SurfaceFoot& foot : ProjectOnSurface(surface, points)) {
+    distances.push_back(foot.distance_m);
+  }
+  return ComputeStatistics(distances).rms;
+}
+
+std::string ErrorOf(const SurfaceInput& input, const SurfaceOptions& options = {}) {
+  try {
+    FitSurface(input, options);
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "no DataError";
+}
+
+TEST(Surface, BilinearPatchIsExactFromTwoLinesOn) {
+  for (const SurfaceOptions& options : {SurfaceOptions{}, Interpolating()}) {
+    for (const int num_lines : {2, 3, 4, 7}) {
+      const auto fitted = FitSurface(MarkersOn(BilinearPatch, num_lines, 5), options);
+      EXPECT_LT(LargestDistance(fitted.surface, BilinearPatch), 1e-11) << num_lines;
+      EXPECT_LT(LargestResidual(fitted), 1e-12) << num_lines;
+      EXPECT_EQ(fitted.notes.size(), 0u);
+    }
+  }
+}
+
+// A cubic spline interpolates to 5/384 h^4 max|f''''| (Hall and Meyer, 1976); on an arc of radius R
+// that is |f''''| = 1/R^3. Half as much again for the ends, which have no tangents given.
+TEST(Surface, CylinderIsAsExactAsCubicSplinesAllow) {
+  const double arc_m = 4 * 40 * 3.14159265358979 / 180;
+  for (const int n : {6, 8, 12, 16}) {
+    const double h = arc_m / (n - 1);
+    const auto fitted = FitSurface(MarkersOn(CylinderSail, 5, n), Interpolating());
+    EXPECT_LT(LargestDistance(fitted.surface, CylinderSail),
+              1.5 * 5.0 / 384 * std::pow(h, 4) / std::pow(4, 3))
+        << n;
+    EXPECT_LT(LargestResidual(fitted), 1e-11);
+  }
+}
+
+TEST(Surface, SailConvergesWithItsMarkersAndItsResidualsVanish) {
+  double coarse_m = 0;
+  for (const int n : {6, 12}) {
+    for (const SurfaceOptions& options : {Interpolating(), SurfaceOptions{}}) {
+      const auto fitted = FitSurface(MarkersOn(TwistedSail, n, n), options);
+      const double distance_m = LargestDistance(fitted.surface, TwistedSail);
+      if (n == 6) {
+        coarse_m = distance_m;
+        EXPECT_LT(distance_m, 2e-3);
+      } else {
+        EXPECT_LT(distance_m, coarse_m / 6);
+      }
+      EXPECT_LT(LargestResidual(fitted), 1e-8);
+    }
+  }
+}
+
+TEST(Surface, SectionsBulgeToOneSideWithoutWiggles) {
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 8, 9)).surface;
+  for (double u = 0; u <= 1; u += 0.02) {
+    for (double v = 0; v <= 1; v += 0.05) {
+      const SurfaceJet jet = EvaluateJet(surface, u, v);
+      // The normal looks at -y, from where the sail is hollow.
+      EXPECT_GT(jet.x_uu.dot(jet.normal), 0) << u << ' ' << v;
+    }
+  }
+}
+
+TEST(Surface, MovesWithItsMarkers) {
+  const Eigen::Isometry3d moved_from_shape =
+      Eigen::Translation3d(3, -2, 7) *
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -0.5).normalized());
+  SurfaceInput input = MarkersOn(TwistedSail, 6, 7);
+  AddNoise(0.003, true, 3, &input);
+  const auto fitted = FitSurface(input);
+  SurfaceInput moved = input;
+  ForEachMarker(&moved, [&](SurfaceMarker* marker) {
+    marker->x_in_shape_m = moved_from_shape * marker->x_in_shape_m;
+  });
+  const auto moved_fitted = FitSurface(moved);
+  for (Eigen::Index k = 0; k < fitted.surface.poles_in_shape_m.rows(); ++k) {
+    const Eigen::Vector3d pole = fitted.surface.poles_in_shape_m.row(k);
+    const Eigen::Vector3d moved_pole = moved_fitted.surface.poles_in_shape_m.row(k);
+    EXPECT_LT((moved_from_shape * pole - moved_pole).norm(), 1e-8);
+  }
+  ASSERT_EQ(fitted.residuals.size(), moved_fitted.residuals.size());
+  for (std::size_t k = 0; k < fitted.residuals.size(); ++k) {
+    EXPECT_NEAR(fitted.residuals[k].distance_m, moved_fitted.residuals[k].distance_m, 1e-8);
+  }
+}
+
+TEST(Surface, SigmasAndCrossValidationBothComeNearerToTheTruthThanInterpolation) {
+  double interpolated = 0, known = 0, validated = 0;
+  for (int seed = 1; seed <= 6; ++seed) {
+    SurfaceInput input = MarkersOn(TwistedSail, 8, 9);
+    AddNoise(0.005, false, seed, &input);
+    interpolated += TruthRms(FitSurface(input, Interpolating()).surface, TwistedSail) / 6;
+    validated += TruthRms(FitSurface(input).surface, TwistedSail) / 6;
+    SurfaceOptions options;
+    options.default_sigma_m = 0.005;
+    known += TruthRms(FitSurface(input, options).surface, TwistedSail) / 6;
+  }
+  EXPECT_LT(known, 0.8 * interpolated);
+  EXPECT_LT(validated, 0.8 * interpolated);
+  EXPECT_LT(known, 0.0035);
+}
+
+TEST(Surface, AnUncertainMarkerPullsLess) {
+  const auto residual = [](double sigma_m) {
+    SurfaceInput input = MarkersOn(TwistedSail, 6, 7);
+    ForEachMarker(&input, [](SurfaceMarker* marker) { marker->sigma_m = 0.001; });
+    input.lines[3].markers[3]->x_in_shape_m.y() += 0.05;
+    input.lines[3].markers[3]->sigma_m = sigma_m;
+    return FitSurface(input).residuals[3 * 7 + 3];
+  };
+  EXPECT_EQ(residual(0.05).marker_id, 24);
+  EXPECT_EQ(residual(0.05).line, "h4");
+  // y points against the normal.
+  EXPECT_LT(residual(0.05).distance_m, -0.045);
+  EXPECT_GT(residual(0.001).distance_m, -0.035);
+}
+
+// With markers between the lines, which an interpolating surface swings around.
+TEST(Surface, SigmasThatAreTooSmallDoNotMakeItSwing) {
+  SurfaceInput input = MarkersOn(TwistedSail, 7, 12);
+  for (int i = 0; i < 24; ++i) {
+    input.markers.push_back({500 + i, TwistedSail(0.45, (i + 0.5) / 24), {}});
+  }
+  const double area_m2 = SurfaceArea(FitSurface(input).surface);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise_m(0.0, 0.003);
+  ForEachMarker(&input, [&](SurfaceMarker* marker) {
+    for (double& x : marker->x_in_shape_m) x += noise_m(random);
+    marker->sigma_m = 1e-6;
+  });
+  const FittedSurface fit = FitSurface(input);
+  EXPECT_NEAR(SurfaceArea(fit.surface), area_m2, 0.01 * area_m2);
+  EXPECT_GT(fit.distance_m.rms, 0.001);
+}
+
+// Markers just above the lines that stand out by half a metre: a surface through all swings.
+TEST(Surface, MarkersThatLieScatteredBearNone) {
+  SurfaceInput input = MarkersOn(TwistedSail, 7, 12);
+  for (int j = 0; j < 6; ++j) {
+    for (int k = 1; k < 8; ++k) {
+      const Eigen::Vector3d x = TwistedSail(k / 8.0, (j + 0.1) / 6);
+      input.markers.push_back({500 + 10 * j + k, x + Eigen::Vector3d(0, 0.5, 0), {}});
+    }
+  }
+  EXPECT_THROW(FitSurface(input, Interpolating()), DataError);
+  ExpectThrows<DataError>([&] { FitSurface(input, Interpolating()); },
+                          {"swing between the markers", "m2"});
+}
+
+TEST(Surface, MarkersBetweenTheLinesTakePart) {
+  // Fuller by 3 cm half way between any two of its four lines.
+  const auto bulging = [](double u, double v) -> Eigen::Vector3d {
+    constexpr double kPi = 3.14159265358979;
+    const double bulge_m = 0.03 * std::sin(kPi * u) * std::pow(std::sin(3 * kPi * v), 2);
+    return TwistedSail(u, v) + Eigen::Vector3d(0, bulge_m, 0);
+  };
+  SurfaceInput input = MarkersOn(bulging, 4, 9);
+  const double without_m = TruthRms(FitSurface(input, Interpolating()).surface, bulging);
+  for (int j = 0; j < 3; ++j) {
+    for (int k = 1; k < 8; ++k) {
+      input.markers.push_back({100 + 10 * j + k, bulging(k / 8.0, (j + 0.5) / 3), {}});
+    }
+  }
+  const auto fitted = FitSurface(input, Interpolating());
+  EXPECT_GT(without_m, 0.01);
+  EXPECT_LT(TruthRms(fitted.surface, bulging), 0.4 * without_m);
+  EXPECT_EQ(fitted.distance_m.count, 4 * 9 + 3 * 7);
+  EXPECT_LT(LargestResidual(fitted), 1e-5);
+  for (const SurfaceResidual& residual : fitted.residuals) {
+    EXPECT_TRUE(residual.is_used);
+    EXPECT_EQ(residual.line.empty(), residual.marker_id >= 100);
+  }
+}
+
+TEST(Surface, MarkerBesideTheSurfaceIsReportedAndLeftOut) {
+  SurfaceInput input = MarkersOn(BilinearPatch, 3, 4);
+  input.markers.push_back({50, Eigen::Vector3d(-0.4, 0, 0), {}});
+  const auto fitted = FitSurface(input);
+  EXPECT_EQ(fitted.residuals.back().marker_id, 50);
+  EXPECT_FALSE(fitted.residuals.back().is_used);
+  EXPECT_NEAR(fitted.residuals.back().beyond_edge_m, 0.4, 0.01);
+  EXPECT_EQ(fitted.distance_m.count, 12);
+  EXPECT_THAT(fitted.notes, ElementsAre(HasSubstr("beside the surface, without a part in it: 50")));
+}
+
+TEST(Surface, HolesAreBridgedAndNamed) {
+  SurfaceInput input = MarkersOn(TwistedSail, 8, 9);
+  for (const int k : {3, 4, 5}) input.lines[3].markers[k].reset();
+  for (const int k : {0, 1}) input.lines[5].markers[k].reset();
+  const auto fitted = FitSurface(input, Interpolating());
+  EXPECT_LT(LargestDistance(fitted.surface, TwistedSail), 0.02);
+  EXPECT_LT(TruthRms(fitted.surface, TwistedSail), 0.004);
+  EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h4: hole of 1.07 m")));
+  EXPECT_THAT(fitted.notes, Contains(HasSubstr("between markers 29 and 33 (3 of the layout")));
+  EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h6: 2 markers missing at the luff and 0")));
+}
+
+TEST(Surface, LineWithTooFewMarkersIsLeftOutAndItsMarkersStillCount) {
+  SurfaceInput input = MarkersOn(TwistedSail, 5, 6);
+  for (int k = 1; k < 5; ++k) input.lines[2].markers[k].reset();
+  input.lines[2].markers[2] = SurfaceMarker{14, TwistedSail(0.4, 0.5), {}};
+  input.lines[2].markers[0].reset();
+  const auto fitted = FitSurface(input);
+  EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h3: 2 of its 6 markers whole, 3 needed")));
+  const auto found =
+      std::find_if(fitted.residuals.begin(), fitted.residuals.end(),
+                   [](const SurfaceResidual& residual) { return residual.marker_id == 14; });
+  ASSERT_NE(found, fitted.residuals.end());
+  EXPECT_TRUE(found->is_used);
+  EXPECT_EQ(found->line, "");
+}
+
+TEST(Surface, GoesOnBeyondItsMarkersAsItIsCurved) {
+  SurfaceOptions options = Interpolating();
+  options.luff_extension_m = 0.3;
+  options.leech_extension_m = 0.2;
+  options.foot_extension_m = 0.25;
+  options.head_extension_m = 0.15;
+  const auto fitted = FitSurface(MarkersOn(CylinderSail, 6, 8), options);
+  const double arc_m = 4 * 40 * 3.14159265358979 / 180;
+  EXPECT_NEAR(SurfaceArea(fitted.surface), (arc_m + 0.5) * 3.4, 0.01);
+  EXPECT_NEAR(EvaluatePoint(fitted.surface, 0.5, 0).z(), -0.25, 1e-3);
+  EXPECT_NEAR(EvaluatePoint(fitted.surface, 0.5, 1).z(), 3.15, 1e-3);
+  for (const double u : {0.0, 0.05, 0.95, 1.0}) {
+    const Eigen::Vector3d x = EvaluatePoint(fitted.surface, u, 0.4);
+    EXPECT_NEAR(std::hypot(x.x(), x.y()), 4, 5e-4) << u;
+  }
+  EXPECT_LT(LargestResidual(fitted), 1e-10);
+}
+
+TEST(Surface, ReachesTheEdgesThatAreGiven) {
+  // Markers inside of 8 % from luff and leech and 10 % from foot and head.
+  const auto inner = [](double u, double v) { return TwistedSail(0.08 + 0.84 * u, 0.1 + 0.8 * v); };
+  SurfaceOptions options = Interpolating();
+  for (int k = 0; k <= 10; ++k) {
+    options.edges.luff.push_back(TwistedSail(0, k / 10.0));
+    options.edges.leech.push_back(TwistedSail(1, k / 10.0));
+    options.edges.foot.push_back(TwistedSail(k / 10.0, 0));
+    options.edges.head.push_back(TwistedSail(k / 10.0, 1));
+  }
+  const auto fitted = FitSurface(MarkersOn(inner, 7, 8), options);
+  const double true_area_m2 = SurfaceArea(FitSurface(MarkersOn(TwistedSail, 16, 16)).surface);
+  EXPECT_NEAR(SurfaceArea(fitted.surface), true_area_m2, 0.005 * true_area_m2);
+  EXPECT_LT(LargestDistance(fitted.surface, TwistedSail), 0.02);
+  for (const auto& edge : {options.edges.luff, options.edges.leech, options.edges.foot}) {
+    for (const SurfaceFoot& foot : ProjectOnSurface(fitted.surface, edge)) {
+      EXPECT_LT(std::hypot(foot.distance_m, foot.beyond_edge_m), 0.01);
+    }
+  }
+  EXPECT_EQ(fitted.residuals.size(), 56u);  // edge points are no markers
+}
+
+TEST(Surface, TooFewLinesSayWhy) {
+  EXPECT_THAT(ErrorOf(MarkersOn(TwistedSail, 2, 5)), "no DataError");
+  SurfaceInput input = MarkersOn(TwistedSail, 2, 5);
+  for (int k = 0; k < 3; ++k) input.lines[1].markers[k].reset();
+  EXPECT_THAT(ErrorOf(input),
+              HasSubstr("1 of 2 horizontal lines have 3 whole markers, 2 needed: line h2: 2 of"));
+  input.lines.pop_back();
+  EXPECT_THAT(ErrorOf(input), HasSubstr("1 of 1 horizontal lines"));
+  EXPECT_THAT(ErrorOf(SurfaceInput{}), HasSubstr("0 of 0 horizontal lines"));
+}
+
+TEST(Surface, LinesThatCrossOrRunBackwardsAreRefused) {
+  SurfaceInput crossing = MarkersOn(BilinearPatch, 3, 5);
+  for (int k = 3; k < 5; ++k) crossing.lines[1].markers[k]->x_in_shape_m.z() += 4.5;
+  EXPECT_THAT(ErrorOf(crossing), HasSubstr("lines h2 and h3 cross"));
+  SurfaceInput backwards = MarkersOn(BilinearPatch, 3, 5);
+  std::reverse(backwards.lines[2].markers.begin(), backwards.lines[2].markers.end());
+  EXPECT_THAT(ErrorOf(backwards), HasSubstr("lines h2 and h3 run against each other"));
+  SurfaceInput doubled = MarkersOn(BilinearPatch, 3, 5);
+  doubled.lines[0].markers[2]->x_in_shape_m = doubled.lines[0].markers[1]->x_in_shape_m;
+  EXPECT_THAT(ErrorOf(doubled), HasSubstr("line h1: markers 1 and 2 are in one place"));
+}
+
+TEST(Surface, BadOptionsAreNamed) {
+  const SurfaceInput input = MarkersOn(BilinearPatch, 3, 5);
+  const auto check = [&](const SurfaceOptions& options, const std::string& text) {
+    try {
+      FitSurface(input, options);
+      ADD_FAILURE() << "no error about " << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(text));
+    }
+  };
+  SurfaceOptions negative, single, both, sigma;
+  negative.head_extension_m = -0.1;
+  check(negative, "extension at the head is -0.1 m");
+  single.edges.luff = {{0, 0, 0}};
+  check(single, "luff edge has one point");
+  both.edges.foot = {{0, 0, -1}, {3, 0, -1}};
+  both.foot_extension_m = 0.5;
+  check(both, "give one of the two");
+  sigma.default_sigma_m = -1;
+  check(sigma, "default sigma is -1 m");
+}
+
+TEST(Surface, ResidualsAsCsv) {
+  FittedSurface fitted;
+  fitted.residuals = {{7, "h,1", 0.25, 0.5, -0.00125, 0, true}, {9, "", 1, 0.5, 0.5, 0.25, false}};
+  std::ostringstream out;
+  WriteSurfaceResidualsCsv(fitted, out);
+  EXPECT_EQ(out.str(),
+            "marker_id,line,u,v,distance,beyond_edge,is_used\n"
+            "7,\"h,1\",0.25,0.5,-0.00125,0,1\n"
+            "9,,1,0.5,0.5,0.25,0\n");
+}
+
+TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
+  MarkerShape shape;
+  for (const int id : {1, 2, 3, 5, 8, 9}) {
+    ShapeMarker marker;
+    marker.marker_id = id;
+    if (id != 9) marker.x_in_shape_m[0] = Eigen::Vector3d(id, 0, 0);
+    if (id == 2) marker.sigma_m[0] = Eigen::Vector3d(0.001, 0.002, 0.002);
+    shape.markers.push_back(marker);
+  }
+  LayoutPart part;
+  part.horizontal = {{"h1", {1, 4, 2}}, {"h2", {9, 3}}};
+  part.vertical = {{"v1", {1, 8}}};
+  part.marker_ids = {5};
+  const SurfaceInput input = CollectSurfaceInput(shape, part);
+  ASSERT_EQ(input.lines.size(), 2u);
+  EXPECT_EQ(input.lines[0].name, "h1");
+  ASSERT_EQ(input.lines[0].markers.size(), 3u);
+  EXPECT_EQ(input.lines[0].markers[0]->marker_id, 1);
+  EXPECT_FALSE(input.lines[0].markers[0]->sigma_m);
+  EXPECT_FALSE(input.lines[0].markers[1]);
+  EXPECT_NEAR(*input.lines[0].markers[2]->sigma_m, std::sqrt(3e-6), 1e-12);
+  EXPECT_FALSE(input.lines[1].markers[0]);  // 9 is not whole
+  ASSERT_EQ(input.markers.size(), 2u);
+  EXPECT_EQ(input.markers[0].marker_id, 5);
+  EXPECT_EQ(input.markers[1].marker_id, 8);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,215 @@
+#include "importer/layout/layout.h"
+
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "importer/base/error.h"
+#include "tests/support/error_matchers.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr char kSail[] = R"(dictionary: DICT_4X4_100
+marker_length: 0.100
+marker_lengths: {200: 0.050}
+border_bits: 2
+parts:
+  sail:
+    horizontal:
+      - {name: h1, markers: [1, 2, 3]}
+      - {name: h2, markers: [11, 12, 13]}
+    vertical:
+      - {name: v1, markers: [2, 12, 22]}
+    markers: [90, 91]
+  hull: {markers: [120, 121, 122], rigid: true}
+reference_part: hull
+distances:
+  - {from: 1, to: 120, length: 2.315, sigma: 0.002}
+  - {from: "3.1", to: 3.3, length: 0.1414, sigma: 0.0001, use: scale}
+  - {from: 2, to: 2.4, length: 0.0707, sigma: 1e-4, use: check}
+)";
+
+std::string WriteLayout(const TempDir& dir, const std::string& text) {
+  const std::string path = dir / "layout.yml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(ReadLayout, ReadsEveryKey) {
+  const TempDir dir;
+  const Layout layout = ReadLayout(WriteLayout(dir, kSail));
+  EXPECT_EQ(layout.dictionary, "DICT_4X4_100");
+  EXPECT_EQ(MarkerLength(layout, 1), 0.1);
+  EXPECT_EQ(MarkerLength(layout, 200), 0.05);
+  EXPECT_EQ(layout.border_bits, 2);
+  EXPECT_EQ(layout.reference_part, "hull");
+  ASSERT_EQ(layout.parts.size(), 2u);
+  EXPECT_EQ(layout.parts[0].name, "sail");
+  EXPECT_FALSE(layout.parts[0].rigid);
+  EXPECT_TRUE(layout.parts[1].rigid);
+  ASSERT_EQ(layout.parts[0].horizontal.size(), 2u);
+  EXPECT_EQ(layout.parts[0].horizontal[1].name, "h2");
+  EXPECT_THAT(layout.parts[0].horizontal[1].marker_ids, ElementsAre(11, 12, 13));
+  EXPECT_THAT(layout.parts[0].vertical.at(0).marker_ids, ElementsAre(2, 12, 22));
+  EXPECT_THAT(MarkerIds(layout), ElementsAre(1, 2, 3, 11, 12, 13, 22, 90, 91, 120, 121, 122));
+  EXPECT_EQ(PartOfMarker(layout, 22), "sail");
+  EXPECT_EQ(PartOfMarker(layout, 121), "hull");
+  EXPECT_EQ(PartOfMarker(layout, 7), "");
+  ASSERT_EQ(layout.distances.size(), 3u);
+  const KnownDistance& bar = layout.distances[1];
+  EXPECT_THAT((std::vector<int>{bar.marker_id1, bar.corner1, bar.marker_id2, bar.corner2}),
+              ElementsAre(3, 1, 3, 3));
+  EXPECT_EQ(bar.length_m, 0.1414);
+  EXPECT_EQ(bar.sigma_m, 0.0001);
+  EXPECT_TRUE(bar.is_scale_bar);
+  EXPECT_EQ(layout.distances[0].corner2, 0);
+  EXPECT_EQ(layout.distances[0].marker_id2, 120);
+  EXPECT_FALSE(layout.distances[0].is_scale_bar);
+  EXPECT_FALSE(layout.distances[2].is_scale_bar);
+  EXPECT_EQ(layout.distances[2].corner2, 4);
+}
+
+TEST(ReadLayout, DictionaryFileIsRelativeToTheLayout) {
+  const TempDir dir;
+  std::ofstream(dir / "own") << "x";
+  EXPECT_EQ(ReadLayout(WriteLayout(dir, "dictionary: own\nmarker_length: 0.1\n")).dictionary,
+            (dir / "own").string());
+  // A file that is not there is still named with its folder.
+  EXPECT_EQ(ReadLayout(WriteLayout(dir, "dictionary: no.yml\nmarker_length: 0.1\n")).dictionary,
+            (dir / "no.yml").string());
+}
+
+TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
+  const TempDir dir;
+  const auto expect = [&](const std::string& text, int line, const std::string& part) {
+    const std::string path = WriteLayout(dir, text);
+    ExpectThrows<InputError>([&] { ReadLayout(path); },
+                             {path + ":" + std::to_string(line) + ": ", part});
+  };
+  const std::string head = "dictionary: DICT_4X4_50\nmarker_length: 0.1\n";
+  expect("a: [1\nb: 2\n", 2, "no valid YAML");
+  expect("- 1\n", 1, "a map");
+  expect("marker_length: 0.1\n", 1, "key 'dictionary' is missing");
+  expect("dictionary: DICT_4X4_50\n", 1, "key 'marker_length' is missing");
+  expect(head + "marker_size: 3\n", 3, "unknown key; known here: border_bits dictionary");
+  expect(head + "marker_length: 0.2\n", 3, "marker_length: stands twice");
+  expect("dictionary: D\nmarker_length: 100mm\n", 2, "a length in metres");
+  for (const char* length : {"0", "-0.1", "0.00001", "100", "nan", "inf"}) {
+    expect(std::string("dictionary: D\nmarker_length: ") + length + "\n", 2, "marker_length");
+  }
+  expect(head + "marker_lengths: {x: 0.1}\n", 3, "'x' is no marker id");
+  expect(head + "marker_lengths: {5: 100}\n", 3, "marker_lengths.5: 100 m");
+  expect(head + "border_bits: 0\n", 3, "border_bits");
+  expect(head + "parts:\n", 3, "parts: has no value");
+  expect(head + "parts: {}\n", 3, "no part is named");
+  expect(head + "parts: {sail: {}}\n", 3, "parts.sail: the part has no markers");
+  expect(head + "parts:\n  sail:\n    markers: [1, -2]\n", 5, "parts.sail.markers[1]: '-2'");
+  expect(head + "parts:\n  sail:\n    markers: [1, 9000]\n", 5, "0 to 8191");
+  expect(head + "parts:\n  sail:\n    markers: [1, 2.5]\n", 5, "'2.5' is no marker id");
+  expect(head + "parts:\n  sail:\n    markers: 7\n", 5, "a list is expected");
+  expect(head + "parts:\n  sail:\n    rigid: perhaps\n", 5, "true or false");
+  expect(head + "parts:\n  sail:\n    horizontal:\n      - {name: h, markers: [1, 2, 1]}\n", 6,
+         "parts.sail.horizontal[0].markers[2]: marker 1 stands twice");
+  expect(head + "parts:\n  sail:\n    horizontal:\n      - {markers: [1, 2]}\n", 6, "needs a name");
+  expect(head + "parts:\n  sail:\n    vertical:\n      - {name: v}\n", 6, "needs markers");
+  expect(head +
+             "parts:\n  sail:\n    vertical:\n      - {name: v, markers: [1]}\n"
+             "      - {name: v, markers: [2]}\n",
+         7, "a second line 'v'");
+  expect(head + "parts:\n  sail: {markers: [1, 2]}\n  hull: {markers: [2]}\n", 5,
+         "marker 2 is in part 'sail' already");
+  expect(head + "parts:\n  sail: {markers: [1]}\nreference_part: mast\n", 5, "no part 'mast'");
+}
+
+TEST(ReadLayout, NamesFileLineAndKeyOfAWrongDistance) {
+  const TempDir dir;
+  // `entry` stands on line 4, after parts with marker 12 and 45.
+  const auto expect = [&](const std::string& entry, const std::string& part) {
+    const std::string path =
+        WriteLayout(dir, "dictionary: DICT_4X4_50\nmarker_length: 0.1\ndistances:\n  - " + entry +
+                             "\nparts: {s: {markers: [12, 45]}}\n");
+    ExpectThrows<InputError>([&] { ReadLayout(path); }, {path + ":4: distances[0]", part});
+  };
+  expect("{from: 12, to: 46, length: 1, sigma: 0.01}", "marker 46 is in no part");
+  expect("{from: 12, to: 12, length: 1, sigma: 0.01}", "the same point");
+  expect("{from: 12.2, to: 12.2, length: 1, sigma: 0.01}", "the same point");
+  expect("{from: 12, to: 45, length: 1}", "key 'sigma' is missing");
+  expect("{from: 12, length: 1, sigma: 0.01}", "key 'to' is missing");
+  expect("{from: 12, to: 45, length: 1, sigma: 0.01, tape: 3}", "unknown key");
+  expect("{from: 12, to: 45, length: 1, sigma: 0.01, use: maybe}", ".use: 'maybe'");
+  expect("{from: 12, to: 45, length: 1, sigma: 2}", "no less than the length");
+  expect("7", "a map");
+  for (const char* length : {"0", "-1", "nan", "inf"}) {
+    expect(std::string("{from: 12, to: 45, sigma: 0.01, length: ") + length + "}",
+           ".length: " + std::string(length));
+    expect(std::string("{from: 12, to: 45, length: 1, sigma: ") + length + "}", ".sigma: ");
+  }
+  expect("{from: 12, to: 45, length: 2 m, sigma: 0.01}", "'2 m' is no number");
+  for (const char* point :
+       {"12.5", "12.0", "12.", "12.10", ".1", "-3", "x", "9000", "12.1.1", "[1]"}) {
+    expect(std::string("{to: 12, length: 1, sigma: 0.01, from: ") + point + "}",
+           "is no point of a marker");
+  }
+  const std::string empty =
+      WriteLayout(dir, "dictionary: DICT_4X4_50\nmarker_length: 0.1\ndistances: []\n");
+  ExpectThrows<InputError>([&] { ReadLayout(empty); }, {empty + ":3: distances: no distance"});
+}
+
+TEST(ReadLayout, WithoutPartsAnyMarkerMayHaveADistance) {
+  const TempDir dir;
+  const Layout layout =
+      ReadLayout(WriteLayout(dir,
+                             "dictionary: D\nmarker_length: 0.1\n"
+                             "distances: [{from: 7, to: 8, length: 1, sigma: 0.01}]\n"));
+  EXPECT_EQ(layout.distances.at(0).marker_id1, 7);
+}
+
+TEST(ReadLayout, LeadingZerosAreDecimal) {
+  const TempDir dir;
+  const Layout layout = ReadLayout(WriteLayout(
+      dir, "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts: {s: {markers: [010, 09]}}\n"));
+  EXPECT_THAT(MarkerIds(layout), ElementsAre(9, 10));
+}
+
+TEST(MakeLayout, WelcomesEveryId) {
+  const Layout layout = MakeLayout("DICT_4X4_50", 0.05);
+  EXPECT_FALSE(layout.HasMarkers());
+  EXPECT_TRUE(MarkerIds(layout).empty());
+  EXPECT_EQ(MarkerLength(layout, 33), 0.05);
+  for (const double length_m : {0.0, -1.0, 11.0, 0.00009, std::nan("")}) {
+    ExpectThrows<InputError>([&] { MakeLayout("DICT_4X4_50", length_m); }, {"--marker_length"});
+  }
+}
+
+TEST(AdjacencyGraph, FollowsFromLinesAndRigidParts) {
+  const TempDir dir;
+  const AdjacencyGraph graph = BuildAdjacencyGraph(ReadLayout(WriteLayout(dir, kSail)));
+  EXPECT_THAT(graph.at(1), ElementsAre(2));
+  EXPECT_THAT(graph.at(2), ElementsAre(1, 3, 12));
+  EXPECT_THAT(graph.at(12), ElementsAre(2, 11, 13, 22));
+  EXPECT_THAT(graph.at(90), ElementsAre());
+  EXPECT_THAT(graph.at(121), ElementsAre(120, 122));
+  for (const auto& [id, neighbors] : graph) {
+    for (const int neighbor : neighbors) {
+      EXPECT_THAT(graph.at(neighbor), testing::Contains(id));
+    }
+  }
+}
+
+TEST(AdjacencyGraph, DistancesCountEdges) {
+  const TempDir dir;
+  const AdjacencyGraph graph = BuildAdjacencyGraph(ReadLayout(WriteLayout(dir, kSail)));
+  const std::map<int, int> distances = TopologicalDistances(graph, 1);
+  EXPECT_EQ(distances,
+            (std::map<int, int>{{1, 0}, {2, 1}, {3, 2}, {12, 2}, {11, 3}, {13, 3}, {22, 3}}));
+  EXPECT_TRUE(TopologicalDistances(graph, 555).empty());
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,266 @@
+#include "importer/refine/corner_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "importer/geometry/unit_square_map.h"
+#include "importer/refine/edge_fit.h"
+#include "importer/refine/float_lanes.h"
+#include "importer/refine/pattern_fit.h"
+#include "importer/refine/pattern_picture.h"
+#include "tests/importer/refine/marker_grid.h"
+
+namespace velamap {
+namespace {
+
+using Refiner =
+    std::function<std::optional<RefinedCorners>(const cv::Mat&, const QuadPx&, const cv::Mat&)>;
+
+struct Quality {
+  int num_fitted = 0, num_failed = 0;
+  double bias_px = 0.0;  // of the side length
+  double rms_px = 0.0;   // of the corners
+};
+
+Quality Measure(const MarkerGrid& grid, const Refiner& refine) {
+  Quality quality;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < grid.truth.size(); ++k) {
+    const auto refined = refine(grid.image, grid.starts[k], grid.cells[k]);
+    if (!refined) {
+      ++quality.num_failed;
+      continue;
+    }
+    ++quality.num_fitted;
+    quality.bias_px += MeanSide(refined->corners_px) - MeanSide(grid.truth[k]);
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      squares += (refined->corners_px[i] - grid.truth[k][i]).squaredNorm();
+    }
+  }
+  if (quality.num_fitted > 0) {
+    quality.bias_px /= quality.num_fitted;
+    quality.rms_px = std::sqrt(squares / (kNumCorners * quality.num_fitted));
+  }
+  return quality;
+}
+
+Quality MeasureRefineCorners(const MarkerGrid& grid) {
+  return Measure(grid, [](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+    return RefineCorners(gray, start, cells);
+  });
+}
+
+Quality MeasureSubpix(const MarkerGrid& grid) {
+  return Measure(grid, [](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+    const int half_window =
+        std::clamp(static_cast<int>(std::lround(0.4 * MeanSide(start) / cells.rows)), 1, 5);
+    std::vector<cv::Point2f> points;
+    for (const auto& x : start) {
+      points.emplace_back(static_cast<float>(x.x()), static_cast<float>(x.y()));
+    }
+    cv::cornerSubPix(gray, points, {half_window, half_window}, {-1, -1},
+                     cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 0.01));
+    RefinedCorners refined;
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      refined.corners_px[i] = {points[i].x, points[i].y};
+    }
+    return std::make_optional(refined);
+  });
+}
+
+// A chequered board: one cell of quiet zone, then black.
+MarkerGridOptions Chequered(double side_px, double blur_px) {
+  MarkerGridOptions options;
+  options.side_px = side_px;
+  options.rendering.surround_cells = 1.5;
+  options.rendering.blur_sigma_px = blur_px;
+  options.rendering.noise_sigma = 2.0;
+  return options;
+}
+
+TEST(RefineCorners, SidesAreUnbiasedAndCornersBetterThanSubpix) {
+  for (const double blur_px : {0.4, 0.7, 1.0}) {
+    for (const double side_px : {12.0, 16.0, 25.0, 40.0, 65.0, 120.0}) {
+      SCOPED_TRACE(testing::Message() << side_px << " px, blur " << blur_px);
+      MarkerGridOptions options = Chequered(side_px, blur_px);
+      options.dictionary = "DICT_4X4_50";
+      const MarkerGrid grid = MakeMarkerGrid(options);
+      const Quality fitted = MeasureRefineCorners(grid);
+      const Quality subpix = MeasureSubpix(grid);
+      EXPECT_LE(fitted.num_failed, fitted.num_fitted / 50);
+      EXPECT_LT(std::abs(fitted.bias_px), side_px >= 25 ? 0.02 : 0.05);
+      EXPECT_LT(fitted.rms_px, 0.25 * subpix.rms_px);
+      EXPECT_LT(fitted.rms_px, side_px >= 16 ? 0.08 : 0.15);
+    }
+  }
+}
+
+TEST(RefineCorners, ManyCellsWideQuietZoneContrastAndLight) {
+  for (const double side_px : {20.0, 60.0}) {
+    for (const char* dictionary : {"DICT_4X4_50", "DICT_6X6_50"}) {
+      for (const double contrast : {40.0, 220.0}) {
+        SCOPED_TRACE(testing::Message() << side_px << " px, " << dictionary << ", " << contrast);
+        MarkerGridOptions options = Chequered(side_px, 0.8);
+        options.dictionary = dictionary;
+        options.rendering.quiet_zone_cells = 2.0;
+        options.rendering.surround_cells = 0.0;
+        options.rendering.black = 20;
+        options.rendering.white = 20 + contrast;
+        options.rendering.light_gradient = 0.1;
+        const MarkerGrid grid = MakeMarkerGrid(options);
+        const Quality fitted = MeasureRefineCorners(grid);
+        EXPECT_LE(fitted.num_failed, fitted.num_fitted / 30);
+        EXPECT_LT(std::abs(fitted.bias_px), 0.04);
+        EXPECT_LT(fitted.rms_px, contrast > 100 ? 0.08 : 0.25);
+      }
+    }
+  }
+}
+
+TEST(RefineCornersByEdges, SidesBentByTheLensMeetInTheirCorners) {
+  MarkerGridOptions options = Chequered(110, 0.7);
+  options.camera = {CameraModel::kOpenCV, 960, 720, {600, 600, 480, 360, -0.15, 0.02, 0, 0}};
+  options.max_tilt_deg = 30;
+  const MarkerGrid grid = MakeMarkerGrid(options);
+  const Quality fitted =
+      Measure(grid, [](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+        return RefineCornersByEdges(gray, start, cells.rows);
+      });
+  EXPECT_EQ(fitted.num_failed, 0);
+  EXPECT_LT(std::abs(fitted.bias_px), 0.03);
+  EXPECT_LT(fitted.rms_px, 0.08);
+}
+
+TEST(RefineCorners, FailsWhereThereIsNothingToFit) {
+  const MarkerGrid small = MakeMarkerGrid(Chequered(20, 0.7));
+  const MarkerGrid large = MakeMarkerGrid(Chequered(60, 0.7));
+  for (const MarkerGrid* grid : {&small, &large}) {
+    const QuadPx& start = grid->truth[0];
+    const cv::Mat& cells = grid->cells[0];
+    ASSERT_TRUE(RefineCorners(grid->image, start, cells));
+    const cv::Mat flat(grid->image.size(), CV_8UC1, cv::Scalar(100));
+    EXPECT_FALSE(RefineCorners(flat, start, cells));
+    EXPECT_FALSE(RefineCorners(255 - grid->image, start, cells));
+    QuadPx elsewhere = start, outside = start;
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      elsewhere[i].x() += 0.5 * MeanSide(start);
+      outside[i].x() -= start[0].x() + 100;
+    }
+    EXPECT_FALSE(RefineCorners(grid->image, elsewhere, cells));
+    EXPECT_FALSE(RefineCorners(grid->image, outside, cells));
+  }
+}
+
+// Whether `jacobian`, a group of observations, agrees with what `value` changes by.
+template <typename Vector, typename Jacobian, typename Value>
+void ExpectDerivatives(const Vector& parameters, const Vector& steps, const Jacobian& jacobian,
+                       const Value& value, double relative_tolerance, double tolerance) {
+  for (int i = 0; i < parameters.size(); ++i) {
+    Vector above = parameters, below = parameters;
+    above[i] += steps[i];
+    below[i] -= steps[i];
+    const Floats difference = (value(above) - value(below)) / static_cast<float>(2 * steps[i]);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      EXPECT_NEAR(jacobian[static_cast<std::size_t>(i)][lane], difference[lane],
+                  relative_tolerance * std::abs(difference[lane]) + tolerance)
+          << "parameter " << i << ", lane " << lane;
+    }
+  }
+}
+
+TEST(EvaluateEdge, DerivativesAgreeWithDifferences) {
+  EdgeParameters parameters;
+  parameters.values << 0.2, -0.1, 0.15, 0.9, 40, 180, 5, -7, 0.8, 1.1;
+  const EdgeSampleGroup samples{
+      AllLanes(0.4), Floats{-2.1f, -0.4f, 0.3f, 1.7f, -1.2f, 0.0f, 0.8f, 2.3f},
+      AllLanes(100), AllLanes(0.9),
+      AllLanes(120), AllLanes(-110),
+      AllLanes(2.2), AllLanes(2.4)};
+  EdgeEquations::Jacobian jacobian;
+  EvaluateEdge(parameters, samples, &jacobian);
+  const auto value = [&](const EdgeParameters::Vector& values) {
+    EdgeEquations::Jacobian unused;
+    return EvaluateEdge(EdgeParameters{values}, samples, &unused);
+  };
+  ExpectDerivatives<EdgeParameters::Vector>(
+      parameters.values, EdgeParameters::Vector::Constant(0.01), jacobian, value, 0.002, 0.05);
+}
+
+// The share of a single corner is an approximation; all four together move the picture as it is.
+TEST(PatternPicture, DerivativesAgreeWithDifferences) {
+  using P = PatternParameters;
+  const MarkerGrid grid = MakeMarkerGrid(Chequered(20, 0.7));
+  PatternModel model;
+  model.num_cells = grid.cells[0].rows;
+  model.center_px = {300, 200};
+  model.diagonal_px = 20 * std::sqrt(2.0);
+  P::Vector parameters = P::Vector::Zero();
+  parameters.head<8>() << 290, 190, 310, 190, 310, 210, 290, 210;
+  parameters.segment<8>(P::kBlurU) << 0.8, 0.9, 40, 200, 0.05, -0.03, 0.9, 0.95;
+  FillLightness(grid.image, grid.cells[0], parameters, &model);
+  const Floats x = {-10.6f, -3.2f, 4.7f, 10.3f, 9.8f, -9.1f, 0.3f, 2.6f};
+  const Floats y = {0.4f, -9.8f, 5.1f, 10.9f, -10.7f, 9.7f, -0.2f, 7.4f};
+  ASSERT_EQ(Sum(__builtin_convertvector(PatternPicture(model, parameters).Covers(x, y), Floats)),
+            -kLanes);
+  PatternPixels pixels;
+  PatternPicture(model, parameters).At(x, y, &pixels);
+  // Place of the whole marker, then all parameters but the corners.
+  using Changes = Eigen::Matrix<double, P::kCount - 6, 1>;
+  FloatsArray<P::kCount - 6> jacobian{};
+  for (std::size_t i = 0; i < P::kCount; ++i) {
+    jacobian[i < P::kBlurU ? i % 2 : i - 6] += pixels.jacobian[i];
+  }
+  const auto value = [&](const Changes& changes) {
+    P::Vector changed = parameters;
+    for (int i = 0; i < P::kBlurU; ++i) changed[i] += changes[i % 2];
+    changed.tail<P::kCount - P::kBlurU>() += changes.tail<P::kCount - P::kBlurU>();
+    PatternPixels modelled;
+    PatternPicture(model, changed).At(x, y, &modelled);
+    return modelled.gray;
+  };
+  ExpectDerivatives<Changes>(Changes::Zero(), Changes::Constant(0.01), jacobian, value, 0.02, 0.3);
+}
+
+TEST(ComputeShares, StayInsideThePatternAndAddUpToOne) {
+  constexpr int kNumCells = 6;
+  const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
+  Shares shares;
+  for (const double blur : {0.1, 0.5, 3.0, 100.0}) {
+    ComputeShares(Floats{-0.7f, 1.3f, 6.6f, 1e9f, -1e9f, 0.0f, 3.5f, 6.0f}, AllLanes(blur),
+                  kNumCells, &shares);
+    Floats sum{};
+    for (int i = 0; i < shares.count; ++i) sum += shares.value[static_cast<std::size_t>(i)];
+    for (int lane = 0; lane < kLanes; ++lane) EXPECT_NEAR(sum[lane], 1.0f, 1e-5f);
+  }
+  for (const float blur : {0.5f, infinity, nan}) {
+    ComputeShares(Floats{nan, infinity, -infinity, 0.0f, 2.0f, nan, nan, infinity},
+                  Floats{0.3f, blur, blur, 0.3f, blur, blur, 0.3f, 0.3f}, kNumCells, &shares);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      EXPECT_GE(shares.first[lane], 0);
+      EXPECT_LE(shares.first[lane] + shares.count, kNumCells + 2 * kRing);
+    }
+  }
+}
+
+TEST(PatternPicture, CoversTheMarkerAndMostOfTheQuietZone) {
+  PatternModel model;
+  model.num_cells = 6;
+  model.center_px = {300, 200};
+  model.diagonal_px = 12 * std::sqrt(2.0);
+  PatternParameters::Vector parameters = PatternParameters::Vector::Zero();
+  parameters.head<8>() << 294, 194, 306, 194, 306, 206, 294, 206;
+  const PatternPicture picture(model, parameters);
+  const Ints covered = picture.Covers(Floats{0, -7.4f, -7.6f, 7.4f}, Floats{0, 7.4f, 0, 7.6f});
+  EXPECT_TRUE(covered[0]);
+  EXPECT_TRUE(covered[1]);
+  EXPECT_FALSE(covered[2]);
+  EXPECT_FALSE(covered[3]);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,138 @@
+#include "importer/refine/marker_detector.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "importer/dictionary_hint.h"
+#include "tests/importer/marker_builders.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+cv::Mat Gray(const cv::Mat& color) {
+  cv::Mat gray;
+  cv::cvtColor(color, gray, cv::COLOR_BGR2GRAY);
+  // A lens never draws a step sharper than this.
+  cv::GaussianBlur(gray, gray, cv::Size(), 0.7);
+  return gray;
+}
+
+double MaxCornerError(const MarkerDetection& marker, const DrawnMarker& drawn) {
+  const Eigen::Vector2d top_left(drawn.left, drawn.top);
+  const double s = drawn.side;
+  const std::array<Eigen::Vector2d, kNumCorners> truth = {
+      top_left, top_left + Eigen::Vector2d(s, 0), top_left + Eigen::Vector2d(s, s),
+      top_left + Eigen::Vector2d(0, s)};
+  double max_error = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    max_error = std::max(max_error, (marker.corners_in_image_px[i] - truth[i]).norm());
+  }
+  return max_error;
+}
+
+std::vector<MarkerDetection> Sorted(std::vector<MarkerDetection> markers) {
+  std::sort(markers.begin(), markers.end(),
+            [](const auto& a, const auto& b) { return a.marker_id < b.marker_id; });
+  return markers;
+}
+
+const std::vector<DrawnMarker> kDrawn = {
+    {3, 40, 50, 96}, {7, 200, 60, 60}, {11, 320, 41, 24}, {49, 60, 220, 144}};
+
+TEST(DetectMarkers, CornersOfDrawnMarkersAreExact) {
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_50");
+  const cv::Mat gray = Gray(DrawMarkers(dictionary.aruco, {480, 400}, kDrawn));
+  for (const bool inverted : {false, true}) {
+    ArucoDetectionOptions options;
+    options.inverted = inverted;
+    const std::vector<MarkerDetection> markers =
+        Sorted(DetectMarkers(inverted ? cv::Mat(255 - gray) : gray, dictionary, 1, options));
+    ASSERT_EQ(markers.size(), kDrawn.size());
+    for (std::size_t i = 0; i < markers.size(); ++i) {
+      EXPECT_EQ(markers[i].marker_id, kDrawn[i].marker_id);
+      EXPECT_LT(MaxCornerError(markers[i], kDrawn[i]), 0.1) << kDrawn[i].side << " px";
+    }
+    options.inverted = !inverted;
+    EXPECT_TRUE(
+        DetectMarkers(inverted ? cv::Mat(255 - gray) : gray, dictionary, 1, options).empty());
+  }
+}
+
+TEST(DetectMarkers, SubpixIsNearAndNoneIsWithinAPixelAndAHalf) {
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_50");
+  const cv::Mat gray = Gray(DrawMarkers(dictionary.aruco, {480, 400}, kDrawn));
+  for (const auto& [refinement, limit_px] :
+       {std::make_pair(CornerRefinement::kSubpix, 0.75), {CornerRefinement::kNone, 1.5}}) {
+    ArucoDetectionOptions options;
+    options.corner_refinement = refinement;
+    const std::vector<MarkerDetection> markers =
+        Sorted(DetectMarkers(gray, dictionary, 1, options));
+    ASSERT_EQ(markers.size(), kDrawn.size());
+    for (std::size_t i = 0; i < markers.size(); ++i) {
+      EXPECT_LT(MaxCornerError(markers[i], kDrawn[i]), limit_px)
+          << CornerRefinementName(refinement) << " " << kDrawn[i].side << " px";
+    }
+  }
+}
+
+TEST(DetectMarkers, ThreeByThreeDictionaryWithWideBorderInEveryRotation) {
+  const TempDir dir;
+  const std::string path = dir / "d.yml";
+  std::ofstream(path) << "%YAML:1.0\n---\nnmarkers: 2\nmarkersize: 3\nmaxCorrectionBits: 0\n"
+                         "marker_0: \"110100001\"\nmarker_1: \"111000100\"\n";
+  const Dictionary dictionary = LoadDictionary(path);
+  const DrawnMarker drawn{1, 60, 60, 98};
+  cv::Mat gray = Gray(DrawMarkers(dictionary.aruco, {218, 218}, {drawn}, 2));
+  for (int turns = 0; turns < 4; ++turns) {
+    const std::vector<MarkerDetection> markers = DetectMarkers(gray, dictionary, 2, {});
+    ASSERT_EQ(markers.size(), 1u);
+    EXPECT_EQ(markers[0].marker_id, 1);
+    // The picture is square and the marker in its middle: corner 1 moves on with every turn.
+    MarkerDetection upright = markers[0];
+    std::rotate(upright.corners_in_image_px.begin(),
+                upright.corners_in_image_px.begin() + (4 - turns) % 4,
+                upright.corners_in_image_px.end());
+    EXPECT_LT(MaxCornerError(upright, drawn), 0.1);
+    cv::rotate(gray, gray, cv::ROTATE_90_CLOCKWISE);
+  }
+}
+
+TEST(DetectMarkers, DuplicatedIdsAreAllHandedOut) {
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_50");
+  const cv::Mat gray =
+      Gray(DrawMarkers(dictionary.aruco, {480, 200}, {{3, 40, 50, 96}, {3, 300, 50, 96}}));
+  EXPECT_EQ(DetectMarkers(gray, dictionary, 1, {}).size(), 2u);
+}
+
+TEST(SuggestDictionaries, NamesTheSmallestDictionaryAndThePolarity) {
+  const Dictionary dictionary = LoadDictionary("DICT_5X5_100");
+  const cv::Mat gray = Gray(DrawMarkers(dictionary.aruco, {480, 200},
+                                        {{3, 40, 50, 84}, {72, 180, 50, 84}, {9, 320, 50, 84}}));
+  for (const bool inverted : {false, true}) {
+    const std::vector<DictionaryHint> hints =
+        SuggestDictionaries({inverted ? cv::Mat(255 - gray) : gray}, 1, {});
+    ASSERT_EQ(hints.size(), 1u);
+    EXPECT_EQ(hints[0].dictionary, "DICT_5X5_100");
+    EXPECT_EQ(hints[0].inverted, inverted);
+    EXPECT_EQ(hints[0].num_markers, 3);
+  }
+  EXPECT_TRUE(SuggestDictionaries({cv::Mat(200, 200, CV_8UC1, cv::Scalar(9))}, 1, {}).empty());
+}
+
+TEST(ImageSample, SpreadsOverAStreamOfAnyLength) {
+  for (const int num_images : {1, 12, 13, 57, 1000}) {
+    ImageSample sample;
+    for (int i = 0; i < num_images; ++i) sample.Add(i, cv::Mat(1, 1, CV_32SC1, cv::Scalar(i)));
+    const std::vector<cv::Mat> images = sample.Images();
+    EXPECT_GE(images.size(), std::min(6u, static_cast<unsigned>(num_images)));
+    EXPECT_LE(images.size(), 12u);
+    EXPECT_EQ(images.front().at<int>(0), 0);
+    EXPECT_GE(images.back().at<int>(0), num_images / 2);
+  }
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,75 @@
+#include "tests/importer/refine/marker_grid.h"
+
+#include <Eigen/Geometry>
+#include <opencv2/aruco.hpp>
+
+namespace velamap {
+namespace {
+
+constexpr double kLength = 0.1;
+constexpr double kRadPerDeg = 0.017453292519943295;
+
+PlacedMarkerInCam PlaceMarker(const MarkerGridOptions& options, int marker_id,
+                              const Eigen::Vector2d& x_in_image_px, std::mt19937* random) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const double tilt =
+      kRadPerDeg * (options.min_tilt_deg +
+                    0.5 * (options.max_tilt_deg - options.min_tilt_deg) * (1 + unit(*random)));
+  const double azimuth = 180 * kRadPerDeg * unit(*random);
+  const double roll = 180 * kRadPerDeg * unit(*random);
+  const Eigen::Vector3d ray = CamFromImage(options.camera, x_in_image_px)->homogeneous();
+  const Eigen::Vector3d tilt_axis(std::cos(azimuth), std::sin(azimuth), 0);
+  const Eigen::Quaterniond rotation =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), ray) *
+      Eigen::AngleAxisd(tilt, tilt_axis) * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d center = MeanFocalLength(options.camera) * kLength / options.side_px * ray;
+  const double h = kLength / 2;
+  return {
+      marker_id,
+      {center + rotation * Eigen::Vector3d(-h, -h, 0),
+       center + rotation * Eigen::Vector3d(h, -h, 0), center + rotation * Eigen::Vector3d(h, h, 0),
+       center + rotation * Eigen::Vector3d(-h, h, 0)}};
+}
+
+}  // namespace
+
+MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options) {
+  constexpr int kNumIds = 50;
+  std::mt19937 random(options.rendering.seed);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const Dictionary dictionary = LoadDictionary(options.dictionary);
+  const double pitch = 2.7 * options.side_px + 8;
+  std::vector<PlacedMarkerInCam> markers;
+  for (double y = 0.6 * pitch; y < options.camera.height_px - 0.6 * pitch; y += pitch) {
+    for (double x = 0.6 * pitch; x < options.camera.width_px - 0.6 * pitch; x += pitch) {
+      markers.push_back(PlaceMarker(options, static_cast<int>(markers.size()) % kNumIds,
+                                    {x + unit(random), y + unit(random)}, &random));
+    }
+  }
+  MarkerGrid grid;
+  grid.image = RenderMarkers(options.camera, markers, dictionary, 1, options.rendering);
+  for (const PlacedMarkerInCam& marker : markers) {
+    grid.cells.emplace_back();
+    cv::aruco::drawMarker(dictionary.aruco, marker.marker_id, dictionary.aruco->markerSize + 2,
+                          grid.cells.back(), 1);
+    QuadPx truth, start;
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      truth[i] =
+          *ImageFromCam(options.camera, marker.corners_in_cam[i]) - Eigen::Vector2d::Constant(0.5);
+      start[i] = truth[i] + options.start_error_px * Eigen::Vector2d(unit(random), unit(random));
+    }
+    grid.truth.push_back(truth);
+    grid.starts.push_back(start);
+  }
+  return grid;
+}
+
+double MeanSide(const QuadPx& quad) {
+  double perimeter = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    perimeter += (quad[(i + 1) % kNumCorners] - quad[i]).norm();
+  }
+  return perimeter / kNumCorners;
+}
+
+}  // namespace velamap

@@ -1,0 +1,39 @@
+// A picture full of markers with exact corners, and starts near them.
+
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/layout/dictionary.h"
+#include "tests/support/marker_renderer.h"
+
+namespace velamap {
+
+using QuadPx = std::array<Eigen::Vector2d, kNumCorners>;  // OpenCV's pixel frame
+
+struct MarkerGridOptions {
+  std::string dictionary = "DICT_5X5_50";
+  double side_px = 25.0;  // upright; tilted markers are smaller
+  double min_tilt_deg = 0.0, max_tilt_deg = 60.0;
+  double start_error_px = 0.7;  // of each coordinate of a start corner, uniform
+  Camera camera{CameraModel::kPinhole, 640, 480, {900, 900, 320, 240}};
+  RenderOptions rendering;
+};
+
+struct MarkerGrid {
+  cv::Mat image;
+  std::vector<cv::Mat> cells;  // of each marker, as FitPattern wants them
+  std::vector<QuadPx> truth, starts;
+};
+
+// Markers in random attitudes on a grid, apart from each other.
+MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options);
+
+double MeanSide(const QuadPx& quad);
+
+}  // namespace velamap

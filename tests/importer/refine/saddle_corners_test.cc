@@ -1,0 +1,92 @@
+#include "importer/refine/saddle_corners.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+#include <opencv2/imgproc.hpp>
+
+namespace velamap {
+namespace {
+
+using Quad = std::array<Eigen::Vector2d, kNumCorners>;
+
+constexpr int kNumCells = 8;
+
+// A dark square of 64.5 px, turned by 0.2, on light ground, each edge a blurred step; with others
+// of the same size at all four corners if asked for. `spread_px` makes every dark square larger.
+struct Picture {
+  Eigen::Vector2d center_px{100.3, 99.6};
+  double half_px = 32.25;
+  double angle = 0.2;
+  double blur_px = 0.9;
+  double spread_px = 0.0;
+  bool touching = true;
+
+  Quad Corners() const {
+    Quad corners;
+    const double signs[kNumCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      corners[i] = center_px + Eigen::Rotation2Dd(angle) *
+                                   (half_px * Eigen::Vector2d(signs[i][0], signs[i][1]));
+    }
+    return corners;
+  }
+
+  double Inside(double distance_px) const {
+    return 0.5 * std::erfc((distance_px - spread_px) / (blur_px * std::sqrt(2.0)));
+  }
+
+  cv::Mat Draw() const {
+    cv::Mat gray(200, 200, CV_8UC1);
+    for (int y = 0; y < gray.rows; ++y) {
+      for (int x = 0; x < gray.cols; ++x) {
+        const Eigen::Vector2d p = Eigen::Rotation2Dd(-angle) * (Eigen::Vector2d(x, y) - center_px);
+        const double marker = Inside(std::abs(p.x()) - half_px) * Inside(std::abs(p.y()) - half_px);
+        const double others = Inside(half_px - std::abs(p.x())) * Inside(half_px - std::abs(p.y()));
+        const double dark = std::min(1.0, marker + (touching ? others : 0.0));
+        gray.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(std::lround(210 - 180 * dark));
+      }
+    }
+    return gray;
+  }
+};
+
+TEST(SaddleCornersTest, FindsTheMeetingPointOfTwoSquares) {
+  const Picture picture;
+  Quad corners = picture.Corners();
+  for (Eigen::Vector2d& corner : corners) corner += Eigen::Vector2d(0.8, -0.6);
+  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), kNumCells, &corners), 4);
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    EXPECT_LT((corners[i] - picture.Corners()[i]).norm(), 0.04) << i;
+  }
+}
+
+TEST(SaddleCornersTest, SpreadInkDoesNotMoveThem) {
+  Picture picture;
+  picture.spread_px = 0.3;
+  Quad corners = picture.Corners();
+  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), kNumCells, &corners), 4);
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    EXPECT_LT((corners[i] - picture.Corners()[i]).norm(), 0.04) << i;
+  }
+}
+
+TEST(SaddleCornersTest, LeavesTheCornersOfALonelySquare) {
+  Picture picture;
+  picture.touching = false;
+  Quad corners = picture.Corners();
+  corners[0].x() += 0.8;
+  const Quad before = corners;
+  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), kNumCells, &corners), 0);
+  EXPECT_EQ(corners, before);
+}
+
+TEST(SaddleCornersTest, LeavesCellsThatAreTooSmallToTell) {
+  const Picture picture;
+  Quad corners = picture.Corners();
+  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), 20, &corners), 0);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,230 @@
+#include "importer/video/frame_source.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "importer/base/error.h"
+#include "importer/video/image_file.h"
+#include "tests/support/error_matchers.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+cv::Mat NoiseImage(int width, int height) {
+  cv::Mat image(height, width, CV_8UC3);
+  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 256);
+  return image;
+}
+
+void CutFile(const fs::path& path, double fraction) {
+  fs::resize_file(path, static_cast<std::uintmax_t>(fraction * fs::file_size(path)));
+}
+
+// Frame i is uniformly 10 * i bright.
+void WriteVideo(const std::string& path, int num_frames) {
+  cv::VideoWriter writer(path, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25.0, {64, 48});
+  ASSERT_TRUE(writer.isOpened());
+  for (int i = 0; i < num_frames; ++i) writer << cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(10 * i));
+}
+
+std::vector<Frame> ReadAll(FrameSource* source) {
+  std::vector<Frame> frames;
+  while (std::optional<Frame> frame = source->Next()) frames.push_back(*frame);
+  return frames;
+}
+
+std::vector<int> FrameNumbers(const std::vector<Frame>& frames) {
+  std::vector<int> numbers;
+  for (const Frame& frame : frames) numbers.push_back(frame.frame_number.value());
+  return numbers;
+}
+
+TEST(DecodeImageFile, TellsWholeFromBrokenFiles) {
+  const TempDir dir;
+  for (const char* name : {"a.jpg", "a.png", "a.tif", "a.bmp"}) {
+    const std::string path = dir / name;
+    cv::imwrite(path, NoiseImage(80, 60));
+    std::string reason;
+    EXPECT_EQ(DecodeImageFile(path, &reason).size(), cv::Size(80, 60)) << name << ": " << reason;
+  }
+  for (const char* name : {"a.jpg", "a.png"}) {
+    for (const double fraction : {0.99, 0.5, 0.1}) {
+      const std::string path = dir / name;
+      cv::imwrite(path, NoiseImage(80, 60));
+      CutFile(path, fraction);
+      std::string reason;
+      EXPECT_TRUE(DecodeImageFile(path, &reason).empty());
+      EXPECT_EQ(reason, "the file is cut off") << name << " " << fraction;
+    }
+  }
+}
+
+TEST(DecodeImageFile, AcceptsDataBehindTheEndOfAJpeg) {
+  const TempDir dir;
+  const std::string path = dir / "a.jpg";
+  cv::imwrite(path, NoiseImage(80, 60));
+  std::ofstream(path, std::ios::app) << "what phones append";
+  std::string reason;
+  EXPECT_FALSE(DecodeImageFile(path, &reason).empty()) << reason;
+}
+
+TEST(DecodeImageFile, IsNotFooledByThePreviewOfACutJpeg) {
+  // A preview in an APP1 segment has an end-of-image marker of its own.
+  const TempDir dir;
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", NoiseImage(80, 60), jpeg);
+  std::vector<std::uint8_t> bytes = {0xFF, 0xD8, 0xFF, 0xE1, 0x00, 0x06, 0xFF, 0xD8, 0xFF, 0xD9};
+  bytes.insert(bytes.end(), jpeg.begin() + 2, jpeg.end());
+  const auto write = [&](std::size_t size) {
+    std::ofstream(dir / "a.jpg", std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(size));
+  };
+  std::string reason;
+  write(bytes.size());
+  EXPECT_FALSE(DecodeImageFile(dir / "a.jpg", &reason).empty()) << reason;
+  write(bytes.size() / 2);
+  EXPECT_TRUE(DecodeImageFile(dir / "a.jpg", &reason).empty());
+}
+
+TEST(DecodeImageFile, SaysWhyThereIsNoImage) {
+  const TempDir dir;
+  std::string reason;
+  EXPECT_TRUE(DecodeImageFile(dir / "none.jpg", &reason).empty());
+  EXPECT_EQ(reason, "cannot be read");
+  std::ofstream(dir / "empty.jpg").close();
+  EXPECT_TRUE(DecodeImageFile(dir / "empty.jpg", &reason).empty());
+  EXPECT_EQ(reason, "the file is empty");
+  std::ofstream(dir / "text.jpg") << "no picture";
+  EXPECT_TRUE(DecodeImageFile(dir / "text.jpg", &reason).empty());
+  EXPECT_EQ(reason, "no image that can be decoded");
+}
+
+TEST(ImageFolder, ListsNestedImagesInNaturalOrder) {
+  const TempDir dir;
+  fs::create_directory(dir / "sub");
+  fs::create_directory(dir / ".hidden");
+  for (const char* name : {"10.png", "9.PNG", "sub/1.png", ".a.png", ".hidden/b.png"}) {
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(".png", NoiseImage(8, 6), bytes);
+    std::ofstream(dir / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  }
+  std::ofstream(dir / "notes.txt") << "no image";
+  const auto source = OpenFrameSource(dir.path(), {});
+  EXPECT_FALSE(source->IsVideo());
+  EXPECT_EQ(source->NumFrames(), 3);
+  std::vector<std::string> names;
+  for (Frame& frame : ReadAll(source.get())) {
+    names.push_back(frame.image_name);
+    std::string reason;
+    EXPECT_TRUE(frame.gray.empty());
+    EXPECT_TRUE(source->Load(&frame, &reason));
+    EXPECT_EQ(frame.gray.type(), CV_8UC1);
+    EXPECT_EQ(ColorImage(frame).type(), CV_8UC3);
+    EXPECT_FALSE(frame.frame_number);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"9.PNG", "10.png", "sub/1.png"}));
+  EXPECT_EQ(OpenFrameSource(dir.path(), {}, {"10.png", "other"})->NumFrames(), 2);
+}
+
+TEST(ImageFolder, BrokenImageIsNotLoaded) {
+  const TempDir dir;
+  cv::imwrite(dir / "a.jpg", NoiseImage(80, 60));
+  CutFile(dir / "a.jpg", 0.7);
+  const auto source = OpenFrameSource(dir.path(), {});
+  std::optional<Frame> frame = source->Next();
+  ASSERT_TRUE(frame);
+  std::string reason;
+  EXPECT_FALSE(source->Load(&*frame, &reason));
+  EXPECT_EQ(reason, "the file is cut off");
+}
+
+TEST(ImageFolder, PicturesAreNotTurnedByTheirMetadata) {
+  // An EXIF orientation of 6 (turned by 90 degrees) in front of the JPEG's own segments.
+  const TempDir dir;
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", NoiseImage(80, 60), jpeg);
+  const std::vector<std::uint8_t> exif = {
+      0xFF, 0xE1, 0x00, 0x22, 'E', 'x', 'i', 'f', 0, 0, 'M', 'M', 0, 42, 0, 0, 0, 8,
+      0,    1,    0x01, 0x12, 0,   3,   0,   0,   0, 1, 0,   6,   0, 0,  0, 0, 0, 0};
+  jpeg.insert(jpeg.begin() + 2, exif.begin(), exif.end());
+  std::ofstream(dir / "a.jpg", std::ios::binary)
+      .write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
+  EXPECT_EQ(cv::imread(dir / "a.jpg").size(), cv::Size(60, 80)) << "the test's EXIF is not read";
+  std::string reason;
+  EXPECT_EQ(DecodeImageFile(dir / "a.jpg", &reason).size(), cv::Size(80, 60)) << reason;
+}
+
+TEST(OpenFrameSource, NamesWhatIsWrong) {
+  const TempDir dir;
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir / "none", {}); }, {"none", "there is no"});
+  ExpectThrows<InputError>([&] { OpenFrameSource("", {}); }, {"--image_path"});
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir.path(), {}); }, {dir.path(), "no images"});
+  std::ofstream(dir / "empty.mp4").close();
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir / "empty.mp4", {}); }, {"file is empty"});
+  std::ofstream(dir / "text.mp4") << "no video at all";
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir / "text.mp4", {}); },
+                           {dir / "text.mp4", "no video that can be read"});
+  cv::imwrite(dir / "a.png", NoiseImage(8, 6));
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir / "a.png", {}); }, {"a single image"});
+}
+
+TEST(VideoFile, FramesAreNumberedTimedAndComplete) {
+  const TempDir dir;
+  WriteVideo(dir / "v.avi", 20);
+  const auto source = OpenFrameSource(dir / "v.avi", {});
+  EXPECT_TRUE(source->IsVideo());
+  EXPECT_EQ(source->NumFrames(), 20);
+  const std::vector<Frame> frames = ReadAll(source.get());
+  ASSERT_EQ(frames.size(), 20u);
+  for (int i = 0; i < 20; ++i) {
+    Frame frame = frames[static_cast<std::size_t>(i)];
+    EXPECT_EQ(frame.frame_number, i);
+    EXPECT_NEAR(frame.time_s.value(), i / 25.0, 1e-9);
+    std::string reason;
+    EXPECT_TRUE(source->Load(&frame, &reason)) << reason;
+    EXPECT_NEAR(cv::mean(frame.gray)[0], 10 * i, 3);
+    EXPECT_NEAR(cv::mean(ColorImage(frame))[0], 10 * i, 3);
+  }
+  EXPECT_EQ(frames[7].image_name, "frame_000007.jpg");
+}
+
+TEST(VideoFile, StepRangeAndKnownFrames) {
+  const TempDir dir;
+  WriteVideo(dir / "v.avi", 20);
+  const auto source = OpenFrameSource(dir / "v.avi", {3, 16, 4}, {"frame_000011.jpg"});
+  EXPECT_EQ(source->NumFrames(), 3);
+  const std::vector<Frame> frames = ReadAll(source.get());
+  EXPECT_EQ(FrameNumbers(frames), (std::vector<int>{3, 7, 15}));
+  EXPECT_NEAR(cv::mean(ColorImage(frames[2]))[0], 150, 3);
+  EXPECT_NEAR(frames[2].time_s.value(), 15 / 25.0, 1e-9);
+}
+
+TEST(VideoFile, FirstFrameBehindTheEndIsAnError) {
+  const TempDir dir;
+  WriteVideo(dir / "v.avi", 5);
+  const auto source = OpenFrameSource(dir / "v.avi", {5, -1, 1});
+  ExpectThrows<InputError>([&] { source->Next(); }, {"v.avi", "5 frames", "--Video.first_frame"});
+}
+
+TEST(VideoFile, BrokenOffVideoIsUsedAsFarAsItGoes) {
+  const TempDir dir;
+  WriteVideo(dir / "v.avi", 20);
+  CutFile(dir / "v.avi", 0.8);  // half of this small file is its header
+  const auto source = OpenFrameSource(dir / "v.avi", {});
+  const std::vector<Frame> frames = ReadAll(source.get());
+  EXPECT_GE(frames.size(), 5u);
+  EXPECT_LT(frames.size(), 20u);
+}
+
+}  // namespace
+}  // namespace velamap

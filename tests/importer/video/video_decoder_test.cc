@@ -1,0 +1,161 @@
+// Clips of many kinds, made by the ffmpeg program, against OpenCV's VideoCapture and against
+// reading from the start.
+
+#include "importer/video/video_decoder.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kNumFrames = 75;
+constexpr double kFramesPerSecond = 25.0;
+
+struct Clip {
+  const char* file_name;
+  const char* encoding;         // options of ffmpeg
+  bool can_count;               // its frames without decoding
+  double max_difference = 1.0;  // of grey levels, from OpenCV's
+};
+
+std::string ClipName(const testing::TestParamInfo<Clip>& info) {
+  std::string name = info.param.file_name;
+  name[name.find('.')] = '_';
+  return name;
+}
+
+// Grey, so that no colour is too saturated for BGR, and another picture in each frame.
+void MakeClip(const std::string& path, const std::string& encoding) {
+  const std::string command = fmt::format(
+      "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=176x100:rate={} -frames:v {} "
+      "-vf hue=s=0,format=yuv420p -threads 1 {} '{}'",
+      kFramesPerSecond, kNumFrames, encoding, path);
+  ASSERT_EQ(std::system(command.c_str()), 0) << command << ": is ffmpeg installed?";
+}
+
+struct ReadFrame {
+  int number = 0;
+  double time_s = 0.0;
+  cv::Mat gray;
+};
+
+std::vector<ReadFrame> ReadAll(const std::string& path, int skip_to) {
+  VideoDecoder decoder(path, 2);
+  decoder.SkipTo(skip_to);
+  std::vector<ReadFrame> frames;
+  while (std::optional<VideoFrame> frame = decoder.Next()) {
+    frames.push_back({frame->number, frame->time_s.value_or(-1.0), frame->picture.Gray()});
+  }
+  EXPECT_EQ(decoder.NumFramesRead(), frames.empty() ? 0 : frames.back().number + 1);
+  return frames;
+}
+
+class VideoDecoderTest : public testing::TestWithParam<Clip> {
+ protected:
+  void SetUp() override { ASSERT_NO_FATAL_FAILURE(MakeClip(path_, GetParam().encoding)); }
+
+  TempDir dir_;
+  std::string path_ = dir_ / GetParam().file_name;
+};
+
+TEST_P(VideoDecoderTest, YieldsTheFramesThatOpenCvYields) {
+  const std::vector<ReadFrame> frames = ReadAll(path_, 0);
+  ASSERT_GE(frames.size(), 60u);
+  cv::VideoCapture capture(path_, cv::CAP_FFMPEG);
+  capture.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
+  cv::Mat color, gray;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    ASSERT_TRUE(capture.read(color)) << i;
+    cv::cvtColor(color, gray, cv::COLOR_BGR2GRAY);
+    EXPECT_EQ(frames[i].number, static_cast<int>(i));
+    ASSERT_EQ(frames[i].gray.size(), gray.size());
+    EXPECT_LE(cv::norm(frames[i].gray, gray, cv::NORM_INF), GetParam().max_difference) << i;
+    // OpenCV knows no time of the frames that the decoder hands out at the end of the file, and
+    // takes times of decoding for those of presentation where there are no others.
+    const double time_ms = capture.get(cv::CAP_PROP_POS_MSEC);
+    if (path_.find("unknown") != std::string::npos) {
+      EXPECT_NEAR(frames[i].time_s, static_cast<double>(i) / kFramesPerSecond, 1e-6);
+    } else if (time_ms > 0) {
+      EXPECT_NEAR(frames[i].time_s, 1e-3 * time_ms, 1e-6) << i;
+    }
+  }
+  EXPECT_FALSE(capture.read(color));
+  EXPECT_EQ(VideoDecoder(path_, 1).NumContainerFrames(),
+            static_cast<int>(capture.get(cv::CAP_PROP_FRAME_COUNT)));
+}
+
+TEST_P(VideoDecoderTest, SkippingKeepsNumbersTimesAndPixels) {
+  const std::vector<ReadFrame> all = ReadAll(path_, 0);
+  for (const int skip_to : {1, 11, 12, 13, 37, 47, 48, 60, 74, 1000}) {
+    const std::vector<ReadFrame> frames = ReadAll(path_, skip_to);
+    ASSERT_FALSE(frames.empty());
+    if (GetParam().can_count) {
+      EXPECT_EQ(frames.front().number, std::min(skip_to, all.back().number));
+    } else if (skip_to >= 12) {
+      EXPECT_EQ(frames.front().number, 0) << "from the start, where nothing else is safe";
+    }
+    ASSERT_EQ(frames.size(), all.size() - static_cast<std::size_t>(frames.front().number));
+    for (const ReadFrame& frame : frames) {
+      const ReadFrame& same = all[static_cast<std::size_t>(frame.number)];
+      EXPECT_EQ(frame.time_s, same.time_s);
+      EXPECT_EQ(cv::norm(frame.gray, same.gray, cv::NORM_INF), 0.0)
+          << frame.number << " after skipping to " << skip_to;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Clips, VideoDecoderTest,
+    testing::Values(
+        Clip{"b_frames.mp4", "-c:v libx264 -g 12 -bf 3", true},
+        Clip{"one_group.mp4", "-c:v libx264 -g 250 -bf 3", true},
+        Clip{"open_groups.mp4", "-c:v libx264 -g 12 -bf 3 -x264-params open-gop=1", true},
+        Clip{"open_groups.ts", "-c:v libx264 -g 12 -bf 3 -x264-params open-gop=1", true},
+        Clip{"refresh.mkv", "-c:v libx264 -g 12 -x264-params intra-refresh=1", false},
+        Clip{"b_frames.mkv", "-c:v libx264 -g 12 -bf 3", true},
+        Clip{"times_unknown.avi", "-c:v libx264 -g 12 -bf 3", false},
+        Clip{"h265.mp4", "-c:v libx265 -x265-params log-level=none:keyint=12:bframes=3", true},
+        Clip{"variable.mkv", "-vf 'setpts=PTS*(1+0.01*N),hue=s=0' -vsync vfr -c:v libx264 -g 12",
+             true},
+        Clip{"full_range.mp4",
+             "-vf hue=s=0,scale=out_range=full -color_range pc -c:v libx264 -g 12", true},
+        Clip{"ten_bits.mp4", "-pix_fmt yuv420p10le -c:v libx264 -g 12", true, 2.0},
+        Clip{"packed.mov", "-pix_fmt uyvy422 -c:v rawvideo", false, 2.0},
+        Clip{"m.avi", "-c:v mjpeg -q:v 2", true},
+        Clip{"vp9.webm", "-c:v libvpx-vp9 -g 12 -cpu-used 8", false}),
+    ClipName);
+
+TEST(VideoDecoder, CutAndTurnedByTheContainer) {
+  const TempDir dir;
+  ASSERT_NO_FATAL_FAILURE(MakeClip(dir / "whole.mp4", "-c:v libx264 -g 12 -bf 3"));
+  // From the middle of a group of pictures, which the file keeps; and to be shown upright.
+  const std::string command = fmt::format(
+      "ffmpeg -loglevel error -y -ss 0.7 -i '{}' -c copy '{}' && "
+      "ffmpeg -loglevel error -y -i '{}' -c copy -metadata:s:v rotate=90 '{}'",
+      (dir / "whole.mp4").string(), (dir / "cut.mp4").string(), (dir / "whole.mp4").string(),
+      (dir / "turned.mp4").string());
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const std::vector<ReadFrame> whole = ReadAll(dir / "whole.mp4", 0);
+  const std::vector<ReadFrame> cut = ReadAll(dir / "cut.mp4", 0);
+  ASSERT_LT(cut.size(), whole.size() - 12) << "the file does not hide frames";
+  const std::size_t num_hidden = whole.size() - cut.size();
+  const std::vector<ReadFrame> skipped = ReadAll(dir / "cut.mp4", 40);
+  EXPECT_EQ(skipped.at(0).number, 40);
+  for (const ReadFrame& frame : skipped) {
+    const auto number = static_cast<std::size_t>(frame.number);
+    EXPECT_EQ(cv::norm(frame.gray, whole[number + num_hidden].gray, cv::NORM_INF), 0.0);
+    EXPECT_EQ(frame.time_s, cut[number].time_s);
+  }
+  EXPECT_EQ(ReadAll(dir / "turned.mp4", 0)[0].gray.size(), cv::Size(176, 100));
+}
+
+}  // namespace
+}  // namespace velamap

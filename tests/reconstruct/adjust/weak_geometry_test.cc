@@ -1,0 +1,78 @@
+#include "reconstruct/adjust/weak_geometry.h"
+
+#include <gmock/gmock.h>
+
+#include "importer/base/error.h"
+#include "reconstruct/adjust/marker_adjustment.h"
+#include "tests/reconstruct/scene_model.h"
+
+namespace velamap {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// The scene seen by cameras at these places (world, m) that look at `targets`.
+SyntheticScene SeenFrom(SceneKind kind, const std::vector<Eigen::Vector3d>& places,
+                        const std::vector<Eigen::Vector3d>& targets) {
+  SyntheticSceneOptions options;
+  options.kind = kind;
+  options.num_rows = 3;
+  options.num_columns = 4;
+  options.num_frames = static_cast<int>(places.size());
+  SyntheticScene scene = MakeSyntheticScene(options);
+  FrameDetections all;
+  for (const auto& [marker_id, points] : scene.x_in_world) {
+    MarkerDetection marker;
+    marker.marker_id = marker_id;
+    all.markers.push_back(marker);
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Eigen::Vector3d z = (targets[i] - places[i]).normalized();
+    const Eigen::Vector3d x = Eigen::Vector3d(0, 0, -1).cross(z).normalized();
+    Eigen::Matrix3d rotation;
+    rotation << x.transpose(), z.cross(x).transpose(), z.transpose();
+    scene.cam_from_world[i] = {Eigen::Quaterniond(rotation), -(rotation * places[i])};
+    scene.frames[i].markers = all.markers;
+  }
+  ProjectAnew(&scene);
+  AddNoise({0.1, 0, 0, 200, 1}, &scene);
+  return scene;
+}
+
+std::vector<std::string> WarningsOf(const SyntheticScene& scene) {
+  Model model = MakeSceneModel(scene);
+  return AdjustWithCeres({}, scene.layout, {}, &model).warnings;
+}
+
+TEST(WeakGeometry, ViewsFromAllSidesAreFine) {
+  EXPECT_THAT(WarningsOf(SeenFrom(SceneKind::kSail,
+                                  {{-1, -1.5, 0}, {0, -1.8, 0.5}, {1, -1.5, 0}, {0, -1.7, -0.6}},
+                                  std::vector<Eigen::Vector3d>(4, {0, 0, 0}))),
+              IsEmpty());
+}
+
+TEST(WeakGeometry, PureRotationIsAllFromOnePlace) {
+  EXPECT_THAT(
+      WarningsOf(SeenFrom(SceneKind::kSail, std::vector<Eigen::Vector3d>(5, {0, -2, 0}),
+                          {{0, 0, 0}, {0.1, 0, 0}, {-0.1, 0, 0.1}, {0, 0, -0.1}, {0.1, 0, 0.1}})),
+      ElementsAre(HasSubstr("all images are taken from one place")));
+}
+
+TEST(WeakGeometry, FlatBoardHeadOnIsNamed) {
+  EXPECT_THAT(WarningsOf(SeenFrom(SceneKind::kPlane,
+                                  {{0, -2, 0}, {0.02, -2.1, 0}, {0, -1.9, 0.02}, {0, -2.3, 0}},
+                                  std::vector<Eigen::Vector3d>(4, {0, 0, 0}))),
+              ElementsAre(HasSubstr("a flat object is seen head-on")));
+}
+
+TEST(WeakGeometry, LittleParallaxIsNamed) {
+  EXPECT_THAT(WarningsOf(SeenFrom(SceneKind::kSail,
+                                  {{0, -2, 0}, {0.06, -2, 0}, {0, -2, 0.06}, {0.03, -2, 0.03}},
+                                  std::vector<Eigen::Vector3d>(4, {0, 0, 0}))),
+              ElementsAre(HasSubstr("hardly any parallax")));
+}
+
+}  // namespace
+}  // namespace velamap

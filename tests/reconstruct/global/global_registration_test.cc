@@ -1,0 +1,425 @@
+#include "reconstruct/global/global_registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <tuple>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "importer/base/error.h"
+#include "importer/geometry/alignment.h"
+#include "tests/reconstruct/registration_fixture.h"
+
+namespace velamap {
+namespace {
+
+using testing::HasSubstr;
+
+Registration Register(const SyntheticScene& scene, RegistrationOptions options = {}) {
+  options.method = RegistrationMethod::kGlobal;
+  return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, options);
+}
+
+int CentralIdx(const Registration& registration) {
+  return static_cast<int>(registration.central_image_id) - 1;
+}
+
+double MaxError(const Registration& registration, const SyntheticScene& scene) {
+  double max_error_m = 0;
+  for (const auto& [marker_id, points] : registration.shape) {
+    max_error_m = std::max(
+        max_error_m, RmsDistance(points, TruthInCam(scene, marker_id, CentralIdx(registration))));
+  }
+  return max_error_m;
+}
+
+// RMS distance of all points from the truth after the best rigid motion, m.
+double RmsError(const Registration& registration, const SyntheticScene& scene) {
+  std::vector<Eigen::Vector3d> estimated, truth;
+  for (const auto& [marker_id, points] : registration.shape) {
+    estimated.insert(estimated.end(), points.begin(), points.end());
+    const auto& true_points = scene.x_in_world.at(marker_id);
+    truth.insert(truth.end(), true_points.begin(), true_points.end());
+  }
+  const Rigid3 world_from_shape = EstimateRigid3(estimated, truth);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    sum += (world_from_shape * estimated[i] - truth[i]).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(truth.size()));
+}
+
+// Part of the markers that at least 30 % of the frames see which the shape holds.
+double ReconstructionRatio(const Registration& registration, const SyntheticScene& scene) {
+  std::map<int, int> num_frames_of;
+  for (const FrameDetections& frame : scene.frames) {
+    for (const MarkerDetection& marker : frame.markers) ++num_frames_of[marker.marker_id];
+  }
+  int num_visible = 0, num_reconstructed = 0;
+  for (const auto& [marker_id, num_frames] : num_frames_of) {
+    if (num_frames < 0.3 * static_cast<double>(scene.frames.size())) continue;
+    ++num_visible;
+    num_reconstructed += static_cast<int>(registration.shape.count(marker_id));
+  }
+  return static_cast<double>(num_reconstructed) / num_visible;
+}
+
+void SortMarkers(FrameDetections* frame) {
+  std::sort(frame->markers.begin(), frame->markers.end(),
+            [](const auto& a, const auto& b) { return a.marker_id < b.marker_id; });
+}
+
+// Gives `rate` of the detections the ids of one another, frame by frame.
+void ExchangeIds(double rate, std::uint32_t seed, SyntheticScene* scene) {
+  std::mt19937 generator(seed);
+  for (FrameDetections& frame : scene->frames) {
+    std::vector<std::size_t> idxs(frame.markers.size());
+    std::iota(idxs.begin(), idxs.end(), 0);
+    std::shuffle(idxs.begin(), idxs.end(), generator);
+    const std::size_t count = static_cast<std::size_t>(rate * static_cast<double>(idxs.size()));
+    if (count < 2) continue;
+    const int first_id = frame.markers[idxs[0]].marker_id;
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+      frame.markers[idxs[i]].marker_id = frame.markers[idxs[i + 1]].marker_id;
+    }
+    frame.markers[idxs[count - 1]].marker_id = first_id;
+    SortMarkers(&frame);
+  }
+}
+
+// Numbers the corners of `rate` of the detections from a wrong one.
+void TurnCorners(double rate, std::uint32_t seed, SyntheticScene* scene) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (FrameDetections& frame : scene->frames) {
+    for (MarkerDetection& marker : frame.markers) {
+      if (unit(generator) >= rate) continue;
+      auto& corners = marker.corners_in_image_px;
+      std::rotate(corners.begin(), corners.begin() + 1 + static_cast<int>(3 * unit(generator)),
+                  corners.end());
+    }
+  }
+}
+
+// Blurs every tenth frame: corners are off by some px, and their sigma does not say so.
+void BlurFrames(double sigma_px, std::uint32_t seed, SyntheticScene* scene) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal(0.0, sigma_px);
+  for (std::size_t i = 5; i < scene->frames.size(); i += 10) {
+    for (MarkerDetection& marker : scene->frames[i].markers) {
+      for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
+        corner += Eigen::Vector2d(normal(generator), normal(generator));
+      }
+    }
+  }
+}
+
+std::vector<std::string> OutlierReasons(const Registration& registration) {
+  std::vector<std::string> reasons;
+  for (const RegisteredFrame& frame : registration.frames) {
+    EXPECT_EQ(frame.outlier_ids.size(), frame.outlier_reasons.size());
+    reasons.insert(reasons.end(), frame.outlier_reasons.begin(), frame.outlier_reasons.end());
+  }
+  return reasons;
+}
+
+struct Case {
+  SceneKind kind;
+  bool video;
+};
+
+class NoiseFreeGlobalRegistration : public testing::TestWithParam<Case> {};
+
+TEST_P(NoiseFreeGlobalRegistration, GivesTheTruthBack) {
+  const SyntheticScene scene = MakeScene(GetParam().kind, 24, GetParam().video);
+  const Registration registration = Register(scene);
+  EXPECT_LT(MaxError(registration, scene), 1e-9);
+  EXPECT_EQ(registration.NumRegistered(), 24);
+  EXPECT_EQ(registration.shape.size(), scene.x_in_world.size());
+  EXPECT_TRUE(registration.notes.empty());
+  for (const RegisteredFrame& frame : registration.frames) {
+    ASSERT_TRUE(frame.cam_from_shape);
+    EXPECT_TRUE(frame.outlier_ids.empty());
+    const Rigid3 truth =
+        scene.cam_from_world[frame.image_id - 1] *
+        Inverse(scene.cam_from_world[static_cast<std::size_t>(CentralIdx(registration))]);
+    EXPECT_LT((frame.cam_from_shape->translation - truth.translation).norm(), 1e-8);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, NoiseFreeGlobalRegistration,
+                         testing::Values(Case{SceneKind::kSail, true},
+                                         Case{SceneKind::kSail, false},
+                                         Case{SceneKind::kPlane, true},
+                                         Case{SceneKind::kCube, false}));
+
+TEST(GlobalRegistration, SpoiltDetectionsCostLittle) {
+  SyntheticScene clean = MakeScene(SceneKind::kSail, 30, true);
+  AddNoise({0.2, 0.0, 0.0, 0, 3}, &clean);
+  SyntheticScene spoilt = clean;
+  ExchangeIds(0.2, 4, &spoilt);
+  TurnCorners(0.1, 5, &spoilt);
+  BlurFrames(3.0, 6, &spoilt);
+  const Registration registration = Register(spoilt);
+  EXPECT_GE(ReconstructionRatio(registration, spoilt), 0.98);
+  EXPECT_TRUE(registration.notes.empty());
+  // A third of the observations is lost; blurred frames that stayed would show as a factor.
+  EXPECT_LT(RmsError(registration, spoilt), 1.5 * RmsError(Register(clean), clean));
+  for (std::size_t i = 5; i < spoilt.frames.size(); i += 10) {
+    EXPECT_FALSE(registration.frames[i].cam_from_shape) << i;
+    EXPECT_FALSE(registration.frames[i].reason.empty());
+  }
+  const auto reasons = OutlierReasons(registration);
+  EXPECT_GT(std::count_if(reasons.begin(), reasons.end(),
+                          [](const auto& r) { return r.find("wrong id: marker") == 0; }),
+            70);
+  EXPECT_GT(std::count_if(reasons.begin(), reasons.end(),
+                          [](const auto& r) { return r.find("turned by") != std::string::npos; }),
+            35);
+}
+
+// Few frames see a marker of a cube: an id that is read three times at the place of one neighbour,
+// which is better known by its own id, or three times turned the same way, keeps its place.
+class SpoiltCube : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(SpoiltCube, KeepsAllMarkers) {
+  SyntheticScene spoilt = MakeScene(SceneKind::kCube, 30, false);
+  const std::uint32_t seed = 10 * GetParam();
+  AddNoise({0.2, 0.0, 0.0, 0, seed + 3}, &spoilt);
+  ExchangeIds(0.2, seed + 4, &spoilt);
+  TurnCorners(0.1, seed + 5, &spoilt);
+  BlurFrames(3.0, seed + 6, &spoilt);
+  const Registration registration = Register(spoilt);
+  EXPECT_EQ(registration.shape.size(), spoilt.x_in_world.size());
+  EXPECT_LT(RmsError(registration, spoilt), 0.0006);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, SpoiltCube, testing::Values(0u, 2u, 5u));
+
+class SpoiltScene : public testing::TestWithParam<std::tuple<SceneKind, std::uint32_t>> {};
+
+TEST_P(SpoiltScene, KeepsNearlyAllMarkers) {
+  const auto [kind, number] = GetParam();
+  const std::uint32_t seed = 10 * number;
+  SyntheticScene scene = MakeScene(kind, 30, kind == SceneKind::kSail);
+  AddNoise({0.2, 0.0, 0.0, 0, seed + 3}, &scene);
+  const double clean_error = RmsError(Register(scene), scene);
+  ExchangeIds(0.2, seed + 4, &scene);
+  TurnCorners(0.1, seed + 5, &scene);
+  BlurFrames(3.0, seed + 6, &scene);
+  const Registration registration = Register(scene);
+  EXPECT_GE(ReconstructionRatio(registration, scene), 0.98);
+  EXPECT_LT(RmsError(registration, scene), 2 * clean_error);
+}
+
+INSTANTIATE_TEST_SUITE_P(KindsAndSeeds, SpoiltScene,
+                         testing::Combine(testing::Values(SceneKind::kSail, SceneKind::kPlane,
+                                                          SceneKind::kCube),
+                                          testing::Range(1u, 5u)));
+
+TEST(GlobalRegistration, RecurringFalseSquareIsOutvoted) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 20, false);
+  AddNoise({0.1, 0.0, 0.0, 0, 3}, &scene);
+  // In every third image the id of marker 7 is read at the place of marker 21, which is hidden.
+  for (std::size_t i = 0; i < scene.frames.size(); i += 3) {
+    auto& markers = scene.frames[i].markers;
+    const auto find = [&markers](int id) {
+      return std::find_if(markers.begin(), markers.end(),
+                          [id](const auto& m) { return m.marker_id == id; });
+    };
+    if (find(7) == markers.end() || find(21) == markers.end()) continue;
+    find(7)->corners_in_image_px = find(21)->corners_in_image_px;
+    markers.erase(find(21));
+  }
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.shape.size(), scene.x_in_world.size());
+  EXPECT_LT(RmsError(registration, scene), 0.001);
+  EXPECT_THAT(OutlierReasons(registration),
+              testing::Contains(testing::StrEq("wrong id: marker 21 stands there")));
+}
+
+TEST(GlobalRegistration, IdAtTwoPlacesWithEqualSupportIsLeftOut) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 20, false);
+  for (std::size_t i = 0; i < scene.frames.size(); i += 2) {
+    for (MarkerDetection& marker : scene.frames[i].markers) {
+      // Marker 21 is printed with the id of 7, and either of the two is found.
+      if (marker.marker_id == 7) marker.marker_id = 900;
+      if (marker.marker_id == 21) marker.marker_id = 7;
+    }
+    SortMarkers(&scene.frames[i]);
+  }
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.shape.count(7), 0u);
+  const auto dropped =
+      std::find_if(registration.dropped_markers.begin(), registration.dropped_markers.end(),
+                   [](const DroppedMarker& marker) { return marker.marker_id == 7; });
+  ASSERT_NE(dropped, registration.dropped_markers.end());
+  EXPECT_THAT(dropped->reason, HasSubstr("two places"));
+}
+
+TEST(GlobalRegistration, MarkerOfAnotherSizeIsLeftOutAndSaysSo) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 12, false);
+  scene.layout.marker_lengths_m[8] = 0.5 * scene.layout.marker_length_m;
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.shape.count(8), 0u);
+  ASSERT_EQ(registration.dropped_markers.size(), 1u);
+  EXPECT_THAT(registration.dropped_markers[0].reason, HasSubstr("2.00 times as long"));
+  EXPECT_LT(MaxError(registration, scene), 1e-6);
+}
+
+TEST(GlobalRegistration, ScaleIsThatOfTheMedianMarker) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 12, false);
+  for (const int marker_id : {3, 9, 17, 24}) {
+    scene.layout.marker_lengths_m[marker_id] = 1.05 * scene.layout.marker_length_m;
+  }
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.shape.size(), scene.x_in_world.size());
+  EXPECT_LT(RmsError(registration, scene), 1e-4);
+}
+
+TEST(GlobalRegistration, OrderAndIdsOfImagesChangeNothing) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 12, false);
+  AddNoise({0.3, 0.05, 0.02, 200, 3}, &scene);
+  auto images = DatabaseImages(scene);
+  RegistrationOptions options;
+  options.method = RegistrationMethod::kGlobal;
+  const auto registration = RegisterFrames(images, SceneCameras(scene), scene.layout, options);
+  std::shuffle(images.begin(), images.end(), std::mt19937(5));
+  for (std::size_t i = 0; i < images.size(); ++i)
+    images[i].image_id = static_cast<ImageId>(i + 100);
+  const auto shuffled = RegisterFrames(images, SceneCameras(scene), scene.layout, options);
+  EXPECT_EQ(shuffled.central_image_name, registration.central_image_name);
+  ASSERT_EQ(shuffled.shape.size(), registration.shape.size());
+  for (const auto& [marker_id, points] : registration.shape) {
+    EXPECT_EQ(RmsDistance(points, shuffled.shape.at(marker_id)), 0.0);
+  }
+}
+
+TEST(GlobalRegistration, SeedDecidesNothingThatMatters) {
+  SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);
+  AddNoise({0.2, 0.0, 0.03, 200, 3}, &scene);
+  RegistrationOptions options;
+  const Registration first = Register(scene, options);
+  options.random_seed = 42;
+  const Registration second = Register(scene, options);
+  EXPECT_EQ(first.central_image_id, second.central_image_id);
+  ASSERT_EQ(first.shape.size(), second.shape.size());
+  for (const auto& [marker_id, points] : first.shape) {
+    EXPECT_LT(RmsDistance(points, second.shape.at(marker_id)), 1e-4);
+  }
+}
+
+TEST(GlobalRegistration, ReachesAllFacesOfTheCubeWithNoise) {
+  SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);
+  AddNoise({0.3, 0.1, 0.05, 100, 8}, &scene);
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.NumRegistered(), 24);
+  EXPECT_EQ(registration.shape.size(), scene.x_in_world.size());
+  EXPECT_LT(RmsError(registration, scene), 0.005);
+}
+
+// The trap: nearly flat, far away through a long lens, small markers, poor corners.
+class ShallowSail : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(ShallowSail, IsNeverTheWrongShapeWithoutANote) {
+  SyntheticSceneOptions options;
+  options.num_frames = 16;
+  options.num_columns = 5;
+  options.num_rows = 4;
+  options.spacing_m = 0.5;
+  options.marker_length_m = 0.06;
+  options.seed = GetParam();
+  options.video = false;
+  options.camera = {CameraModel::kPinhole, 1920, 1080, {1300, 1300, 960, 540}};
+  SyntheticScene scene = MakeSyntheticScene(options);
+  AddNoise({0.4, 0.0, 0.05, 100, GetParam()}, &scene);
+  const Registration registration = Register(scene);
+  if (registration.notes.empty()) {
+    EXPECT_LT(RmsError(registration, scene), 0.04);
+  }
+  EXPECT_GE(ReconstructionRatio(registration, scene), 0.98);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ShallowSail, testing::Range(1u, 7u));
+
+TEST(GlobalRegistration, SurfaceThatMovesGetsANote) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 16, false);
+  AddNoise({0.05, 0.0, 0.0, 0, 3}, &scene);
+  // Half of the images see every marker a little off, each by its own way.
+  for (std::size_t i = 0; i < scene.frames.size(); i += 2) {
+    for (MarkerDetection& marker : scene.frames[i].markers) {
+      std::mt19937 generator(static_cast<std::uint32_t>(marker.marker_id));
+      std::normal_distribution<double> normal(0.0, 1.0);
+      const Eigen::Vector2d shift(normal(generator), normal(generator));
+      for (Eigen::Vector2d& corner : marker.corners_in_image_px) corner += shift;
+    }
+  }
+  const Registration registration = Register(scene);
+  ASSERT_FALSE(registration.notes.empty());
+  EXPECT_THAT(registration.notes.back(), HasSubstr("larger than the noise"));
+}
+
+TEST(GlobalRegistration, LargerOfTwoGroupsIsUsed) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 10, false);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (auto& marker : scene.frames[i].markers) marker.marker_id += 500;
+  }
+  const Registration registration = Register(scene);
+  EXPECT_EQ(registration.NumRegistered(), 7);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_THAT(registration.frames[i].reason, HasSubstr("shares 0 of its"));
+  }
+}
+
+TEST(GlobalRegistration, OfALongVideoTheBestFramesAreKept) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
+  BlurFrames(2.0, 6, &scene);
+  RegistrationOptions options;
+  options.max_num_frames = 12;
+  options.central_frame = "31";
+  const Registration registration = Register(scene, options);
+  EXPECT_EQ(registration.NumRegistered(), 12);
+  EXPECT_EQ(registration.central_image_name, "frame_000031.jpg");
+  EXPECT_EQ(registration.shape.size(), scene.x_in_world.size());
+  int first = 60, last = -1;
+  for (int i = 0; i < 60; ++i) {
+    const RegisteredFrame& frame = registration.frames[static_cast<std::size_t>(i)];
+    if (!frame.cam_from_shape) {
+      EXPECT_FALSE(frame.reason.empty());
+      continue;
+    }
+    EXPECT_NE(i % 10, 5) << "a blurred frame was chosen";
+    first = std::min(first, i);
+    last = std::max(last, i);
+  }
+  EXPECT_LT(first, 8);  // the ends give the parallax
+  EXPECT_GT(last, 52);
+}
+
+TEST(GlobalRegistration, DataThatCannotBeRegisteredAreRefused) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 3, false);
+  RegistrationOptions options;
+  options.method = RegistrationMethod::kGlobal;
+  auto images = DatabaseImages(scene);
+  images.resize(1);
+  EXPECT_THROW(RegisterFrames(images, SceneCameras(scene), scene.layout, options), DataError);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (auto& marker : scene.frames[i].markers) marker.marker_id += static_cast<int>(100 * i);
+  }
+  EXPECT_THROW(Register(scene), DataError);
+}
+
+TEST(GlobalRegistration, UnknownCentralFrameIsAnInputError) {
+  const SyntheticScene scene = MakeScene(SceneKind::kSail, 4, true);
+  RegistrationOptions options;
+  options.central_frame = "17";
+  EXPECT_THROW(Register(scene, options), InputError);
+  options.central_frame = "2";
+  EXPECT_EQ(Register(scene, options).central_image_name, "frame_000002.jpg");
+}
+
+}  // namespace
+}  // namespace velamap

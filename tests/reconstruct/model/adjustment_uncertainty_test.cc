@@ -1,0 +1,110 @@
+#include "reconstruct/model/adjustment_uncertainty.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+#include "importer/base/error.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+using testing::HasSubstr;
+
+class UncertaintyFile : public testing::Test {
+ protected:
+  UncertaintyFile() {
+    uncertainty_.points.point3D_ids = {11, 12, 24};
+    uncertainty_.points.blocks = {2.0 * Eigen::MatrixXd::Identity(6, 6),
+                                  3.0 * Eigen::MatrixXd::Identity(3, 3)};
+    uncertainty_.points.factor = Eigen::MatrixXd::Constant(9, 2, 0.1);
+    uncertainty_.points.factor(4, 1) = 1.0 / 3.0;
+    uncertainty_.points.signs = Eigen::Vector2d(1, -1);
+    uncertainty_.relative_scale_sigma = 1e-3;
+    uncertainty_.variance_factor = 1.7;
+    uncertainty_.apparent_inset_px = -0.01;
+    uncertainty_.apparent_inset_sigma_px = 0.02;
+    uncertainty_.correlation_factor = 1.3;
+    uncertainty_.share_above_4_sigma = 0.004;
+  }
+
+  std::string Folder() const { return dir_.path().string(); }
+
+  std::string FileBytes() const {
+    std::ifstream in(dir_ / kUncertaintyFileName, std::ios::binary);
+    std::stringstream bytes;
+    bytes << in.rdbuf();
+    return bytes.str();
+  }
+
+  void WriteBytes(const std::string& bytes) const {
+    std::ofstream(dir_ / kUncertaintyFileName, std::ios::binary) << bytes;
+  }
+
+  TempDir dir_;
+  AdjustmentUncertainty uncertainty_;
+};
+
+TEST_F(UncertaintyFile, ComesBackToTheLastBit) {
+  EXPECT_FALSE(HasUncertainty(Folder()));
+  WriteUncertainty(uncertainty_, Folder());
+  EXPECT_TRUE(HasUncertainty(Folder()));
+  const AdjustmentUncertainty read = ReadUncertainty(Folder());
+  EXPECT_EQ(read.points.point3D_ids, uncertainty_.points.point3D_ids);
+  EXPECT_EQ(read.points.blocks, uncertainty_.points.blocks);
+  EXPECT_EQ(read.points.factor, uncertainty_.points.factor);
+  EXPECT_EQ(read.points.signs, uncertainty_.points.signs);
+  EXPECT_EQ(read.relative_scale_sigma, uncertainty_.relative_scale_sigma);
+  EXPECT_EQ(read.variance_factor, uncertainty_.variance_factor);
+  EXPECT_EQ(read.apparent_inset_px, uncertainty_.apparent_inset_px);
+  EXPECT_EQ(read.correlation_factor, uncertainty_.correlation_factor);
+  EXPECT_EQ(read.share_above_4_sigma, uncertainty_.share_above_4_sigma);
+  EXPECT_EQ(read.apparent_inset_sigma_px, uncertainty_.apparent_inset_sigma_px);
+}
+
+TEST_F(UncertaintyFile, NoPointsAndNoFactorAreFine) {
+  WriteUncertainty({}, Folder());
+  EXPECT_TRUE(ReadUncertainty(Folder()).points.IsEmpty());
+  uncertainty_.points.factor.resize(9, 0);
+  uncertainty_.points.signs.resize(0);
+  WriteUncertainty(uncertainty_, Folder());
+  EXPECT_EQ(ReadUncertainty(Folder()).points.factor.rows(), 9);
+}
+
+TEST_F(UncertaintyFile, EveryTruncationIsAnInputErrorThatNamesTheFile) {
+  WriteUncertainty(uncertainty_, Folder());
+  const std::string bytes = FileBytes();
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    WriteBytes(bytes.substr(0, size));
+    try {
+      ReadUncertainty(Folder());
+      ADD_FAILURE() << size << " bytes are read";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(kUncertaintyFileName));
+    }
+  }
+  WriteBytes(bytes + "x");
+  EXPECT_THROW(ReadUncertainty(Folder()), InputError);
+}
+
+TEST_F(UncertaintyFile, ForeignOrBrokenFilesAreInputErrors) {
+  WriteUncertainty(uncertainty_, Folder());
+  const std::string bytes = FileBytes();
+  WriteBytes("no uncertainty at all, but a text that somebody put here");
+  EXPECT_THROW(ReadUncertainty(Folder()), InputError);
+  for (const std::size_t at : {8u, 60u, 67u}) {  // version, number of points
+    std::string broken = bytes;
+    broken[at] = '\x7f';
+    WriteBytes(broken);
+    EXPECT_THROW(ReadUncertainty(Folder()), InputError) << at;
+  }
+  std::filesystem::remove(dir_ / kUncertaintyFileName);
+  EXPECT_THROW(ReadUncertainty(Folder()), InputError);
+  EXPECT_THROW(WriteUncertainty(uncertainty_, Folder() + "/missing"), InputError);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,132 @@
+// The main job on real pictures: a workspace from photographs and from a video.
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/formats/shape_csv.h"
+#include "exporters/shape/shape_metrics.h"
+#include "reconstruct/model/model_io.h"
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+namespace fs = std::filesystem;
+
+const fs::path kStylus = fs::path(VELAMAP_SOURCE_DIR) / "sample_project/stylus";
+
+class AutomaticReconstructorTest : public ::testing::Test {
+ protected:
+  ProgramRun Run(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"automatic_reconstructor",
+                                          "--image_path",
+                                          (kStylus / "images").string(),
+                                          "--camera_path",
+                                          (kStylus / "camera.yml").string(),
+                                          "--layout_path",
+                                          (kStylus / "layout.yml").string(),
+                                          "--workspace_path",
+                                          workspace().string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunVelamap(arguments);
+  }
+
+  fs::path workspace() const { return dir_ / "workspace"; }
+
+  TempDir dir_;
+};
+
+TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
+  const ProgramRun run = Run();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(NumErrorLines(run.err), 0) << run.err;
+  for (const char* key :
+       {"images_used: 16 of 16\n", "images_left_out: none\n", "markers_reconstructed: 8 of 8 in",
+        "reprojection_error_px: mean ", "area_error_mm2: mean ", "scale_m_per_unit: ",
+        "scale_spread_over_markers: ", "bounding_box_m: ", "outliers_removed: "}) {
+    EXPECT_THAT(run.out, HasSubstr(key));
+  }
+  EXPECT_THAT(run.out, HasSubstr("colmap_command: colmap gui --database_path " +
+                                 (workspace() / "database.db").string() + " --image_path " +
+                                 (workspace() / "images").string() + " --import_path " +
+                                 (workspace() / "sparse/0").string() + "\n"));
+  EXPECT_THAT(ListFolder(workspace()),
+              ElementsAre("colmap.log", "database.db", "images", "registration.csv", "report.html",
+                          "shape", "sparse", "timing.json", "velamap.log"));
+  EXPECT_THAT(ListFolder(workspace() / "sparse"), ElementsAre("0", "seed"));
+  EXPECT_THAT(ListFolder(workspace() / "shape"),
+              IsSupersetOf({"markers.ply", "metrics.csv", "metrics.json", "scale.csv", "shape.csv",
+                            "shape.ply"}));
+  std::vector<std::string> names;
+  for (const ModelImage& image : ReadModel((workspace() / "sparse/0").string()).images) {
+    names.push_back(image.name);
+  }
+  // COLMAP keeps the central image at the first place.
+  const std::string central = ReadModel((workspace() / "sparse/seed").string()).images.at(0).name;
+  EXPECT_EQ(names.at(0), central);
+  EXPECT_THAT(run.out, HasSubstr("\ncentral_image_name: " + central + "\n"));
+  EXPECT_THAT(run.err, HasSubstr("central image " + central + ": "));
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(ListFolder(workspace() / "images"), names);
+}
+
+TEST_F(AutomaticReconstructorTest, ShapeComesNearTheDesign) {
+  ASSERT_EQ(Run().exit_code, 0);
+  const ShapeComparison comparison =
+      CompareShapes(ReadShapeCsv((workspace() / "shape/shape.csv").string()),
+                    ReadShapeCsv((kStylus / "reference.csv").string()));
+  EXPECT_EQ(comparison.num_points, 32);
+  EXPECT_LT(comparison.distance_m.rms, 0.0006);
+}
+
+TEST_F(AutomaticReconstructorTest, SecondRunReusesTheDatabaseAndGivesTheSameBytes) {
+  ASSERT_EQ(Run().exit_code, 0);
+  const auto read_all = [this] {
+    std::string bytes;
+    for (const char* file : {"shape/shape.csv", "shape/shape.ply", "shape/markers.ply",
+                             "sparse/0/points3D.bin", "sparse/seed/images.bin"}) {
+      bytes += ReadFileBytes(workspace() / file);
+    }
+    return bytes;
+  };
+  const std::string first = read_all();
+  const ProgramRun second = Run();
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_THAT(second.err, HasSubstr("0 images added to the 16"));
+  EXPECT_EQ(read_all(), first);
+}
+
+TEST_F(AutomaticReconstructorTest, OtherDetectionOptionsNeedANewDatabase) {
+  ASSERT_EQ(Run().exit_code, 0);
+  const std::string before = ReadFileBytes(workspace() / "shape/shape.csv");
+  const ProgramRun run = Run({"--ArucoDetection.corner_refinement", "none"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(NumErrorLines(run.err), 1);
+  EXPECT_EQ(ReadFileBytes(workspace() / "shape/shape.csv"), before);
+}
+
+TEST_F(AutomaticReconstructorTest, FailureOfColmapKeepsTheOldResult) {
+  ASSERT_EQ(Run().exit_code, 0);
+  const std::string before = ReadFileBytes(workspace() / "sparse/0/points3D.bin");
+  WriteTextFile(dir_ / "colmap",
+                "#!/bin/sh\nfor a in \"$@\"; do [ \"$a\" = -h ] && exec colmap \"$@\"; done\n"
+                "kill -9 $$\n");
+  fs::permissions(dir_ / "colmap", fs::perms::owner_all);
+  const ProgramRun run = Run({"--colmap_path", (dir_ / "colmap").string()});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+  EXPECT_EQ(ReadFileBytes(workspace() / "sparse/0/points3D.bin"), before);
+  EXPECT_THAT(ListFolder(workspace()),
+              ElementsAre("colmap.log", "database.db", "images", "registration.csv", "report.html",
+                          "shape", "sparse", "timing.json", "velamap.log"));
+  EXPECT_THAT(ReadFileBytes(workspace() / "velamap.log"), HasSubstr("error: "));
+}
+
+}  // namespace
+}  // namespace velamap

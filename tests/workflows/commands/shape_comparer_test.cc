@@ -1,0 +1,185 @@
+// The command shape_comparer on files.
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/compare/comparison_sigma.h"
+#include "exporters/formats/mesh_writer.h"
+#include "exporters/formats/shape_csv.h"
+#include "importer/base/atomic_output.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
+#include "tests/exporters/compare/example_comparison.h"
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+namespace fs = std::filesystem;
+
+constexpr const char* kLayout = R"(
+dictionary: DICT_4X4_250
+marker_length: 0.1
+reference_part: hull
+parts:
+  sail:
+    horizontal:
+      - {name: h1, markers: [11, 12, 13, 14, 15, 16]}
+      - {name: h2, markers: [21, 22, 23, 24, 25, 26]}
+      - {name: h3, markers: [31, 32, 33, 34, 35, 36]}
+      - {name: h4, markers: [41, 42, 43, 44, 45, 46]}
+      - {name: h5, markers: [51, 52, 53, 54, 55, 56]}
+  hull: {markers: [120, 121, 122, 123, 124, 125], rigid: true}
+)";
+
+class ShapeComparerTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    WriteTextFile(dir_ / "layout.yml", kLayout);
+    WriteShape("a/shape", Moved(FarPose(), Shifted(IdsOf("sail"), {0, 0.03, 0}, BoatShape(0.001))));
+    WriteShape("b/shape", BoatShape(0.001));
+  }
+
+  void WriteShape(const std::string& folder, const MarkerShape& shape) {
+    fs::create_directories(dir_ / folder);
+    WriteFileAtomically(dir_ / folder / "shape.csv",
+                        [&](std::ostream& out) { WriteShapeCsv(shape, out); });
+  }
+
+  void WriteMesh(const std::string& name, double factor) {
+    TriangleMesh mesh = SailMesh();
+    for (Eigen::Vector3d& x : mesh.vertices_m) x *= factor;
+    WriteFileAtomically(dir_ / name, [&](std::ostream& out) { WriteMeshPly(mesh, "sail", out); });
+  }
+
+  std::string path(const std::string& name) const { return (dir_ / name).string(); }
+
+  ProgramRun Compare(const std::string& reference, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"shape_comparer", "--shape_path", path("a/shape"),
+                                          "--reference_path", path(reference)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunVelamap(arguments);
+  }
+
+  void ExpectError(const ProgramRun& run, int exit_code, const std::string& part) {
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(part));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_EQ(run.out, "");
+  }
+
+  TempDir dir_;
+};
+
+TEST_F(ShapeComparerTest, TwoShapesByTheHull) {
+  const ProgramRun run = Compare(
+      "b/shape", {"--layout_path", path("layout.yml"), "--output_path", path("c.ply"), "--csv_path",
+                  path("c.csv"), "--json_path", path("c.json"), "--surface_path", path("s.ply")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("surfaces: part sail, surface_distance_mm mean "));
+  EXPECT_THAT(ReadFileBytes(dir_ / "s.ply"), HasSubstr("property float distance\n"));
+  EXPECT_THAT(run.out, AllOf(HasSubstr("alignment: reference_part\n"),
+                             HasSubstr("num_markers: 36\n"), HasSubstr("difference_mm_max: 30\n"),
+                             HasSubstr("parts: part hull, distance_mm mean"),
+                             HasSubstr("lines: part sail, line h5,"),
+                             HasSubstr("section_differences: part sail, section h1, "
+                                       "number chord_mm")));
+  EXPECT_THAT(ReadFileBytes(dir_ / "c.csv"), HasSubstr("markers,0,significance,"));
+  EXPECT_THAT(ReadFileBytes(dir_ / "c.json"), HasSubstr("\"section_differences\": ["));
+  EXPECT_THAT(ReadFileBytes(dir_ / "c.ply"), HasSubstr("property float distance\n"));
+}
+
+TEST_F(ShapeComparerTest, AShapeWithItself) {
+  const ProgramRun run = Compare("a/shape/shape.csv", {"--align", "none"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("alignment: none\n"), HasSubstr("distance_mm_max: 0\n"),
+                             HasSubstr("num_significant: 0\n")));
+}
+
+TEST_F(ShapeComparerTest, NamedMarkers) {
+  const ProgramRun run = Compare("b/shape", {"--align", "markers", "--align_markers", "11,16,53"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("alignment_by: markers 11 16 53, 12 corners of 3 markers\n"));
+  ExpectError(Compare("b/shape", {"--align_markers", "11"}), 2, "--align markers");
+  ExpectError(Compare("b/shape", {"--align", "markers", "--align_markers", "11,x"}), 2,
+              "no list of marker ids");
+  ExpectError(Compare("b/shape", {"--align", "hull"}), 2, "--align: 'hull' is unknown");
+}
+
+TEST_F(ShapeComparerTest, ADesignAsMesh) {
+  WriteMesh("design.ply", 1.0);
+  const ProgramRun run =
+      Compare("design.ply", {"--layout_path", path("layout.yml"), "--part", "sail", "--output_path",
+                             path("c.ply"), "--color_limit", "5"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("alignment: best_fit\n"), HasSubstr("num_markers: 30\n"),
+                             HasSubstr("num_beside_surface: 0\n"), Not(HasSubstr("difference"))));
+  EXPECT_THAT(ReadFileBytes(dir_ / "c.ply"), HasSubstr("blue -5 mm, white 0, red +5 mm"));
+  ExpectError(Compare("design.ply", {"--part", "jib"}), 2, "there are: hull, sail");
+  ExpectError(Compare("design.ply", {"--align", "reference_part"}), 2, "best_fit or none");
+  ExpectError(Compare("design.ply", {"--align", "none"}), 1, "none of the 36 whole markers");
+}
+
+TEST_F(ShapeComparerTest, AMeshInAnotherUnit) {
+  WriteMesh("mm.ply", 1e3);
+  WriteMesh("small.ply", 1e-3);
+  ExpectError(Compare("mm.ply"), 2, "give --reference_unit mm");
+  ExpectError(Compare("small.ply"), 2, "give --reference_unit m");
+  EXPECT_EQ(Compare("mm.ply", {"--reference_unit", "mm", "--part", "sail"}).exit_code, 0);
+  ExpectError(Compare("mm.ply", {"--reference_unit", "inch"}), 2, "give m or mm");
+}
+
+TEST_F(ShapeComparerTest, JointUncertaintyIsUsedWhereItBelongs) {
+  AdjustmentUncertainty uncertainty;
+  uncertainty.points = CovarianceFromSigmas(BoatShape(0.001));
+  fs::create_directories(dir_ / "b/sparse/0");
+  WriteUncertainty(uncertainty, path("b/sparse/0"));
+  const ProgramRun beside = Compare("b/shape");
+  EXPECT_THAT(beside.err, HasSubstr("joint uncertainty from"));
+  const ProgramRun named = Compare("b/shape", {"--uncertainty_path", path("b/sparse/0")});
+  EXPECT_EQ(named.exit_code, 0) << named.err;
+  uncertainty.points = CovarianceFromSigmas(BoatShape(0.005));
+  WriteUncertainty(uncertainty, path("b/sparse/0"));
+  EXPECT_THAT(Compare("b/shape").err, Not(HasSubstr("joint uncertainty")));
+  ExpectError(Compare("b/shape", {"--reference_uncertainty_path", path("b/sparse/0")}), 2,
+              "its sigmas differ");
+  ExpectError(Compare("b/shape", {"--uncertainty_path", path("a")}), 2, "uncertainty.bin");
+}
+
+TEST_F(ShapeComparerTest, BadInput) {
+  ExpectError(Compare("no.stl"), 2, "no.stl");
+  WriteTextFile(dir_ / "design.stl", "no mesh");
+  ExpectError(Compare("design.stl"), 2, "design.stl");
+  WriteTextFile(dir_ / "design.blend", "BLENDER");
+  ExpectError(Compare("design.blend"), 2, "design.blend");
+  ExpectError(Compare("nothing"), 2, "nothing");
+  MarkerShape other = BoatShape();
+  for (ShapeMarker& marker : other.markers) marker.marker_id += 500;
+  WriteShape("other", other);
+  ExpectError(Compare("other"), 1, "0 marker corners in common");
+  ExpectError(Compare("b/shape", {"--color_limit", "0"}), 2, "--color_limit");
+  ExpectError(Compare("b/shape", {"--chord_deviation", "-1"}), 2, "--chord_deviation");
+  ExpectError(Compare("b/shape", {"--align_start", "here"}), 2, "--align_start");
+}
+
+TEST_F(ShapeComparerTest, OutputThatCannotBeWritten) {
+  for (const char* option : {"--output_path", "--csv_path", "--json_path", "--surface_path"}) {
+    ExpectError(
+        Compare("b/shape", {option, path("layout.yml/c"), "--layout_path", path("layout.yml")}), 2,
+        "layout.yml/c");
+  }
+  ExpectError(Compare("b/shape", {"--surface_path", path("c")}), 2, "needs --layout_path");
+  ExpectError(Compare("b/shape", {"--csv_path", path("c"), "--json_path", path("c")}), 2,
+              "--json_path");
+  EXPECT_THAT(ListFolder(dir_.path()), ElementsAre("a", "b", "layout.yml"));
+}
+
+}  // namespace
+}  // namespace velamap

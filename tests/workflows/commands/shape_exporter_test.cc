@@ -1,0 +1,145 @@
+// shape_exporter on a sail: frame, sections and surface.
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/formats/shape_csv.h"
+#include "reconstruct/model/model_io.h"
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/commands/true_model.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
+
+// Three lines of six markers of 100 mm.
+SyntheticScene MakeSail() {
+  SyntheticSceneOptions options;
+  options.num_rows = 3;
+  options.num_columns = 6;
+  options.num_frames = 4;
+  return MakeSyntheticScene(options);
+}
+
+std::string LayoutText(const Layout& layout) {
+  std::string text =
+      "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  sail:\n    horizontal:\n";
+  for (const MarkerLine& line : layout.parts.front().horizontal) {
+    text += fmt::format("      - {{name: {}, markers: [{}]}}\n", line.name,
+                        fmt::join(line.marker_ids, ", "));
+  }
+  return text;
+}
+
+class ShapeExporterCommandTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    WriteModel(TrueModel(sail_), path("model"), ModelFormat::kBinary);
+    WriteTextFile(dir_ / "layout.yml", LayoutText(sail_.layout));
+  }
+
+  ProgramRun Export(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"shape_exporter", "--input_path",     path("model"),
+                                          "--layout_path",  path("layout.yml"), "--shape_path",
+                                          path("shape")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunVelamap(arguments);
+  }
+
+  void ExpectRefused(const std::vector<std::string>& more, const std::string& part) {
+    const ProgramRun run = Export(more);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(part));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(dir_ / "shape")) << part;
+  }
+
+  std::string path(const std::string& name) const { return (dir_ / name).string(); }
+
+  const SyntheticScene sail_ = MakeSail();
+  TempDir dir_;
+};
+
+TEST_F(ShapeExporterCommandTest, WritesSectionsAndSurfaceInTheFrameOfTheLines) {
+  const ProgramRun run = Export({"--Section.heights", "0.1,50"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out,
+              AllOf(HasSubstr("frame: lines h1 h3\n"), HasSubstr("sections: 4; camber "),
+                    HasSubstr("section_missing: sail z=50: "), HasSubstr("surface: sail; ")));
+  EXPECT_THAT(
+      ListFolder(path("shape")),
+      IsSupersetOf({"sections.csv", "sections.dxf", "sections.json", "section_profiles.csv",
+                    "section_profiles.dxf", "section_profiles.svg", "surface.igs", "surface.obj",
+                    "surface.ply", "surface.step", "surface.stl", "surface_residuals.csv"}));
+  const MarkerShape shape = ReadShapeCsv(path("shape/shape.csv"));
+  const int luff = sail_.layout.parts.front().horizontal.front().marker_ids.front();
+  EXPECT_LT(FindWholeMarker(shape, luff)->x_in_shape_m[0]->norm(), 1e-9);
+}
+
+TEST_F(ShapeExporterCommandTest, TheFrameIsTheOneAskedFor) {
+  EXPECT_THAT(Export({"--frame", "camera"}).out, HasSubstr("frame: camera\n"));
+  const MarkerShape in_camera = ReadShapeCsv(path("shape/shape.csv"));
+  for (const ShapeMarker& marker : in_camera.markers) {
+    EXPECT_LT((*marker.x_in_shape_m[0] - sail_.x_in_world.at(marker.marker_id)[0]).norm(), 1e-9);
+  }
+  const std::vector<int>& line = sail_.layout.parts.front().horizontal.back().marker_ids;
+  const int foot = sail_.layout.parts.front().horizontal.front().marker_ids.front();
+  const std::string ids = fmt::format("{},{},{}", line[3], line[5], foot);
+  EXPECT_THAT(Export({"--frame", ids}).out, HasSubstr("frame: markers "));
+  const MarkerShape by_markers = ReadShapeCsv(path("shape/shape.csv"));
+  const Eigen::Vector3d axis = *FindWholeMarker(by_markers, line[5])->x_in_shape_m[0];
+  EXPECT_LT(FindWholeMarker(by_markers, line[3])->x_in_shape_m[0]->norm(), 1e-9);
+  EXPECT_GT(axis.x(), 0);
+  EXPECT_LT(axis.tail<2>().norm(), 1e-9);
+}
+
+TEST_F(ShapeExporterCommandTest, ALayoutWithoutLinesIsSaidOnce) {
+  WriteTextFile(
+      dir_ / "layout.yml",
+      "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  board: {markers: [0, 1, 2]}\n");
+  const ProgramRun run = Export();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out,
+              HasSubstr("section_note: no sections: the layout has no horizontal lines\n"));
+  EXPECT_THAT(run.out, Not(HasSubstr("surface")));
+  EXPECT_EQ(ListFolder(path("shape")).size(), 6u);
+}
+
+TEST_F(ShapeExporterCommandTest, SurfaceGoesOnToGivenEdges) {
+  const auto area = [&](const std::vector<std::string>& more) {
+    const ProgramRun run = Export(more);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const std::size_t start = run.out.find("surface: sail; ");
+    EXPECT_NE(start, std::string::npos) << run.out;
+    return std::stod(run.out.substr(start + 15));
+  };
+  const double alone = area({});
+  EXPECT_GT(area({"--Surface.foot_extension", "0.1"}), 1.02 * alone);
+  WriteTextFile(dir_ / "edges.csv", "edge,x,y,z\nfoot,0,0,-0.2\nfoot,0.5,0,-0.2\nfoot,1,0,-0.2\n");
+  EXPECT_GT(area({"--Surface.edges_path", path("edges.csv")}), 1.02 * alone);
+}
+
+TEST_F(ShapeExporterCommandTest, BadOptionsWriteNothing) {
+  ExpectRefused({"--frame", "keel"}, "--frame");
+  ExpectRefused({"--Section.heights", "1,x"}, "--Section.heights: '1,x'");
+  ExpectRefused({"--Section.min_markers", "2"}, "at least 4 markers");
+  ExpectRefused({"--Surface.edge_length", "0"}, "edge");
+  ExpectRefused({"--Surface.edge_length", "0.001"}, "triangles");
+  ExpectRefused({"--Surface.edge_length", "10", "--Surface.chord_deviation", "1"}, "chord");
+  ExpectRefused({"--Surface.luff_extension", "-1"}, "luff");
+  ExpectRefused({"--Surface.edges_path", path("no.csv")}, "no.csv");
+  WriteTextFile(dir_ / "edges.csv", "edge,x,y,z\nkeel,0,0,0\n");
+  ExpectRefused({"--Surface.edges_path", path("edges.csv")}, "edges.csv:2: column edge");
+}
+
+}  // namespace
+}  // namespace velamap

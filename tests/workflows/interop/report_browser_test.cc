@@ -1,0 +1,225 @@
+// report.html in a real browser: headless Chromium, which draws WebGL in software.
+
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "exporters/report/report_writer.h"
+#include "tests/exporters/report/report_example.h"
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+// Empty where no Chromium is on the PATH.
+std::string FindBrowser() {
+  std::istringstream folders(getenv("PATH"));
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
+      const fs::path path = fs::path(folder) / name;
+      if (fs::exists(path)) return path.string();
+    }
+  }
+  return {};
+}
+
+// What a page wrote to the console, but for the graphics driver's remarks on taking pictures.
+std::vector<std::string> ConsoleLines(const std::string& log) {
+  std::vector<std::string> lines;
+  std::istringstream stream(log);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.find("CONSOLE") != std::string::npos &&
+        line.find("GL Driver Message (OpenGL, Performance") == std::string::npos) {
+      lines.push_back(line);
+    }
+  }
+  return lines;
+}
+
+// Part of the pixels that differ by more than a shade.
+double PartThatDiffers(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat difference;
+  cv::absdiff(a, b, difference);
+  cv::Mat channels[3];
+  cv::split(difference, channels);
+  const cv::Mat most = cv::max(channels[0], cv::max(channels[1], channels[2]));
+  return cv::countNonZero(most > 24) / static_cast<double>(most.total());
+}
+
+// Part of the pixels that have about this colour (BGR).
+double PartOfColour(const cv::Mat& image, const cv::Scalar& colour) {
+  cv::Mat mask;
+  cv::inRange(image, colour - cv::Scalar::all(12), colour + cv::Scalar::all(12), mask);
+  return cv::countNonZero(mask) / static_cast<double>(mask.total());
+}
+
+// Through the centres of the markers, which stand in rows of 13 by id.
+ReportSurface SurfaceThrough(const MarkerShape& shape) {
+  constexpr int kNumColumns = 13;
+  ReportSurface surface;
+  for (const ShapeMarker& marker : shape.markers) {
+    surface.x_in_shape_m.push_back(marker.x_in_shape_m[0].value());
+  }
+  for (int i = 0; i + kNumColumns + 1 < static_cast<int>(shape.markers.size()); ++i) {
+    if (i % kNumColumns == kNumColumns - 1) continue;
+    surface.triangles.push_back({i, i + 1, i + kNumColumns});
+    surface.triangles.push_back({i + 1, i + kNumColumns + 1, i + kNumColumns});
+  }
+  return surface;
+}
+
+// The largest example asked for: 130 markers, 100 cameras, with sigmas, sections and a surface.
+class ReportBrowser : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dir_ = new TempDir;
+    ReportExample example = MakeReportExample(10, 100);
+    num_markers_ = static_cast<int>(example.shape.markers.size());
+    for (ShapeMarker& marker : example.shape.markers) {
+      marker.sigma_m[0] = Eigen::Vector3d(2e-4, 3e-4, 6e-4);
+    }
+    DrawCentralImage(example.model, dir_->path());
+    ReportInput input = example.Input();
+    input.image_path = dir_->path().string();
+    input.images_left_out = {{"frame_000200.jpg", "too blurred for two markers"}};
+    ReportSection section;
+    section.name = "line h3";
+    section.chord_m = ReportFigure{2.345, 0.0012};
+    section.profile_m = {{0, 0}, {1, 0.2}, {2.345, 0}};
+    for (int i = 0; i < 13; ++i) {
+      section.profile_in_shape_m.push_back(*example.shape.markers[39 + i].x_in_shape_m[0]);
+    }
+    input.sections = {section};
+    input.surface = SurfaceThrough(example.shape);
+    std::ofstream out(*dir_ / "report.html", std::ios::binary);
+    WriteReport(input, out);
+    WriteTextFile(*dir_ / "phone.html",
+                  "<!DOCTYPE html><body style=\"margin:0\"><iframe src=\"report.html\" "
+                  "width=\"390\" height=\"1500\" style=\"border:0\"></iframe>");
+  }
+  static void TearDownTestSuite() { delete dir_; }
+
+  void SetUp() override {
+    browser_ = FindBrowser();
+    if (browser_.empty()) GTEST_SKIP() << "chromium is not on the PATH";
+  }
+
+  // Opens the page and returns the run; its console must stay silent.
+  ProgramRun Open(const std::string& page, std::vector<std::string> arguments) const {
+    const TempDir profile;
+    arguments.insert(
+        arguments.end(),
+        {"--headless", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+         "--no-first-run", "--hide-scrollbars", "--enable-logging=stderr",
+         "--user-data-dir=" + profile.path().string(), "--host-resolver-rules=MAP * ~NOTFOUND"});
+    if (geteuid() == 0) arguments.push_back("--no-sandbox");  // refuses to start otherwise
+    arguments.push_back("file://" + dir_->path().string() + "/" + page);
+    const ProgramRun run = RunProgram(browser_, arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(ConsoleLines(run.err), ElementsAre());
+    return run;
+  }
+
+  // A picture of the page, which stays for whoever wants to look.
+  cv::Mat Screenshot(const std::string& page, int width, int height,
+                     const std::string& name) const {
+    fs::create_directories(VELAMAP_PICTURE_DIR);
+    const std::string path = std::string(VELAMAP_PICTURE_DIR) + "/" + name;
+    fs::remove(path);
+    Open(page, {"--screenshot=" + path,
+                "--window-size=" + std::to_string(width) + "," + std::to_string(height)});
+    const cv::Mat picture = cv::imread(path);
+    EXPECT_EQ(picture.cols, width) << path;
+    return picture;
+  }
+
+  static TempDir* dir_;
+  static int num_markers_;
+  std::string browser_;
+};
+
+TempDir* ReportBrowser::dir_ = nullptr;
+int ReportBrowser::num_markers_ = 0;
+
+TEST_F(ReportBrowser, FillsThePageWithoutErrors) {
+  std::string dom = Open("report.html", {"--dump-dom"}).out;
+  dom.resize(dom.find("<script"));  // what is seen, not what it is made from
+  ASSERT_EQ(num_markers_, 130);
+  EXPECT_THAT(dom, HasSubstr("130 of 131"));
+  EXPECT_THAT(dom, HasSubstr("100 of 101"));
+  EXPECT_THAT(dom, HasSubstr("too blurred for two markers"));
+  EXPECT_THAT(dom, HasSubstr("line h3"));
+  EXPECT_THAT(dom, HasSubstr("2345.0 ± 1.2"));
+  EXPECT_THAT(dom, HasSubstr("Registration.method"));
+  EXPECT_THAT(dom, HasSubstr("data:image/jpeg;base64,"));
+  EXPECT_THAT(dom, HasSubstr("save the chart"));
+  EXPECT_THAT(dom, Not(HasSubstr("No picture")));
+  EXPECT_THAT(dom, Not(HasSubstr("no WebGL")));
+  std::smatch time;
+  ASSERT_TRUE(std::regex_search(dom, time, std::regex("data-ready-ms=\"([0-9]+)\"")))
+      << "the page's script did not reach its end";
+  RecordProperty("ready_ms", time[1]);
+  // Counts from the start of the browser, which draws WebGL in software beside other tests; with
+  // the machine to itself it is below a second.
+  EXPECT_LT(std::stoi(time[1]), 15000);
+}
+
+TEST_F(ReportBrowser, TheViewTurns) {
+  const cv::Mat front = Screenshot("report.html#azimuth=0&elevation=0", 1280, 1150, "front.png");
+  const cv::Mat again = Screenshot("report.html#azimuth=0&elevation=0", 1280, 1150, "again.png");
+  const cv::Mat turned =
+      Screenshot("report.html#azimuth=50&elevation=30", 1280, 1150, "turned.png");
+  ASSERT_EQ(front.size(), turned.size());
+  EXPECT_LT(PartThatDiffers(front, again), 1e-4);
+  EXPECT_GT(PartThatDiffers(front, turned), 0.01);
+  // All that differs lies in the view, below the key numbers.
+  const cv::Rect head(0, 0, 1280, 300);
+  EXPECT_EQ(PartThatDiffers(front(head), turned(head)), 0);
+  // Markers of the first part are there, seen from the front.
+  EXPECT_GT(PartOfColour(front, {0xb2, 0x72, 0x00}), 0.01);
+}
+
+TEST_F(ReportBrowser, ColoursFollowTheSwitch) {
+  const cv::Mat part = Screenshot("report.html#azimuth=0&elevation=0", 1280, 1150, "front.png");
+  const cv::Mat error =
+      Screenshot("report.html#azimuth=0&elevation=0&colour=error", 1280, 1150, "error.png");
+  EXPECT_GT(PartThatDiffers(part, error), 0.01);
+  EXPECT_LT(PartOfColour(error, {0xb2, 0x72, 0x00}), 0.002);
+}
+
+TEST_F(ReportBrowser, FitsAPhone) {
+  const cv::Mat phone = Screenshot("phone.html", 500, 1500, "phone.png");
+  cv::Mat page = phone(cv::Rect(0, 0, 390, 1500));
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(page, mean, deviation);
+  EXPECT_GT(deviation[0], 10);
+  EXPECT_GT(PartOfColour(page, {0xb2, 0x72, 0x00}), 0.002);
+  // Nothing reaches beyond the screen: its last columns are the page's ground.
+  EXPECT_GT(PartOfColour(page.colRange(384, 390), {0xf8, 0xf6, 0xf4}), 0.999);
+}
+
+TEST_F(ReportBrowser, Prints) {
+  const std::string path = (*dir_ / "report.pdf").string();
+  Open("report.html", {"--print-to-pdf=" + path});
+  const std::string pdf = ReadFileBytes(path);
+  EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
+  // The pictures of the view and of the central image are inside.
+  EXPECT_GT(pdf.size(), 100000u);
+}
+
+}  // namespace
+}  // namespace velamap

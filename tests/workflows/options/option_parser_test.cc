@@ -1,0 +1,158 @@
+#include "workflows/options/option_parser.h"
+
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "importer/base/error.h"
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Values {
+  std::string text = "default";
+  int count = 7;
+  double length_m = 0.25;
+  std::optional<double> maybe_m;
+  bool yes = false;
+  std::string path;
+};
+
+CommandSyntax MakeSyntax(Values* values) {
+  return {
+      "walker",
+      "walks",
+      "--path x",
+      {{"First",
+        {{"path", &values->path, "path", "where to", true}, {"text", &values->text, "", "words"}}},
+       {"Second",
+        {{"Walk.count", &values->count, "steps", "how many"},
+         {"Walk.length", &values->length_m, "m", "how long"},
+         {"Walk.maybe", &values->maybe_m, "m", "perhaps"},
+         {"Walk.yes", &values->yes, "0|1", "whether"}}}}};
+}
+
+std::string ErrorOf(const std::vector<std::string>& arguments) {
+  Values values;
+  try {
+    ParseOptions(MakeSyntax(&values), arguments, {"Other.option"});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(OptionParserTest, LeavesDefaultsAlone) {
+  Values values;
+  ASSERT_TRUE(ParseOptions(MakeSyntax(&values), {"--path", "p"}, {}));
+  EXPECT_EQ(values.path, "p");
+  EXPECT_EQ(values.text, "default");
+  EXPECT_EQ(values.count, 7);
+  EXPECT_EQ(values.length_m, 0.25);
+  EXPECT_FALSE(values.maybe_m.has_value());
+}
+
+TEST(OptionParserTest, ReadsAllKindsOfValues) {
+  Values values;
+  ASSERT_TRUE(ParseOptions(MakeSyntax(&values),
+                           {"--path=a b", "--Walk.count", "-1", "--Walk.length", "1e-3",
+                            "--Walk.maybe", "0", "--Walk.yes", "1"},
+                           {}));
+  EXPECT_EQ(values.path, "a b");
+  EXPECT_EQ(values.count, -1);
+  EXPECT_EQ(values.length_m, 1e-3);
+  EXPECT_EQ(values.maybe_m, 0.0);
+  EXPECT_TRUE(values.yes);
+}
+
+TEST(OptionParserTest, UnknownOptionNamesNearestAndHelp) {
+  const std::string error = ErrorOf({"--path", "p", "--Walk.cuont", "3"});
+  EXPECT_THAT(error, HasSubstr("--Walk.cuont"));
+  EXPECT_THAT(error, HasSubstr("did you mean --Walk.count?"));
+  EXPECT_THAT(error, HasSubstr("velamap walker --help"));
+}
+
+TEST(OptionParserTest, SectionMayBeForgottenInSuggestions) {
+  EXPECT_THAT(ErrorOf({"--path", "p", "--count", "3"}), HasSubstr("did you mean --Walk.count?"));
+}
+
+TEST(OptionParserTest, RefusesBadValues) {
+  EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.count", "3x"}), HasSubstr("--Walk.count: '3x'"));
+  EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.count", "99999999999"}), HasSubstr("--Walk.count"));
+  EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.length", "nan"}), HasSubstr("--Walk.length: 'nan'"));
+  EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.length", "1,5"}), HasSubstr("--Walk.length: '1,5'"));
+  EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.yes", "true"}), HasSubstr("0 (no) or 1 (yes)"));
+  EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.yes"}), HasSubstr("Walk.yes"));
+}
+
+TEST(OptionParserTest, RefusesMissingRepeatedAndStrayArguments) {
+  EXPECT_THAT(ErrorOf({}), HasSubstr("--path: missing"));
+  EXPECT_THAT(ErrorOf({"--path", ""}), HasSubstr("--path"));
+  EXPECT_THAT(ErrorOf({"--path", "p", "--path", "q"}), HasSubstr("--path: given twice"));
+  EXPECT_THAT(ErrorOf({"--path", "p", "q"}), HasSubstr("'q'"));
+}
+
+TEST(OptionParserTest, AbbreviationsAreNoOptions) {
+  EXPECT_THAT(ErrorOf({"--pat", "p"}), HasSubstr("--pat: unknown option"));
+}
+
+TEST(OptionParserTest, CommandLineWinsOverProjectFile) {
+  const TempDir temp_dir;
+  const std::string file = (temp_dir / "project.ini").string();
+  WriteTextFile(file, "path=from file\ntext = words\n# a comment\n[Walk]\ncount=3\nlength=0.5\n");
+  Values values;
+  ASSERT_TRUE(ParseOptions(MakeSyntax(&values), {"--Walk.count", "4", "--project_path", file}, {}));
+  EXPECT_EQ(values.path, "from file");
+  EXPECT_EQ(values.text, "words");
+  EXPECT_EQ(values.count, 4);
+  EXPECT_EQ(values.length_m, 0.5);
+}
+
+TEST(OptionParserTest, ProjectFileErrorsNameFileAndKey) {
+  const TempDir temp_dir;
+  const std::string file = (temp_dir / "project.ini").string();
+  const std::vector<std::string> arguments = {"--path", "p", "--project_path", file};
+  EXPECT_THAT(ErrorOf(arguments), HasSubstr(file));
+
+  WriteTextFile(file, "[Walk]\ncuont=3\n");
+  EXPECT_THAT(ErrorOf(arguments), HasSubstr(file + ": unknown key Walk.cuont; did you mean"));
+  WriteTextFile(file, "[Walk]\ncount=three\n");
+  EXPECT_THAT(ErrorOf(arguments), HasSubstr(file + ": Walk.count: 'three'"));
+  WriteTextFile(file, "no equals sign\n");
+  EXPECT_THAT(ErrorOf(arguments), HasSubstr(file));
+  WriteTextFile(file, "text=a\ntext=b\n");
+  EXPECT_THAT(ErrorOf(arguments), HasSubstr(file));
+}
+
+TEST(OptionParserTest, ProjectFileMayHoldOptionsOfOtherCommands) {
+  const TempDir temp_dir;
+  const std::string file = (temp_dir / "project.ini").string();
+  WriteTextFile(file, "[Other]\noption=3\n");
+  EXPECT_EQ(ErrorOf({"--path", "p", "--project_path", file}), "");
+}
+
+TEST(OptionParserTest, HelpShowsDefaultsUnitsAndExample) {
+  Values values;
+  const CommandSyntax syntax = MakeSyntax(&values);
+  EXPECT_FALSE(ParseOptions(syntax, {"--Walk.count", "wrong", "--help"}, {}));
+  std::ostringstream out;
+  PrintHelp(syntax, out);
+  EXPECT_THAT(out.str(), HasSubstr("--Walk.length m (=0.25)"));
+  EXPECT_THAT(out.str(), HasSubstr("--path path"));
+  EXPECT_THAT(out.str(), HasSubstr("velamap walker --path x"));
+}
+
+TEST(NearestNameTest, SuggestsOnlyWhatIsNear) {
+  const std::vector<std::string> names = {"marker_importer", "help"};
+  EXPECT_EQ(NearestName("marker_imprter", names), "marker_importer");
+  EXPECT_EQ(NearestName("hepl", names), "help");
+  EXPECT_EQ(NearestName("zzzzzz", names), "");
+}
+
+}  // namespace
+}  // namespace velamap

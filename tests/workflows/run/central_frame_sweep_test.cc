@@ -1,0 +1,146 @@
+#include "workflows/run/central_frame_sweep.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/formats/shape_csv.h"
+#include "exporters/shape_exporter.h"
+#include "importer/base/error.h"
+#include "importer/database/colmap_database.h"
+#include "reconstruct/model/model_io.h"
+#include "tests/support/synthetic_scene.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class CentralFrameSweepTest : public testing::Test {
+ protected:
+  CentralFrameSweepTest() {
+    SyntheticSceneOptions scene_options;
+    scene_options.num_frames = 60;
+    scene_ = MakeSyntheticScene(scene_options);
+    AddNoise({0.2, 0.05, 0.0, 200, 3}, &scene_);
+    options_.database_path = (dir_ / "database.db").string();
+    ColmapDatabase database(options_.database_path, ColmapDatabase::Mode::kReadWriteCreate);
+    ColmapDatabase::Transaction transaction(&database);
+    const CameraId camera_id = database.AddCamera(scene_.camera);
+    for (const FrameDetections& frame : scene_.frames) {
+      database.AddImage(camera_id, frame, "test");
+    }
+    transaction.Commit();
+    options_.registration.method = RegistrationMethod::kThesis;
+    options_.registration.num_frames = 6;
+    options_.registration.skip = 4;
+    options_.registration.neighborhood = 1;
+    options_.adjustment.backend = "ceres";
+    options_.adjustment.Complete(1);
+  }
+
+  std::vector<SweepRow> Run() {
+    StageClock clock;
+    return SweepCentralFrames(options_, scene_.layout, &clock, [](int, int) {});
+  }
+
+  std::vector<int> Choose(const std::string& choice) {
+    const ColmapDatabase database(options_.database_path, ColmapDatabase::Mode::kReadOnly);
+    const auto images = database.ReadImages();
+    const auto cameras = database.ReadCameras();
+    return ChooseCentralFrames(choice, PoseImages(images, cameras, scene_.layout));
+  }
+
+  SyntheticScene scene_;
+  TempDir dir_;
+  CentralFrameSweepOptions options_;
+};
+
+TEST_F(CentralFrameSweepTest, RowsAreWhatSingleRunsGive) {
+  options_.central_frames = "24,27,30,33";
+  const std::vector<SweepRow> rows = Run();
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_FALSE(rows[0].is_warm);
+  for (const SweepRow& row : rows) {
+    RegistrationOptions registration = options_.registration;
+    registration.central_frame = row.central_frame;
+    const SeedResult seed = RegisterDatabase(options_.database_path, scene_.layout, registration);
+    Model model = seed.model;
+    const AdjustmentResult adjusted =
+        AdjustModel(options_.adjustment, scene_.layout, seed.corner_sigmas, "", &model);
+    const ShapeExportReport single = ExportShape(model, scene_.layout, {}, &*adjusted.uncertainty);
+    EXPECT_EQ(row.reason, "");
+    EXPECT_EQ(row.is_warm, row.central_frame != "24");
+    EXPECT_EQ(row.image_name, seed.registration.central_image_name);
+    EXPECT_EQ(row.num_images, static_cast<int>(model.images.size()));
+    EXPECT_EQ(row.shape.num_markers, single.metrics.num_markers);
+    EXPECT_EQ(row.shape.reconstruction_ratio, single.metrics.reconstruction_ratio);
+    EXPECT_EQ(row.model.error_px.count, single.model_metrics.error_px.count);
+    EXPECT_NEAR(row.model.error_px.mean, single.model_metrics.error_px.mean, 1e-5);
+    EXPECT_NEAR(row.model.central_error_px.mean, single.model_metrics.central_error_px.mean, 1e-4);
+    EXPECT_NEAR(row.shape.area_error_percent.mean, single.metrics.area_error_percent.mean, 1e-4);
+    EXPECT_GT(row.cpu_s, 0.0);
+  }
+}
+
+TEST_F(CentralFrameSweepTest, WritesTheModelsAndShapesOfTheRows) {
+  options_.central_frames = "30";
+  options_.models_path = (dir_ / "models").string();
+  const std::vector<SweepRow> rows = Run();
+  const Model model = ReadModel((dir_ / "models/frame_000030/sparse").string());
+  EXPECT_EQ(static_cast<int>(model.images.size()), rows[0].num_images);
+  const MarkerShape shape = ReadShapeCsv((dir_ / "models/frame_000030/shape.csv").string());
+  EXPECT_EQ(ComputeShapeMetrics(shape, scene_.layout).num_markers, rows[0].shape.num_markers);
+}
+
+TEST_F(CentralFrameSweepTest, FrameWithoutAResultIsARowWithAReason) {
+  options_.central_frames = "30,31";
+  options_.registration.min_num_inliers = 1000;
+  EXPECT_THAT(Run().at(1).reason, HasSubstr("1000 are needed"));
+  options_.registration.min_num_inliers = 2;
+  options_.adjustment.ceres.max_mean_error_px = 1e-6;
+  const std::vector<SweepRow> rows = Run();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_THAT(rows[0].reason, HasSubstr("mean reprojection error"));
+  EXPECT_FALSE(rows[1].is_warm);
+  EXPECT_EQ(BestRow(rows), -1);
+}
+
+TEST_F(CentralFrameSweepTest, GlobalRegistrationHasNoCentralFrame) {
+  options_.registration.method = RegistrationMethod::kGlobal;
+  EXPECT_THROW(Run(), InputError);
+}
+
+TEST_F(CentralFrameSweepTest, Choices) {
+  EXPECT_EQ(Choose("all").size(), 60u);
+  EXPECT_THAT(Choose("every:25"), ElementsAre(0, 25, 50));
+  EXPECT_THAT(Choose("30,frame_000002.jpg,30"), ElementsAre(2, 30));
+  for (const std::string bad : {"", "every:0", "every:x", "every:", "30,99", "30,,31", "some"}) {
+    EXPECT_THROW(Choose(bad), InputError) << bad;
+  }
+}
+
+TEST(CentralFrameSweep, BestRowAndTable) {
+  std::vector<SweepRow> rows(4);
+  rows[0].shape.reconstruction_ratio = 0.9;
+  rows[0].shape.area_error_mm2.mean = 5;
+  rows[1] = rows[0];
+  rows[1].shape.area_error_mm2.mean = 4;
+  rows[2].reason = "says \"no\"";
+  rows[3].shape.reconstruction_ratio = 0.8;
+  EXPECT_EQ(BestRow(rows), 1);
+  rows[2].central_frame = "7";
+  std::ostringstream out;
+  WriteSweepCsv({rows[2]}, out);
+  const std::string header = out.str().substr(0, out.str().find('\n'));
+  const std::string row = out.str().substr(header.size() + 1);
+  EXPECT_EQ(std::count(row.begin(), row.end(), ','), std::count(header.begin(), header.end(), ','));
+  EXPECT_THAT(row, HasSubstr("7,,,,,,,,,,,0.000,0.000,\"says 'no'\"\n"));
+}
+
+}  // namespace
+}  // namespace velamap

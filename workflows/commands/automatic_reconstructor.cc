@@ -1,0 +1,195 @@
+#include <filesystem>
+#include <iostream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "exporters/report/report_sail.h"
+#include "exporters/report/report_writer.h"
+#include "importer/base/atomic_output.h"
+#include "importer/camera/calibration.h"
+#include "reconstruct/model/model_io.h"
+#include "reconstruct/seed_model.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/sail_options.h"
+#include "workflows/options/shared_options.h"
+#include "workflows/run/logging.h"
+#include "workflows/run/pipeline.h"
+#include "workflows/run/stage_times.h"
+#include "workflows/run/summary.h"
+#include "workflows/run/versions.h"
+#include "workflows/run/workspace.h"
+#include "workflows/version.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  MarkerImporterOptions importer;
+  RegistrationOptions registration;
+  AdjustmentOptions adjustment;
+  ShapeExporterOptions exporter;
+  SailOptionTexts sail;
+  Arguments arguments;  // as they were typed, for the report
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {"automatic_reconstructor",
+          "photographs or a video of markers in, a workspace with the metric shape out",
+          "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
+          "    --workspace_path result",
+          {{"Input and output",
+            {ImagePathOption(paths),
+             CameraPathOption(paths),
+             MapPathOption(paths),
+             {"workspace_path", &paths->workspace_path, "path",
+              "folder of the result: new, empty, or of an earlier run, whose database is used on",
+              true},
+             BackendOption(&options->adjustment.backend)}},
+           MarkerGroup(&options->markers, true),
+           ArucoDetectionGroup(&options->importer.detection),
+           VideoGroup(&options->importer.video),
+           RegistrationGroup(&options->registration),
+           BundleAdjustmentGroup(&options->adjustment.colmap),
+           MarkerAdjustmentGroup(&options->adjustment.ceres),
+           SailGroup(&options->exporter, &options->sail),
+           GeneralGroup(&options->general)}};
+}
+
+// Everything that can be refused without touching the workspace.
+void Validate(Options* options) {
+  ApplyGeneralOptions(options->general);
+  options->importer.detection.Check();
+  options->importer.video.Check();
+  options->registration.random_seed = options->general.random_seed;
+  options->registration.Check();
+  options->adjustment.Complete(options->general.num_threads);
+  CompleteSailOptions(options->sail, &options->exporter);
+  options->importer.layout = LoadLayout(options->markers, true);
+  options->importer.camera = ReadCalibration(options->paths.camera_path);
+  options->importer.camera_path = options->paths.camera_path;
+  options->importer.map = LoadMap(options->paths.map_path);
+  options->importer.image_path = options->paths.image_path;
+  options->importer.video = NarrowToReach(options->importer.video, options->registration);
+  options->importer.num_threads = options->general.num_threads;
+  if (options->adjustment.UsesColmap()) CheckColmap(options->adjustment.colmap.colmap_path);
+}
+
+ImportReport Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* unreadable) {
+  options->importer.database_path = workspace->paths().Database().string();
+  options->importer.frame_output_path = workspace->paths().Images().string();
+  ImportReport report = ImportImages(options->importer);
+  workspace->Keep();
+  for (const SkippedImage& skipped : report.skipped) {
+    unreadable->push_back({skipped.image_name, skipped.reason});
+  }
+  return report;
+}
+
+// `--name value` and `--name=value` as pairs.
+std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& arguments) {
+  std::vector<std::pair<std::string, std::string>> options;
+  for (const std::string& argument : arguments) {
+    const bool is_name = argument.rfind("--", 0) == 0;
+    const std::size_t equals = is_name ? argument.find('=') : std::string::npos;
+    if (!is_name) {
+      if (!options.empty()) options.back().second = argument;
+    } else if (equals == std::string::npos) {
+      options.emplace_back(argument.substr(2), "");
+    } else {
+      options.emplace_back(argument.substr(2, equals - 2), argument.substr(equals + 1));
+    }
+  }
+  return options;
+}
+
+void WriteReportFile(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
+                     const ReconstructionSummary& summary) {
+  const ShapeExportReport& shape = summary.shape;
+  ReportInput input{shape.metric_model, options.importer.layout, shape.shape,
+                    shape.metrics,      shape.model_metrics,     shape.scale};
+  input.title = std::filesystem::path(options.paths.image_path).filename().string();
+  input.version = kVersion;
+  input.image_path = paths.Images().string();
+  input.uncertainty = shape.uncertainty ? &*shape.uncertainty : nullptr;
+  input.frame = MakeReportFrame(shape.frame, shape.metric_model);
+  input.sections = MakeReportSections(shape.sail.sections);
+  input.surface = MakeReportSurface(shape.sail);
+  for (const LeftOutImage& image : summary.left_out) {
+    input.images_left_out.push_back({image.image_name, image.reason});
+  }
+  for (const DroppedMarker& marker : seed.registration.dropped_markers) {
+    input.markers_left_out.push_back({std::to_string(marker.marker_id), marker.reason});
+  }
+  input.audit = &shape.audit;
+  input.options = TypedOptions(options.arguments);
+  input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
+  WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
+}
+
+// From the seed to the final files. sparse/ and shape/ change places with the old ones when both
+// are whole.
+void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
+                     ReconstructionSummary* summary, StageClock* clock) {
+  AtomicFolder sparse(paths.Sparse());
+  WriteModel(seed.model, (sparse.TemporaryPath() / "seed").string(), ModelFormat::kBinaryAndText);
+  Model model = seed.model;
+  summary->adjustment = AdjustModel(options.adjustment, options.importer.layout, seed.corner_sigmas,
+                                    paths.ColmapLog().string(), &model);
+  clock->End("adjust", static_cast<int>(model.images.size()));
+  AddModelImages(model, options.paths.image_path, paths.Images());
+  const auto& uncertainty = summary->adjustment.uncertainty;
+  ShapeExporterOptions exporter = options.exporter;
+  exporter.model_output_path = (sparse.TemporaryPath() / "0").string();
+  exporter.shape_output_path = paths.Shape().string();
+  summary->shape =
+      ExportShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
+  sparse.Commit();
+  WriteFileAtomically(paths.RegistrationCsv(),
+                      [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
+  clock->End("export");
+  WriteReportFile(options, paths, seed, *summary);
+  clock->End("report");
+  RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
+  summary->num_images = static_cast<int>(model.images.size());
+}
+
+void WriteTimes(const StageClock& clock, const WorkspacePaths& paths) {
+  LogStageTimes(clock);
+  WriteFileAtomically(paths.Timing(),
+                      [&clock](std::ostream& out) { WriteStageTimesJson(clock.Times(), out); });
+}
+
+}  // namespace
+
+void RunAutomaticReconstructor(const Arguments& arguments) {
+  Options options;
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
+  options.arguments = arguments;
+  Validate(&options);
+  Workspace workspace(options.paths.workspace_path, options.paths.image_path);
+  const WorkspacePaths& paths = workspace.paths();
+  AddLogFile(paths.Log().string());
+  spdlog::info("velamap {} automatic_reconstructor {}", kVersion, fmt::join(arguments, " "));
+
+  ReconstructionSummary summary;
+  StageClock clock;
+  const ImportReport import = Import(&options, &workspace, &summary.left_out);
+  clock.EndImport(import.times, import.num_frames_read);
+  const SeedResult seed =
+      RegisterDatabase(paths.Database().string(), options.importer.layout, options.registration);
+  clock.End("register", static_cast<int>(seed.image_names.size()));
+  summary.num_images_total = static_cast<int>(seed.image_names.size() + summary.left_out.size());
+  summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
+  AdjustAndExport(options, paths, seed, &summary, &clock);
+  WriteTimes(clock, paths);
+  PrintSummary(summary, paths, std::cout);
+}
+
+}  // namespace velamap

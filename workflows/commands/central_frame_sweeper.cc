@@ -1,0 +1,102 @@
+#include <iostream>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/shared_options.h"
+#include "workflows/run/central_frame_sweep.h"
+#include "workflows/run/progress.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  GeneralOptions general;
+  MarkerOptions markers;
+  CentralFrameSweepOptions sweep;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  CentralFrameSweepOptions* sweep = &options->sweep;
+  return {"central_frame_sweeper",
+          "registers, adjusts and judges a clip around many central frames, one row each",
+          "--database_path database.db --layout_path layout.yml \\\n"
+          "    --central_frames every:10 --output_path sweep.csv",
+          {{"Input and output",
+            {DatabasePathOption(paths, "COLMAP database that marker_importer made"),
+             {"output_path", &paths->output_path, "path", "table of all central frames, CSV", true},
+             {"central_frames", &sweep->central_frames, "all|every:N|LIST",
+              "central frames: of all images with markers, of every N-th, or names or frame "
+              "numbers with commas"},
+             {"models_path", &sweep->models_path, "path",
+              "folder for the metric model and shape.csv of each, in a folder of the image's name; "
+              "left out: none are written"},
+             {"warm_start", &sweep->warm_start, "0|1",
+              "begin each adjustment at the result around the central frame before"},
+             BackendOption(&sweep->adjustment.backend),
+             {"log_path", &paths->log_path, "path",
+              "COLMAP's output; left out: colmap.log beside output_path"}}},
+           MarkerGroup(&options->markers, false),
+           RegistrationGroup(&sweep->registration),
+           BundleAdjustmentGroup(&sweep->adjustment.colmap),
+           MarkerAdjustmentGroup(&sweep->adjustment.ceres),
+           GeneralGroup(&options->general)}};
+}
+
+void Validate(Options* options) {
+  ApplyGeneralOptions(options->general);
+  CentralFrameSweepOptions& sweep = options->sweep;
+  sweep.database_path = options->paths.database_path;
+  sweep.registration.random_seed = options->general.random_seed;
+  sweep.registration.Check();
+  sweep.adjustment.Complete(options->general.num_threads);
+  sweep.log_path = options->paths.log_path.empty()
+                       ? BesideFolder(options->paths.output_path, "colmap.log")
+                       : options->paths.log_path;
+  if (sweep.adjustment.UsesColmap()) CheckColmap(sweep.adjustment.colmap.colmap_path);
+}
+
+void Print(const std::vector<SweepRow>& rows, const std::string& output_path, std::ostream& out) {
+  int num_results = 0;
+  for (const SweepRow& row : rows) num_results += row.reason.empty();
+  const SweepRow& best = rows[static_cast<std::size_t>(BestRow(rows))];
+  fmt::print(out, "central_frames: {} of {} with a result\n", num_results, rows.size());
+  fmt::print(out, "best_central_frame: {}\n", best.central_frame);
+  fmt::print(out, "best_num_markers: {}\n", best.shape.num_markers);
+  fmt::print(out, "best_area_error_mm2: {:.3f}\n", best.shape.area_error_mm2.mean);
+  fmt::print(out, "best_reprojection_error_px: {:.3f}\n", best.model.error_px.mean);
+  fmt::print(out, "table_path: {}\n", output_path);
+}
+
+}  // namespace
+
+void RunCentralFrameSweeper(const Arguments& arguments) {
+  Options options;
+  options.sweep.registration.method = RegistrationMethod::kThesis;
+  options.sweep.adjustment.backend = "ceres";  // starts warm with profit
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
+  Validate(&options);
+  const Layout layout = LoadLayout(options.markers, false);
+  StageClock clock;
+  Progress progress("central frames");
+  const std::vector<SweepRow> rows =
+      SweepCentralFrames(options.sweep, layout, &clock,
+                         [&progress](int done, int total) { progress.Update(done, total, ""); });
+  ClearProgressLine();
+  if (BestRow(rows) < 0) {
+    throw DataError(fmt::format("{}: none of {} central frames gives a result; the first: {}",
+                                options.paths.database_path, rows.size(), rows.front().reason));
+  }
+  WriteFileAtomically(options.paths.output_path,
+                      [&rows](std::ostream& out) { WriteSweepCsv(rows, out); });
+  LogStageTimes(clock);
+  Print(rows, options.paths.output_path, std::cout);
+}
+
+}  // namespace velamap

@@ -1,0 +1,81 @@
+#include <iostream>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "importer/base/atomic_output.h"
+#include "reconstruct/model/model_io.h"
+#include "reconstruct/model/reprojection.h"
+#include "reconstruct/seed_model.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/shared_options.h"
+#include "workflows/run/pipeline.h"
+#include "workflows/run/stage_times.h"
+#include "workflows/run/summary.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  RegistrationOptions registration;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {"frame_registrator",
+          "registers the images of a database and writes the seed model of the bundle adjustment",
+          "--database_path database.db --layout_path layout.yml --output_path sparse/seed",
+          {{"Input and output",
+            {DatabasePathOption(paths, "COLMAP database that marker_importer made"),
+             {"output_path", &paths->output_path, "path", "folder of the seed model", true},
+             {"registration_path", &paths->registration_path, "path",
+              "table of all images, CSV; left out: registration.csv beside output_path"}}},
+           MarkerGroup(&options->markers, false),
+           RegistrationGroup(&options->registration),
+           GeneralGroup(&options->general)}};
+}
+
+void Validate(Options* options) {
+  ApplyGeneralOptions(options->general);
+  options->registration.random_seed = options->general.random_seed;
+  options->registration.Check();
+  CheckReplaceableFolder(options->paths.output_path, ModelFileNames());
+  if (options->paths.registration_path.empty()) {
+    options->paths.registration_path = BesideFolder(options->paths.output_path, "registration.csv");
+  }
+}
+
+void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) {
+  fmt::print(out, "images_registered: {} of {}\n", seed.model.images.size(),
+             seed.image_names.size());
+  fmt::print(out, "images_left_out: {}\n", LeftOutText(seed.left_out));
+  fmt::print(out, "central_image: {}\n", seed.registration.central_image_name);
+  fmt::print(out, "markers: {}\n", seed.registration.shape.size());
+  fmt::print(out, "reprojection_error_px: {}\n",
+             ErrorText(SummarizeReprojectionErrors(ComputeReprojectionErrors(seed.model))));
+  fmt::print(out, "model_path: {}\n", paths.output_path);
+  fmt::print(out, "registration_path: {}\n", paths.registration_path);
+}
+
+}  // namespace
+
+void RunFrameRegistrator(const Arguments& arguments) {
+  Options options;
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
+  Validate(&options);
+  StageClock clock;
+  const SeedResult seed = RegisterDatabase(
+      options.paths.database_path, LoadLayout(options.markers, false), options.registration);
+  clock.End("register", static_cast<int>(seed.image_names.size()));
+  WriteModel(seed.model, options.paths.output_path, ModelFormat::kBinaryAndText);
+  WriteFileAtomically(options.paths.registration_path,
+                      [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
+  clock.End("export");
+  LogStageTimes(clock);
+  Print(seed, options.paths, std::cout);
+}
+
+}  // namespace velamap

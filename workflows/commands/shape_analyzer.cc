@@ -1,0 +1,149 @@
+#include <iostream>
+#include <optional>
+
+#include <spdlog/spdlog.h>
+
+#include "exporters/formats/shape_csv.h"
+#include "exporters/scale/metric_shape.h"
+#include "exporters/scale/scale_audit_report.h"
+#include "exporters/shape_report.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
+#include "reconstruct/model/model_io.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/shared_options.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  bool part_planes = false;
+  std::string csv_path;
+  std::string json_path;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {
+      "shape_analyzer",
+      "judges a shape by its markers, its images and a reference",
+      "--shape_path shape --layout_path layout.yml --input_path sparse/0",
+      {{"Input and output",
+        {{"shape_path", &paths->shape_path, "path", "shape.csv, or the folder that holds it", true},
+         {"input_path", &paths->input_path, "path",
+          "folder of the COLMAP model that the shape is from; for reprojection errors"},
+         {"reference_path", &paths->reference_path, "path",
+          "shape.csv of the truth or the design; the shape is aligned with it, and distances "
+          "of adjacent markers are compared"},
+         {"part_planes", &options->part_planes, "0|1",
+          "fit a plane to every part and compare the planes"},
+         {"csv_path", &options->csv_path, "path",
+          "file for all metrics and the tables of markers and distances"},
+         {"json_path", &options->json_path, "path", "the same as JSON"}}},
+       MarkerGroup(&options->markers, false),
+       GeneralGroup(&options->general)}};
+}
+
+void Validate(const Options& options) {
+  ApplyGeneralOptions(options.general);
+  const PathOptions& paths = options.paths;
+  if (!HasMarkerOptions(options.markers) && paths.reference_path.empty() &&
+      paths.input_path.empty() && !options.part_planes) {
+    throw InputError(
+        "--layout_path: missing; give it or --marker_length to judge the markers' size, "
+        "--input_path for reprojection errors, --reference_path to compare, or --part_planes 1");
+  }
+  if (!options.csv_path.empty() && options.csv_path == options.json_path) {
+    throw InputError("--json_path: " + options.json_path + " is the --csv_path too; give another");
+  }
+}
+
+// A shape is similar to the corners of its model, or one of the two is of another run.
+void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathOptions& paths) {
+  constexpr double kTolerance_m = 1e-6;
+  const auto max_distance_m = [&] {
+    try {
+      return CompareShapes(ShapeFromModel(model, Layout()), shape).distance_after_scaling_m.max;
+    } catch (const DataError&) {
+      throw InputError("--input_path " + paths.input_path +
+                       ": shares fewer than three corners with " + paths.shape_path +
+                       "; give the model that the shape is from");
+    }
+  }();
+  if (max_distance_m <= kTolerance_m) return;
+  spdlog::warn(
+      "{} is not the shape of the model {}: corners differ by up to {:.6f} m, errors of "
+      "the two do not belong together",
+      paths.shape_path, paths.input_path, max_distance_m);
+}
+
+// The model that the shape is from, and what is known of its points where they are the shape's.
+struct ModelOfShape {
+  std::optional<Model> model;
+  std::optional<AdjustmentUncertainty> uncertainty;
+
+  const PointCovariance* Covariance() const { return uncertainty ? &uncertainty->points : nullptr; }
+};
+
+ModelOfShape LoadModel(const MarkerShape& shape, const PathOptions& paths) {
+  ModelOfShape result;
+  if (paths.input_path.empty()) return result;
+  result.model = ReadModel(paths.input_path);
+  CheckModelOfShape(*result.model, shape, paths);
+  if (HasUncertainty(paths.input_path) && IsShapeOf(shape, *result.model)) {
+    result.uncertainty = ReadUncertainty(paths.input_path);
+  }
+  return result;
+}
+
+MetricsReport Analyze(const Options& options) {
+  const MarkerShape shape = ReadShapeCsv(ShapeFile(options.paths.shape_path));
+  std::optional<Layout> layout;
+  if (HasMarkerOptions(options.markers)) layout = LoadLayout(options.markers, false);
+  const ModelOfShape source = LoadModel(shape, options.paths);
+  const PointCovariance* covariance = source.Covariance();
+  MetricsReport report;
+  if (layout) AddMetrics(ComputeShapeMetrics(shape, *layout, covariance), &report);
+  if (source.model) {
+    AddMetrics(ComputeModelMetrics(*source.model, MarkerIds(layout.value_or(Layout()))), &report);
+  }
+  if (layout) {
+    AddMetrics(AuditScale(shape, *layout, source.model ? &*source.model : nullptr,
+                          source.uncertainty ? &*source.uncertainty : nullptr),
+               &report);
+  }
+  if (source.uncertainty) AddMetrics(*source.uncertainty, &report);
+  if (options.part_planes) AddMetrics(FitPartPlanes(shape, covariance), &report, covariance);
+  if (!options.paths.reference_path.empty()) {
+    const MarkerShape reference = ReadShapeCsv(ShapeFile(options.paths.reference_path));
+    AddMetrics(CompareShapes(shape, reference, covariance), &report);
+    if (layout) {
+      AddMetrics(CompareAdjacentDistances(shape, reference, *layout, covariance), &report);
+    }
+  }
+  return report;
+}
+
+}  // namespace
+
+void RunShapeAnalyzer(const Arguments& arguments) {
+  Options options;
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
+  Validate(options);
+  const MetricsReport report = Analyze(options);
+  if (!options.csv_path.empty()) {
+    WriteFileAtomically(options.csv_path,
+                        [&report](std::ostream& out) { WriteMetricsCsv(report, out); });
+  }
+  if (!options.json_path.empty()) {
+    WriteFileAtomically(options.json_path,
+                        [&report](std::ostream& out) { WriteMetricsJson(report, out); });
+  }
+  PrintMetrics(report, std::cout);
+}
+
+}  // namespace velamap

@@ -1,0 +1,277 @@
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "exporters/compare/comparison_ply.h"
+#include "exporters/compare/comparison_report.h"
+#include "exporters/compare/comparison_sigma.h"
+#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/surface_comparison.h"
+#include "exporters/formats/mesh_reader.h"
+#include "exporters/formats/shape_csv.h"
+#include "exporters/shape/shape_sigma.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/shared_options.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  PathOptions paths;
+  GeneralOptions general;
+  AlignmentOptions alignment;
+  MeshReadOptions mesh;
+  std::string layout_path;
+  std::string part;
+  std::string uncertainty_path;
+  std::string reference_uncertainty_path;
+  std::string csv_path;
+  std::string json_path;
+  std::string surface_path;
+  std::optional<double> color_limit_mm;
+};
+
+void SetStart(const std::string& name, AlignmentOptions* alignment) {
+  if (name != "auto" && name != "as_is") {
+    throw InputError(fmt::format("--align_start: '{}' is unknown; give auto or as_is", name));
+  }
+  alignment->starts_as_is = name == "as_is";
+}
+
+OptionGroup InputGroup(Options* options) {
+  const ParsedValue unit = {"", [options](const std::string& name) {
+                              options->mesh.m_per_unit = MPerUnitFromName(name, "--reference_unit");
+                            }};
+  PathOptions* paths = &options->paths;
+  return {
+      "Input",
+      {{"shape_path", &paths->shape_path, "path", "shape.csv, or the folder that holds it", true},
+       {"reference_path", &paths->reference_path, "path",
+        "what it is compared with: shape.csv or its folder, or a surface as .ply, .stl, .obj, "
+        ".step or .iges",
+        true},
+       {"reference_unit", unit, "m|mm",
+        "of a .ply, .stl or .obj; left out: m for .ply, mm for .stl and .obj"},
+       {"chord_deviation", &options->mesh.chord_deviation_mm, "mm",
+        "how far triangles may be from the faces of a .step or .iges"},
+       {"layout_path", &options->layout_path, "path",
+        "layout file: names the reference part and the lines"},
+       {"part", &options->part, "name", "compare the markers of this part only"},
+       {"uncertainty_path", &options->uncertainty_path, "path",
+        "folder of the shape's model with its uncertainty.bin, for sigmas that know what all "
+        "markers have in common; left out: ../sparse/0 of a shape folder, else the sigmas of "
+        "shape.csv"},
+       {"reference_uncertainty_path", &options->reference_uncertainty_path, "path",
+        "the same for the reference"}}};
+}
+
+OptionGroup AlignmentGroup(Options* options) {
+  AlignmentOptions* alignment = &options->alignment;
+  const ParsedValue method = {AlignmentMethodName(alignment->method),
+                              [alignment](const std::string& name) {
+                                alignment->method = AlignmentMethodFromName(name, "--align");
+                              }};
+  const ParsedValue ids = {"", [alignment](const std::string& text) {
+                             alignment->marker_ids = MarkerIdsFromText(text, "--align_markers");
+                           }};
+  const ParsedValue start = {"auto",
+                             [alignment](const std::string& name) { SetStart(name, alignment); }};
+  return {"Alignment (rigid, scale is never fitted)",
+          {{"align", method, "method",
+            "auto, reference_part, markers, best_fit or none; auto: the reference part where three "
+            "of its markers are in both, else best fit"},
+           {"align_markers", ids, "ids", "for --align markers, such as 120,121,122"},
+           {"align_start", start, "auto|as_is",
+            "best fit onto a surface: from several starts, or only from where the shape is"}}};
+}
+
+CommandSyntax Declare(Options* options) {
+  return {"shape_comparer",
+          "compares a shape with another one or with the surface of a design",
+          "--shape_path shape --reference_path design.step --layout_path layout.yml",
+          {InputGroup(options),
+           AlignmentGroup(options),
+           {"Output",
+            {{"output_path", &options->paths.output_path, "path",
+              "PLY of the markers, coloured by their signed distance"},
+             {"surface_path", &options->surface_path, "path",
+              "PLY of the surface through the lines, coloured in the same way; needs a layout"},
+             {"color_limit", &options->color_limit_mm, "mm",
+              "distance of the full colours; left out: the largest"},
+             {"csv_path", &options->csv_path, "path", "file for all figures and tables"},
+             {"json_path", &options->json_path, "path", "the same as JSON"}}},
+           GeneralGroup(&options->general)}};
+}
+
+void Validate(const Options& options) {
+  ApplyGeneralOptions(options.general);
+  if (!(options.mesh.chord_deviation_mm > 0)) {
+    throw InputError("--chord_deviation: must be positive");
+  }
+  if (options.color_limit_mm && !(*options.color_limit_mm > 0)) {
+    throw InputError("--color_limit: must be positive");
+  }
+  if (!options.csv_path.empty() && options.csv_path == options.json_path) {
+    throw InputError("--json_path: " + options.json_path + " is the --csv_path too; give another");
+  }
+  if (!options.surface_path.empty() && options.layout_path.empty()) {
+    throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
+  }
+  if (!options.alignment.marker_ids.empty() &&
+      options.alignment.method != AlignmentMethod::kMarkers) {
+    throw InputError("--align_markers: goes with --align markers only");
+  }
+}
+
+// Whether the covariance is that of the shape: its sigmas are those of shape.csv.
+bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
+  constexpr double kTolerance = 1e-3;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      const auto idx = static_cast<std::size_t>(corner);
+      if (!marker.x_in_shape_m[idx]) continue;
+      const auto sigma_m = PointSigma(&covariance, marker.marker_id, corner);
+      if (!sigma_m || !marker.sigma_m[idx] ||
+          (*sigma_m - *marker.sigma_m[idx]).norm() > kTolerance * sigma_m->norm()) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+// `option` names the one that gives `uncertainty_path`.
+UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
+                                  const std::string& option) {
+  const bool is_folder = fs::is_directory(path);
+  UncertainShape result;
+  result.shape = ReadShapeCsv(is_folder ? (fs::path(path) / "shape.csv").string() : path);
+  fs::path folder = uncertainty_path;
+  if (folder.empty() && is_folder) {
+    folder = fs::absolute(fs::path(path) / "").parent_path().parent_path() / "sparse" / "0";
+  }
+  if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
+    throw InputError(
+        fmt::format("{}: {} holds no {}; give the folder of a model adjusted with "
+                    "--backend ceres",
+                    option, uncertainty_path, kUncertaintyFileName));
+  }
+  if (!folder.empty() && HasUncertainty(folder.string())) {
+    const PointCovariance covariance = ReadUncertainty(folder.string()).points;
+    if (BelongsTo(covariance, result.shape)) {
+      spdlog::info("{}: joint uncertainty from {}", path, folder.string());
+      result.covariance = covariance;
+      return result;
+    }
+    if (!uncertainty_path.empty()) {
+      throw InputError(fmt::format("{}: the uncertainty in {} is not that of {}, its sigmas differ",
+                                   option, uncertainty_path, path));
+    }
+  }
+  result.covariance = CovarianceFromSigmas(result.shape);
+  return result;
+}
+
+void CheckUnit(const Options& options, const MarkerShape& shape, const MeshDistance& mesh) {
+  const std::optional<double> factor = UnitHint(shape, mesh);
+  if (!factor) return;
+  const std::string& path = options.paths.reference_path;
+  const std::string what = fmt::format("{}: is {:.3g} m across, which does not go with the shape",
+                                       path, mesh.Diagonal_m());
+  if (HasOwnUnit(path) || options.mesh.m_per_unit) {
+    spdlog::warn("{}; is its unit right?", what);
+    return;
+  }
+  throw InputError(
+      fmt::format("{}; if its unit is {}, give --reference_unit {}; if it is right as "
+                  "it is, --reference_unit {}",
+                  what, *factor > 1 ? "m" : "mm", *factor > 1 ? "m" : "mm",
+                  DefaultMPerUnit(path) == 1.0 ? "m" : "mm"));
+}
+
+struct Result {
+  ShapeDeviation deviation;
+  SurfaceComparison surfaces;  // empty without a layout
+};
+
+Result CompareWithSurface(const Options& options, const UncertainShape& shape,
+                          const Layout& layout) {
+  const std::string& path = options.paths.reference_path;
+  const MeshDistance mesh(ReadMesh(path, options.mesh));
+  CheckUnit(options, shape.shape, mesh);
+  if (mesh.NumFlippedEdges() > 0) {
+    spdlog::warn(
+        "{}: {} edges have triangles that look to opposite sides; signs there mean nothing", path,
+        mesh.NumFlippedEdges());
+  }
+  Result result;
+  result.deviation = CompareWithMesh(shape, mesh, layout, options.alignment, options.part);
+  result.surfaces = CompareSurfaces(result.deviation.aligned_shape, mesh, layout, options.part);
+  return result;
+}
+
+Result CompareWithOther(const Options& options, const UncertainShape& shape, const Layout& layout,
+                        MetricsReport* report) {
+  const UncertainShape reference =
+      ReadUncertainShape(options.paths.reference_path, options.reference_uncertainty_path,
+                         "--reference_uncertainty_path");
+  Result result;
+  result.deviation = CompareWithShape(shape, reference, layout, options.alignment, options.part);
+  AddMetrics(result.deviation, report);
+  if (options.layout_path.empty()) return result;
+  AddMetrics(CompareSections(shape, reference, result.deviation.alignment, layout), report);
+  result.surfaces =
+      CompareSurfaces(result.deviation.aligned_shape, reference.shape, layout, options.part);
+  AddMetrics(result.surfaces, report);
+  return result;
+}
+
+Result Compare(const Options& options, MetricsReport* report) {
+  Layout layout;
+  if (!options.layout_path.empty()) layout = ReadLayout(options.layout_path);
+  const UncertainShape shape =
+      ReadUncertainShape(options.paths.shape_path, options.uncertainty_path, "--uncertainty_path");
+  if (!IsMeshPath(options.paths.reference_path)) {
+    return CompareWithOther(options, shape, layout, report);
+  }
+  Result result = CompareWithSurface(options, shape, layout);
+  AddMetrics(result.deviation, report);
+  if (!options.layout_path.empty()) AddMetrics(result.surfaces, report);
+  return result;
+}
+
+void Write(const Options& options, const Result& result, const MetricsReport& report) {
+  const auto write = [](const std::string& path, const auto& writer) {
+    if (!path.empty()) WriteFileAtomically(path, writer);
+  };
+  std::optional<double> limit_m;
+  if (options.color_limit_mm) limit_m = *options.color_limit_mm / 1e3;
+  write(options.csv_path, [&](std::ostream& out) { WriteMetricsCsv(report, out); });
+  write(options.json_path, [&](std::ostream& out) { WriteMetricsJson(report, out); });
+  write(options.paths.output_path,
+        [&](std::ostream& out) { WriteComparisonPly(result.deviation, limit_m, out); });
+  write(options.surface_path,
+        [&](std::ostream& out) { WriteComparisonSurfacePly(result.surfaces, limit_m, out); });
+}
+
+}  // namespace
+
+void RunShapeComparer(const Arguments& arguments) {
+  Options options;
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
+  Validate(options);
+  MetricsReport report;
+  const Result result = Compare(options, &report);
+  Write(options, result, report);
+  PrintMetrics(report, std::cout);
+}
+
+}  // namespace velamap

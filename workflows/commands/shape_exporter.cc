@@ -1,0 +1,79 @@
+#include <iostream>
+#include <optional>
+
+#include "importer/base/error.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
+#include "reconstruct/model/model_io.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/sail_options.h"
+#include "workflows/options/shared_options.h"
+#include "workflows/run/stage_times.h"
+#include "workflows/run/summary.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  ShapeExporterOptions exporter;
+  SailOptionTexts sail;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {
+      "shape_exporter",
+      "scales a model to metres by the markers' sides and writes the shape",
+      "--input_path sparse/0 --layout_path layout.yml --output_path metric --shape_path shape",
+      {{"Input and output",
+        {ModelInputOption(paths),
+         {"output_path", &paths->output_path, "path",
+          "folder of the metric model; left out: it is not written"},
+         {"shape_path", &paths->shape_path, "path",
+          "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is written"},
+         {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"}}},
+       MarkerGroup(&options->markers, false),
+       SailGroup(&options->exporter, &options->sail),
+       GeneralGroup(&options->general)}};
+}
+
+void Validate(Options* options) {
+  ApplyGeneralOptions(options->general);
+  if (options->paths.output_path.empty() && options->paths.shape_path.empty()) {
+    throw InputError(
+        "--shape_path: missing; give --shape_path, --output_path or both to say what to write");
+  }
+  CompleteSailOptions(options->sail, &options->exporter);
+  options->exporter.model_output_path = options->paths.output_path;
+  options->exporter.shape_output_path = options->paths.shape_path;
+}
+
+void Print(const ShapeExportReport& report, const PathOptions& paths, std::ostream& out) {
+  PrintShapeSummary(report, out);
+  if (!paths.shape_path.empty()) out << "shape_path: " << paths.shape_path << '\n';
+  if (!paths.output_path.empty()) out << "model_path: " << paths.output_path << '\n';
+}
+
+}  // namespace
+
+void RunShapeExporter(const Arguments& arguments) {
+  Options options;
+  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
+  Validate(&options);
+  StageClock clock;
+  const Layout layout = LoadLayout(options.markers, false);
+  const Model model = ReadModel(options.paths.input_path);
+  std::optional<AdjustmentUncertainty> uncertainty;
+  if (HasUncertainty(options.paths.input_path)) {
+    uncertainty = ReadUncertainty(options.paths.input_path);
+  }
+  const ShapeExportReport report =
+      ExportShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
+  clock.End("export");
+  LogStageTimes(clock);
+  Print(report, options.paths, std::cout);
+}
+
+}  // namespace velamap

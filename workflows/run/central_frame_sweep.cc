@@ -1,0 +1,232 @@
+#include "workflows/run/central_frame_sweep.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <ostream>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <spdlog/spdlog.h>
+
+#include "exporters/formats/shape_csv.h"
+#include "exporters/scale/metric_scale.h"
+#include "exporters/scale/metric_shape.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "importer/database/colmap_database.h"
+#include "reconstruct/colmap/warm_start.h"
+#include "reconstruct/model/reprojection.h"
+#include "reconstruct/seed_model.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string NameOf(const DatabaseImage& image) {
+  const FrameDetections& frame = image.detections;
+  return frame.frame_number ? std::to_string(*frame.frame_number) : frame.image_name;
+}
+
+[[noreturn]] void ThrowBadChoice(const std::string& choice, const std::string& what) {
+  throw InputError(fmt::format(
+      "--central_frames '{}': {}; give all, every:N, or names or frame numbers with commas", choice,
+      what));
+}
+
+std::vector<int> ChooseEvery(const std::string& choice, const std::string& count,
+                             const PosedImages& posed) {
+  int step = 0;
+  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), step);
+  if (error != std::errc() || end != count.data() + count.size() || step < 1) {
+    ThrowBadChoice(choice, fmt::format("'{}' is no count of 1 or more", count));
+  }
+  std::vector<int> chosen;
+  const auto number = [&posed](int idx) {
+    return posed.images[static_cast<std::size_t>(idx)]->detections.frame_number.value_or(idx);
+  };
+  for (int idx = 0; idx < static_cast<int>(posed.images.size()); ++idx) {
+    if ((number(idx) - number(0)) % step == 0) chosen.push_back(idx);
+  }
+  return chosen;
+}
+
+std::vector<int> ChooseListed(const std::string& choice, const PosedImages& posed) {
+  std::set<int> chosen;
+  std::istringstream list(choice);
+  for (std::string name; std::getline(list, name, ',');) {
+    const auto known =
+        std::find_if(posed.images.begin(), posed.images.end(), [&name](const DatabaseImage* image) {
+          return image->detections.image_name == name || NameOf(*image) == name;
+        });
+    if (known == posed.images.end()) {
+      ThrowBadChoice(choice, fmt::format("no image '{}' holds markers", name));
+    }
+    chosen.insert(static_cast<int>(known - posed.images.begin()));
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+// What all central frames share.
+class Sweep {
+ public:
+  Sweep(const CentralFrameSweepOptions& options, const Layout& layout)
+      : options_(options), layout_(layout) {
+    const ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadOnly);
+    images_ = database.ReadImages();
+    cameras_ = database.ReadCameras();
+    posed_ = PoseImages(images_, cameras_, layout);
+    corner_sigmas_ = CornerSigmasOf(images_);
+  }
+
+  const PosedImages& posed() const { return posed_; }
+
+  SweepRow Run(int frame_idx) {
+    const DatabaseImage& image = *posed_.images[static_cast<std::size_t>(frame_idx)];
+    SweepRow row;
+    row.central_frame = NameOf(image);
+    row.image_name = image.detections.image_name;
+    StageClock clock;
+    try {
+      CheckMarkers(image);
+      Reconstruct(&row);
+    } catch (const DataError& error) {
+      row.reason = error.what();
+      adjusted_.reset();
+    }
+    clock.End("");
+    row.wall_s = clock.Times().front().wall_s;
+    row.cpu_s = clock.Times().front().cpu_s;
+    return row;
+  }
+
+ private:
+  void CheckMarkers(const DatabaseImage& image) const {
+    const int num_needed = options_.registration.min_num_inliers;
+    if (static_cast<int>(image.detections.markers.size()) >= num_needed) return;
+    throw DataError(fmt::format("holds {} markers, {} are needed", image.detections.markers.size(),
+                                num_needed));
+  }
+
+  void Reconstruct(SweepRow* row) {
+    RegistrationOptions registration_options = options_.registration;
+    registration_options.central_frame = row->image_name;
+    const Registration registration = RegisterPosedImages(posed_, layout_, registration_options);
+    Model model = MakeSeedModel(registration, images_, cameras_);
+    if (options_.warm_start && adjusted_) {
+      row->is_warm = StartFromAdjusted(*adjusted_, &model).num_points > 0;
+    }
+    AdjustmentResult result =
+        AdjustModel(options_.adjustment, layout_, corner_sigmas_, options_.log_path, &model);
+    adjusted_ = model;
+    if (!result.uncertainty) ScaleModel(EstimateScale(model, layout_), &model);
+    UpdatePointErrors(&model);
+    const MarkerShape shape =
+        ShapeFromModel(model, layout_, result.uncertainty ? &result.uncertainty->points : nullptr);
+    row->shape = ComputeShapeMetrics(shape, layout_);
+    row->model = ComputeModelMetrics(model, MarkerIds(layout_));
+    row->num_images = static_cast<int>(model.images.size());
+    if (!options_.models_path.empty()) Write(*row, model, result, shape);
+  }
+
+  void Write(const SweepRow& row, const Model& model, const AdjustmentResult& result,
+             const MarkerShape& shape) const {
+    const fs::path folder =
+        fs::path(options_.models_path) / fs::path(row.image_name).replace_extension();
+    fs::create_directories(folder);
+    WriteAdjustedModel(model, result, (folder / "sparse").string());
+    WriteFileAtomically(folder / "shape.csv",
+                        [&shape](std::ostream& out) { WriteShapeCsv(shape, out); });
+  }
+
+  const CentralFrameSweepOptions& options_;
+  const Layout& layout_;
+  std::vector<DatabaseImage> images_;
+  std::map<CameraId, Camera> cameras_;
+  PosedImages posed_;
+  CornerSigmas corner_sigmas_;
+  std::optional<Model> adjusted_;  // around the central frame before
+};
+
+double Completeness(const SweepRow& row) {
+  return row.shape.reconstruction_ratio.value_or(row.shape.num_markers);
+}
+
+}  // namespace
+
+std::vector<int> ChooseCentralFrames(const std::string& choice, const PosedImages& posed) {
+  const std::string every = "every:";
+  if (choice == "all") return ChooseEvery(choice, "1", posed);
+  if (choice.rfind(every, 0) == 0) return ChooseEvery(choice, choice.substr(every.size()), posed);
+  const std::vector<int> chosen = ChooseListed(choice, posed);
+  if (chosen.empty()) ThrowBadChoice(choice, "names nothing");
+  return chosen;
+}
+
+std::vector<SweepRow> SweepCentralFrames(const CentralFrameSweepOptions& options,
+                                         const Layout& layout, StageClock* clock,
+                                         const std::function<void(int done, int total)>& done) {
+  if (options.registration.method != RegistrationMethod::kThesis) {
+    throw InputError(
+        "--Registration.method global: has no central frame; a sweep is the thesis's way: give "
+        "thesis");
+  }
+  options.registration.Check();
+  Sweep sweep(options, layout);
+  const std::vector<int> central_frames =
+      ChooseCentralFrames(options.central_frames, sweep.posed());
+  clock->End("read", static_cast<int>(sweep.posed().images.size()));
+  std::vector<SweepRow> rows;
+  for (const int frame_idx : central_frames) {
+    rows.push_back(sweep.Run(frame_idx));
+    done(static_cast<int>(rows.size()), static_cast<int>(central_frames.size()));
+  }
+  clock->End("sweep", static_cast<int>(rows.size()));
+  return rows;
+}
+
+int BestRow(const std::vector<SweepRow>& rows) {
+  int best = -1;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i].reason.empty()) continue;
+    if (best >= 0) {
+      const SweepRow& known = rows[static_cast<std::size_t>(best)];
+      const double gain = Completeness(rows[i]) - Completeness(known);
+      const bool is_better = gain > 0 || (gain == 0 && rows[i].shape.area_error_mm2.mean <
+                                                           known.shape.area_error_mm2.mean);
+      if (!is_better) continue;
+    }
+    best = static_cast<int>(i);
+  }
+  return best;
+}
+
+void WriteSweepCsv(const std::vector<SweepRow>& rows, std::ostream& out) {
+  out << "central_frame,image_name,num_images,num_markers,reconstruction_ratio,"
+         "reprojection_error_px_mean,central_reprojection_error_px_mean,area_error_mm2_mean,"
+         "area_error_mm2_max,area_error_percent_mean,start,wall_s,cpu_s,reason\n";
+  for (const SweepRow& row : rows) {
+    const ShapeMetrics& shape = row.shape;
+    fmt::print(out, "{},{},", row.central_frame, row.image_name);
+    if (row.reason.empty()) {
+      const auto& ratio = shape.reconstruction_ratio;
+      fmt::print(out, "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}", row.num_images,
+                 shape.num_markers, ratio ? fmt::format("{:.6g}", *ratio) : "",
+                 row.model.error_px.mean, row.model.central_error_px.mean,
+                 shape.area_error_mm2.mean, shape.area_error_mm2.max, shape.area_error_percent.mean,
+                 row.is_warm ? "warm" : "cold");
+    } else {
+      out << ",,,,,,,,";
+    }
+    std::string reason = row.reason;
+    std::replace(reason.begin(), reason.end(), '"', '\'');
+    fmt::print(out, ",{:.3f},{:.3f},\"{}\"\n", row.wall_s, row.cpu_s, reason);
+  }
+}
+
+}  // namespace velamap

@@ -1,0 +1,103 @@
+#include "workflows/run/logging.h"
+
+#include <cstdio>
+#include <memory>
+#include <mutex>
+
+#include <fmt/format.h>
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "workflows/run/progress.h"
+
+namespace velamap {
+namespace {
+
+void WriteToTerminal(const char* text, std::size_t size) {
+  ClearProgressLine();
+  std::fwrite(text, 1, size, stderr);
+  std::fflush(stderr);
+}
+
+class TerminalSink : public spdlog::sinks::base_sink<std::mutex> {
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    WriteToTerminal(line.data(), line.size());
+  }
+  void flush_() override {}
+};
+
+// `warning: ` and the like before the message; nothing for what is no problem.
+class ProblemMark : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& out) override {
+    if (message.level < spdlog::level::warn) return;
+    const std::string_view mark = message.level == spdlog::level::warn ? "warning: " : "error: ";
+    out.append(mark.data(), mark.data() + mark.size());
+  }
+  std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
+    return std::make_unique<ProblemMark>();
+  }
+};
+
+std::unique_ptr<spdlog::formatter> MakeFormatter(const std::string& time_pattern) {
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<ProblemMark>('*').set_pattern("[" + time_pattern + "] %*%v");
+  return formatter;
+}
+
+std::shared_ptr<spdlog::sinks::sink> log_file;
+
+}  // namespace
+
+void SetUpLogging() {
+  auto sink = std::make_shared<TerminalSink>();
+  auto logger = std::make_shared<spdlog::logger>("velamap", sink);
+  sink->set_formatter(MakeFormatter("%H:%M:%S"));
+  spdlog::set_default_logger(logger);
+}
+
+void SetLogLevel(const std::string& name) {
+  const spdlog::level::level_enum level = name == "error"   ? spdlog::level::err
+                                          : name == "warn"  ? spdlog::level::warn
+                                          : name == "info"  ? spdlog::level::info
+                                          : name == "debug" ? spdlog::level::debug
+                                                            : spdlog::level::off;
+  if (level == spdlog::level::off) {
+    throw InputError(
+        fmt::format("--log_level: '{}' is unknown; give error, warn, info or debug", name));
+  }
+  spdlog::set_level(level);
+}
+
+void AddLogFile(const std::string& path) {
+  try {
+    log_file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(path);
+  } catch (const spdlog::spdlog_ex& error) {
+    throw InputError(fmt::format("{}: the log cannot be written: {}", path, error.what()));
+  }
+  log_file->set_formatter(MakeFormatter("%Y-%m-%d %H:%M:%S"));
+  spdlog::default_logger()->sinks().push_back(log_file);
+  spdlog::default_logger()->flush_on(spdlog::level::info);
+}
+
+void ReportError(const std::string& message) {
+  std::string line = message;
+  for (char& c : line) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  line = "error: " + line + "\n";
+  WriteToTerminal(line.data(), line.size());
+  if (log_file == nullptr) return;
+  line.pop_back();
+  log_file->log(spdlog::details::log_msg("velamap", spdlog::level::info, line));
+  log_file->flush();
+}
+
+}  // namespace velamap

@@ -1,0 +1,240 @@
+#include "workflows/run/pipeline.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "importer/database/colmap_database.h"
+#include "reconstruct/colmap/colmap_runner.h"
+#include "reconstruct/model/model_io.h"
+#include "reconstruct/seed_model.h"
+#include "reconstruct/thesis/frame_selection.h"
+#include "workflows/run/progress.h"
+#include "workflows/run/summary.h"
+
+namespace velamap {
+namespace {
+
+// Corners are good to a few tenths of a pixel; a model that is off by more has another fault.
+constexpr double kSuspiciousErrorPx = 1.0;
+
+std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
+  std::set<std::string> used;
+  for (const ModelImage& image : seed.model.images) used.insert(image.name);
+  std::map<std::string, std::string> reasons;
+  for (const RegisteredFrame& frame : seed.registration.frames) {
+    reasons[frame.image_name] =
+        frame.reason.empty() ? "fewer than two of its markers stay" : frame.reason;
+  }
+  std::vector<LeftOutImage> left_out;
+  for (const std::string& name : seed.image_names) {
+    if (used.count(name) > 0) continue;
+    const auto it = reasons.find(name);
+    left_out.push_back({name, it == reasons.end() ? "no marker found" : it->second});
+  }
+  return left_out;
+}
+
+void LogMap(const MapAgreement& map) {
+  if (map.num_known == 0) {
+    spdlog::warn(
+        "--map_path: no frame shows four markers of the map, so that it was of no use; are its ids "
+        "those of the dictionary and the layout?");
+    return;
+  }
+  spdlog::info("{} of the {} markers found that the map holds are where it has them",
+               map.num_agreeing, map.num_known);
+  if (2 * map.num_agreeing < map.num_known) {
+    spdlog::warn(
+        "--map_path: the map does not fit these images and was of little use; is it of this "
+        "surface, and is the calibration of these images?");
+  }
+}
+
+void LogSeed(const SeedResult& seed) {
+  const Registration& registration = seed.registration;
+  spdlog::info("central image {}: {}", registration.central_image_name,
+               registration.central_reason);
+  for (const std::string& note : registration.notes) spdlog::info(note);
+  spdlog::info("{} of {} images registered, {} markers", seed.model.images.size(),
+               seed.image_names.size(), registration.shape.size());
+  if (!seed.left_out.empty()) spdlog::info("images left out: {}", LeftOutText(seed.left_out));
+  for (const DroppedMarker& marker : registration.dropped_markers) {
+    spdlog::debug("marker {} left out: {}", marker.marker_id, marker.reason);
+  }
+}
+
+void WarnOfRemovedImages(const std::vector<ImageId>& removed_images) {
+  if (removed_images.empty()) return;
+  spdlog::warn("{} images lost so many observations to the outlier filter that they are left out",
+               removed_images.size());
+}
+
+AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
+                                  const std::string& log_path, Model* model) {
+  spdlog::info("bundle adjustment of {} images and {} points by {}", model->images.size(),
+               model->points3D.size(), options.colmap_path);
+  const BundleAdjustmentSummary summary = AdjustWithColmap(options, log_path, model);
+  spdlog::info("{} rounds, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px",
+               summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
+               summary.error_after_px.mean);
+  WarnOfRemovedImages(summary.removed_images);
+  return {summary.error_before_px, summary.error_after_px, static_cast<int>(summary.removed.size()),
+          std::nullopt};
+}
+
+AdjustmentResult RunCeresBackend(const MarkerAdjustmentOptions& options, const Layout& layout,
+                                 const CornerSigmas& corner_sigmas, Model* model) {
+  spdlog::info("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
+               model->points3D.size());
+  MarkerAdjustmentSummary summary = AdjustWithCeres(options, layout, corner_sigmas, model);
+  const AdjustmentUncertainty& uncertainty = summary.uncertainty;
+  spdlog::info(
+      "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, corners "
+      "{:.2f} times as noisy as their detector says and counted as {:.2f} times that for what "
+      "their "
+      "errors have in common, {:.2f} % of them off by more than 4 sigmas, scale good to {:.3f} %",
+      summary.num_iterations, summary.removed.size(), summary.error_before_px.mean,
+      summary.error_after_px.mean, std::sqrt(uncertainty.variance_factor),
+      uncertainty.correlation_factor, 100.0 * uncertainty.share_above_4_sigma,
+      100.0 * uncertainty.relative_scale_sigma);
+  if (uncertainty.apparent_inset_sigma_px > 0) {
+    spdlog::info("apparent inset of the corners {:.3f} +- {:.3f} px", uncertainty.apparent_inset_px,
+                 uncertainty.apparent_inset_sigma_px);
+  }
+  for (const std::string& warning : summary.warnings) spdlog::warn(warning);
+  WarnOfRemovedImages(summary.removed_images);
+  return {summary.error_before_px, summary.error_after_px, static_cast<int>(summary.removed.size()),
+          std::move(summary.uncertainty)};
+}
+
+}  // namespace
+
+VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration) {
+  const std::string& central = registration.central_frame;
+  int number = 0;
+  const auto [end, error] =
+      std::from_chars(central.data(), central.data() + central.size(), number);
+  if (error != std::errc() || end != central.data() + central.size() || number < 0 ||
+      registration.frame_order == FrameOrder::kUnordered ||
+      registration.method == RegistrationMethod::kGlobal) {
+    return video;
+  }
+  const auto [first, last] = ReachableFrames(
+      number, {registration.num_frames, registration.skip, registration.neighborhood});
+  VideoOptions narrowed = video;
+  // In steps from the first frame, so that the frames that are read stay the same.
+  const int skipped = std::max(0, first - video.first_frame);
+  narrowed.first_frame += skipped / video.frame_step * video.frame_step;
+  narrowed.last_frame = video.last_frame < 0 ? last : std::min(video.last_frame, last);
+  return narrowed;
+}
+
+ImportReport ImportImages(const MarkerImporterOptions& options) {
+  Progress progress("detecting markers");
+  const ImportReport report =
+      ImportMarkers(options, [&progress](int done, int total, const std::string& message) {
+        progress.Update(done, total, message);
+      });
+  ClearProgressLine();
+  spdlog::info("{} images added to the {} of the database, {} markers found",
+               report.num_images_added, report.num_images_present, report.num_markers);
+  if (report.num_fallbacks > 0) {
+    spdlog::info("{} of them without a fit of their edges: corners from cv::cornerSubPix",
+                 report.num_fallbacks);
+  }
+  if (!options.map.empty() && report.num_frames_read > 0) LogMap(report.map);
+  if (!report.ids_not_in_layout.empty()) {
+    spdlog::warn("markers found that the layout does not name, left out: {}",
+                 fmt::join(report.ids_not_in_layout, " "));
+  }
+  return report;
+}
+
+SeedResult RegisterDatabase(const std::string& database_path, const Layout& layout,
+                            const RegistrationOptions& options) {
+  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly);
+  const std::vector<DatabaseImage> images = database.ReadImages();
+  const std::map<CameraId, Camera> cameras = database.ReadCameras();
+  SeedResult seed;
+  for (const auto& [name, image_id] : database.ReadImageIdsByName()) {
+    seed.image_names.push_back(name);
+  }
+  spdlog::info("registering {} images", images.size());
+  seed.registration = RegisterFrames(images, cameras, layout, options);
+  seed.model = MakeSeedModel(seed.registration, images, cameras);
+  seed.left_out = FindLeftOut(seed);
+  seed.corner_sigmas = CornerSigmasOf(images);
+  LogSeed(seed);
+  return seed;
+}
+
+std::string BesideFolder(const std::string& folder, const std::string& name) {
+  const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
+  const auto parent = absolute.parent_path();
+  return ((absolute.has_filename() ? parent : parent.parent_path()) / name).string();
+}
+
+void AdjustmentOptions::Complete(int num_threads) {
+  if (backend != "colmap" && backend != "ceres" && backend != "both") {
+    throw InputError(
+        fmt::format("--backend: '{}' is unknown; there are: colmap, ceres, both", backend));
+  }
+  colmap.Check();
+  ceres.refine_focal_length = colmap.refine_focal_length;
+  ceres.refine_principal_point = colmap.refine_principal_point;
+  ceres.refine_extra_params = colmap.refine_extra_params;
+  ceres.max_num_iterations = colmap.max_num_iterations;
+  ceres.min_track_length = colmap.min_track_length;
+  ceres.max_mean_error_px = colmap.max_mean_error_px;
+  ceres.num_threads = num_threads;
+  ceres.Check();
+}
+
+void CheckColmap(const std::string& colmap_path) {
+  if (!ColmapHasOption(colmap_path, "bundle_adjuster", "input_path")) {
+    throw ExternalToolError(
+        fmt::format("{} bundle_adjuster -h: does not know --input_path; is it "
+                    "COLMAP? (--colmap_path)",
+                    colmap_path));
+  }
+}
+
+AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& layout,
+                             const CornerSigmas& corner_sigmas, const std::string& log_path,
+                             Model* model) {
+  AdjustmentResult result;
+  if (options.UsesColmap()) result = RunColmapBackend(options.colmap, log_path, model);
+  if (options.UsesCeres()) {
+    const Statistics before_px = result.error_before_px;
+    const int num_removed = result.num_removed;
+    result = RunCeresBackend(options.ceres, layout, corner_sigmas, model);
+    if (options.UsesColmap()) result.error_before_px = before_px;
+    result.num_removed += num_removed;
+  }
+  if (result.error_after_px.mean > kSuspiciousErrorPx) {
+    spdlog::warn(
+        "a mean reprojection error of {:.2f} px is more than the noise of corners explains: is the "
+        "calibration of these images, and did the surface keep its shape? Do not trust the result",
+        result.error_after_px.mean);
+  }
+  return result;
+}
+
+void WriteAdjustedModel(const Model& model, const AdjustmentResult& result,
+                        const std::string& path) {
+  WriteModel(model, path, ModelFormat::kBinaryAndText, [&result](const std::string& folder) {
+    if (result.uncertainty) WriteUncertainty(*result.uncertainty, folder);
+  });
+}
+
+}  // namespace velamap

@@ -1,0 +1,207 @@
+#include "workflows/run/summary.h"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <limits>
+#include <ostream>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <Eigen/Eigenvalues>
+
+#include "exporters/scale/scale_audit_report.h"
+
+namespace velamap {
+namespace {
+
+constexpr std::size_t kMaxNames = 3;
+
+struct ReasonGroup {
+  std::string key;     // the reason without its numbers
+  std::string reason;  // of the first image
+  std::vector<std::string> names;
+};
+
+std::string WithoutNumbers(const std::string& text) {
+  std::string rest;
+  for (const char c : text) {
+    if (!std::isdigit(static_cast<unsigned char>(c))) rest += c;
+  }
+  return rest;
+}
+
+std::vector<ReasonGroup> GroupByReason(const std::vector<LeftOutImage>& left_out) {
+  std::vector<ReasonGroup> groups;
+  for (const LeftOutImage& image : left_out) {
+    const std::string key = WithoutNumbers(image.reason);
+    auto it = std::find_if(groups.begin(), groups.end(),
+                           [&](const ReasonGroup& group) { return group.key == key; });
+    if (it == groups.end()) it = groups.insert(it, {key, image.reason, {}});
+    it->names.push_back(image.image_name);
+  }
+  return groups;
+}
+
+std::string FirstNames(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxNames); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  return names.size() > kMaxNames ? text + ", ..." : text;
+}
+
+std::vector<Eigen::Vector3d> AllCorners(const MarkerShape& shape) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      if (marker.x_in_shape_m[corner]) points.push_back(*marker.x_in_shape_m[corner]);
+    }
+  }
+  return points;
+}
+
+// Columns are axes of unit length.
+Eigen::Matrix3d PrincipalAxes(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    scatter += (point - mean) * (point - mean).transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
+}
+
+Eigen::Matrix3d MarkerAxes(const ShapeMarker& marker) {
+  const Eigen::Vector3d normal = MarkerNormal(marker);
+  const Eigen::Vector3d side = *marker.x_in_shape_m[2] - *marker.x_in_shape_m[1];
+  Eigen::Matrix3d axes;
+  axes.col(2) = normal;
+  axes.col(0) = (side - side.dot(normal) * normal).normalized();
+  axes.col(1) = normal.cross(axes.col(0));
+  return axes;
+}
+
+std::string RangeText(const std::vector<Section>& sections, double (*value)(const Section&)) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Section& section : sections) {
+    low = std::min(low, value(section));
+    high = std::max(high, value(section));
+  }
+  return fmt::format("{:.1f} to {:.1f}", low, high);
+}
+
+// Frame, and what the lines of a sail gave.
+void PrintSail(const ShapeExportReport& report, std::ostream& out) {
+  fmt::print(out, "frame: {}\n", report.frame.name);
+  const std::vector<Section>& sections = report.sail.sections.sections;
+  if (!sections.empty()) {
+    fmt::print(out, "sections: {}; camber {} %, twist {} deg\n", sections.size(),
+               RangeText(sections, [](const Section& s) { return 100.0 * s.camber.value; }),
+               RangeText(sections, [](const Section& s) { return s.twist_deg.value; }));
+  }
+  for (const std::string& note : report.sail.sections.notes) {
+    fmt::print(out, "section_note: {}\n", note);
+  }
+  for (const MissingSection& missing : report.sail.sections.missing) {
+    fmt::print(out, "section_missing: {} {}: {}\n", missing.part, missing.name, missing.reason);
+  }
+  for (const SailSurface& surface : report.sail.surfaces) {
+    fmt::print(out, "surface: {}; {:.4g} m2, markers {:.2f} mm RMS from it\n", surface.part,
+               surface.area_m2, 1e3 * surface.fit.distance_m.rms);
+  }
+  for (const std::string& note : report.sail.surface_notes) {
+    fmt::print(out, "surface_note: {}\n", note);
+  }
+}
+
+}  // namespace
+
+std::string LeftOutText(const std::vector<LeftOutImage>& left_out) {
+  if (left_out.empty()) return "none";
+  std::string text = fmt::format("{}", left_out.size());
+  for (const ReasonGroup& group : GroupByReason(left_out)) {
+    text += fmt::format("; {}: {} ({})", group.names.size(), group.reason, FirstNames(group.names));
+  }
+  return text;
+}
+
+std::string ErrorText(const Statistics& statistics) {
+  return fmt::format("mean {:.3f}, std {:.3f}, median {:.3f}, min {:.3f}, max {:.3f}",
+                     statistics.mean, statistics.standard_deviation, statistics.median,
+                     statistics.min, statistics.max);
+}
+
+Eigen::Vector3d BoundingBox(const MarkerShape& shape) {
+  const std::vector<Eigen::Vector3d> points = AllCorners(shape);
+  if (points.empty()) return Eigen::Vector3d::Zero();
+  std::vector<Eigen::Matrix3d> candidates = {PrincipalAxes(points)};
+  for (const ShapeMarker& marker : shape.markers) {
+    if (marker.IsWhole()) candidates.push_back(MarkerAxes(marker));
+  }
+  Eigen::Vector3d best;
+  double least_surface = std::numeric_limits<double>::infinity();
+  for (const Eigen::Matrix3d& axes : candidates) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& point : points) box.extend(axes.transpose() * point);
+    const Eigen::Vector3d sides = box.sizes();
+    const double surface = sides.x() * sides.y() + sides.y() * sides.z() + sides.z() * sides.x();
+    if (surface < least_surface) {
+      least_surface = surface;
+      best = sides;
+    }
+  }
+  std::sort(best.data(), best.data() + 3, std::greater<double>());
+  return best;
+}
+
+std::string ShellQuote(const std::string& text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) ||
+           std::string("/._-+,:@%").find(static_cast<char>(c)) != std::string::npos;
+  });
+  if (plain) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
+  const ShapeMetrics& metrics = report.metrics;
+  const Eigen::Vector3d box_m = BoundingBox(report.shape);
+  out << "markers_reconstructed: " << metrics.num_markers;
+  if (metrics.num_layout_markers) out << " of " << *metrics.num_layout_markers << " in the layout";
+  out << '\n';
+  if (metrics.reconstruction_ratio) {
+    fmt::print(out, "reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);
+  }
+  const ModelMetrics& model = report.model_metrics;
+  fmt::print(out, "reprojection_error_px: {}\n", ErrorText(model.error_px));
+  fmt::print(out, "central_image_name: {}\n", model.central_image_name);
+  fmt::print(out, "central_reprojection_error_px: {}\n", ErrorText(model.central_error_px));
+  fmt::print(out, "area_error_mm2: {}\n", ErrorText(metrics.area_error_mm2));
+  fmt::print(out, "area_error_percent: {}\n", ErrorText(metrics.area_error_percent));
+  fmt::print(out, "side_error_mm: {}\n", ErrorText(metrics.side_error_mm));
+  fmt::print(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
+  fmt::print(out, "scale_spread_over_markers: {:.3f} %\n", 100.0 * report.scale.relative_spread);
+  PrintScaleAudit(report.scale, report.audit, out);
+  PrintSail(report, out);
+  fmt::print(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
+}
+
+void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
+                  std::ostream& out) {
+  fmt::print(out, "images_used: {} of {}\n", summary.num_images, summary.num_images_total);
+  fmt::print(out, "images_left_out: {}\n", LeftOutText(summary.left_out));
+  PrintShapeSummary(summary.shape, out);
+  fmt::print(out, "outliers_removed: {} of {} observations\n", summary.adjustment.num_removed,
+             summary.adjustment.error_before_px.count);
+  fmt::print(out, "shape_path: {}\n", paths.Shape().string());
+  fmt::print(out, "model_path: {}\n", paths.Model().string());
+  fmt::print(out,
+             "colmap_command: colmap gui --database_path {} --image_path {} --import_path {}\n",
+             ShellQuote(paths.Database().string()), ShellQuote(paths.Images().string()),
+             ShellQuote(paths.Model().string()));
+}
+
+}  // namespace velamap

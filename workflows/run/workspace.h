@@ -1,0 +1,64 @@
+// The folder of a whole reconstruction, laid out as COLMAP's users expect:
+//
+//   database.db  images/  sparse/seed  sparse/0 (refined, metric)  shape/  registration.csv
+//   report.html  timing.json  velamap.log  colmap.log
+
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reconstruct/model/model.h"
+
+namespace velamap {
+
+struct WorkspacePaths {
+  std::filesystem::path root;  // absolute
+
+  std::filesystem::path Database() const { return root / "database.db"; }
+  std::filesystem::path Images() const { return root / "images"; }
+  std::filesystem::path Sparse() const { return root / "sparse"; }
+  std::filesystem::path Model() const { return root / "sparse" / "0"; }
+  std::filesystem::path Shape() const { return root / "shape"; }
+  std::filesystem::path RegistrationCsv() const { return root / "registration.csv"; }
+  std::filesystem::path Report() const { return root / "report.html"; }
+  std::filesystem::path Timing() const { return root / "timing.json"; }
+  std::filesystem::path Log() const { return root / "velamap.log"; }
+  std::filesystem::path ColmapLog() const { return root / "colmap.log"; }
+};
+
+// Holds the workspace during a run. A folder that this run made is removed again, with the parents
+// that it made, unless Keep() was called: nothing stays of a run that never got to a database.
+class Workspace {
+ public:
+  // Opens an earlier workspace or makes a new one. Throws InputError: a file is there, the folder
+  // holds something that is no workspace of velamap (the input itself may lie in it), or it cannot
+  // be written.
+  Workspace(const std::string& path, const std::string& image_path);
+  ~Workspace();
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  const WorkspacePaths& paths() const { return paths_; }
+  void Keep() { first_made_.reset(); }
+
+ private:
+  WorkspacePaths paths_;
+  std::optional<std::filesystem::path> first_made_;  // topmost folder that this run made
+};
+
+// Adds the images of the model to images/. Photographs are hard-linked from `image_path`, or copied
+// where that cannot be, sub-folders kept. Frames of a video are there since the import; a later run
+// that selects other frames finds some cleared away, and warns. Throws InputError if the folder
+// cannot be written.
+void AddModelImages(const Model& model, const std::string& image_path,
+                    const std::filesystem::path& images_path);
+
+// Removes images that are in the database but not in the model, as long as nothing is lost by it:
+// frames of a video, and photographs whose original is at `image_path`.
+void RemoveOtherImages(const Model& model, const std::vector<std::string>& database_names,
+                       const std::string& image_path, const std::filesystem::path& images_path);
+
+}  // namespace velamap
