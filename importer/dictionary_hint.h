@@ -8,7 +8,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 
 namespace velamap {
 

@@ -7,12 +7,12 @@
 #include <mutex>
 #include <optional>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/parallel.h"
 #include "importer/camera/calibration.h"
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
@@ -30,15 +30,6 @@ namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
-
-int NumThreads(int num_threads) {
-  if (num_threads < 0) {
-    throw InputError(
-        fmt::format("--num_threads: {} is negative; give 0 for one a core", num_threads));
-  }
-  if (num_threads > 0) return num_threads;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
 
 std::string ProgressLine(const FrameResult& result) {
   const FrameDetections& detections = result.detections;
@@ -260,6 +251,10 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   TakeStageTimes();  // of an earlier call on this thread
   options.detection.Check();
   options.video.Check();
+  if (options.num_threads < 0) {
+    throw InputError(
+        fmt::format("--num_threads: {} is negative; give 0 for one a core", options.num_threads));
+  }
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;
   if (fs::is_directory(options.image_path)) detection.search = SearchMode::kExhaustive;

@@ -8,9 +8,10 @@
 
 #include "importer/base/stage_timer.h"
 #include "importer/camera/camera.h"
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
+#include "importer/video/video_options.h"
 
 namespace velamap {
 

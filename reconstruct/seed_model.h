@@ -8,7 +8,7 @@
 
 #include "importer/database/colmap_database.h"
 #include "reconstruct/model/model.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/registration/registration.h"
 
 namespace velamap {
 

@@ -9,7 +9,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 #include "importer/detect/marker_quad.h"
 #include "importer/layout/dictionary.h"
 

@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/detect/detection.h"
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 #include "importer/detect/marker_search.h"
 #include "importer/layout/dictionary.h"
 

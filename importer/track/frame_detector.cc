@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "importer/detect/corner_colors.h"
 #include "importer/detect/duplicates.h"
 #include "importer/detect/marker_search.h"
 #include "importer/refine/marker_detector.h"

@@ -12,7 +12,7 @@
 
 #include "importer/camera/camera.h"
 #include "importer/detect/detection.h"
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 #include "importer/detect/marker_alignment.h"
 #include "importer/detect/marker_quad.h"
 #include "importer/detect/rotation_ambiguity.h"

@@ -10,8 +10,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "importer/detect/detection.h"
-#include "importer/detect/import_options.h"
+#include "importer/video/video_options.h"
 #include "importer/video/video_picture.h"
 
 namespace velamap {
@@ -21,7 +20,7 @@ struct Frame {
   std::optional<int> frame_number;  // video only, zero-based
   std::optional<double> time_s;     // video only
   // Pixels are never rotated by metadata, as COLMAP reads them. A video's colours are converted
-  // where they are asked for only: see ColorImage() and AddColors().
+  // only where they are asked for: see ColorImage() and detect/corner_colors.h.
   cv::Mat gray;                         // 8 bit, once the frame is loaded
   cv::Mat color;                        // images only: BGR, 8 bit, once loaded
   std::optional<VideoPicture> picture;  // video only
@@ -30,9 +29,6 @@ struct Frame {
 
 // The whole frame, BGR, 8 bit.
 cv::Mat ColorImage(const Frame& frame);
-
-// Fills in the colours of all detections: of the pixel in which each corner lies.
-void AddColors(const Frame& frame, FrameDetections* detections);
 
 class FrameSource {
  public:

@@ -9,7 +9,6 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
-#include "reconstruct/frame_order.h"
 #include "reconstruct/global/global_registration_report.h"
 #include "reconstruct/global/global_registration_state.h"
 #include "reconstruct/global/map_adjustment.h"
@@ -18,6 +17,7 @@
 #include "reconstruct/global/map_start.h"
 #include "reconstruct/global/map_verdict.h"
 #include "reconstruct/global/view_selection.h"
+#include "reconstruct/registration/frame_order.h"
 
 namespace velamap {
 namespace {
@@ -30,7 +30,7 @@ void ChooseFrames(GlobalRegistration* global) {
   constexpr int kCandidatesPerFrame = 2;
   std::vector<int> chosen(global->images.size());
   std::iota(chosen.begin(), chosen.end(), 0);
-  const int max_num_candidates = kCandidatesPerFrame * global->options.max_num_frames;
+  const int max_num_candidates = kCandidatesPerFrame * global->options.global.max_num_frames;
   if (global->is_video && static_cast<int>(chosen.size()) > max_num_candidates) {
     chosen = ChooseCandidateFrames(global->images, max_num_candidates);
     const auto place = std::lower_bound(chosen.begin(), chosen.end(), global->central_image_idx);
@@ -70,7 +70,7 @@ MapSolution HoldContest(const GlobalRegistration& global) {
   constexpr double kSame = 0.01;
   const MapProblem& problem = global.problem;
   const std::vector<int> frame_idxs = ContestFrames(global);
-  const auto pairs = ChooseStartPairs(problem, frame_idxs, global.options.num_starts,
+  const auto pairs = ChooseStartPairs(problem, frame_idxs, global.options.global.num_starts,
                                       global.options.min_num_inliers);
   MapSolution best = EmptySolution(problem);
   double most_explained = 0.0;

@@ -11,7 +11,8 @@
 #include <map>
 #include <vector>
 
-#include "reconstruct/registration.h"
+#include "reconstruct/registration/registration.h"
+#include "reconstruct/registration/registration_options.h"
 
 namespace velamap {
 

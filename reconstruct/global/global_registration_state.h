@@ -9,7 +9,8 @@
 #include "reconstruct/global/map_growth.h"
 #include "reconstruct/global/map_problem.h"
 #include "reconstruct/global/map_verdict.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/registration/registration.h"
+#include "reconstruct/registration/registration_options.h"
 
 namespace velamap {
 

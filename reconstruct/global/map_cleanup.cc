@@ -132,7 +132,8 @@ void LeaveOutBlurredFrames(GlobalRegistration* global) {
 
 void LimitFrames(GlobalRegistration* global) {
   const MapProblem& problem = global->problem;
-  if (!global->is_video || global->solution.NumRegistered() <= global->options.max_num_frames) {
+  if (!global->is_video ||
+      global->solution.NumRegistered() <= global->options.global.max_num_frames) {
     return;
   }
   std::vector<double> sigma_of_frame;
@@ -149,7 +150,7 @@ void LimitFrames(GlobalRegistration* global) {
     }
   }
   const std::vector<int> chosen = ChooseViews(problem, global->solution, sigma_of_frame, first_idx,
-                                              global->options.max_num_frames);
+                                              global->options.global.max_num_frames);
   for (int idx = 0; idx < static_cast<int>(problem.frames.size()); ++idx) {
     if (global->solution.cam_from_shape[static_cast<std::size_t>(idx)] &&
         !std::binary_search(chosen.begin(), chosen.end(), idx)) {

@@ -3,16 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "reconstruct/geometry/frame_shape.h"
 
 namespace velamap {
-
-// Points by marker id in the frame of the shape that others are aligned with, m.
-using ShapePoints = std::map<int, MarkerPoints>;
 
 struct FrameAlignmentOptions {
   // A marker further than this from its place in the shape is an outlier, m. 0: the marker's own

@@ -1,6 +1,6 @@
 #include "reconstruct/thesis/posed_images.h"
 
-#include "reconstruct/frame_order.h"
+#include "reconstruct/registration/frame_order.h"
 
 namespace velamap {
 

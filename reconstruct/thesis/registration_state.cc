@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "reconstruct/thesis/shape_averaging.h"
+
 namespace velamap {
 namespace {
 
@@ -35,8 +37,8 @@ std::map<int, std::vector<MarkerSolutions>> CollectSolutions(const RegistrationS
 }
 
 void AverageShape(RegistrationState* state) {
-  const ShapeAveragingOptions averaging{state->options.num_mean_iterations,
-                                        state->options.mean_sigma_m};
+  const ShapeAveragingOptions averaging{state->options.thesis.num_mean_iterations,
+                                        state->options.thesis.mean_sigma_m};
   state->shape.clear();
   for (const auto& [marker_id, solutions] : CollectSolutions(*state)) {
     state->shape.emplace(marker_id, AverageMarker(solutions, averaging));
@@ -53,7 +55,7 @@ void StartAtCentralFrame(int central_idx, RegistrationState* state) {
 
 FrameAlignmentOptions RegistrationState::AlignmentOptions() const {
   FrameAlignmentOptions alignment;
-  alignment.ransac_max_error_m = options.ransac_max_error_m;
+  alignment.ransac_max_error_m = options.thesis.ransac_max_error_m;
   alignment.min_num_inliers = options.min_num_inliers;
   alignment.random_seed = static_cast<std::uint32_t>(options.random_seed);
   return alignment;

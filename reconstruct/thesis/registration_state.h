@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "reconstruct/registration.h"
+#include "importer/layout/layout.h"
+#include "reconstruct/registration/registration_options.h"
 #include "reconstruct/thesis/frame_selection.h"
 
 namespace velamap {

@@ -12,7 +12,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 #include "importer/layout/dictionary.h"
 
 int main(int argc, char** argv) {

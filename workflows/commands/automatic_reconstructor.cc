@@ -21,7 +21,7 @@
 #include "workflows/run/summary.h"
 #include "workflows/run/versions.h"
 #include "workflows/run/workspace.h"
-#include "workflows/version.h"
+#include "workflows/run/version.h"
 
 namespace velamap {
 namespace {

@@ -3,7 +3,7 @@
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_parser.h"
 #include "workflows/run/versions.h"
-#include "workflows/version.h"
+#include "workflows/run/version.h"
 
 namespace velamap {
 void RunVersion(const Arguments& arguments) {

@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
+#include "importer/video/video_options.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/registration/registration_options.h"
 #include "workflows/options/option_parser.h"
 
 namespace velamap {

@@ -22,6 +22,7 @@
 #include "reconstruct/colmap/warm_start.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/seed_model.h"
+#include "reconstruct/thesis/thesis_registration.h"
 
 namespace velamap {
 namespace {
@@ -116,7 +117,8 @@ class Sweep {
   void Reconstruct(SweepRow* row) {
     RegistrationOptions registration_options = options_.registration;
     registration_options.central_frame = row->image_name;
-    const Registration registration = RegisterPosedImages(posed_, layout_, registration_options);
+    const Registration registration =
+        RegisterAroundCentralFrame(posed_, layout_, registration_options);
     Model model = MakeSeedModel(registration, images_, cameras_);
     if (options_.warm_start && adjusted_) {
       row->is_warm = StartFromAdjusted(*adjusted_, &model).num_points > 0;

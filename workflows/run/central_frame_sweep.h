@@ -14,7 +14,8 @@
 #include "exporters/scale/model_metrics.h"
 #include "exporters/shape/shape_metrics.h"
 #include "importer/layout/layout.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/registration/registration_options.h"
+#include "reconstruct/thesis/posed_images.h"
 #include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
 

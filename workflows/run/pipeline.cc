@@ -130,7 +130,8 @@ VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions&
     return video;
   }
   const auto [first, last] = ReachableFrames(
-      number, {registration.num_frames, registration.skip, registration.neighborhood});
+      number,
+      {registration.thesis.num_frames, registration.thesis.skip, registration.thesis.neighborhood});
   VideoOptions narrowed = video;
   // In steps from the first frame, so that the frames that are read stay the same.
   const int skipped = std::max(0, first - video.first_frame);

@@ -11,7 +11,7 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/model/model.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/register_frames.h"
 
 namespace velamap {
 

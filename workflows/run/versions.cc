@@ -2,7 +2,7 @@
 
 #include "importer/base/error.h"
 #include "reconstruct/colmap/colmap_runner.h"
-#include "workflows/version.h"
+#include "workflows/run/version.h"
 
 namespace velamap {
 namespace {

@@ -5,7 +5,7 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
 #include "tests/reconstruct/registration_fixture.h"
 
@@ -16,7 +16,7 @@ class WarmStartTest : public testing::Test {
  protected:
   WarmStartTest() {
     SyntheticSceneOptions options;
-    options.num_frames = 60;
+    options.thesis.num_frames = 60;
     scene_ = MakeSyntheticScene(options);
     AddNoise({0.2, 0.05, 0.005, 200, 3}, &scene_);
     images_ = DatabaseImages(scene_);
@@ -27,11 +27,11 @@ class WarmStartTest : public testing::Test {
   Registration Register(int central_frame) const {
     RegistrationOptions options;
     options.method = RegistrationMethod::kThesis;
-    options.num_frames = 6;
-    options.skip = 4;
-    options.neighborhood = 1;
+    options.thesis.num_frames = 6;
+    options.thesis.skip = 4;
+    options.thesis.neighborhood = 1;
     options.central_frame = std::to_string(central_frame);
-    return RegisterPosedImages(posed_, scene_.layout, options);
+    return RegisterAroundCentralFrame(posed_, scene_.layout, options);
   }
 
   Model Seed(int central_frame) const {

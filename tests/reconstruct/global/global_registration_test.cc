@@ -378,7 +378,7 @@ TEST(GlobalRegistration, OfALongVideoTheBestFramesAreKept) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
   BlurFrames(2.0, 6, &scene);
   RegistrationOptions options;
-  options.max_num_frames = 12;
+  options.global.max_num_frames = 12;
   options.central_frame = "31";
   const Registration registration = Register(scene, options);
   EXPECT_EQ(registration.NumRegistered(), 12);

@@ -10,7 +10,7 @@
 
 #include "importer/database/correspondence.h"
 #include "reconstruct/model/model_io.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
 #include "tests/workflows/interop/colmap_tools.h"
 #include "tests/workflows/run_velamap.h"

@@ -12,7 +12,7 @@
 
 #include "importer/geometry/alignment.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
 #include "tests/workflows/interop/colmap_tools.h"
 

@@ -36,9 +36,9 @@ class CentralFrameSweepTest : public testing::Test {
     }
     transaction.Commit();
     options_.registration.method = RegistrationMethod::kThesis;
-    options_.registration.num_frames = 6;
-    options_.registration.skip = 4;
-    options_.registration.neighborhood = 1;
+    options_.registration.thesis.num_frames = 6;
+    options_.registration.thesis.skip = 4;
+    options_.registration.thesis.neighborhood = 1;
     options_.adjustment.backend = "ceres";
     options_.adjustment.Complete(1);
   }

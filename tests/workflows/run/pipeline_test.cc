@@ -10,9 +10,9 @@ namespace {
 RegistrationOptions Around(const std::string& central_frame) {
   RegistrationOptions options;
   options.central_frame = central_frame;
-  options.num_frames = 3;
-  options.skip = 10;
-  options.neighborhood = 5;
+  options.thesis.num_frames = 3;
+  options.thesis.skip = 10;
+  options.thesis.neighborhood = 5;
   options.method = RegistrationMethod::kThesis;
   return options;
 }

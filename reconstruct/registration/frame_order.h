@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "importer/database/colmap_database.h"
-#include "reconstruct/registration.h"
+#include "reconstruct/registration/registration_options.h"
 
 namespace velamap {
 

@@ -1,11 +1,10 @@
-#include "reconstruct/registration.h"
+#include "reconstruct/thesis/thesis_registration.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "importer/base/error.h"
-#include "reconstruct/frame_order.h"
-#include "reconstruct/global/global_registration.h"
+#include "reconstruct/registration/frame_order.h"
 #include "reconstruct/thesis/frame_selection.h"
 #include "reconstruct/thesis/registration_state.h"
 
@@ -116,61 +115,28 @@ void ReturnToCentralFrame(int central_idx, RegistrationState* state) {
 
 }  // namespace
 
-void RegistrationOptions::Check() const {
-  const auto require = [](bool ok, const std::string& option, const std::string& expected) {
-    if (!ok) throw InputError("--Registration." + option + ": expected " + expected);
-  };
-  require(num_frames >= 0, "num_frames", "0 (the central frame alone) or more");
-  require(skip >= 1, "skip", "at least 1");
-  require(neighborhood >= 0, "neighborhood", "0 or more");
-  require(ransac_max_error_m >= 0, "ransac_max_error", "0 (the marker's side) or a distance in m");
-  require(min_num_inliers >= 2, "min_num_inliers", "at least 2");
-  require(frequency_threshold >= 0 && frequency_threshold <= 1, "frequency_threshold",
-          "a fraction between 0 and 1");
-  require(min_num_frames >= 2, "min_num_frames", "at least 2");
-  require(num_mean_iterations >= 0, "num_mean_iterations", "0 or more");
-  require(mean_sigma_m > 0, "mean_sigma", "a positive distance in m");
-  require(max_num_frames >= 3, "max_num_frames", "at least 3");
-  require(num_starts >= 1, "num_starts", "at least 1");
-}
-
-int Registration::NumRegistered() const {
-  return static_cast<int>(std::count_if(frames.begin(), frames.end(), [](const auto& frame) {
-    return frame.cam_from_shape.has_value();
-  }));
-}
-
-Registration RegisterFrames(const std::vector<DatabaseImage>& images,
-                            const std::map<CameraId, Camera>& cameras, const Layout& layout,
-                            const RegistrationOptions& options) {
-  options.Check();
-  if (options.method == RegistrationMethod::kGlobal) {
-    return RegisterFramesGlobally(images, cameras, layout, options);
-  }
-  return RegisterPosedImages(PoseImages(images, cameras, layout), layout, options);
-}
-
-Registration RegisterPosedImages(const PosedImages& posed, const Layout& layout,
-                                 const RegistrationOptions& options) {
+Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& layout,
+                                        const RegistrationOptions& options) {
   options.Check();
   VELAMAP_CHECK(options.method == RegistrationMethod::kThesis);
   RegistrationState state{layout, options, posed.frames, posed.cameras, {}, {}};
   const std::vector<const DatabaseImage*>& ordered = posed.images;
   const bool time_order = UseTimeOrder(ordered, options.frame_order);
-  const int min_num_registered = time_order && options.num_frames == 0 ? 1 : 2;
+  const int min_num_registered = time_order && options.thesis.num_frames == 0 ? 1 : 2;
   if (static_cast<int>(state.frames.size()) < min_num_registered) {
     throw DataError("a shape needs at least two images with markers, the database has " +
                     std::to_string(state.frames.size()) + "; take pictures from several positions");
   }
 
   Registration registration;
-  FrameSearchOptions search{options.num_frames, options.skip, options.neighborhood};
+  FrameSearchOptions search{options.thesis.num_frames, options.thesis.skip,
+                            options.thesis.neighborhood};
   std::optional<CentralFrame> central;
   if (!options.central_frame.empty()) {
     central = CentralFrame{FindCentralFrame(ordered, options), "named by option"};
   }
   if (time_order) {
-    if (options.num_frames > 0) {
+    if (options.thesis.num_frames > 0) {
       search = FitSearch(state.frames, central, search, &registration.notes);
     }
     if (!central) central = ChooseCentralVideoFrame(state.frames, search);
@@ -203,9 +169,9 @@ Registration RegisterPosedImages(const PosedImages& posed, const Layout& layout,
   }
   registration.shape = std::move(state.shape);
   const int by_frequency =
-      time_order
-          ? static_cast<int>(std::ceil(options.frequency_threshold * registration.NumRegistered()))
-          : 0;
+      time_order ? static_cast<int>(
+                       std::ceil(options.thesis.frequency_threshold * registration.NumRegistered()))
+                 : 0;
   const int min_num_frames = std::min(options.min_num_frames, registration.NumRegistered());
   DropRareMarkers(std::max(min_num_frames, by_frequency), &registration);
   return registration;

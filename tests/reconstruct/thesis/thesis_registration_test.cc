@@ -1,4 +1,4 @@
-#include "reconstruct/registration.h"
+#include "reconstruct/register_frames.h"
 
 #include <algorithm>
 #include <random>

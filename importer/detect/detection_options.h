@@ -1,4 +1,4 @@
-// Options of detection and of reading a video, free of OpenCV so that every room may hold them.
+// Options of detection, free of OpenCV so that every room may hold them.
 
 #pragma once
 
@@ -33,14 +33,6 @@ struct ArucoDetectionOptions {
   bool inverted = false;                     // white marker on black ground
   SearchMode search = SearchMode::kTracked;  // of videos; photographs are searched as a whole
   int full_search_interval = 15;             // tracked: the whole of every k-th frame that is read
-
-  void Check() const;  // throws InputError that names the option
-};
-
-struct VideoOptions {
-  int first_frame = 0;  // zero-based
-  int last_frame = -1;  // -1: to the end
-  int frame_step = 1;   // every k-th frame
 
   void Check() const;  // throws InputError that names the option
 };

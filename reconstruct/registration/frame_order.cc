@@ -1,4 +1,4 @@
-#include "reconstruct/frame_order.h"
+#include "reconstruct/registration/frame_order.h"
 
 #include <algorithm>
 

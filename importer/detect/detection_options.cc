@@ -1,4 +1,4 @@
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 
 #include <array>
 #include <utility>
@@ -65,22 +65,6 @@ void ArucoDetectionOptions::Check() const {
     throw InputError(
         fmt::format("--ArucoDetection.full_search_interval: {} is too small; give 1 or more",
                     full_search_interval));
-  }
-}
-
-void VideoOptions::Check() const {
-  if (first_frame < 0) {
-    throw InputError(
-        fmt::format("--Video.first_frame: {} is negative; give 0 or more", first_frame));
-  }
-  if (last_frame < -1 || (last_frame >= 0 && last_frame < first_frame)) {
-    throw InputError(fmt::format(
-        "--Video.last_frame: {} is before the first frame {}; give -1 for the end of the video",
-        last_frame, first_frame));
-  }
-  if (frame_step < 1) {
-    throw InputError(
-        fmt::format("--Video.frame_step: {} is too small; give 1 or more", frame_step));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "importer/detect/import_options.h"
+#include "importer/detect/detection_options.h"
 
 #include <cmath>
 
@@ -41,15 +41,6 @@ TEST(ArucoDetectionOptions, CheckNamesTheOption) {
   options = {};
   options.full_search_interval = 0;
   ExpectThrows<InputError>([&] { options.Check(); }, {"--ArucoDetection.full_search_interval"});
-}
-
-TEST(VideoOptions, CheckNamesTheOption) {
-  EXPECT_NO_THROW(VideoOptions().Check());
-  EXPECT_NO_THROW((VideoOptions{5, 5, 1}.Check()));
-  ExpectThrows<InputError>([] { VideoOptions{-1, -1, 1}.Check(); }, {"--Video.first_frame"});
-  ExpectThrows<InputError>([] { VideoOptions{5, 4, 1}.Check(); }, {"--Video.last_frame"});
-  ExpectThrows<InputError>([] { VideoOptions{0, -2, 1}.Check(); }, {"--Video.last_frame"});
-  ExpectThrows<InputError>([] { VideoOptions{0, -1, 0}.Check(); }, {"--Video.frame_step"});
 }
 
 }  // namespace

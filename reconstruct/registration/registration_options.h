@@ -1,0 +1,57 @@
+// Options of the registration: what both methods share, and what each one adds.
+
+#pragma once
+
+#include <string>
+
+namespace velamap {
+
+enum class RegistrationMethod {
+  kThesis,  // rigid alignment of single-marker poses around one central frame
+  kGlobal,  // resection of all frames against a map that grows from several starts
+};
+
+enum class FrameOrder {
+  kAuto,       // time where all images carry frame numbers, else none
+  kTime,       // thesis search around the central frame
+  kUnordered,  // growing from the central frame
+};
+
+// Thesis, sections 3.4 and 3.5, with its symbols.
+struct ThesisRegistrationOptions {
+  // n, frames on each side of the central one (time order). 0: the central frame alone, whose
+  // single marker poses are then the shape (the detection that thesis 4.1 examines).
+  int num_frames = 20;
+  int skip = 10;                     // s, frames between selected ones (time order)
+  int neighborhood = 5;              // m, frames on each side of the skip that compete (time order)
+  double ransac_max_error_m = 0.0;   // 0: the marker's side (the thesis's 100 mm)
+  double frequency_threshold = 0.3;  // beta, part of the selected frames that see a marker (time)
+  int num_mean_iterations = 30;
+  double mean_sigma_m = 0.6;
+
+  void Check() const;  // throws InputError that names the option
+};
+
+struct GlobalRegistrationOptions {
+  // Frames of a video that take part, chosen for what they add to the precision of all markers. All
+  // photographs take part.
+  int max_num_frames = 80;
+  int num_starts = 4;  // pairs of frames from which a map is grown before the best map is kept
+
+  void Check() const;  // throws InputError that names the option
+};
+
+struct RegistrationOptions {
+  RegistrationMethod method = RegistrationMethod::kGlobal;
+  FrameOrder frame_order = FrameOrder::kAuto;
+  std::string central_frame;  // image name or frame number; empty: the best one is chosen
+  int min_num_inliers = 2;    // fewest shared markers that agree for a frame to be registered
+  int min_num_frames = 2;     // fewest frames that see a marker
+  int random_seed = 0;
+  ThesisRegistrationOptions thesis;
+  GlobalRegistrationOptions global;
+
+  void Check() const;  // throws InputError that names the option
+};
+
+}  // namespace velamap

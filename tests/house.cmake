@@ -1,0 +1,68 @@
+# The folders of the house in the order of the data: a file includes its own folder and those above
+# it in this list, never one below. PUBLIC names the headers that other folders include; all other
+# headers of a folder are its own. tests/house_test.cmake holds the code to this list.
+
+house_folder(importer/base PUBLIC
+  atomic_output bounded_queue csv error ids natural_order parallel stage_timer statistics text_file
+  yaml_item)
+house_folder(importer/geometry PUBLIC
+  alignment consensus_pose pose_step quad rigid3 triple_pose unit_square_map)
+house_folder(importer/camera PUBLIC
+  calibration camera camera_projection)
+house_folder(importer/layout PUBLIC
+  dictionary frame_choice layout prior_shape)
+house_folder(importer/video PUBLIC
+  frame_image frame_source image_file video_options)
+house_folder(importer/detect PUBLIC
+  corner_colors detection detection_options duplicates interpolate marker_alignment
+  marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
+house_folder(importer/refine PUBLIC
+  marker_detector)
+house_folder(importer/track PUBLIC
+  frame_detector marker_tracking)
+house_folder(importer/database PUBLIC
+  colmap_database correspondence database_writer)
+house_folder(importer PUBLIC
+  marker_importer)
+house_folder(reconstruct/geometry PUBLIC
+  covariance_update frame_shape marker_pose point_covariance)
+house_folder(reconstruct/model PUBLIC
+  adjustment_uncertainty gauge model model_io reprojection)
+house_folder(reconstruct/solve PUBLIC
+  double_lanes gram_matrix schur_problem schur_solver)
+house_folder(reconstruct/registration PUBLIC
+  frame_order registration registration_options)
+house_folder(reconstruct/thesis PUBLIC
+  frame_selection posed_images thesis_registration)
+house_folder(reconstruct/global PUBLIC
+  global_registration)
+house_folder(reconstruct/colmap PUBLIC
+  bundle_adjustment colmap_runner observation_filter warm_start)
+house_folder(reconstruct/adjust PUBLIC
+  marker_adjustment)
+house_folder(reconstruct PUBLIC
+  register_frames seed_model)
+house_folder(exporters/shape PUBLIC
+  adjacent_distances joint_covariance known_distances marker_shape part_planes sail_lines
+  shape_frame shape_metrics shape_sigma)
+house_folder(exporters/formats PUBLIC
+  cad_writer diverging_color mesh_reader mesh_triangles mesh_writer metrics_report
+  ply_writer shape_csv surface_spline)
+house_folder(exporters/scale PUBLIC
+  metric_scale metric_shape model_metrics scale_audit scale_audit_report scale_csv)
+house_folder(exporters/sail PUBLIC
+  sail_shape section section_writer surface surface_csv)
+house_folder(exporters/compare PUBLIC
+  comparison_ply comparison_report comparison_sigma shape_comparison surface_comparison)
+house_folder(exporters/report PUBLIC
+  report_sail report_writer)
+house_folder(exporters PUBLIC
+  shape_exporter shape_report)
+house_folder(workflows/run PUBLIC
+  central_frame_sweep logging pipeline progress stage_times summary version versions
+  workspace)
+house_folder(workflows/options PUBLIC
+  option_parser sail_options shared_options)
+house_folder(workflows/commands PUBLIC
+  commands)
+house_folder(workflows)
