@@ -3,7 +3,7 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue csv error ids natural_order parallel stage_timer statistics text_file
+  atomic_output bounded_queue csv error ids natural_order option parallel stage_timer statistics text_file
   yaml_item)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose pose_step quad rigid3 triple_pose unit_square_map)
@@ -37,9 +37,9 @@ house_folder(reconstruct/thesis PUBLIC
 house_folder(reconstruct/global PUBLIC
   global_registration)
 house_folder(reconstruct/colmap PUBLIC
-  bundle_adjustment colmap_runner observation_filter warm_start)
+  bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/adjust PUBLIC
-  marker_adjustment)
+  marker_adjustment marker_adjustment_options)
 house_folder(reconstruct PUBLIC
   register_frames seed_model)
 house_folder(exporters/shape PUBLIC
@@ -51,7 +51,7 @@ house_folder(exporters/formats PUBLIC
 house_folder(exporters/scale PUBLIC
   metric_scale metric_shape model_metrics scale_audit scale_audit_report scale_csv)
 house_folder(exporters/sail PUBLIC
-  sail_shape section section_writer surface surface_csv)
+  sail_shape section section_options section_writer surface surface_csv surface_options)
 house_folder(exporters/compare PUBLIC
   comparison_ply comparison_report comparison_sigma shape_comparison surface_comparison)
 house_folder(exporters/report PUBLIC

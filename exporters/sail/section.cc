@@ -294,23 +294,6 @@ SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& u
 
 }  // namespace
 
-void SectionOptions::Check() const {
-  constexpr std::size_t kMaxHeights = 500;
-  if (heights_m.size() > kMaxHeights) {
-    throw InputError(
-        fmt::format("{} section heights: at most {} are drawn", heights_m.size(), kMaxHeights));
-  }
-  for (const double height_m : heights_m) {
-    if (!std::isfinite(height_m)) {
-      throw InputError(fmt::format("section height {}: a number of metres is expected", height_m));
-    }
-  }
-  if (min_markers < 4) {
-    throw InputError(
-        fmt::format("min_markers {}: a section needs at least 4 markers", min_markers));
-  }
-}
-
 SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
                               const Layout& layout, const PointCovariance* covariance,
                               const SectionOptions& options) {

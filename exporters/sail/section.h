@@ -23,6 +23,7 @@
 
 #include <Eigen/Core>
 
+#include "exporters/sail/section_options.h"
 #include "exporters/sail/section_spline.h"
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_frame.h"
@@ -77,14 +78,6 @@ struct SectionReport {
   // that is not there.
   std::vector<std::string> notes;
   std::string twist_reference;  // "boom" or "lowest section"
-};
-
-struct SectionOptions {
-  std::vector<double> heights_m;  // of more sections, z in the frame
-  int min_markers = 4;            // whole ones on a line
-
-  // Throws InputError: a height that is no number, more than 500 of them, fewer than four markers.
-  void Check() const;
 };
 
 // `shape` and `covariance` (null: none) are in `frame`: MoveShape and RotateCovariance come first.

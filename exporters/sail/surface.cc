@@ -183,33 +183,6 @@ void CheckThatItIsCalm(const Given& given, const SurfaceOptions& options,
 
 }  // namespace
 
-void SurfaceOptions::Check() const {
-  if (default_sigma_m && !(*default_sigma_m >= 0 && std::isfinite(*default_sigma_m))) {
-    throw InputError(
-        fmt::format("the surface's default sigma is {} m; it must be 0 (interpolate) or more",
-                    *default_sigma_m));
-  }
-  const auto check_edge = [](const char* name, double extension_m,
-                             const std::vector<Eigen::Vector3d>& edge) {
-    if (!(extension_m >= 0 && std::isfinite(extension_m))) {
-      throw InputError(fmt::format(
-          "the surface's extension at the {} is {} m; it must be 0 or more", name, extension_m));
-    }
-    if (edge.size() == 1) {
-      throw InputError(fmt::format("the {} edge has one point; two or more are needed", name));
-    }
-    if (!edge.empty() && extension_m > 0) {
-      throw InputError(fmt::format(
-          "the surface shall go {} m beyond the {} and end at its edge; give one of the two",
-          extension_m, name));
-    }
-  };
-  check_edge("luff", luff_extension_m, edges.luff);
-  check_edge("leech", leech_extension_m, edges.leech);
-  check_edge("foot", foot_extension_m, edges.foot);
-  check_edge("head", head_extension_m, edges.head);
-}
-
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options) {
   options.Check();
   const Given given = SortInput(input);

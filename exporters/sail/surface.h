@@ -24,27 +24,10 @@
 
 #include "exporters/formats/surface_spline.h"
 #include "exporters/sail/surface_input.h"
+#include "exporters/sail/surface_options.h"
 #include "importer/base/statistics.h"
 
 namespace velamap {
-
-struct SurfaceOptions {
-  // Of markers without a sigma. Nothing: the median of the others; where no marker has one,
-  // cross-validation finds the noise (of 30 markers or more; fewer are interpolated).
-  // 0: the surface passes through all markers.
-  std::optional<double> default_sigma_m;
-  // The surface goes on by this much beyond the outer markers, with the curvature it has there.
-  double luff_extension_m = 0.0;
-  double leech_extension_m = 0.0;
-  double foot_extension_m = 0.0;
-  double head_extension_m = 0.0;
-  // Or it goes on to these edges.
-  SurfaceEdges edges;
-
-  // Throws InputError: a negative sigma or extension, an edge of one point, an edge that is both
-  // given and extended.
-  void Check() const;
-};
 
 struct SurfaceResidual {
   int marker_id = 0;

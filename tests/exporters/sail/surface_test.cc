@@ -347,7 +347,7 @@ TEST(Surface, BadOptionsAreNamed) {
   };
   SurfaceOptions negative, single, both, sigma;
   negative.head_extension_m = -0.1;
-  check(negative, "extension at the head is -0.1 m");
+  check(negative, "--Surface.head_extension: -0.1 is out of range");
   single.edges.luff = {{0, 0, 0}};
   check(single, "luff edge has one point");
   both.edges.foot = {{0, 0, -1}, {3, 0, -1}};
