@@ -39,7 +39,7 @@ house_folder(reconstruct/global PUBLIC
 house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/adjust PUBLIC
-  marker_adjustment marker_adjustment_options)
+  marker_adjustment)
 house_folder(reconstruct PUBLIC
   register_frames seed_model)
 house_folder(exporters/shape PUBLIC
@@ -51,7 +51,7 @@ house_folder(exporters/formats PUBLIC
 house_folder(exporters/scale PUBLIC
   metric_scale metric_shape model_metrics scale_audit scale_audit_report scale_csv)
 house_folder(exporters/sail PUBLIC
-  sail_shape section section_options section_writer surface surface_csv surface_options)
+  sail_shape section section_writer surface surface_csv)
 house_folder(exporters/compare PUBLIC
   comparison_ply comparison_report comparison_sigma shape_comparison surface_comparison)
 house_folder(exporters/report PUBLIC

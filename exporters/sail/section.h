@@ -23,10 +23,10 @@
 
 #include <Eigen/Core>
 
-#include "exporters/sail/section_options.h"
 #include "exporters/sail/section_spline.h"
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_frame.h"
+#include "importer/base/option.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/geometry/point_covariance.h"
 
@@ -79,6 +79,15 @@ struct SectionReport {
   std::vector<std::string> notes;
   std::string twist_reference;  // "boom" or "lowest section"
 };
+
+struct SectionOptions {
+  std::vector<double> heights_m;  // of sections besides the lines, z in the frame; finite
+  int min_markers = 4;            // whole ones on a line
+
+  void Check() const;  // throws InputError that names the option
+};
+
+OptionGroup DescribeOptions(SectionOptions* options);
 
 // `shape` and `covariance` (null: none) are in `frame`: MoveShape and RotateCovariance come first.
 // Throws InputError for bad options only; what cannot be computed is in the report.
