@@ -62,7 +62,7 @@ house_folder(workflows/run PUBLIC
   central_frame_sweep logging pipeline progress stage_times summary version versions
   workspace)
 house_folder(workflows/options PUBLIC
-  option_parser sail_options shared_options)
+  nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC
   commands)
 house_folder(workflows)

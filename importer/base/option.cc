@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 
@@ -59,6 +60,10 @@ std::string OptionName(const OptionGroup& group, const void* member) {
                    [member](const Option& known) { return MemberOf(known.target) == member; });
   VELAMAP_CHECK(option != group.options.end());
   return "--" + option->name;
+}
+
+void WarnOfOldName(const std::string& given, const std::string& name) {
+  spdlog::warn("{}: an old name; write {}", given, name);
 }
 
 std::string JoinChoices(const std::vector<std::string>& names) {

@@ -88,6 +88,9 @@ std::string OptionName(Member Options::*member) {
   return OptionName(DescribeOptions(&options), &(options.*member));
 }
 
+// Logs that `given` is an old name, still understood, of `name`.
+void WarnOfOldName(const std::string& given, const std::string& name);
+
 // Index of the name that is `text`. Throws InputError that begins with `option` and lists the
 // names.
 std::size_t FindChoice(const std::string& text, const std::vector<std::string>& names,
@@ -107,16 +110,23 @@ std::string ChoiceName(const Choices<Value>& choices, Value value) {
       ->second;
 }
 
+// `old_names` of values are still understood, with a warning.
 template <typename Value>
 Option ChoiceOption(const std::string& name, Value* value, const Choices<Value>& choices,
-                    const std::string& description) {
+                    const std::string& description, const Choices<Value>& old_names = {}) {
   std::vector<std::string> names;
   std::string unit;
   for (const auto& [choice, choice_name] : choices) {
     names.push_back(choice_name);
     unit += (unit.empty() ? "" : "|") + choice_name;
   }
-  const auto set = [value, choices, names](const std::string& text, const std::string& option) {
+  const auto set = [=](const std::string& text, const std::string& option) {
+    for (const auto& [choice, old_name] : old_names) {
+      if (text != old_name) continue;
+      WarnOfOldName(option + " " + text, ChoiceName(choices, choice));
+      *value = choice;
+      return;
+    }
     *value = choices[FindChoice(text, names, option)].first;
   };
   return {name, ParsedValue{value, ChoiceName(choices, *value), set}, unit, description};

@@ -4,9 +4,13 @@
 
 namespace velamap {
 
+Option ColmapPathOption(BundleAdjustmentOptions* options) {
+  return {"colmap_path", &options->colmap_path, "path", "COLMAP's program"};
+}
+
 OptionGroup DescribeOptions(BundleAdjustmentOptions* options) {
   return {"Bundle adjustment",
-          {{"colmap_path", &options->colmap_path, "path", "COLMAP's program"},
+          {ColmapPathOption(options),
            {"BundleAdjustment.refine_focal_length", &options->refine_focal_length, "0|1",
             "adjust the focal length of the calibration"},
            {"BundleAdjustment.refine_principal_point", &options->refine_principal_point, "0|1",

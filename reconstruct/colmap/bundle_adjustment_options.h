@@ -27,6 +27,7 @@ struct BundleAdjustmentOptions {
   void Check() const;  // throws InputError that names the option
 };
 
+Option ColmapPathOption(BundleAdjustmentOptions* options);
 OptionGroup DescribeOptions(BundleAdjustmentOptions* options);
 
 }  // namespace velamap

@@ -131,7 +131,7 @@ TEST_F(ShapeExporterCommandTest, SurfaceGoesOnToGivenEdges) {
 TEST_F(ShapeExporterCommandTest, BadOptionsWriteNothing) {
   ExpectRefused({"--frame", "keel"}, "--frame");
   ExpectRefused({"--Section.heights", "1,x"}, "--Section.heights: '1,x'");
-  ExpectRefused({"--Section.min_markers", "2"}, "at least 4 markers");
+  ExpectRefused({"--Section.min_markers", "2"}, "--Section.min_markers: 2 is out of range");
   ExpectRefused({"--Surface.edge_length", "0"}, "edge");
   ExpectRefused({"--Surface.edge_length", "0.001"}, "triangles");
   ExpectRefused({"--Surface.edge_length", "10", "--Surface.chord_deviation", "1"}, "chord");
