@@ -9,7 +9,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exporters/sail/sail_shape.h"
 #include "importer/base/error.h"
+#include "importer/detect/detection_options.h"
+#include "importer/video/video_options.h"
+#include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/colmap/bundle_adjustment.h"
+#include "reconstruct/registration/registration_options.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
