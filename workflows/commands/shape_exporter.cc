@@ -74,6 +74,7 @@ void RunShapeExporter(const Arguments& arguments) {
   clock.End("export");
   LogStageTimes(clock);
   Print(report, options.paths, std::cout);
+  report.sail.ThrowSurfaceError();
 }
 
 }  // namespace velamap

@@ -47,11 +47,11 @@ OptionGroup SailGroup(ShapeExporterOptions* exporter, SailOptionTexts* texts) {
             "longest edge of the mesh; left out: half a marker's side"},
            {"Surface.chord_deviation", &texts->chord_deviation_mm, "mm",
             "or how far the mesh may be from the surface"},
-           {"Surface.luff_extension", &surface->luff_extension_m, "m",
-            "how far the surface goes on beyond the first markers of the lines"},
-           {"Surface.leech_extension", &surface->leech_extension_m, "m", "beyond the last ones"},
-           {"Surface.foot_extension", &surface->foot_extension_m, "m", "below the lowest line"},
-           {"Surface.head_extension", &surface->head_extension_m, "m", "above the highest line"},
+           {"Surface.luff_extension", &surface->luff_extension_mm, "mm",
+            "how far the surface continues beyond the first markers of the lines"},
+           {"Surface.leech_extension", &surface->leech_extension_mm, "mm", "beyond the last ones"},
+           {"Surface.foot_extension", &surface->foot_extension_mm, "mm", "below the lowest line"},
+           {"Surface.head_extension", &surface->head_extension_mm, "mm", "above the highest line"},
            {"Surface.edges_path", &texts->edges_path, "path",
             "CSV edge,x,y,z of points on luff, leech, foot or head that it goes on to; m, in the "
             "frame of the result"}}};

@@ -124,7 +124,10 @@ TEST(SailShape, ResolutionIsAsAskedForAndNotAbsurd) {
   const std::size_t fine = Compute(ExampleSail(), options).surfaces[0].mesh.triangles.size();
   EXPECT_GT(fine, 4 * Compute(ExampleSail()).surfaces[0].mesh.triangles.size());
   options.mesh->edge_length_mm = 1e-3;
-  ExpectThrows<InputError>([&] { Compute(ExampleSail(), options); }, {"triangles"});
+  const SailShape refused = Compute(ExampleSail(), options);
+  EXPECT_THAT(refused.surfaces, IsEmpty());
+  EXPECT_EQ(refused.sections.sections.size(), 3u);
+  ExpectThrows<InputError>([&] { refused.ThrowSurfaceError(); }, {"triangles"});
   options.mesh->chord_deviation_mm = 1.0;
   EXPECT_THROW(options.Check(), InputError);
 }

@@ -274,10 +274,10 @@ TEST(Surface, LineWithTooFewMarkersIsLeftOutAndItsMarkersStillCount) {
 
 TEST(Surface, GoesOnBeyondItsMarkersAsItIsCurved) {
   SurfaceOptions options = Interpolating();
-  options.luff_extension_m = 0.3;
-  options.leech_extension_m = 0.2;
-  options.foot_extension_m = 0.25;
-  options.head_extension_m = 0.15;
+  options.luff_extension_mm = 300;
+  options.leech_extension_mm = 200;
+  options.foot_extension_mm = 250;
+  options.head_extension_mm = 150;
   const auto fitted = FitSurface(MarkersOn(CylinderSail, 6, 8), options);
   const double arc_m = 4 * 40 * 3.14159265358979 / 180;
   EXPECT_NEAR(SurfaceArea(fitted.surface), (arc_m + 0.5) * 3.4, 0.01);
@@ -288,6 +288,25 @@ TEST(Surface, GoesOnBeyondItsMarkersAsItIsCurved) {
     EXPECT_NEAR(std::hypot(x.x(), x.y()), 4, 5e-4) << u;
   }
   EXPECT_LT(LargestResidual(fitted), 1e-10);
+}
+
+TEST(Surface, ExtensionsAreLimitedToTheSizeOfThePart) {
+  // 18 mm wide at the foot and 36 mm high.
+  const SurfaceInput input = MarkersOn(
+      [](double u, double v) -> Eigen::Vector3d { return 0.006 * TwistedSail(u, v); }, 5, 8);
+  SurfaceOptions options;
+  options.luff_extension_mm = 5;
+  options.head_extension_mm = 10;
+  EXPECT_GT(SurfaceArea(FitSurface(input, options).surface),
+            1.2 * SurfaceArea(FitSurface(input).surface));
+  for (double SurfaceOptions::*extension_mm :
+       {&SurfaceOptions::luff_extension_mm, &SurfaceOptions::leech_extension_mm,
+        &SurfaceOptions::foot_extension_mm, &SurfaceOptions::head_extension_mm}) {
+    SurfaceOptions large;
+    large.*extension_mm = 1e4;
+    ExpectThrows<InputError>([&] { FitSurface(input, large); },
+                             {"--Surface.", "_extension: 10000 mm, expected at most"});
+  }
 }
 
 TEST(Surface, ReachesTheEdgesThatAreGiven) {
@@ -329,10 +348,10 @@ TEST(Surface, LinesThatCrossOrRunBackwardsAreRefused) {
   EXPECT_THAT(ErrorOf(crossing), HasSubstr("lines h2 and h3 cross"));
   SurfaceInput backwards = MarkersOn(BilinearPatch, 3, 5);
   std::reverse(backwards.lines[2].markers.begin(), backwards.lines[2].markers.end());
-  EXPECT_THAT(ErrorOf(backwards), HasSubstr("lines h2 and h3 run against each other"));
+  EXPECT_THAT(ErrorOf(backwards), HasSubstr("lines h2 and h3 run in opposite directions"));
   SurfaceInput doubled = MarkersOn(BilinearPatch, 3, 5);
   doubled.lines[0].markers[2]->x_in_shape_m = doubled.lines[0].markers[1]->x_in_shape_m;
-  EXPECT_THAT(ErrorOf(doubled), HasSubstr("line h1: markers 1 and 2 are in one place"));
+  EXPECT_THAT(ErrorOf(doubled), HasSubstr("line h1: markers 1 and 2 are in the same place"));
 }
 
 TEST(Surface, BadOptionsAreNamed) {
@@ -346,12 +365,12 @@ TEST(Surface, BadOptionsAreNamed) {
     }
   };
   SurfaceOptions negative, single, both, sigma;
-  negative.head_extension_m = -0.1;
-  check(negative, "extension at the head is -0.1 m");
+  negative.head_extension_mm = -100;
+  check(negative, "--Surface.head_extension: -100 mm");
   single.edges.luff = {{0, 0, 0}};
   check(single, "luff edge has one point");
   both.edges.foot = {{0, 0, -1}, {3, 0, -1}};
-  both.foot_extension_m = 0.5;
+  both.foot_extension_mm = 500;
   check(both, "give one of the two");
   sigma.default_sigma_m = -1;
   check(sigma, "default sigma is -1 m");
