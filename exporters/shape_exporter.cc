@@ -5,11 +5,12 @@
 #include <map>
 #include <set>
 
-#include "exporters/formats/ply_writer.h"
 #include "exporters/formats/shape_csv.h"
+#include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "exporters/scale/scale_csv.h"
+#include "exporters/shape/shape_transform.h"
 #include "exporters/shape_report.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"

@@ -1,134 +1,19 @@
-#include "exporters/formats/ply_writer.h"
+#include "exporters/formats/shape_ply.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
-#include <functional>
-#include <iterator>
+#include <cstdint>
 #include <map>
 #include <optional>
-#include <ostream>
-#include <string>
-
-#include <fmt/format.h>
-
-#include "importer/base/csv.h"
+#include <vector>
 
 namespace velamap {
 namespace {
 
-// One description of an element drives its header, its ASCII body and its binary body, so that they
-// cannot disagree. A double holds every value of the four types exactly.
-enum class PlyType { kUchar, kInt, kFloat, kDouble };
-
-template <typename Row>
-struct PlyProperty {
-  const char* name;
-  PlyType type;
-  std::function<double(const Row&, int)> value;  // of entry i of a list; i is 0 for a scalar
-  int list_size = 0;                             // 0: a scalar
-};
-
-template <typename Row>
-struct PlyElement {
-  const char* name;
-  std::vector<PlyProperty<Row>> properties;
-  std::vector<Row> rows;
-};
-
-const char* TypeName(PlyType type) {
-  switch (type) {
-    case PlyType::kUchar:
-      return "uchar";
-    case PlyType::kInt:
-      return "int";
-    case PlyType::kFloat:
-      return "float";
-    case PlyType::kDouble:
-      return "double";
-  }
-  throw std::logic_error("unknown PLY type");
-}
-
-// Least significant byte first on every machine.
-template <typename Bits, typename T>
-void AppendLittleEndian(T value, std::string* body) {
-  static_assert(sizeof(Bits) == sizeof(T));
-  Bits bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  for (std::size_t i = 0; i < sizeof bits; ++i) body->push_back(static_cast<char>(bits >> (8 * i)));
-}
-
-void AppendBinary(PlyType type, double value, std::string* body) {
-  switch (type) {
-    case PlyType::kUchar:
-      return body->push_back(static_cast<char>(static_cast<std::uint8_t>(value)));
-    case PlyType::kInt:
-      return AppendLittleEndian<std::uint32_t>(static_cast<std::int32_t>(value), body);
-    case PlyType::kFloat:
-      return AppendLittleEndian<std::uint32_t>(static_cast<float>(value), body);
-    case PlyType::kDouble:
-      return AppendLittleEndian<std::uint64_t>(value, body);
-  }
-}
-
-// Shortest digits that read back to the same number, in any locale.
-void AppendAscii(PlyType type, double value, std::string* body) {
-  if (!body->empty() && body->back() != '\n') body->push_back(' ');
-  if (type == PlyType::kDouble) {
-    fmt::format_to(std::back_inserter(*body), "{}", value);
-  } else if (type == PlyType::kFloat) {
-    fmt::format_to(std::back_inserter(*body), "{}", static_cast<float>(value));
-  } else {
-    fmt::format_to(std::back_inserter(*body), "{}", static_cast<std::int32_t>(value));
-  }
-}
-
-template <typename Row>
-std::string ElementHeader(const PlyElement<Row>& element) {
-  std::string header = fmt::format("element {} {}\n", element.name, element.rows.size());
-  for (const PlyProperty<Row>& property : element.properties) {
-    header += fmt::format("property {}{} {}\n", property.list_size > 0 ? "list uchar " : "",
-                          TypeName(property.type), property.name);
-  }
-  return header;
-}
-
-template <typename Row>
-std::string ElementBody(const PlyElement<Row>& element, PlyFormat format) {
-  const bool is_ascii = format == PlyFormat::kAscii;
-  const auto append = is_ascii ? AppendAscii : AppendBinary;
-  std::string body;
-  for (const Row& row : element.rows) {
-    for (const PlyProperty<Row>& property : element.properties) {
-      if (property.list_size > 0) append(PlyType::kUchar, property.list_size, &body);
-      for (int i = 0; i < std::max(property.list_size, 1); ++i) {
-        append(property.type, property.value(row, i), &body);
-      }
-    }
-    if (is_ascii) body += '\n';
-  }
-  return body;
-}
-
-struct PlyComments {
-  std::string content;
-  std::string frame;  // empty: no such comment
-};
-
-template <typename... Rows>
-void WritePly(PlyFormat format, const PlyComments& comments, std::ostream& out,
-              const PlyElement<Rows>&... elements) {
-  out << "ply\nformat " << (format == PlyFormat::kAscii ? "ascii" : "binary_little_endian")
-      << " 1.0\ncomment " << comments.content << '\n';
-  if (!comments.frame.empty()) out << "comment frame " << SingleLine(comments.frame) << '\n';
-  (out << ... << ElementHeader(elements)) << "end_header\n";
-  (out << ... << ElementBody(elements, format));
-}
-
 struct Vertex {
   Eigen::Vector3d x_in_shape_m;
-  Eigen::Vector3d normal;  // zero where there is none
+  Eigen::Vector3d normal;  // zero for a marker that is not whole
   Rgb color{};
   int marker_id = 0;
   int corner = 0;
@@ -140,39 +25,36 @@ struct Face {
   int marker_id = 0;
 };
 
-std::vector<PlyProperty<Vertex>> PositionAndNormal() {
-  return {
-      {"x", PlyType::kDouble, [](const Vertex& v, int) { return v.x_in_shape_m.x(); }},
-      {"y", PlyType::kDouble, [](const Vertex& v, int) { return v.x_in_shape_m.y(); }},
-      {"z", PlyType::kDouble, [](const Vertex& v, int) { return v.x_in_shape_m.z(); }},
-      {"nx", PlyType::kFloat, [](const Vertex& v, int) { return v.normal.x(); }},
-      {"ny", PlyType::kFloat, [](const Vertex& v, int) { return v.normal.y(); }},
-      {"nz", PlyType::kFloat, [](const Vertex& v, int) { return v.normal.z(); }},
-  };
+PlyElement<Vertex> VertexElement() {
+  PlyElement<Vertex> vertices{"vertex", {}, {}};
+  vertices.Add("x", PlyType::kDouble, [](const Vertex& v) { return v.x_in_shape_m.x(); });
+  vertices.Add("y", PlyType::kDouble, [](const Vertex& v) { return v.x_in_shape_m.y(); });
+  vertices.Add("z", PlyType::kDouble, [](const Vertex& v) { return v.x_in_shape_m.z(); });
+  vertices.Add("nx", PlyType::kFloat, [](const Vertex& v) { return v.normal.x(); });
+  vertices.Add("ny", PlyType::kFloat, [](const Vertex& v) { return v.normal.y(); });
+  vertices.Add("nz", PlyType::kFloat, [](const Vertex& v) { return v.normal.z(); });
+  vertices.Add("red", PlyType::kUchar, [](const Vertex& v) { return v.color[0]; });
+  vertices.Add("green", PlyType::kUchar, [](const Vertex& v) { return v.color[1]; });
+  vertices.Add("blue", PlyType::kUchar, [](const Vertex& v) { return v.color[2]; });
+  vertices.Add("marker_id", PlyType::kInt, [](const Vertex& v) { return v.marker_id; });
+  vertices.Add("corner", PlyType::kInt, [](const Vertex& v) { return v.corner; });
+  return vertices;
 }
 
-void AddColor(std::vector<PlyProperty<Vertex>>* properties) {
-  properties->push_back({"red", PlyType::kUchar, [](const Vertex& v, int) { return v.color[0]; }});
-  properties->push_back(
-      {"green", PlyType::kUchar, [](const Vertex& v, int) { return v.color[1]; }});
-  properties->push_back({"blue", PlyType::kUchar, [](const Vertex& v, int) { return v.color[2]; }});
-}
-
-void AddIdentity(std::vector<PlyProperty<Vertex>>* properties) {
-  properties->push_back(
-      {"marker_id", PlyType::kInt, [](const Vertex& v, int) { return v.marker_id; }});
-  properties->push_back({"corner", PlyType::kInt, [](const Vertex& v, int) { return v.corner; }});
-}
-
-// Once all rows are there: all of them have the property or none, for PLY knows no empty value.
+// Called when all rows are there. PLY has no empty value, so all vertices have the property or
+// none.
 void AddSigma(PlyElement<Vertex>* vertices) {
   const auto has_sigma = [](const Vertex& v) { return v.sigma_m.has_value(); };
   if (vertices->rows.empty() ||
       !std::all_of(vertices->rows.begin(), vertices->rows.end(), has_sigma)) {
     return;
   }
-  vertices->properties.push_back(
-      {"sigma", PlyType::kFloat, [](const Vertex& v, int) { return *v.sigma_m; }});
+  vertices->Add("sigma", PlyType::kFloat, [](const Vertex& v) { return *v.sigma_m; });
+}
+
+std::vector<std::string> Comments(const std::string& content, const std::string& frame) {
+  if (frame.empty()) return {content};
+  return {content, "frame " + frame};
 }
 
 Vertex MakeVertex(const ShapeMarker& marker, int corner) {
@@ -206,8 +88,8 @@ Rgb VertexColor(const Model& model, const Vertex& vertex) {
   return mean;
 }
 
-// Colours that are told apart by most eyes (Okabe and Ito, "Color universal design", 2008), one a
-// part in the order of their names.
+// One color per part in the order of their names, from a palette for all kinds of color vision
+// (Okabe and Ito, "Color universal design", 2008).
 std::map<std::string, Rgb> PartColors(const MarkerShape& shape) {
   constexpr std::array<Rgb, 7> kPalette = {{{0, 114, 178},
                                             {230, 159, 0},
@@ -227,9 +109,7 @@ std::map<std::string, Rgb> PartColors(const MarkerShape& shape) {
 
 void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyFormat format,
                     std::ostream& out, const std::string& frame) {
-  PlyElement<Vertex> vertices{"vertex", PositionAndNormal(), {}};
-  AddColor(&vertices.properties);
-  AddIdentity(&vertices.properties);
+  PlyElement<Vertex> vertices = VertexElement();
   for (const ShapeMarker& marker : shape.markers) {
     for (int corner = 0; corner <= kNumCorners; ++corner) {
       if (!marker.x_in_shape_m[corner]) continue;
@@ -238,22 +118,19 @@ void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyForm
     }
   }
   AddSigma(&vertices);
-  WritePly(format, {"velamap marker centres (corner 0) and corners (1 to 4), metres", frame}, out,
+  WritePly(format,
+           Comments("velamap marker centres (corner 0) and corners (1 to 4), metres", frame), out,
            vertices);
 }
 
 void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out,
                      const std::string& frame) {
   const std::map<std::string, Rgb> part_colors = PartColors(shape);
-  PlyElement<Vertex> vertices{"vertex", PositionAndNormal(), {}};
-  AddColor(&vertices.properties);
-  AddIdentity(&vertices.properties);
-  PlyElement<Face> faces{
-      "face",
-      {{"vertex_indices", PlyType::kInt,
-        [](const Face& face, int i) { return face.vertex_indices[i]; }, kNumCorners},
-       {"marker_id", PlyType::kInt, [](const Face& face, int) { return face.marker_id; }}},
-      {}};
+  PlyElement<Vertex> vertices = VertexElement();
+  PlyElement<Face> faces{"face", {}, {}};
+  faces.AddList("vertex_indices", PlyType::kInt, kNumCorners,
+                [](const Face& face, int i) { return face.vertex_indices[i]; });
+  faces.Add("marker_id", PlyType::kInt, [](const Face& face) { return face.marker_id; });
   for (const ShapeMarker& marker : shape.markers) {
     if (!marker.IsWhole()) continue;
     const int first = static_cast<int>(vertices.rows.size());
@@ -265,7 +142,7 @@ void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& o
     faces.rows.push_back({{first, first + 3, first + 2, first + 1}, marker.marker_id});
   }
   AddSigma(&vertices);
-  WritePly(format, {"velamap markers, metres", frame}, out, vertices, faces);
+  WritePly(format, Comments("velamap markers, metres", frame), out, vertices, faces);
 }
 
 }  // namespace velamap

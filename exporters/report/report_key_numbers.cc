@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/units.h"
 #include "importer/base/statistics.h"
 
 namespace velamap {
@@ -90,7 +91,7 @@ KeyNumber SizeNumber(const MarkerShape& shape) {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
   if (!box.isEmpty()) size = box.sizes();
   const bool is_small = size.maxCoeff() < 1;
-  const Eigen::Vector3d shown = is_small ? 1e3 * size : size;
+  const Eigen::Vector3d shown = is_small ? kMmPerM * size : size;
   return {"Size",
           fmt::format("{:.4g} \u00d7 {:.4g} \u00d7 {:.4g} {}", shown.x(), shown.y(), shown.z(),
                       is_small ? "mm" : "m"),
@@ -101,7 +102,7 @@ KeyNumber SizeNumber(const MarkerShape& shape) {
 std::optional<KeyNumber> PrecisionNumber(const MarkerShape& shape) {
   std::vector<double> sigmas_mm;
   for (const ShapeMarker& marker : shape.markers) {
-    if (marker.sigma_m[0]) sigmas_mm.push_back(1e3 * marker.sigma_m[0]->norm());
+    if (marker.sigma_m[0]) sigmas_mm.push_back(kMmPerM * marker.sigma_m[0]->norm());
   }
   if (sigmas_mm.empty()) return std::nullopt;
   return KeyNumber{"Precision",

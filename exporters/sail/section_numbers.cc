@@ -5,13 +5,14 @@
 
 #include <Eigen/Geometry>
 
+#include "exporters/shape/units.h"
+
 namespace velamap {
 namespace {
 
-constexpr double kDegPerRad = 180 / 3.14159265358979323846;
 constexpr int kNumSamples = 32;
 
-// Where the depth is largest without its sign: the best of a grid, then the zero of its derivative.
+// Parameter of the largest unsigned depth: the best of a grid, refined to the zero of the derivative.
 double ParameterOfDepth(const SpaceCurve& curve, const Eigen::Vector3d& depth_direction) {
   constexpr int kNumBisections = 50;
   const Eigen::Vector3d first = EvaluateCurve(curve, 0.0);
@@ -36,7 +37,7 @@ double ParameterOfDepth(const SpaceCurve& curve, const Eigen::Vector3d& depth_di
     const CurveJet jet = EvaluateCurveJet(curve, t);
     const double first_derivative = sign * depth_direction.dot(jet.x_t);
     (first_derivative > 0 ? low : high) = t;
-    // Newton's step where it stays between the bounds, else halving.
+    // A Newton step if it stays between the bounds, otherwise bisection.
     const double newton = t - first_derivative / (sign * depth_direction.dot(jet.x_tt));
     const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
     if (std::abs(next - t) < 1e-14) return next;

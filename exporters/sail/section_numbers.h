@@ -1,5 +1,4 @@
-// The numbers of one section curve, and how they depend on the markers. Private to section.cc and
-// section_lines.cc.
+// The numbers of one section curve. Private to the sections.
 
 #pragma once
 
@@ -15,20 +14,20 @@ enum SectionNumber {
   kChord,  // m
   kCamber,
   kDraftPosition,
-  kEntryAngle,  // deg, to the side of up x chord
+  kEntryAngle,  // deg
   kExitAngle,   // deg
-  kAzimuth,     // deg, of the chord about up, from a reference direction
+  kAzimuth,     // deg, of the chord about up, from the reference direction
   kNumSectionNumbers
 };
 using SectionNumbers = Eigen::Matrix<double, kNumSectionNumbers, 1>;
 
 struct SectionAxes {
   Eigen::Vector3d up;         // unit
-  Eigen::Vector3d reference;  // from which azimuths count, not along up
-  int leeward = 1;            // 1: depth counts along up x chord, -1: against it
+  Eigen::Vector3d reference;  // direction of azimuth 0, not along up
+  int leeward = 1;            // 1 if leeward is on the side of up x chord, otherwise -1
 };
 
-// Unit vectors of the chord and of the depth.
+// Unit vectors along chord and depth.
 struct ProfileAxes {
   Eigen::Vector3d chord, depth;
 };
@@ -36,10 +35,10 @@ ProfileAxes ProfileAxesOf(const SpaceCurve& curve, const SectionAxes& axes);
 
 SectionNumbers ComputeNumbers(const SpaceCurve& curve, const SectionAxes& axes);
 
-// Mean of the depths, m, with their sign: tells on which side the curve bulges.
+// Signed mean depth, m; its sign tells to which side the curve bulges.
 double MeanDepth(const SpaceCurve& curve, const SectionAxes& axes);
 
-// Of b against a about up, -180..180.
+// Angle from a to b about up, -180..180.
 double AngleAboutDeg(const Eigen::Vector3d& up, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 }  // namespace velamap

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -14,7 +15,6 @@ namespace {
 
 using Polyline = std::vector<Eigen::Vector3d>;
 
-constexpr double kMPerMm = 1e-3;
 constexpr int kMaxSpans = 20;     // in each direction; no sail has more markers on a line
 constexpr int kLineSamples = 9;   // at which neighboring lines are compared
 constexpr double kWideGap = 2.5;  // in mean spacings; wider gaps get a note

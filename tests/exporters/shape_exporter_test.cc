@@ -8,8 +8,8 @@
 
 #include <gmock/gmock.h>
 
-#include "exporters/formats/ply_writer.h"
 #include "exporters/formats/shape_csv.h"
+#include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_csv.h"
 #include "importer/base/error.h"

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exporters/compare/comparison_ply.h"
 #include "exporters/formats/diverging_color.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/formats/ply_reader.h"

@@ -1,4 +1,4 @@
-#include "exporters/formats/ply_writer.h"
+#include "exporters/formats/shape_ply.h"
 
 #include <cmath>
 

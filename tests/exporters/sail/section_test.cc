@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/shape_transform.h"
 #include "importer/base/error.h"
 #include "tests/exporters/sail/sail_shapes.h"
 
@@ -358,14 +359,14 @@ TEST(Section, BadLinesAreLeftOutWithTheReason) {
   Sail mixed = ExampleSail();
   std::swap(mixed.layout.parts[0].horizontal[2].marker_ids[3],
             mixed.layout.parts[0].horizontal[2].marker_ids[7]);
-  EXPECT_THAT(reason(mixed), HasSubstr("marker 304 does not lie behind marker 307"));
+  EXPECT_THAT(reason(mixed), HasSubstr("marker 304 is not aft of marker 307"));
 
   Sail double_marker = ExampleSail();
   ShiftMarker(205,
               *double_marker.shape.markers[12 + 4].x_in_shape_m[0] -
                   *double_marker.shape.markers[12 + 5].x_in_shape_m[0],
               &double_marker.shape);
-  EXPECT_THAT(reason(double_marker), HasSubstr("markers 204 and 205 are in one place"));
+  EXPECT_THAT(reason(double_marker), HasSubstr("markers 204 and 205 are in the same place"));
 }
 
 TEST(Section, CrossingSectionsAreReportedAndNotInterpolatedBetween) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/shape_transform.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/sail/sail_shapes.h"
 
@@ -202,7 +203,7 @@ TEST(ShapeFrame, ContradictionsAreReasons) {
 
   const ShapeFrame on_one_line =
       ChooseFrame(sail.shape, sail.layout, FrameChoice{FrameKind::kMarkers, 100, 200, 300});
-  EXPECT_THAT(on_one_line.reasons[0], HasSubstr("stand on one line"));
+  EXPECT_THAT(on_one_line.reasons[0], HasSubstr("lie on one line"));
 }
 
 TEST(ShapeFrame, WithoutLayoutItIsTheCamera) {
