@@ -9,7 +9,7 @@
 namespace velamap {
 namespace {
 
-// Where it is known.
+// Adds a known sigma.
 void AddSigma(const char* key, const std::optional<double>& sigma, Metrics* metrics,
               double factor = 1.0) {
   if (sigma) metrics->push_back({key, factor * *sigma});

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "exporters/compare/comparison_sigma.h"
+#include "exporters/shape/principal_axes.h"
 #include "exporters/shape/units.h"
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
@@ -27,7 +27,7 @@ constexpr std::size_t kMaxCoarsePoints = 150;
 constexpr int kCoarseIterations = 25;
 constexpr int kFineIterations = 100;
 constexpr std::size_t kNumFineStarts = 4;
-constexpr double kTrim = 0.8;           // of the points count when poses are compared
+constexpr double kTrim = 0.8;           // share of the points by which poses are compared
 constexpr double kTukey = 4.685;        // 95 % efficiency for normal noise (Huber, 1981)
 constexpr double kFloor = 1e-9;         // of the diagonal: residuals below this are zero
 constexpr double kConverged = 1e-11;    // of the diagonal, a step
@@ -174,16 +174,10 @@ Fit Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start,
   }
 }
 
-struct Axes {
-  Eigen::Vector3d mean;
-  Eigen::Matrix3d directions;  // columns, by ascending spread, right-handed
-};
-
-Axes PrincipalAxes(const Eigen::Vector3d& mean, const Eigen::Matrix3d& covariance) {
-  Eigen::Matrix3d directions =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+// The directions as a rotation.
+Eigen::Matrix3d RightHanded(Eigen::Matrix3d directions) {
   if (directions.determinant() < 0) directions.col(0) *= -1;
-  return {mean, directions};
+  return directions;
 }
 
 // The 24 rotations of a cube onto itself.
@@ -205,15 +199,13 @@ std::vector<Eigen::Matrix3d> CubeRotations() {
 std::vector<Rigid3> Starts(const Points& points, const MeshDistance& mesh, bool starts_as_is) {
   std::vector<Rigid3> starts = {Rigid3()};
   if (starts_as_is) return starts;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& x : points) mean += x / static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& x : points) covariance += (x - mean) * (x - mean).transpose();
-  const Axes of_points = PrincipalAxes(mean, covariance);
-  const Axes of_mesh = PrincipalAxes(mesh.Moments().mean_m, mesh.Moments().covariance_m2);
+  const PrincipalAxes of_points = ComputePrincipalAxes(points);
+  const PrincipalAxes of_mesh = AxesOfScatter(mesh.Moments().mean_m, mesh.Moments().covariance_m2);
+  const Eigen::Matrix3d points_from_axes = RightHanded(of_points.directions);
+  const Eigen::Matrix3d mesh_from_axes = RightHanded(of_mesh.directions);
   for (const Eigen::Matrix3d& turn : CubeRotations()) {
     const Eigen::Quaterniond rotation(
-        Eigen::Matrix3d(of_mesh.directions * turn * of_points.directions.transpose()));
+        Eigen::Matrix3d(mesh_from_axes * turn * points_from_axes.transpose()));
     starts.push_back({rotation, of_mesh.mean - rotation * of_points.mean});
   }
   return starts;

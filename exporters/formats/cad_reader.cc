@@ -1,5 +1,8 @@
 #include "exporters/formats/cad_reader.h"
 
+#include <algorithm>
+#include <cctype>
+
 #include <fmt/format.h>
 #include <BRepBndLib.hxx>
 #include <BRepGProp.hxx>
@@ -20,7 +23,6 @@
 #include <TopoDS_Face.hxx>
 
 #include "exporters/formats/cad_library.h"
-#include "exporters/formats/file_extension.h"
 #include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
@@ -91,6 +93,13 @@ CadShape Describe(const TopoDS_Shape& shape, double chord_deviation_mm) {
 }
 
 }  // namespace
+
+std::string LowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
 
 CadShape ReadCad(const fs::path& path, double chord_deviation_mm) {
   VELAMAP_CHECK(chord_deviation_mm > 0);

@@ -18,6 +18,9 @@ struct CadShape {
   TriangleMesh mesh;  // without normals; triangles have the orientation of their face
 };
 
+// The extension of a path with its dot, in lower case.
+std::string LowerExtension(const std::filesystem::path& path);
+
 // Reads .step, .stp, .iges and .igs files, in any case of the extension, and converts their unit.
 // Throws InputError naming the file if it has another extension, cannot be read, or has no faces.
 CadShape ReadCad(const std::filesystem::path& path, double chord_deviation_mm);

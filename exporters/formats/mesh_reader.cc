@@ -11,7 +11,6 @@
 #include <assimp/Importer.hpp>
 
 #include "exporters/formats/cad_reader.h"
-#include "exporters/formats/file_extension.h"
 #include "importer/base/error.h"
 
 namespace velamap {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include "exporters/sail/section_gradients.h"
 #include "exporters/sail/section_lines.h"
 #include "exporters/sail/section_numbers.h"
 #include "exporters/shape/joint_covariance.h"
@@ -183,14 +182,12 @@ SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& u
 void SectionOptions::Check() const {
   constexpr std::size_t kMaxHeights = 500;
   if (heights_m.size() > kMaxHeights) {
-    throw InputError(
-        fmt::format("--Section.heights: {} heights, expected at most {}", heights_m.size(),
-                    kMaxHeights));
+    throw InputError(fmt::format("--Section.heights: {} heights, expected at most {}",
+                                 heights_m.size(), kMaxHeights));
   }
   for (const double height_m : heights_m) {
     if (!std::isfinite(height_m)) {
-      throw InputError(
-          fmt::format("--Section.heights: expected numbers in m, found {}", height_m));
+      throw InputError(fmt::format("--Section.heights: expected numbers in m, found {}", height_m));
     }
   }
   if (min_markers < 4) {

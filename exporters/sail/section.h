@@ -1,10 +1,10 @@
 // Sections of a sail: the numbers that a sailmaker reads off a draft stripe, for every horizontal
 // line of the layout and at given heights. README.md of this room defines them with a drawing.
 //
-// The section of a line is a smoothing spline through its marker centers (section_spline.h) from the
-// first to the last whole marker; the markers do not reach the edges of the cloth. The section at a
-// height is the horizontal cut through interpolating splines that run across the lines at equal
-// fractions of their lengths.
+// The section of a line is a smoothing spline through its marker centers (section_spline.h) from
+// the first to the last whole marker; the markers do not reach the edges of the cloth. The section
+// at a height is the horizontal cut through interpolating splines that run across the lines at
+// equal fractions of their lengths.
 //
 //   chord direction c: from the first to the last point; up u: z of the frame
 //   depth direction d: u x c (unit length), towards leeward; depth = d . (f - f_first)
@@ -48,13 +48,13 @@ struct Section {
   bool is_line = true;
   double height_m = 0.0;  // of the middle of the chord
   Estimate chord_m;
-  Estimate camber;                         // largest depth / chord; negative if to windward
+  Estimate camber;  // largest depth / chord; negative if to windward
   // Position of the largest depth along the chord / chord, from the luff; nothing below a camber of
   // 0.1 %.
   std::optional<Estimate> draft_position;
   Estimate entry_angle_deg;  // between chord and curve at the luff, positive to leeward
   Estimate exit_angle_deg;   // the same at the leech, positive if the curve returns from leeward
-  Estimate twist_deg;  // of the chord about up, from `twist_reference`; positive to leeward
+  Estimate twist_deg;        // of the chord about up, from `twist_reference`; positive to leeward
   SpaceCurve curve;
   Eigen::Vector3d chord_direction = Eigen::Vector3d::UnitX();  // unit
   Eigen::Vector3d depth_direction = Eigen::Vector3d::UnitY();  // unit, horizontal, to leeward
@@ -82,8 +82,8 @@ struct SectionOptions {
   std::vector<double> heights_m;  // of additional sections, z in the frame
   int min_markers = 4;            // whole markers that a line needs
 
-  // Throws InputError for a height that is not finite, for more than 500 heights, and for fewer than
-  // four markers.
+  // Throws InputError for a height that is not finite, for more than 500 heights, and for fewer
+  // than four markers.
   void Check() const;
 };
 

@@ -1,8 +1,8 @@
 // Drawings of sections in mm: DXF for CAD programs, SVG for reading.
 //
-// The DXF is ASCII of AutoCAD R12, which every program reads, with $INSUNITS = 4 (mm). It needs three
-// kinds of entities only. Of the C++ libraries in Debian, libdxflib and libdxfrw are under the GPL,
-// which velamap's license does not allow, and dime has had no release since 2011.
+// The DXF is ASCII of AutoCAD R12, which every program reads, with $INSUNITS = 4 (mm). It needs
+// three kinds of entities only. Of the C++ libraries in Debian, libdxflib and libdxfrw are under
+// the GPL, which velamap's license does not allow, and dime has had no release since 2011.
 
 #pragma once
 
@@ -14,8 +14,8 @@
 namespace velamap {
 
 // Sections at their positions in the frame: one 3D polyline per section on its own layer
-// (PART_SECTION, with characters that a layer name does not allow replaced by _), and the markers as
-// points on layer MARKERS.
+// (PART_SECTION, with characters that a layer name does not allow replaced by _), and the markers
+// as points on layer MARKERS.
 void WriteSectionsDxf(const SectionReport& report, const ShapeFrame& frame, std::ostream& out);
 
 // Profiles of the sections: x along the chord from the luff, y the depth, one below the other from
@@ -23,8 +23,8 @@ void WriteSectionsDxf(const SectionReport& report, const ShapeFrame& frame, std:
 void WriteSectionProfilesDxf(const SectionReport& report, const ShapeFrame& frame,
                              std::ostream& out);
 
-// The same profiles with their numbers, with one scale for both axes and a scale bar; below them the
-// frame, notes, and missing sections with their reasons.
+// The same profiles with their numbers, with one scale for both axes and a scale bar; below them
+// the frame, notes, and missing sections with their reasons.
 void WriteSectionProfilesSvg(const SectionReport& report, const ShapeFrame& frame,
                              std::ostream& out);
 

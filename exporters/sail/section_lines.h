@@ -57,8 +57,8 @@ PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const 
 std::vector<std::string> FindCrossings(const std::vector<LineCurve>& lines,
                                        const Eigen::Vector3d& up);
 
-// The cut at `height_m` along up through sampled lines, from the lowest up. If the lines do not cover
-// the whole cut, `reason` says so.
+// The cut at `height_m` along up through sampled lines, from the lowest up. If the lines do not
+// cover the whole cut, `reason` says so.
 struct HeightCut {
   std::optional<SpaceCurve> curve;
   std::string reason;

@@ -6,19 +6,19 @@
 
 namespace velamap {
 
+PrincipalAxes AxesOfScatter(const Eigen::Vector3d& mean, const Eigen::Matrix3d& scatter) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
+  return {mean, solver.eigenvectors(), solver.eigenvalues()};
+}
+
 PrincipalAxes ComputePrincipalAxes(const std::vector<Eigen::Vector3d>& points) {
   VELAMAP_CHECK(!points.empty());
-  PrincipalAxes axes;
-  for (const Eigen::Vector3d& x : points) axes.mean += x;
-  axes.mean /= static_cast<double>(points.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& x : points) mean += x;
+  mean /= static_cast<double>(points.size());
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& x : points) {
-    scatter += (x - axes.mean) * (x - axes.mean).transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-  axes.directions = solver.eigenvectors();
-  axes.sums_of_squares = solver.eigenvalues();
-  return axes;
+  for (const Eigen::Vector3d& x : points) scatter += (x - mean) * (x - mean).transpose();
+  return AxesOfScatter(mean, scatter);
 }
 
 }  // namespace velamap

@@ -12,8 +12,10 @@ namespace velamap {
 struct PrincipalAxes {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();   // columns by ascending spread
-  Eigen::Vector3d sums_of_squares = Eigen::Vector3d::Zero();  // of the points along each direction
+  Eigen::Vector3d sums_of_squares = Eigen::Vector3d::Zero();  // along each direction
 };
+
+PrincipalAxes AxesOfScatter(const Eigen::Vector3d& mean, const Eigen::Matrix3d& scatter);
 
 // Needs a point.
 PrincipalAxes ComputePrincipalAxes(const std::vector<Eigen::Vector3d>& points);

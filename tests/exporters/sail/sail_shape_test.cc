@@ -147,11 +147,13 @@ TEST(SurfaceEdges, AreReadAndRefusedWithLineAndColumn) {
   for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
            {"", "expected the header"},
            {"edge,x,y\n", "expected the header"},
-           {header + "keel,1,2,3\n", "edges.csv:2: column edge: 'keel'"},
+           {header + "keel,1,2,3\n",
+            "edges.csv:2: column edge: expected luff, leech, foot or head, found 'keel'"},
            {header + "luff,1,2\n", "edges.csv:2: 3 columns"},
-           {header + "luff,1,x,3\n", "edges.csv:2: column y: 'x'"},
+           {header + "luff,1,x,3\n",
+            "edges.csv:2: column y: expected a number in metres, found 'x'"},
            {header + "luff,1,nan,3\n", "column y"},
-           {header + "luff,1,2,3\n", "the luff has one point"}}) {
+           {header + "luff,1,2,3\n", "the luff edge has one point"}}) {
     ExpectThrows<InputError>([&, t = text] { read(t); }, {part});
   }
   ExpectThrows<InputError>([] { ReadSurfaceEdges("no/such.csv"); }, {"no/such.csv"});

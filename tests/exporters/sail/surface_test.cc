@@ -206,7 +206,7 @@ TEST(Surface, MarkersThatLieScatteredBearNone) {
   }
   EXPECT_THROW(FitSurface(input, Interpolating()), DataError);
   ExpectThrows<DataError>([&] { FitSurface(input, Interpolating()); },
-                          {"swing between the markers", "m2"});
+                          {"oscillate between the markers", "m2"});
 }
 
 TEST(Surface, MarkersBetweenTheLinesTakePart) {
@@ -242,7 +242,8 @@ TEST(Surface, MarkerBesideTheSurfaceIsReportedAndLeftOut) {
   EXPECT_FALSE(fitted.residuals.back().is_used);
   EXPECT_NEAR(fitted.residuals.back().beyond_edge_m, 0.4, 0.01);
   EXPECT_EQ(fitted.distance_m.count, 12);
-  EXPECT_THAT(fitted.notes, ElementsAre(HasSubstr("beside the surface, without a part in it: 50")));
+  EXPECT_THAT(fitted.notes,
+              ElementsAre(HasSubstr("outside the edge of the surface, not used: 50")));
 }
 
 TEST(Surface, HolesAreBridgedAndNamed) {
@@ -252,7 +253,7 @@ TEST(Surface, HolesAreBridgedAndNamed) {
   const auto fitted = FitSurface(input, Interpolating());
   EXPECT_LT(LargestDistance(fitted.surface, TwistedSail), 0.02);
   EXPECT_LT(TruthRms(fitted.surface, TwistedSail), 0.004);
-  EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h4: hole of 1.07 m")));
+  EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h4: gap of 1.07 m")));
   EXPECT_THAT(fitted.notes, Contains(HasSubstr("between markers 29 and 33 (3 of the layout")));
   EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h6: 2 markers missing at the luff and 0")));
 }
@@ -373,7 +374,7 @@ TEST(Surface, BadOptionsAreNamed) {
   both.foot_extension_mm = 500;
   check(both, "give one of the two");
   sigma.default_sigma_m = -1;
-  check(sigma, "default sigma is -1 m");
+  check(sigma, "default sigma of the surface is -1 m");
 }
 
 TEST(Surface, ResidualsAsCsv) {
