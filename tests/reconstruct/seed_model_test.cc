@@ -8,6 +8,7 @@
 
 #include "importer/base/csv.h"
 #include "reconstruct/model/reprojection.h"
+#include "reconstruct/register_frames.h"
 #include "tests/reconstruct/registration_fixture.h"
 
 namespace velamap {
