@@ -31,7 +31,7 @@ const SectionDifference& Find(const SectionComparison& comparison, const std::st
   return *it;
 }
 
-// Depths of a line's markers above its chord, times this.
+// Multiplies the depths of a line's markers above its chord.
 MarkerShape WithMoreCamber(double factor, const std::vector<int>& ids, MarkerShape shape) {
   const Eigen::Vector3d first = *FindWholeMarker(shape, ids.front())->x_in_shape_m[0];
   const Eigen::Vector3d chord = *FindWholeMarker(shape, ids.back())->x_in_shape_m[0] - first;

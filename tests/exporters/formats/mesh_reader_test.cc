@@ -54,7 +54,7 @@ TEST_F(MeshReaderTest, ReadsBackWhatVelamapWritesInTheRightUnit) {
     const TriangleMesh read = ReadMesh(dir_ / name);
     EXPECT_EQ(read.triangles.size(), mesh.triangles.size()) << name;
     EXPECT_NEAR(Area(read), Area(mesh), 1e-4) << name;
-    // Looks to the same side at the same place.
+    // The normal points to the same side at the same place.
     const auto& [a, b, c] = read.triangles.front();
     const auto& [d, e, f] = mesh.triangles.front();
     EXPECT_LT((read.vertices_m[a] - mesh.vertices_m[d]).norm(), 1e-5) << name;

@@ -1,4 +1,4 @@
-// Meshes of surfaces and their files, read back by readers of their own.
+// Meshes of surfaces and their files, read back by independent readers.
 
 #include <cmath>
 #include <cstdint>

@@ -159,7 +159,7 @@ TEST(SurfaceEdges, AreReadAndRefusedWithLineAndColumn) {
   ExpectThrows<InputError>([] { ReadSurfaceEdges("no/such.csv"); }, {"no/such.csv"});
 }
 
-// Two clips of one boat: other cameras, other scales, one frame.
+// Two clips of one boat with different cameras and scales have one frame.
 TEST(ShapeExporterFrame, ResultsOfDifferentWorldsAreInOneFrame) {
   Model moved = ExampleModel();
   TransformModel(ExampleSim3(7.0), &moved);

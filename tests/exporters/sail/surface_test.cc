@@ -82,7 +82,7 @@ TEST(Surface, BilinearPatchIsExactFromTwoLinesOn) {
 }
 
 // A cubic spline interpolates to 5/384 h^4 max|f''''| (Hall and Meyer, 1976); on an arc of radius R
-// that is |f''''| = 1/R^3. Half as much again for the ends, which have no tangents given.
+// that is |f''''| = 1/R^3. A factor of 1.5 accounts for the ends without given tangents.
 TEST(Surface, CylinderIsAsExactAsCubicSplinesAllow) {
   const double arc_m = 4 * 40 * 3.14159265358979 / 180;
   for (const int n : {6, 8, 12, 16}) {
@@ -117,7 +117,7 @@ TEST(Surface, SectionsBulgeToOneSideWithoutWiggles) {
   for (double u = 0; u <= 1; u += 0.02) {
     for (double v = 0; v <= 1; v += 0.05) {
       const SurfaceJet jet = EvaluateJet(surface, u, v);
-      // The normal looks at -y, from where the sail is hollow.
+      // The normal points to -y, the hollow side of the sail.
       EXPECT_GT(jet.x_uu.dot(jet.normal), 0) << u << ' ' << v;
     }
   }
@@ -177,7 +177,7 @@ TEST(Surface, AnUncertainMarkerPullsLess) {
   EXPECT_GT(residual(0.001).distance_m, -0.035);
 }
 
-// With markers between the lines, which an interpolating surface swings around.
+// Has markers between the lines, around which an interpolating surface oscillates.
 TEST(Surface, SigmasThatAreTooSmallDoNotMakeItSwing) {
   SurfaceInput input = MarkersOn(TwistedSail, 7, 12);
   for (int i = 0; i < 24; ++i) {
@@ -195,7 +195,7 @@ TEST(Surface, SigmasThatAreTooSmallDoNotMakeItSwing) {
   EXPECT_GT(fit.distance_m.rms, 0.001);
 }
 
-// Markers just above the lines that stand out by half a metre: a surface through all swings.
+// Markers just above the lines and half a metre off them make an interpolating surface oscillate.
 TEST(Surface, MarkersThatLieScatteredBearNone) {
   SurfaceInput input = MarkersOn(TwistedSail, 7, 12);
   for (int j = 0; j < 6; ++j) {
@@ -210,7 +210,7 @@ TEST(Surface, MarkersThatLieScatteredBearNone) {
 }
 
 TEST(Surface, MarkersBetweenTheLinesTakePart) {
-  // Fuller by 3 cm half way between any two of its four lines.
+  // The sail is 3 cm fuller half way between neighboring lines.
   const auto bulging = [](double u, double v) -> Eigen::Vector3d {
     constexpr double kPi = 3.14159265358979;
     const double bulge_m = 0.03 * std::sin(kPi * u) * std::pow(std::sin(3 * kPi * v), 2);

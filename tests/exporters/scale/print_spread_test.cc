@@ -17,7 +17,7 @@ struct Truth {
   double scale_error = 0.0;
 };
 
-// Markers of two printed sizes, each from near to far; their sides with 0.05 % of noise.
+// Markers of two printed sizes from near to far, with 0.05 % of noise on their sides.
 std::vector<SpreadSample> Samples(const Truth& truth, std::uint32_t seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 5e-4);
