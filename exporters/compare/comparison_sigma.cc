@@ -58,7 +58,7 @@ std::vector<PointGradient> RotatedInto(
   return gradients;
 }
 
-bool HoldsAll(const PointCovariance& covariance,
+bool HasAllCorners(const PointCovariance& covariance,
               const std::map<CornerId, Eigen::Vector3d>& by_corner) {
   return std::all_of(by_corner.begin(), by_corner.end(), [&](const auto& entry) {
     return covariance.IndexOf(Point3DIdFromCorner(entry.first)) >= 0;
@@ -148,11 +148,11 @@ std::optional<Eigen::Matrix3d> AlignmentSensitivity::DifferenceCovariance(
     by_axis[static_cast<std::size_t>(axis)] =
         CenterGradient(marker_id, center_in_reference_m, Eigen::Vector3d::Unit(axis));
   }
-  if (!HoldsAll(shape, by_axis[0])) return std::nullopt;
+  if (!HasAllCorners(shape, by_axis[0])) return std::nullopt;
   Eigen::Matrix3d covariance_m2 = JointCovarianceOf(
       shape, RotatedInto(alignment_.reference_from_shape.rotation.conjugate(), by_axis));
   if (reference == nullptr) return covariance_m2;
-  if (!HoldsAll(*reference, by_axis[0])) return std::nullopt;
+  if (!HasAllCorners(*reference, by_axis[0])) return std::nullopt;
   // The reference's errors enter with the opposite sign, which does not change the covariance.
   covariance_m2 +=
       JointCovarianceOf(*reference, RotatedInto(Eigen::Quaterniond::Identity(), by_axis));
