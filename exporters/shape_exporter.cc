@@ -5,11 +5,12 @@
 #include <map>
 #include <set>
 
-#include "exporters/formats/ply_writer.h"
 #include "exporters/formats/shape_csv.h"
+#include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "exporters/scale/scale_csv.h"
+#include "exporters/shape/shape_transform.h"
 #include "exporters/shape_report.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
@@ -34,7 +35,7 @@ bool IsInside(const fs::path& path, const fs::path& folder) {
   return mismatch == folder.end();
 }
 
-// The path without dots and a slash at its end; empty stays empty.
+// The absolute path without dots and a trailing slash; empty for an empty path.
 fs::path OutputFolder(const std::string& path) {
   if (path.empty()) return {};
   const fs::path absolute = fs::absolute(path).lexically_normal();
@@ -151,7 +152,8 @@ ShapeExportReport ExportShape(const Model& model, const Layout& layout,
                  if (report.uncertainty) WriteUncertainty(*report.uncertainty, folder);
                });
   }
-  // Last, so that a model that cannot be written leaves the old shape beside the old model.
+  // Committed last, so that an error while writing the model keeps the old shape beside the old
+  // model.
   if (shape_folder) shape_folder->Commit();
   return report;
 }

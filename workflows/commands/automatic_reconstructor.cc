@@ -190,6 +190,7 @@ void Run(const Options& options) {
   AdjustAndExport(options, paths, seed, &summary, &clock);
   WriteTimes(clock, paths);
   PrintSummary(summary, paths, std::cout);
+  summary.shape.sail.ThrowSurfaceError();
 }
 
 }  // namespace

@@ -73,6 +73,7 @@ void Run(const Options& options) {
   clock.End("export");
   LogStageTimes(clock);
   Print(report, options.paths, std::cout);
+  report.sail.ThrowSurfaceError();
 }
 
 }  // namespace
