@@ -1,7 +1,6 @@
 #include "importer/import_checks.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -23,12 +22,7 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
                    const ColmapDatabase& database) {
   const std::string remedy = "delete it or give a new --database_path";
   const std::optional<std::string> known_detector = database.ReadDetector();
-  const std::map<std::string, ImageId> names = database.ReadImageIdsByName();
-  if (!known_detector) {
-    if (names.empty()) return;
-    throw InputError(fmt::format("{}: holds images that velamap has not imported, such as {}; {}",
-                                 options.database_path, names.begin()->first, remedy));
-  }
+  if (!known_detector) return;  // it holds no images
   if (*known_detector != detector) {
     throw InputError(
         fmt::format("{}: was made with other detection options, another layout or "

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/parallel.h"
 #include "importer/camera/calibration.h"
 #include "importer/database/colmap_database.h"
@@ -28,8 +29,6 @@
 
 namespace velamap {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string ProgressLine(const FrameResult& result) {
   const FrameDetections& detections = result.detections;
@@ -166,7 +165,7 @@ class ImportRun {
       return;
     }
     const StageTimer timer(ImportStage::kImages);
-    WriteFrameImage(frame, fs::path(options_.frame_output_path) / frame.image_name);
+    WriteFrameImage(frame, std::filesystem::path(options_.frame_output_path) / frame.image_name);
   }
 
   // From sums over threads to what ImportReport::times promises.
@@ -257,7 +256,7 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   }
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;
-  if (fs::is_directory(options.image_path)) detection.search = SearchMode::kExhaustive;
+  if (IsFolder(options.image_path)) detection.search = SearchMode::kExhaustive;
   const FrameDetector detector = MakeFrameDetector(options.layout, detection, options.map);
 
   NewDatabaseGuard guard(options.database_path);

@@ -13,6 +13,7 @@
 
 #include "exporters/formats/cad_reader.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
@@ -27,11 +28,10 @@ std::string LowerExtension(const fs::path& path) {
 }
 
 void CheckFile(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) {
+  if (!Exists(path)) {
     throw InputError(fmt::format("{}: there is no such file", path.string()));
   }
-  if (!fs::is_regular_file(path, error)) {
+  if (!IsRegularFile(path)) {
     throw InputError(fmt::format("{}: is no regular file", path.string()));
   }
 }

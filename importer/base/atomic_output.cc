@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
@@ -22,14 +23,6 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void ThrowCannotWrite(const fs::path& path, const std::string& why) {
   throw InputError(fmt::format("{}: cannot be written: {}", path.string(), why));
-}
-
-// Absolute, without a trailing slash, so that a sibling's name can be derived.
-fs::path WithoutTrailingSlash(const fs::path& path) {
-  std::error_code error;
-  const fs::path normal = fs::absolute(path, error).lexically_normal();
-  if (error) ThrowCannotWrite(path, error.message());
-  return normal.has_filename() ? normal : normal.parent_path();
 }
 
 // Unique among the processes and threads of this machine.
@@ -49,12 +42,6 @@ fs::path FinalPath(const fs::path& path) {
     final_path /= is_temporary ? name.substr(1, suffix - 1) : name;
   }
   return final_path;
-}
-
-void CreateParentFolder(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path.parent_path(), error);
-  if (error) ThrowCannotWrite(path, error.message());
 }
 
 // A full disk may show itself no earlier than here.
@@ -83,26 +70,25 @@ void WriteStream(const fs::path& path, const fs::path& shown_path,
 
 }  // namespace
 
-AtomicFolder::AtomicFolder(const fs::path& path) : path_(WithoutTrailingSlash(path)) {
-  std::error_code error;
-  if (fs::exists(path_, error) && !fs::is_directory(path_, error)) {
+AtomicFolder::AtomicFolder(const fs::path& path) : path_(AbsoluteFolder(path)) {
+  if (Exists(path_) && !IsFolder(path_)) {
     ThrowCannotWrite(path_, "it exists and is no folder; choose another output path");
   }
-  CreateParentFolder(path_);
+  CreateFolders(path_.parent_path());
   temporary_path_ = TemporarySibling(path_);
+  std::error_code error;
   fs::create_directory(temporary_path_, error);
   if (error) ThrowCannotWrite(path_, error.message());
 }
 
 AtomicFolder::~AtomicFolder() {
-  std::error_code ignored;
-  if (!committed_) fs::remove_all(temporary_path_, ignored);
+  if (!committed_) RemoveAll(temporary_path_);
 }
 
 void AtomicFolder::Commit() {
   VELAMAP_CHECK(!committed_);
   std::error_code error;
-  if (!fs::exists(path_, error)) {
+  if (!Exists(path_)) {
     fs::rename(temporary_path_, path_, error);
     if (error) ThrowCannotWrite(path_, error.message());
     committed_ = true;
@@ -112,7 +98,7 @@ void AtomicFolder::Commit() {
   // old one steps aside for the blink of an eye.
   if (renameat2(AT_FDCWD, temporary_path_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0) {
     committed_ = true;
-    fs::remove_all(temporary_path_, error);
+    RemoveAll(temporary_path_);
     return;
   }
   const fs::path old_path = TemporarySibling(path_);
@@ -125,28 +111,22 @@ void AtomicFolder::Commit() {
     ThrowCannotWrite(path_, error.message());
   }
   committed_ = true;
-  fs::remove_all(old_path, error);
+  RemoveAll(old_path);
 }
 
 void CheckReplaceableFolder(const fs::path& path, const std::set<std::string>& known_files) {
-  std::error_code error;
-  const bool exists = fs::exists(path, error);
-  if (error) ThrowCannotWrite(path, error.message());
-  if (!exists) return;
-  if (!fs::is_directory(path, error)) {
+  if (!Exists(path)) return;
+  if (!IsFolder(path)) {
     ThrowCannotWrite(path, "it exists and is no folder; choose another output path");
   }
-  for (fs::directory_iterator entry(path, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (known_files.count(name) > 0 && entry->is_regular_file(error)) continue;
+  for (const fs::path& entry : FolderEntries(path)) {
+    const std::string name = entry.filename().string();
+    if (known_files.count(name) > 0 && IsRegularFile(entry)) continue;
     throw InputError(fmt::format(
         "{}: the output folder holds {}, which velamap did not write there; choose another folder "
         "or empty it",
         path.string(), name));
   }
-  if (error)
-    throw InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
 }
 
 void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
@@ -154,21 +134,20 @@ void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& w
 }
 
 void WriteFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  // A link stays a link: the file that it points at is replaced.
   std::error_code error;
-  // A link stays a link: what it points at is replaced.
-  fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
-  target = WithoutTrailingSlash(target);
-  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) {
+  const fs::path target = AbsoluteFolder(fs::is_symlink(path, error) ? CanonicalPath(path) : path);
+  if (Exists(target) && !IsRegularFile(target)) {
     ThrowCannotWrite(path, "it exists and is no regular file; choose another output path");
   }
-  CreateParentFolder(target);
+  CreateFolders(target.parent_path());
   const fs::path temporary_path = TemporarySibling(target);
   try {
     WriteStream(temporary_path, path, write);
     fs::rename(temporary_path, target, error);
     if (error) ThrowCannotWrite(path, error.message());
   } catch (...) {
-    fs::remove(temporary_path, error);
+    RemoveAll(temporary_path);
     throw;
   }
 }

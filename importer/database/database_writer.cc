@@ -1,24 +1,19 @@
 #include "importer/database/database_writer.h"
 
-#include <filesystem>
-#include <system_error>
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kBatchSize = 50;  // images a transaction
 
 }  // namespace
 
-NewDatabaseGuard::NewDatabaseGuard(const std::string& path)
-    : path_(path), is_new_(!fs::exists(path)) {}
+NewDatabaseGuard::NewDatabaseGuard(const std::string& path) : path_(path), is_new_(!Exists(path)) {}
 
 NewDatabaseGuard::~NewDatabaseGuard() {
   if (!is_new_) return;
-  std::error_code ignored;
-  for (const char* suffix : {"", "-journal"}) fs::remove(path_ + suffix, ignored);
+  for (const char* suffix : {"", "-journal"}) RemoveAll(path_ + suffix);
 }
 
 DatabaseWriter::DatabaseWriter(const std::string& detector, ColmapDatabase* database)

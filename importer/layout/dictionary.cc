@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/ids.h"
 #include "importer/base/text_file.h"
 
@@ -174,8 +175,7 @@ Dictionary LoadDictionary(const std::string& name_or_path) {
   if (const PredefinedEntry* entry = FindPredefined(name_or_path)) {
     return {entry->first, cv::aruco::getPredefinedDictionary(entry->second)};
   }
-  std::error_code error;
-  if (name_or_path.empty() || !std::filesystem::exists(name_or_path, error)) {
+  if (name_or_path.empty() || !Exists(name_or_path)) {
     throw InputError(fmt::format("dictionary '{}': neither a file nor one of {}", name_or_path,
                                  fmt::join(PredefinedDictionaryNames(), " ")));
   }

@@ -6,12 +6,12 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/ids.h"
 #include "importer/base/numbers.h"
 #include "importer/base/text_file.h"
@@ -290,8 +290,7 @@ FrameChoice ReadFrame(const YamlItem& item, const Layout& layout) {
 std::string ReadDictionaryName(const YamlItem& item) {
   const std::string name = ReadString(item);
   const std::filesystem::path file = std::filesystem::path(item.path).parent_path() / name;
-  std::error_code ignored;
-  const bool is_file = std::filesystem::is_regular_file(file, ignored);
+  const bool is_file = IsRegularFile(file);
   // What looks like a file is reported with the folder in which it was looked for.
   const bool looks_like_file = name.find_first_of("./") != std::string::npos;
   return is_file || looks_like_file ? file.string() : name;

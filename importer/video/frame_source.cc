@@ -14,6 +14,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/natural_order.h"
 #include "importer/video/image_file.h"
 #include "importer/video/video_decoder.h"
@@ -30,29 +31,12 @@ void SilenceOpenCv() {
                  [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
 }
 
-bool IsHidden(const fs::path& path) { return path.filename().string().rfind('.', 0) == 0; }
-
-// Names relative to the folder, in natural order; files that are no images by name are told of.
+// Returns names relative to the folder in natural order, and warns of files that are no images.
 std::vector<std::string> ListImages(const fs::path& folder) {
   std::vector<std::string> names, others;
-  std::error_code error;
-  const auto flags = fs::directory_options::follow_directory_symlink;
-  fs::recursive_directory_iterator it(folder, flags, error);
-  if (error) {
-    throw InputError(
-        fmt::format("{}: the folder cannot be read: {}", folder.string(), error.message()));
-  }
-  for (; it != fs::recursive_directory_iterator(); it.increment(error)) {
-    if (IsHidden(it->path())) {
-      it.disable_recursion_pending();
-    } else if (it->is_regular_file(error)) {
-      const std::string name = it->path().lexically_relative(folder).generic_string();
-      (HasImageExtension(name) ? names : others).push_back(name);
-    }
-  }
-  if (error) {
-    throw InputError(
-        fmt::format("{}: the folder cannot be read: {}", folder.string(), error.message()));
+  for (const fs::path& file : FilesBelow(folder)) {
+    const std::string name = file.lexically_relative(folder).generic_string();
+    (HasImageExtension(name) ? names : others).push_back(name);
   }
   std::sort(names.begin(), names.end(), NaturalLess);
   std::sort(others.begin(), others.end(), NaturalLess);
@@ -212,12 +196,11 @@ std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const Vide
                                              int num_threads) {
   options.Check();
   SilenceOpenCv();
-  std::error_code error;
-  if (path.empty() || !fs::exists(path, error)) {
+  if (path.empty() || !Exists(path)) {
     throw InputError(fmt::format("--image_path '{}': there is no such folder or video", path));
   }
-  if (!fs::is_directory(path, error)) {
-    if (fs::file_size(path, error) == 0) throw InputError(path + ": the file is empty");
+  if (!IsFolder(path)) {
+    if (FileSize(path) == 0) throw InputError(path + ": the file is empty");
     if (HasImageExtension(path)) {
       throw InputError(path + ": a single image; give the folder that holds the images");
     }

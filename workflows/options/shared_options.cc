@@ -10,6 +10,7 @@
 
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "workflows/options/sail_options.h"
 #include "workflows/run/logging.h"
 
@@ -281,14 +282,14 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
 
 std::string ShapeFile(const std::string& path) {
   const std::filesystem::path file = path;
-  return std::filesystem::is_directory(file) ? (file / "shape.csv").string() : path;
+  return IsFolder(file) ? (file / "shape.csv").string() : path;
 }
 
 MarkerMap LoadMap(const std::string& map_path) {
   MarkerMap map;
   if (map_path.empty()) return map;
   const std::string file = ShapeFile(map_path);
-  if (!std::filesystem::is_regular_file(file)) {
+  if (!IsRegularFile(file)) {
     throw InputError(fmt::format(
         "--map_path: {}: there is no such file; give a shape.csv or the folder that holds it, such "
         "as shape in a workspace",
