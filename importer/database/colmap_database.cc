@@ -11,7 +11,7 @@
 #include "importer/database/colmap_schema.h"
 #include "importer/database/correspondence.h"
 #include "importer/database/marker_detections_table.h"
-#include "importer/database/sqlite_columns.h"
+#include "importer/database/sqlite_blob.h"
 
 namespace velamap {
 namespace {

@@ -13,7 +13,6 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/database/marker_detections_table.h"
-#include "importer/database/sqlite_columns.h"
 
 namespace velamap {
 namespace {
@@ -75,6 +74,14 @@ PRAGMA user_version = 3800;
 )";
 
 }  // namespace
+
+std::set<std::string> ColumnNames(const SQLite::Database& database, const std::string& table) {
+  std::set<std::string> names;
+  SQLite::Statement query(database, "SELECT name FROM pragma_table_info(?)");
+  query.bind(1, table);
+  while (query.executeStep()) names.insert(query.getColumn(0).getString());
+  return names;
+}
 
 void CheckDatabaseFile(const std::string& path, bool writing) {
   const bool exists = Exists(path);

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <set>
 #include <string>
 
 namespace SQLite {
@@ -17,6 +18,9 @@ void CheckDatabaseFile(const std::string& path, bool writing);
 
 // Throws InputError if a table of COLMAP is missing.
 void CheckColmapTables(const std::string& path, const SQLite::Database& database);
+
+// Empty if there is no such table.
+std::set<std::string> ColumnNames(const SQLite::Database& database, const std::string& table);
 
 // Whether the database has no tables at all.
 bool IsFresh(const SQLite::Database& database);

@@ -10,7 +10,8 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
-#include "importer/database/sqlite_columns.h"
+#include "importer/database/colmap_schema.h"
+#include "importer/database/sqlite_blob.h"
 
 namespace velamap {
 namespace {

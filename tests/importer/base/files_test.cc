@@ -48,7 +48,7 @@ TEST(Files, TooLongNamesAreInputErrors) {
 TEST(Files, WhatIsNotThereIsNoError) {
   const TempDir dir;
   Touch(dir / "file");
-  for (const std::string path : {"", dir / "none", dir / "file/below"}) {
+  for (const fs::path& path : {fs::path(), dir / "none", dir / "file/below"}) {
     EXPECT_FALSE(Exists(path)) << path;
     EXPECT_FALSE(IsFolder(path)) << path;
     EXPECT_FALSE(IsRegularFile(path)) << path;

@@ -5,8 +5,6 @@
 
 #include <cstddef>
 #include <cstring>
-#include <set>
-#include <string>
 #include <vector>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -26,16 +24,6 @@ std::vector<T> ReadBlob(const SQLite::Column& column) {
   std::vector<T> values(static_cast<std::size_t>(column.getBytes()) / sizeof(T));
   if (!values.empty()) std::memcpy(values.data(), column.getBlob(), values.size() * sizeof(T));
   return values;
-}
-
-// Empty if there is no such table.
-inline std::set<std::string> ColumnNames(const SQLite::Database& database,
-                                         const std::string& table) {
-  std::set<std::string> names;
-  SQLite::Statement query(database, "SELECT name FROM pragma_table_info(?)");
-  query.bind(1, table);
-  while (query.executeStep()) names.insert(query.getColumn(0).getString());
-  return names;
 }
 
 }  // namespace velamap
