@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/parallel.h"
@@ -51,7 +52,9 @@ class ImportRun {
       : options_(options),
         detector_(detector),
         source_(source),
-        writer_(DescribeDetector(detector), database),
+        writes_images_(source->IsVideo() && !options.frame_output_path.empty()),
+        writer_(
+            DescribeDetector(detector), [this] { SecureImages(); }, database),
         held_markers_(HoldsMarkers(*database)),
         few_found_(!held_markers_) {}
 
@@ -161,14 +164,21 @@ class ImportRun {
   }
 
   void WriteImage(const Frame& frame, const FrameDetections& detections) const {
-    if (!source_->IsVideo() || options_.frame_output_path.empty() || detections.markers.empty()) {
-      return;
-    }
+    if (!writes_images_ || detections.markers.empty()) return;
     const StageTimer timer(ImportStage::kImages);
     WriteFrameImage(frame, std::filesystem::path(options_.frame_output_path) / frame.image_name);
   }
 
-  // From sums over threads to what ImportReport::times promises.
+  // A frame that the database holds is not written again by a later run, so it has to be on the
+  // disk first.
+  void SecureImages() const {
+    const StageTimer timer(ImportStage::kImages);
+    if (writes_images_ && Exists(options_.frame_output_path)) {
+      SyncFileSystem(options_.frame_output_path);
+    }
+  }
+
+  // Turns sums over threads into the times that ImportReport::times describes.
   void SettleTimes(double cpu_s, int num_threads) {
     ImportTimes& times = report_.times;
     BusyTime& decode = times[ImportStage::kDecode];
@@ -204,6 +214,7 @@ class ImportRun {
   const MarkerImporterOptions& options_;
   const FrameDetector& detector_;
   FrameSource* source_;
+  bool writes_images_;
   DatabaseWriter writer_;
   FrameTurns<MarkerTracks> turns_;  // videos
   bool held_markers_;               // before this run

@@ -44,10 +44,10 @@ fs::path FinalPath(const fs::path& path) {
   return final_path;
 }
 
-// A full disk may show itself no earlier than here.
-void SyncToDisk(const fs::path& path) {
+// Calls fsync() or syncfs(), which may be the first to notice a full disk.
+void Sync(const fs::path& path, int (*sync)(int)) {
   const int file = open(path.c_str(), O_RDONLY);
-  const int status = file < 0 ? -1 : fsync(file);
+  const int status = file < 0 ? -1 : sync(file);
   const int saved_errno = errno;
   if (file >= 0) close(file);
   if (status != 0) ThrowCannotWrite(path, std::strerror(saved_errno));
@@ -65,7 +65,27 @@ void WriteStream(const fs::path& path, const fs::path& shown_path,
   if (!stream) {
     ThrowCannotWrite(shown_path, errno != 0 ? std::strerror(errno) : "the stream failed");
   }
-  SyncToDisk(path);
+}
+
+void WriteAndRename(const fs::path& path, bool is_synced,
+                    const std::function<void(std::ostream&)>& write) {
+  // A link stays a link: the file that it points at is replaced.
+  std::error_code error;
+  const fs::path target = AbsoluteFolder(fs::is_symlink(path, error) ? CanonicalPath(path) : path);
+  if (Exists(target) && !IsRegularFile(target)) {
+    ThrowCannotWrite(path, "it exists and is no regular file; choose another output path");
+  }
+  CreateFolders(target.parent_path());
+  const fs::path temporary_path = TemporarySibling(target);
+  try {
+    WriteStream(temporary_path, path, write);
+    if (is_synced) Sync(temporary_path, fsync);
+    fs::rename(temporary_path, target, error);
+    if (error) ThrowCannotWrite(path, error.message());
+  } catch (...) {
+    RemoveAll(temporary_path);
+    throw;
+  }
 }
 
 }  // namespace
@@ -94,8 +114,8 @@ void AtomicFolder::Commit() {
     committed_ = true;
     return;
   }
-  // The old folder and the new one change places in one step where the file system can, else the
-  // old one steps aside for the blink of an eye.
+  // Exchanges the old folder and the new one in one step if the file system can do it. Otherwise
+  // there is no folder for a moment between two renames.
   if (renameat2(AT_FDCWD, temporary_path_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0) {
     committed_ = true;
     RemoveAll(temporary_path_);
@@ -129,27 +149,20 @@ void CheckReplaceableFolder(const fs::path& path, const std::set<std::string>& k
   }
 }
 
-void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  WriteStream(path, FinalPath(path), write);
+void WriteFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  WriteAndRename(path, true, write);
 }
 
-void WriteFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  // A link stays a link: the file that it points at is replaced.
-  std::error_code error;
-  const fs::path target = AbsoluteFolder(fs::is_symlink(path, error) ? CanonicalPath(path) : path);
-  if (Exists(target) && !IsRegularFile(target)) {
-    ThrowCannotWrite(path, "it exists and is no regular file; choose another output path");
-  }
-  CreateFolders(target.parent_path());
-  const fs::path temporary_path = TemporarySibling(target);
-  try {
-    WriteStream(temporary_path, path, write);
-    fs::rename(temporary_path, target, error);
-    if (error) ThrowCannotWrite(path, error.message());
-  } catch (...) {
-    RemoveAll(temporary_path);
-    throw;
-  }
+void WriteFileAtomicallyUnsynced(const fs::path& path,
+                                 const std::function<void(std::ostream&)>& write) {
+  WriteAndRename(path, false, write);
 }
+
+void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  WriteStream(path, FinalPath(path), write);
+  Sync(path, fsync);
+}
+
+void SyncFileSystem(const fs::path& folder) { Sync(folder, syncfs); }
 
 }  // namespace velamap

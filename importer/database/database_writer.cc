@@ -16,8 +16,9 @@ NewDatabaseGuard::~NewDatabaseGuard() {
   for (const char* suffix : {"", "-journal"}) RemoveAll(path_ + suffix);
 }
 
-DatabaseWriter::DatabaseWriter(const std::string& detector, ColmapDatabase* database)
-    : detector_(detector), database_(database) {}
+DatabaseWriter::DatabaseWriter(const std::string& detector,
+                               const std::function<void()>& before_commit, ColmapDatabase* database)
+    : detector_(detector), before_commit_(before_commit), database_(database) {}
 
 void DatabaseWriter::Add(const FrameDetections& detections, const Camera& camera) {
   if (!transaction_) transaction_.emplace(database_);
@@ -26,7 +27,10 @@ void DatabaseWriter::Add(const FrameDetections& detections, const Camera& camera
 }
 
 void DatabaseWriter::Commit() {
-  if (transaction_) transaction_->Commit();
+  if (transaction_) {
+    before_commit_();
+    transaction_->Commit();
+  }
   transaction_.reset();
   num_in_batch_ = 0;
 }

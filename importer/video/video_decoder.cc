@@ -102,12 +102,16 @@ class VideoDecoder::Stream {
   void OpenCodec(const std::string& path, int num_threads) {
     const AVCodec* decoder = avcodec_find_decoder(stream_->codecpar->codec_id);
     if (decoder == nullptr) ThrowUnreadable(path);
-    codec_.reset(avcodec_alloc_context3(decoder));
-    if (codec_ == nullptr) throw std::bad_alloc();
-    if (avcodec_parameters_to_context(codec_.get(), stream_->codecpar) < 0) ThrowUnreadable(path);
-    codec_->pkt_timebase = stream_->time_base;
-    codec_->thread_count = num_threads;
-    if (avcodec_open2(codec_.get(), decoder, nullptr) < 0) ThrowUnreadable(path);
+    // FFmpeg opens no decoder at all if the system refuses one of its threads.
+    for (const int count : {num_threads, 1}) {
+      codec_.reset(avcodec_alloc_context3(decoder));
+      if (codec_ == nullptr) throw std::bad_alloc();
+      if (avcodec_parameters_to_context(codec_.get(), stream_->codecpar) < 0) break;
+      codec_->pkt_timebase = stream_->time_base;
+      codec_->thread_count = count;
+      if (avcodec_open2(codec_.get(), decoder, nullptr) >= 0) return;
+    }
+    ThrowUnreadable(path);
   }
 
   const AVStream& stream() const { return *stream_; }
