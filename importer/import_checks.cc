@@ -13,7 +13,8 @@
 namespace velamap {
 namespace {
 
-// What another dictionary or polarity has to find more a frame to be the right one instead.
+// Another dictionary or polarity has to find this many times as many markers a frame to be
+// suggested.
 constexpr double kConvincingRatio = 10.0;
 
 }  // namespace
@@ -26,7 +27,7 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
   if (*known_detector != detector) {
     throw InputError(
         fmt::format("{}: was made with other detection options, another layout or "
-                    "another map ({}; now {}); {}",
+                    "another map ({}; this run has {}); {}",
                     options.database_path, *known_detector, detector, remedy));
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {
@@ -64,8 +65,8 @@ void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& 
   }
   if (report.num_rejected > 0) {
     throw DataError(
-        fmt::format("{}: only markers whose id is there more than once; give a layout "
-                    "(--layout_path) that tells them apart",
+        fmt::format("{}: every marker id is there more than once; give a layout "
+                    "(--layout_path) that tells the markers apart",
                     options.image_path));
   }
   throw DataError(fmt::format(

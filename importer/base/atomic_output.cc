@@ -25,14 +25,14 @@ namespace fs = std::filesystem;
   throw InputError(fmt::format("{}: cannot be written: {}", path.string(), why));
 }
 
-// Unique among the processes and threads of this machine.
+// A path that no other process or thread of this machine uses.
 fs::path TemporarySibling(const fs::path& path) {
   static std::atomic<int> counter{0};
   return path.parent_path() /
          fmt::format(".{}.tmp-{}-{}", path.filename().string(), getpid(), counter++);
 }
 
-// The path that a file in a temporary folder will have once the folder is renamed.
+// Returns the path that a file in a temporary folder will have when the folder has been renamed.
 fs::path FinalPath(const fs::path& path) {
   fs::path final_path;
   for (const fs::path& component : path) {

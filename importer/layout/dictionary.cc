@@ -117,8 +117,8 @@ cv::Mat Turned(const cv::Mat& bits, int quarter_turns) {
   return turned;
 }
 
-// Smallest number of bits in which two different markers differ, over all rotations. Throws for
-// two equal ones, which nothing could tell apart.
+// Returns the smallest number of bits in which two markers differ, over all rotations. Throws
+// InputError if two markers are equal.
 int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
   int min_distance = static_cast<int>(bits.front().total()) + 1;
   for (std::size_t i = 0; i < bits.size(); ++i) {
@@ -161,8 +161,8 @@ Dictionary ReadDictionaryFile(const std::string& path) {
   }
   const int unique_bits = (MinDistance(bits, path) - 1) / 2;
   if (correction_bits > unique_bits) {
-    spdlog::warn("{}: maxCorrectionBits {} would confuse markers; {} is used", path,
-                 correction_bits, unique_bits);
+    spdlog::warn("{}: maxCorrectionBits {} would confuse markers; using {}", path, correction_bits,
+                 unique_bits);
     correction_bits = unique_bits;
   }
   return {std::filesystem::path(path).filename().string(),

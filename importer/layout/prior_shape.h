@@ -1,4 +1,4 @@
-// Where markers are on the surface, by an earlier reconstruction of it.
+// The shape of the surface by an earlier reconstruction.
 
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace velamap {
 
-// Corners 1..4 of each marker, by its id, in the shape frame, m; any other scale does as well.
+// Corners 1..4 by marker id, in the shape frame, m. Another scale serves as well.
 using MarkerMap = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 
-// How far what is found in frames agrees with a map. Frames with too few markers of the map to tell
-// do not count.
+// How well the detections of frames agree with a map. Frames with too few markers of the map to
+// decide do not count.
 struct MapAgreement {
-  int num_known = 0;     // markers found that the map holds
-  int num_agreeing = 0;  // of these, those that one pose of their frame's camera explains
+  int num_known = 0;     // detected markers that the map holds
+  int num_agreeing = 0;  // those of them that one camera pose of the frame explains
 
   MapAgreement& operator+=(const MapAgreement& other) {
     num_known += other.num_known;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr uid_t kUserWithoutProcesses = 64123;
 
-// Counts how many of its frames have not come back yet.
+// Counts the frames that have been read and not yet processed.
 class FakeSource : public FrameSource {
  public:
   explicit FakeSource(int num_frames) : num_frames_(num_frames) {}
