@@ -12,6 +12,7 @@
 
 #include "exporters/formats/cad_reader.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
@@ -19,11 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 void CheckFile(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) {
+  if (!Exists(path)) {
     throw InputError(fmt::format("{}: no such file", path.string()));
   }
-  if (!fs::is_regular_file(path, error)) {
+  if (!IsRegularFile(path)) {
     throw InputError(fmt::format("{}: not a regular file", path.string()));
   }
 }
