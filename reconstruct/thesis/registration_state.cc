@@ -95,9 +95,10 @@ void SearchInTimeOrder(int central_idx, const FrameSearchOptions& search, Regist
   StartAtCentralFrame(central_idx, state);
   auto selected_frames =
       SearchFrames(state->frames, central_idx, search, state->layout, state->AlignmentOptions());
-  if (static_cast<int>(selected_frames.size()) < 2 * search.num_frames) {
+  const std::size_t num_wanted = 2 * static_cast<std::size_t>(search.num_frames);
+  if (selected_frames.size() < num_wanted) {
     notes->push_back("the search found " + std::to_string(selected_frames.size()) + " of " +
-                     std::to_string(2 * search.num_frames) +
+                     std::to_string(num_wanted) +
                      " frames around the central one: the video ends, or no frame aligns");
   }
   for (SelectedFrame& selected : selected_frames) {
