@@ -11,6 +11,7 @@
 
 #include "importer/base/error.h"
 #include "importer/geometry/alignment.h"
+#include "reconstruct/register_frames.h"
 #include "tests/reconstruct/registration_fixture.h"
 
 namespace velamap {
