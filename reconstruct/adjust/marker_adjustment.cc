@@ -60,7 +60,7 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
   MarkerAdjuster adjuster(options, layout, corner_sigmas, *model);
   adjuster.PrepareSeed();
   adjuster.AdjustLoosely();
-  adjuster.JudgeMarkerSizes();
+  adjuster.RejectContradictingSizes();
   adjuster.AdjustTightly();
   if (adjuster.AddScaleBars()) adjuster.AdjustTightly();
   adjuster.Finish();

@@ -58,7 +58,7 @@ class MarkerViewError : public ceres::CostFunction {
 };
 
 // What is known of a printed marker; sigmas that are not positive mean: not known.
-struct MarkerKnowledge {
+struct MarkerPrior {
   double length_m = 0.0;
   double side_sigma_m = 0.0;
   double diagonals_sigma_m = 0.0;  // of their difference
@@ -72,7 +72,7 @@ struct MarkerKnowledge {
 // are 1..4, ascending. Blocks: marker, print scale.
 class MarkerPriorError : public ceres::CostFunction {
  public:
-  MarkerPriorError(const MarkerKnowledge& knowledge, const std::vector<int>& corners);
+  MarkerPriorError(const MarkerPrior& prior, const std::vector<int>& corners);
 
   // Slots of neighbouring corners that are both there.
   static std::vector<std::pair<int, int>> Sides(const std::vector<int>& corners);
@@ -81,7 +81,7 @@ class MarkerPriorError : public ceres::CostFunction {
                 double** jacobians) const override;
 
  private:
-  MarkerKnowledge knowledge_;
+  MarkerPrior prior_;
   std::vector<std::pair<int, int>> sides_;
   bool has_diagonals_ = false;
   bool has_flatness_ = false;
