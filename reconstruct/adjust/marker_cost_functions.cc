@@ -38,7 +38,7 @@ Projection Project(CameraModel model, const double* intrinsics, const Eigen::Vec
   return projection;
 }
 
-// Derivative of the projection by the camera's parameters.
+// Derivative of the projection by the intrinsics.
 RowMajor<kMaxNumIntrinsics> ProjectionByIntrinsics(CameraModel model, const double* intrinsics,
                                                    const Eigen::Vector2d& ray) {
   using Jet = ceres::Jet<double, kMaxNumIntrinsics>;
@@ -206,7 +206,7 @@ bool MarkerPriorError::Evaluate(double const* const* parameters, double* residua
   }
   if (!has_flatness_) return true;
   const int last = num_residuals() - 1;
-  // The best plane leaves the four corners by h, -h, h, -h.
+  // The corners' signed distances from their best plane are h, -h, h, -h.
   const Eigen::Vector3d alternating = corner(0) - corner(1) + corner(2) - corner(3);
   const Eigen::Vector3d cross = diagonal1.cross(diagonal2);
   const Eigen::Vector3d normal = cross.normalized();

@@ -16,19 +16,19 @@
 
 namespace velamap {
 
-// A known distance as weights of corners: ScaleBarError.
+// A known distance, with the weights of corners that ScaleBarError takes.
 struct ScaleBar {
   KnownDistance distance;
   std::vector<int> marker_idxs;  // one or two
   std::vector<std::vector<double>> corner_weights;
 };
 
-// What changes from one solution to the next.
+// Weights that change from one minimization to the next.
 struct MarkerWeights {
-  double corner_factor = 1.0;  // of all corners' sigmas
+  double corner_factor = 1.0;  // by which all corners' sigmas are multiplied
   double loss_sigmas = 0.0;
   double print_tolerance = 0.0;
-  // What an inset that is not estimated may do to the scale, 1 sigma, as a fraction.
+  // 1 sigma of the scale error, as a fraction, by an inset that is not estimated.
   double inset_as_scale = 0.0;
   // Without scale bars only its prior determines the scale of the print. It is then constant while
   // the cost is minimized, because it would slow down the last digits, and a parameter for the
