@@ -37,7 +37,7 @@ void MarkerAdjustmentOptions::Check() const {
 }
 
 CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images) {
-  // What had to fall back is worse than the default says, by about this.
+  // Corners of the fallback estimator have about this many times the default sigma.
   constexpr double kFallbackFactor = 5.0;
   const double fallback_px = kFallbackFactor * MarkerAdjustmentOptions{}.corner_sigma_px;
   CornerSigmas sigmas;
