@@ -138,6 +138,8 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
   const double margin_px =
       std::clamp(0.24 * side.half_length_px, model.blur_px, 2.5 * model.blur_px);
   const double reach_px = side.half_length_px - margin_px;
+  samples->count = 0;
+  if (!(reach_px > 0)) return;
   const int major = std::abs(side.along.x()) >= std::abs(side.along.y()) ? 0 : 1;
   const int minor = 1 - major;
   const double major_reach =
@@ -151,7 +153,6 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
   first += (stride - first % stride) % stride;  // the same lines wherever the band begins
   const int last =
       std::min(major_size - 1, static_cast<int>(std::floor(side.middle_px[major] + major_reach)));
-  samples->count = 0;
   Floats x{}, y{};
   const auto fill = [&] {
     FillSamples(model, x, y,

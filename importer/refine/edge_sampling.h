@@ -48,7 +48,8 @@ SideModel MakeSideModel(const cv::Mat& gray, const QuadCorners& quad_px, int sid
                         int num_cells, double blur_px);
 
 // All pixels no further than `band_px` from the side, or every k-th row or column of them, about
-// `max_samples`. Two sides' blur mixes near the corners, which are left out.
+// `max_samples`. The ends of the side, where its blur mixes with that of the next sides, are left
+// out: a side that is no longer than its blur has no samples.
 void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int max_samples,
                 EdgeSamples* samples);
 

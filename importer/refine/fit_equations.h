@@ -15,6 +15,12 @@
 
 namespace velamap {
 
+// Shortens a step of one parameter, so that it stays within its limits.
+inline void LimitParameter(double min, double max, double value, double* step) {
+  if (value + *step < min) *step = min - value;
+  if (value + *step > max) *step = max - value;
+}
+
 template <int kCount>
 class FitEquations {
  public:

@@ -10,8 +10,9 @@
 
 #include "importer/base/error.h"
 #include "importer/detect/interpolate.h"
+#include "importer/geometry/least_squares.h"
 #include "importer/geometry/unit_square_map.h"
-#include "importer/refine/least_squares.h"
+#include "importer/refine/fit_equations.h"
 #include "importer/refine/pattern_picture.h"
 
 namespace velamap {
@@ -96,9 +97,9 @@ VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vect
   return pixels;
 }
 
-VELAMAP_CLONE_FOR_AVX2 void Evaluate(const Problem& problem, const Pixels& pixels,
-                                     const P::Vector& parameters, bool with_hessian,
-                                     Equations* equations) {
+VELAMAP_CLONE_FOR_AVX2 void SumUp(const Problem& problem, const Pixels& pixels,
+                                  const P::Vector& parameters, bool with_hessian,
+                                  Equations* equations) {
   const PatternPicture picture(problem.model, parameters);
   equations->Clear(with_hessian);
   PatternPixels modelled;
@@ -147,26 +148,46 @@ struct Minimum {
   Equations equations;
 };
 
-void LimitBlur(P::Vector* parameters) {
-  for (const int index : {P::kBlurU, P::kBlurV}) {
-    (*parameters)[index] = std::clamp((*parameters)[index], kMinBlurPx, kMaxBlurPx);
+// The fit to some pixels as a problem of MinimizeSquares().
+struct PatternProblem {
+  using Parameters = P::Vector;
+  using Equations = FitEquations<P::kCount>;
+  using Step = P::Vector;
+
+  const Problem& problem;
+  const Pixels& pixels;
+
+  void Evaluate(const P::Vector& parameters, bool with_hessian, Equations* equations) const {
+    SumUp(problem, pixels, parameters, with_hessian, equations);
   }
-}
+  P::Vector Plus(const P::Vector& parameters, const P::Vector& step) const {
+    return parameters + step;
+  }
+  // How far a corner moves, px.
+  double StepSize(const P::Vector& step, const Equations&) const {
+    return step.head<8>().cwiseAbs().maxCoeff();
+  }
+  P::Vector LimitStep(const P::Vector& parameters, P::Vector step) const {
+    for (const int index : {P::kBlurU, P::kBlurV}) {
+      LimitParameter(kMinBlurPx, kMaxBlurPx, parameters[index], &step[index]);
+    }
+    return step;
+  }
+  void Predict(const P::Vector& step, Equations* equations) const { equations->Predict(step); }
+};
 
 // Over about `max_pixels` pixels, until a step moves no corner further than `tolerance_px`. False
 // for too few pixels or a singular system.
 bool Minimize(const Problem& problem, int max_pixels, double tolerance_px, Minimum* minimum) {
   const Pixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
+  if (pixels.count <= P::kCount) return false;
   LeastSquaresOptions options;
-  options.tolerance_px = tolerance_px;
-  options.new_hessian_px = 0.1;
-  return MinimizeSquares(
-      options,
-      [&](const P::Vector& parameters, bool with_hessian, Equations* equations) {
-        Evaluate(problem, pixels, parameters, with_hessian, equations);
-      },
-      [](const P::Vector& step) { return step.head<8>().cwiseAbs().maxCoeff(); }, LimitBlur,
-      &minimum->parameters, &minimum->equations);
+  options.max_iterations = 10;
+  options.initial_damping = 1e-3;
+  options.min_step = tolerance_px;
+  options.min_step_for_new_hessian = 0.1;
+  return MinimizeSquares(options, PatternProblem{problem, pixels}, &minimum->parameters,
+                         &minimum->equations) != Convergence::kFailed;
 }
 
 // A quick fit on some pixels, then an exact one on more from there, with the surroundings read

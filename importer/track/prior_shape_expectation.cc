@@ -44,7 +44,7 @@ std::vector<const MarkerQuad*> FindKnown(const MarkerMap& map,
 
 // Nothing unless all of it is in front of the camera and within the field of view, beyond which a
 // distortion model may fold over.
-std::optional<QuadCorners> Reproject(const Camera& camera, const Eigen::Isometry3d& cam_from_shape,
+std::optional<QuadCorners> Reproject(const Camera& camera, const Rigid3& cam_from_shape,
                                      const std::array<Eigen::Vector3d, kNumCorners>& in_shape_m) {
   QuadCorners corners_px;
   for (std::size_t c = 0; c < kNumCorners; ++c) {

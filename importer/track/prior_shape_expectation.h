@@ -7,10 +7,10 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "importer/camera/camera.h"
 #include "importer/detect/marker_quad.h"
+#include "importer/geometry/rigid3.h"
 #include "importer/layout/prior_shape.h"
 #include "importer/track/local_motion.h"
 
@@ -18,7 +18,7 @@ namespace velamap {
 
 // A frame's camera in the map.
 struct MapView {
-  Eigen::Isometry3d cam_from_shape;
+  Rigid3 cam_from_shape;
   // From where the map has an agreeing marker to where it is, OpenCV's pixel frame: cloth moves.
   std::vector<PointMotion> departures;
 };

@@ -29,7 +29,8 @@ struct GlobalRegistration {
   std::vector<std::string> notes;
 
   MapGrowthOptions Growth() const {
-    return {options.min_num_inliers, 0, true, static_cast<std::uint32_t>(options.random_seed)};
+    return {options.min_num_inliers, 0, true, static_cast<std::uint32_t>(options.random_seed),
+            options.num_threads};
   }
   int NumFits(int marker_idx) const;  // observations of the marker that fit
   int NumFitsInFrame(int frame_idx) const;

@@ -14,7 +14,11 @@ namespace {
 // Frames whose own solutions are tried, and that form pairs with others.
 constexpr std::size_t kMaxViews = 8;
 constexpr std::size_t kMaxRefined = 3;
-// Rays nearer than this to parallel do not fix a depth, rad.
+// Places nearer than this to each other are one: half a side of the marker, and 0.2 rad (11
+// degrees). The two planar solutions of a marker differ by twice its tilt, and a coarser rotation
+// would merge those of a marker that is tilted by 10 degrees.
+constexpr double kSamePlaceInSides = 0.5, kSameRotation = 0.2;
+// Rays nearer than this to parallel do not determine a depth, rad.
 constexpr double kMinParallax = 0.02;
 
 struct View {
@@ -109,10 +113,9 @@ std::vector<Sim3> Candidates(const MapProblem& problem, const std::vector<View>&
   return candidates;
 }
 
-// Places nearer than this to each other are one: half a side and a quarter of a right angle.
 bool IsSame(const Sim3& a, const Sim3& b, double length_m) {
-  return (a.translation - b.translation).norm() < 0.5 * length_m * a.scale &&
-         a.rotation.angularDistance(b.rotation) < 0.2;
+  return (a.translation - b.translation).norm() < kSamePlaceInSides * length_m * a.scale &&
+         a.rotation.angularDistance(b.rotation) < kSameRotation;
 }
 
 std::vector<PlaceHypothesis> Distinct(std::vector<PlaceHypothesis> hypotheses, double length_m,

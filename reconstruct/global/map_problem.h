@@ -65,9 +65,11 @@ struct MapSolution {
   int NumRegistered() const;
 };
 
-// Poses every marker alone. `images` in the order that frame_idx shall have.
+// Poses every marker alone. The order of `images` becomes that of frame_idx. `num_threads` 0: one a
+// core.
 MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
-                          const std::map<CameraId, Camera>& cameras, const Layout& layout);
+                          const std::map<CameraId, Camera>& cameras, const Layout& layout,
+                          int num_threads = 0);
 
 MapSolution EmptySolution(const MapProblem& problem);
 
