@@ -16,7 +16,7 @@ house_folder(importer/video PUBLIC
   frame_image frame_source image_file video_options)
 house_folder(importer/detect PUBLIC
   corner_colors detection detection_options duplicates interpolate marker_alignment
-  marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
+  marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
 house_folder(importer/refine PUBLIC
   marker_detector)
 house_folder(importer/track PUBLIC

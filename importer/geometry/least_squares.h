@@ -45,6 +45,9 @@ class GaussNewtonEquations {
     cost_ += 0.5 * loss.Value(squared);
   }
 
+  // Regularises directions that the residuals leave open.
+  void AddToDiagonal(double value) { hessian_.diagonal().array() += value; }
+
   // Makes the parameters inadmissible, such as a pose that puts a point behind the camera.
   void Reject() { cost_ = std::numeric_limits<double>::infinity(); }
 

@@ -13,7 +13,7 @@
 #include "importer/camera/camera.h"
 #include "importer/detect/detection.h"
 #include "importer/detect/detection_options.h"
-#include "importer/detect/marker_alignment.h"
+#include "importer/detect/marker_location.h"
 #include "importer/detect/marker_quad.h"
 #include "importer/detect/rotation_ambiguity.h"
 #include "importer/layout/dictionary.h"
