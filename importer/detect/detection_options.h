@@ -1,4 +1,4 @@
-// Options of detection, free of OpenCV so that every room may hold them.
+// Options of detection. They are free of OpenCV, so that every room can include them.
 
 #pragma once
 
@@ -31,8 +31,8 @@ struct ArucoDetectionOptions {
   // Fraction of the dictionary's error correction that is used. OpenCV's 0.6 lets false ids in.
   double error_correction_rate = 0.3;
   bool inverted = false;                     // white marker on black ground
-  SearchMode search = SearchMode::kTracked;  // of videos; photographs are searched as a whole
-  int full_search_interval = 15;             // tracked: the whole of every k-th frame that is read
+  SearchMode search = SearchMode::kTracked;  // for videos; photographs are searched as a whole
+  int full_search_interval = 15;  // tracked: every k-th frame that is read is searched as a whole
 
   void Check() const;  // throws InputError that names the option
 };

@@ -16,7 +16,7 @@ using Matrix = EdgeEquations::Matrix;
 
 constexpr double kMinBlurPx = 0.3;
 constexpr double kMaxBlurPx = 5.0;
-constexpr double kPixelNoise = 3.0;  // grey levels, against which the priors weigh
+constexpr double kPixelNoise = 3.0;  // grey levels; sets the weight of the priors
 
 Vector PriorWeight(const EdgePrior& prior) {
   return (kPixelNoise * prior.sigma.values.cwiseInverse()).cwiseAbs2();

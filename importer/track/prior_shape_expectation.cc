@@ -12,8 +12,8 @@
 namespace velamap {
 namespace {
 
-// Area over the square of the longest side: seen at 80 degrees from its normal, hardly a marker can
-// be read.
+// Smallest ratio of area to squared longest side: a marker seen at more than 80 degrees from its
+// normal can hardly be read.
 constexpr double kMinFacing = 0.17;
 
 std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corners_px) {
@@ -26,7 +26,7 @@ std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corne
   return rays;
 }
 
-// Those of the map that are found once, by ascending id.
+// The found markers of the map whose id is found once, by ascending id.
 std::vector<const MarkerQuad*> FindKnown(const MarkerMap& map,
                                          const std::vector<MarkerQuad>& found) {
   std::map<int, const MarkerQuad*> known;
@@ -42,8 +42,8 @@ std::vector<const MarkerQuad*> FindKnown(const MarkerMap& map,
   return quads;
 }
 
-// Nothing unless all of it is in front of the camera and within the field of view, beyond which a
-// distortion model may fold over.
+// Nothing unless the whole marker is in front of the camera and within the field of view, outside
+// of which a distortion model may fold over.
 std::optional<QuadCorners> Reproject(const Camera& camera, const Rigid3& cam_from_shape,
                                      const std::array<Eigen::Vector3d, kNumCorners>& in_shape_m) {
   QuadCorners corners_px;
@@ -58,7 +58,8 @@ std::optional<QuadCorners> Reproject(const Camera& camera, const Rigid3& cam_fro
   return corners_px;
 }
 
-double SignedArea(const QuadCorners& quad) {  // positive: clockwise on the screen, a face seen
+double SignedArea(
+    const QuadCorners& quad) {  // positive: clockwise in the image, the face is visible
   return 0.5 * Cross(quad[2] - quad[0], quad[3] - quad[1]);
 }
 

@@ -1,5 +1,5 @@
-// Where an earlier reconstruction of the surface says that markers should be visible: they are
-// reprojected with the pose that the camera has by those that are found.
+// Expects missing markers where an earlier reconstruction of the surface reprojects, with the pose
+// of the camera from the markers that are found.
 
 #pragma once
 
@@ -16,22 +16,22 @@
 
 namespace velamap {
 
-// A frame's camera in the map.
+// The camera of a frame in the map.
 struct MapView {
   Rigid3 cam_from_shape;
-  // From where the map has an agreeing marker to where it is, OpenCV's pixel frame: cloth moves.
+  // From the reprojections of agreeing markers to where they are found, because cloth moves;
+  // OpenCV's pixel frame.
   std::vector<PointMotion> departures;
 };
 
-// By the consensus of the found markers that the map holds (consensus_pose.h). An id that is found
-// twice says nothing, and neither is known nor agrees; a frame with fewer than kMinConsensus known
-// ones has none.
+// The pose by the consensus of the found markers that the map holds (consensus_pose.h). Ids that
+// are found twice are ignored. Nothing with fewer than kMinConsensus markers.
 std::optional<MapView> PlaceOnMap(const MarkerMap& map, const Camera& camera,
                                   const std::vector<MarkerQuad>& found, MapAgreement* agreement);
 
-// Every marker of the map whose id is not found and which faces the camera: at its reprojection,
-// moved as the found ones around it depart from theirs. None farther beyond the image's border than
-// its reach.
+// Expects every marker of the map that faces the camera and whose id is not found at its
+// reprojection, shifted like the found markers around it from theirs. Leaves out markers that lie
+// farther outside of the image than their reach.
 std::vector<ExpectedMarker> ExpectOnMap(const MarkerMap& map, const Camera& camera,
                                         const MapView& view, const std::vector<MarkerQuad>& found);
 

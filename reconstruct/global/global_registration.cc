@@ -25,7 +25,7 @@ namespace {
 // Frames on which maps grow from several starts.
 constexpr int kMaxStartFrames = 32;
 
-// Twice as many frames of a video as may stay are registered, so that there is a choice.
+// Twice as many frames of a video are registered as may stay, so that the best can be chosen.
 void ChooseFrames(GlobalRegistration* global) {
   constexpr int kCandidatesPerFrame = 2;
   std::vector<int> chosen(global->images.size());
@@ -104,9 +104,9 @@ MapSolution GrowBestMap(const GlobalRegistration& global) {
   return best;
 }
 
-// The other relief is adjusted too, and taken if it explains more. One that explains less than half
-// after a first adjustment does not come to that: new places of markers and another adjustment add
-// less than a tenth of what the map explains.
+// Adjusts the reversed relief too and takes it if it explains more. A relief that explains less
+// than half after a first adjustment is given up: new places of markers and another adjustment add
+// less than a tenth.
 void TryReversedRelief(const MapProblem& problem, int num_threads, MapSolution* solution) {
   constexpr double kRoughly = 4.0, kHopeless = 0.5;
   MapSolution reversed = ReversedRelief(*solution);
@@ -123,21 +123,21 @@ void TryReversedRelief(const MapProblem& problem, int num_threads, MapSolution* 
   }
 }
 
-// Registers all that can be, leaves out what adds little or nothing, and places markers by all
-// frames.
-void Complete(GlobalRegistration* global) {
+// Registers all frames that can be registered, leaves out those that add little, and places markers
+// by the consensus of all frames.
+void RegisterAllFrames(GlobalRegistration* global) {
   constexpr double kSettledRatio = 0.9;
   const MapProblem& problem = global->problem;
   TryReversedRelief(problem, global->options.num_threads, &global->solution);
   std::vector<int> all(problem.frames.size());
   std::iota(all.begin(), all.end(), 0);
   MapGrowthOptions growth = global->Growth();
-  // Of a video more frames are registered than stay; those that go need no adjustment.
+  // More frames of a video are registered than stay, and those that go need no adjustment.
   growth.adjust = !global->is_video;
   GrowMap(problem, all, growth, &global->solution);
   PlaceUnsettledMarkers(problem, kSettledRatio, 1.0, &global->solution,
                         global->options.num_threads);
-  VoteOnIds(global);
+  DropDoubleIds(global);
   global->noise = EstimateNoise(problem, global->solution);
   LeaveOutBlurredFrames(global);
   LimitFrames(global);
@@ -145,7 +145,8 @@ void Complete(GlobalRegistration* global) {
   MarkFits(problem, 1.0, &global->solution);
 }
 
-void Finish(GlobalRegistration* global) {
+// Removes outliers at the tolerance of the final noise, and adjusts.
+void RemoveOutliers(GlobalRegistration* global) {
   const MapProblem& problem = global->problem;
   DropWrongSizes(global);
   global->noise = EstimateNoise(problem, global->solution);
@@ -201,8 +202,8 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
   global.problem = MakeMapProblem(chosen, cameras, layout, options.num_threads);
   global.solution = GrowBestMap(global);
   if (global.solution.NumRegistered() >= 2) {
-    Complete(&global);
-    Finish(&global);
+    RegisterAllFrames(&global);
+    RemoveOutliers(&global);
   }
   if (global.solution.NumRegistered() < 2) {
     throw DataError("no two images agree on the places of at least " +
@@ -213,7 +214,7 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
   if (IsSuspicious(global.noise)) {
     global.notes.push_back(fmt::format(
         "the errors of the registered map ({:.2f} px) are larger than the noise of the corners "
-        "({:.2f} px) explains: the shape may be a wrong one, or the surface moved; take views from "
+        "({:.2f} px) explains: the shape may be wrong, or the surface moved; take views from "
         "more directions",
         global.noise.sigma_px, global.noise.alone_sigma_px));
   }

@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-// Frames whose own solutions are tried, and that form pairs with others.
+// Frames whose planar solutions are hypotheses, and that form pairs with others.
 constexpr std::size_t kMaxViews = 8;
 constexpr std::size_t kMaxRefined = 3;
 // Places nearer than this to each other are one: half a side of the marker, and 0.2 rad (11
@@ -55,7 +55,7 @@ Sim3 Place(const Rigid3& shape_from_marker) {
   return {1.0, shape_from_marker.rotation, shape_from_marker.translation};
 }
 
-// The corners where the rays of two views pass each other nearest, as a square.
+// The square through the midpoints between the rays of two views.
 std::optional<Sim3> Triangulate(const MapProblem& problem, const View& a, const View& b) {
   const Rigid3 shape_from_a = Inverse(*a.cam_from_shape), shape_from_b = Inverse(*b.cam_from_shape);
   std::vector<Eigen::Vector3d> in_shape;
@@ -79,7 +79,8 @@ std::optional<Sim3> Triangulate(const MapProblem& problem, const View& a, const 
   return place;
 }
 
-// At most `max_count` of the views, spread by the golden ratio: even steps would miss what recurs.
+// At most `max_count` of the views, spread by the golden ratio, because even steps may coincide
+// with a periodic motion.
 std::vector<std::size_t> SpreadIdxs(std::size_t size, std::size_t max_count) {
   std::vector<std::size_t> idxs(std::min(size, max_count));
   if (size <= max_count) {
@@ -154,7 +155,7 @@ PlaceHypothesis Refine(const MapProblem& problem, const MapSolution& solution,
 
 std::vector<PlaceHypothesis> RankPlaces(const MapProblem& problem, const MapSolution& solution,
                                         const std::vector<View>& views, double tolerance_factor) {
-  constexpr double kCoarse = 3.0;  // candidates are coarse
+  constexpr double kCoarse = 3.0;  // before candidates are refined
   const double length_m =
       2 * problem.Marker(views.front().observation->marker_idx).corners_in_marker[1].x();
   std::vector<PlaceHypothesis> hypotheses;

@@ -17,11 +17,11 @@ namespace {
 constexpr std::size_t kMaxSingles = 12;
 // 50 samples are enough where a third of the markers is wrong.
 constexpr int kMinTriples = 12, kMaxTriples = 50;
-// Markers on which hypotheses are ranked before the best are refined on all.
+// Number of markers on which hypotheses are ranked; the best are refined on all.
 constexpr std::size_t kMaxRanking = 24;
 constexpr std::size_t kMaxRefined = 4;
 constexpr std::size_t kMaxHypotheses = 3;
-// Poses nearer than this are one: rotation, and translation as a part of the distance.
+// Poses nearer than this count as one: rotation in rad, translation relative to the distance.
 constexpr double kSameRotation = 0.08, kSameTranslation = 0.05;
 
 struct KnownMarker {
@@ -42,7 +42,7 @@ std::vector<KnownMarker> FindKnown(const MapProblem& problem, const MapSolution&
   return known;
 }
 
-// Scores the pose; where a marker has two places the better one counts.
+// Scores the pose. Where a marker has two places, the better one counts.
 PoseHypothesis Evaluate(const MapProblem& problem, const std::vector<KnownMarker>& known,
                         double tolerance_factor, const Rigid3& cam_from_shape,
                         std::vector<PlacedObservation>* agreeing = nullptr) {
@@ -66,7 +66,7 @@ PoseHypothesis Evaluate(const MapProblem& problem, const std::vector<KnownMarker
   return hypothesis;
 }
 
-// At most `max_count`, evenly over the list.
+// At most `max_count` markers, evenly over the list.
 std::vector<KnownMarker> Thinned(const std::vector<KnownMarker>& known, std::size_t max_count) {
   if (known.size() <= max_count) return known;
   std::vector<KnownMarker> thinned;
@@ -100,7 +100,7 @@ class FrameConsensus {
                  const std::vector<KnownMarker>& ranking, double tolerance_factor)
       : problem_(problem), known_(known), ranking_(ranking), tolerance_factor_(tolerance_factor) {}
 
-  // Poses that see a corner of each of three markers where they are.
+  // Poses that fit one corner of each of three markers exactly.
   std::vector<Rigid3> Generate(std::mt19937* generator) const {
     const auto sample = SampleCorners(known_.size(), generator);
     if (!sample) return {};
@@ -160,7 +160,7 @@ bool IsSame(const Rigid3& a, const Rigid3& b) {
          (a.translation - b.translation).norm() < kSameTranslation * a.translation.norm();
 }
 
-// Keeps the best of those that are nearly the same; ascending cost.
+// Keeps the best of hypotheses that are nearly the same; by ascending cost.
 std::vector<PoseHypothesis> Distinct(std::vector<PoseHypothesis> hypotheses,
                                      std::size_t max_count) {
   std::stable_sort(
@@ -202,8 +202,8 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
 }
 
 bool IsAmbiguous(const std::vector<PoseHypothesis>& hypotheses) {
-  // A hypothesis that explains as many observations, with errors within twice the best ones', is a
-  // rival; the small constant spares the comparison of rounding errors.
+  // A rival explains as many observations at up to twice the cost; the small constant avoids
+  // comparing rounding errors.
   constexpr double kRatio = 2.0, kNegligible = 1e-3;
   if (hypotheses.size() < 2) return false;
   const PoseHypothesis &best = hypotheses[0], &rival = hypotheses[1];

@@ -9,7 +9,7 @@
 namespace velamap {
 namespace {
 
-// What a marker counts before anything is registered: 1 for corners of this sigma (px) or better.
+// Corners with this sigma (px) or a smaller one give a marker the full weight of 1.
 constexpr double kSharpSigmaPx = 0.1;
 constexpr double kFallbackWeight = 0.5;
 
@@ -26,7 +26,7 @@ double Worth(const DatabaseImage& image) {
   return worth;
 }
 
-// One view of a marker's centre: its information matrix, 1/m^2.
+// One view of the centre of a marker and its information matrix, 1/m^2.
 struct CenterView {
   std::size_t marker_idx;
   Eigen::Matrix3d information;
@@ -83,7 +83,7 @@ std::vector<int> ChooseViews(const MapProblem& problem, const MapSolution& solut
   }
   if (static_cast<int>(registered.size()) <= max_num_frames) return registered;
   std::vector<std::vector<CenterView>> views(problem.frames.size());
-  // A little of what all views tell together, so that determinants exist from the start.
+  // A small part of the information of all views, so that determinants are not zero at the start.
   constexpr double kPrior = 1e-3;
   std::vector<Eigen::Matrix3d> information(problem.markers.size(), Eigen::Matrix3d::Zero());
   for (const int idx : registered) {
