@@ -82,8 +82,8 @@ bool IsLargeEnough(const QuadCorners& corners, const cv::Size& image_size,
          options.min_marker_perimeter_rate * std::max(image_size.width, image_size.height);
 }
 
-bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
-                 const ArucoDetectionOptions& options) {
+bool IsSearchable(const QuadCorners& corners, const cv::Size& image_size,
+                  const ArucoDetectionOptions& options) {
   const double min = kMinBorderDistancePx;
   const double max_x = image_size.width - 1 - min, max_y = image_size.height - 1 - min;
   return IsLargeEnough(corners, image_size, options) &&

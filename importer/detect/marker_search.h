@@ -39,8 +39,8 @@ bool IsLargeEnough(const QuadCorners& corners, const cv::Size& image_size,
                    const ArucoDetectionOptions& options);
 
 // Whether the marker is large enough and far enough from the border for a search to accept it.
-bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
-                 const ArucoDetectionOptions& options);
+bool IsSearchable(const QuadCorners& corners, const cv::Size& image_size,
+                  const ArucoDetectionOptions& options);
 
 // A marker may be found along the outer and the inner contour of its black border, or in two
 // regions. Keeps the outer one.

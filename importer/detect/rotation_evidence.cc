@@ -91,7 +91,8 @@ bool IsDoubtful(const RejectedDetection& rejected) { return rejected.reason == k
 using KnownRelations = std::map<std::pair<int, int>, Relation>;
 
 // Relations of all markers that are unresolved in some frame.
-KnownRelations Learn(const CodeSymmetries& symmetries, const std::vector<FrameDetections>& frames) {
+KnownRelations LearnRelations(const CodeSymmetries& symmetries,
+                              const std::vector<FrameDetections>& frames) {
   std::set<int> doubtful_ids;
   for (const FrameDetections& frame : frames) {
     for (const RejectedDetection& rejected : frame.rejected) {
@@ -143,9 +144,9 @@ void SortById(std::vector<MarkerDetection>* markers) {
                    [](const auto& a, const auto& b) { return a.marker_id < b.marker_id; });
 }
 
-// Resolves each frame alone, from its resolved and its unresolved markers.
-void StartAnew(const CodeSymmetries& symmetries, const AdjacencyGraph& graph,
-               FrameDetections* frame) {
+// Resolves a frame alone, from its resolved and its unresolved markers.
+void ResolveAlone(const CodeSymmetries& symmetries, const AdjacencyGraph& graph,
+                  FrameDetections* frame) {
   std::vector<RejectedDetection> others;
   for (RejectedDetection& rejected : frame->rejected) {
     if (IsDoubtful(rejected)) {
@@ -194,11 +195,11 @@ std::vector<std::size_t> ResolveRotationsAcrossFrames(const CodeSymmetries& symm
                                                       std::vector<FrameDetections>* frames) {
   if (symmetries.empty()) return {};
   const std::vector<FrameDetections> before = *frames;
-  for (FrameDetections& frame : *frames) StartAnew(symmetries, graph, &frame);
+  for (FrameDetections& frame : *frames) ResolveAlone(symmetries, graph, &frame);
   // Every round but the last resolves a marker, so that the loop ends.
   for (bool any = true; any;) {
     any = false;
-    const KnownRelations known = Learn(symmetries, *frames);
+    const KnownRelations known = LearnRelations(symmetries, *frames);
     for (FrameDetections& frame : *frames) any |= ResolveByOthers(symmetries, known, &frame);
   }
   std::vector<std::size_t> changed;

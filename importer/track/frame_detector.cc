@@ -121,7 +121,7 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
     return std::nullopt;  // a layout may name ids beyond the dictionary
   const MarkerLook& look = detector.looks[idx];
   const auto located = LocateMarker(gray, expected, look, reach_px);
-  if (!located || !SearchTakes(*located, gray.size(), detector.options)) return std::nullopt;
+  if (!located || !IsSearchable(*located, gray.size(), detector.options)) return std::nullopt;
   return located;
 }
 

@@ -30,7 +30,7 @@ QuadById SingleMarkers(const std::vector<MarkerQuad>& found) {
   return quads;
 }
 
-bool StandAlike(const QuadCorners& a, const QuadCorners& b) {
+bool HaveSameOrientation(const QuadCorners& a, const QuadCorners& b) {
   const Eigen::Vector2d side_a = a[1] - a[0], side_b = b[1] - b[0];
   return side_a.dot(side_b) > kMinCosine * side_a.norm() * side_b.norm();
 }
@@ -39,7 +39,7 @@ bool StandAlike(const QuadCorners& a, const QuadCorners& b) {
 std::optional<ExpectedMarker> Expect(int marker_id, const QuadById& quads, int id_a, int id_b,
                                      double weight_a) {
   const auto a = quads.find(id_a), b = quads.find(id_b);
-  if (a == quads.end() || b == quads.end() || !StandAlike(a->second, b->second)) {
+  if (a == quads.end() || b == quads.end() || !HaveSameOrientation(a->second, b->second)) {
     return std::nullopt;
   }
   ExpectedMarker expected;

@@ -137,7 +137,7 @@ void RegisterAllFrames(GlobalRegistration* global) {
   GrowMap(problem, all, growth, &global->solution);
   PlaceUnsettledMarkers(problem, kSettledRatio, 1.0, &global->solution,
                         global->options.num_threads);
-  DropDoubleIds(global);
+  VoteOnIds(global);
   global->noise = EstimateNoise(problem, global->solution);
   LeaveOutBlurredFrames(global);
   LimitFrames(global);

@@ -70,7 +70,7 @@ bool SeeMarkerRotated(const GlobalRegistration& global, int marker_idx,
 
 }  // namespace
 
-void DropDoubleIds(GlobalRegistration* global) {
+void VoteOnIds(GlobalRegistration* global) {
   constexpr double kBeyondDoubt = 0.8;
   for (std::size_t idx = 0; idx < global->problem.markers.size(); ++idx) {
     const int marker_idx = static_cast<int>(idx);

@@ -7,7 +7,7 @@
 namespace velamap {
 
 // Drops markers whose id is seen at two places with support for both.
-void DropDoubleIds(GlobalRegistration* global);
+void VoteOnIds(GlobalRegistration* global);
 
 // Drops markers whose side differs from the others by far more than their print explains.
 void DropWrongSizes(GlobalRegistration* global);

@@ -13,17 +13,17 @@ namespace {
 constexpr double kSharpSigmaPx = 0.1;
 constexpr double kFallbackWeight = 0.5;
 
-double Worth(const DatabaseImage& image) {
-  double worth = 0.0;
+double SumOfMarkerWeights(const DatabaseImage& image) {
+  double sum = 0.0;
   for (const MarkerDetection& marker : image.detections.markers) {
     double sigma_px = 0.0;
     for (const double corner_sigma_px : marker.corner_sigma_px) {
       sigma_px = std::max(sigma_px, corner_sigma_px);
     }
-    worth += (marker.is_fallback ? kFallbackWeight : 1.0) *
-             std::min(1.0, kSharpSigmaPx / std::max(sigma_px, 1e-9));
+    sum += (marker.is_fallback ? kFallbackWeight : 1.0) *
+           std::min(1.0, kSharpSigmaPx / std::max(sigma_px, 1e-9));
   }
-  return worth;
+  return sum;
 }
 
 // One view of the centre of a marker and its information matrix, 1/m^2.
@@ -65,10 +65,11 @@ std::vector<int> ChooseCandidateFrames(const std::vector<const DatabaseImage*>& 
   for (std::size_t slot = 0; slot < num_slots; ++slot) {
     const std::size_t begin = slot * images.size() / num_slots;
     const std::size_t end = (slot + 1) * images.size() / num_slots;
-    const auto best = std::max_element(
-        images.begin() + static_cast<std::ptrdiff_t>(begin),
-        images.begin() + static_cast<std::ptrdiff_t>(end),
-        [](const DatabaseImage* a, const DatabaseImage* b) { return Worth(*a) < Worth(*b); });
+    const auto best = std::max_element(images.begin() + static_cast<std::ptrdiff_t>(begin),
+                                       images.begin() + static_cast<std::ptrdiff_t>(end),
+                                       [](const DatabaseImage* a, const DatabaseImage* b) {
+                                         return SumOfMarkerWeights(*a) < SumOfMarkerWeights(*b);
+                                       });
     chosen.push_back(static_cast<int>(best - images.begin()));
   }
   return chosen;
