@@ -35,29 +35,29 @@ struct FrameDetector {
   std::map<int, std::string> part_of_id;  // empty: every id is accepted
   std::vector<MarkerLook> looks;          // by id of the dictionary
   std::vector<std::vector<int>> lines;    // ids along the lines of the layout; for tracked search
-  MarkerMap map;                          // markers of an earlier shape that can be detected
+  PriorShape prior_shape;                 // of markers that can be detected; may be empty
 };
 
 // Throws InputError for a dictionary that does not exist or has wrong bits. Ignores markers of
-// `map` that are missing in the dictionary or the layout.
+// `prior_shape` that are missing in the dictionary or the layout.
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
-                                const MarkerMap& map = {});
+                                const PriorShape& prior_shape = {});
 
 // The markers of the whole frame, or of regions of it, to a pixel. Thread-safe.
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray);
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                       const std::vector<cv::Rect>& regions);
 
-// The places of markers that were not found but should be visible. Markers of the map are expected
-// where it reprojects, unless they are too small to be found; the others, or all where the frame
-// has no pose in the map, on the lines of the layout. Thread-safe.
+// The places of markers that were not found but should be visible. Markers of the prior shape are
+// expected at their reprojection, unless they are too small to be found; the others, or all where
+// the frame cannot be placed in it, on the lines of the layout. Thread-safe.
 std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const Camera& camera,
                                           const std::vector<MarkerQuad>& found,
-                                          MapAgreement* agreement);
+                                          PriorShapeAgreement* agreement);
 
 // Searches the whole frame, and the places of expected markers that this missed. Thread-safe.
 std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const Camera& camera,
-                                           const cv::Mat& gray, MapAgreement* agreement);
+                                           const cv::Mat& gray, PriorShapeAgreement* agreement);
 
 // Large markers of the whole frame, in a quarter of the time. Thread-safe.
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray);

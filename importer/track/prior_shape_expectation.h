@@ -16,23 +16,25 @@
 
 namespace velamap {
 
-// The camera of a frame in the map.
-struct MapView {
+// The camera of a frame in the frame of the prior shape.
+struct PriorShapeView {
   Rigid3 cam_from_shape;
   // From the reprojections of agreeing markers to where they are found, because cloth moves;
   // OpenCV's pixel frame.
   std::vector<PointMotion> departures;
 };
 
-// The pose by the consensus of the found markers that the map holds (consensus_pose.h). Ids that
-// are found twice are ignored. Nothing with fewer than kMinConsensus markers.
-std::optional<MapView> PlaceOnMap(const MarkerMap& map, const Camera& camera,
-                                  const std::vector<MarkerQuad>& found, MapAgreement* agreement);
+// The pose by the consensus of the found markers that the prior shape holds (consensus_pose.h). Ids
+// that are found twice are ignored. Nothing with fewer than kMinConsensus markers.
+std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, const Camera& camera,
+                                                const std::vector<MarkerQuad>& found,
+                                                PriorShapeAgreement* agreement);
 
-// Expects every marker of the map that faces the camera and whose id is not found at its
+// Expects every marker of the prior shape that faces the camera and whose id is not found at its
 // reprojection, shifted like the found markers around it from theirs. Leaves out markers that lie
 // farther outside of the image than their reach.
-std::vector<ExpectedMarker> ExpectOnMap(const MarkerMap& map, const Camera& camera,
-                                        const MapView& view, const std::vector<MarkerQuad>& found);
+std::vector<ExpectedMarker> ExpectByPriorShape(const PriorShape& prior_shape, const Camera& camera,
+                                               const PriorShapeView& view,
+                                               const std::vector<MarkerQuad>& found);
 
 }  // namespace velamap
