@@ -11,12 +11,9 @@ namespace velamap {
 namespace {
 
 std::string RangeText(const OptionRange& range) {
-  if (std::isinf(range.max)) {
-    return range.excludes_min ? fmt::format("more than {}", range.min)
-                              : fmt::format("{} or more", range.min);
-  }
-  return range.excludes_min ? fmt::format("more than {}, up to {}", range.min, range.max)
-                            : fmt::format("{} to {}", range.min, range.max);
+  if (range.excludes_min) return fmt::format("more than {}", range.min);
+  if (std::isinf(range.max)) return fmt::format("{} or more", range.min);
+  return fmt::format("{} to {}", range.min, range.max);
 }
 
 // Written so that a NaN is in no range.

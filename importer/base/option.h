@@ -43,7 +43,6 @@ inline OptionRange AtLeast(double min) { return {min}; }
 inline OptionRange MoreThan(double min) {
   return {min, std::numeric_limits<double>::infinity(), true};
 }
-inline OptionRange MoreThanUpTo(double min, double max) { return {min, max, true}; }
 inline OptionRange FromTo(double min, double max) { return {min, max}; }
 
 struct Option {

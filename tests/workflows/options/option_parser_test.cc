@@ -41,7 +41,7 @@ CommandSyntax MakeSyntax(Values* values) {
        {"Second",
         {{"Walk.count", &values->count, "steps", "how many", AtLeast(0)},
          {"Walk.max_num_steps", &values->count, "steps", "at most", AtLeast(0)},
-         {"Walk.length", &values->length_m, "m", "how long", MoreThanUpTo(0, 2)},
+         {"Walk.length", &values->length_m, "m", "how long", MoreThan(0)},
          {"Walk.maybe", &values->maybe_m, "m", "perhaps", FromTo(-1, 1)},
          {"Walk.yes", &values->yes, "0|1", "whether"},
          ChoiceOption("Walk.gait", &values->gait, {{Gait::kWalk, "walk"}, {Gait::kTrot, "trot"}},
@@ -89,7 +89,7 @@ TEST(OptionParserTest, RefusesValuesBeyondTheRange) {
   EXPECT_EQ(error_of("--Walk.count", "-1"),
             "--Walk.count: -1 is out of range; give 0 or more (steps)");
   EXPECT_EQ(error_of("--Walk.length", "0"),
-            "--Walk.length: 0 is out of range; give more than 0, up to 2 (m)");
+            "--Walk.length: 0 is out of range; give more than 0 (m)");
   EXPECT_EQ(error_of("--Walk.maybe", "1.5"), "--Walk.maybe: 1.5 is out of range; give -1 to 1 (m)");
   EXPECT_EQ(error_of("--Walk.gait", "run"), "--Walk.gait: 'run' is unknown; give walk or trot");
 }
