@@ -148,7 +148,7 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
         progress.Update(done, total, message);
       });
   ClearProgressLine();
-  spdlog::info("{} images added to the {} of the database, {} markers found",
+  spdlog::info("{} images added, {} were in the database before, {} markers found",
                report.num_images_added, report.num_images_present, report.num_markers);
   if (report.num_fallbacks > 0) {
     spdlog::info("{} of them without a fit of their edges: corners from cv::cornerSubPix",
