@@ -27,7 +27,7 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
   if (*known_detector != detector) {
     throw InputError(
         fmt::format("{}: was made with other detection options, another layout or "
-                    "another map ({}; this run has {}); {}",
+                    "another prior shape ({}; this run has {}); {}",
                     options.database_path, *known_detector, detector, remedy));
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {

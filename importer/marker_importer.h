@@ -26,7 +26,7 @@ struct MarkerImporterOptions {
   Layout layout;
   ArucoDetectionOptions detection;
   VideoOptions video;
-  MarkerMap map;  // of an earlier reconstruction of the surface; empty: none
+  PriorShape prior_shape;  // empty: none
   // Video only: the folder into which frames with markers are written as JPEG, so that later steps
   // need not decode the video again; empty: none are written. Photographs stay where they are.
   std::string frame_output_path;
@@ -43,12 +43,11 @@ struct ImportReport {
   int num_images_added = 0;    // to the database
   int num_images_present = 0;  // in the database before this run
   int num_images_without_markers = 0;
-  int num_markers = 0;   // detections accepted in this run
-  int num_rejected = 0;  // detections rejected in this run
-  int num_fallbacks =
-      0;              // accepted with corners of cv::cornerSubPix, because the corner fit failed
-  int num_pairs = 0;  // image pairs with matches
-  MapAgreement map;   // of all frames
+  int num_markers = 0;                 // detections accepted in this run
+  int num_rejected = 0;                // detections rejected in this run
+  int num_fallbacks = 0;               // accepted without a corner fit: corners of cv::cornerSubPix
+  int num_pairs = 0;                   // image pairs with matches
+  PriorShapeAgreement prior_shape;     // of all frames
   std::vector<int> ids_not_in_layout;  // detected and rejected, because no part names them
   std::vector<SkippedImage> skipped;   // unreadable files
   // CPU times are sums over the threads. Decoding has the CPU time that no other stage claims,

@@ -1,4 +1,4 @@
-// The shape of the surface by an earlier reconstruction.
+// The prior shape: where an earlier reconstruction of the surface has its markers.
 
 #pragma once
 
@@ -12,15 +12,15 @@
 namespace velamap {
 
 // Corners 1..4 by marker id, in the shape frame, m. Another scale serves as well.
-using MarkerMap = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
+using PriorShape = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 
-// How well the detections of frames agree with a map. Frames with too few markers of the map to
+// How well the detections of frames agree with a prior shape. Frames with too few of its markers to
 // decide do not count.
-struct MapAgreement {
-  int num_known = 0;     // detected markers that the map holds
+struct PriorShapeAgreement {
+  int num_known = 0;     // detected markers that the prior shape holds
   int num_agreeing = 0;  // those of them that one camera pose of the frame explains
 
-  MapAgreement& operator+=(const MapAgreement& other) {
+  PriorShapeAgreement& operator+=(const PriorShapeAgreement& other) {
     num_known += other.num_known;
     num_agreeing += other.num_agreeing;
     return *this;
