@@ -47,7 +47,7 @@ class Pipeline {
     try {
       StartThreads(num_threads);
     } catch (const std::system_error& error) {
-      // The threads that there are share the work, as long as one reads and one processes.
+      // The threads that have started share the work, if there is one to read and one to process.
       if (threads_.size() >= 2) return;
       End();
       throw InputError(fmt::format(

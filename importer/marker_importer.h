@@ -43,11 +43,10 @@ struct ImportReport {
   int num_images_added = 0;    // to the database
   int num_images_present = 0;  // in the database before this run
   int num_images_without_markers = 0;
-  int num_markers = 0;   // detections accepted in this run
-  int num_rejected = 0;  // detections rejected in this run
-  int num_fallbacks =
-      0;              // accepted with corners of cv::cornerSubPix, because the corner fit failed
-  int num_pairs = 0;  // image pairs with matches
+  int num_markers = 0;                 // detections accepted in this run
+  int num_rejected = 0;                // detections rejected in this run
+  int num_fallbacks = 0;               // accepted without a corner fit: corners of cv::cornerSubPix
+  int num_pairs = 0;                   // image pairs with matches
   PriorShapeAgreement prior_shape;     // of all frames
   std::vector<int> ids_not_in_layout;  // detected and rejected, because no part names them
   std::vector<SkippedImage> skipped;   // unreadable files

@@ -12,49 +12,13 @@
 #include "importer/database/correspondence.h"
 #include "importer/database/marker_detections_table.h"
 #include "importer/database/sqlite_blob.h"
+#include "importer/database/sqlite_errors.h"
 
 namespace velamap {
 namespace {
 
 constexpr ImageId kMaxNumImages = 2147483647;
 constexpr int kTwoViewConfigCalibrated = 2;  // COLMAP's TwoViewGeometry::CALIBRATED
-
-// Turns an error of SQLite into one line with a remedy.
-[[noreturn]] void ThrowInputError(const std::string& path, const SQLite::Exception& exception) {
-  std::string message;
-  switch (exception.getErrorCode()) {
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-      message = "locked by another program; close it (the COLMAP GUI?) and run again";
-      break;
-    case SQLITE_FULL:
-      message = "cannot be written: the disk is full";
-      break;
-    case SQLITE_READONLY:
-    case SQLITE_CANTOPEN:
-    case SQLITE_PERM:
-      message = "cannot be opened for writing; check the folder and the rights";
-      break;
-    case SQLITE_NOTADB:
-      message = "no SQLite database";
-      break;
-    case SQLITE_CORRUPT:
-      message = "a damaged database; delete it and import again";
-      break;
-    default:
-      message = fmt::format("SQLite reports: {}", exception.what());
-  }
-  throw InputError(fmt::format("{}: {}", path, message));
-}
-
-template <typename Function>
-auto Guarded(const std::string& path, const Function& function) {
-  try {
-    return function();
-  } catch (const SQLite::Exception& exception) {
-    ThrowInputError(path, exception);
-  }
-}
 
 std::int64_t PairId(ImageId image_id1, ImageId image_id2) {
   const auto [first, second] = std::minmax(image_id1, image_id2);

@@ -1,5 +1,4 @@
-// Columns of SQLite's tables. Arrays of numbers are blobs in the machine's byte order, as in
-// COLMAP.
+// Arrays of numbers as blobs in SQLite's columns, in the machine's byte order, as in COLMAP.
 
 #pragma once
 

@@ -153,8 +153,8 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
         progress.Update(done, total, message);
       });
   ClearProgressLine();
-  spdlog::info("{} markers found; {} images added to the database, which held {}",
-               report.num_markers, report.num_images_added, report.num_images_present);
+  spdlog::info("{} images added, {} were in the database before, {} markers found",
+               report.num_images_added, report.num_images_present, report.num_markers);
   if (report.num_fallbacks > 0) {
     spdlog::info(
         "the corners of {} markers come from cv::cornerSubPix: their edges were not fitted",

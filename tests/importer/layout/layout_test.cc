@@ -143,7 +143,7 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAWrongDistance) {
   expect("{from: 12, length: 1, sigma: 0.01}", "key 'to' is missing");
   expect("{from: 12, to: 45, length: 1, sigma: 0.01, tape: 3}", "unknown key");
   expect("{from: 12, to: 45, length: 1, sigma: 0.01, use: maybe}", ".use: 'maybe'");
-  expect("{from: 12, to: 45, length: 1, sigma: 2}", "no less than the length");
+  expect("{from: 12, to: 45, length: 1, sigma: 2}", "not below the length");
   expect("7", "a map");
   for (const char* length : {"0", "-1", "nan", "inf"}) {
     expect(std::string("{from: 12, to: 45, sigma: 0.01, length: ") + length + "}",
