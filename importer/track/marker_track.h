@@ -31,7 +31,7 @@ struct TrackPrediction {
 };
 
 // Predicts by the velocity; a marker without one moves like those around it. `velocities` are those
-// markers, of one frame.
+// of all markers, each over one frame.
 TrackPrediction PredictByVelocity(const MarkerTrack& track,
                                   const std::vector<PointMotion>& velocities, int num_frames);
 
