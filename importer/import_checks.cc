@@ -21,7 +21,7 @@ constexpr double kConvincingRatio = 10.0;
 
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
                    const ColmapDatabase& database) {
-  const std::string remedy = "delete it or give a new --database_path";
+  const std::string remedy = "delete it, or write to a new place";
   const std::optional<std::string> known_detector = database.ReadDetector();
   const std::map<std::string, ImageId> names = database.ReadImageIdsByName();
   if (!known_detector) {

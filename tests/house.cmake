@@ -3,8 +3,8 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue csv error ids natural_order numbers parallel stage_timer statistics
-  text_file)
+  atomic_output bounded_queue csv error ids natural_order numbers option parallel stage_timer
+  statistics text_file)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose pose_step quad rigid3 triple_pose unit_square_map)
 house_folder(importer/camera PUBLIC
@@ -37,7 +37,7 @@ house_folder(reconstruct/thesis PUBLIC
 house_folder(reconstruct/global PUBLIC
   global_registration)
 house_folder(reconstruct/colmap PUBLIC
-  bundle_adjustment colmap_runner observation_filter warm_start)
+  bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/adjust PUBLIC
   marker_adjustment)
 house_folder(reconstruct PUBLIC
@@ -63,7 +63,7 @@ house_folder(workflows/run PUBLIC
   central_frame_sweep logging pipeline progress stage_times summary version versions
   workspace)
 house_folder(workflows/options PUBLIC
-  option_parser sail_options shared_options)
+  nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC
   commands)
 house_folder(workflows)

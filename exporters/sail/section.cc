@@ -13,6 +13,7 @@
 #include "exporters/shape/sail_lines.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
+#include "importer/base/numbers.h"
 
 namespace velamap {
 namespace {
@@ -179,20 +180,34 @@ SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& u
 
 }  // namespace
 
+OptionGroup DescribeOptions(SectionOptions* options) {
+  const auto set_heights = [options](const std::string& text, const std::string& option) {
+    const auto heights_m = ParseNumberList<double>(text);
+    if (!heights_m) {
+      throw InputError(
+          fmt::format("{}: '{}' is no list of heights in m such as 1,2.5,4", option, text));
+    }
+    options->heights_m = *heights_m;
+  };
+  return {"Sections",
+          {{"Section.heights", ParsedValue{&options->heights_m, "", set_heights}, "m,m,...",
+            "heights of sections besides the lines, z of the frame"},
+           {"Section.min_markers", &options->min_markers, "markers",
+            "fewest whole markers on a line that make a section", AtLeast(4)}}};
+}
+
 void SectionOptions::Check() const {
   constexpr std::size_t kMaxHeights = 500;
+  CheckRanges(*this);
+  const std::string name = OptionName(&SectionOptions::heights_m);
   if (heights_m.size() > kMaxHeights) {
-    throw InputError(fmt::format("--Section.heights: {} heights, expected at most {}",
+    throw InputError(fmt::format("{}: {} heights are too many; give at most {}", name,
                                  heights_m.size(), kMaxHeights));
   }
   for (const double height_m : heights_m) {
     if (!std::isfinite(height_m)) {
-      throw InputError(fmt::format("--Section.heights: expected numbers in m, found {}", height_m));
+      throw InputError(fmt::format("{}: {} is no height; give numbers of metres", name, height_m));
     }
-  }
-  if (min_markers < 4) {
-    throw InputError(
-        fmt::format("--Section.min_markers: {}; a section needs at least 4 markers", min_markers));
   }
 }
 

@@ -25,6 +25,7 @@
 #include "exporters/sail/section_spline.h"
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_frame.h"
+#include "importer/base/option.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/geometry/point_covariance.h"
 
@@ -79,13 +80,13 @@ struct SectionReport {
 };
 
 struct SectionOptions {
-  std::vector<double> heights_m;  // of additional sections, z in the frame
+  std::vector<double> heights_m;  // of additional sections, z in the frame; finite
   int min_markers = 4;            // whole markers that a line needs
 
-  // Throws InputError for a height that is not finite, for more than 500 heights, and for fewer
-  // than four markers.
-  void Check() const;
+  void Check() const;  // throws InputError that names the option
 };
+
+OptionGroup DescribeOptions(SectionOptions* options);
 
 // `shape` and `covariance` (may be null) are in `frame` (MoveShape, RotateCovariance). Throws
 // InputError for bad options; the report lists what cannot be computed.

@@ -186,33 +186,46 @@ void CheckArea(const SortedInput& sorted, const SurfaceOptions& options,
       area_m2, ruled_area_m2, is_extended ? ", or extend the surface by less" : ""));
 }
 
+void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name, double extension_mm,
+               const std::string& extension_option) {
+  if (edge.size() == 1) {
+    throw InputError(fmt::format("the {} edge has one point; give two or more", name));
+  }
+  if (!edge.empty() && extension_mm > 0) {
+    throw InputError(fmt::format(
+        "{}: there is a {} edge to which the surface continues, too; give one of the two",
+        extension_option, name));
+  }
+}
+
 }  // namespace
 
+OptionGroup DescribeOptions(SurfaceOptions* options) {
+  return {"Surface",
+          {{"Surface.luff_extension", &options->luff_extension_mm, "mm",
+            "how far the surface continues beyond the first markers of the lines, at most their "
+            "length",
+            AtLeast(0)},
+           {"Surface.leech_extension", &options->leech_extension_mm, "mm",
+            "the same beyond the last markers of the lines", AtLeast(0)},
+           {"Surface.foot_extension", &options->foot_extension_mm, "mm",
+            "the same below the lowest line, at most the distance to the highest one", AtLeast(0)},
+           {"Surface.head_extension", &options->head_extension_mm, "mm",
+            "the same above the highest line", AtLeast(0)}}};
+}
+
 void SurfaceOptions::Check() const {
+  CheckRanges(*this);
   if (default_sigma_m && !(*default_sigma_m >= 0 && std::isfinite(*default_sigma_m))) {
     throw InputError(
         fmt::format("the default sigma of the surface is {} m; it must be 0 (interpolate) or more",
                     *default_sigma_m));
   }
-  const auto check_edge = [](const char* name, double extension_mm,
-                             const std::vector<Eigen::Vector3d>& edge) {
-    if (!(extension_mm >= 0 && std::isfinite(extension_mm))) {
-      throw InputError(
-          fmt::format("--Surface.{}_extension: {} mm; it must be 0 or more", name, extension_mm));
-    }
-    if (edge.size() == 1) {
-      throw InputError(fmt::format("the {} edge has one point; it needs two or more", name));
-    }
-    if (!edge.empty() && extension_mm > 0) {
-      throw InputError(fmt::format(
-          "--Surface.{}_extension: --Surface.edges_path has a {} edge too; give one of the two",
-          name, name));
-    }
-  };
-  check_edge("luff", luff_extension_mm, edges.luff);
-  check_edge("leech", leech_extension_mm, edges.leech);
-  check_edge("foot", foot_extension_mm, edges.foot);
-  check_edge("head", head_extension_mm, edges.head);
+  CheckEdge(edges.luff, "luff", luff_extension_mm, OptionName(&SurfaceOptions::luff_extension_mm));
+  CheckEdge(edges.leech, "leech", leech_extension_mm,
+            OptionName(&SurfaceOptions::leech_extension_mm));
+  CheckEdge(edges.foot, "foot", foot_extension_mm, OptionName(&SurfaceOptions::foot_extension_mm));
+  CheckEdge(edges.head, "head", head_extension_mm, OptionName(&SurfaceOptions::head_extension_mm));
 }
 
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options) {

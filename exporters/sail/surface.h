@@ -22,6 +22,7 @@
 
 #include "exporters/formats/surface_spline.h"
 #include "exporters/sail/surface_input.h"
+#include "importer/base/option.h"
 #include "importer/base/statistics.h"
 
 namespace velamap {
@@ -41,10 +42,12 @@ struct SurfaceOptions {
   // Edges to which the surface continues instead.
   SurfaceEdges edges;
 
-  // Throws InputError for a negative sigma or extension, an edge of one point, and an edge that is
-  // both given and extended.
+  // Throws InputError that names the option for a value out of its range, a negative sigma, an edge
+  // of one point, and an edge that is both given and extended.
   void Check() const;
 };
+
+OptionGroup DescribeOptions(SurfaceOptions* options);
 
 struct SurfaceResidual {
   int marker_id = 0;

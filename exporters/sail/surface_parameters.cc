@@ -15,8 +15,10 @@ namespace {
 
 using Polyline = std::vector<Eigen::Vector3d>;
 
-constexpr int kMaxSpans = 20;     // in each direction; no sail has more markers on a line
-constexpr int kLineSamples = 9;   // at which neighboring lines are compared
+constexpr int kMaxSpans = 20;    // in each direction; no sail has more markers on a line
+constexpr int kLineSamples = 9;  // at which neighboring lines are compared
+constexpr const char* kLength = "the length of the lines";
+constexpr const char* kSpan = "the distance from the lowest to the highest line";
 constexpr double kWideGap = 2.5;  // in mean spacings; wider gaps get a note
 
 // A line, or a foot or head edge, with u of its points.
@@ -233,14 +235,13 @@ double MeanLength(const std::vector<SurfaceLine>& lines) {
 
 // A surface that is extrapolated by more than its own size has a shape that no marker determines,
 // and its equations lose their rank in double precision.
-void CheckExtension(const std::string& edge, double extension_mm, double size_m) {
-  const double max_mm = size_m / kMPerMm;
-  if (extension_mm <= max_mm) return;
-  const bool is_across = edge == "luff" || edge == "leech";
-  throw InputError(fmt::format(
-      "--Surface.{}_extension: {:g} mm, expected at most {:.0f} mm, {}", edge, extension_mm,
-      std::floor(max_mm),
-      is_across ? "the length of the lines" : "the distance from the lowest to the highest line"));
+void CheckExtension(const SurfaceOptions& options, double SurfaceOptions::*extension_mm,
+                    double size_m, const char* what) {
+  const double max_mm = kMmPerM * size_m;
+  if (options.*extension_mm <= max_mm) return;
+  throw InputError(fmt::format("{}: {:g} is out of range; give at most {:.0f} (mm), {}",
+                               OptionName(extension_mm), options.*extension_mm, std::floor(max_mm),
+                               what));
 }
 
 std::vector<Row> MakeRows(const std::vector<SurfaceLine>& lines, const SurfaceOptions& options,
@@ -259,16 +260,17 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
   VELAMAP_CHECK(lines.size() >= 2);
   SurfaceParameters parameters;
   parameters.has_markers_between = has_markers_between;
-  CheckExtension("luff", options.luff_extension_mm, MeanLength(lines));
-  CheckExtension("leech", options.leech_extension_mm, MeanLength(lines));
+  const double length_m = MeanLength(lines);
+  CheckExtension(options, &SurfaceOptions::luff_extension_mm, length_m, kLength);
+  CheckExtension(options, &SurfaceOptions::leech_extension_mm, length_m, kLength);
   const std::vector<Row> rows = MakeRows(lines, options, &parameters.notes);
   std::vector<double> heights_m = {kMPerMm * options.foot_extension_mm};
   for (std::size_t j = 1; j < rows.size(); ++j) {
     heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
   }
   const double span_m = heights_m.back() - heights_m.front();
-  CheckExtension("foot", options.foot_extension_mm, span_m);
-  CheckExtension("head", options.head_extension_mm, span_m);
+  CheckExtension(options, &SurfaceOptions::foot_extension_mm, span_m, kSpan);
+  CheckExtension(options, &SurfaceOptions::head_extension_mm, span_m, kSpan);
   parameters.length_v_m = heights_m.back() + kMPerMm * options.head_extension_mm;
 
   std::vector<double> all_us;

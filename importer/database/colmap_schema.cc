@@ -107,7 +107,7 @@ void CheckDatabaseFile(const std::string& path, bool writing) {
   stream.read(begin, sizeof(begin));
   const bool empty = stream.gcount() == 0 && stream.eof();
   if (!empty && std::memcmp(begin, kMagic, sizeof(kMagic)) != 0) {
-    throw InputError(fmt::format("{}: no SQLite database; give another --database_path", path));
+    throw InputError(fmt::format("{}: no SQLite database; choose another file", path));
   }
 }
 
@@ -116,7 +116,7 @@ void CheckColmapTables(const std::string& path, const SQLite::Database& database
     if (!database.tableExists(table)) {
       throw InputError(
           fmt::format("{}: a database of another program (no table '{}' of COLMAP); "
-                      "give another --database_path",
+                      "choose another file",
                       path, table));
     }
   }
@@ -129,15 +129,15 @@ void CreateMissingTables(const std::string& path, SQLite::Database* database) {
   if (ColumnNames(*database, "images").count("prior_qw") == 0) {
     throw InputError(
         fmt::format("{}: made by COLMAP 3.10 or later, whose layout the other "
-                    "versions refuse; give a new --database_path (velamap writes the "
-                    "layout that COLMAP 3.5 to 4.x open)",
+                    "versions refuse; choose a new file (velamap writes the layout that "
+                    "COLMAP 3.5 to 4.x open)",
                     path));
   }
   if (database->tableExists("frames") &&
       database->execAndGet("SELECT COUNT(*) FROM frames").getInt64() > 0) {
     throw InputError(
         fmt::format("{}: holds frames of COLMAP 3.12 or later, which every image "
-                    "would need; give a new --database_path",
+                    "would need; choose a new file",
                     path));
   }
   CreateMarkerDetectionsTable(database);

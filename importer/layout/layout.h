@@ -61,7 +61,10 @@ Layout ReadLayout(const std::string& path);
 // The layout that --dictionary and --marker_length replace: no lines, every id welcome.
 Layout MakeLayout(const std::string& dictionary, double marker_length_m);
 
-// Throws InputError unless 0.0001 <= length <= 10 (metres); `what` names the key or option.
+// Of the black square's outer edge.
+constexpr double kMinMarkerLength_m = 1e-4, kMaxMarkerLength_m = 10.0;
+
+// Throws InputError for a length beyond these; `what` names the key or option.
 void CheckMarkerLength(double length_m, const std::string& what);
 
 double MarkerLength(const Layout& layout, int marker_id);

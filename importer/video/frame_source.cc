@@ -179,8 +179,8 @@ class VideoFile : public FrameSource {
     ended_ = true;
     if (num_read_ <= options_.first_frame) {
       throw InputError(fmt::format(
-          "{}: the video has {} frames, none at or after frame {} (--Video.first_frame, "
-          "or the first that the search around --central_frame can reach)",
+          "{}: the video has {} frames, none at or after frame {}, the first that is "
+          "wanted",
           path_, num_read_, options_.first_frame));
     }
     // Counts that a container derives from its duration are off by a frame or so.

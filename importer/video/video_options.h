@@ -2,6 +2,8 @@
 
 #pragma once
 
+#include "importer/base/option.h"
+
 namespace velamap {
 
 struct VideoOptions {
@@ -11,5 +13,7 @@ struct VideoOptions {
 
   void Check() const;  // throws InputError that names the option
 };
+
+OptionGroup DescribeOptions(VideoOptions* options);
 
 }  // namespace velamap

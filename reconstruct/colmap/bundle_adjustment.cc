@@ -178,25 +178,7 @@ void CheckEnough(const Model& model, int num_images_before, std::size_t num_outl
       model.images.size(), num_images_before, num_outliers));
 }
 
-void CheckAtLeast(const char* option, double value, double min) {
-  if (!(value >= min) || !std::isfinite(value)) {
-    throw InputError(fmt::format("--BundleAdjustment.{}: {} is out of range; give {} or more",
-                                 option, value, min));
-  }
-}
-
 }  // namespace
-
-void BundleAdjustmentOptions::Check() const {
-  if (colmap_path.empty()) throw InputError("--colmap_path: is empty; give COLMAP's program");
-  CheckAtLeast("max_num_iterations", max_num_iterations, 1);
-  CheckAtLeast("function_tolerance", function_tolerance, 0);
-  CheckAtLeast("max_num_rounds", max_num_rounds, 1);
-  CheckAtLeast("outlier_ratio", outlier_ratio, 2);
-  CheckAtLeast("min_outlier_error", min_outlier_error_px, 0);
-  CheckAtLeast("min_track_length", min_track_length, 2);
-  CheckAtLeast("max_mean_error", max_mean_error_px, 0);
-}
 
 BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
                                          const std::string& log_path, Model* model) {
@@ -222,8 +204,9 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
   if (!(summary.error_after_px.mean <= options.max_mean_error_px)) {
     throw DataError(fmt::format(
         "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
-        "of --BundleAdjustment.max_mean_error; is the calibration of these images?",
-        summary.error_after_px.mean, options.max_mean_error_px));
+        "of {}; does the calibration belong to these images?",
+        summary.error_after_px.mean, options.max_mean_error_px,
+        OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
   }
   *model = std::move(adjusted);
   return summary;

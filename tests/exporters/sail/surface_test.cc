@@ -306,7 +306,7 @@ TEST(Surface, ExtensionsAreLimitedToTheSizeOfThePart) {
     SurfaceOptions large;
     large.*extension_mm = 1e4;
     ExpectThrows<InputError>([&] { FitSurface(input, large); },
-                             {"--Surface.", "_extension: 10000 mm, expected at most"});
+                             {"--Surface.", "_extension: 10000 is out of range; give at most "});
   }
 }
 
@@ -367,7 +367,7 @@ TEST(Surface, BadOptionsAreNamed) {
   };
   SurfaceOptions negative, single, both, sigma;
   negative.head_extension_mm = -100;
-  check(negative, "--Surface.head_extension: -100 mm");
+  check(negative, "--Surface.head_extension: -100 is out of range");
   single.edges.luff = {{0, 0, 0}};
   check(single, "luff edge has one point");
   both.edges.foot = {{0, 0, -1}, {3, 0, -1}};

@@ -290,7 +290,7 @@ TEST(ColmapDatabase, DoesNotAddToLayoutsOfLaterColmap) {
   fs::copy_file(later, frames);
   SQLite::Database(later, SQLite::OPEN_READWRITE).exec("ALTER TABLE images DROP COLUMN prior_qw");
   ExpectThrows<InputError>([&] { ColmapDatabase(later, Mode::kReadWriteCreate); },
-                           {later, "COLMAP 3.10 or later", "new --database_path"});
+                           {later, "COLMAP 3.10 or later", "choose a new file"});
   SQLite::Database(frames, SQLite::OPEN_READWRITE).exec("CREATE TABLE frames(frame_id INTEGER)");
   EXPECT_NO_THROW(ColmapDatabase(frames, Mode::kReadWriteCreate));
   SQLite::Database(frames, SQLite::OPEN_READWRITE).exec("INSERT INTO frames VALUES(1)");

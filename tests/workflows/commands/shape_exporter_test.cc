@@ -140,13 +140,13 @@ TEST_F(ShapeExporterCommandTest, ShapeIsWrittenWhateverBecomesOfTheSurface) {
   };
   expect_error({"--Surface.edge_length", "0.001"}, "triangles");
   expect_error({"--Surface.luff_extension", "1e6", "--Surface.head_extension", "1e6"},
-               "--Surface.luff_extension: 1e+06 mm, expected at most");
+               "--Surface.luff_extension: 1e+06 is out of range; give at most ");
 }
 
 TEST_F(ShapeExporterCommandTest, BadOptionsWriteNothing) {
   ExpectRefused({"--frame", "keel"}, "--frame");
   ExpectRefused({"--Section.heights", "1,x"}, "--Section.heights: '1,x'");
-  ExpectRefused({"--Section.min_markers", "2"}, "at least 4 markers");
+  ExpectRefused({"--Section.min_markers", "2"}, "--Section.min_markers: 2 is out of range");
   ExpectRefused({"--Surface.edge_length", "0"}, "edge");
   ExpectRefused({"--Surface.edge_length", "10", "--Surface.chord_deviation", "1"}, "chord");
   ExpectRefused({"--Surface.luff_extension", "-1"}, "luff");

@@ -40,7 +40,7 @@ class CentralFrameSweepTest : public testing::Test {
     options_.registration.thesis.num_frames = 6;
     options_.registration.thesis.skip = 4;
     options_.registration.thesis.neighborhood = 1;
-    options_.adjustment.backend = "markers";
+    options_.adjustment.backend = AdjustmentBackend::kMarkers;
     options_.adjustment.Complete(1);
   }
 
