@@ -7,13 +7,13 @@
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/shape/principal_axes.h"
 #include "exporters/shape/units.h"
 #include "importer/base/error.h"
-#include "importer/base/statistics.h"
 
 namespace velamap {
 namespace {
@@ -160,7 +160,7 @@ Fit Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start,
   for (int i = 0;; ++i) {
     const std::vector<Residual> residuals = ComputeResiduals(points, pose, mesh);
     const double trimmed_rms_m = TrimmedRms(residuals);
-    // The robust fit follows its weights; the coarse one can overshoot and keeps the best pose.
+    // The robust fit goes where its weights lead; the coarse one may overshoot and has to better.
     if (i == 0 || is_fine || trimmed_rms_m < best.trimmed_rms_m) {
       best.pose = pose;
       best.trimmed_rms_m = trimmed_rms_m;
