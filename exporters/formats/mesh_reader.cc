@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 void CheckFile(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) {
-    throw InputError(fmt::format("{}: no such file", path.string()));
+    throw InputError(fmt::format("{}: there is no such file", path.string()));
   }
   if (!fs::is_regular_file(path, error)) {
-    throw InputError(fmt::format("{}: not a regular file", path.string()));
+    throw InputError(fmt::format("{}: is no regular file", path.string()));
   }
 }
 
