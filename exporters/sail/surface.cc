@@ -189,12 +189,13 @@ void CheckArea(const SortedInput& sorted, const SurfaceOptions& options,
 void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name, double extension_mm,
                const std::string& extension_option) {
   if (edge.size() == 1) {
-    throw InputError(fmt::format("the {} edge has one point; give two or more", name));
+    throw InputError(fmt::format("the {} edge has one point; it needs two or more", name));
   }
   if (!edge.empty() && extension_mm > 0) {
-    throw InputError(fmt::format(
-        "{}: there is a {} edge to which the surface continues, too; give one of the two",
-        extension_option, name));
+    throw InputError(
+        fmt::format("{}: the surface cannot go {} mm beyond the {} and end at its given edge; give "
+                    "one of the two",
+                    extension_option, extension_mm, name));
   }
 }
 
@@ -203,13 +204,11 @@ void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name, doubl
 OptionGroup DescribeOptions(SurfaceOptions* options) {
   return {"Surface",
           {{"Surface.luff_extension", &options->luff_extension_mm, "mm",
-            "how far the surface continues beyond the first markers of the lines, at most their "
-            "length",
-            AtLeast(0)},
+            "how far the surface continues beyond the first markers of the lines", AtLeast(0)},
            {"Surface.leech_extension", &options->leech_extension_mm, "mm",
             "the same beyond the last markers of the lines", AtLeast(0)},
            {"Surface.foot_extension", &options->foot_extension_mm, "mm",
-            "the same below the lowest line, at most the distance to the highest one", AtLeast(0)},
+            "the same below the lowest line", AtLeast(0)},
            {"Surface.head_extension", &options->head_extension_mm, "mm",
             "the same above the highest line", AtLeast(0)}}};
 }

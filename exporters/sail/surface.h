@@ -42,8 +42,8 @@ struct SurfaceOptions {
   // Edges to which the surface continues instead.
   SurfaceEdges edges;
 
-  // Throws InputError that names the option for a value out of its range, a negative sigma, an edge
-  // of one point, and an edge that is both given and extended.
+  // Throws InputError that names the option for a value beyond its range and an edge that is both
+  // given and extended; also for a negative sigma and an edge of one point.
   void Check() const;
 };
 
