@@ -14,6 +14,7 @@
 #include "exporters/shape_report.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
 
@@ -37,9 +38,7 @@ bool IsInside(const fs::path& path, const fs::path& folder) {
 
 // The absolute path without dots and a trailing slash; empty for an empty path.
 fs::path OutputFolder(const std::string& path) {
-  if (path.empty()) return {};
-  const fs::path absolute = fs::absolute(path).lexically_normal();
-  return absolute.has_filename() ? absolute : absolute.parent_path();
+  return path.empty() ? fs::path() : AbsoluteFolder(path);
 }
 
 void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) {

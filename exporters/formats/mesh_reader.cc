@@ -12,6 +12,7 @@
 
 #include "exporters/formats/cad_reader.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
@@ -19,12 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 void CheckFile(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) {
-    throw InputError(fmt::format("{}: there is no such file", path.string()));
+  if (!Exists(path)) {
+    throw InputError(fmt::format("{}: no such file", path.string()));
   }
-  if (!fs::is_regular_file(path, error)) {
-    throw InputError(fmt::format("{}: is no regular file", path.string()));
+  if (!IsRegularFile(path)) {
+    throw InputError(fmt::format("{}: not a regular file", path.string()));
   }
 }
 

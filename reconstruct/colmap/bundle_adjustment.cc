@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/model/gauge.h"
@@ -27,27 +28,13 @@ namespace fs = std::filesystem;
 // Where COLMAP reads and writes; removed with everything in it.
 class ScratchFolder {
  public:
-  ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "velamap_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw InputError(fmt::format("{}: no folder for temporary files: {}; set TMPDIR", pattern,
-                                   std::strerror(errno)));
-    }
-    path_ = pattern;
-    fs::create_directory(path_ / "out");
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ScratchFolder() { CreateFolders(OutputPath()); }
 
-  std::string InputPath() const { return path_ / "in"; }
-  std::string OutputPath() const { return path_ / "out"; }
+  std::string InputPath() const { return folder_.path() / "in"; }
+  std::string OutputPath() const { return folder_.path() / "out"; }
 
  private:
-  fs::path path_;
+  const TemporaryFolder folder_;
 };
 
 std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& options,

@@ -16,6 +16,7 @@
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
@@ -140,12 +141,12 @@ bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
 // `option` names the one that gives `uncertainty_path`.
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option) {
-  const bool is_folder = fs::is_directory(path);
+  const bool is_folder = IsFolder(path);
   UncertainShape result;
   result.shape = ReadShapeCsv(is_folder ? (fs::path(path) / "shape.csv").string() : path);
   fs::path folder = uncertainty_path;
   if (folder.empty() && is_folder) {
-    folder = fs::absolute(fs::path(path) / "").parent_path().parent_path() / "sparse" / "0";
+    folder = AbsoluteFolder(path).parent_path() / "sparse" / "0";
   }
   if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
     throw InputError(

@@ -6,6 +6,7 @@
 
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 
@@ -100,18 +101,17 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
 
 std::string ShapeFile(const std::string& path) {
   const std::filesystem::path file = path;
-  return std::filesystem::is_directory(file) ? (file / "shape.csv").string() : path;
+  return IsFolder(file) ? (file / "shape.csv").string() : path;
 }
 
 PriorShape LoadPriorShape(const std::string& prior_shape_path) {
   PriorShape prior_shape;
   if (prior_shape_path.empty()) return prior_shape;
   const std::string file = ShapeFile(prior_shape_path);
-  if (!std::filesystem::is_regular_file(file)) {
+  if (!IsRegularFile(file)) {
     throw InputError(
         fmt::format("--prior_shape_path: {}: there is no such file; give a shape.csv or the folder "
-                    "that holds it, such "
-                    "as shape in a workspace",
+                    "that holds it, such as shape in a workspace",
                     file));
   }
   for (const ShapeMarker& marker : ReadShapeCsv(file).markers) {

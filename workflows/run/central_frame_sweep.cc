@@ -18,6 +18,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/warm_start.h"
 #include "reconstruct/model/reprojection.h"
@@ -140,7 +141,7 @@ class Sweep {
              const MarkerShape& shape) const {
     const fs::path folder =
         fs::path(options_.models_path) / fs::path(row.image_name).replace_extension();
-    fs::create_directories(folder);
+    CreateFolders(folder);
     WriteAdjustedModel(model, result, (folder / "sparse").string());
     WriteFileAtomically(folder / "shape.csv",
                         [&shape](std::ostream& out) { WriteShapeCsv(shape, out); });

@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/model/model_io.h"
@@ -187,9 +188,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
 }
 
 std::string BesideFolder(const std::string& folder, const std::string& name) {
-  const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
-  const auto parent = absolute.parent_path();
-  return ((absolute.has_filename() ? parent : parent.parent_path()) / name).string();
+  return (AbsoluteFolder(folder).parent_path() / name).string();
 }
 
 void AdjustmentOptions::Complete(int num_threads) {

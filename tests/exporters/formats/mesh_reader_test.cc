@@ -92,7 +92,7 @@ TEST_F(MeshReaderTest, BadFiles) {
   ExpectRefused(Write("a.xyz", "0 0 0\n"), {"a.xyz", "expected .ply"});
   ExpectRefused(Write("a", "0 0 0\n"), {"expected .ply"});
   fs::create_directory(dir_ / "folder.stl");
-  ExpectRefused(dir_ / "folder.stl", {"folder.stl", "no regular file"});
+  ExpectRefused(dir_ / "folder.stl", {"folder.stl", "not a regular file"});
   ExpectRefused(Write("empty.ply", ""), {"empty.ply", "cannot be read as ply"});
   ExpectRefused(Write("text.stl", "this is no mesh\n"), {"text.stl"});
   ExpectRefused(Write("text.step", "this is no mesh\n"), {"text.step", "STEP"});
