@@ -73,9 +73,9 @@ std::vector<int> NamedMarkers(const MarkerShape& shape, const MarkerShape& refer
   for (const int id : ids) {
     const bool in_shape = FindMarker(shape, id) != nullptr;
     if (in_shape && FindMarker(reference, id) != nullptr) continue;
-    throw InputError(
-        fmt::format("--align_markers: the {1} has no marker {0}; give markers that both shapes have",
-                    id, in_shape ? "reference" : "shape"));
+    throw InputError(fmt::format(
+        "--align_markers: the {1} has no marker {0}; give markers that both shapes have", id,
+        in_shape ? "reference" : "shape"));
   }
   return ids;
 }

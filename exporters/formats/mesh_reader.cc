@@ -118,8 +118,7 @@ TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
   const bool is_finite = std::all_of(mesh.vertices_m.begin(), mesh.vertices_m.end(),
                                      [](const Eigen::Vector3d& x) { return x.allFinite(); });
   if (!is_finite) {
-    throw InputError(
-        fmt::format("{}: a coordinate is not finite; export it again", path.string()));
+    throw InputError(fmt::format("{}: a coordinate is not finite; export it again", path.string()));
   }
   if (!HasArea(mesh)) {
     throw InputError(fmt::format(

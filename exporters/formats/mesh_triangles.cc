@@ -85,11 +85,11 @@ void CheckCount(const GridSize& grid, const MeshOptions& options) {
   // The number is proportional to the inverse square of the edge length and to the inverse of the
   // deviation.
   const double possible = options.edge_length_mm ? given * std::sqrt(excess) : given * excess;
-  throw InputError(
-      fmt::format("--Surface.{}: {:.3g} mm would need {:.4g} triangles, more than {}; give {:.2g} mm "
-                  "or more",
-                  options.edge_length_mm ? "edge_length" : "chord_deviation", given,
-                  num_triangles, kMaxTriangles, 1.1 * possible));
+  throw InputError(fmt::format(
+      "--Surface.{}: {:.3g} mm would need {:.4g} triangles, more than {}; give {:.2g} mm "
+      "or more",
+      options.edge_length_mm ? "edge_length" : "chord_deviation", given, num_triangles,
+      kMaxTriangles, 1.1 * possible));
 }
 
 // Takes the normal of a neighboring point where the surface degenerates to a point.

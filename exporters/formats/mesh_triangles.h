@@ -20,8 +20,8 @@ struct TriangleMesh {
 };
 
 struct MeshOptions {
-  // Exactly one of the two: the longest edge along the grid lines (diagonals are up to 1.42 times as
-  // long), or the largest distance of the triangles from the surface.
+  // Exactly one of the two: the longest edge along the grid lines (diagonals are up to 1.42 times
+  // as long), or the largest distance of the triangles from the surface.
   std::optional<double> edge_length_mm;
   std::optional<double> chord_deviation_mm;
 
@@ -37,9 +37,9 @@ double CountTriangles(const SplineSurface& surface, const MeshOptions& options);
 
 constexpr int kMaxTriangles = 5'000'000;
 
-// Makes a grid with equal steps in u and in v and two triangles per cell. Cells that degenerate to a
-// line (a head that ends in a point) have one or none. Throws InputError if the mesh would have more
-// than kMaxTriangles.
+// Makes a grid with equal steps in u and in v and two triangles per cell. Cells that degenerate to
+// a line (a head that ends in a point) have one or none. Throws InputError if the mesh would have
+// more than kMaxTriangles.
 TriangleMesh MeshSurface(const SplineSurface& surface, const MeshOptions& options);
 
 }  // namespace velamap
