@@ -139,7 +139,7 @@ AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::stri
     if (name == known_name) return method;
   }
   throw InputError(fmt::format(
-      "{}: expected auto, reference_part, markers, best_fit or none, found '{}'", what, name));
+      "{}: '{}' is unknown; give auto, reference_part, markers, best_fit or none", what, name));
 }
 
 std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& what) {

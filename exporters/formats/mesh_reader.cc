@@ -102,7 +102,7 @@ double DefaultMPerUnit(const fs::path& path) { return LowerExtension(path) == ".
 double MPerUnitFromName(const std::string& name, const std::string& what) {
   if (name == "m") return 1.0;
   if (name == "mm") return 1e-3;
-  throw InputError(fmt::format("{}: expected m or mm, found '{}'", what, name));
+  throw InputError(fmt::format("{}: '{}' is unknown; give m or mm", what, name));
 }
 
 TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
