@@ -23,7 +23,7 @@ const DatabaseImage& FindImage(const std::vector<DatabaseImage>& images, ImageId
   return *it;
 }
 
-// Adds the image's keypoints and, for the markers that stay, its track elements.
+// Adds the image with all its keypoints, and the track elements of its inliers.
 void AddImage(const RegisteredFrame& frame, const DatabaseImage& database_image,
               const ShapePoints& shape, Model* model, ColorSums* color_sums) {
   ModelImage image{
@@ -77,7 +77,7 @@ Model MakeSeedModel(const Registration& registration, const std::vector<Database
   if (static_cast<int>(model.images.size()) < min_num_images || model.points3D.empty()) {
     throw DataError("fewer than two images share markers, so there is nothing to adjust");
   }
-  // The central image may have lost its markers to the filters; any other origin serves then.
+  // Another image becomes the origin if the filters have removed the central one.
   const ImageId first = model.FindImage(registration.central_image_id) != nullptr
                             ? registration.central_image_id
                             : model.images.front().image_id;

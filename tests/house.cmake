@@ -29,7 +29,7 @@ house_folder(reconstruct/geometry PUBLIC
 house_folder(reconstruct/model PUBLIC
   adjustment_uncertainty gauge model model_io reprojection)
 house_folder(reconstruct/solve PUBLIC
-  double_lanes gram_matrix schur_problem schur_solver)
+  schur_complement)
 house_folder(reconstruct/registration PUBLIC
   frame_order registration registration_options)
 house_folder(reconstruct/thesis PUBLIC

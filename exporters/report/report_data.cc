@@ -49,13 +49,13 @@ Json JsonOf(const Histogram& histogram) {
           {"num_above", histogram.num_above}};
 }
 
-Json HistogramsJson(const ReportInput& input, const std::vector<ReprojectionError>& errors) {
+Json HistogramsJson(const ReportInput& input, const std::vector<ObservationError>& errors) {
   std::vector<double> deviations_percent, errors_px;
   for (const ShapeMarker& marker : input.shape.markers) {
     if (!marker.IsWhole()) continue;
     deviations_percent.push_back(AreaDeviationPercent(marker, input.layout));
   }
-  for (const ReprojectionError& error : errors) errors_px.push_back(error.error_px);
+  for (const ObservationError& error : errors) errors_px.push_back(error.error_px);
   return {{"area_deviation_percent", JsonOf(MakeHistogram(std::move(deviations_percent)))},
           {"error_px", JsonOf(MakeHistogram(std::move(errors_px)))}};
 }
@@ -184,7 +184,7 @@ std::string ReportJson(const ReportInput& input) {
   if (input.metric_model.images.empty()) {
     throw DataError("the model has no images, so there is nothing to report");
   }
-  const std::vector<ReprojectionError> errors = ComputeReprojectionErrors(input.metric_model);
+  const std::vector<ObservationError> errors = ComputeReprojectionErrors(input.metric_model);
   Json json = {{"title", input.title}, {"version", input.version}};
   if (!input.created.empty()) json["created"] = input.created;
   json["frame"] = JsonOf(input.frame.value_or(FrameOfCentralCamera(input.metric_model)));

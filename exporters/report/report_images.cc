@@ -55,8 +55,7 @@ ReportJsonValue ImagesJson(const ReportInput& input) {
   return all;
 }
 
-ReportJsonValue PictureJson(const ReportInput& input,
-                            const std::vector<ReprojectionError>& errors) {
+ReportJsonValue PictureJson(const ReportInput& input, const std::vector<ObservationError>& errors) {
   const ModelImage& image = input.metric_model.images.front();
   const Camera& camera = input.metric_model.cameras.at(image.camera_id);
   ReportJsonValue json = {
@@ -75,7 +74,7 @@ ReportJsonValue PictureJson(const ReportInput& input,
   }
   // Point id, detected x y, residual x y.
   ReportJsonValue points = ReportJsonValue::array();
-  for (const ReprojectionError& error : errors) {
+  for (const ObservationError& error : errors) {
     if (error.element.image_id != image.image_id || !std::isfinite(error.error_px)) continue;
     const Eigen::Vector2d& x = image.points2D.at(error.element.point2D_idx).x_in_image_px;
     points.push_back({error.point3D_id, x.x(), x.y(), error.residual_in_image_px.x(),

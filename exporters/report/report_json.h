@@ -20,12 +20,12 @@ ReportJsonValue VectorJson(const Eigen::Vector3d& vector);
 double AreaDeviationPercent(const ShapeMarker& marker, const Layout& layout);
 
 // One object per marker of the shape, by id.
-ReportJsonValue MarkersJson(const ReportInput& input, const std::vector<ReprojectionError>& errors);
+ReportJsonValue MarkersJson(const ReportInput& input, const std::vector<ObservationError>& errors);
 
 // One object per image of the model, by name.
 ReportJsonValue ImagesJson(const ReportInput& input);
 
 // The central image as a JPEG with detected and reprojected corners, px.
-ReportJsonValue PictureJson(const ReportInput& input, const std::vector<ReprojectionError>& errors);
+ReportJsonValue PictureJson(const ReportInput& input, const std::vector<ObservationError>& errors);
 
 }  // namespace velamap

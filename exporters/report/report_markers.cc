@@ -17,9 +17,9 @@ struct CornerErrors {
 };
 
 // Errors by marker id. Points behind their camera have none.
-std::map<int, CornerErrors> ErrorsByMarker(const std::vector<ReprojectionError>& errors) {
+std::map<int, CornerErrors> ErrorsByMarker(const std::vector<ObservationError>& errors) {
   std::map<int, CornerErrors> errors_of;
-  for (const ReprojectionError& error : errors) {
+  for (const ObservationError& error : errors) {
     if (!IsCornerPoint3DId(error.point3D_id) || !std::isfinite(error.error_px)) continue;
     CornerErrors& marker = errors_of[CornerFromPoint3DId(error.point3D_id).marker_id];
     ++marker.count;
@@ -82,8 +82,7 @@ double AreaDeviationPercent(const ShapeMarker& marker, const Layout& layout) {
   return 100 * (MarkerArea(marker) / (length_m * length_m) - 1);
 }
 
-ReportJsonValue MarkersJson(const ReportInput& input,
-                            const std::vector<ReprojectionError>& errors) {
+ReportJsonValue MarkersJson(const ReportInput& input, const std::vector<ObservationError>& errors) {
   const std::map<int, CornerErrors> errors_of = ErrorsByMarker(errors);
   ReportJsonValue markers = ReportJsonValue::array();
   for (const ShapeMarker& marker : input.shape.markers) {

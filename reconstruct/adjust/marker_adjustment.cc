@@ -7,7 +7,7 @@
 namespace velamap {
 
 CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images) {
-  // What had to fall back is worse than the default says, by about this.
+  // Corners of the fallback estimator have about this many times the default sigma.
   constexpr double kFallbackFactor = 5.0;
   const double fallback_px = kFallbackFactor * MarkerAdjustmentOptions{}.corner_sigma_px;
   CornerSigmas sigmas;
@@ -30,7 +30,7 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
   MarkerAdjuster adjuster(options, layout, corner_sigmas, *model);
   adjuster.PrepareSeed();
   adjuster.AdjustLoosely();
-  adjuster.JudgeMarkerSizes();
+  adjuster.RejectContradictingSizes();
   adjuster.AdjustTightly();
   if (adjuster.AddScaleBars()) adjuster.AdjustTightly();
   adjuster.Finish();

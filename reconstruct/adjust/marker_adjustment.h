@@ -1,6 +1,5 @@
-// Bundle adjustment of our own, in Ceres, that knows what the points are: corners of squares of
-// known size, printed with some tolerance on cloth that bends a little or on something rigid. The
-// result is metric.
+// Marker-aware bundle adjustment. Its points are corners of squares of known size, printed with
+// some tolerance on cloth, which bends a little, or on a rigid part. The result is metric.
 
 #pragma once
 
@@ -17,7 +16,7 @@
 
 namespace velamap {
 
-// 1 sigma of a coordinate, px, by point2D_idx; 0 or a missing image: unknown.
+// 1 sigma of a corner's coordinate, px, by point2D_idx. 0 or a missing image: unknown.
 using CornerSigmas = std::map<ImageId, std::vector<double>>;
 CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images);
 
@@ -28,15 +27,16 @@ struct MarkerAdjustmentSummary {
   std::vector<RemovedObservation> removed;
   std::vector<ImageId> removed_images;
   AdjustmentUncertainty uncertainty;
-  // Plain words on weak geometry (all views from one place, a flat board seen head-on, pure
-  // rotation), a scale bar that contradicts the markers, markers whose size contradicts the others.
+  // Messages about weak geometry (all views from one place, a flat board seen head-on, pure
+  // rotation), scale bars that contradict the markers, and markers whose size contradicts the
+  // others.
   std::vector<std::string> warnings;
 };
 
-// Starts from any model of marker corners, whatever its scale; returns it metric, in the frame of
-// its first image's camera, with true point errors. Throws DataError where nothing can be adjusted,
-// the mean error stays above max_mean_error_px, or the geometry leaves a shape undetermined; the
-// model is untouched then.
+// Adjusts a model of marker corners of any scale. The result is metric, its world frame is the
+// first image's camera, and its point errors are up to date. Throws DataError if nothing can be
+// adjusted, the mean error stays above max_mean_error_px, or the images leave the shape
+// undetermined; the model does not change then.
 MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerSigmas& corner_sigmas,
                                           Model* model);

@@ -1,4 +1,4 @@
-// Bundle adjustment by COLMAP's own program, judged by its result (thesis section 3.5.1).
+// Bundle adjustment by COLMAP's own program (thesis section 3.5.1).
 
 #pragma once
 
@@ -22,18 +22,18 @@ struct BundleAdjustmentSummary {
   Statistics error_before_px;
   Statistics error_after_px;
   std::vector<RemovedObservation> removed;  // outliers, in the order of their removal
-  std::vector<ImageId> removed_images;      // left with too few observations to fix their pose
+  std::vector<ImageId> removed_images;      // too few observations were left to determine the pose
 };
 
-// Adjusts the model in rounds: COLMAP's bundle_adjuster, then judgement of the observations, until
-// nothing changes. The first image of `model` gives the world frame. Its images come back ordered
-// for the gauge, less the removed ones, its points less those with too short a track, with true
-// point errors; the scale is arbitrary. Cameras change only where options say so.
+// Alternates COLMAP's bundle_adjuster with the removal and restoring of observations until nothing
+// changes. The first image of `model` defines the world frame; the scale is arbitrary. Images are
+// ordered for the gauge. Images and points with too few observations are removed, and point errors
+// are updated. Cameras change only where the options say so.
 //
 // Throws ExternalToolError if COLMAP fails or its result is implausible (images, points or
-// observations lost, numbers not finite, error grown), DataError when the mean error stays above
-// max_mean_error_px or too little is left to adjust; `model` is untouched then. `log_path` gets
-// COLMAP's output.
+// observations are lost, numbers are not finite, the error has grown), and DataError if the mean
+// error stays above max_mean_error_px or too little is left to adjust; `model` does not change
+// then. COLMAP's output goes to `log_path`.
 BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
                                          const std::string& log_path, Model* model);
 

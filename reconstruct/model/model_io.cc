@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 using Reader = void (*)(std::istream& in, const std::string& name, Model* model);
 using Writer = void (*)(const Model& model, std::ostream& out);
 
-// In the order of reading.
 struct ModelFile {
   const char* name;
   Reader read;
@@ -45,7 +44,7 @@ bool HasAll(const fs::path& path, const std::array<ModelFile, 3>& files) {
                      [&path](const ModelFile& file) { return Exists(path / file.name); });
 }
 
-// The three files to read; a folder with parts of both formats is read in the whole one.
+// Of the two formats the binary one, unless only the text files are complete.
 const std::array<ModelFile, 3>& ChooseFiles(const fs::path& path) {
   if (!IsFolder(path)) {
     throw InputError(fmt::format("{}: there is no such folder with a COLMAP model", path.string()));
