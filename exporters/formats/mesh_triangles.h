@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "exporters/formats/surface_spline.h"
+#include "importer/base/option.h"
 
 namespace velamap {
 
@@ -28,6 +29,8 @@ struct MeshOptions {
   // Throws InputError for none or both of them and for a value that is not positive.
   void Check() const;
 };
+
+OptionGroup DescribeOptions(MeshOptions* options);
 
 // Edges of half a marker's side, or longer ones to stay below 100 000 triangles.
 MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_length_m);

@@ -15,10 +15,8 @@ namespace {
 
 using Polyline = std::vector<Eigen::Vector3d>;
 
-constexpr int kMaxSpans = 20;    // in each direction; no sail has more markers on a line
-constexpr int kLineSamples = 9;  // at which neighboring lines are compared
-constexpr const char* kLength = "the length of the lines";
-constexpr const char* kSpan = "the distance from the lowest to the highest line";
+constexpr int kMaxSpans = 20;     // in each direction; no sail has more markers on a line
+constexpr int kLineSamples = 9;   // at which neighboring lines are compared
 constexpr double kWideGap = 2.5;  // in mean spacings; wider gaps get a note
 
 // A line, or a foot or head edge, with u of its points.
@@ -236,12 +234,12 @@ double MeanLength(const std::vector<SurfaceLine>& lines) {
 // A surface that is extrapolated by more than its own size has a shape that no marker determines,
 // and its equations lose their rank in double precision.
 void CheckExtension(const SurfaceOptions& options, double SurfaceOptions::*extension_mm,
-                    double size_m, const char* what) {
-  const double max_mm = kMmPerM * size_m;
+                    double size_m, const char* size_name) {
+  const double max_mm = size_m / kMPerMm;
   if (options.*extension_mm <= max_mm) return;
-  throw InputError(fmt::format("{}: {:g} is out of range; give at most {:.0f} (mm), {}",
+  throw InputError(fmt::format("{}: {:g} mm, expected at most {:.0f} mm, {}",
                                OptionName(extension_mm), options.*extension_mm, std::floor(max_mm),
-                               what));
+                               size_name));
 }
 
 std::vector<Row> MakeRows(const std::vector<SurfaceLine>& lines, const SurfaceOptions& options,
@@ -261,16 +259,21 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
   SurfaceParameters parameters;
   parameters.has_markers_between = has_markers_between;
   const double length_m = MeanLength(lines);
-  CheckExtension(options, &SurfaceOptions::luff_extension_mm, length_m, kLength);
-  CheckExtension(options, &SurfaceOptions::leech_extension_mm, length_m, kLength);
+  for (const auto extension_mm :
+       {&SurfaceOptions::luff_extension_mm, &SurfaceOptions::leech_extension_mm}) {
+    CheckExtension(options, extension_mm, length_m, "the length of the lines");
+  }
   const std::vector<Row> rows = MakeRows(lines, options, &parameters.notes);
   std::vector<double> heights_m = {kMPerMm * options.foot_extension_mm};
   for (std::size_t j = 1; j < rows.size(); ++j) {
     heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
   }
   const double span_m = heights_m.back() - heights_m.front();
-  CheckExtension(options, &SurfaceOptions::foot_extension_mm, span_m, kSpan);
-  CheckExtension(options, &SurfaceOptions::head_extension_mm, span_m, kSpan);
+  for (const auto extension_mm :
+       {&SurfaceOptions::foot_extension_mm, &SurfaceOptions::head_extension_mm}) {
+    CheckExtension(options, extension_mm, span_m,
+                   "the distance from the lowest to the highest line");
+  }
   parameters.length_v_m = heights_m.back() + kMPerMm * options.head_extension_mm;
 
   std::vector<double> all_us;

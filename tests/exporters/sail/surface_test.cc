@@ -306,7 +306,7 @@ TEST(Surface, ExtensionsAreLimitedToTheSizeOfThePart) {
     SurfaceOptions large;
     large.*extension_mm = 1e4;
     ExpectThrows<InputError>([&] { FitSurface(input, large); },
-                             {"--Surface.", "_extension: 10000 is out of range; give at most "});
+                             {"--Surface.", "_extension: 10000 mm, expected at most"});
   }
 }
 

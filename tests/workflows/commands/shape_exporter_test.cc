@@ -140,7 +140,7 @@ TEST_F(ShapeExporterCommandTest, ShapeIsWrittenWhateverBecomesOfTheSurface) {
   };
   expect_error({"--Surface.edge_length", "0.001"}, "triangles");
   expect_error({"--Surface.luff_extension", "1e6", "--Surface.head_extension", "1e6"},
-               "--Surface.luff_extension: 1e+06 is out of range; give at most ");
+               "--Surface.luff_extension: 1e+06 mm, expected at most");
 }
 
 TEST_F(ShapeExporterCommandTest, BadOptionsWriteNothing) {
