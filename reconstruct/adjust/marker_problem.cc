@@ -59,8 +59,7 @@ class ProblemBuilder {
 
   void AddParameters() {
     for (MarkerBlock& marker : state_.markers) {
-      const int size = static_cast<int>(marker.x_in_world.size());
-      result_.ceres->AddParameterBlock(marker.x_in_world.data(), size);
+      result_.ceres->AddParameterBlock(marker.x_in_world.data(), marker.NumCoordinates());
       result_.marker_blocks.push_back(marker.x_in_world.data());
     }
     auto* pose_manifold = new PoseManifold;  // of all images; the problem owns it
@@ -269,11 +268,13 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
   options.function_tolerance = function_tolerance;
   // Such a tolerance is only asked for near the minimum, where damping would only add iterations.
   if (function_tolerance < 1e-6) options.initial_trust_region_radius = 1e8;
-  std::vector<double*> eliminated;
+  std::vector<double*> eliminated, kept;
   for (double* block : problem->marker_blocks) {
-    if (problem->kept_markers.count(block) == 0) eliminated.push_back(block);
+    (problem->kept_markers.count(block) == 0 ? eliminated : kept).push_back(block);
   }
-  const SchurSummary summary = MinimizeBySchurComplement(options, eliminated, problem->ceres.get());
+  kept.insert(kept.end(), problem->global_blocks.begin(), problem->global_blocks.end());
+  const SchurSummary summary =
+      MinimizeBySchurComplement(options, eliminated, kept, problem->ceres.get());
   spdlog::debug("{} iterations, cost {:.6g} -> {:.6g}", summary.num_iterations,
                 summary.initial_cost, summary.final_cost);
   if (!summary.is_usable) {

@@ -26,34 +26,23 @@ class StopAfterSmallChange : public ceres::IterationCallback {
   double tolerance_;
 };
 
-// Columns of the Schur complement.
-int NumKeptColumns(const ceres::Problem& problem, const std::vector<double*>& eliminated) {
-  std::vector<double*> blocks;
-  problem.GetParameterBlocks(&blocks);
-  int count = 0;
-  for (const double* block : blocks) {
-    if (!problem.IsParameterBlockConstant(block)) count += problem.ParameterBlockTangentSize(block);
-  }
-  for (const double* block : eliminated) count -= problem.ParameterBlockTangentSize(block);
-  return count;
-}
-
 }  // namespace
 
 SchurSummary MinimizeBySchurComplement(const SchurOptions& options,
                                        const std::vector<double*>& eliminated,
-                                       ceres::Problem* problem) {
+                                       const std::vector<double*>& kept, ceres::Problem* problem) {
   // Up to about 200 images a dense factorization takes no longer than a sparse one.
   constexpr int kMaxDenseColumns = 1200;
   ceres::Solver::Options solver;
-  solver.linear_solver_type = NumKeptColumns(*problem, eliminated) <= kMaxDenseColumns
-                                  ? ceres::DENSE_SCHUR
-                                  : ceres::SPARSE_SCHUR;
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  std::vector<double*> blocks;
-  problem->GetParameterBlocks(&blocks);
-  for (double* block : blocks) solver.linear_solver_ordering->AddElementToGroup(block, 1);
   for (double* block : eliminated) solver.linear_solver_ordering->AddElementToGroup(block, 0);
+  int num_columns = 0, group = 0;
+  for (double* block : kept) {
+    solver.linear_solver_ordering->AddElementToGroup(block, ++group);
+    num_columns += problem->ParameterBlockTangentSize(block);
+  }
+  solver.linear_solver_type =
+      num_columns <= kMaxDenseColumns ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   solver.max_num_iterations = options.max_num_iterations;
   solver.initial_trust_region_radius = options.initial_trust_region_radius;
   solver.function_tolerance = 0.0;

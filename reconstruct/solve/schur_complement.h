@@ -22,14 +22,15 @@ struct SchurSummary {
   double final_cost = 0.0;
 };
 
-// Minimizes over all parameter blocks that are not constant. `eliminated` are the blocks that the
-// Schur complement eliminates (markers); no two of them may share a residual. Where the result is
-// not usable, all values stay as they are.
+// Minimizes over all parameter blocks that are not constant. These are `eliminated`, the blocks
+// that the Schur complement eliminates (markers), no two of which may share a residual, and `kept`.
+// Where the result is not usable, all values stay as they are.
 //
-// Ceres runs on one thread: with several, its elimination sums in the order in which they finish,
-// and the last digits of the result change from run to run.
+// The same input gives the same bytes if the eliminated blocks are elements of one array: Ceres
+// orders them by address. It runs on one thread, because with several its elimination sums in the
+// order in which they finish.
 SchurSummary MinimizeBySchurComplement(const SchurOptions& options,
                                        const std::vector<double*>& eliminated,
-                                       ceres::Problem* problem);
+                                       const std::vector<double*>& kept, ceres::Problem* problem);
 
 }  // namespace velamap
