@@ -266,6 +266,7 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
   SchurOptions options;
   options.max_num_iterations = max_num_iterations;
   options.function_tolerance = function_tolerance;
+  options.keeps_last_step = true;
   // Such a tolerance is only asked for near the minimum, where damping would only add iterations.
   if (function_tolerance < 1e-6) options.initial_trust_region_radius = 1e8;
   std::vector<double*> eliminated, kept;

@@ -9,8 +9,7 @@
 namespace velamap {
 namespace {
 
-// Ceres discards a step whose gain is below its function_tolerance. This callback ends the
-// minimization after such a step instead, so that the gain is kept.
+// Ends the minimization after a step that changes the cost by less than the tolerance.
 class StopAfterSmallChange : public ceres::IterationCallback {
  public:
   explicit StopAfterSmallChange(double tolerance) : tolerance_(tolerance) {}
@@ -45,13 +44,13 @@ SchurSummary MinimizeBySchurComplement(const SchurOptions& options,
       num_columns <= kMaxDenseColumns ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   solver.max_num_iterations = options.max_num_iterations;
   solver.initial_trust_region_radius = options.initial_trust_region_radius;
-  solver.function_tolerance = 0.0;
+  solver.function_tolerance = options.keeps_last_step ? 0.0 : options.function_tolerance;
   solver.gradient_tolerance = 1e-14;
   solver.parameter_tolerance = 1e-14;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   StopAfterSmallChange stop(options.function_tolerance);
-  solver.callbacks.push_back(&stop);
+  if (options.keeps_last_step) solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, problem, &summary);
   return {summary.IsSolutionUsable(), static_cast<int>(summary.iterations.size()) - 1,

@@ -10,8 +10,10 @@ namespace velamap {
 
 struct SchurOptions {
   int max_num_iterations = 50;
-  // A step that changes the cost by less than this fraction is the last one.
+  // Ends when a step changes the cost by less than this fraction. Ceres discards that step;
+  // `keeps_last_step` accepts it if it lowers the cost, for one more iteration.
   double function_tolerance = 1e-6;
+  bool keeps_last_step = false;
   double initial_trust_region_radius = 1e4;
 };
 
