@@ -35,7 +35,7 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
     size.marker_id = marker.marker_id;
     size.num_sides = static_cast<int>(sides.size());
     const double weight = 1.0 / (size.num_sides * marker.length_m);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.x_in_world.size());
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.NumCoordinates());
     for (const auto& [a, b] : sides) {
       const Eigen::Vector3d side = CornerPosition(marker, b) - CornerPosition(marker, a);
       size.ratio += weight * side.norm();
@@ -211,7 +211,7 @@ Eigen::VectorXd BarGradient(const ScaleBar& bar, const MarkerState& state) {
   const Eigen::Vector3d direction = BarVector(bar, state).normalized();
   std::vector<Eigen::Index> begins = {0};
   for (const MarkerBlock& marker : state.markers) {
-    begins.push_back(begins.back() + static_cast<Eigen::Index>(marker.x_in_world.size()));
+    begins.push_back(begins.back() + marker.NumCoordinates());
   }
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(begins.back());
   for (std::size_t block = 0; block < bar.marker_idxs.size(); ++block) {

@@ -15,10 +15,12 @@ namespace velamap {
 
 struct MarkerBlock {
   int marker_id = 0;
-  std::vector<int> corners;        // the corners, 1..4, that are in the model, ascending
-  std::vector<double> x_in_world;  // x y z of each corner, m
-  double length_m = 0.0;           // side by the layout
+  std::vector<int> corners;  // the corners, 1..4, that are in the model, ascending
+  std::array<double, 3 * kNumCorners> x_in_world{};  // x y z of each of them, m
+  double length_m = 0.0;                             // side by the layout
   bool is_rigid = false;
+
+  int NumCoordinates() const { return 3 * static_cast<int>(corners.size()); }
 };
 
 struct ImageBlock {

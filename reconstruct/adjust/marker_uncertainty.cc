@@ -42,9 +42,8 @@ double GlobalSigma(const MarkerCovariance& covariance, int column, const PointCo
 std::vector<Eigen::Vector3d> Positions(const MarkerState& state) {
   std::vector<Eigen::Vector3d> positions;
   for (const MarkerBlock& marker : state.markers) {
-    for (std::size_t i = 0; i < marker.x_in_world.size(); i += 3) {
-      positions.emplace_back(marker.x_in_world[i], marker.x_in_world[i + 1],
-                             marker.x_in_world[i + 2]);
+    for (std::size_t slot = 0; slot < marker.corners.size(); ++slot) {
+      positions.emplace_back(CornerPosition(marker, static_cast<int>(slot)));
     }
   }
   return positions;

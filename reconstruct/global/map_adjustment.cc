@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -79,11 +80,14 @@ class AdjustableMap {
         std::find_if(frames_.begin(), frames_.end(), [](const auto& f) { return f.has_value(); });
     if (first == frames_.end()) return false;
     problem_.SetParameterBlockConstant((*first)->data());
-    std::vector<double*> eliminated;
+    std::vector<double*> markers, frames;
     for (auto& marker : markers_) {
-      if (marker) eliminated.push_back(marker->data());
+      if (marker) markers.push_back(marker->data());
     }
-    return MinimizeBySchurComplement(options, eliminated, &problem_).is_usable;
+    for (auto frame = std::next(first); frame != frames_.end(); ++frame) {
+      if (*frame) frames.push_back((*frame)->data());
+    }
+    return MinimizeBySchurComplement(options, markers, frames, &problem_).is_usable;
   }
 
   void WriteTo(MapSolution* solution) const {

@@ -9,8 +9,7 @@
 namespace velamap {
 namespace {
 
-// Ceres discards a step whose gain is below its function_tolerance. This callback ends the
-// minimization after such a step instead, so that the gain is kept.
+// Ends the minimization after a step that changes the cost by less than the tolerance.
 class StopAfterSmallChange : public ceres::IterationCallback {
  public:
   explicit StopAfterSmallChange(double tolerance) : tolerance_(tolerance) {}
@@ -26,43 +25,32 @@ class StopAfterSmallChange : public ceres::IterationCallback {
   double tolerance_;
 };
 
-// Columns of the Schur complement.
-int NumKeptColumns(const ceres::Problem& problem, const std::vector<double*>& eliminated) {
-  std::vector<double*> blocks;
-  problem.GetParameterBlocks(&blocks);
-  int count = 0;
-  for (const double* block : blocks) {
-    if (!problem.IsParameterBlockConstant(block)) count += problem.ParameterBlockTangentSize(block);
-  }
-  for (const double* block : eliminated) count -= problem.ParameterBlockTangentSize(block);
-  return count;
-}
-
 }  // namespace
 
 SchurSummary MinimizeBySchurComplement(const SchurOptions& options,
                                        const std::vector<double*>& eliminated,
-                                       ceres::Problem* problem) {
+                                       const std::vector<double*>& kept, ceres::Problem* problem) {
   // Up to about 200 images a dense factorization takes no longer than a sparse one.
   constexpr int kMaxDenseColumns = 1200;
   ceres::Solver::Options solver;
-  solver.linear_solver_type = NumKeptColumns(*problem, eliminated) <= kMaxDenseColumns
-                                  ? ceres::DENSE_SCHUR
-                                  : ceres::SPARSE_SCHUR;
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  std::vector<double*> blocks;
-  problem->GetParameterBlocks(&blocks);
-  for (double* block : blocks) solver.linear_solver_ordering->AddElementToGroup(block, 1);
   for (double* block : eliminated) solver.linear_solver_ordering->AddElementToGroup(block, 0);
+  int num_columns = 0, group = 0;
+  for (double* block : kept) {
+    solver.linear_solver_ordering->AddElementToGroup(block, ++group);
+    num_columns += problem->ParameterBlockTangentSize(block);
+  }
+  solver.linear_solver_type =
+      num_columns <= kMaxDenseColumns ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   solver.max_num_iterations = options.max_num_iterations;
   solver.initial_trust_region_radius = options.initial_trust_region_radius;
-  solver.function_tolerance = 0.0;
+  solver.function_tolerance = options.keeps_last_step ? 0.0 : options.function_tolerance;
   solver.gradient_tolerance = 1e-14;
   solver.parameter_tolerance = 1e-14;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   StopAfterSmallChange stop(options.function_tolerance);
-  solver.callbacks.push_back(&stop);
+  if (options.keeps_last_step) solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, problem, &summary);
   return {summary.IsSolutionUsable(), static_cast<int>(summary.iterations.size()) - 1,

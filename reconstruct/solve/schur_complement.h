@@ -10,8 +10,10 @@ namespace velamap {
 
 struct SchurOptions {
   int max_num_iterations = 50;
-  // A step that changes the cost by less than this fraction is the last one.
+  // Ends when a step changes the cost by less than this fraction. Ceres discards that step;
+  // `keeps_last_step` accepts it if it lowers the cost, for one more iteration.
   double function_tolerance = 1e-6;
+  bool keeps_last_step = false;
   double initial_trust_region_radius = 1e4;
 };
 
@@ -22,14 +24,15 @@ struct SchurSummary {
   double final_cost = 0.0;
 };
 
-// Minimizes over all parameter blocks that are not constant. `eliminated` are the blocks that the
-// Schur complement eliminates (markers); no two of them may share a residual. Where the result is
-// not usable, all values stay as they are.
+// Minimizes over all parameter blocks that are not constant. These are `eliminated`, the blocks
+// that the Schur complement eliminates (markers), no two of which may share a residual, and `kept`.
+// Where the result is not usable, all values stay as they are.
 //
-// Ceres runs on one thread: its elimination adds up in the order in which threads finish, so that
-// several threads would change the last digits from run to run.
+// The same input gives the same bytes if the eliminated blocks are elements of one array: Ceres
+// orders them by address. It runs on one thread, because with several its elimination sums in the
+// order in which they finish.
 SchurSummary MinimizeBySchurComplement(const SchurOptions& options,
                                        const std::vector<double*>& eliminated,
-                                       ceres::Problem* problem);
+                                       const std::vector<double*>& kept, ceres::Problem* problem);
 
 }  // namespace velamap

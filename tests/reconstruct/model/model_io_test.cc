@@ -130,7 +130,7 @@ TEST_F(ModelFiles, EveryTruncationOfABinaryFileIsAnErrorThatNamesIt) {
       ASSERT_THAT(ErrorOf(path_), AllOf(HasSubstr(file), HasSubstr("truncated"))) << size;
     }
     WriteBytes(path_ / file, bytes + '\0');
-    EXPECT_THAT(ErrorOf(path_), AllOf(HasSubstr(file), HasSubstr("goes on")));
+    EXPECT_THAT(ErrorOf(path_), AllOf(HasSubstr(file), HasSubstr("continues after the last")));
     WriteBytes(path_ / file, bytes);
   }
   EXPECT_EQ(ErrorOf(path_), "no error");
