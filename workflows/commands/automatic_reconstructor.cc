@@ -19,9 +19,9 @@
 #include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
+#include "workflows/run/version.h"
 #include "workflows/run/versions.h"
 #include "workflows/run/workspace.h"
-#include "workflows/run/version.h"
 
 namespace velamap {
 namespace {

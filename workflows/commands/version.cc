@@ -2,8 +2,8 @@
 
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_parser.h"
-#include "workflows/run/versions.h"
 #include "workflows/run/version.h"
+#include "workflows/run/versions.h"
 
 namespace velamap {
 void RunVersion(const Arguments& arguments) {

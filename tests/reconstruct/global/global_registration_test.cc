@@ -11,7 +11,9 @@
 
 #include "importer/base/error.h"
 #include "importer/geometry/alignment.h"
-#include "tests/reconstruct/registration_fixture.h"
+#include "reconstruct/register_frames.h"
+#include "tests/reconstruct/global/scene_map.h"
+#include "tests/support/test_seed.h"
 
 namespace velamap {
 namespace {
@@ -65,56 +67,6 @@ double ReconstructionRatio(const Registration& registration, const SyntheticScen
     num_reconstructed += static_cast<int>(registration.shape.count(marker_id));
   }
   return static_cast<double>(num_reconstructed) / num_visible;
-}
-
-void SortMarkers(FrameDetections* frame) {
-  std::sort(frame->markers.begin(), frame->markers.end(),
-            [](const auto& a, const auto& b) { return a.marker_id < b.marker_id; });
-}
-
-// Gives `rate` of the detections the ids of one another, frame by frame.
-void ExchangeIds(double rate, std::uint32_t seed, SyntheticScene* scene) {
-  std::mt19937 generator(seed);
-  for (FrameDetections& frame : scene->frames) {
-    std::vector<std::size_t> idxs(frame.markers.size());
-    std::iota(idxs.begin(), idxs.end(), 0);
-    std::shuffle(idxs.begin(), idxs.end(), generator);
-    const std::size_t count = static_cast<std::size_t>(rate * static_cast<double>(idxs.size()));
-    if (count < 2) continue;
-    const int first_id = frame.markers[idxs[0]].marker_id;
-    for (std::size_t i = 0; i + 1 < count; ++i) {
-      frame.markers[idxs[i]].marker_id = frame.markers[idxs[i + 1]].marker_id;
-    }
-    frame.markers[idxs[count - 1]].marker_id = first_id;
-    SortMarkers(&frame);
-  }
-}
-
-// Numbers the corners of `rate` of the detections from a wrong one.
-void TurnCorners(double rate, std::uint32_t seed, SyntheticScene* scene) {
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  for (FrameDetections& frame : scene->frames) {
-    for (MarkerDetection& marker : frame.markers) {
-      if (unit(generator) >= rate) continue;
-      auto& corners = marker.corners_in_image_px;
-      std::rotate(corners.begin(), corners.begin() + 1 + static_cast<int>(3 * unit(generator)),
-                  corners.end());
-    }
-  }
-}
-
-// Blurs every tenth frame: corners are off by some px, and their sigma does not say so.
-void BlurFrames(double sigma_px, std::uint32_t seed, SyntheticScene* scene) {
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> normal(0.0, sigma_px);
-  for (std::size_t i = 5; i < scene->frames.size(); i += 10) {
-    for (MarkerDetection& marker : scene->frames[i].markers) {
-      for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
-        corner += Eigen::Vector2d(normal(generator), normal(generator));
-      }
-    }
-  }
 }
 
 std::vector<std::string> OutlierReasons(const Registration& registration) {
