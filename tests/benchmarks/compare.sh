@@ -194,7 +194,7 @@ compare_main() {
       decode "$folder"
       decoding_cpu="$cpu"
       reconstruct "$folder" --Registration.method thesis --central_frame $((num_frames / 2)) \
-        --backend ceres
+        --backend markers
       main_cpu="$cpu"
       decode "$folder"
       decoding_cpu="$(mean "$decoding_cpu" "$cpu")"
@@ -269,7 +269,7 @@ compare_tracking() {
       mv "$work/database.db" "$work/exhaustive.db"
       reconstruct "$folder"
       for way in "tracked" "tracked with map"; do
-        if [[ $way == tracked ]]; then import "$folder"; else import "$folder" --map_path "$work/result/shape"; fi
+        if [[ $way == tracked ]]; then import "$folder"; else import "$folder" --prior_shape_path "$work/result/shape"; fi
         ms="$(search_ms "$num_frames")"
         measure "$compare_detections" "$work/exhaustive.db" "$work/database.db"
         echo "| $row | $way | $(value other) | $(
@@ -295,7 +295,7 @@ compare_sweep() {
       measure "$velamap" frame_registrator --database_path "$work/database.db" "${layout[@]}" \
         --output_path "$work/seed" --Registration.method thesis --central_frame "$frame"
       sum="$(awk -v a="$sum" -v b="$cpu" 'BEGIN { print a + b }')"
-      measure "$velamap" bundle_adjuster --backend ceres --database_path "$work/database.db" \
+      measure "$velamap" bundle_adjuster --backend markers --database_path "$work/database.db" \
         "${layout[@]}" --input_path "$work/seed" --output_path "$work/adjusted"
       sum="$(awk -v a="$sum" -v b="$cpu" 'BEGIN { print a + b }')"
     done

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/model/reprojection.h"
+#include "reconstruct/register_frames.h"
 #include "tests/reconstruct/registration_fixture.h"
 
 namespace velamap {

@@ -8,14 +8,14 @@
 #   thesis       subpix   thesis        COLMAP's
 #   edge         edge     thesis        COLMAP's
 #   global       edge     global        COLMAP's
-#   global_ceres edge     global        ours
+#   global_markers edge     global        ours
 #   global_both  edge     global        COLMAP's, then ours
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 begin_study accuracy "$@"
-read -ra ways <<<"${WAYS:-thesis edge global global_ceres global_both}"
+read -ra ways <<<"${WAYS:-thesis edge global global_markers global_both}"
 read -ra clips_of_study <<<"${CLIPS:-walls board sail_1080p sail_4k cube stylus board_video aprilgrid}"
 if [[ $quick -eq 1 ]]; then
   num_frames=40 sail_frames=90
@@ -108,7 +108,7 @@ study() {
     thesis) corners=subpix method=thesis ;;
     edge) method=thesis ;;
     global) ;;
-    global_ceres) backend=ceres ;;
+    global_markers) backend=markers ;;
     global_both) backend=both ;;
     *) fail "WAYS: $2 is unknown" ;;
   esac

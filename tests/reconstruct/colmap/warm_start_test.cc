@@ -5,8 +5,8 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
-#include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
+#include "reconstruct/thesis/thesis_registration.h"
 #include "tests/reconstruct/registration_fixture.h"
 
 namespace velamap {
@@ -16,7 +16,7 @@ class WarmStartTest : public testing::Test {
  protected:
   WarmStartTest() {
     SyntheticSceneOptions options;
-    options.thesis.num_frames = 60;
+    options.num_frames = 60;
     scene_ = MakeSyntheticScene(options);
     AddNoise({0.2, 0.05, 0.005, 200, 3}, &scene_);
     images_ = DatabaseImages(scene_);
@@ -39,7 +39,7 @@ class WarmStartTest : public testing::Test {
   }
 
   MarkerAdjustmentSummary Adjust(Model* model) const {
-    return AdjustWithCeres({}, scene_.layout, CornerSigmasOf(images_), model);
+    return AdjustWithMarkers({}, scene_.layout, CornerSigmasOf(images_), model);
   }
 
   static double Error(const Model& model) {
