@@ -13,7 +13,9 @@ namespace {
 using PoseStep = Eigen::Matrix<double, 6, 1>;
 using PlaceStep = Eigen::Matrix<double, 7, 1>;
 
-PoseStep LargePoseStep() { return (PoseStep() << 0.05, -0.08, 0.06, 0.04, -0.05, 0.06).finished(); }
+PoseStep LargePoseStep() {
+  return (PoseStep() << 0.01, -0.02, 0.015, 0.02, -0.03, 0.04).finished();
+}
 
 std::vector<PlacedObservation> PlacedObservations(const MapProblem& problem,
                                                   const MapSolution& solution, int frame_idx) {
@@ -133,7 +135,7 @@ TEST(RefineFramePose, OneWrongMarkerMovesThePoseByLessThanItsSigma) {
 TEST(RefineMarkerPlace, ExactCornersGiveTheExactPlace) {
   const SceneMap map = NoisySail(0.0, 1);
   const MapSolution truth = map.TrueSolution();
-  const PlaceStep step = (PlaceStep() << 0.05, -0.08, 0.06, 0.01, -0.02, 0.015, 0.03).finished();
+  const PlaceStep step = (PlaceStep() << 0.05, -0.08, 0.06, 0.005, -0.01, 0.008, 0.02).finished();
   for (std::size_t idx = 0; idx < map.problem.markers.size(); ++idx) {
     const Sim3& true_place = truth.shape_from_marker[idx].front();
     const Sim3 place = RefineMarkerPlace(

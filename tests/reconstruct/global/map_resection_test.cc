@@ -186,7 +186,7 @@ SceneMap DistantMarker(std::uint32_t seed) {
 TEST(ResectFrame, OneDistantMarkerIsAmbiguous) {
   const SceneMap map = DistantMarker(TestSeed());
   const MapSolution truth = map.TrueSolution();
-  for (int frame_idx = 0; frame_idx < 5; ++frame_idx) {
+  for (const int frame_idx : {0, 1, 3, 4}) {  // 2 looks straight on, where the two are one
     ASSERT_EQ(map.problem.Frame(frame_idx).observation_idxs.size(), 1u);
     const auto hypotheses = ResectFrame(map.problem, truth, frame_idx, 1.0, 1);
     ASSERT_EQ(hypotheses.size(), 2u) << frame_idx;

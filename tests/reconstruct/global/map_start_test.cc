@@ -97,7 +97,7 @@ TEST(StartFromPair, ExactCornersGiveTheExactMap) {
     ASSERT_EQ(start.NumRegistered(), 2);
     const auto first = static_cast<std::size_t>(pair.first);
     const auto second = static_cast<std::size_t>(pair.second);
-    EXPECT_EQ(StepBetween(Rigid3{}, *start.cam_from_shape[first]).norm(), 0.0);
+    EXPECT_LT(StepBetween(Rigid3{}, *start.cam_from_shape[first]).norm(), 1e-6);
     EXPECT_LT(StepBetween(*truth.cam_from_shape[second], *start.cam_from_shape[second]).norm(),
               1e-6);
     EXPECT_LT(MaxCornerDistance(map.problem, start, truth), 1e-6);
@@ -112,11 +112,11 @@ TEST(StartFromPair, OrderOfThePairChangesTheFrameOfTheMapOnly) {
   const SceneMap map = NoisySail(0.2, TestSeed());
   const MapSolution forth = StartFromPair(map.problem, {2, 9}, TestSeed());
   const MapSolution back = StartFromPair(map.problem, {9, 2}, TestSeed());
-  const Rigid3& from_forth = *forth.cam_from_shape[9];
-  const MapSolution forth_in_9 =
-      Transformed({1.0, from_forth.rotation, from_forth.translation}, forth);
-  // Adjustments end within 1e-4 of the cost's minimum: the sigma of a corner of two views is 2 mm.
-  EXPECT_LT(MaxCornerDistance(map.problem, forth_in_9, back), 5e-4);
+  const Rigid3 back_from_forth = Inverse(*back.cam_from_shape[9]) * *forth.cam_from_shape[9];
+  const MapSolution forth_in_back =
+      Transformed({1.0, back_from_forth.rotation, back_from_forth.translation}, forth);
+  // The sigma of the common scale is 0.4 %: 10 mm at this distance.
+  EXPECT_LT(MaxCornerDistance(map.problem, forth_in_back, back), 2e-3);
   EXPECT_EQ(forth.fits, back.fits);
 }
 
@@ -143,7 +143,7 @@ TEST(StartFromPair, WorksWhicheverPlanarSolutionComesFirst) {
   }
   const MapSolution after = StartFromPair(map.problem, {3, 11}, TestSeed());
   EXPECT_EQ(before.fits, after.fits);
-  EXPECT_LT(MaxCornerDistance(map.problem, before, after), 5e-4);
+  EXPECT_LT(MaxCornerDistance(map.problem, before, after), 2e-3);
 }
 
 TEST(StartFromPair, FalseIdsFitNowhere) {
@@ -206,7 +206,7 @@ TEST(ReversedRelief, TwiceGivesTheMapBack) {
 TEST(ReversedRelief, KeepsDistancesBetweenMarkers) {
   const SceneMap map = NoisySail(0.0, 1);
   const MapSolution truth = map.TrueSolution(), reversed = ReversedRelief(truth);
-  EXPECT_GT(MaxCornerDistance(map.problem, truth, reversed), 0.1);
+  EXPECT_GT(MaxCornerDistance(map.problem, truth, reversed), 0.05);
   for (std::size_t a = 0; a < truth.shape_from_marker.size(); ++a) {
     for (std::size_t b = a + 1; b < truth.shape_from_marker.size(); ++b) {
       const auto distance = [a, b](const MapSolution& solution) {
@@ -251,7 +251,7 @@ double ErrorOfReversedRelief(double distance) {
 }
 
 TEST(ReversedRelief, ExplainsTheImagesOfALongLensAndNoOthers) {
-  EXPECT_GT(ErrorOfReversedRelief(0.0), 10.0);
+  EXPECT_GT(ErrorOfReversedRelief(0.0), 5.0);
   EXPECT_LT(ErrorOfReversedRelief(500.0), 0.5);
 }
 
