@@ -143,18 +143,21 @@ TEST(GlobalRegistration, SpoiltDetectionsCostLittle) {
             35);
 }
 
+// Few frames see a marker of a cube: an id that is read three times at the place of one neighbour,
+// or three times turned the same way, may lose its marker by chance. That happens to one of 54
+// markers in about one draw of 60, so one draw of 8 may be incomplete, by one marker.
 TEST(GlobalRegistration, SpoiltCubeKeepsItsMarkers) {
   std::mt19937 seeds(TestSeed());
   int num_complete = 0;
-  for (int draw = 0; draw < 60; ++draw) {
+  for (int draw = 0; draw < 8; ++draw) {
     SyntheticScene scene = SceneWithNoise(SceneKind::kCube, seeds());
     Spoil(seeds(), &scene);
     const Registration registration = Register(scene);
-    std::printf("draw %d: %zu of %zu rms %.5f\n", draw, registration.shape.size(),
-                scene.x_in_world.size(), RmsError(registration, scene));
+    EXPECT_GE(registration.shape.size() + 1, scene.x_in_world.size()) << draw;
+    EXPECT_LT(RmsError(registration, scene), 0.0006) << draw;
     num_complete += registration.shape.size() == scene.x_in_world.size();
   }
-  std::printf("complete %d\n", num_complete);
+  EXPECT_GE(num_complete, 7);
 }
 
 class SpoiltScene : public testing::TestWithParam<std::tuple<SceneKind, int>> {};
@@ -291,14 +294,16 @@ SyntheticScene ShallowSail(std::uint32_t seed) {
   return scene;
 }
 
-TEST(GlobalRegistration, ShallowSailIsNeverTheWrongShapeWithoutANote) {
+// A wrong shape is off by centimetres; the largest error of 60 draws is 2.7 mm. The right shape has
+// no note.
+TEST(GlobalRegistration, ShallowSailIsTheRightShapeWithoutANote) {
   std::mt19937 seeds(TestSeed());
-  for (int draw = 0; draw < 60; ++draw) {
+  for (int draw = 0; draw < 8; ++draw) {
     const SyntheticScene scene = ShallowSail(seeds());
     const Registration registration = Register(scene);
-    std::printf("draw %d: notes %zu rms %.5f ratio %.3f registered %d\n", draw,
-                registration.notes.size(), RmsError(registration, scene),
-                ReconstructionRatio(registration, scene), registration.NumRegistered());
+    EXPECT_LT(RmsError(registration, scene), 0.006) << draw;
+    EXPECT_TRUE(registration.notes.empty()) << draw;
+    EXPECT_GE(ReconstructionRatio(registration, scene), 0.98) << draw;
   }
 }
 

@@ -78,7 +78,7 @@ TEST(GrowMap, OrderOfFramesChangesNothing) {
                 Transformed({1.0, shuffled_from_other.rotation, shuffled_from_other.translation},
                             in_order),
                 shuffled),
-            1e-4);
+            1e-3);
 }
 
 TEST(GrowMap, StopsAtTheLargestNumberOfFrames) {

@@ -200,7 +200,7 @@ TEST_F(WhyOutlierTest, SingleCorners) {
               marker->corners_in_image_px[0].y() += 5.5;
               marker->corners_in_image_px[3].x() += 12.0;
             }),
-            "corner 1 off by 5.5 px, corner 4 off by 12 px");
+            "corner 1 off by 5.5 px, 4 off by 12 px");
 }
 
 TEST_F(WhyOutlierTest, AnythingElse) {
