@@ -86,7 +86,7 @@ measure() {
   done
 }
 
-# fill README: prints it with its blocks filled; says on stderr where that differs from what stands there.
+# fill README: prints it with its blocks filled, and notes where that differs from what stands there.
 fill() {
   local readme="$1" line number=0 name="" start=0 text
   while IFS= read -r line; do
@@ -115,7 +115,7 @@ fill() {
   if [[ -n "$name" ]]; then problem "${readme#"$repository/"}:$start: block $name has no <!-- end -->"; fi
 }
 
-# block NAME PLACE: the text of a block, made once however many READMEs hold it.
+# block NAME PLACE: prints the text of a block, which is made once however many READMEs hold it.
 block() {
   if ! declare -F "block_$1" >/dev/null; then
     problem "$2: readme_blocks.sh knows no block $1"
@@ -127,10 +127,10 @@ block() {
   cat "$temporary/$1.block"
 }
 
-# report_difference README START NAME TEXT: at the first line that differs.
+# report_difference README START NAME TEXT: names the first line of the block that differs.
 report_difference() {
   local offset
-  offset="$(diff "$temporary/old" <(printf '%s\n' "$4") | sed -n '1s/[^0-9].*//p')"
+  offset="$({ diff "$temporary/old" <(printf '%s\n' "$4") || true; } | sed -n '1s/[^0-9].*//p')"
   echo "$1:$(($2 + (offset > 0 ? offset : 1))): block $3 is not what the stored results give" \
     >>"$temporary/differences"
 }
@@ -175,8 +175,7 @@ fi
 
 while IFS= read -r readme; do
   fill "$readme" >"$temporary/readme"
-  if [[ -s "$temporary/problems" ]]; then break; fi
-  if [[ $mode != check ]] && ! cmp -s "$temporary/readme" "$readme"; then
+  if [[ $mode != check && ! -s "$temporary/problems" ]] && ! cmp -s "$temporary/readme" "$readme"; then
     cat "$temporary/readme" >"$readme"
     echo "== written: $readme"
   fi
