@@ -1,70 +1,7 @@
 # shellcheck shell=bash
-# The blocks of measured numbers in the READMEs, made from the stored results: block_NAME prints the
-# text between <!-- numbers: NAME --> and <!-- end -->. Sourced by update_readmes.sh, whose stored()
-# says where a result is kept.
-
-# problem TEXT: blocks are made in subshells, from which only a file can tell of a problem.
-problem() { echo "$*" >>"$temporary/problems"; }
-
-# data RESULT: its rows without the line that names the command.
-data() {
-  if [[ ! -f "$(stored "$1")" ]]; then
-    problem "$place: $(stored "$1") is missing; workflows/studies/update_readmes.sh $1 makes it"
-    return
-  fi
-  sed 1d "$(stored "$1")"
-}
-
-# made_by RESULT: the command that made it, as code.
-made_by() { printf '`%s`' "$(sed -n '1s/^# //p' "$(stored "$1")")"; }
-
-# What the awk programs below share. num(x, format): x with as many significant digits as the format
-# says, but no more than four decimals; "+2" shows the sign, "3%" gives percent of a fraction, "d" an
-# integer; an unknown value is a dash. span(low, high, format): "0.1 to 0.3".
-# shellcheck disable=SC2016
-awk_library='
-  function num(x, format,    digits, magnitude, exponent, decimals) {
-    if (x == "") return "-"
-    if (format == "d") return sprintf("%.0f", x)
-    if (format ~ /%$/) x *= 100
-    digits = format; gsub(/[+%]/, "", digits)
-    magnitude = sprintf("%." (digits - 1) "e", x < 0 ? -x : x)
-    exponent = magnitude; sub(/.*e/, "", exponent)
-    decimals = digits - 1 - exponent
-    if (decimals < 0) decimals = 0
-    if (decimals > 4) decimals = 4
-    return sprintf("%" (format ~ /^[+]/ ? "+" : "") "." decimals "f", x)
-  }
-  function span(low, high, format,    a, b) {
-    a = num(low, format); b = num(high, format)
-    return a == b ? a : a " to " b
-  }
-  function note(n, x) {  # least and most of x by name n
-    if (x == "") return
-    if (!(n in least) || x + 0 < least[n]) least[n] = x + 0
-    if (!(n in most) || x + 0 > most[n]) most[n] = x + 0
-  }
-  FNR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }'
-
-# table RESULT AWK_PROGRAM: runs the program over the rows; $column["name"] is a cell of the row.
-table() {
-  # shellcheck disable=SC2016
-  data "$1" | awk -F, "$awk_library"' function cell(name) {
-    if (!(name in column)) { print "no column " name > "/dev/stderr"; exit 3 } return $column[name] }
-    '"$2" || problem "$place: $1 has no such rows or columns"
-}
-
-# value RESULT COLUMN FORMAT KEY=VALUE...: cells of the rows in which these columns hold these values,
-# with commas between them.
-value() {
-  # shellcheck disable=SC2016
-  table "$1" '
-    { for (k in wanted) if ($column[k] != wanted[k]) next
-      row = row separator num(cell("'"$2"'"), "'"$3"'"); separator = ", " }
-    BEGIN { n = split("'"${*:4}"'", pairs, " ")
-            for (i = 1; i <= n; i++) { split(pairs[i], pair, "="); wanted[pair[1]] = pair[2] } }
-    END { if (row == "") exit 3; printf "%s", row }'
-}
+# The blocks of measured numbers that the studies make: block_NAME prints the text between
+# <!-- numbers: NAME --> and <!-- end -->. Sourced by update_readmes.sh after readme_tables.sh.
+# shellcheck disable=SC2016  # awk programs stand in single quotes
 
 # --- sample_project ---
 
@@ -137,7 +74,6 @@ ROWS
 # --- accuracy.sh ---
 
 # One line per data set of accuracy.sh: the rows of the cube's faces count as one.
-# shellcheck disable=SC2016
 accuracy_library='
   BEGIN {
     n = split("walls board sail_1080p sail_4k cube stylus board_video aprilgrid", clips, " ")
@@ -150,10 +86,11 @@ accuracy_library='
     title["board_video"] = "video of a hand-held board"
     title["aprilgrid"] = "photographs of an AprilGrid"
   }
-  { clip = $column["clip"]; sub(/_face[0-9]$/, "", clip); key = clip "," $column["way"]
+  { clip = cell("clip"); sub(/_face[0-9]$/, "", clip); key = clip "," cell("way")
     known[key]
     for (name in column) if (name != "clip" && name != "way") note(key "," name, $column[name]) }
   function of(clip, way, name, format,    k) {
+    if (!((clip "," way) in known) || (name != "ratio" && !(name in column))) exit 3
     k = clip "," way "," name
     return (k in least) ? span(least[k], most[k], format) : "-"
   }'
@@ -186,7 +123,6 @@ block_accuracy() {
   echo "|---|---|---|---|---|---|"
   table accuracy.csv "$accuracy_library"'
     function result(clip, way,    text) {
-      if (!((clip "," way) in known)) return "-"
       text = of(clip, way, "scale_error_percent", "+2") " % / " of(clip, way, "distance_mm_rms", 2) " / " \
         of(clip, way, "distance_after_scaling_mm_rms", 2)
       if (clip ~ /^sail/) text = text ", " of(clip, way, "num_markers", "d") " markers"
@@ -206,8 +142,8 @@ block_sigmas() {
   echo "| data | scale error, its sigma | shape: RMS, predicted | RMS / predicted | correlation factor | corners left out; above 4 sigma left in |"
   echo "|---|---|---|---|---|---|"
   table accuracy.csv "$accuracy_library"'
-    $column["way"] == "global_both" && $column["distance_after_scaling_sigma_mm"] > 0 {
-      note(key ",ratio", $column["distance_after_scaling_mm_rms"] / $column["distance_after_scaling_sigma_mm"]) }
+    cell("way") == "global_both" && cell("distance_after_scaling_sigma_mm") > 0 {
+      note(key ",ratio", cell("distance_after_scaling_mm_rms") / cell("distance_after_scaling_sigma_mm")) }
     END {
       way = "global_both"
       for (i = 1; i <= n; i++) {
@@ -258,8 +194,8 @@ block_thesis_sail() {
 | area error against s | poor for small s | $(by s area_error_mm2_mean 2) mm² for s $(by s value d) | RMS $(by s distance_mm_rms 2) mm | \`parameters.sh\` |
 | ratio against s | falls | $(by s reconstruction_ratio 3%) % | | \`parameters.sh\` |
 | area error against m | 5 chosen | $(by m area_error_mm2_mean 2) mm² for m $(by m value d), ratio $(by m reconstruction_ratio 3%) % | RMS $(by m distance_mm_rms 2) mm | \`parameters.sh\` |
-| areas of the markers | most near the printed one | $(table central_frames_histogram.csv '$column["area_mm2"] > 9900 && $column["area_mm2"] < 10100 { sum += $column["share_of_all_percent"] } END { printf "%s", num(sum, 2) }') % within 1 % of the printed area | | \`central_frames.sh\` |
-| ratio by central frame | about 70 %, less when farther | $(table central_frames.csv '{ note("x", $column["reconstruction_ratio"]) } END { printf "%s", span(least["x"], most["x"], "3%") }') % | | \`central_frames.sh\` |
+| areas of the markers | most near the printed one | $(table central_frames_histogram.csv 'cell("area_mm2") > 9900 && cell("area_mm2") < 10100 { sum += cell("share_of_all_percent") } END { printf "%s", num(sum, 2) }') % within 1 % of the printed area | | \`central_frames.sh\` |
+| ratio by central frame | about 70 %, less when farther | $(table central_frames.csv '{ note("x", cell("reconstruction_ratio")) } END { printf "%s", span(least["x"], most["x"], "3%") }') % | | \`central_frames.sh\` |
 | rigid sail, near | | $(condition near) | $(condition_truth near) | \`conditions.sh\` |
 | change of wind, 200 mm halfway | larger errors, ratio 85 % | $(condition wind_against_before) | RMS $(under wind_against_before distance_mm_rms 2) mm to the shape before, $(under wind_against_after distance_mm_rms 2) mm to that after | \`conditions.sh\` |
 | weak reflection | fewer markers, as good | $(condition weak_reflection) | $(condition_truth weak_reflection) | \`conditions.sh\` |
@@ -275,7 +211,7 @@ ROWS
 # motion COLUMN: by line, those without a marker left out.
 motion() {
   table conditions_motion_lines.csv '
-    $column["line"] != "hull" && cell("'"$1"'") != "" {
+    cell("line") != "hull" && cell("'"$1"'") != "" {
       printf "%s%s", separator, num(cell("'"$1"'"), 2); separator = ", " }'
 }
 
@@ -327,173 +263,3 @@ block_board_motions() {
       }
     }'
 }
-
-# --- tests/benchmarks ---
-
-# What the programs below share: rows of repeated runs by the columns that name them, in order.
-# shellcheck disable=SC2016
-repeats_library='
-  function repeat_of(name) { if (!(name in seen)) { seen[name]; order[++num_rows] = name } return name }
-  function seconds(row, name) { return span(least[row, name], most[row, name], 3) }
-  function ratio(row, a, b, format) {
-    return least[row, b] > 0 ? num(least[row, a] / least[row, b], format) : "-" }
-  function clip_title() { return cell("kind") ", " cell("width_px") " px, " cell("num_frames") " frames" }'
-
-block_import_speed() {
-  echo "| clip | velamap: CPU s, markers | OpenCV's loop: CPU s, markers | decoding alone: CPU s |"
-  echo "|---|---|---|---|"
-  table detection.csv "$repeats_library"'
-    { row = repeat_of(clip_title()); for (name in column) note(row SUBSEP name, $column[name]) }
-    END {
-      for (i = 1; i <= num_rows; i++) {
-        row = order[i]
-        printf "| %s | %s, %d | %s, %d | %s |\n", row, num(least[row, "velamap_cpu_s"], 3),
-          least[row, "velamap_markers"], num(least[row, "opencv_cpu_s"], 3), least[row, "opencv_markers"],
-          num(least[row, "decoding_cpu_s"], 3)
-      }
-    }'
-}
-
-block_detection() {
-  echo "Made by $(made_by detection.csv); least and most of the runs, ratios of the least:"
-  echo
-  echo "| clip | velamap, CPU s | markers | OpenCV's loop, CPU s | markers | decoding, CPU s | OpenCV / velamap | decoding / velamap |"
-  echo "|---|---|---|---|---|---|---|---|"
-  table detection.csv "$repeats_library"'
-    { row = repeat_of(clip_title()); for (name in column) note(row SUBSEP name, $column[name]) }
-    END {
-      for (i = 1; i <= num_rows; i++) {
-        row = order[i]
-        printf "| %s | %s | %d | %s | %d | %s | %s | %s |\n", row, seconds(row, "velamap_cpu_s"),
-          least[row, "velamap_markers"], seconds(row, "opencv_cpu_s"), least[row, "opencv_markers"],
-          seconds(row, "decoding_cpu_s"), ratio(row, "opencv_cpu_s", "velamap_cpu_s", 2),
-          ratio(row, "decoding_cpu_s", "velamap_cpu_s", 2)
-      }
-    }'
-}
-
-block_adjustment() {
-  echo "Made by $(made_by adjustment.csv); least and most of the runs, ratios of the least:"
-  echo
-  echo "| frames | markers | registration and adjustment, CPU s | COLMAP's adjustment, CPU s | velamap / COLMAP |"
-  echo "|---|---|---|---|---|"
-  table adjustment.csv "$repeats_library"'
-    { row = repeat_of(cell("num_frames") " | " cell("num_markers"))
-      for (name in column) note(row SUBSEP name, $column[name]) }
-    END {
-      for (i = 1; i <= num_rows; i++) {
-        row = order[i]
-        printf "| %s | %s | %s | %s |\n", row, seconds(row, "velamap_cpu_s"), seconds(row, "colmap_cpu_s"),
-          ratio(row, "velamap_cpu_s", "colmap_cpu_s", 2)
-      }
-    }'
-}
-
-block_main() {
-  echo "Made by $(made_by main.csv); least and most of the runs, the ratio of the least:"
-  echo
-  echo "| clip | automatic_reconstructor, CPU s | decoding, CPU s | ratio | import | register | adjust | export | report |"
-  echo "|---|---|---|---|---|---|---|---|---|"
-  table main.csv "$repeats_library"'
-    { row = repeat_of(cell("width_px") " px, " cell("num_frames") " frames")
-      for (name in column) note(row SUBSEP name, $column[name]) }
-    END {
-      for (i = 1; i <= num_rows; i++) {
-        row = order[i]
-        printf "| %s | %s | %s | %s |", row, seconds(row, "automatic_reconstructor_cpu_s"),
-          seconds(row, "decoding_cpu_s"), ratio(row, "automatic_reconstructor_cpu_s", "decoding_cpu_s", 3)
-        m = split("import register adjust export report", stages, " ")
-        for (k = 1; k <= m; k++) printf " %s |", num(least[row, stages[k] "_cpu_s"], 2)
-        print ""
-      }
-    }'
-}
-
-block_memory() {
-  echo "Made by $(made_by memory.csv):"
-  echo
-  echo "| clip | peak memory, MB |"
-  echo "|---|---|"
-  table memory.csv '
-    { printf "| %s px, %s frames | %s |\n", cell("width_px"), cell("num_frames"), cell("peak_memory_mb") }'
-}
-
-block_growth() {
-  echo "Made by $(made_by growth.csv); least and most of the runs, the ratio of the least:"
-  echo
-  echo "| clip | CPU s | CPU s with twice the frames | ratio |"
-  echo "|---|---|---|---|"
-  table growth.csv "$repeats_library"'
-    { row = repeat_of(cell("width_px") " px, " cell("num_frames") " frames")
-      for (name in column) note(row SUBSEP name, $column[name]) }
-    END {
-      for (i = 1; i <= num_rows; i++)
-        printf "| %s | %s | %s | %s |\n", order[i], seconds(order[i], "cpu_s"),
-          seconds(order[i], "cpu_s_of_twice_the_frames"),
-          ratio(order[i], "cpu_s_of_twice_the_frames", "cpu_s", 3)
-    }'
-}
-
-block_markers() {
-  echo "Made by $(made_by markers.csv):"
-  echo
-  echo "| markers | detection in one 4K frame, ms | registration and adjustment of 41 frames, ms |"
-  echo "|---|---|---|"
-  table markers.csv '
-    { printf "| %s | %s | %s |\n", cell("num_markers"), cell("detection_ms"),
-        cell("registration_and_adjustment_ms") }'
-}
-
-block_tracking() {
-  echo "Made by $(made_by tracking.csv):"
-  echo
-  echo "| clip | search | markers | found again | same corners to 0.01 px | search, ms a frame |"
-  echo "|---|---|---|---|---|---|"
-  table tracking.csv "$repeats_library"'
-    function percent(x) { return x == "" ? "" : sprintf("%.2f %%", x) }
-    { search = cell("search"); sub(/prior_shape/, "tracked, with prior shape", search)
-      printf "| %s | %s | %s | %s | %s | %s |\n", search == "exhaustive" ? clip_title() : "", search,
-        cell("markers"), percent(cell("found_again_percent")), percent(cell("same_corners_percent")),
-        cell("search_ms") }'
-}
-
-block_sweep() {
-  echo "Made by $(made_by sweep.csv); least and most of the runs:"
-  echo
-  echo "| clip | central frames | single runs, CPU s | sweep with cold starts, CPU s | sweep, CPU s |"
-  echo "|---|---|---|---|---|"
-  table sweep.csv "$repeats_library"'
-    { row = repeat_of(cell("width_px") " px, " cell("num_frames") " frames | " cell("num_central_frames"))
-      for (name in column) note(row SUBSEP name, $column[name]) }
-    END {
-      for (i = 1; i <= num_rows; i++)
-        printf "| %s | %s | %s | %s |\n", order[i], seconds(order[i], "single_runs_cpu_s"),
-          seconds(order[i], "sweep_with_cold_starts_cpu_s"), seconds(order[i], "sweep_cpu_s")
-    }'
-}
-
-# corner_table CONDITION: the rows of corner_accuracy.csv for which the awk condition holds.
-corner_table() {
-  echo "| side px | $1 | side bias px | std px | bound px | error / sigma | SUBPIX: side bias px | std px |"
-  echo "|---|---|---|---|---|---|---|---|"
-  table corner_accuracy.csv '
-    function trial() {
-      if ($column["noise"] != 2) return "noise " $column["noise"]
-      if ($column["jpeg_quality"] != "-") return "JPEG quality " $column["jpeg_quality"]
-      if ($column["bend_deg"] != 0) return "bent by " $column["bend_deg"] " degrees"
-      if ($column["tilt_deg"] != "0-50") return "tilt " $column["tilt_deg"] " degrees"
-      return ""
-    }
-    '"$2"' {
-      printf "| %s | %s | %+.4f ± %.4f | %.4f | %.4f | %.2f | %+.3f | %.3f |\n", cell("side_px"), '"$3"',
-        cell("side_bias_px"), cell("side_bias_sigma_px"), cell("std_px"), cell("bound_px"),
-        cell("error_over_sigma"), cell("subpix_side_bias_px"), cell("subpix_std_px")
-    }'
-}
-
-block_corner_accuracy() {
-  # shellcheck disable=SC2016
-  corner_table "blur px" 'trial() == "" && $column["side_px"] ~ /^(12|16|25|35|80|200)$/' 'sprintf("%.1f", cell("blur_px"))'
-}
-
-block_corner_trials() { corner_table "trial" 'trial() != ""' 'trial()'; }

@@ -3,9 +3,9 @@
 #   <!-- numbers: NAME -->
 #   ...
 #   <!-- end -->
-# whose text the function block_NAME of readme_blocks.sh makes from the stored results: the tables
-# that the studies and benchmarks write, kept in workflows/studies/results and
-# tests/benchmarks/results with the command that made them in their first line.
+# whose text the function block_NAME of a readme_blocks.sh, here or in tests/benchmarks, makes from the
+# stored results: the tables that the studies and benchmarks write, kept in workflows/studies/results
+# and tests/benchmarks/results with the command that made them in their first line.
 # usage: workflows/studies/update_readmes.sh [MODE] [RESULT...] [WORK_FOLDER]
 #   (no mode)   runs the commands whose results are not stored, stores these, writes the READMEs
 #   --rerun     runs the commands of the named results (all, if none is named), stored or not
@@ -19,8 +19,12 @@ export LC_ALL=C
 
 folder="$(realpath "$(dirname "${BASH_SOURCE[0]}")")"
 repository="$(realpath "$folder/../..")"
+# shellcheck source-path=SCRIPTDIR source=readme_tables.sh
+source "$folder/readme_tables.sh"
 # shellcheck source-path=SCRIPTDIR source=readme_blocks.sh
 source "$folder/readme_blocks.sh"
+# shellcheck source-path=SCRIPTDIR source=../../tests/benchmarks/readme_blocks.sh
+source "$repository/tests/benchmarks/readme_blocks.sh"
 
 fail() {
   echo "error: $*" >&2
@@ -107,7 +111,7 @@ fill() {
     elif [[ "$line" =~ ^'<!-- numbers: '([a-z_]+)' -->'$ ]]; then
       name="${BASH_REMATCH[1]}" start=$number
       : >"$temporary/old"
-    elif [[ "$line" == *'<!-- numbers'* ]]; then
+    elif [[ "$line" == '<!-- numbers'* ]]; then
       problem "${readme#"$repository/"}:$number: expected a line <!-- numbers: NAME -->"
     fi
     printf '%s\n' "$line"
@@ -118,7 +122,7 @@ fill() {
 # block NAME PLACE: prints the text of a block, which is made once however many READMEs hold it.
 block() {
   if ! declare -F "block_$1" >/dev/null; then
-    problem "$2: readme_blocks.sh knows no block $1"
+    problem "$2: no readme_blocks.sh makes the block $1"
     return
   fi
   if [[ ! -f "$temporary/$1.block" ]]; then
