@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Reconstructs the photographs of sample_project as their README says and holds the shapes against
-# what is known of the objects.
+# Reconstructs the photographs of sample_project as their README says and compares the shapes with what
+# is known of the objects.
 # usage: workflows/studies/sample_project.sh [WORK_FOLDER]   (default: workspace/studies)
 # Writes sample_project.csv, and sample_project.txt: what workflows/sample.sh prints at its end.
 set -euo pipefail
