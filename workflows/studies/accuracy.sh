@@ -27,7 +27,8 @@ repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 
 keys=(num_markers reconstruction_ratio scale_error_percent distance_mm_rms
   distance_sigma_mm distance_after_scaling_mm_rms distance_after_scaling_sigma_mm
-  corners_above_4_sigma_percent correlation_factor reprojection_error_px_mean)
+  corners_above_4_sigma_percent correlation_factor reprojection_error_px_mean
+  area_error_percent_mean)
 csv="$work/accuracy.csv"
 echo "clip,way,$(IFS=,; echo "${keys[*]}"),scale_sigma_percent,outliers_percent,angle_deg" >"$csv"
 

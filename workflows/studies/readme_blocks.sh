@@ -50,7 +50,7 @@ block_cube() {
 | figure | result | what is known |
 |---|---|---|
 | images used | $(images_used cube) | |
-| markers reconstructed | $(sample cube num_markers d) of $(sample cube num_layout_markers d) | 297 are seen, most of the missing ones in one image only |
+| markers reconstructed | $(sample cube num_markers d) of $(sample cube num_layout_markers d) | most of the missing ones are seen in one image only |
 | mean reprojection error | $(sample cube reprojection_error_px_mean 2) px | |
 | mean distance of a face's corners from their plane | $(sample_span parts corner_plane_error_mm_mean 2) mm | 0.03 mm |
 | angle between neighbouring faces | $(cube_pairs angles) degrees | 90 within 0.6 |
@@ -154,6 +154,20 @@ block_sigmas() {
           of(clip, way, "distance_after_scaling_sigma_mm", 2), of(clip, way, "ratio", 2),
           of(clip, way, "correlation_factor", 3), of(clip, way, "outliers_percent", 2),
           of(clip, way, "corners_above_4_sigma_percent", 1)
+      }
+    }'
+}
+
+block_blind_spot() {
+  echo "| rendered data, SUBPIX corners | scale error | RMS with the scale fitted | mean area error | mean reprojection error |"
+  echo "|---|---|---|---|---|"
+  table accuracy.csv "$accuracy_library"'
+    END {
+      for (i = 1; i <= 4; i++) {
+        clip = clips[i]; way = "thesis"
+        printf "| %s | %s %% | %s mm | %s %% | %s px |\n", title[clip],
+          of(clip, way, "scale_error_percent", "+2"), of(clip, way, "distance_after_scaling_mm_rms", 2),
+          of(clip, way, "area_error_percent_mean", 2), of(clip, way, "reprojection_error_px_mean", 2)
       }
     }'
 }
