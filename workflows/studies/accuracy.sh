@@ -86,7 +86,7 @@ folder_of() {
   esac
 }
 
-# detections CLIP CORNERS: prints the path of the clip's database, which is made if it is missing.
+# detections CLIP CORNERS: prints the path of the clip's database, which is made unless it is current.
 detections() {
   local folder database images more=()
   folder="$clips/$(folder_of "$1")"
@@ -94,7 +94,8 @@ detections() {
   images="$folder/clip.mp4"
   if [[ -f "$folder/images.txt" ]]; then images="$(cat "$folder/images.txt")"; fi
   if [[ "$1" == board_video ]]; then more=(--ArucoDetection.inverted 1); fi
-  if [[ ! -f "$database" ]]; then
+  if ! is_current "$database"; then
+    rm -f "$database"
     "$velamap" marker_importer --image_path "$images" --camera_path "$folder/camera.yml" \
       --layout_path "$folder/layout.yml" --database_path "$database" --log_level error \
       --ArucoDetection.corner_refinement "$2" "${more[@]}" >"$folder/$2.txt"

@@ -6,7 +6,8 @@
 #   clips/NAME    rendered clip with its truth, database.db with its detections, arguments.txt
 #   runs/STUDY    every reconstruction of a study: models, shape, analysis.csv, log.txt
 #   STUDY*.csv, STUDY*.png   the tables and plots
-# Clips are used again, by other studies too, as long as their arguments are the same.
+# Clips are used again, by other studies too, as long as their arguments are the same; they are imported
+# again when the program is newer than their detections.
 set -euo pipefail
 export LC_ALL=C
 
@@ -65,24 +66,29 @@ quick_sail=(--scene sail --width 1280 --sail_scale 0.5 --distance 3)
 short_clip_frames() { if [[ $quick -eq 1 ]]; then echo 90; else echo 220; fi; }
 near_clip_frames() { if [[ $quick -eq 1 ]]; then echo 110; else echo 600; fi; }
 
-# make_clip NAME RENDER_CLIP_ARGUMENT...: renders and imports clips/NAME unless it exists.
+# is_current FILE: whether the file was made by this velamap.
+is_current() { [[ -f "$1" && ! "$velamap" -nt "$1" ]]; }
+
+# make_clip NAME RENDER_CLIP_ARGUMENT...: renders and imports clips/NAME unless that is done.
 make_clip() {
   local folder="$clips/$1" arguments="${*:2}"
-  if [[ -f "$folder/arguments.txt" && "$(cat "$folder/arguments.txt")" == "$arguments" ]]; then
-    return
+  if [[ ! -f "$folder/arguments.txt" || "$(cat "$folder/arguments.txt")" != "$arguments" ]]; then
+    rm -rf "$folder"
+    echo "== $study: clip $1: $arguments"
+    "$render_clip" "${@:2}" --output_path "$folder" >"$work/render.log" 2>&1 ||
+      fail "render_clip failed: $(tail -n 1 "$work/render.log")"
+    rm "$work/render.log"
+    echo "$arguments" >"$folder/arguments.txt"
   fi
-  rm -rf "$folder"
-  echo "== $study: clip $1: $arguments"
-  "$render_clip" "${@:2}" --output_path "$folder" >"$work/render.log" 2>&1 ||
-    fail "render_clip failed: $(tail -n 1 "$work/render.log")"
-  rm "$work/render.log"
+  if is_current "$folder/import.txt"; then return; fi
+  rm -f "$folder/database.db"
   if ! "$velamap" marker_importer --image_path "$folder/clip.mp4" \
     --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
-    --database_path "$folder/database.db" --log_level error >"$folder/import.txt"; then
+    --database_path "$folder/database.db" --log_level error >"$folder/import.part"; then
     # A clip without a marker is a valid outcome of a study.
     echo "== $study: clip $1 gives no detections" >&2
   fi
-  echo "$arguments" >"$folder/arguments.txt"
+  mv "$folder/import.part" "$folder/import.txt"
 }
 
 make_near_clip() { make_clip near "${sail[@]}" --num_frames "$(near_clip_frames)"; }
