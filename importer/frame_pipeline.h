@@ -15,11 +15,11 @@ namespace velamap {
 
 struct FrameResult {
   FrameDetections detections;
-  Camera camera;                // for the frame's size
-  std::string skipped_because;  // not empty: the file was no whole image
-  MapAgreement map;             // of what was found without it
-  ImportTimes times;            // of the thread that processed it
-  double reading_s = 0.0;       // Frame::decode_s
+  Camera camera;                    // for the frame's size
+  std::string skipped_because;      // not empty: the file was no whole image
+  PriorShapeAgreement prior_shape;  // of what was found without its help
+  ImportTimes times;                // of the thread that processed it
+  double reading_s = 0.0;           // Frame::decode_s
 };
 
 // Reads all frames of `source`, calls `process` for each on `num_threads` threads (frame_idx counts

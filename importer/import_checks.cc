@@ -32,7 +32,7 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
   if (*known_detector != detector) {
     throw InputError(
         fmt::format("{}: was made with other detection options, another layout or "
-                    "another map ({}; now {}); {}",
+                    "another prior shape ({}; now {}); {}",
                     options.database_path, *known_detector, detector, remedy));
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {

@@ -66,7 +66,7 @@ class ImportRun {
       result.camera = CameraOfFrame(*frame);
       const std::vector<MarkerQuad> quads =
           turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
-               : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.map);
+               : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.prior_shape);
       result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
       WriteImage(*frame, result.detections);
       AddToSample(frame_idx, frame->gray);
@@ -88,7 +88,7 @@ class ImportRun {
     ++report_.num_frames_read;
     report_.num_markers += static_cast<int>(detections.markers.size());
     report_.num_rejected += static_cast<int>(detections.rejected.size());
-    report_.map += result.map;
+    report_.prior_shape += result.prior_shape;
     report_.num_images_without_markers += detections.markers.empty();
     report_.num_fallbacks += static_cast<int>(
         std::count_if(detections.markers.begin(), detections.markers.end(),
@@ -148,7 +148,7 @@ class ImportRun {
         },
         std::move(seen_coarsely),
         [&](const std::vector<MarkerQuad>& found) {
-          return ExpectInFrame(detector_, result->camera, found, &result->map);
+          return ExpectInFrame(detector_, result->camera, found, &result->prior_shape);
         }};
     quads = is_full ? CompleteFullSearch(search, std::move(quads), frame_number, tracks)
                     : SearchTracked(search, frame_number, tracks);
@@ -258,7 +258,7 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;
   if (fs::is_directory(options.image_path)) detection.search = SearchMode::kExhaustive;
-  const FrameDetector detector = MakeFrameDetector(options.layout, detection, options.map);
+  const FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
 
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);

@@ -26,7 +26,7 @@ struct MarkerImporterOptions {
   Layout layout;
   ArucoDetectionOptions detection;
   VideoOptions video;
-  MarkerMap map;  // of an earlier reconstruction of the surface; empty: none
+  PriorShape prior_shape;  // empty: none
   // Video only: folder for the frames that hold markers, as JPEG, so that a later step can show
   // them without decoding the video again; empty: none are written. Photographs stay where they
   // are.
@@ -48,7 +48,7 @@ struct ImportReport {
   int num_rejected = 0;   // detections left out in this run
   int num_fallbacks = 0;  // accepted ones whose corner fit failed: cv::cornerSubPix's corners
   int num_pairs = 0;      // pairs of images with matches
-  MapAgreement map;       // of all frames
+  PriorShapeAgreement prior_shape;     // of all frames
   std::vector<int> ids_not_in_layout;  // found, not named by the layout, left out
   std::vector<SkippedImage> skipped;   // unreadable files
   // CPU time summed over the threads; that of decoding is what no other stage claims, because

@@ -3,8 +3,8 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue csv error ids natural_order parallel stage_timer statistics text_file
-  yaml_item)
+  atomic_output bounded_queue csv error ids natural_order numbers parallel stage_timer statistics
+  text_file)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose pose_step quad rigid3 triple_pose unit_square_map)
 house_folder(importer/camera PUBLIC

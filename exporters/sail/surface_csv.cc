@@ -10,7 +10,7 @@
 
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
-#include "importer/base/yaml_item.h"
+#include "importer/base/numbers.h"
 
 namespace velamap {
 namespace {

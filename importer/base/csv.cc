@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <istream>
+#include <ostream>
 
 #include "importer/base/error.h"
 
@@ -109,6 +110,20 @@ std::string CsvField(const std::string& text) {
     field += c;
   }
   return field + '"';
+}
+
+void CsvWriter::WriteComment(const std::string& text) { out_ << "# " << SingleLine(text) << '\n'; }
+
+void CsvWriter::Append(std::string_view field) {
+  if (num_fields_++ > 0) record_ += ',';
+  record_ += field;
+}
+
+void CsvWriter::EndRecord() {
+  // An empty line would be no record.
+  out_ << (record_.empty() && num_fields_ == 1 ? "\"\"" : record_) << '\n';
+  num_fields_ = 0;
+  record_.clear();
 }
 
 }  // namespace velamap

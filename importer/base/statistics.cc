@@ -16,12 +16,11 @@ Statistics ComputeStatistics(std::vector<double> values) {
   const double count = static_cast<double>(values.size());
   statistics.count = static_cast<int>(values.size());
   statistics.mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
-  double squares = 0.0, squared_deviations = 0.0;
+  double squared_deviations = 0.0;
   for (const double value : values) {
-    squares += value * value;
     squared_deviations += (value - statistics.mean) * (value - statistics.mean);
   }
-  statistics.rms = std::sqrt(squares / count);
+  statistics.rms = Rms(values);
   if (values.size() > 1) {
     statistics.standard_deviation = std::sqrt(squared_deviations / (count - 1));
   }
@@ -44,7 +43,13 @@ double RobustSigma(const std::vector<double>& values) {
   std::vector<double> deviations;
   deviations.reserve(values.size());
   for (const double value : values) deviations.push_back(std::abs(value - median));
-  return 1.4826 * Median(std::move(deviations));
+  return kMadToSigma * Median(std::move(deviations));
+}
+
+double Rms(const std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
 }  // namespace velamap

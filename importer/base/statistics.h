@@ -1,4 +1,4 @@
-// Plain statistics of a list of numbers, as every report of velamap shows them.
+// Statistics of a list of numbers, as the reports show them.
 
 #pragma once
 
@@ -19,11 +19,17 @@ struct Statistics {
 // All zero for no values.
 Statistics ComputeStatistics(std::vector<double> values);
 
-// Median; the mean of the middle two for an even count. `values` must not be empty.
+// The mean of the middle two for an even count. `values` must not be empty.
 double Median(std::vector<double> values);
 
-// 1.4826 * median absolute deviation from the median: the standard deviation of a normal
-// distribution, untouched by up to half of outliers. `values` must not be empty.
+// The standard deviation of a normal distribution whose median absolute deviation is 1.
+constexpr double kMadToSigma = 1.4826;
+
+// kMadToSigma times the median absolute deviation from the median: estimates the standard deviation
+// even if nearly half of the values are outliers. `values` must not be empty.
 double RobustSigma(const std::vector<double>& values);
+
+// The root of the mean square; 0 for no values.
+double Rms(const std::vector<double>& values);
 
 }  // namespace velamap

@@ -1,9 +1,9 @@
 #include "importer/layout/frame_choice.h"
 
+#include <algorithm>
 #include <array>
-#include <charconv>
+#include <optional>
 #include <set>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -11,6 +11,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/ids.h"
+#include "importer/base/numbers.h"
 
 namespace velamap {
 namespace {
@@ -20,20 +21,12 @@ constexpr std::array<std::pair<const char*, FrameKind>, 3> kKeywords = {
      {"lines", FrameKind::kLines},
      {"camera", FrameKind::kCamera}}};
 
-// Whole numbers that commas separate; empty when any is no marker id.
+// Empty unless the text is a list of marker ids.
 std::vector<int> ParseIds(const std::string& text) {
-  std::vector<int> ids;
-  const char* begin = text.data();
-  const char* const text_end = begin + text.size();
-  while (true) {
-    int id = -1;
-    const auto [end, error] = std::from_chars(begin, text_end, id);
-    if (error != std::errc() || id < 0 || id > kMaxMarkerId) return {};
-    ids.push_back(id);
-    if (end == text_end) return ids;
-    if (*end != ',') return {};
-    begin = end + 1;
-  }
+  const std::optional<std::vector<int>> ids = ParseNumberList<int>(text);
+  const auto is_marker_id = [](int id) { return id >= 0 && id <= kMaxMarkerId; };
+  if (!ids || !std::all_of(ids->begin(), ids->end(), is_marker_id)) return {};
+  return *ids;
 }
 
 }  // namespace

@@ -13,9 +13,10 @@
 
 #include "importer/base/error.h"
 #include "importer/base/ids.h"
+#include "importer/base/numbers.h"
 #include "importer/base/text_file.h"
-#include "importer/base/yaml_item.h"
 #include "importer/layout/layout.h"
+#include "importer/layout/yaml_item.h"
 
 namespace velamap {
 namespace {

@@ -1,4 +1,4 @@
-// Where markers are on the surface, by an earlier reconstruction of it.
+// The prior shape: where an earlier reconstruction of the surface has its markers.
 
 #pragma once
 
@@ -12,15 +12,15 @@
 namespace velamap {
 
 // Corners 1..4 of each marker, by its id, in the shape frame, m; any other scale does as well.
-using MarkerMap = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
+using PriorShape = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 
-// How far what is found in frames agrees with a map. Frames with too few markers of the map to tell
-// do not count.
-struct MapAgreement {
-  int num_known = 0;     // markers found that the map holds
+// How well the markers found in frames agree with a prior shape. Frames that show too few of its
+// markers to tell are not counted.
+struct PriorShapeAgreement {
+  int num_known = 0;     // markers found that the prior shape holds
   int num_agreeing = 0;  // of these, those that one pose of their frame's camera explains
 
-  MapAgreement& operator+=(const MapAgreement& other) {
+  PriorShapeAgreement& operator+=(const PriorShapeAgreement& other) {
     num_known += other.num_known;
     num_agreeing += other.num_agreeing;
     return *this;

@@ -26,9 +26,9 @@ std::uint64_t Hash(const std::string& text) {
   return hash;
 }
 
-std::string MapText(const MarkerMap& map) {
+std::string PriorShapeText(const PriorShape& prior_shape) {
   std::string text;
-  for (const auto& [id, in_shape_m] : map) {
+  for (const auto& [id, in_shape_m] : prior_shape) {
     text += fmt::format("|{}", id);
     for (const Eigen::Vector3d& x : in_shape_m) {
       text += fmt::format(" {} {} {}", x.x(), x.y(), x.z());
@@ -51,7 +51,7 @@ void WarnOfSymmetries(const FrameDetector& detector) {
 }  // namespace
 
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
-                                const MarkerMap& map) {
+                                const PriorShape& prior_shape) {
   FrameDetector detector{options,
                          LoadDictionary(layout.dictionary),
                          layout.border_bits,
@@ -68,9 +68,10 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
   detector.symmetries = FindCodeSymmetries(detector.dictionary);
   for (const int id : MarkerIds(layout)) detector.part_of_id[id] = PartOfMarker(layout, id);
   if (options.search == SearchMode::kTracked) detector.lines = LinesOfLayout(layout);
-  for (const auto& [id, in_shape_m] : map) {
+  for (const auto& [id, in_shape_m] : prior_shape) {
     const bool is_known = detector.part_of_id.empty() || detector.part_of_id.count(id) > 0;
-    if (is_known && id < detector.dictionary.aruco->bytesList.rows) detector.map[id] = in_shape_m;
+    if (is_known && id < detector.dictionary.aruco->bytesList.rows)
+      detector.prior_shape[id] = in_shape_m;
   }
   WarnOfSymmetries(detector);
   return detector;
@@ -95,7 +96,10 @@ std::string DescribeDetector(const FrameDetector& detector) {
       known += fmt::format("|line {}", fmt::join(line, " "));
     }
   }
-  if (!detector.map.empty()) search += fmt::format(" map={:016x}", Hash(MapText(detector.map)));
+  // Databases of earlier versions hold the prior shape under the name map.
+  if (!detector.prior_shape.empty()) {
+    search += fmt::format(" map={:016x}", Hash(PriorShapeText(detector.prior_shape)));
+  }
   return fmt::format(
       "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
       "error_correction_rate={} inverted={} dictionary_and_layout={:016x}{}",
@@ -127,11 +131,12 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
 
 std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const Camera& camera,
                                           const std::vector<MarkerQuad>& found,
-                                          MapAgreement* agreement) {
+                                          PriorShapeAgreement* agreement) {
   std::vector<ExpectedMarker> all;
-  const auto view = PlaceOnMap(detector.map, camera, found, agreement);
+  const auto view = PlaceInPriorShape(detector.prior_shape, camera, found, agreement);
   if (view) {
-    for (const ExpectedMarker& expected : ExpectOnMap(detector.map, camera, *view, found)) {
+    for (const ExpectedMarker& expected :
+         ExpectByPriorShape(detector.prior_shape, camera, *view, found)) {
       if (IsLargeEnough(expected.quad.corners_px, {camera.width_px, camera.height_px},
                         detector.options)) {
         all.push_back(expected);
@@ -139,14 +144,14 @@ std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const C
     }
   }
   for (const ExpectedMarker& expected : ExpectOnLines(detector.lines, found)) {
-    const bool is_on_map = detector.map.count(expected.quad.marker_id) > 0;
-    if (!view || !is_on_map) all.push_back(expected);
+    const bool is_in_prior_shape = detector.prior_shape.count(expected.quad.marker_id) > 0;
+    if (!view || !is_in_prior_shape) all.push_back(expected);
   }
   return all;
 }
 
 std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const Camera& camera,
-                                           const cv::Mat& gray, MapAgreement* agreement) {
+                                           const cv::Mat& gray, PriorShapeAgreement* agreement) {
   std::vector<MarkerQuad> quads = SearchInFrame(detector, gray);
   for (const auto& [quad, reach_px] : ExpectInFrame(detector, camera, quads, agreement)) {
     const auto located = LocateInFrame(detector, gray, quad.marker_id, quad.corners_px, reach_px);

@@ -36,29 +36,29 @@ struct FrameDetector {
   std::map<int, std::string> part_of_id;  // empty: every id is welcome
   std::vector<MarkerLook> looks;          // of every id of the dictionary
   std::vector<std::vector<int>> lines;    // ids along those of the layout; tracked search only
-  MarkerMap map;                          // of markers that can be detected; may be empty
+  PriorShape prior_shape;                 // of markers that can be detected; may be empty
 };
 
-// Throws InputError for a dictionary that does not exist or has wrong bits. Markers of `map` that
-// the dictionary lacks or the layout does not name are passed over.
+// Throws InputError for a dictionary that does not exist or has wrong bits. Markers of
+// `prior_shape` that the dictionary lacks or the layout does not name are passed over.
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
-                                const MarkerMap& map = {});
+                                const PriorShape& prior_shape = {});
 
 // Where the markers of the whole frame, or of regions of it, are to a pixel. Thread-safe.
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray);
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                       const std::vector<cv::Rect>& regions);
 
-// Where markers that are not found should be visible: by the map, none that is too small for a
-// search to take; and those that it does not hold, or all if the frame has no place in it, on the
-// layout's lines. Thread-safe.
+// Where markers that are not found should be visible: by the prior shape, but none that is too
+// small for a search to take; and on the layout's lines those that the prior shape does not hold,
+// or all if the frame cannot be placed in it. Thread-safe.
 std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const Camera& camera,
                                           const std::vector<MarkerQuad>& found,
-                                          MapAgreement* agreement);
+                                          PriorShapeAgreement* agreement);
 
 // The whole frame, and what is expected in it and was missed. Thread-safe.
 std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const Camera& camera,
-                                           const cv::Mat& gray, MapAgreement* agreement);
+                                           const cv::Mat& gray, PriorShapeAgreement* agreement);
 
 // Large markers of the whole frame, in a quarter of the time. Thread-safe.
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray);

@@ -8,8 +8,8 @@
 // In both a marker is first looked for as what it is, and then, where it is not to be seen clearly,
 // as any marker within the region around it.
 //
-// What is missing where the map or the layout's lines say that it should be visible is looked for
-// in the same two ways.
+// What is missing where the prior shape or the layout's lines say that it should be visible is
+// looked for in the same two ways.
 //
 // Halfway between two full searches a coarse one of the whole frame tells of new large markers.
 // Where far fewer are found than usual, or the places fill most of the picture, the whole frame is

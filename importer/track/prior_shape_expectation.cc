@@ -26,14 +26,14 @@ std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corne
   return rays;
 }
 
-// Those of the map that are found once, by ascending id.
-std::vector<const MarkerQuad*> FindKnown(const MarkerMap& map,
+// Markers of the prior shape that are found once, by ascending id.
+std::vector<const MarkerQuad*> FindKnown(const PriorShape& prior_shape,
                                          const std::vector<MarkerQuad>& found) {
   std::map<int, const MarkerQuad*> known;
   std::set<int> ids, twice;
   for (const MarkerQuad& quad : found) {
     if (!ids.insert(quad.marker_id).second) twice.insert(quad.marker_id);
-    if (map.count(quad.marker_id) > 0) known[quad.marker_id] = &quad;
+    if (prior_shape.count(quad.marker_id) > 0) known[quad.marker_id] = &quad;
   }
   std::vector<const MarkerQuad*> quads;
   for (const auto& [marker_id, quad] : known) {
@@ -72,37 +72,40 @@ bool FacesCamera(const QuadCorners& quad) {
 
 }  // namespace
 
-std::optional<MapView> PlaceOnMap(const MarkerMap& map, const Camera& camera,
-                                  const std::vector<MarkerQuad>& found, MapAgreement* agreement) {
+std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, const Camera& camera,
+                                                const std::vector<MarkerQuad>& found,
+                                                PriorShapeAgreement* agreement) {
   *agreement = {};
   std::vector<const MarkerQuad*> known;
   std::vector<MarkerRays> markers;
-  for (const MarkerQuad* quad : FindKnown(map, found)) {
+  for (const MarkerQuad* quad : FindKnown(prior_shape, found)) {
     const auto rays = RaysOf(camera, quad->corners_px);
     if (!rays) continue;
     known.push_back(quad);
-    markers.push_back({map.at(quad->marker_id), *rays});
+    markers.push_back({prior_shape.at(quad->marker_id), *rays});
   }
   if (markers.size() < kMinConsensus) return std::nullopt;
   agreement->num_known = static_cast<int>(markers.size());
   const auto pose = FindConsensusPose(std::move(markers));
   if (!pose) return std::nullopt;
   agreement->num_agreeing = static_cast<int>(pose->agreeing_idxs.size());
-  MapView view{pose->cam_from_space, {}};
+  PriorShapeView view{pose->cam_from_space, {}};
   for (const std::size_t i : pose->agreeing_idxs) {
-    const auto place_px = Reproject(camera, view.cam_from_shape, map.at(known[i]->marker_id));
+    const auto place_px =
+        Reproject(camera, view.cam_from_shape, prior_shape.at(known[i]->marker_id));
     if (!place_px) continue;
     view.departures.push_back({QuadCenter(*place_px), QuadCenter(known[i]->corners_px)});
   }
   return view;
 }
 
-std::vector<ExpectedMarker> ExpectOnMap(const MarkerMap& map, const Camera& camera,
-                                        const MapView& view, const std::vector<MarkerQuad>& found) {
+std::vector<ExpectedMarker> ExpectByPriorShape(const PriorShape& prior_shape, const Camera& camera,
+                                               const PriorShapeView& view,
+                                               const std::vector<MarkerQuad>& found) {
   std::set<int> found_ids;
   for (const MarkerQuad& quad : found) found_ids.insert(quad.marker_id);
   std::vector<ExpectedMarker> all;
-  for (const auto& [marker_id, in_shape_m] : map) {
+  for (const auto& [marker_id, in_shape_m] : prior_shape) {
     if (found_ids.count(marker_id) > 0) continue;
     auto corners_px = Reproject(camera, view.cam_from_shape, in_shape_m);
     if (!corners_px || !FacesCamera(*corners_px)) continue;

@@ -16,23 +16,26 @@
 
 namespace velamap {
 
-// A frame's camera in the map.
-struct MapView {
+// A frame's camera in the frame of the prior shape.
+struct PriorShapeView {
   Eigen::Isometry3d cam_from_shape;
-  // From where the map has an agreeing marker to where it is, OpenCV's pixel frame: cloth moves.
+  // Of the agreeing markers, from their reprojection to where they are found, in OpenCV's pixel
+  // frame: cloth moves.
   std::vector<PointMotion> departures;
 };
 
-// By the consensus of the found markers that the map holds (consensus_pose.h). An id that is found
-// twice says nothing, and neither is known nor agrees; a frame with fewer than kMinConsensus known
-// ones has none.
-std::optional<MapView> PlaceOnMap(const MarkerMap& map, const Camera& camera,
-                                  const std::vector<MarkerQuad>& found, MapAgreement* agreement);
+// Finds the camera by the consensus of the markers that the prior shape holds (consensus_pose.h).
+// An id that is found twice counts neither as known nor as agreeing. Nothing for a frame with fewer
+// than kMinConsensus known markers.
+std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, const Camera& camera,
+                                                const std::vector<MarkerQuad>& found,
+                                                PriorShapeAgreement* agreement);
 
-// Every marker of the map whose id is not found and which faces the camera: at its reprojection,
-// moved as the found ones around it depart from theirs. None farther beyond the image's border than
-// its reach.
-std::vector<ExpectedMarker> ExpectOnMap(const MarkerMap& map, const Camera& camera,
-                                        const MapView& view, const std::vector<MarkerQuad>& found);
+// Every marker of the prior shape that is not found and faces the camera: at its reprojection,
+// moved as the found markers around it depart from theirs. None lies farther beyond the image's
+// border than its reach.
+std::vector<ExpectedMarker> ExpectByPriorShape(const PriorShape& prior_shape, const Camera& camera,
+                                               const PriorShapeView& view,
+                                               const std::vector<MarkerQuad>& found);
 
 }  // namespace velamap

@@ -1,5 +1,5 @@
 // The course of a marker-aware bundle adjustment, one step a function, in this order. Private to
-// this room: AdjustWithCeres runs it.
+// this room: AdjustWithMarkers runs it.
 
 #pragma once
 

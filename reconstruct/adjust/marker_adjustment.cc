@@ -52,9 +52,9 @@ CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images) {
   return sigmas;
 }
 
-MarkerAdjustmentSummary AdjustWithCeres(const MarkerAdjustmentOptions& options,
-                                        const Layout& layout, const CornerSigmas& corner_sigmas,
-                                        Model* model) {
+MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options,
+                                          const Layout& layout, const CornerSigmas& corner_sigmas,
+                                          Model* model) {
   options.Check();
   CheckModel(*model);
   MarkerAdjuster adjuster(options, layout, corner_sigmas, *model);

@@ -81,8 +81,8 @@ struct MarkerAdjustmentSummary {
 // its first image's camera, with true point errors. Throws DataError where nothing can be adjusted,
 // the mean error stays above max_mean_error_px, or the geometry leaves a shape undetermined; the
 // model is untouched then.
-MarkerAdjustmentSummary AdjustWithCeres(const MarkerAdjustmentOptions& options,
-                                        const Layout& layout, const CornerSigmas& corner_sigmas,
-                                        Model* model);
+MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options,
+                                          const Layout& layout, const CornerSigmas& corner_sigmas,
+                                          Model* model);
 
 }  // namespace velamap

@@ -86,9 +86,9 @@ class Reader {
   }
 
   [[noreturn]] void Fail(const std::string& what) const {
-    throw InputError(
-        fmt::format("{}: {}; run velamap bundle_adjuster --backend ceres again, or remove the file",
-                    path_, what));
+    throw InputError(fmt::format(
+        "{}: {}; run velamap bundle_adjuster --backend markers again, or remove the file", path_,
+        what));
   }
 
  private:

@@ -70,7 +70,7 @@ void BM_RegistrationAndAdjustment(benchmark::State& state) {
   for (auto _ : state) {
     Model model =
         MakeSeedModel(RegisterFramesGlobally(images, cameras, scene.layout, {}), images, cameras);
-    AdjustWithCeres({}, scene.layout, CornerSigmasOf(images), &model);
+    AdjustWithMarkers({}, scene.layout, CornerSigmasOf(images), &model);
   }
   state.counters["cpu_s"] =
       benchmark::Counter(CpuSeconds(RUSAGE_SELF) - before, benchmark::Counter::kAvgIterations);
@@ -107,7 +107,7 @@ void BM_MarkerAdjustment(benchmark::State& state) {
   int num_iterations = 0;
   for (auto _ : state) {
     Model model = seed;
-    num_iterations = AdjustWithCeres({}, scene.layout, {}, &model).num_iterations;
+    num_iterations = AdjustWithMarkers({}, scene.layout, {}, &model).num_iterations;
   }
   state.counters["iterations"] = num_iterations;
 }

@@ -170,8 +170,9 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
   options_.camera = {CameraModel::kPinhole, 640, 480, {600, 600, 320, 240}};
   for (int id = 1; id <= 6; ++id) {
     const double x = 0.2 * ((id - 1) % 3), y = 0.22 * ((id - 1) / 3);
-    options_.map[id] = {Eigen::Vector3d(x, y, 0), Eigen::Vector3d(x + 0.072, y, 0),
-                        Eigen::Vector3d(x + 0.072, y + 0.072, 0), Eigen::Vector3d(x, y + 0.072, 0)};
+    options_.prior_shape[id] = {Eigen::Vector3d(x, y, 0), Eigen::Vector3d(x + 0.072, y, 0),
+                                Eigen::Vector3d(x + 0.072, y + 0.072, 0),
+                                Eigen::Vector3d(x, y + 0.072, 0)};
   }
   std::string bytes;
   for (const int num_threads : {1, 2, 5}) {
@@ -179,8 +180,8 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
     options_.num_threads = num_threads;
     const ImportReport report = ImportMarkers(options_);
     EXPECT_EQ(report.num_markers, 40 * 4 + 30 * 2);
-    EXPECT_EQ(report.map.num_agreeing, report.map.num_known);
-    EXPECT_GT(report.map.num_agreeing, 40 * 4);
+    EXPECT_EQ(report.prior_shape.num_agreeing, report.prior_shape.num_known);
+    EXPECT_GT(report.prior_shape.num_agreeing, 40 * 4);
     std::ifstream stream(options_.database_path, std::ios::binary);
     const std::string now(std::istreambuf_iterator<char>(stream), {});
     if (num_threads == 1) bytes = now;

@@ -19,9 +19,9 @@
 #include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
+#include "workflows/run/version.h"
 #include "workflows/run/versions.h"
 #include "workflows/run/workspace.h"
-#include "workflows/run/version.h"
 
 namespace velamap {
 namespace {
@@ -47,7 +47,7 @@ CommandSyntax Declare(Options* options) {
           {{"Input and output",
             {ImagePathOption(paths),
              CameraPathOption(paths),
-             MapPathOption(paths),
+             PriorShapePathOption(paths),
              {"workspace_path", &paths->workspace_path, "path",
               "folder of the result: new, empty, or of an earlier run, whose database is used on",
               true},
@@ -57,7 +57,7 @@ CommandSyntax Declare(Options* options) {
            VideoGroup(&options->importer.video),
            RegistrationGroup(&options->registration),
            BundleAdjustmentGroup(&options->adjustment.colmap),
-           MarkerAdjustmentGroup(&options->adjustment.ceres),
+           MarkerAdjustmentGroup(&options->adjustment.markers),
            SailGroup(&options->exporter, &options->sail),
            GeneralGroup(&options->general)}};
 }
@@ -74,7 +74,7 @@ void Validate(Options* options) {
   options->importer.layout = LoadLayout(options->markers, true);
   options->importer.camera = ReadCalibration(options->paths.camera_path);
   options->importer.camera_path = options->paths.camera_path;
-  options->importer.map = LoadMap(options->paths.map_path);
+  options->importer.prior_shape = LoadPriorShape(options->paths.prior_shape_path);
   options->importer.image_path = options->paths.image_path;
   options->importer.video = NarrowToReach(options->importer.video, options->registration);
   options->importer.num_threads = options->general.num_threads;

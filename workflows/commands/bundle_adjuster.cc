@@ -34,11 +34,11 @@ CommandSyntax Declare(Options* options) {
               "COLMAP's output; left out: colmap.log beside output_path"},
              BackendOption(&options->adjustment.backend),
              {"database_path", &paths->database_path, "path",
-              "database of the model's images, which knows how good each corner is (ceres, "
+              "database of the model's images, which knows how good each corner is (markers, "
               "optional)"}}},
            MarkerGroup(&options->markers, false),
            BundleAdjustmentGroup(&options->adjustment.colmap),
-           MarkerAdjustmentGroup(&options->adjustment.ceres),
+           MarkerAdjustmentGroup(&options->adjustment.markers),
            GeneralGroup(&options->general)}};
 }
 
@@ -51,13 +51,13 @@ void Validate(Options* options) {
   }
 }
 
-// What only `ceres` asks for is left empty for `colmap`.
+// What only `markers` asks for is left empty for `colmap`.
 Layout LoadAdjustmentLayout(const Options& options) {
-  return options.adjustment.UsesCeres() ? LoadLayout(options.markers, false) : Layout{};
+  return options.adjustment.UsesMarkers() ? LoadLayout(options.markers, false) : Layout{};
 }
 
 CornerSigmas LoadCornerSigmas(const Options& options) {
-  if (options.paths.database_path.empty() || !options.adjustment.UsesCeres()) return {};
+  if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) return {};
   const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
   return CornerSigmasOf(database.ReadImages());
 }

@@ -45,7 +45,7 @@ CommandSyntax Declare(Options* options) {
            MarkerGroup(&options->markers, false),
            RegistrationGroup(&sweep->registration),
            BundleAdjustmentGroup(&sweep->adjustment.colmap),
-           MarkerAdjustmentGroup(&sweep->adjustment.ceres),
+           MarkerAdjustmentGroup(&sweep->adjustment.markers),
            GeneralGroup(&options->general)}};
 }
 
@@ -79,7 +79,7 @@ void Print(const std::vector<SweepRow>& rows, const std::string& output_path, st
 void RunCentralFrameSweeper(const Arguments& arguments) {
   Options options;
   options.sweep.registration.method = RegistrationMethod::kThesis;
-  options.sweep.adjustment.backend = "ceres";  // starts warm with profit
+  options.sweep.adjustment.backend = "markers";  // starts warm with profit
   if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
   Validate(&options);
   const Layout layout = LoadLayout(options.markers, false);

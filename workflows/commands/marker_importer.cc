@@ -30,7 +30,7 @@ CommandSyntax Declare(Options* options) {
           {{"Input and output",
             {ImagePathOption(paths),
              CameraPathOption(paths),
-             MapPathOption(paths),
+             PriorShapePathOption(paths),
              DatabasePathOption(paths, "COLMAP database, made new or added to"),
              {"frame_output_path", &paths->frame_output_path, "path",
               "folder for the frames of a video that hold markers, as JPEG; left out: none are "
@@ -49,7 +49,7 @@ void Validate(Options* options) {
   importer.layout = LoadLayout(options->markers, true);
   importer.camera = ReadCalibration(options->paths.camera_path);
   importer.camera_path = options->paths.camera_path;
-  importer.map = LoadMap(options->paths.map_path);
+  importer.prior_shape = LoadPriorShape(options->paths.prior_shape_path);
   importer.image_path = options->paths.image_path;
   importer.database_path = options->paths.database_path;
   importer.frame_output_path = options->paths.frame_output_path;
@@ -68,9 +68,9 @@ void Print(const ImportReport& report, const PathOptions& paths, std::ostream& o
              report.ids_not_in_layout.empty()
                  ? "none"
                  : fmt::format("{}", fmt::join(report.ids_not_in_layout, " ")));
-  if (!paths.map_path.empty()) {
-    fmt::print(out, "markers_of_map: {}\n", report.map.num_known);
-    fmt::print(out, "markers_agreeing_with_map: {}\n", report.map.num_agreeing);
+  if (!paths.prior_shape_path.empty()) {
+    fmt::print(out, "markers_of_prior_shape: {}\n", report.prior_shape.num_known);
+    fmt::print(out, "markers_agreeing_with_prior_shape: {}\n", report.prior_shape.num_agreeing);
   }
   fmt::print(out, "pairs_with_matches: {}\n", report.num_pairs);
   fmt::print(out, "database_path: {}\n", paths.database_path);

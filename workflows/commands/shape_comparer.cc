@@ -161,7 +161,7 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
   if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
     throw InputError(
         fmt::format("{}: {} holds no {}; give the folder of a model adjusted with "
-                    "--backend ceres",
+                    "--backend markers",
                     option, uncertainty_path, kUncertaintyFileName));
   }
   if (!folder.empty() && HasUncertainty(folder.string())) {

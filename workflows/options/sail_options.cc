@@ -6,7 +6,7 @@
 
 #include "exporters/sail/surface_csv.h"
 #include "importer/base/error.h"
-#include "importer/base/yaml_item.h"
+#include "importer/base/numbers.h"
 
 namespace velamap {
 namespace {

@@ -51,8 +51,8 @@ Option CameraPathOption(PathOptions* paths) {
           "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt", true};
 }
 
-Option MapPathOption(PathOptions* paths) {
-  return {"map_path", &paths->map_path, "path",
+Option PriorShapePathOption(PathOptions* paths) {
+  return {"prior_shape_path", &paths->prior_shape_path, "path",
           "shape.csv of an earlier reconstruction of the surface, or the folder that holds it: "
           "markers are also looked for where it says that they should be visible"};
 }
@@ -187,7 +187,7 @@ OptionGroup BundleAdjustmentGroup(BundleAdjustmentOptions* options) {
 
 OptionGroup MarkerAdjustmentGroup(MarkerAdjustmentOptions* options) {
   return {
-      "Marker-aware adjustment (--backend ceres or both)",
+      "Marker-aware adjustment (--backend markers or both)",
       {{"MarkerAdjustment.corner_sigma", &options->corner_sigma_px, "px",
         "1 sigma of a corner's coordinate where the detector gives none"},
        {"MarkerAdjustment.corner_sigma_floor", &options->corner_sigma_floor_px, "px",
@@ -215,8 +215,8 @@ OptionGroup MarkerAdjustmentGroup(MarkerAdjustmentOptions* options) {
 }
 
 Option BackendOption(std::string* backend) {
-  return {"backend", backend, "colmap|ceres|both",
-          "colmap: COLMAP's own program; ceres: ours, which knows the markers' size and gives "
+  return {"backend", backend, "colmap|markers|both",
+          "colmap: COLMAP's own program; markers: ours, which knows the markers' size and gives "
           "sigmas; both: one after the other"};
 }
 
@@ -237,7 +237,7 @@ std::set<std::string> SharedOptionNames() {
   PathOptions paths;
   const OptionGroup path_group{
       "",
-      {ImagePathOption(&paths), CameraPathOption(&paths), MapPathOption(&paths),
+      {ImagePathOption(&paths), CameraPathOption(&paths), PriorShapePathOption(&paths),
        DatabasePathOption(&paths, ""), ModelInputOption(&paths), BackendOption(&backend)}};
   std::set<std::string> names;
   for (const OptionGroup& group :
@@ -284,27 +284,29 @@ std::string ShapeFile(const std::string& path) {
   return std::filesystem::is_directory(file) ? (file / "shape.csv").string() : path;
 }
 
-MarkerMap LoadMap(const std::string& map_path) {
-  MarkerMap map;
-  if (map_path.empty()) return map;
-  const std::string file = ShapeFile(map_path);
+PriorShape LoadPriorShape(const std::string& prior_shape_path) {
+  PriorShape prior_shape;
+  if (prior_shape_path.empty()) return prior_shape;
+  const std::string file = ShapeFile(prior_shape_path);
   if (!std::filesystem::is_regular_file(file)) {
-    throw InputError(fmt::format(
-        "--map_path: {}: there is no such file; give a shape.csv or the folder that holds it, such "
-        "as shape in a workspace",
-        file));
+    throw InputError(
+        fmt::format("--prior_shape_path: {}: there is no such file; give a shape.csv or the folder "
+                    "that holds it, such "
+                    "as shape in a workspace",
+                    file));
   }
   for (const ShapeMarker& marker : ReadShapeCsv(file).markers) {
     if (!marker.IsWhole()) continue;
     const auto& x = marker.x_in_shape_m;
-    map[marker.marker_id] = {*x[1], *x[2], *x[3], *x[4]};
+    prior_shape[marker.marker_id] = {*x[1], *x[2], *x[3], *x[4]};
   }
-  if (map.empty()) {
-    throw InputError(fmt::format(
-        "--map_path: {}: no marker has all four corners; give the shape.csv of a whole result",
-        file));
+  if (prior_shape.empty()) {
+    throw InputError(
+        fmt::format("--prior_shape_path: {}: no marker has all four corners; give the shape.csv of "
+                    "a whole result",
+                    file));
   }
-  return map;
+  return prior_shape;
 }
 
 void ApplyGeneralOptions(const GeneralOptions& options) {

@@ -27,7 +27,7 @@ struct GeneralOptions {
 struct PathOptions {
   std::string image_path;
   std::string camera_path;
-  std::string map_path;
+  std::string prior_shape_path;
   std::string database_path;
   std::string frame_output_path;
   std::string workspace_path;
@@ -48,7 +48,7 @@ struct MarkerOptions {
 
 Option ImagePathOption(PathOptions* paths);
 Option CameraPathOption(PathOptions* paths);
-Option MapPathOption(PathOptions* paths);
+Option PriorShapePathOption(PathOptions* paths);
 Option DatabasePathOption(PathOptions* paths, const std::string& description);
 Option ModelInputOption(PathOptions* paths);
 
@@ -78,7 +78,7 @@ std::string ShapeFile(const std::string& path);
 
 // The whole markers of an earlier shape; none for an empty path. Throws InputError for a file that
 // is no shape.csv or has no whole marker.
-MarkerMap LoadMap(const std::string& map_path);
+PriorShape LoadPriorShape(const std::string& prior_shape_path);
 
 // Sets the log level and the bounds that more than one library relies on. Throws InputError.
 void ApplyGeneralOptions(const GeneralOptions& options);

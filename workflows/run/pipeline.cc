@@ -44,19 +44,21 @@ std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
   return left_out;
 }
 
-void LogMap(const MapAgreement& map) {
-  if (map.num_known == 0) {
+void LogPriorShapeAgreement(const PriorShapeAgreement& agreement) {
+  if (agreement.num_known == 0) {
     spdlog::warn(
-        "--map_path: no frame shows four markers of the map, so that it was of no use; are its ids "
-        "those of the dictionary and the layout?");
+        "--prior_shape_path: not used, because no frame shows four of its markers; are its ids "
+        "those "
+        "of the dictionary and the layout?");
     return;
   }
-  spdlog::info("{} of the {} markers found that the map holds are where it has them",
-               map.num_agreeing, map.num_known);
-  if (2 * map.num_agreeing < map.num_known) {
+  spdlog::info("{} of the {} markers found that the prior shape holds are where it has them",
+               agreement.num_agreeing, agreement.num_known);
+  if (2 * agreement.num_agreeing < agreement.num_known) {
     spdlog::warn(
-        "--map_path: the map does not fit these images and was of little use; is it of this "
-        "surface, and is the calibration of these images?");
+        "--prior_shape_path: the prior shape does not fit these images and was of little use; is "
+        "it of "
+        "this surface, and does the calibration belong to these images?");
   }
 }
 
@@ -92,11 +94,11 @@ AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
           std::nullopt};
 }
 
-AdjustmentResult RunCeresBackend(const MarkerAdjustmentOptions& options, const Layout& layout,
-                                 const CornerSigmas& corner_sigmas, Model* model) {
+AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const Layout& layout,
+                                   const CornerSigmas& corner_sigmas, Model* model) {
   spdlog::info("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
                model->points3D.size());
-  MarkerAdjustmentSummary summary = AdjustWithCeres(options, layout, corner_sigmas, model);
+  MarkerAdjustmentSummary summary = AdjustWithMarkers(options, layout, corner_sigmas, model);
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
   spdlog::info(
       "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, corners "
@@ -153,7 +155,8 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
     spdlog::info("{} of them without a fit of their edges: corners from cv::cornerSubPix",
                  report.num_fallbacks);
   }
-  if (!options.map.empty() && report.num_frames_read > 0) LogMap(report.map);
+  if (!options.prior_shape.empty() && report.num_frames_read > 0)
+    LogPriorShapeAgreement(report.prior_shape);
   if (!report.ids_not_in_layout.empty()) {
     spdlog::warn("markers found that the layout does not name, left out: {}",
                  fmt::join(report.ids_not_in_layout, " "));
@@ -186,19 +189,19 @@ std::string BesideFolder(const std::string& folder, const std::string& name) {
 }
 
 void AdjustmentOptions::Complete(int num_threads) {
-  if (backend != "colmap" && backend != "ceres" && backend != "both") {
+  if (backend != "colmap" && backend != "markers" && backend != "both") {
     throw InputError(
-        fmt::format("--backend: '{}' is unknown; there are: colmap, ceres, both", backend));
+        fmt::format("--backend: '{}' is unknown; there are: colmap, markers, both", backend));
   }
   colmap.Check();
-  ceres.refine_focal_length = colmap.refine_focal_length;
-  ceres.refine_principal_point = colmap.refine_principal_point;
-  ceres.refine_extra_params = colmap.refine_extra_params;
-  ceres.max_num_iterations = colmap.max_num_iterations;
-  ceres.min_track_length = colmap.min_track_length;
-  ceres.max_mean_error_px = colmap.max_mean_error_px;
-  ceres.num_threads = num_threads;
-  ceres.Check();
+  markers.refine_focal_length = colmap.refine_focal_length;
+  markers.refine_principal_point = colmap.refine_principal_point;
+  markers.refine_extra_params = colmap.refine_extra_params;
+  markers.max_num_iterations = colmap.max_num_iterations;
+  markers.min_track_length = colmap.min_track_length;
+  markers.max_mean_error_px = colmap.max_mean_error_px;
+  markers.num_threads = num_threads;
+  markers.Check();
 }
 
 void CheckColmap(const std::string& colmap_path) {
@@ -215,10 +218,10 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
                              Model* model) {
   AdjustmentResult result;
   if (options.UsesColmap()) result = RunColmapBackend(options.colmap, log_path, model);
-  if (options.UsesCeres()) {
+  if (options.UsesMarkers()) {
     const Statistics before_px = result.error_before_px;
     const int num_removed = result.num_removed;
-    result = RunCeresBackend(options.ceres, layout, corner_sigmas, model);
+    result = RunMarkersBackend(options.markers, layout, corner_sigmas, model);
     if (options.UsesColmap()) result.error_before_px = before_px;
     result.num_removed += num_removed;
   }

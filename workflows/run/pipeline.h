@@ -46,14 +46,14 @@ std::string BesideFolder(const std::string& folder, const std::string& name);
 
 // Which adjustments run, in this order, and how.
 struct AdjustmentOptions {
-  std::string backend = "both";  // colmap, ceres, or both: COLMAP's first, then ours
+  std::string backend = "both";  // colmap, markers, or both: COLMAP's first, then ours
   // Of both backends where a parameter makes sense for both.
   BundleAdjustmentOptions colmap;
-  MarkerAdjustmentOptions ceres;
+  MarkerAdjustmentOptions markers;
 
-  bool UsesColmap() const { return backend != "ceres"; }
-  bool UsesCeres() const { return backend != "colmap"; }
-  // Hands the common parameters on to `ceres` and throws InputError that names the wrong option.
+  bool UsesColmap() const { return backend != "markers"; }
+  bool UsesMarkers() const { return backend != "colmap"; }
+  // Hands the common parameters on to `markers` and throws InputError that names the wrong option.
   void Complete(int num_threads);
 };
 
@@ -61,14 +61,14 @@ struct AdjustmentResult {
   Statistics error_before_px;
   Statistics error_after_px;
   int num_removed = 0;                               // observations
-  std::optional<AdjustmentUncertainty> uncertainty;  // where the model is metric: after `ceres`
+  std::optional<AdjustmentUncertainty> uncertainty;  // where the model is metric: after `markers`
 };
 
 // Throws ExternalToolError if COLMAP's program cannot be started: better before an hour of
 // detection than after it.
 void CheckColmap(const std::string& colmap_path);
 
-// Adjusts the model; logs the course. `layout` and `corner_sigmas` are what `ceres` knows of the
+// Adjusts the model; logs the course. `layout` and `corner_sigmas` are what `markers` knows of the
 // markers; `log_path` gets COLMAP's output.
 AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& layout,
                              const CornerSigmas& corner_sigmas, const std::string& log_path,

@@ -35,6 +35,28 @@ TEST(Csv, AnyTextComesBackAsItWas) {
   }
 }
 
+TEST(Csv, WrittenRecordsComeBackAsTheyWere) {
+  const std::vector<std::vector<std::string>> records = {
+      {"c,am \"00\".jpg", "two\nlines"}, {""}, {"", ""}, {"#5"}, {"", "x", ""}};
+  std::ostringstream out;
+  CsvWriter csv(out);
+  for (const std::vector<std::string>& record : records) {
+    csv.AddFields(record);
+    csv.EndRecord();
+  }
+  std::vector<std::vector<std::string>> read;
+  for (const CsvRecord& record : Read(out.str())) read.push_back(record.fields);
+  EXPECT_EQ(read, records);
+}
+
+TEST(Csv, NumbersTakeTheirShortestForm) {
+  std::ostringstream out;
+  CsvWriter csv(out);
+  csv.WriteComment("two\nlines");
+  csv.WriteRecord("n", -3, 0.1, 1e-300, true, std::optional<double>(2.0), std::optional<int>());
+  EXPECT_EQ(out.str(), "# two lines\nn,-3,0.1,1e-300,1,2,\n");
+}
+
 TEST(Csv, PlainTextIsNotQuoted) { EXPECT_EQ(CsvField("hull 2"), "hull 2"); }
 
 TEST(Csv, LinesAreThoseOfTheFile) {

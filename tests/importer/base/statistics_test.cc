@@ -66,5 +66,10 @@ TEST(RobustSigma, ScalesAndIgnoresAShift) {
   EXPECT_NEAR(RobustSigma(moved), 3 * RobustSigma(values), 1e-12);
 }
 
+TEST(Rms, IsTheRootOfTheMeanSquare) {
+  EXPECT_DOUBLE_EQ(Rms({3, -4, 5, 0}), std::sqrt(12.5));
+  EXPECT_EQ(Rms({}), 0);
+}
+
 }  // namespace
 }  // namespace velamap

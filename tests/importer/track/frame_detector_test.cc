@@ -21,47 +21,47 @@ TEST(DescribeDetector, NamesTheLinesThatATrackedSearchFollows) {
   EXPECT_EQ(Describe(exhaustive, {1, 2, 3}), Describe(exhaustive, {2, 1, 3}));
 }
 
-MarkerMap RowOfMarkers(const std::vector<int>& ids) {
-  MarkerMap map;
+PriorShape RowOfMarkers(const std::vector<int>& ids) {
+  PriorShape prior;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const double x = 0.3 * static_cast<double>(i);
-    map[ids[i]] = {Eigen::Vector3d(x, 0.1, 0), Eigen::Vector3d(x + 0.1, 0.1, 0),
-                   Eigen::Vector3d(x + 0.1, 0, 0), Eigen::Vector3d(x, 0, 0)};
+    prior[ids[i]] = {Eigen::Vector3d(x, 0.1, 0), Eigen::Vector3d(x + 0.1, 0.1, 0),
+                     Eigen::Vector3d(x + 0.1, 0, 0), Eigen::Vector3d(x, 0, 0)};
   }
-  return map;
+  return prior;
 }
 
-TEST(MakeFrameDetector, KeepsOfTheMapWhatCanBeDetected) {
+TEST(MakeFrameDetector, KeepsMarkersOfThePriorShapeThatCanBeDetected) {
   Layout layout = MakeLayout("DICT_4X4_50", 0.1);
-  const MarkerMap map = RowOfMarkers({1, 2, 3, 49, 50});
-  EXPECT_EQ(MakeFrameDetector(layout, {}, map).map.size(), 4u);
+  const PriorShape prior = RowOfMarkers({1, 2, 3, 49, 50});
+  EXPECT_EQ(MakeFrameDetector(layout, {}, prior).prior_shape.size(), 4u);
   layout.parts.push_back({"board", false, {}, {}, {1, 3, 50}});
-  const FrameDetector detector = MakeFrameDetector(layout, {}, map);
-  EXPECT_EQ(detector.map.size(), 2u);
-  EXPECT_EQ(detector.map.count(2), 0u);
+  const FrameDetector detector = MakeFrameDetector(layout, {}, prior);
+  EXPECT_EQ(detector.prior_shape.size(), 2u);
+  EXPECT_EQ(detector.prior_shape.count(2), 0u);
 }
 
-TEST(DescribeDetector, NamesTheMap) {
+TEST(DescribeDetector, NamesThePriorShape) {
   const Layout layout = MakeLayout("DICT_4X4_50", 0.1);
-  const auto describe = [&](const MarkerMap& map) {
-    return DescribeDetector(MakeFrameDetector(layout, {}, map));
+  const auto describe = [&](const PriorShape& prior) {
+    return DescribeDetector(MakeFrameDetector(layout, {}, prior));
   };
-  const MarkerMap map = RowOfMarkers({1, 2, 3});
-  MarkerMap moved = map;
+  const PriorShape prior = RowOfMarkers({1, 2, 3});
+  PriorShape moved = prior;
   moved[2][3].z() += 1e-15;
-  EXPECT_EQ(describe(map), describe(RowOfMarkers({1, 2, 3})));
-  EXPECT_NE(describe(map), describe({}));
-  EXPECT_NE(describe(map), describe(moved));
-  EXPECT_NE(describe(map), describe(RowOfMarkers({1, 2, 4})));
+  EXPECT_EQ(describe(prior), describe(RowOfMarkers({1, 2, 3})));
+  EXPECT_NE(describe(prior), describe({}));
+  EXPECT_NE(describe(prior), describe(moved));
+  EXPECT_NE(describe(prior), describe(RowOfMarkers({1, 2, 4})));
 }
 
 // A row of markers on a line of the layout, seen straight on with 100 px for 0.1 m; 2 and 5 are not
 // found.
-TEST(ExpectInFrame, TheMapIsAskedBeforeTheLines) {
+TEST(ExpectInFrame, ThePriorShapeIsAskedBeforeTheLines) {
   Layout layout = MakeLayout("DICT_4X4_50", 0.1);
   layout.parts.push_back({"board", false, {{"h1", {0, 1, 2, 3, 4, 5, 6}}}, {}, {}});
   const Camera camera = {CameraModel::kPinhole, 2000, 400, {1000, 1000, 0, 0}};
-  const MarkerMap row = RowOfMarkers({0, 1, 2, 3, 4, 5, 6});
+  const PriorShape row = RowOfMarkers({0, 1, 2, 3, 4, 5, 6});
   std::vector<MarkerQuad> found;
   for (const int id : {0, 1, 3, 4, 6}) {
     const double left_px = 300.0 * id + 99.5;
@@ -69,32 +69,32 @@ TEST(ExpectInFrame, TheMapIsAskedBeforeTheLines) {
                      {Eigen::Vector2d(left_px, 99.5), Eigen::Vector2d(left_px + 100, 99.5),
                       Eigen::Vector2d(left_px + 100, 199.5), Eigen::Vector2d(left_px, 199.5)}});
   }
-  const auto expect = [&](SearchMode search, const MarkerMap& map) {
+  const auto expect = [&](SearchMode search, const PriorShape& prior) {
     ArucoDetectionOptions options;
     options.search = search;
     options.min_marker_perimeter_rate = 0.1;
-    MapAgreement agreement;
-    return ExpectInFrame(MakeFrameDetector(layout, options, map), camera, found, &agreement);
+    PriorShapeAgreement agreement;
+    return ExpectInFrame(MakeFrameDetector(layout, options, prior), camera, found, &agreement);
   };
   EXPECT_EQ(expect(SearchMode::kTracked, {}).size(), 2u);
   EXPECT_EQ(expect(SearchMode::kExhaustive, {}).size(), 0u);
 
-  MarkerMap map = row;
-  map.erase(5);                                    // stays to the line
-  for (Eigen::Vector3d& x : map[2]) x.y() -= 0.1;  // and 2 is elsewhere than its line says
-  for (auto& [id, corners] : map) {
+  PriorShape prior = row;
+  prior.erase(5);                                    // stays to the line
+  for (Eigen::Vector3d& x : prior[2]) x.y() -= 0.1;  // and 2 is elsewhere than its line says
+  for (auto& [id, corners] : prior) {
     for (Eigen::Vector3d& x : corners) x.y() = -x.y();  // y down, as in the picture
   }
-  std::vector<ExpectedMarker> all = expect(SearchMode::kTracked, map);
+  std::vector<ExpectedMarker> all = expect(SearchMode::kTracked, prior);
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].quad.marker_id, 2);
   EXPECT_NEAR(QuadCenter(all[0].quad.corners_px).y(), 249.5, 1e-3);
   EXPECT_EQ(all[1].quad.marker_id, 5);
   EXPECT_NEAR(QuadCenter(all[1].quad.corners_px).y(), 149.5, 1e-3);
-  EXPECT_EQ(expect(SearchMode::kExhaustive, map).size(), 1u);
+  EXPECT_EQ(expect(SearchMode::kExhaustive, prior).size(), 1u);
 
-  for (Eigen::Vector3d& x : map[2]) x = 0.4 * (x - map[2][0]) + map[2][0];
-  all = expect(SearchMode::kTracked, map);  // now it is too small for a search to take
+  for (Eigen::Vector3d& x : prior[2]) x = 0.4 * (x - prior[2][0]) + prior[2][0];
+  all = expect(SearchMode::kTracked, prior);  // now it is too small for a search to take
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].quad.marker_id, 5);
 }

@@ -43,7 +43,7 @@ class MarkerAdjustment : public testing::Test {
  protected:
   MarkerAdjustmentSummary Adjust(Model* model, const MarkerAdjustmentOptions& options = {},
                                  const CornerSigmas& sigmas = {}) const {
-    return AdjustWithCeres(options, scene_.layout, sigmas, model);
+    return AdjustWithMarkers(options, scene_.layout, sigmas, model);
   }
 
   Model NoisyModel(double corner_sigma_px, std::uint32_t seed) const {

@@ -195,7 +195,7 @@ TEST_F(Repetitions, ErrorsThatFramesHaveInCommonAreCounted) {
       }
     }
     Model model = MakeSceneModel(noisy);
-    const auto summary = AdjustWithCeres(options, scene.layout, {}, &model);
+    const auto summary = AdjustWithMarkers(options, scene.layout, {}, &model);
     EXPECT_GT(summary.uncertainty.correlation_factor, 1.2);
     std::vector<Eigen::Vector3d> x_in_world, x_in_truth;
     for (const auto& [point3D_id, point] : model.points3D) {
@@ -236,7 +236,7 @@ TEST_F(Repetitions, ErrorsAreWithinTheirSigmasAsOftenAsTheyShould) {
     AddInset(options.inset_sigma_px * normal(random), &printed);
     AddNoise({kCornerSigma, 0, 0, 200, seed}, &printed);
     Model model = MakeSceneModel(printed);
-    const auto summary = AdjustWithCeres(options, scene.layout, {}, &model);
+    const auto summary = AdjustWithMarkers(options, scene.layout, {}, &model);
     const PointCovariance& points = summary.uncertainty.points;
 
     std::vector<Eigen::Vector3d> x_in_world, x_in_truth;

@@ -43,7 +43,7 @@ SyntheticScene SeenFrom(SceneKind kind, const std::vector<Eigen::Vector3d>& plac
 
 std::vector<std::string> WarningsOf(const SyntheticScene& scene) {
   Model model = MakeSceneModel(scene);
-  return AdjustWithCeres({}, scene.layout, {}, &model).warnings;
+  return AdjustWithMarkers({}, scene.layout, {}, &model).warnings;
 }
 
 TEST(WeakGeometry, ViewsFromAllSidesAreFine) {

@@ -106,17 +106,17 @@ TEST_F(BadInputTest, MissingOrIncompleteCalibration) {
   ExpectFailure(2, "camera_matrix");
 }
 
-TEST_F(BadInputTest, MapThatIsNone) {
-  arguments_["--map_path"] = (dir_ / "nowhere.csv").string();
+TEST_F(BadInputTest, PriorShapeThatIsNone) {
+  arguments_["--prior_shape_path"] = (dir_ / "nowhere.csv").string();
   ExpectFailure(2, "nowhere.csv");
-  arguments_["--map_path"] = images().string();
-  ExpectFailure(2, "--map_path: " + (images() / "shape.csv").string());
+  arguments_["--prior_shape_path"] = images().string();
+  ExpectFailure(2, "--prior_shape_path: " + (images() / "shape.csv").string());
   const std::string header = "marker_id,corner,x,y,z,sigma_x,sigma_y,sigma_z,num_frames,part\n";
-  WriteTextFile(dir_ / "map.csv", header + "1,1,0,0,0,,,,2,\n");
-  arguments_["--map_path"] = (dir_ / "map.csv").string();
+  WriteTextFile(dir_ / "prior.csv", header + "1,1,0,0,0,,,,2,\n");
+  arguments_["--prior_shape_path"] = (dir_ / "prior.csv").string();
   ExpectFailure(2, "no marker has all four corners");
-  WriteTextFile(dir_ / "map.csv", header + "1,1,0,nan,0,,,,2,\n");
-  ExpectFailure(2, "map.csv:2");
+  WriteTextFile(dir_ / "prior.csv", header + "1,1,0,nan,0,,,,2,\n");
+  ExpectFailure(2, "prior.csv:2");
 }
 
 TEST_F(BadInputTest, CalibrationForAnotherResolution) {

@@ -110,9 +110,9 @@ TEST(CommandLineTest, UnknownNamesListWhatThereIs) {
       {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "g2o"});
   EXPECT_EQ(backend.exit_code, 2);
   EXPECT_THAT(backend.err,
-              HasSubstr("--backend: 'g2o' is unknown; there are: colmap, ceres, both"));
+              HasSubstr("--backend: 'g2o' is unknown; there are: colmap, markers, both"));
   const ProgramRun length = RunVelamap(
-      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "ceres"});
+      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "markers"});
   EXPECT_EQ(length.exit_code, 2);
   EXPECT_THAT(length.err, HasSubstr("--layout_path: missing"));
 }

@@ -116,9 +116,11 @@ class RenderedPicturesTest : public ::testing::Test {
   }
 
   ProgramRun Import(const fs::path& image_path, const std::string& database,
-                    const std::string& map_path = "") {
+                    const std::string& prior_shape_path = "") {
     std::vector<std::string> options = {"--database_path", (dir_ / database).string()};
-    if (!map_path.empty()) options.insert(options.end(), {"--map_path", map_path});
+    if (!prior_shape_path.empty()) {
+      options.insert(options.end(), {"--prior_shape_path", prior_shape_path});
+    }
     return Run("marker_importer", image_path, options);
   }
 
@@ -210,7 +212,7 @@ TEST_F(RenderedPicturesTest, VideoGivesTheTrueShape) {
   EXPECT_THAT(run.out, HasSubstr(used + " of 12\n"));
 }
 
-TEST_F(RenderedPicturesTest, MapOfAnEarlierRunFindsWhatTheDetectorMisses) {
+TEST_F(RenderedPicturesTest, PriorShapeFindsWhatTheDetectorMisses) {
   ASSERT_EQ(Reconstruct(WritePhotos("photos", *frames_)).exit_code, 0);
   const std::string shape = (dir_ / "workspace/shape").string();
   const int marker_id = scene_->x_in_world.begin()->first;
@@ -221,11 +223,11 @@ TEST_F(RenderedPicturesTest, MapOfAnEarlierRunFindsWhatTheDetectorMisses) {
     const ProgramRun without = Import(input, name + "_without.db");
     ASSERT_EQ(without.exit_code, 0) << without.err;
     EXPECT_THAT(without.out, HasSubstr("\nmarkers: 132\n"));
-    EXPECT_THAT(without.out, Not(HasSubstr("_map: ")));
+    EXPECT_THAT(without.out, Not(HasSubstr("_prior_shape: ")));
     const ProgramRun with = Import(input, name + ".db", shape);
     ASSERT_EQ(with.exit_code, 0) << with.err;
     EXPECT_THAT(with.out, HasSubstr("\nmarkers: 141\n"));
-    EXPECT_THAT(with.out, HasSubstr("\nmarkers_agreeing_with_map: 1"));
+    EXPECT_THAT(with.out, HasSubstr("\nmarkers_agreeing_with_prior_shape: 1"));
     const auto errors_px = ErrorsOf(marker_id, name + ".db");
     EXPECT_EQ(errors_px.size(), frames.size() - kNumBare);
     for (const auto& [image_name, error_px] : errors_px) {
@@ -234,7 +236,7 @@ TEST_F(RenderedPicturesTest, MapOfAnEarlierRunFindsWhatTheDetectorMisses) {
   }
 }
 
-TEST_F(RenderedPicturesTest, MapOfAnotherSurfaceIsWarnedOf) {
+TEST_F(RenderedPicturesTest, PriorShapeOfAnotherSurfaceIsWarnedOf) {
   MarkerShape shuffled = TrueShape(*scene_);
   for (ShapeMarker& marker : shuffled.markers) marker.marker_id = 11 - marker.marker_id;
   std::ostringstream csv;
@@ -243,16 +245,16 @@ TEST_F(RenderedPicturesTest, MapOfAnotherSurfaceIsWarnedOf) {
   const fs::path photos = WritePhotos("photos", *frames_);
   const ProgramRun run = Import(photos, "database.db", dir_ / "other.csv");
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("the map does not fit these images"));
-  EXPECT_THAT(run.out, HasSubstr("markers_agreeing_with_map: 0\n"));
+  EXPECT_THAT(run.err, HasSubstr("the prior shape does not fit these images"));
+  EXPECT_THAT(run.out, HasSubstr("markers_agreeing_with_prior_shape: 0\n"));
 
   const ProgramRun nothing_new = Import(photos, "database.db", dir_ / "other.csv");
   EXPECT_EQ(nothing_new.exit_code, 0) << nothing_new.err;
-  EXPECT_THAT(nothing_new.err, Not(HasSubstr("--map_path")));
+  EXPECT_THAT(nothing_new.err, Not(HasSubstr("--prior_shape_path")));
 
   const ProgramRun again = Import(photos, "database.db");
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_THAT(again.err, HasSubstr("another map"));
+  EXPECT_THAT(again.err, HasSubstr("another prior shape"));
 }
 
 }  // namespace

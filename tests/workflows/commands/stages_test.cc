@@ -114,7 +114,7 @@ TEST_F(StagesTest, CentralFrameAloneGivesTheShapeOfItsSingleMarkers) {
 TEST_F(StagesTest, MarkerAwareAdjustmentIsMetricAndKnowsItsSigmas) {
   WriteDatabase(scene_, path("database.db"), 8, All);
   ASSERT_EQ(Register().exit_code, 0);
-  const ProgramRun run = RunVelamap({"bundle_adjuster", "--backend", "ceres", "--input_path",
+  const ProgramRun run = RunVelamap({"bundle_adjuster", "--backend", "markers", "--input_path",
                                      path("sparse/seed"), "--database_path", path("database.db"),
                                      "--marker_length", "0.1", "--output_path", path("model")});
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -39,7 +39,7 @@ class CentralFrameSweepTest : public testing::Test {
     options_.registration.thesis.num_frames = 6;
     options_.registration.thesis.skip = 4;
     options_.registration.thesis.neighborhood = 1;
-    options_.adjustment.backend = "ceres";
+    options_.adjustment.backend = "markers";
     options_.adjustment.Complete(1);
   }
 
@@ -102,7 +102,7 @@ TEST_F(CentralFrameSweepTest, FrameWithoutAResultIsARowWithAReason) {
   options_.registration.min_num_inliers = 1000;
   EXPECT_THAT(Run().at(1).reason, HasSubstr("1000 are needed"));
   options_.registration.min_num_inliers = 2;
-  options_.adjustment.ceres.max_mean_error_px = 1e-6;
+  options_.adjustment.markers.max_mean_error_px = 1e-6;
   const std::vector<SweepRow> rows = Run();
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_THAT(rows[0].reason, HasSubstr("mean reprojection error"));

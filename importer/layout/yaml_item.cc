@@ -1,4 +1,4 @@
-#include "importer/base/yaml_item.h"
+#include "importer/layout/yaml_item.h"
 
 #include <set>
 

@@ -1,13 +1,10 @@
-// Strict reading of YAML: every error names file, line and key. Private to this room: it shows
-// yaml-cpp.
+// Strict reading of YAML: every error names file, line and key.
 
 #pragma once
 
-#include <charconv>
 #include <functional>
 #include <map>
 #include <string>
-#include <system_error>
 
 #include <yaml-cpp/yaml.h>
 
@@ -41,12 +38,5 @@ void ForEachElement(const YamlItem& list, const std::function<void(const YamlIte
 
 std::string ReadString(const YamlItem& item);
 bool ReadBool(const YamlItem& item);
-
-// yaml-cpp would read 010 as octal and skip what follows a number; a marker's label is decimal.
-template <typename T>
-bool ParseNumber(const std::string& text, T* value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
-  return !text.empty() && error == std::errc() && end == text.data() + text.size();
-}
 
 }  // namespace velamap
