@@ -7,11 +7,13 @@
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "exporters/compare/comparison_sigma.h"
+#include "exporters/shape/principal_axes.h"
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
+#include "importer/base/statistics.h"
 
 namespace velamap {
 namespace {
@@ -25,14 +27,13 @@ constexpr std::size_t kMaxCoarsePoints = 150;
 constexpr int kCoarseIterations = 25;
 constexpr int kFineIterations = 100;
 constexpr std::size_t kNumFineStarts = 4;
-constexpr double kTrim = 0.8;     // of the points count when poses are compared
-constexpr double kTukey = 4.685;  // 95 % efficiency for normal noise (Huber, 1981)
-constexpr double kMadToSigma = 1.4826;
+constexpr double kTrim = 0.8;           // share of the points by which poses are compared
+constexpr double kTukey = 4.685;        // 95 % efficiency for normal noise (Huber, 1981)
 constexpr double kFloor = 1e-9;         // of the diagonal: residuals below this are zero
 constexpr double kConverged = 1e-11;    // of the diagonal, a step
 constexpr double kMaxTurn_rad = 0.5;    // of one step
-constexpr double kAlsoFits = 1.2;       // another pose with up to this times the cost
-constexpr double kOtherPose_rad = 0.1;  // turned by more than this it is another pose
+constexpr double kAlsoFits = 1.2;       // largest ratio of the costs of poses that fit equally well
+constexpr double kOtherPose_rad = 0.1;  // least rotation between different poses
 
 struct Corners {
   std::vector<CornerId> ids;
@@ -84,7 +85,7 @@ std::vector<Residual> ComputeResiduals(const Points& points, const Rigid3& pose,
   return residuals;
 }
 
-// Root of the mean of the smallest squares.
+// Root of the mean of the smallest kTrim of the squares.
 double TrimmedRms(const std::vector<Residual>& residuals) {
   std::vector<double> squares;
   for (const Residual& r : residuals) squares.push_back(r.distance_m * r.distance_m);
@@ -159,7 +160,7 @@ Fit Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start,
   for (int i = 0;; ++i) {
     const std::vector<Residual> residuals = ComputeResiduals(points, pose, mesh);
     const double trimmed_rms_m = TrimmedRms(residuals);
-    // The robust fit goes where its weights lead; the coarse one may overshoot and has to better.
+    // The robust fit follows its weights; the coarse one can overshoot and keeps the best pose.
     if (i == 0 || is_fine || trimmed_rms_m < best.trimmed_rms_m) {
       best.pose = pose;
       best.trimmed_rms_m = trimmed_rms_m;
@@ -173,19 +174,13 @@ Fit Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start,
   }
 }
 
-struct Axes {
-  Eigen::Vector3d mean;
-  Eigen::Matrix3d directions;  // columns, by ascending spread, right-handed
-};
-
-Axes PrincipalAxes(const Eigen::Vector3d& mean, const Eigen::Matrix3d& covariance) {
-  Eigen::Matrix3d directions =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+// The directions as a rotation.
+Eigen::Matrix3d RightHanded(Eigen::Matrix3d directions) {
   if (directions.determinant() < 0) directions.col(0) *= -1;
-  return {mean, directions};
+  return directions;
 }
 
-// The 24 turns of a cube onto itself.
+// The 24 rotations of a cube onto itself.
 std::vector<Eigen::Matrix3d> CubeRotations() {
   std::vector<Eigen::Matrix3d> rotations;
   std::array<int, 3> order = {0, 1, 2};
@@ -204,15 +199,13 @@ std::vector<Eigen::Matrix3d> CubeRotations() {
 std::vector<Rigid3> Starts(const Points& points, const MeshDistance& mesh, bool starts_as_is) {
   std::vector<Rigid3> starts = {Rigid3()};
   if (starts_as_is) return starts;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& x : points) mean += x / static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& x : points) covariance += (x - mean) * (x - mean).transpose();
-  const Axes of_points = PrincipalAxes(mean, covariance);
-  const Axes of_mesh = PrincipalAxes(mesh.Moments().mean_m, mesh.Moments().covariance_m2);
+  const PrincipalAxes of_points = ComputePrincipalAxes(points);
+  const PrincipalAxes of_mesh = AxesOfScatter(mesh.Moments().mean_m, mesh.Moments().covariance_m2);
+  const Eigen::Matrix3d points_from_axes = RightHanded(of_points.directions);
+  const Eigen::Matrix3d mesh_from_axes = RightHanded(of_mesh.directions);
   for (const Eigen::Matrix3d& turn : CubeRotations()) {
     const Eigen::Quaterniond rotation(
-        Eigen::Matrix3d(of_mesh.directions * turn * of_points.directions.transpose()));
+        Eigen::Matrix3d(mesh_from_axes * turn * points_from_axes.transpose()));
     starts.push_back({rotation, of_mesh.mean - rotation * of_points.mean});
   }
   return starts;
@@ -238,14 +231,14 @@ void AddNotes(const std::vector<Fit>& fits, double floor_m, Alignment* alignment
   const Fit& best = fits.front();
   if (!best.has_converged) {
     alignment->notes.push_back(
-        fmt::format("the fit still moved after {} iterations; give a start closer to the end",
+        fmt::format("the fit did not converge in {} iterations; start closer to the solution",
                     kFineIterations));
   }
   const int num_free = AlignmentSensitivity(*alignment).NumFreeDirections();
   if (num_free > 0) {
     alignment->notes.push_back(
-        fmt::format("the surface leaves {} of 6 rigid motions open (a plane, a sphere or a "
-                    "cylinder has such); distances along it mean nothing",
+        fmt::format("the surface does not determine {} of 6 rigid motions (like a plane, a "
+                    "sphere or a cylinder); distances along them are arbitrary",
                     num_free));
   }
   for (const Fit& fit : fits) {
@@ -254,9 +247,9 @@ void AddNotes(const std::vector<Fit>& fits, double floor_m, Alignment* alignment
       continue;
     }
     alignment->notes.push_back(
-        fmt::format("a pose turned by {:.0f} degrees fits as well; bring the shape near its place "
-                    "and fit from there (--align_start as_is) to choose",
-                    angle * 180 / M_PI));
+        fmt::format("a pose rotated by {:.0f} degrees fits equally well; to choose one, move the "
+                    "shape close to it and give --align_start as_is",
+                    kDegPerRad * angle));
     return;
   }
 }
@@ -270,8 +263,8 @@ Alignment DescribeFit(const std::vector<Fit>& fits, const Corners& corners,
       ComputeResiduals(corners.x_in_shape_m, fits.front().pose, mesh);
   if (!EnoughOverSurface(residuals)) {
     throw DataError(
-        "the best fit brings fewer than six corners over the reference's surface; give a surface "
-        "that covers the markers, or align the two by hand and give --align none");
+        "the best fit has fewer than six corners over the surface of the reference; give a surface "
+        "that covers the markers, or align both by hand and give --align none");
   }
   const double floor_m = kFloor * mesh.Diagonal_m();
   const std::vector<double> weights = TukeyWeights(residuals, floor_m);
@@ -295,20 +288,18 @@ Alignment AlignToMesh(const MarkerShape& shape, const MeshDistance& mesh,
                       const AlignmentOptions& options) {
   if (options.method == AlignmentMethod::kNone) {
     Alignment alignment;
-    alignment.description = "both frames are taken as one";
+    alignment.description = "none, both frames count as the same";
     return alignment;
   }
   if (options.method != AlignmentMethod::kAuto && options.method != AlignmentMethod::kBestFit) {
     throw InputError(
-        fmt::format("--align {}: the reference is a surface and has no markers; give "
-                    "best_fit or none",
+        fmt::format("--align {}: the reference is a surface without markers; give best_fit or none",
                     AlignmentMethodName(options.method)));
   }
   const Corners corners = CollectCorners(shape);
   if (corners.ids.size() < kMinPoints) {
     throw DataError(
-        fmt::format("{} marker corners are too few for a best fit onto a surface, "
-                    "which needs {}",
+        fmt::format("{} marker corners are too few for a best fit to a surface, which needs {}",
                     corners.ids.size(), kMinPoints));
   }
   return DescribeFit(FitFromStarts(corners.x_in_shape_m, mesh, options.starts_as_is), corners,

@@ -33,7 +33,7 @@ const ModelEntry& Entry(CameraModel model) {
   throw std::logic_error("unknown camera model");
 }
 
-// Affine part of the model: image = focal * distorted + principal point.
+// The affine part of the model: image = focal * distorted + principal point.
 struct Intrinsics {
   Eigen::Vector2d focal_px;
   Eigen::Vector2d principal_point_px;
@@ -102,7 +102,7 @@ std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
         DistortRay<double, double>(camera.model, intrinsics.distortion, ray) - distorted;
     if (error.norm() < kTolerance) return ray;
     const Eigen::Matrix2d jacobian = DistortionJacobian(camera.model, intrinsics.distortion, ray);
-    // Beyond the turning point of the distortion the map folds over and has no honest inverse.
+    // Beyond its turning point the distortion folds over and has no unique inverse.
     if (!(jacobian.determinant() > 1e-6)) return std::nullopt;
     ray -= jacobian.inverse() * error;
   }

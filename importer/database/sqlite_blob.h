@@ -1,4 +1,5 @@
-// Arrays of numbers in SQLite's columns; the machine's own byte order, as COLMAP does it.
+// Columns of SQLite's tables. Arrays of numbers are blobs in the machine's byte order, as in
+// COLMAP.
 
 #pragma once
 

@@ -38,7 +38,7 @@ Projection Project(CameraModel model, const double* intrinsics, const Eigen::Vec
   return projection;
 }
 
-// Derivative of the projection by the camera's parameters.
+// Derivative of the projection by the intrinsics.
 RowMajor<kMaxNumIntrinsics> ProjectionByIntrinsics(CameraModel model, const double* intrinsics,
                                                    const Eigen::Vector2d& ray) {
   using Jet = ceres::Jet<double, kMaxNumIntrinsics>;
@@ -156,13 +156,12 @@ std::vector<std::pair<int, int>> MarkerPriorError::Sides(const std::vector<int>&
   return sides;
 }
 
-MarkerPriorError::MarkerPriorError(const MarkerKnowledge& knowledge,
-                                   const std::vector<int>& corners)
-    : knowledge_(knowledge) {
-  if (knowledge.side_sigma_m > 0) sides_ = Sides(corners);
+MarkerPriorError::MarkerPriorError(const MarkerPrior& prior, const std::vector<int>& corners)
+    : prior_(prior) {
+  if (prior.side_sigma_m > 0) sides_ = Sides(corners);
   const bool is_whole = corners.size() == kNumCorners;
-  has_diagonals_ = is_whole && knowledge.diagonals_sigma_m > 0;
-  has_flatness_ = is_whole && knowledge.flatness_sigma_m > 0;
+  has_diagonals_ = is_whole && prior.diagonals_sigma_m > 0;
+  has_flatness_ = is_whole && prior.flatness_sigma_m > 0;
   set_num_residuals(static_cast<int>(sides_.size()) + (has_diagonals_ ? 1 : 0) +
                     (has_flatness_ ? 1 : 0));
   *mutable_parameter_block_sizes() = {3 * static_cast<int>(corners.size()), 1};
@@ -183,14 +182,13 @@ bool MarkerPriorError::Evaluate(double const* const* parameters, double* residua
     const auto [a, b] = sides_[i];
     const Eigen::Vector3d side = corner(b) - corner(a);
     const double length_m = side.norm();
-    residuals[i] =
-        (length_m - (1.0 + parameters[1][0]) * knowledge_.length_m) / knowledge_.side_sigma_m;
+    residuals[i] = (length_m - (1.0 + parameters[1][0]) * prior_.length_m) / prior_.side_sigma_m;
     if (by_marker != nullptr) {
-      const Eigen::RowVector3d direction = side.transpose() / (length_m * knowledge_.side_sigma_m);
+      const Eigen::RowVector3d direction = side.transpose() / (length_m * prior_.side_sigma_m);
       marker_map.block<1, 3>(i, 3 * a) = -direction;
       marker_map.block<1, 3>(i, 3 * b) = direction;
     }
-    if (by_scale != nullptr) by_scale[i] = -knowledge_.length_m / knowledge_.side_sigma_m;
+    if (by_scale != nullptr) by_scale[i] = -prior_.length_m / prior_.side_sigma_m;
   }
   if (!has_diagonals_ && !has_flatness_) return true;
   if (by_scale != nullptr) {
@@ -198,21 +196,21 @@ bool MarkerPriorError::Evaluate(double const* const* parameters, double* residua
   }
   const Eigen::Vector3d diagonal1 = corner(2) - corner(0), diagonal2 = corner(3) - corner(1);
   if (has_diagonals_) {
-    residuals[num_sides] = (diagonal1.norm() - diagonal2.norm()) / knowledge_.diagonals_sigma_m;
+    residuals[num_sides] = (diagonal1.norm() - diagonal2.norm()) / prior_.diagonals_sigma_m;
     if (by_marker != nullptr) {
-      const Eigen::Vector3d direction1 = diagonal1.normalized() / knowledge_.diagonals_sigma_m;
-      const Eigen::Vector3d direction2 = diagonal2.normalized() / knowledge_.diagonals_sigma_m;
+      const Eigen::Vector3d direction1 = diagonal1.normalized() / prior_.diagonals_sigma_m;
+      const Eigen::Vector3d direction2 = diagonal2.normalized() / prior_.diagonals_sigma_m;
       marker_map.row(num_sides) << -direction1.transpose(), direction2.transpose(),
           direction1.transpose(), -direction2.transpose();
     }
   }
   if (!has_flatness_) return true;
   const int last = num_residuals() - 1;
-  // The best plane leaves the four corners by h, -h, h, -h.
+  // The corners' signed distances from their best plane are h, -h, h, -h.
   const Eigen::Vector3d alternating = corner(0) - corner(1) + corner(2) - corner(3);
   const Eigen::Vector3d cross = diagonal1.cross(diagonal2);
   const Eigen::Vector3d normal = cross.normalized();
-  const double factor = 0.25 / knowledge_.flatness_sigma_m;
+  const double factor = 0.25 / prior_.flatness_sigma_m;
   residuals[last] = factor * alternating.dot(normal);
   if (by_marker != nullptr) {
     const Eigen::Vector3d by_cross =

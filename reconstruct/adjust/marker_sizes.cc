@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kMaxSigmas = 4.0;
 
-// A marker's mean side over its printed one, and how well the images know it.
+// The mean side of a marker divided by the printed length, and its uncertainty.
 struct MarkerSize {
   int marker_id = 0;
   int num_sides = 0;
   double ratio = 0.0;
-  double block_variance = 0.0;  // of the ratio, by the marker's own corners
-  Eigen::VectorXd by_factor;    // of the ratio, by what all markers have in common
+  double block_variance = 0.0;  // part of the ratio's variance that other markers do not share
+  Eigen::VectorXd by_factor;    // shared part: factor of the covariance times the ratio's gradient
 };
 
 std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
@@ -48,8 +48,8 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
   return sizes;
 }
 
-// Deviations of the markers' ratios from their median, and the variance of each that the images
-// cause. What is common to all markers (the scale) drops out.
+// Deviations of the ratios from their median, and the variance of each that image noise causes.
+// Errors that all markers share (the scale) cancel.
 struct Deviations {
   double median = 1.0;
   std::vector<double> values;
@@ -85,7 +85,7 @@ std::vector<double> Normalize(const Deviations& deviations, const std::vector<Ma
   return normalized;
 }
 
-// The tolerance with which the deviations scatter as they should.
+// The tolerance that explains the scatter of the deviations, at least `print_tolerance`.
 double FitTolerance(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
                     double print_tolerance) {
   constexpr std::size_t kMinMarkers = 10;
@@ -109,7 +109,7 @@ std::string PointName(int marker_id, int corner) {
                      : fmt::format("corner {} of marker {}", corner, marker_id);
 }
 
-// From the first point to the second.
+// Vector from the first point of the bar to the second.
 Eigen::Vector3d BarVector(const ScaleBar& bar, const MarkerState& state) {
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   for (std::size_t block = 0; block < bar.marker_idxs.size(); ++block) {
@@ -121,7 +121,7 @@ Eigen::Vector3d BarVector(const ScaleBar& bar, const MarkerState& state) {
   return vector;
 }
 
-// Adds one end of a bar; false where its corners are not all there.
+// Adds one end of a bar. Returns false where corners of it are missing.
 bool AddEnd(const MarkerState& state, int marker_id, int corner, double sign, ScaleBar* bar) {
   const auto marker =
       std::find_if(state.markers.begin(), state.markers.end(),
@@ -169,7 +169,7 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
   const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance);
   MarkerSizeVerdict verdict;
   verdict.print_tolerance = print_tolerance;
-  if (sizes.size() < 3) return verdict;  // two contradict each other, but which is wrong?
+  if (sizes.size() < 3) return verdict;  // of two, neither can be told to be the wrong one
   const Deviations deviations = FindDeviations(sizes);
   verdict.print_tolerance = FitTolerance(deviations, sizes, print_tolerance);
   if (verdict.print_tolerance > print_tolerance) {
@@ -183,7 +183,7 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
     if (std::abs(normalized[i]) <= kMaxSigmas) continue;
     verdict.contradicting.insert(sizes[i].marker_id);
     verdict.warnings.push_back(fmt::format(
-        "marker {} is {:.2f} % {} than the layout says, measured by the other markers ({:.0f} "
+        "marker {} is {:.2f} % {} than the layout says, compared with the other markers ({:.0f} "
         "sigmas): its size is not used; check its marker_length and its print",
         sizes[i].marker_id, 100 * std::abs(deviations.values[i]),
         deviations.values[i] > 0 ? "larger" : "smaller", std::abs(normalized[i])));

@@ -7,7 +7,6 @@
 #include <Eigen/Cholesky>
 
 #include "importer/geometry/pose_step.h"
-#include "reconstruct/solve/double_lanes.h"
 
 namespace velamap {
 namespace {
@@ -45,8 +44,7 @@ void AddObservation(const MapObservation& observation, const Corner& corner, con
     rows.template block<2, N>(2 * i, 0) = by_step(corner_idx, scaled * RayFromPoint(x));
     rows.template block<2, 1>(2 * i, N) = scaled * (x.hnormalized() - observation.rays[corner_idx]);
   }
-  constexpr int kSize = Products::ColsAtCompileTime;
-  AddTransposedProduct<kSize>(rows, rows.data(), kSize, products.data(), kSize);
+  products.noalias() += rows.transpose() * rows;
   constexpr double kScale = kLossSigmas * kLossSigmas * 2 * kNumCorners;
   const double squared = products(N, N);
   equations->cost += 0.5 * kScale * std::log1p(squared / kScale);

@@ -40,7 +40,7 @@ std::vector<SharedMarker> FindShared(const FrameShape& frame, const ShapePoints&
   return shared;
 }
 
-// One alignment problem: the markers that both sides have, compared by centres or by all points.
+// The shared markers of a frame and the shape, compared by centres or by all points.
 class AlignmentProblem {
  public:
   explicit AlignmentProblem(std::vector<SharedMarker> shared) : shared_(std::move(shared)) {

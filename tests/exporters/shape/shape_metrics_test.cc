@@ -93,7 +93,7 @@ TEST(ShapeMetrics, WithoutAListOfMarkersThereIsNoRatio) {
   EXPECT_THAT(metrics.missing_marker_ids, IsEmpty());
 }
 
-// The blind spot that README.md states: a scale from sides that look too short hides itself.
+// The blind spot in README.md: sides that look too short give a wrong scale that no metric shows.
 TEST(ShapeMetrics, DoNotSeeMarkersThatAllShrinkBeforeScaling) {
   Model model = ExampleModel();
   for (const ShapeMarker& marker : ExampleShape().markers) {

@@ -1,4 +1,4 @@
-#include "exporters/formats/ply_writer.h"
+#include "exporters/formats/shape_ply.h"
 
 #include <cmath>
 
@@ -108,7 +108,7 @@ TEST(PlyWriter, BothFormatsHoldTheSameNumbers) {
           ASSERT_EQ(a.size(), b.size());
           for (std::size_t i = 0; i < a.size(); ++i) {
             const bool is_float = ascii.elements[e].properties[p].type == "float";
-            // ASCII floats are the shortest that read back to the same float, not double.
+            // ASCII floats have the fewest digits that read back to the same float, not double.
             EXPECT_EQ(is_float ? static_cast<float>(a[i]) : a[i], b[i]);
           }
         }
