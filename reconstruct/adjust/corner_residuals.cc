@@ -21,8 +21,8 @@ double ReprojectionErrorPx(const Model& model, Point3DId point3D_id, const Track
 
 }  // namespace
 
-std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem, int num_threads) {
-  const std::vector<double> residuals = CornerResiduals(problem, num_threads);
+std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem) {
+  const std::vector<double> residuals = CornerResiduals(problem);
   std::vector<CornerResidual> corners;
   for (std::size_t i = 0; i < problem.corners.size(); ++i) {
     corners.push_back({problem.corners[i].first, problem.corners[i].second,

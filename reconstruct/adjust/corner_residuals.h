@@ -15,7 +15,7 @@ struct CornerResidual {
   double sigmas = 0.0;  // length of the residual, in calibrated sigmas
 };
 
-std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem, int num_threads);
+std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem);
 
 // Variance factor of the corners by their median residual, which outliers do not move. Counts 6
 // parameters for each image but the first and 3 for each point.

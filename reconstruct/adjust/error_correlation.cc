@@ -210,7 +210,7 @@ double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                          const std::vector<int>& groups, int num_threads) {
   const LinearAdjustment adjustment(state, problem, jacobian, covariance, groups);
   RowMajorMatrix residuals = RowMajorMatrix::Zero(adjustment.NumRows(), 1);
-  const std::vector<double> of_corners = CornerResiduals(problem, num_threads);
+  const std::vector<double> of_corners = CornerResiduals(problem);
   std::copy(of_corners.begin(), of_corners.end(), residuals.data());
   const double found = adjustment.SquaredMovements(residuals)[0];
   const ExpectedMovement expected = SimulateIndependentErrors(adjustment, num_threads);

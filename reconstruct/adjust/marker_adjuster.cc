@@ -169,8 +169,7 @@ std::unique_ptr<const MarkerAdjuster::Linearization> MarkerAdjuster::CalibrateCo
     auto linearization = Linearize();
     const double redundancy = CornerRedundancy(linearization->jacobian, linearization->covariance);
     double sum = 0.0;
-    const std::vector<CornerResidual> corners =
-        EvaluateCorners(linearization->problem, options_.num_threads);
+    const std::vector<CornerResidual> corners = EvaluateCorners(linearization->problem);
     for (const CornerResidual& corner : corners) sum += corner.sigmas * corner.sigmas;
     const double variance = sum / std::max(1.0, redundancy);
     const double factor = std::max(kMinCornerFactor, weights_.corner_factor * std::sqrt(variance));
@@ -220,7 +219,7 @@ std::unique_ptr<const MarkerAdjuster::Linearization> MarkerAdjuster::Linearize()
   auto linearization = std::make_unique<Linearization>();
   linearization->state = MakeState(model_);
   linearization->problem = MakeProblem(WithoutLoss(weights_), model_, &linearization->state);
-  linearization->jacobian = EvaluateJacobian(linearization->problem, options_.num_threads);
+  linearization->jacobian = EvaluateJacobian(linearization->problem);
   auto covariance = InvertNormalEquations(linearization->jacobian, options_.num_threads);
   if (!covariance) {
     throw DataError(
@@ -233,7 +232,7 @@ std::unique_ptr<const MarkerAdjuster::Linearization> MarkerAdjuster::Linearize()
 
 std::vector<CornerResidual> MarkerAdjuster::EvaluateCornersOf(const Model& model) {
   MarkerState state = MakeState(model);
-  return EvaluateCorners(MakeProblem(WithoutLoss(weights_), model, &state), options_.num_threads);
+  return EvaluateCorners(MakeProblem(WithoutLoss(weights_), model, &state));
 }
 
 double MarkerAdjuster::CalibrateRobustly() {

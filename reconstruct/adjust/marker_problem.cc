@@ -10,7 +10,6 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
-#include "importer/base/parallel.h"
 #include "importer/camera/camera_projection.h"
 #include "reconstruct/solve/schur_complement.h"
 
@@ -142,7 +141,9 @@ class ProblemBuilder {
       for (const int idx : bar.marker_idxs) {
         blocks.push_back(result_.marker_blocks[static_cast<std::size_t>(idx)]);
       }
-      if (blocks.size() > 1) result_.coupled_markers.insert(blocks.begin(), blocks.end());
+      if (blocks.size() > 1 && result_.kept_markers.count(blocks[0]) == 0) {
+        result_.kept_markers.insert(blocks[1]);
+      }
       AddResidual(std::make_unique<ScaleBarError>(bar.distance.length_m, bar.distance.sigma_m,
                                                   bar.corner_weights),
                   blocks);
@@ -270,7 +271,7 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
   if (function_tolerance < 1e-6) options.initial_trust_region_radius = 1e8;
   std::vector<double*> eliminated;
   for (double* block : problem->marker_blocks) {
-    if (problem->coupled_markers.count(block) == 0) eliminated.push_back(block);
+    if (problem->kept_markers.count(block) == 0) eliminated.push_back(block);
   }
   const SchurSummary summary = MinimizeBySchurComplement(options, eliminated, problem->ceres.get());
   spdlog::debug("{} iterations, cost {:.6g} -> {:.6g}", summary.num_iterations,
@@ -283,10 +284,9 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
   return summary.num_iterations;
 }
 
-std::vector<double> CornerResiduals(const MarkerProblem& problem, int num_threads) {
+std::vector<double> CornerResiduals(const MarkerProblem& problem) {
   ceres::Problem::EvaluateOptions options;
   options.residual_blocks = problem.corner_residuals;
-  options.num_threads = NumThreads(num_threads);
   std::vector<double> residuals;
   VELAMAP_CHECK(problem.ceres->Evaluate(options, nullptr, &residuals, nullptr, nullptr));
   return residuals;

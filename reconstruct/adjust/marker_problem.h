@@ -44,7 +44,8 @@ struct MarkerProblem {
   // velocities, intrinsics, inset, print scale).
   std::vector<double*> marker_blocks;
   std::vector<double*> global_blocks;
-  std::set<double*> coupled_markers;  // markers that share a scale bar with another one
+  // One marker of each pair that a scale bar couples: the Schur complement must not eliminate both.
+  std::set<double*> kept_markers;
   std::vector<ceres::ResidualBlockId> corner_residuals;
   std::vector<ceres::ResidualBlockId> prior_residuals;  // all others but scale bars
   // One for every pair of residuals of corner_residuals, in order.
@@ -64,6 +65,6 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
                           MarkerProblem* problem);
 
 // Residuals of the corners, two for every entry of `corners`.
-std::vector<double> CornerResiduals(const MarkerProblem& problem, int num_threads);
+std::vector<double> CornerResiduals(const MarkerProblem& problem);
 
 }  // namespace velamap

@@ -95,7 +95,7 @@ NormalMatrix SumProducts(const MarkerJacobian& jacobian, int num_threads) {
 
 }  // namespace
 
-MarkerJacobian EvaluateJacobian(const MarkerProblem& problem, int num_threads) {
+MarkerJacobian EvaluateJacobian(const MarkerProblem& problem) {
   MarkerJacobian jacobian;
   std::vector<int> marker_of_column;
   for (const double* block : problem.marker_blocks) {
@@ -108,7 +108,6 @@ MarkerJacobian EvaluateJacobian(const MarkerProblem& problem, int num_threads) {
   jacobian.begins.push_back(static_cast<Eigen::Index>(marker_of_column.size()));
 
   ceres::Problem::EvaluateOptions options;
-  options.num_threads = NumThreads(num_threads);
   options.parameter_blocks = problem.marker_blocks;
   options.parameter_blocks.insert(options.parameter_blocks.end(), problem.global_blocks.begin(),
                                   problem.global_blocks.end());

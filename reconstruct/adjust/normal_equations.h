@@ -40,7 +40,7 @@ struct MarkerJacobian {
   std::vector<Eigen::Index> begins;       // first parameter of each marker, and the end
   int num_globals = 0;
 };
-MarkerJacobian EvaluateJacobian(const MarkerProblem& problem, int num_threads);
+MarkerJacobian EvaluateJacobian(const MarkerProblem& problem);
 
 struct MarkerCovariance {
   std::vector<Eigen::MatrixXd> marker_blocks;  // D^-1
@@ -53,8 +53,8 @@ struct MarkerCovariance {
   }
 };
 
-// Nothing where the data leave a combination of parameters undetermined. The number of threads does
-// not change the result.
+// Nothing where the data leave a combination of parameters undetermined. Runs on up to
+// `num_threads` threads (0: one a core), which do not change the result.
 std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jacobian,
                                                       int num_threads);
 

@@ -26,8 +26,8 @@ struct SchurSummary {
 // Schur complement eliminates (markers); no two of them may share a residual. Where the result is
 // not usable, all values stay as they are.
 //
-// Ceres runs on one thread: its elimination adds up in the order in which threads finish, so that
-// several threads would change the last digits from run to run.
+// Ceres runs on one thread: with several, its elimination sums in the order in which they finish,
+// and the last digits of the result change from run to run.
 SchurSummary MinimizeBySchurComplement(const SchurOptions& options,
                                        const std::vector<double*>& eliminated,
                                        ceres::Problem* problem);

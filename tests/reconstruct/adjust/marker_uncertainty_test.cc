@@ -74,7 +74,7 @@ TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
   ASSERT_EQ(weights.scale_bars.size(), 2u);
   const MarkerProblem problem =
       MakeMarkerProblem(options, model, {}, model.cameras, weights, &state);
-  const auto covariance = InvertNormalEquations(EvaluateJacobian(problem, 1), 1);
+  const auto covariance = InvertNormalEquations(EvaluateJacobian(problem), 1);
   ASSERT_TRUE(covariance.has_value());
   const AdjustmentUncertainty uncertainty = MakeUncertainty(state, weights, problem, *covariance);
 
@@ -122,7 +122,7 @@ TEST(CornerRedundancy, IsWhatTheDenseHatMatrixLeaves) {
   const Eigen::VectorXd leverages =
       (scaled * (scaled.transpose() * scaled).inverse()).cwiseProduct(scaled).rowwise().sum();
   const auto num_corners = static_cast<Eigen::Index>(2 * problem.corners.size());
-  const MarkerJacobian jacobian = EvaluateJacobian(problem, 1);
+  const MarkerJacobian jacobian = EvaluateJacobian(problem);
   EXPECT_NEAR(CornerRedundancy(jacobian, *InvertNormalEquations(jacobian, 1)),
               static_cast<double>(num_corners) - leverages.head(num_corners).sum(), 1e-6);
 }
@@ -142,19 +142,17 @@ TEST(MarkerCovariance, IsTheSameForAnyNumberOfThreads) {
   weights.print_tolerance = 1e-3;
   const MarkerProblem problem = MakeMarkerProblem({}, model, {}, model.cameras, weights, &state);
   const std::vector<int> groups = GroupImages(model, state);
-  const MarkerJacobian jacobian = EvaluateJacobian(problem, 1);
+  const MarkerJacobian jacobian = EvaluateJacobian(problem);
   const auto covariance = InvertNormalEquations(jacobian, 1);
   ASSERT_TRUE(covariance.has_value());
   const double factor = CorrelationFactor(state, problem, jacobian, *covariance, groups, 1);
   for (const int num_threads : {2, 5}) {
-    const MarkerJacobian other_jacobian = EvaluateJacobian(problem, num_threads);
-    const auto other = InvertNormalEquations(other_jacobian, num_threads);
+    const auto other = InvertNormalEquations(jacobian, num_threads);
     ASSERT_TRUE(other.has_value());
     EXPECT_EQ(other->factor, covariance->factor);
     EXPECT_EQ(other->root, covariance->root);
     EXPECT_EQ(other->marker_blocks, covariance->marker_blocks);
-    EXPECT_EQ(CorrelationFactor(state, problem, other_jacobian, *other, groups, num_threads),
-              factor);
+    EXPECT_EQ(CorrelationFactor(state, problem, jacobian, *other, groups, num_threads), factor);
   }
 }
 
