@@ -94,7 +94,7 @@ std::map<int, double> ScalesOf(const ScaleAudit& audit) {
   return m_per_unit_of;
 }
 
-// Moves model and uncertainty, which are metric, into the frame that the markers make.
+// Moves the metric model and its uncertainty into the chosen frame.
 void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choice,
                    ShapeExportReport* report) {
   report->frame = ChooseFrame(ShapeFromModel(report->metric_model, layout), layout, choice);

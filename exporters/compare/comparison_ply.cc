@@ -18,9 +18,9 @@ namespace velamap {
 namespace {
 
 struct Vertex {
-  Eigen::Vector3d x_in_reference_m;
-  Eigen::Vector3d normal;
-  Eigen::Array3d color;
+  Eigen::Vector3d x_in_reference_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Array3d color = Eigen::Array3d::Zero();
   double distance_m = 0.0;
   double sigma_m = 0.0;
   int marker_id = 0;

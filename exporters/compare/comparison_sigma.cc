@@ -59,7 +59,7 @@ std::vector<PointGradient> RotatedInto(
 }
 
 bool HasAllCorners(const PointCovariance& covariance,
-              const std::map<CornerId, Eigen::Vector3d>& by_corner) {
+                   const std::map<CornerId, Eigen::Vector3d>& by_corner) {
   return std::all_of(by_corner.begin(), by_corner.end(), [&](const auto& entry) {
     return covariance.IndexOf(Point3DIdFromCorner(entry.first)) >= 0;
   });

@@ -1,5 +1,5 @@
-// Covariances of differences between aligned shapes: linear propagation of the noise of both shapes,
-// including its effect on the alignment.
+// Covariances of differences between aligned shapes: linear propagation of the noise of both
+// shapes, including its effect on the alignment.
 
 #pragma once
 
@@ -25,9 +25,9 @@ class AlignmentSensitivity {
  public:
   explicit AlignmentSensitivity(const Alignment& alignment);
 
-  // Covariance of (aligned center - center in the reference) of a whole marker, m^2, in the frame of
-  // the reference. `reference` is null for a surface, which counts as exact. Nothing if a covariance
-  // lacks a corner of the marker or of the alignment.
+  // Covariance of (aligned center - center in the reference) of a whole marker, m^2, in the frame
+  // of the reference. `reference` is null for a surface, which counts as exact. Nothing if a
+  // covariance lacks a corner of the marker or of the alignment.
   std::optional<Eigen::Matrix3d> DifferenceCovariance(int marker_id,
                                                       const Eigen::Vector3d& center_in_reference_m,
                                                       const PointCovariance& shape,

@@ -73,9 +73,9 @@ std::vector<int> NamedMarkers(const MarkerShape& shape, const MarkerShape& refer
   for (const int id : ids) {
     const bool in_shape = FindMarker(shape, id) != nullptr;
     if (in_shape && FindMarker(reference, id) != nullptr) continue;
-    throw InputError(
-        fmt::format("--align_markers: the {1} has no marker {0}; give markers that both shapes have",
-                    id, in_shape ? "reference" : "shape"));
+    throw InputError(fmt::format(
+        "--align_markers: the {1} has no marker {0}; give markers that both shapes have", id,
+        in_shape ? "reference" : "shape"));
   }
   return ids;
 }
@@ -139,7 +139,7 @@ AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::stri
     if (name == known_name) return method;
   }
   throw InputError(fmt::format(
-      "{}: expected auto, reference_part, markers, best_fit or none, found '{}'", what, name));
+      "{}: '{}' is unknown; give auto, reference_part, markers, best_fit or none", what, name));
 }
 
 std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& what) {

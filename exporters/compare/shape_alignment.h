@@ -38,7 +38,8 @@ struct AlignmentOptions {
   bool starts_as_is = false;
 };
 
-// An equation of the alignment: the distance of the corner from its target along `direction` is zero.
+// An equation of the alignment: the distance of the corner from its target along `direction` is
+// zero.
 struct AlignmentEquation {
   CornerId corner;
   Eigen::Vector3d x_in_reference_m;  // of the aligned corner
@@ -55,9 +56,10 @@ struct Alignment {
   Statistics residual_m;                     // distances of the used corners from their targets
 };
 
-// Aligns a shape with a shape by least squares over their common corners. Throws DataError with fewer
-// than three common corners or if they lie on one line, and InputError for kReferencePart without a
-// reference part in the layout and for kMarkers without ids or with an id that one shape lacks.
+// Aligns a shape with a shape by least squares over their common corners. Throws DataError with
+// fewer than three common corners or if they lie on one line, and InputError for kReferencePart
+// without a reference part in the layout and for kMarkers without ids or with an id that one shape
+// lacks.
 Alignment AlignShapes(const MarkerShape& shape, const MarkerShape& reference, const Layout& layout,
                       const AlignmentOptions& options);
 

@@ -24,8 +24,8 @@ inline constexpr double kSignificantSigmas = 2.0;
 
 struct UncertainShape {
   MarkerShape shape;
-  // Covariance of the corners, in the frame of the shape: the joint one or CovarianceFromSigmas(). An
-  // empty covariance gives no sigmas.
+  // Covariance of the corners, in the frame of the shape: the joint one or CovarianceFromSigmas().
+  // An empty covariance gives no sigmas.
   PointCovariance covariance;
 };
 
@@ -41,8 +41,8 @@ struct MarkerDeviation {
   // Center in the shape minus center in the reference; only for two shapes.
   std::optional<Eigen::Vector3d> difference_m;
   std::optional<Eigen::Vector3d> difference_sigma_m;  // along the axes
-  // Distance of the marker beside the surface, see MeshFoot; only for a surface. Such a marker has no
-  // meaningful distance and is not part of any statistic.
+  // Distance of the marker beside the surface, see MeshFoot; only for a surface. Such a marker has
+  // no meaningful distance and is not part of any statistic.
   double beside_m = 0.0;
   bool is_over_surface = true;
 };
@@ -77,8 +77,8 @@ struct ShapeDeviation {
 // InputError with the existing parts if there are none.
 MarkerShape MarkersOnPart(const MarkerShape& shape, const Layout& layout, const std::string& part);
 
-// Aligns all markers and compares those of `part` (all markers if it is empty). Throws the errors of
-// AlignShapes(), and DataError if the shapes have no whole marker in common.
+// Aligns all markers and compares those of `part` (all markers if it is empty). Throws the errors
+// of AlignShapes(), and DataError if the shapes have no whole marker in common.
 ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShape& reference,
                                 const Layout& layout, const AlignmentOptions& options,
                                 const std::string& part = "");

@@ -1,6 +1,6 @@
 // Writes spline surfaces as STEP (AP214) and IGES (5.3) with Open CASCADE. Coordinates and header
-// are in mm. The surface becomes one face with its poles and knots, without approximation. The files
-// have no time stamp, so that the same surface gives the same bytes.
+// are in mm. The surface becomes one face with its poles and knots, without approximation. The
+// files have no time stamp, so that the same surface gives the same bytes.
 //
 // Calls are serialized, because Open CASCADE keeps its settings in global variables.
 

@@ -102,7 +102,7 @@ double DefaultMPerUnit(const fs::path& path) { return LowerExtension(path) == ".
 double MPerUnitFromName(const std::string& name, const std::string& what) {
   if (name == "m") return 1.0;
   if (name == "mm") return 1e-3;
-  throw InputError(fmt::format("{}: expected m or mm, found '{}'", what, name));
+  throw InputError(fmt::format("{}: '{}' is unknown; give m or mm", what, name));
 }
 
 TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
@@ -118,8 +118,7 @@ TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
   const bool is_finite = std::all_of(mesh.vertices_m.begin(), mesh.vertices_m.end(),
                                      [](const Eigen::Vector3d& x) { return x.allFinite(); });
   if (!is_finite) {
-    throw InputError(
-        fmt::format("{}: a coordinate is not finite; export it again", path.string()));
+    throw InputError(fmt::format("{}: a coordinate is not finite; export it again", path.string()));
   }
   if (!HasArea(mesh)) {
     throw InputError(fmt::format(

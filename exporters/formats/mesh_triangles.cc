@@ -80,16 +80,15 @@ void CheckCount(const GridSize& grid, const MeshOptions& options) {
   const double num_triangles = 2 * grid.num_u * grid.num_v;
   if (num_triangles <= kMaxTriangles) return;
   const double excess = num_triangles / kMaxTriangles;
-  const double given =
-      options.edge_length_mm ? *options.edge_length_mm : *options.chord_deviation_mm;
+  const auto member =
+      options.edge_length_mm ? &MeshOptions::edge_length_mm : &MeshOptions::chord_deviation_mm;
+  const double given = *(options.*member);
   // The number is proportional to the inverse square of the edge length and to the inverse of the
   // deviation.
   const double possible = options.edge_length_mm ? given * std::sqrt(excess) : given * excess;
   throw InputError(
-      fmt::format("--Surface.{}: {:.3g} mm would need {:.4g} triangles, more than {}; give {:.2g} mm "
-                  "or more",
-                  options.edge_length_mm ? "edge_length" : "chord_deviation", given,
-                  num_triangles, kMaxTriangles, 1.1 * possible));
+      fmt::format("{}: {:.3g} mm would need {:.4g} triangles, more than {}; give {:.2g} mm or more",
+                  OptionName(member), given, num_triangles, kMaxTriangles, 1.1 * possible));
 }
 
 // Takes the normal of a neighboring point where the surface degenerates to a point.
@@ -101,15 +100,21 @@ Eigen::Vector3d NormalAt(const SplineSurface& surface, double u, double v, const
 
 }  // namespace
 
+OptionGroup DescribeOptions(MeshOptions* options) {
+  return {"Mesh of the surface",
+          {{"Surface.edge_length", &options->edge_length_mm, "mm",
+            "longest edge of the mesh; left out: half a marker's side", MoreThan(0)},
+           {"Surface.chord_deviation", &options->chord_deviation_mm, "mm",
+            "instead: how far the mesh may be from the surface", MoreThan(0)}}};
+}
+
 void MeshOptions::Check() const {
   if (edge_length_mm.has_value() == chord_deviation_mm.has_value()) {
-    throw InputError("--Surface.edge_length and --Surface.chord_deviation: give one of the two");
+    throw InputError(fmt::format("{} and {}: give one of the two",
+                                 OptionName(&MeshOptions::edge_length_mm),
+                                 OptionName(&MeshOptions::chord_deviation_mm)));
   }
-  const double given = edge_length_mm ? *edge_length_mm : *chord_deviation_mm;
-  if (!(given > 0 && std::isfinite(given))) {
-    throw InputError(fmt::format("--Surface.{}: {} mm; it must be more than 0",
-                                 edge_length_mm ? "edge_length" : "chord_deviation", given));
-  }
+  CheckRanges(*this);
 }
 
 double CountTriangles(const SplineSurface& surface, const MeshOptions& options) {

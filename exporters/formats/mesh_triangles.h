@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "exporters/formats/surface_spline.h"
+#include "importer/base/option.h"
 
 namespace velamap {
 
@@ -20,14 +21,16 @@ struct TriangleMesh {
 };
 
 struct MeshOptions {
-  // Exactly one of the two: the longest edge along the grid lines (diagonals are up to 1.42 times as
-  // long), or the largest distance of the triangles from the surface.
+  // Exactly one of the two: the longest edge along the grid lines (diagonals are up to 1.42 times
+  // as long), or the largest distance of the triangles from the surface.
   std::optional<double> edge_length_mm;
   std::optional<double> chord_deviation_mm;
 
   // Throws InputError for none or both of them and for a value that is not positive.
   void Check() const;
 };
+
+OptionGroup DescribeOptions(MeshOptions* options);
 
 // Edges of half a marker's side, or longer ones to stay below 100 000 triangles.
 MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_length_m);
@@ -37,9 +40,9 @@ double CountTriangles(const SplineSurface& surface, const MeshOptions& options);
 
 constexpr int kMaxTriangles = 5'000'000;
 
-// Makes a grid with equal steps in u and in v and two triangles per cell. Cells that degenerate to a
-// line (a head that ends in a point) have one or none. Throws InputError if the mesh would have more
-// than kMaxTriangles.
+// Makes a grid with equal steps in u and in v and two triangles per cell. Cells that degenerate to
+// a line (a head that ends in a point) have one or none. Throws InputError if the mesh would have
+// more than kMaxTriangles.
 TriangleMesh MeshSurface(const SplineSurface& surface, const MeshOptions& options);
 
 }  // namespace velamap

@@ -1,5 +1,5 @@
-// A tensor-product B-spline surface: points, derivatives, area, nearest points and plane cuts. Eigen
-// evaluates the basis functions (de Boor's recursion; Piegl and Tiller, The NURBS Book, 1997,
+// A tensor-product B-spline surface: points, derivatives, area, nearest points and plane cuts.
+// Eigen evaluates the basis functions (de Boor's recursion; Piegl and Tiller, The NURBS Book, 1997,
 // chapter 2).
 //
 //   S(u, v) = sum_ij N_i(u) M_j(v) P_ij,   0 <= u, v <= 1
@@ -27,8 +27,8 @@ struct SplineSurface {
   int NumPolesV() const { return static_cast<int>(knots_v.size()) - degree_v - 1; }
 };
 
-// Values of all basis functions and of their derivatives up to `max_order` at one parameter: one row
-// per order, one column per pole. Orders above the degree are zero.
+// Values of all basis functions and of their derivatives up to `max_order` at one parameter: one
+// row per order, one column per pole. Orders above the degree are zero.
 Eigen::MatrixXd BasisRow(const Eigen::ArrayXd& knots, int degree, double parameter, int max_order);
 
 // Four Gauss-Legendre nodes per knot span, which integrate products of two cubics exactly.
@@ -50,7 +50,7 @@ double SurfaceArea(const SplineSurface& surface);  // m^2
 struct SurfaceFoot {
   double u = 0.0, v = 0.0;
   Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // nearest point of the surface
-  double distance_m = 0.0;     // signed, from there along the normal
+  double distance_m = 0.0;                                 // signed, from there along the normal
   double beyond_edge_m = 0.0;  // distance within the tangent plane; 0 unless at an edge
 };
 

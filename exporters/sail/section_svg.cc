@@ -1,4 +1,4 @@
-// The SVG side of section_drawing.h.
+// SVG function of section_drawing.h.
 
 #include <algorithm>
 #include <cmath>

@@ -233,14 +233,13 @@ double MeanLength(const std::vector<SurfaceLine>& lines) {
 
 // A surface that is extrapolated by more than its own size has a shape that no marker determines,
 // and its equations lose their rank in double precision.
-void CheckExtension(const std::string& edge, double extension_mm, double size_m) {
+void CheckExtension(const SurfaceOptions& options, double SurfaceOptions::*extension_mm,
+                    double size_m, const char* size_name) {
   const double max_mm = size_m / kMPerMm;
-  if (extension_mm <= max_mm) return;
-  const bool is_across = edge == "luff" || edge == "leech";
-  throw InputError(fmt::format(
-      "--Surface.{}_extension: {:g} mm, expected at most {:.0f} mm, {}", edge, extension_mm,
-      std::floor(max_mm),
-      is_across ? "the length of the lines" : "the distance from the lowest to the highest line"));
+  if (options.*extension_mm <= max_mm) return;
+  throw InputError(fmt::format("{}: {:g} mm, expected at most {:.0f} mm, {}",
+                               OptionName(extension_mm), options.*extension_mm, std::floor(max_mm),
+                               size_name));
 }
 
 std::vector<Row> MakeRows(const std::vector<SurfaceLine>& lines, const SurfaceOptions& options,
@@ -259,16 +258,22 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
   VELAMAP_CHECK(lines.size() >= 2);
   SurfaceParameters parameters;
   parameters.has_markers_between = has_markers_between;
-  CheckExtension("luff", options.luff_extension_mm, MeanLength(lines));
-  CheckExtension("leech", options.leech_extension_mm, MeanLength(lines));
+  const double length_m = MeanLength(lines);
+  for (const auto extension_mm :
+       {&SurfaceOptions::luff_extension_mm, &SurfaceOptions::leech_extension_mm}) {
+    CheckExtension(options, extension_mm, length_m, "the length of the lines");
+  }
   const std::vector<Row> rows = MakeRows(lines, options, &parameters.notes);
   std::vector<double> heights_m = {kMPerMm * options.foot_extension_mm};
   for (std::size_t j = 1; j < rows.size(); ++j) {
     heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
   }
   const double span_m = heights_m.back() - heights_m.front();
-  CheckExtension("foot", options.foot_extension_mm, span_m);
-  CheckExtension("head", options.head_extension_mm, span_m);
+  for (const auto extension_mm :
+       {&SurfaceOptions::foot_extension_mm, &SurfaceOptions::head_extension_mm}) {
+    CheckExtension(options, extension_mm, span_m,
+                   "the distance from the lowest to the highest line");
+  }
   parameters.length_v_m = heights_m.back() + kMPerMm * options.head_extension_mm;
 
   std::vector<double> all_us;

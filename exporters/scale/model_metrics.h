@@ -18,8 +18,8 @@ struct ImageMetrics {
   std::optional<double> marker_ratio;  // share of the markers in the layout
 };
 
-// Errors are |projection - observation| of the corners, px. Points behind their camera have no error
-// and are counted.
+// Errors are |projection - observation| of the corners, px. Points behind their camera have no
+// error and are counted.
 struct ModelMetrics {
   // The model's first image, which is the central image of the registration.
   std::string central_image_name;

@@ -37,9 +37,9 @@ struct PrintSpread {
   std::string note;  // which terms are determined, and why others are not
 };
 
-// Fits log(side ratio) = scale error + 2 print / length + 2 image / side_px. The terms are determined
-// if markers differ in length_m and in side_px. A term that does not vary over the markers, or
-// correlates with the other one, gets no value.
+// Fits log(side ratio) = scale error + 2 print / length + 2 image / side_px. The terms are
+// determined if markers differ in length_m and in side_px. A term that does not vary over the
+// markers, or correlates with the other one, gets no value.
 PrintSpread EstimateSpread(const std::vector<SpreadSample>& samples);
 
 }  // namespace velamap

@@ -47,7 +47,8 @@ Vector TotalSigmas(const Vector& sigmas, double excess_sigma) {
 double ExcessSigma(const Vector& residuals, const Vector& sigmas, Eigen::Index num_coefficients) {
   if (residuals.size() <= num_coefficients) return 0.0;
   const auto size_at = [&](double excess_sigma) {
-    return ResidualSigma(residuals.cwiseQuotient(TotalSigmas(sigmas, excess_sigma)), num_coefficients);
+    return ResidualSigma(residuals.cwiseQuotient(TotalSigmas(sigmas, excess_sigma)),
+                         num_coefficients);
   };
   if (size_at(0.0) <= 1.0) return 0.0;
   double low = 0.0, high = ResidualSigma(residuals, num_coefficients);  // exact for zero sigmas

@@ -22,10 +22,12 @@ struct PartPlane {
   std::string part;
   int num_markers = 0;
   Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, towards the side that the markers face
-  Statistics corner_distance_mm;                      // of the corners, without sign
-  // Plane projected error of thesis section 4.1: unsigned distances of the centers from the plane of
-  // the centers. Empty with fewer than four markers, because three centers always lie in a plane.
+  Eigen::Vector3d normal =
+      Eigen::Vector3d::UnitZ();   // unit, towards the side that the markers face
+  Statistics corner_distance_mm;  // of the corners, without sign
+  // Plane projected error of thesis section 4.1: unsigned distances of the centers from the plane
+  // of the centers. Empty with fewer than four markers, because three centers always lie in a
+  // plane.
   Statistics center_distance_mm;
   // Orientation error of thesis section 4.1: angles between each marker's vector and their mean.
   Statistics normal_spread_deg;

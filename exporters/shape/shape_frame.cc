@@ -96,7 +96,8 @@ std::optional<PartAxes> FitPartAxes(const MarkerShape& shape, const std::vector<
   const PrincipalAxes principal = ComputePrincipalAxes(corners);
   part.center = principal.mean;
   const Eigen::Vector3d along = CenterOf(shape, ids.back()) - CenterOf(shape, ids.front());
-  // A strip around a curved side is about as thick as it is wide, so that noise would turn its plane.
+  // A strip around a curved side is about as thick as it is wide, so that noise would turn its
+  // plane.
   constexpr double kMinSpreadRatio = 4.0;  // of variances
   part.is_flat = principal.sums_of_squares[1] >= kMinSpreadRatio * principal.sums_of_squares[0];
   const Eigen::Vector3d normal =
@@ -135,9 +136,8 @@ Attempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
   }
   const std::string& part = *layout.reference_part;
   if (ids.size() < 2) {
-    return {std::nullopt,
-            fmt::format("part '{}' has {} whole marker{}, two are needed", part, ids.size(),
-                        ids.size() == 1 ? "" : "s")};
+    return {std::nullopt, fmt::format("part '{}' has {} whole marker{}, two are needed", part,
+                                      ids.size(), ids.size() == 1 ? "" : "s")};
   }
   const auto axes = FitPartAxes(shape, ids);
   if (!axes) {
@@ -195,10 +195,11 @@ Attempt TryLines(const MarkerShape& shape, const Layout& layout) {
   }
   const Rigid3 frame_from_shape = FrameFromAxes(ends.first, x, up);
   if (lines.size() > 1 && (frame_from_shape * EndsOf(shape, *lines.back()).Middle()).z() < 0) {
-    return {std::nullopt,
-            fmt::format("along line {} as up, {} is below {}; list horizontal lines and the markers "
-                        "of vertical ones from foot to head",
-                        up_name, lines.back()->name, lowest.name)};
+    return {
+        std::nullopt,
+        fmt::format("along line {} as up, {} is below {}; list horizontal lines and the markers "
+                    "of vertical ones from foot to head",
+                    up_name, lines.back()->name, lowest.name)};
   }
   return {MakeUpright(FrameKind::kLines, frame_from_shape,
                       fmt::format("lines {} {}", lowest.name, up_name),

@@ -18,10 +18,10 @@
 //                 middle of the highest horizontal line.
 // Camera:         the frame of the model; velamap puts the central camera there.
 //
-// With x from luff to leech and z up, y = z x x points to starboard of a sail whose luff is forward:
-// to leeward on port tack, to windward on starboard tack. The frame stays right-handed because a
-// mirrored one cannot hold cameras. The description says on which side leeward is; sections count
-// depth and twist to leeward on both tacks.
+// With x from luff to leech and z up, y = z x x points to starboard of a sail whose luff is
+// forward: to leeward on port tack, to windward on starboard tack. The frame stays right-handed
+// because a mirrored one cannot hold cameras. The description says on which side leeward is;
+// sections count depth and twist to leeward on both tacks.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// Options of the detection. No OpenCV, so that every room may hold them.
+// Options of detection. They are free of OpenCV, so that every room can include them.
 
 #pragma once
 

@@ -43,7 +43,7 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const Dictionary& dictionary, int border_bits,
                                            const ArucoDetectionOptions& options) {
   VELAMAP_CHECK(gray.type() == CV_8UC1);
-  cv::Mat dark_on_light;  // a fresh one, so that the caller's picture stays
+  cv::Mat dark_on_light;  // a new one, so that the image of the caller does not change
   if (options.inverted) {
     cv::bitwise_not(gray, dark_on_light);
   } else {

@@ -10,8 +10,9 @@
 
 #include "importer/base/error.h"
 #include "importer/detect/interpolate.h"
+#include "importer/geometry/least_squares.h"
 #include "importer/geometry/unit_square_map.h"
-#include "importer/refine/least_squares.h"
+#include "importer/refine/fit_equations.h"
 #include "importer/refine/pattern_picture.h"
 
 namespace velamap {
@@ -20,11 +21,12 @@ namespace {
 using P = PatternParameters;
 
 constexpr double kMinContrast = 12.0;    // grey levels
-constexpr double kMaxRelativeRms = 0.2;  // of the residuals, by contrast
-constexpr double kPixelNoise = 3.0;      // grey levels, against which the priors weigh
+constexpr double kMaxRelativeRms = 0.2;  // of the residuals, relative to the contrast
+constexpr double kPixelNoise = 3.0;      // grey levels; sets the weight of the priors
 constexpr double kMinBlurPx = 0.3;
 constexpr double kMaxBlurPx = 4.0;
-constexpr double kBendOfDiagonal = 0.003;  // what cloth usually has; a can's label has ten times
+constexpr double kBendOfDiagonal =
+    0.003;  // usual for cloth; the label of a can has ten times as much
 constexpr int kFirstPixels = 200;
 constexpr int kPixels = 1000;
 
@@ -40,14 +42,14 @@ struct Problem {
 // Pixels of a marker and around it, in groups.
 struct Pixels {
   struct Group {
-    Floats x, y;  // less the model's center_px
+    Floats x, y;  // relative to center_px of the model
     Floats gray;
   };
   std::vector<Group> groups;
-  int count = 0;  // the last group may have less
+  int count = 0;  // the last group may be incomplete
 };
 
-// What is missing of the last group becomes a copy of its first pixel.
+// Completes the last group with copies of its first pixel.
 inline void FillUp(Pixels* pixels) {
   for (int lane = pixels->count % kLanes; lane > 0 && lane < kLanes; ++lane) {
     Pixels::Group& last = pixels->groups.back();
@@ -57,8 +59,7 @@ inline void FillUp(Pixels* pixels) {
   }
 }
 
-// Every k-th pixel that the model covers with these parameters, so many that about `max_pixels` are
-// used.
+// Every k-th pixel that the model covers with these parameters, where k leaves about `max_pixels`.
 VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vector& parameters,
                                            int max_pixels) {
   const PatternPicture picture(problem.model, parameters);
@@ -72,8 +73,8 @@ VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vect
   for (int row = box.y; row < box.y + box.height; ++row) {
     const std::uint8_t* values = problem.gray->ptr<std::uint8_t>(row);
     const Floats y = AllLanes(row - center.y());
-    // Odd rows are shifted, so that every column has its share. Which pixels are used does not
-    // depend on where the box begins.
+    // Odd rows are shifted, so that all columns are used. The choice of pixels does not depend on
+    // where the box begins.
     const int shift = row * ((stride + 1) / 2) % stride;
     const int first = box.x + (shift + stride - box.x % stride) % stride;
     for (int begin = first; begin < box.x + box.width; begin += kLanes * stride) {
@@ -96,9 +97,9 @@ VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vect
   return pixels;
 }
 
-VELAMAP_CLONE_FOR_AVX2 void Evaluate(const Problem& problem, const Pixels& pixels,
-                                     const P::Vector& parameters, bool with_hessian,
-                                     Equations* equations) {
+VELAMAP_CLONE_FOR_AVX2 void SumUp(const Problem& problem, const Pixels& pixels,
+                                  const P::Vector& parameters, bool with_hessian,
+                                  Equations* equations) {
   const PatternPicture picture(problem.model, parameters);
   equations->Clear(with_hessian);
   PatternPixels modelled;
@@ -111,7 +112,7 @@ VELAMAP_CLONE_FOR_AVX2 void Evaluate(const Problem& problem, const Pixels& pixel
   equations->Finish(parameters - problem.mean, problem.weight);
 }
 
-// Levels that explain the pixels best while the corners stay.
+// Initial parameters: the given corners, and the mean grey levels of dark and light cells.
 std::optional<P::Vector> Start(const cv::Mat& cells, const QuadCorners& corners, Problem* problem) {
   P::Vector p = P::Vector::Zero();
   for (int i = 0; i < kNumCorners; ++i) {
@@ -141,37 +142,57 @@ std::optional<P::Vector> Start(const cv::Mat& cells, const QuadCorners& corners,
   return p;
 }
 
-// The best parameters so far, and how the model meets the pixels there.
+// The best parameters so far, and the normal equations there.
 struct Minimum {
   P::Vector parameters;
   Equations equations;
 };
 
-void LimitBlur(P::Vector* parameters) {
-  for (const int index : {P::kBlurU, P::kBlurV}) {
-    (*parameters)[index] = std::clamp((*parameters)[index], kMinBlurPx, kMaxBlurPx);
-  }
-}
+// The fit to some pixels as a problem of MinimizeSquares().
+struct PatternProblem {
+  using Parameters = P::Vector;
+  using Equations = FitEquations<P::kCount>;
+  using Step = P::Vector;
 
-// Over about `max_pixels` pixels, until a step moves no corner further than `tolerance_px`. False
+  const Problem& problem;
+  const Pixels& pixels;
+
+  void Evaluate(const P::Vector& parameters, bool with_hessian, Equations* equations) const {
+    SumUp(problem, pixels, parameters, with_hessian, equations);
+  }
+  P::Vector Plus(const P::Vector& parameters, const P::Vector& step) const {
+    return parameters + step;
+  }
+  // How far a corner moves, px.
+  double StepSize(const P::Vector& step, const Equations&) const {
+    return step.head<8>().cwiseAbs().maxCoeff();
+  }
+  P::Vector LimitStep(const P::Vector& parameters, P::Vector step) const {
+    for (const int index : {P::kBlurU, P::kBlurV}) {
+      LimitParameter(kMinBlurPx, kMaxBlurPx, parameters[index], &step[index]);
+    }
+    return step;
+  }
+  void Predict(const P::Vector& step, Equations* equations) const { equations->Predict(step); }
+};
+
+// Fits about `max_pixels` pixels until a step moves no corner further than `tolerance_px`. False
 // for too few pixels or a singular system.
 bool Minimize(const Problem& problem, int max_pixels, double tolerance_px, Minimum* minimum) {
   const Pixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
+  if (pixels.count <= P::kCount) return false;
   LeastSquaresOptions options;
-  options.tolerance_px = tolerance_px;
-  options.new_hessian_px = 0.1;
-  return MinimizeSquares(
-      options,
-      [&](const P::Vector& parameters, bool with_hessian, Equations* equations) {
-        Evaluate(problem, pixels, parameters, with_hessian, equations);
-      },
-      [](const P::Vector& step) { return step.head<8>().cwiseAbs().maxCoeff(); }, LimitBlur,
-      &minimum->parameters, &minimum->equations);
+  options.max_iterations = 10;
+  options.initial_damping = 1e-3;
+  options.min_step = tolerance_px;
+  options.min_step_for_new_hessian = 0.1;
+  return MinimizeSquares(options, PatternProblem{problem, pixels}, &minimum->parameters,
+                         &minimum->equations) != Convergence::kFailed;
 }
 
-// A quick fit on some pixels, then an exact one on more from there, with the surroundings read
-// anew; and once more where the blur is wide, because then grey levels, blur and surroundings are
-// only found together. False if there is no marker like this.
+// A coarse fit to some pixels, then a fine one to more pixels, with the surroundings read again. A
+// wide blur needs another fit, because grey levels, blur and surroundings then depend on each
+// other. False if the image does not show such a marker.
 bool MinimizeInPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) {
   constexpr double kWideBlur = 0.3;  // in cells
   struct Pass {
@@ -192,7 +213,7 @@ bool MinimizeInPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) 
 // `inverse` of the Hessian.
 VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const Equations& equations, const P::Matrix& inverse) {
   return equations.Noise(inverse, [](const Equations::Jacobian& jacobian) {
-    // All corners move: the slope of the grey values.
+    // The sum over all corners is the slope of the grey levels.
     Floats slope_x{}, slope_y{};
     for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
       slope_x += jacobian[i];
@@ -202,7 +223,8 @@ VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const Equations& equations, const P
   });
 }
 
-// The priors hold weak parameters but are no observations: their own error does not count.
+// The priors stabilise weak parameters but are not observations, so that their error does not
+// count.
 std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Minimum& minimum) {
   const Eigen::LLT<P::Matrix> factors(minimum.equations.hessian());
   if (factors.info() != Eigen::Success) return std::nullopt;

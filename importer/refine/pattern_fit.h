@@ -1,17 +1,17 @@
-// Corners of a small marker from all of its pixels, by least squares on a picture of the marker.
+// Corners of a small marker by a least-squares fit of a model of the whole marker to its pixels.
 //
 // When cells are only one to four px wide, the blur of each edge reaches the next one and a side
-// cannot be fitted on its own. The marker's cells are known, so the whole picture is:
+// cannot be fitted alone. The cells of the marker are known, so the model is:
 //
 //   I(x) = (1 + gradient . x) * (dark + (light - dark) * sum_ij cell_ij a_i(u) b_j(v))
 //   x = H(u, v) + 4 u (1 - u) bend_u + 4 v (1 - v) bend_v
 //
-// H is the homography given by the four corners; the bends (px) are what cloth or a lens adds; a_i
-// and b_j are the unit steps of column i and row j blurred by a Gaussian (px, one width along u and
-// one along v, which also covers shaken pictures). Around the black square lie one cell of quiet
-// zone and then whatever the image shows there. The marker's own light cells have a level apart
-// from the quiet zone's: with one level for both, markers of 50 px in real photographs, and the
-// same scaled down to 17 px, came out another 0.4 % too small.
+// H is the homography of the four corners; the bends (px) are due to cloth or a lens; a_i and b_j
+// are the unit steps of column i and row j blurred by a Gaussian (px; separate widths along u and v
+// model motion blur as well). The black square is surrounded by one cell of quiet zone, and that by
+// the surroundings as the image shows them. The light cells of the marker have a level of their
+// own: with the level of the quiet zone, markers of 50 px in real photographs, and the same scaled
+// down to 17 px, came out another 0.4 % too small.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// The picture of a whole marker and its derivatives: the inner step of pattern_fit.h, which says
-// what the model is. Inline as a whole, for VELAMAP_CLONE_FOR_AVX2.
+// Evaluates the model of pattern_fit.h and its derivatives. All of it is inline, for
+// VELAMAP_CLONE_FOR_AVX2.
 
 #pragma once
 
@@ -19,8 +19,8 @@ struct PatternPixels {
   FloatsArray<PatternParameters::kCount> jacobian;  // by the parameters
 };
 
-// The model with its parameters, ready for many pixels. Places are in OpenCV's pixel frame, less
-// the model's `center_px`.
+// The model with given parameters, prepared for many pixels. Places are in OpenCV's pixel frame,
+// relative to `center_px` of the model.
 class PatternPicture {
  public:
   PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters)
@@ -30,8 +30,7 @@ class PatternPicture {
     square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
   }
 
-  // Whether a place is no further outside the black square than the model says what is there; -1
-  // for yes.
+  // Whether the model covers a place, inside or near the black square; -1 for yes.
   Ints Covers(Floats x, Floats y) const {
     const Place place = ToSquare(x, y);
     const auto margin = static_cast<float>(kMarginInCells / model_.num_cells);
@@ -67,7 +66,7 @@ class PatternPicture {
       jacobian[index] = -share * by_x;
       jacobian[index + 1] = -share * by_y;
     };
-    // A corner that moves takes each place along by its bilinear share, nearly enough for a step.
+    // A moving corner shifts each place by its bilinear weight; this is accurate enough for a step.
     set_place(P::kCorners, (1.0f - flat.u) * (1.0f - flat.v));
     set_place(P::kCorners + 2, flat.u * (1.0f - flat.v));
     set_place(P::kCorners + 4, flat.u * flat.v);

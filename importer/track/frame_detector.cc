@@ -85,8 +85,7 @@ std::string DescribeDetector(const FrameDetector& detector) {
   for (const auto& [id, neighbors] : detector.graph) {
     known += fmt::format("|{}: {}", id, fmt::join(neighbors, " "));
   }
-  // An exhaustive search is not named: it is how earlier versions searched. Only a tracked one
-  // looks for markers along lines.
+  // Earlier versions searched exhaustively without naming it. Only a tracked search uses the lines.
   std::string search;
   if (detector.options.search == SearchMode::kTracked) {
     search =
@@ -122,10 +121,11 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
                                          int marker_id, const QuadCorners& expected,
                                          double reach_px) {
   const auto idx = static_cast<std::size_t>(marker_id);
-  if (idx >= detector.looks.size()) return std::nullopt;  // a layout may name more than there are
+  if (idx >= detector.looks.size())
+    return std::nullopt;  // a layout may name ids beyond the dictionary
   const MarkerLook& look = detector.looks[idx];
   const auto located = LocateMarker(gray, expected, look, reach_px);
-  if (!located || !SearchTakes(*located, gray.size(), detector.options)) return std::nullopt;
+  if (!located || !IsSearchable(*located, gray.size(), detector.options)) return std::nullopt;
   return located;
 }
 
@@ -161,7 +161,7 @@ std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const 
 }
 
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray) {
-  constexpr double kReachPx = 3.0;  // a pixel and a half of the half resolution
+  constexpr double kReachPx = 3.0;  // 1.5 px at half the resolution
   std::vector<MarkerQuad> quads;
   for (const MarkerQuad& coarse :
        SearchMarkersCoarsely(gray, detector.dictionary, detector.border_bits, detector.options)) {

@@ -35,7 +35,7 @@ struct Options {
   RegistrationOptions registration;
   AdjustmentOptions adjustment;
   ShapeExporterOptions exporter;
-  SailOptionTexts sail;
+  SurfaceFileOptions surface;
   Arguments arguments;  // as they were typed, for the report
 };
 
@@ -58,7 +58,7 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->registration),
        DescribeOptions(&options->adjustment.colmap),
        DescribeOptions(&options->adjustment.markers)}};
-  for (const OptionGroup& group : SailGroups(&options->exporter, &options->sail)) {
+  for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
     syntax.groups.push_back(group);
   }
   syntax.groups.push_back(DescribeOptions(&options->general));
@@ -74,7 +74,7 @@ void Validate(Options* options) {
   options->registration.num_threads = options->general.num_threads;
   options->registration.Check();
   options->adjustment.Complete(options->general.num_threads);
-  CompleteSailOptions(options->sail, &options->exporter);
+  CompleteSailOptions(options->surface, &options->exporter);
   options->importer.layout = LoadLayout(options->markers, true);
   options->importer.camera = ReadCalibration(options->paths.camera_path);
   options->importer.camera_path = options->paths.camera_path;

@@ -19,7 +19,7 @@ struct Options {
   MarkerOptions markers;
   GeneralOptions general;
   ShapeExporterOptions exporter;
-  SailOptionTexts sail;
+  SurfaceFileOptions surface;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -36,7 +36,7 @@ CommandSyntax Declare(Options* options) {
           "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is written"},
          {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"}}},
        DescribeOptions(&options->markers, false)}};
-  for (const OptionGroup& group : SailGroups(&options->exporter, &options->sail)) {
+  for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
     syntax.groups.push_back(group);
   }
   syntax.groups.push_back(DescribeOptions(&options->general));
@@ -49,7 +49,7 @@ void Validate(Options* options) {
     throw InputError(
         "--shape_path: missing; give --shape_path, --output_path or both to say what to write");
   }
-  CompleteSailOptions(options->sail, &options->exporter);
+  CompleteSailOptions(options->surface, &options->exporter);
   options->exporter.model_output_path = options->paths.output_path;
   options->exporter.shape_output_path = options->paths.shape_path;
 }

@@ -27,10 +27,10 @@ std::set<std::string> OptionNames(const CommandSyntax& syntax);
 
 // Sets the options that `arguments`, which follow the command's name, and their project file give.
 // The file may hold `known_names`, the options of all commands, so that one file serves them all.
-// Returns false, having set nothing, when --help or -h is among the arguments. Throws InputError: an
-// option that is unknown (names the nearest), given twice or by two of its names, without a value,
-// with one of another type or beyond its range, or required and missing; a project file that is
-// missing or malformed, or holds an unknown key.
+// Returns false, having set nothing, when --help or -h is among the arguments. Throws InputError:
+// an option that is unknown (names the nearest), given twice or by two of its names, without a
+// value, with one of another type or beyond its range, or required and missing; a project file that
+// is missing or malformed, or holds an unknown key.
 bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& arguments,
                   const std::set<std::string>& known_names);
 

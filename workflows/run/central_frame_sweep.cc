@@ -175,9 +175,8 @@ std::vector<SweepRow> SweepCentralFrames(const CentralFrameSweepOptions& options
                                          const Layout& layout, StageClock* clock,
                                          const std::function<void(int done, int total)>& done) {
   if (options.registration.method != RegistrationMethod::kThesis) {
-    throw InputError(
-        "--Registration.method global: has no central frame; a sweep is the thesis's way: give "
-        "thesis");
+    throw InputError(OptionName(&RegistrationOptions::method) +
+                     " global: has no central frame to sweep; give thesis");
   }
   options.registration.Check();
   Sweep sweep(options, layout);

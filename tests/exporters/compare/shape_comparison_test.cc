@@ -119,7 +119,7 @@ TEST(ShapeComparison, WithoutEnoughOfTheReferencePartItIsABestFitAndSaysSo) {
   const ShapeDeviation deviation =
       CompareWithShape(Exact(few), Exact(BoatShape()), BoatLayout(), {});
   EXPECT_EQ(deviation.alignment.method, AlignmentMethod::kBestFit);
-  EXPECT_THAT(deviation.alignment.notes, ElementsAre(HasSubstr("2 whole markers are in both")));
+  EXPECT_THAT(deviation.alignment.notes, ElementsAre(HasSubstr("2 markers whole in both")));
   EXPECT_THAT(deviation.only_in_reference, ElementsAre(120, 121, 122, 123));
   const ShapeDeviation asked = CompareWithShape(Exact(few), Exact(BoatShape()), BoatLayout(),
                                                 By(AlignmentMethod::kReferencePart));
@@ -240,7 +240,7 @@ TEST(ShapeComparison, ShapesThatHaveNothingInCommon) {
                           {"no whole marker in common"});
   ExpectThrows<InputError>(
       [&] { compare(sail, BoatShape(), By(AlignmentMethod::kMarkers, {120})); },
-      {"--align_markers", "120", "not in the shape"});
+      {"--align_markers", "120", "the shape has no marker 120"});
   ExpectThrows<InputError>([&] { compare(sail, sail, By(AlignmentMethod::kMarkers)); },
                            {"--align_markers", "missing"});
   ExpectThrows<InputError>(

@@ -186,7 +186,7 @@ TEST(CompareShapes, TooFewCommonCornersAreSaid) {
     CompareShapes(shape, reference);
     FAIL() << "no error";
   } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("2 marker corners in common, an alignment needs 3"));
+    EXPECT_THAT(error.what(), HasSubstr("2 marker corners in common; an alignment needs 3"));
   }
 }
 
