@@ -65,7 +65,7 @@ CommandSyntax Declare(Options* options) {
   return syntax;
 }
 
-// Everything that can be refused without touching the workspace.
+// Checks everything that can be checked without touching the workspace.
 void Validate(Options* options) {
   SetLogLevel(options->general.log_level);
   options->importer.detection.Check();
@@ -97,7 +97,7 @@ ImportReport Import(MarkerImporterOptions options, Workspace* workspace,
   return report;
 }
 
-// `--name value` and `--name=value` as pairs.
+// The options as they were typed, `--name value` or `--name=value`, as pairs.
 std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& arguments) {
   std::vector<std::pair<std::string, std::string>> options;
   for (const std::string& argument : arguments) {
@@ -138,8 +138,7 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
   WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
 }
 
-// From the seed to the final files. sparse/ and shape/ change places with the old ones when both
-// are whole.
+// Makes the final files from the seed. sparse/ and shape/ replace the old ones when both are whole.
 void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
                      ReconstructionSummary* summary, StageClock* clock) {
   AtomicFolder sparse(paths.Sparse());

@@ -15,7 +15,7 @@ namespace velamap {
 using Arguments = std::vector<std::string>;
 
 struct Command {
-  CommandSyntax syntax;  // its options set values that `run` uses
+  CommandSyntax syntax;                                 // its options set values that `run` uses
   std::function<void(const Arguments& arguments)> run;  // `arguments` as they were typed
 };
 

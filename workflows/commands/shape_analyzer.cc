@@ -63,7 +63,7 @@ void Validate(const Options& options) {
   }
 }
 
-// A shape is similar to the corners of its model, or one of the two is of another run.
+// Warns unless the shape is similar to the corners of the model: else they are of different runs.
 void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathOptions& paths) {
   constexpr double kTolerance_m = 1e-6;
   const auto max_distance_m = [&] {
@@ -77,12 +77,13 @@ void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathO
   }();
   if (max_distance_m <= kTolerance_m) return;
   spdlog::warn(
-      "{} is not the shape of the model {}: corners differ by up to {:.6f} m, errors of "
-      "the two do not belong together",
+      "{} is not the shape of the model {}: corners differ by up to {:.6f} m, so the model's "
+      "errors "
+      "are not those of the shape",
       paths.shape_path, paths.input_path, max_distance_m);
 }
 
-// The model that the shape is from, and what is known of its points where they are the shape's.
+// The model of the shape, and its uncertainty if both have the same points.
 struct ModelOfShape {
   std::optional<Model> model;
   std::optional<AdjustmentUncertainty> uncertainty;

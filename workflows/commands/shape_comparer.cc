@@ -121,7 +121,7 @@ void Validate(const Options& options) {
   }
 }
 
-// Whether the covariance is that of the shape: its sigmas are those of shape.csv.
+// Whether the covariance belongs to the shape, by the sigmas of both.
 bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
   constexpr double kTolerance = 1e-3;
   for (const ShapeMarker& marker : shape.markers) {
@@ -138,7 +138,7 @@ bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
   return true;
 }
 
-// `option` names the one that gives `uncertainty_path`.
+// `option` gives `uncertainty_path` and stands in messages.
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option) {
   const bool is_folder = IsFolder(path);
@@ -162,8 +162,9 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
       return result;
     }
     if (!uncertainty_path.empty()) {
-      throw InputError(fmt::format("{}: the uncertainty in {} is not that of {}, its sigmas differ",
-                                   option, uncertainty_path, path));
+      throw InputError(
+          fmt::format("{}: the uncertainty in {} does not belong to {}: the sigmas differ", option,
+                      uncertainty_path, path));
     }
   }
   result.covariance = CovarianceFromSigmas(result.shape);
@@ -174,7 +175,7 @@ void CheckUnit(const Options& options, const MarkerShape& shape, const MeshDista
   const std::optional<double> factor = UnitHint(shape, mesh);
   if (!factor) return;
   const std::string& path = options.paths.reference_path;
-  const std::string what = fmt::format("{}: is {:.3g} m across, which does not go with the shape",
+  const std::string what = fmt::format("{}: is {:.3g} m across, which does not match the shape",
                                        path, mesh.Diagonal_m());
   if (HasOwnUnit(path) || options.mesh.m_per_unit) {
     spdlog::warn("{}; is its unit right?", what);
@@ -199,8 +200,9 @@ Result CompareWithSurface(const Options& options, const UncertainShape& shape,
   CheckUnit(options, shape.shape, mesh);
   if (mesh.NumFlippedEdges() > 0) {
     spdlog::warn(
-        "{}: {} edges have triangles that look to opposite sides; signs there mean nothing", path,
-        mesh.NumFlippedEdges());
+        "{}: the triangles at {} edges face opposite sides, where the signs of distances are "
+        "arbitrary",
+        path, mesh.NumFlippedEdges());
   }
   Result result;
   result.deviation = CompareWithMesh(shape, mesh, layout, options.alignment, options.part);

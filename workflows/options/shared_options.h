@@ -1,4 +1,4 @@
-// Options that several commands share, and what is read from the files that they name.
+// Options that several commands share, and readers of the files that they name.
 
 #pragma once
 
@@ -35,7 +35,7 @@ struct PathOptions {
   std::string log_path;
 };
 
-// What is known of the markers: a layout file, or the options that replace it.
+// What the markers are: a layout file, or the options that replace it.
 struct MarkerOptions {
   std::string layout_path;
   std::string dictionary;
@@ -65,8 +65,8 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary);
 // `path`, or the shape.csv in it if it is a folder.
 std::string ShapeFile(const std::string& path);
 
-// The whole markers of an earlier shape; none for an empty path. Throws InputError for a file that
-// is no shape.csv or has no whole marker.
+// Reads the whole markers of an earlier shape; none for an empty path. Throws InputError for a file
+// that is not a shape.csv or has no whole marker.
 PriorShape LoadPriorShape(const std::string& prior_shape_path);
 
 }  // namespace velamap

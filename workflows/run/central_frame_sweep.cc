@@ -167,7 +167,7 @@ std::vector<int> ChooseCentralFrames(const std::string& choice, const PosedImage
   if (choice == "all") return ChooseEvery(choice, "1", posed);
   if (choice.rfind(every, 0) == 0) return ChooseEvery(choice, choice.substr(every.size()), posed);
   const std::vector<int> chosen = ChooseListed(choice, posed);
-  if (chosen.empty()) ThrowBadChoice(choice, "names nothing");
+  if (chosen.empty()) ThrowBadChoice(choice, "names no frame");
   return chosen;
 }
 

@@ -205,10 +205,10 @@ void AdjustmentOptions::Complete(int num_threads) {
 
 void CheckColmap(const std::string& colmap_path) {
   if (!ColmapHasOption(colmap_path, "bundle_adjuster", "input_path")) {
-    throw ExternalToolError(
-        fmt::format("{0}: is no COLMAP: {0} bundle_adjuster -h does not list --input_path; name "
-                    "COLMAP's program with --colmap_path",
-                    colmap_path));
+    throw ExternalToolError(fmt::format(
+        "{0}: not COLMAP's program ({0} bundle_adjuster -h does not list --input_path); "
+        "name it with --colmap_path",
+        colmap_path));
   }
 }
 

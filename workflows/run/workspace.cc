@@ -26,7 +26,7 @@ bool IsOurDatabase(const fs::path& path) {
          ColmapDatabase(path.string(), ColmapDatabase::Mode::kReadOnly).ReadDetector().has_value();
 }
 
-// The name of something that keeps a folder from being taken as the workspace; "" if nothing does.
+// The name of an entry that shows that the folder is not a workspace; "" if there is none.
 std::string ForeignEntry(const WorkspacePaths& paths, const std::string& image_path) {
   if (Exists(paths.Log()) || IsOurDatabase(paths.Database())) return "";
   for (const fs::path& entry : FolderEntries(paths.root)) {
@@ -43,7 +43,7 @@ void CheckExisting(const WorkspacePaths& paths, const std::string& image_path) {
   const std::string foreign = ForeignEntry(paths, image_path);
   if (!foreign.empty()) {
     throw InputError(
-        fmt::format("--workspace_path {}: holds {} and is no workspace of velamap; "
+        fmt::format("--workspace_path {}: holds {} and is not a workspace of velamap; "
                     "give a new or an empty folder",
                     paths.root.string(), foreign));
   }
@@ -55,7 +55,7 @@ void CheckExisting(const WorkspacePaths& paths, const std::string& image_path) {
   }
 }
 
-// What an interrupted run has left of its temporary folders (importer/base/atomic_output.h).
+// Removes temporary folders of an interrupted run (importer/base/atomic_output.h).
 void RemoveLeftovers(const WorkspacePaths& paths) {
   for (const fs::path& entry : FolderEntries(paths.root)) {
     const std::string name = entry.filename().string();
@@ -114,8 +114,7 @@ void AddModelImages(const Model& model, const std::string& image_path,
   }
   if (missing.empty()) return;
   spdlog::warn(
-      "{}: {} images of the model are not there, such as {}; delete the workspace to "
-      "read them again",
+      "{}: {} images of the model are missing, such as {}; delete the workspace to read them again",
       images_path.string(), missing.size(), missing.front());
 }
 
