@@ -82,7 +82,7 @@ enum class Convergence {
   kFailed,        // nothing to start from, or every system was singular
 };
 
-// What a problem of N parameters may leave out.
+// Base of a problem of N parameters, with defaults for what most problems have in common.
 template <int N>
 struct LeastSquaresProblem {
   using Equations = GaussNewtonEquations<N>;

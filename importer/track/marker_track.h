@@ -30,12 +30,12 @@ struct TrackPrediction {
   double margin_px = 0.0;
 };
 
-// By its velocity; a marker without one moves like those around it. `velocities` are those of all
-// markers, of one frame.
+// Predicts by the velocity; a marker without one moves like those around it. `velocities` are those
+// of all markers, each over one frame.
 TrackPrediction PredictByVelocity(const MarkerTrack& track,
                                   const std::vector<PointMotion>& velocities, int num_frames);
 
-// By how the markers around it have moved since the last frame.
+// Predicts by the motion of the markers around it since the last frame.
 TrackPrediction PredictByOthers(const MarkerTrack& track, const std::vector<PointMotion>& motions);
 
 // For each track the index of the quad that continues it, or -1: of the same id, the nearest first.
