@@ -16,20 +16,48 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <vector>
 #include <optional>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
+#include "importer/refine/camera_response.h"
 #include "importer/refine/refined_corners.h"
 
 namespace velamap {
+
+struct ResponseModel {
+  ToneCurve tone{CameraResponse{}};
+  cv::Mat unsharpening;
+  double spread_sides = 0.0;  // how far the ink of dark cells reaches beyond their outlines
+};
 
 // `cells`: 8-bit, square, with the black border, zero for black; row 0 runs from corner 0 to 1 and
 // column 0 from corner 0 to 3. Corners in OpenCV's pixel frame. Nothing if the marker leaves the
 // image, has too little contrast or does not look like its cells.
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
-                                         const cv::Mat& cells);
+                                         const cv::Mat& cells, const ResponseModel& response);
+
+// A marker whose fit can be repeated with other responses of the camera.
+class PatternSample {
+ public:
+  static std::optional<PatternSample> Make(const cv::Mat& gray, const QuadCorners& corners_px,
+                                           const cv::Mat& cells, const ResponseModel& response);
+  ~PatternSample();
+  PatternSample(PatternSample&&) noexcept;
+  PatternSample& operator=(PatternSample&&) noexcept;
+  PatternSample Clone() const;
+  int NumPixels() const;
+  bool Refit(const ResponseModel& response);
+  std::vector<float> Residuals(const CameraResponse& camera) const;
+
+ private:
+  class Impl;
+  explicit PatternSample(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace velamap
