@@ -21,6 +21,7 @@
 #include "importer/frame_turns.h"
 #include "importer/import_checks.h"
 #include "importer/import_completion.h"
+#include "importer/response_sampling.h"
 #include "importer/track/frame_detector.h"
 #include "importer/track/marker_tracking.h"
 #include "importer/video/frame_image.h"
@@ -258,13 +259,17 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;
   if (fs::is_directory(options.image_path)) detection.search = SearchMode::kExhaustive;
-  const FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
+  FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
 
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
   CheckExisting(options, DescribeDetector(detector), database);
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
+  if (detection.corner_refinement == CornerRefinement::kEdge && !getenv("NORESPONSE")) {
+    const auto estimate = EstimateResponseOfSource(options, detector);
+    if (estimate) detector.response = MakeResponseModel(estimate->response, estimate->spread_sides);
+  }
   ImportReport report =
       ImportFrames(options, detector, known_names, num_threads, progress, &database);
   report.num_images_present = static_cast<int>(known_names.size());

@@ -38,8 +38,8 @@ struct Shares {
   FloatsArray<kMaxRingedCells> value, by_x, by_blur;
 };
 
-inline void ComputeShares(Floats x, Floats blur, int num_cells, float margin_low,
-                          float margin_high, Shares* shares) {
+inline void ComputeShares(Floats x, Floats blur, int num_cells, float margin_low, float margin_high,
+                          Shares* shares) {
   constexpr float kReach = 3.3f;  // sigmas
   // Edge k lies between the ringed cells k and k + 1, and all are a cell apart but the first and
   // the last: these end the quiet zone.

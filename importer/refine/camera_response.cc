@@ -12,6 +12,11 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kKernelReach = 5;
 
 double GrayOf(const CameraResponse& response, double light) {
+  if (response.is_inverted) {
+    CameraResponse upright = response;
+    upright.is_inverted = false;
+    return 255 - GrayOf(upright, 255 - light);
+  }
   const double v = std::pow(std::max(light, 0.0) / 255, 1 / response.gamma);
   return 255 * (v - response.s_amplitude * std::sin(2 * kPi * v));
 }
@@ -79,6 +84,13 @@ double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {
   const float* lower = values.ptr<float>(row + 1) + column;
   return (1 - fy) * ((1 - fx) * upper[0] + fx * upper[1]) +
          fy * ((1 - fx) * lower[0] + fx * lower[1]);
+}
+
+GrayPatch Linearized(GrayPatch patch, const ToneCurve& tone) {
+  if (tone.IsLinear()) return patch;
+  patch.values.forEach<float>(
+      [&tone](float& value, const int*) { value = static_cast<float>(tone.Decode(value)); });
+  return patch;
 }
 
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const cv::Mat& unsharpening) {

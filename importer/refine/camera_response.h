@@ -5,8 +5,8 @@
 //   S(v) = v - s_amplitude sin(2 pi v)
 //   sharpened = gray + sharpening (gray - G gray),  G a Gaussian of sharpening_radius_px
 //
-// A power is what sRGB and Rec. 709 are nearly; the sine is the S that cameras put on top. Light and
-// grey values both run from 0 to 255.
+// A power is what sRGB and Rec. 709 are nearly; the sine is the S that cameras put on top. Light
+// and grey values both run from 0 to 255.
 
 #pragma once
 
@@ -25,6 +25,7 @@ struct CameraResponse {
   double s_amplitude = 0.0;
   double sharpening = 0.0;
   double sharpening_radius_px = 1.0;
+  bool is_inverted = false;  // of pictures whose grey values are 255 less those recorded
 };
 
 // The tone curve as a table over the square root of the light, in which all curves are smooth.
@@ -79,6 +80,9 @@ cv::Mat UnsharpeningKernel(const CameraResponse& response);
 
 // Bilinear; places outside take the nearest value inside.
 double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px);
+
+// The same patch as light, without the tone curve.
+GrayPatch Linearized(GrayPatch patch, const ToneCurve& tone);
 
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const cv::Mat& unsharpening);
 

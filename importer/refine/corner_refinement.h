@@ -16,6 +16,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
+#include "importer/refine/pattern_fit.h"
 #include "importer/refine/refined_corners.h"
 
 namespace velamap {
@@ -51,6 +52,7 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
 // The same for a marker whose cells are known (as in pattern_fit.h): the best way for its size.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
                                             const cv::Mat& cells,
+                                            const ResponseModel& response = {},
                                             const EdgeFitOptions& options = {});
 
 }  // namespace velamap

@@ -25,7 +25,7 @@ constexpr double kPixelNoise = 3.0;      // grey levels, against which the prior
 constexpr double kMinBlurPx = 0.3;
 constexpr double kMaxBlurPx = 4.0;
 constexpr double kBendOfDiagonal = 0.003;  // what cloth usually has; a can's label has ten times
-constexpr double kMarginSigma = 0.5;  // cells
+constexpr double kMarginSigma = 0.5;       // cells
 constexpr double kMinMargin = 0.1, kMaxMargin = 1.5;
 constexpr int kFirstPixels = 200;
 constexpr int kPixels = 1000;
@@ -114,8 +114,8 @@ VELAMAP_CLONE_FOR_AVX2 void Evaluate(const Problem& problem, const Pixels& pixel
   equations->Finish(parameters - problem.mean, problem.weight);
 }
 
-// Widths of the quiet zone in cells, as in PatternParameters: where, on the way out from a side, the
-// light is halfway between the marker's and what is beyond. 1 where the two are alike.
+// Widths of the quiet zone in cells, as in PatternParameters: where, on the way out from a side,
+// the light is halfway between the marker's and what is beyond. 1 where the two are alike.
 Eigen::Vector4d FindMargins(const Problem& problem, const QuadCorners& corners, double dark,
                             double light) {
   constexpr int kPlaces = 9, kSteps = 18;
@@ -132,10 +132,9 @@ Eigen::Vector4d FindMargins(const Problem& problem, const QuadCorners& corners, 
         const double across = side % 2 == 0 ? out : 1 - out;
         const Eigen::Vector2d uv =
             side < 2 ? Eigen::Vector2d(across, along) : Eigen::Vector2d(along, across);
-        profile[static_cast<std::size_t>(k)] +=
-            problem.model.tone->Decode(
-                InterpolatePatch(problem.patch, map.ToImage(uv.x(), uv.y()))) /
-            kPlaces;
+        profile[static_cast<std::size_t>(k)] += problem.model.tone->Decode(InterpolatePatch(
+                                                    problem.patch, map.ToImage(uv.x(), uv.y()))) /
+                                                kPlaces;
       }
     }
     const double beyond = (profile[kSteps - 1] + profile[kSteps - 2] + profile[kSteps - 3]) / 3;

@@ -17,8 +17,8 @@
 
 #include <array>
 #include <memory>
-#include <vector>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>

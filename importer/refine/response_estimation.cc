@@ -14,8 +14,8 @@ using Vector = Eigen::Matrix<double, 5, 1>;
 using Matrix = Eigen::Matrix<double, 5, 5>;
 
 // log gamma, S, sharpening, log radius, spread
-CameraResponse ResponseOf(const Vector& p) {
-  return {std::exp(p[0]), p[1], p[2], std::exp(p[3])};
+CameraResponse ResponseOf(const Vector& p, bool is_inverted) {
+  return {std::exp(p[0]), p[1], p[2], std::exp(p[3]), is_inverted};
 }
 
 const Vector kMean = (Vector() << std::log(1.6), 0.0, 0.1, std::log(1.0), 0.0).finished();
@@ -34,8 +34,8 @@ Vector Limited(Vector p) {
 using Samples = std::vector<PatternSample>;
 using AllResiduals = std::vector<std::vector<float>>;  // by sample; empty: the fit failed
 
-AllResiduals RefitAll(const Vector& p, Samples* samples) {
-  const CameraResponse response = ResponseOf(p);
+AllResiduals RefitAll(const Vector& p, bool is_inverted, Samples* samples) {
+  const CameraResponse response = ResponseOf(p, is_inverted);
   const ResponseModel model = MakeResponseModel(response, p[4]);
   AllResiduals all;
   for (PatternSample& sample : *samples) {
@@ -72,6 +72,7 @@ double Cost(const AllResiduals& all, const Samples& samples, const Vector& p, do
 }
 
 struct Course {
+  bool is_inverted = false;
   Vector p;
   Samples samples;
   AllResiduals residuals;
@@ -93,7 +94,7 @@ void Descend(int max_iterations, Course* course) {
       Vector q = course->p;
       q[k] += kStep[k];
       Samples copy = Copy(course->samples);
-      moved.push_back(RefitAll(q, &copy));
+      moved.push_back(RefitAll(q, course->is_inverted, &copy));
     }
     const Vector weight = (noise * kSigma.cwiseInverse()).cwiseAbs2();
     Matrix hessian = weight.asDiagonal();
@@ -122,7 +123,7 @@ void Descend(int max_iterations, Course* course) {
       damped.diagonal() *= 1 + damping;
       const Vector q = Limited(course->p - damped.ldlt().solve(gradient));
       Samples candidate = Copy(course->samples);
-      AllResiduals residuals = RefitAll(q, &candidate);
+      AllResiduals residuals = RefitAll(q, course->is_inverted, &candidate);
       const double candidate_cost = Cost(residuals, candidate, q, noise, scale);
       if (candidate_cost < cost) {
         change = (cost - candidate_cost) / cost;
@@ -148,20 +149,21 @@ ResponseModel MakeResponseModel(const CameraResponse& response, double spread_si
   return model;
 }
 
-ResponseEstimate EstimateResponse(const std::vector<ResponseSample>& samples) {
+ResponseEstimate EstimateResponse(const std::vector<ResponseSample>& samples, bool is_inverted) {
   std::optional<Course> best;
   double best_noise = std::numeric_limits<double>::max();
   for (const double gamma : {1.0, 1.5, 2.2}) {
     Course course;
+    course.is_inverted = is_inverted;
     course.p = kMean;
     course.p[0] = std::log(gamma);
     course.p[2] = 0.1;
-    const ResponseModel model = MakeResponseModel(ResponseOf(course.p), 0.0);
+    const ResponseModel model = MakeResponseModel(ResponseOf(course.p, is_inverted), 0.0);
     for (const ResponseSample& sample : samples) {
       auto made = PatternSample::Make(sample.gray, sample.corners_px, sample.cells, model);
       if (made) course.samples.push_back(std::move(*made));
     }
-    course.residuals = RefitAll(course.p, &course.samples);
+    course.residuals = RefitAll(course.p, is_inverted, &course.samples);
     const double noise = Noise(course.residuals);
     if (noise > 0 && noise < best_noise) {
       best_noise = noise;
@@ -171,11 +173,12 @@ ResponseEstimate EstimateResponse(const std::vector<ResponseSample>& samples) {
   ResponseEstimate estimate;
   if (!best) return estimate;
   Descend(12, &*best);
-  estimate.response = ResponseOf(best->p);
+  estimate.response = ResponseOf(best->p, is_inverted);
   estimate.spread_sides = best->p[4];
   estimate.sigma = best->sigma;
   estimate.rms = best->noise;
   estimate.num_iterations = best->num_iterations;
+  estimate.num_samples = static_cast<int>(best->samples.size());
   return estimate;
 }
 

@@ -1,5 +1,5 @@
-// What camera and print do to edges, from the markers of a clip: the response (camera_response.h) and
-// the spread of the ink that explain the pixels of all sampled markers best.
+// What camera and print do to edges, from the markers of a clip: the response (camera_response.h)
+// and the spread of the ink that explain the pixels of all sampled markers best.
 
 #pragma once
 
@@ -24,9 +24,10 @@ struct ResponseEstimate {
   Eigen::Matrix<double, 5, 1> sigma = Eigen::Matrix<double, 5, 1>::Zero();
   double rms = 0.0;
   int num_iterations = 0;
+  int num_samples = 0;
 };
 
-ResponseEstimate EstimateResponse(const std::vector<ResponseSample>& samples);
+ResponseEstimate EstimateResponse(const std::vector<ResponseSample>& samples, bool is_inverted);
 
 ResponseModel MakeResponseModel(const CameraResponse& response, double spread_sides);
 

@@ -60,6 +60,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
                          {},
                          {},
                          {},
+                         {},
                          {}};
   for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
     detector.looks.push_back(
@@ -180,7 +181,8 @@ FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
   detections.time_s = frame.time_s;
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
-       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options)) {
+       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options,
+                     detector.response)) {
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;
     if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {

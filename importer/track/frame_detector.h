@@ -19,6 +19,7 @@
 #include "importer/layout/dictionary.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
+#include "importer/refine/pattern_fit.h"
 #include "importer/video/frame_source.h"
 
 namespace velamap {
@@ -36,6 +37,7 @@ struct FrameDetector {
   std::map<int, std::string> part_of_id;  // empty: every id is welcome
   std::vector<MarkerLook> looks;          // of every id of the dictionary
   std::vector<std::vector<int>> lines;    // ids along those of the layout; tracked search only
+  ResponseModel response;                 // of the camera, and the spread of the print's ink
   PriorShape prior_shape;                 // of markers that can be detected; may be empty
 };
 
