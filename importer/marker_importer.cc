@@ -17,11 +17,11 @@
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
 #include "importer/dictionary_hint.h"
+#include "importer/formation_sampling.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
 #include "importer/import_checks.h"
 #include "importer/import_completion.h"
-#include "importer/response_sampling.h"
 #include "importer/track/frame_detector.h"
 #include "importer/track/marker_tracking.h"
 #include "importer/video/frame_image.h"
@@ -266,9 +266,10 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   CheckExisting(options, DescribeDetector(detector), database);
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
-  if (detection.corner_refinement == CornerRefinement::kEdge && !getenv("NORESPONSE")) {
-    const auto estimate = EstimateResponseOfSource(options, detector);
-    if (estimate) detector.response = MakeResponseModel(estimate->response, estimate->spread_sides);
+  if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
+    detector.formation = ImageFormation(
+        EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector)
+            .parameters);
   }
   ImportReport report =
       ImportFrames(options, detector, known_names, num_threads, progress, &database);

@@ -6,16 +6,17 @@ house_folder(importer/base PUBLIC
   atomic_output bounded_queue csv error ids natural_order numbers parallel stage_timer statistics
   text_file)
 house_folder(importer/geometry PUBLIC
-  alignment consensus_pose pose_step quad rigid3 triple_pose unit_square_map)
+  alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
+  rigid3 unit_square_map)
 house_folder(importer/camera PUBLIC
-  calibration camera camera_projection)
+  calibration camera camera_jacobian camera_projection)
 house_folder(importer/layout PUBLIC
   dictionary frame_choice layout prior_shape)
 house_folder(importer/video PUBLIC
   frame_image frame_source image_file video_options)
 house_folder(importer/detect PUBLIC
   corner_colors detection detection_options duplicates interpolate marker_alignment
-  marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
+  marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
 house_folder(importer/refine PUBLIC
   marker_detector)
 house_folder(importer/track PUBLIC

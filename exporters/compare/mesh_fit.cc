@@ -6,19 +6,17 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "exporters/compare/comparison_sigma.h"
 #include "importer/base/error.h"
+#include "importer/geometry/least_squares.h"
 
 namespace velamap {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr std::size_t kMinPoints = 6;
 constexpr std::size_t kMaxCoarsePoints = 150;
@@ -118,32 +116,64 @@ std::vector<double> TukeyWeights(const std::vector<Residual>& residuals, double 
   return weights;
 }
 
-// One Gauss-Newton step; returns how far it moves the points at most.
-double Step(const std::vector<Residual>& residuals, const std::vector<double>& weights,
-            Rigid3* pose) {
+// The pose of points on a surface with fixed weights, as a problem of MinimizeSquares(). A step
+// turns the points about their centre, by an angle times their radius, and shifts them.
+struct SurfaceProblem : LeastSquaresProblem<6> {
+  using Parameters = Rigid3;
+  struct Equations : GaussNewtonEquations<6> {
+    std::vector<Residual> residuals;
+  };
+
+  const Points& points;
+  const MeshDistance& mesh;
+  const Rigid3 start;
+  const std::vector<Residual>& residuals_at_start;
+  const std::vector<double>& weights;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const Residual& r : residuals) center += r.x_m / static_cast<double>(residuals.size());
   double radius_m = 0.0;
-  for (const Residual& r : residuals) radius_m = std::max(radius_m, (r.x_m - center).norm());
-  Matrix6d normal = Matrix6d::Zero();
-  Vector6d right = Vector6d::Zero();
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const Residual& r = residuals[i];
-    Vector6d row;
-    row << (r.x_m - center).cross(r.direction) / radius_m, r.direction;
-    normal += weights[i] * row * row.transpose();
-    right -= weights[i] * r.distance_m * row;
+
+  SurfaceProblem(const Points& all, const MeshDistance& surface, const Rigid3& pose,
+                 const std::vector<Residual>& residuals, const std::vector<double>& all_weights)
+      : points(all),
+        mesh(surface),
+        start(pose),
+        residuals_at_start(residuals),
+        weights(all_weights) {
+    for (const Residual& r : residuals) center += r.x_m / static_cast<double>(residuals.size());
+    for (const Residual& r : residuals) radius_m = std::max(radius_m, (r.x_m - center).norm());
   }
-  // Keeps motions still that the surface leaves open, and hardly slows the others.
-  normal.diagonal().array() += 1e-9 * normal.trace();
-  const Vector6d motion = normal.ldlt().solve(right);
-  const Eigen::Vector3d turn = motion.head<3>() / radius_m;
-  const double angle = std::min(turn.norm(), kMaxTurn_rad);
-  const Eigen::Quaterniond rotation(turn.norm() > 0 ? Eigen::AngleAxisd(angle, turn.normalized())
-                                                    : Eigen::AngleAxisd::Identity());
-  const Rigid3 moved{rotation, center - rotation * center + motion.tail<3>()};
-  *pose = moved * *pose;
-  return angle * radius_m + motion.tail<3>().norm();
+
+  void Evaluate(const Rigid3& pose, bool, Equations* equations) const {
+    *equations = {};
+    const bool is_start =
+        pose.rotation.coeffs() == start.rotation.coeffs() && pose.translation == start.translation;
+    equations->residuals = is_start ? residuals_at_start : ComputeResiduals(points, pose, mesh);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const Residual& r = equations->residuals[i];
+      Eigen::Matrix<double, 1, 6> row;
+      row << (r.x_m - center).cross(r.direction).transpose() / radius_m, r.direction.transpose();
+      const double root = std::sqrt(weights[i]);
+      equations->Add<1>(root * row, Eigen::Matrix<double, 1, 1>(root * r.distance_m));
+    }
+    // Keeps motions still that the surface leaves open, and hardly slows the others.
+    equations->AddToDiagonal(1e-9 * equations->hessian().trace());
+  }
+
+  Rigid3 Plus(const Rigid3& pose, const Step& step) const {
+    const Eigen::Vector3d turn = step.head<3>() / radius_m;
+    const double angle = std::min(turn.norm(), kMaxTurn_rad);
+    const Eigen::Quaterniond rotation(turn.norm() > 0 ? Eigen::AngleAxisd(angle, turn.normalized())
+                                                      : Eigen::AngleAxisd::Identity());
+    return Rigid3{rotation, center - rotation * center + step.tail<3>()} * pose;
+  }
+};
+
+double LargestMotion_m(const std::vector<Residual>& before, const std::vector<Residual>& after) {
+  double largest_m = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    largest_m = std::max(largest_m, (after[i].x_m - before[i].x_m).norm());
+  }
+  return largest_m;
 }
 
 struct Fit {
@@ -152,14 +182,18 @@ struct Fit {
   bool has_converged = false;
 };
 
+// One step of least squares after another, with new weights for each.
 Fit Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start, bool is_fine,
             int num_iterations) {
+  LeastSquaresOptions one_step;
+  one_step.initial_damping = 1e-12;
+  one_step.min_relative_decrease = 1.0;
   Fit best{start, 0.0, false};
   Rigid3 pose = start;
+  std::vector<Residual> residuals = ComputeResiduals(points, pose, mesh);
   for (int i = 0;; ++i) {
-    const std::vector<Residual> residuals = ComputeResiduals(points, pose, mesh);
     const double trimmed_rms_m = TrimmedRms(residuals);
-    // The robust fit goes where its weights lead; the coarse one may overshoot and has to better.
+    // The robust fit goes where its weights lead; the coarse one keeps the best pose on its way.
     if (i == 0 || is_fine || trimmed_rms_m < best.trimmed_rms_m) {
       best.pose = pose;
       best.trimmed_rms_m = trimmed_rms_m;
@@ -169,7 +203,12 @@ Fit Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start,
     const std::vector<double> weights = is_robust
                                             ? TukeyWeights(residuals, kFloor * mesh.Diagonal_m())
                                             : std::vector<double>(residuals.size(), 1.0);
-    best.has_converged = Step(residuals, weights, &pose) < kConverged * mesh.Diagonal_m();
+    SurfaceProblem::Equations equations;
+    MinimizeSquares(one_step, SurfaceProblem(points, mesh, pose, residuals, weights), &pose,
+                    &equations);
+    best.has_converged =
+        LargestMotion_m(residuals, equations.residuals) < kConverged * mesh.Diagonal_m();
+    residuals = std::move(equations.residuals);
   }
 }
 

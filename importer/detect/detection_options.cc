@@ -18,7 +18,7 @@ constexpr std::array<std::pair<CornerRefinement, const char*>, 3> kRefinements =
 constexpr std::array<std::pair<SearchMode, const char*>, 2> kSearchModes = {
     {{SearchMode::kExhaustive, "exhaustive"}, {SearchMode::kTracked, "tracked"}}};
 
-// Written so that a NaN fails.
+// Written so that NaN fails the test.
 void CheckRange(const char* option, double value, double min, double max) {
   if (!(value >= min && value <= max)) {
     throw InputError(

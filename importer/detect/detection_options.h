@@ -1,4 +1,4 @@
-// Options of detection, free of OpenCV so that every room may hold them.
+// Options of detection. They are free of OpenCV, so that every room can include them.
 
 #pragma once
 
@@ -30,9 +30,11 @@ struct ArucoDetectionOptions {
   double min_marker_perimeter_rate = 0.01;
   // Fraction of the dictionary's error correction that is used. OpenCV's 0.6 lets false ids in.
   double error_correction_rate = 0.3;
-  bool inverted = false;                     // white marker on black ground
-  SearchMode search = SearchMode::kTracked;  // of videos; photographs are searched as a whole
-  int full_search_interval = 15;             // tracked: the whole of every k-th frame that is read
+  bool inverted = false;  // white marker on black ground
+  // Edge corners: what camera and print do to edges is estimated from the first frames.
+  bool estimate_formation = true;
+  SearchMode search = SearchMode::kTracked;  // for videos; photographs are searched as a whole
+  int full_search_interval = 15;  // tracked: every k-th frame that is read is searched as a whole
 
   void Check() const;  // throws InputError that names the option
 };

@@ -9,7 +9,7 @@ namespace {
 
 using P = PatternParameters;
 
-// Sigma of the blur across columns and across rows, in cells of the marker's middle.
+// Sigma of the blur across columns and across rows, in cells at the centre of the marker.
 Eigen::Vector2d BlurInCells(const P::Vector& parameters, const QuadCorners& quad, int num_cells) {
   const Eigen::Vector2d along_u = 0.5 * (quad[1] - quad[0] + quad[2] - quad[3]);
   const Eigen::Vector2d along_v = 0.5 * (quad[3] - quad[0] + quad[2] - quad[1]);
@@ -19,14 +19,14 @@ Eigen::Vector2d BlurInCells(const P::Vector& parameters, const QuadCorners& quad
                          parameters[P::kBlurV] * along_u.norm());
 }
 
-// How much of a blurred place lies within the rows (or columns) of the black square, and within
-// those and the quiet zone's.
+// The part of a blurred place within the rows (or columns) of the black square, and the part within
+// these and the quiet zone.
 struct Within {
   double square = 1.0, quiet_zone = 1.0;
 };
 
-// Where the surroundings are read along one axis: the middle of their first cell, or a sigma of the
-// blur beyond the quiet zone if that is further out.
+// Place along one axis where the surroundings are read: the middle of their first cell, or one
+// sigma of the blur beyond the quiet zone if that is further out.
 class RingReading {
  public:
   RingReading(double blur_cells, double margin_low, double margin_high)
@@ -35,14 +35,14 @@ class RingReading {
         margin_high_(margin_high),
         blur_cells_(blur_cells) {}
 
-  // Of cell `i` of `n`, in sides of the square.
+  // Place of cell `i` of `n`, in sides of the square.
   double Place(int i, int n) const {
     if (i == -kRing) return -(margin_low_ + beyond_cells_) / n;
     if (i == n + kRing - 1) return 1 + (margin_high_ + beyond_cells_) / n;
     return (i + 0.5) / n;
   }
 
-  // The other cells are taken to lie deep within.
+  // The other cells count as far inside.
   Within Weights(int i, int n) const {
     if (i != -kRing && i != n + kRing - 1) return {};
     const double margin = i < 0 ? margin_low_ : margin_high_;

@@ -1,5 +1,5 @@
-// The picture of a whole marker and its derivatives: the inner step of pattern_fit.h, which says
-// what the model is. Inline as a whole, for VELAMAP_CLONE_FOR_AVX2.
+// Evaluates the model of pattern_fit.h and its derivatives. All of it is inline, for
+// VELAMAP_CLONE_FOR_AVX2.
 
 #pragma once
 
@@ -19,8 +19,8 @@ struct PatternPixels {
   FloatsArray<PatternParameters::kCount> jacobian;  // by the parameters
 };
 
-// The model with its parameters, ready for many pixels. Places are in OpenCV's pixel frame, less
-// the model's `center_px`.
+// The model with given parameters, prepared for many pixels. Places are in OpenCV's pixel frame,
+// relative to `center_px` of the model.
 class PatternPicture {
  public:
   PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters)
@@ -30,8 +30,7 @@ class PatternPicture {
     square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
   }
 
-  // Whether a place is no further outside the black square than the model says what is there; -1
-  // for yes.
+  // Whether the model covers a place, inside or near the black square; -1 for yes.
   Ints Covers(Floats x, Floats y) const {
     const Place place = ToSquare(x, y);
     const auto margin = static_cast<float>(kMarginInCells / model_.num_cells);
@@ -55,8 +54,8 @@ class PatternPicture {
     Around around;
     Blended pattern = BlendAll(
         u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner, &around);
-    if (model_.spread_cells != 0) {
-      ApplySpread(static_cast<float>(model_.spread_cells), cells_u * p[P::kBlurU],
+    if (model_.ink_spread_cells != 0) {
+      ApplySpread(static_cast<float>(model_.ink_spread_cells), cells_u * p[P::kBlurU],
                   cells_v * p[P::kBlurV], &pattern);
     }
 
@@ -75,7 +74,7 @@ class PatternPicture {
       jacobian[index] = -share * by_x;
       jacobian[index + 1] = -share * by_y;
     };
-    // A corner that moves takes each place along by its bilinear share, nearly enough for a step.
+    // A moving corner shifts each place by its bilinear weight; this is accurate enough for a step.
     set_place(P::kCorners, (1.0f - flat.u) * (1.0f - flat.v));
     set_place(P::kCorners + 2, flat.u * (1.0f - flat.v));
     set_place(P::kCorners + 4, flat.u * flat.v);
@@ -109,8 +108,8 @@ class PatternPicture {
     Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
   };
 
-  // Ink that reaches `spread` cells beyond the outlines of the dark cells moves each edge towards
-  // the light: to second order in the spread. Derivatives stay as they are.
+  // Moves every edge by `spread` cells towards the light side, to second order in the spread. The
+  // derivatives keep their values without it, which is enough for a step.
   static void ApplySpread(float spread, Floats blur_u, Floats blur_v, Blended* pattern) {
     const Floats squared_slope =
         pattern->by_u * pattern->by_u + pattern->by_v * pattern->by_v + 1e-8f;

@@ -48,6 +48,7 @@ struct RegistrationOptions {
   int min_num_inliers = 2;    // fewest shared markers that agree for a frame to be registered
   int min_num_frames = 2;     // fewest frames that see a marker
   int random_seed = 0;
+  int num_threads = 0;  // 0: one a core
   ThesisRegistrationOptions thesis;
   GlobalRegistrationOptions global;
 

@@ -299,6 +299,29 @@ TEST(GlobalRegistration, OrderAndIdsOfImagesChangeNothing) {
   }
 }
 
+TEST(GlobalRegistration, TheNumberOfThreadsDecidesNothing) {
+  SyntheticScene scene = MakeScene(SceneKind::kCube, 16, false);
+  AddNoise({0.3, 0.05, 0.01, 200, 4}, &scene);
+  RegistrationOptions options;
+  options.num_threads = 1;
+  const Registration expected = Register(scene, options);
+  for (const int num_threads : {2, 5}) {
+    options.num_threads = num_threads;
+    const Registration registration = Register(scene, options);
+    EXPECT_EQ(registration.shape, expected.shape) << num_threads;
+    EXPECT_EQ(registration.notes, expected.notes) << num_threads;
+    ASSERT_EQ(registration.frames.size(), expected.frames.size()) << num_threads;
+    for (std::size_t i = 0; i < expected.frames.size(); ++i) {
+      const auto &pose = registration.frames[i].cam_from_shape,
+                 &expected_pose = expected.frames[i].cam_from_shape;
+      ASSERT_EQ(pose.has_value(), expected_pose.has_value()) << num_threads;
+      if (!pose) continue;
+      EXPECT_EQ(pose->rotation.coeffs(), expected_pose->rotation.coeffs()) << num_threads;
+      EXPECT_EQ(pose->translation, expected_pose->translation) << num_threads;
+    }
+  }
+}
+
 TEST(GlobalRegistration, SeedDecidesNothingThatMatters) {
   SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);
   AddNoise({0.2, 0.0, 0.03, 200, 3}, &scene);
