@@ -19,6 +19,7 @@
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
 #include "importer/dictionary_hint.h"
+#include "importer/formation_sampling.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
 #include "importer/import_checks.h"
@@ -268,13 +269,18 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;
   if (IsFolder(options.image_path)) detection.search = SearchMode::kExhaustive;
-  const FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
+  FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
 
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
   CheckExisting(options, DescribeDetector(detector), database);
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
+  if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
+    detector.formation = ImageFormation(
+        EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector)
+            .parameters);
+  }
   ImportReport report =
       ImportFrames(options, detector, known_names, num_threads, progress, &database);
   report.num_images_present = static_cast<int>(known_names.size());

@@ -27,6 +27,9 @@ OptionGroup DescribeOptions(ArucoDetectionOptions* options) {
         "smallest perimeter of a marker, relative to the larger image side", FromTo(0.001, 4)},
        {"ArucoDetection.error_correction_rate", &options->error_correction_rate, "fraction",
         "part of the dictionary's error correction that is used", FromTo(0, 1)},
+       {"ArucoDetection.estimate_formation", &options->estimate_formation, "0|1",
+        "edge: estimate from the first frames how the camera's tone curve, its sharpening and the "
+        "print's ink move edges; 0: assume linear pictures and a perfect print"},
        {"ArucoDetection.inverted", &options->inverted, "0|1", "white markers on black ground"},
        ChoiceOption("ArucoDetection.search", &options->search, kSearchModes,
                     "where to search in a video: around the markers of the previous frames, or "

@@ -30,6 +30,7 @@ struct ArucoDetectionOptions {
   // OpenCV's default of 0.6 lets false ids in.
   double error_correction_rate = 0.3;
   bool inverted = false;
+  bool estimate_formation = true;
   SearchMode search = SearchMode::kTracked;
   int full_search_interval = 15;
 

@@ -60,6 +60,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
                          {},
                          {},
                          {},
+                         {},
                          {}};
   for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
     detector.looks.push_back(
@@ -98,6 +99,10 @@ std::string DescribeDetector(const FrameDetector& detector) {
   // Databases of earlier versions hold the prior shape under the name map.
   if (!detector.prior_shape.empty()) {
     search += fmt::format(" map={:016x}", Hash(PriorShapeText(detector.prior_shape)));
+  }
+  if (detector.options.corner_refinement == CornerRefinement::kEdge &&
+      detector.options.estimate_formation) {
+    search += " formation=estimated";
   }
   return fmt::format(
       "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
@@ -180,7 +185,8 @@ FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
   detections.time_s = frame.time_s;
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
-       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options)) {
+       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options,
+                     detector.formation)) {
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;
     if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {
