@@ -18,6 +18,7 @@ house_folder(importer/detect PUBLIC
   corner_colors detection detection_options duplicates interpolate marker_alignment
   marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
 house_folder(importer/refine PUBLIC
+  formation_estimation image_formation
   marker_detector)
 house_folder(importer/track PUBLIC
   frame_detector marker_tracking)
