@@ -52,16 +52,11 @@ void WarnOfSymmetries(const FrameDetector& detector) {
 
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
                                 const PriorShape& prior_shape) {
-  FrameDetector detector{options,
-                         LoadDictionary(layout.dictionary),
-                         layout.border_bits,
-                         BuildAdjacencyGraph(layout),
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {}};
+  FrameDetector detector;
+  detector.options = options;
+  detector.dictionary = LoadDictionary(layout.dictionary);
+  detector.border_bits = layout.border_bits;
+  detector.graph = BuildAdjacencyGraph(layout);
   for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
     detector.looks.push_back(
         {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
