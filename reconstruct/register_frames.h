@@ -1,4 +1,4 @@
-// The door of the registration: detections in, poses of frames and places of markers out.
+// Registration: from detections to poses of frames and positions of markers.
 
 #pragma once
 
@@ -13,9 +13,9 @@
 
 namespace velamap {
 
-// Registers the images by the method that the options name:
-// reconstruct/global/global_registration.h or reconstruct/thesis/thesis_registration.h, which say
-// what is thrown. The order of `images` and their ids do not matter.
+// Registers the images by the method in the options; reconstruct/global/global_registration.h and
+// reconstruct/thesis/thesis_registration.h document what is thrown. The order of `images` and their
+// ids do not change the result.
 Registration RegisterFrames(const std::vector<DatabaseImage>& images,
                             const std::map<CameraId, Camera>& cameras, const Layout& layout,
                             const RegistrationOptions& options);

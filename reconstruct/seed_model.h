@@ -12,12 +12,11 @@
 
 namespace velamap {
 
-// Every registered image with all keypoints of the database, every corner of the mean shape as
-// point 10*k + c with its complete track, coloured by the mean over the track. The central image
-// comes first (it is the origin) and the others in the order that reconstruct/model/gauge.h
-// explains. Images left with fewer than two markers, and points with fewer than two observations,
-// stay out, unless a single frame was asked for: its points have one each. Throws DataError when
-// fewer than two images are left.
+// Contains every registered image with all keypoints of the database, and every corner of the mean
+// shape as point 10*k + c with its complete track and the mean colour over the track. The central
+// image comes first and is the origin; reconstruct/model/gauge.h defines the order of the others.
+// Images with fewer than two markers and points with fewer than two observations are left out,
+// unless the registration has a single frame. Throws DataError if fewer than two images are left.
 Model MakeSeedModel(const Registration& registration, const std::vector<DatabaseImage>& images,
                     const std::map<CameraId, Camera>& cameras);
 

@@ -20,7 +20,7 @@ namespace {
 
 using Corners = std::array<Eigen::Vector2d, kNumCorners>;
 
-// The normal equations of one point, cameras held.
+// The normal equations of one point with fixed cameras.
 class PointEquations : public GaussNewtonEquations<3> {
  public:
   int num_observations = 0;
@@ -32,7 +32,7 @@ class PointEquations : public GaussNewtonEquations<3> {
 PointEquations EquationsOf(const Model& model, const std::map<ImageId, const ModelImage*>& images,
                            const Point3D& point) {
   PointEquations equations;
-  // By image, so that sums do not depend on the track's order.
+  // Sorted by image, so that sums do not depend on the order of the track.
   std::map<ImageId, TrackElement> track;
   for (const TrackElement& element : point.track) track[element.image_id] = element;
   for (const auto& [image_id, element] : track) {
@@ -57,7 +57,7 @@ std::map<ImageId, const ModelImage*> ImagesById(const Model& model) {
   return images;
 }
 
-// The four image points of every marker that an image sees as a whole.
+// The four image points of every marker whose corners an image sees all.
 std::map<int, Corners> WholeMarkersIn(const ModelImage& image) {
   std::map<int, std::map<int, Eigen::Vector2d>> corners;
   for (const Point2D& point : image.points2D) {
@@ -73,7 +73,7 @@ std::map<int, Corners> WholeMarkersIn(const ModelImage& image) {
   return whole;
 }
 
-// By marker: sum of squares over sum of its mean side in the images, px.
+// The mean side of each marker in the images, weighted by the side itself, px.
 std::map<int, double> SidesInImages(const Model& model) {
   std::map<int, std::pair<double, double>> sums;
   for (const auto& [image_id, image] : ImagesById(model)) {
@@ -94,7 +94,7 @@ std::map<int, double> SidesInImages(const Model& model) {
 struct MarkerEquations {
   std::array<PointEquations, kNumCorners> corners;
   double sum_of_squares_px2 = 0.0;
-  int redundancy = 0;  // residuals less the points' coordinates
+  int redundancy = 0;  // number of residuals minus number of coordinates
   double variance_px2 = 0.0;
 
   bool IsDetermined() const {
@@ -103,7 +103,7 @@ struct MarkerEquations {
   }
 };
 
-// What the cameras absorb of the residuals too, as a factor of the variance.
+// Factor of the variance for the part of the residuals that the cameras absorb.
 double CameraFactor(const std::map<int, MarkerEquations>& markers, std::size_t num_images) {
   constexpr double kMaxFactor = 3.0;
   double redundancy = 0.0;
@@ -145,7 +145,7 @@ std::map<int, MarkerEquations> EquationsOfMarkers(const Model& model) {
   return markers;
 }
 
-// 1 sigma of the function with this gradient by the four corners.
+// 1 sigma of the function with this gradient with respect to the four corners.
 double SigmaOf(const MarkerEquations& equations, const PointGradient& gradient) {
   std::array<Eigen::Vector3d, kNumCorners> by_corner;
   by_corner.fill(Eigen::Vector3d::Zero());
@@ -173,7 +173,7 @@ PointGradient RatioGradient(const ShapeMarker& marker, const MarkerSidesMeasured
   return gradient;
 }
 
-// The place of a point, cameras held, as a problem of MinimizeSquares().
+// The position of a point with fixed cameras, as a problem of MinimizeSquares().
 struct IntersectionProblem : LeastSquaresProblem<3> {
   using Parameters = Eigen::Vector3d;
   using Equations = PointEquations;
@@ -201,7 +201,7 @@ struct IntersectionProblem : LeastSquaresProblem<3> {
   }
 };
 
-// The point stays where the search does not converge.
+// Keeps the point if the search does not converge.
 void IntersectPoint(const Model& model, const std::map<ImageId, const ModelImage*>& images,
                     Point3D* point) {
   LeastSquaresOptions options;
@@ -215,7 +215,7 @@ void IntersectPoint(const Model& model, const std::map<ImageId, const ModelImage
   }
 }
 
-// The detector sees corners by `inset_px` too far inside along both sides of the marker.
+// Corrects corners that the detector sees `inset_px` too far inside along both sides of the marker.
 void MoveOut(double inset_px, ModelImage* image) {
   const std::map<int, Corners> markers = WholeMarkersIn(*image);
   for (Point2D& point : image->points2D) {

@@ -40,7 +40,7 @@ ModelMetrics ComputeModelMetrics(const Model& model, const std::vector<int>& lay
   ModelMetrics metrics;
   std::map<ImageId, ImageErrors> errors_of;
   std::vector<double> all_errors_px;
-  for (const ReprojectionError& error : ComputeReprojectionErrors(model)) {
+  for (const ObservationError& error : ComputeReprojectionErrors(model)) {
     ImageErrors& image = errors_of[error.element.image_id];
     if (IsCornerPoint3DId(error.point3D_id)) {
       const CornerId corner = CornerFromPoint3DId(error.point3D_id);

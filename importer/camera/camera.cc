@@ -34,7 +34,7 @@ const ModelEntry& Entry(CameraModel model) {
   throw std::logic_error("unknown camera model");
 }
 
-// Affine part of the model: image = focal * distorted + principal point.
+// The affine part of the model: image = focal * distorted + principal point.
 struct Intrinsics {
   Eigen::Vector2d focal_px;
   Eigen::Vector2d principal_point_px;
@@ -90,7 +90,7 @@ std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
     const RayFunction found = DistortRayWithJacobian(camera.model, intrinsics.distortion, ray);
     const Eigen::Vector2d error = found.value - distorted;
     if (error.norm() < kTolerance) return ray;
-    // Beyond the turning point of the distortion the map folds over and has no inverse.
+    // Beyond its turning point the distortion folds over and has no unique inverse.
     if (!(found.by_ray.determinant() > 1e-6)) return std::nullopt;
     ray -= found.by_ray.inverse() * error;
   }

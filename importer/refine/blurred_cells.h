@@ -39,18 +39,20 @@ struct Shares {
   FloatsArray<kMaxRingedCells> value, by_x, by_blur;
 };
 
-inline void ComputeShares(Floats x, Floats blur, int num_cells, Shares* shares) {
+inline void ComputeShares(Floats x, Floats blur, int num_cells, float margin_low, float margin_high,
+                          Shares* shares) {
   constexpr float kReach = 3.3f;  // sigmas
-  // Edge k lies between the ringed cells k and k + 1.
+  // Edge k lies between the ringed cells k and k + 1. Edges are one cell apart, except the first
+  // and the last, where the quiet zone ends after `margin_low` and `margin_high` cells.
   const int all_edges = num_cells + 2 * kRing - 1;
   const Floats place = x + static_cast<float>(kRing - 1);
   // A diverging fit makes these infinite or NaN; the limits keep the cells inside the pattern.
   const Floats limit = AllLanes(2 * kMaxRingedCells);
   const Floats reach = Min(kReach * blur, limit);
   // The same number of edges for all places; edges out of reach have no effect.
-  const int num_edges = std::min(static_cast<int>(2 * MaxLane(reach)) + 1, all_edges);
+  const int num_edges = std::min(static_cast<int>(2 * MaxLane(reach)) + 2, all_edges);
   Ints low = Floor(Max(Min(place, limit), -limit) - reach) + 1;
-  low = low < 0 ? Ints{} : low;
+  low = low < 2 ? Ints{} : low;
   low = low > all_edges - num_edges ? Ints{} + (all_edges - num_edges) : low;
   shares->first = low;
   shares->least_first = MinLane(low);
@@ -63,7 +65,11 @@ inline void ComputeShares(Floats x, Floats blur, int num_cells, Shares* shares) 
   Floats distribution = AllLanes(1.0), density{}, moment{};
   for (int i = 0; i < num_edges; ++i) {
     const auto index = static_cast<std::size_t>(i);
-    const Floats z = (from_low - static_cast<float>(i)) * inverse_blur;
+    const Ints edge = low + i;
+    const Floats none{};
+    const Floats inwards = (edge == 0 ? AllLanes(1 - margin_low) : none) -
+                           (edge == all_edges - 1 ? AllLanes(1 - margin_high) : none);
+    const Floats z = (from_low - static_cast<float>(i) - inwards) * inverse_blur;
     const NormalLanes normal = NormalAt(z);
     const Floats next_density = normal.density * inverse_blur;
     const Floats next_moment = -z * next_density;
@@ -183,9 +189,16 @@ inline Blended BlendGround(const Shares& u, const Shares& v, int num_cells) {
           -a.by_blur * b.by_blur / (u.blur * v.blur)};
 }
 
+// The surroundings of the quiet zone, and the derivatives by its widths: before the first column,
+// after the last column, before the first row, after the last row.
+struct Around {
+  Blended blended;
+  std::array<FloatsArray<1>, 4> by_margin{};
+};
+
 // For cells that are dark except in the outermost ring.
-inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const Shares& v,
-                              int num_cells) {
+inline Around BlendOutermost(const Lightness& lightness, const Shares& u, const Shares& v,
+                             int num_cells) {
   std::array<const float*, kLanes> corners;
   for (int lane = 0; lane < kLanes; ++lane) {
     corners[static_cast<std::size_t>(lane)] =
@@ -195,9 +208,13 @@ inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const
   const auto is_outermost = [&](const Shares& shares, int i) {
     return shares.least_first + i == 0 || shares.largest_first + i == last;
   };
-  return internal::BlendRows(u, v, [&](int j) {
+  Around around;
+  int j = 0;
+  around.blended = internal::BlendRows(u, v, [&](int row) {
+    j = row;
     const bool is_outermost_row = is_outermost(v, j);
     internal::Sums sums;
+    Floats left{}, right{};
     for (int i = 0; i < u.count; ++i) {
       if (!is_outermost_row && !is_outermost(u, i)) continue;
       Floats cells;
@@ -206,9 +223,19 @@ inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const
       }
       internal::AddColumn(
           u, i, [&](Floats share) { return cells * share; }, &sums);
+      const Floats by_x = cells * u.by_x[static_cast<std::size_t>(i)];
+      left += internal::Choose(u.first + i == 0, by_x);
+      right -= internal::Choose(u.first + i == last, by_x);
     }
+    const auto index = static_cast<std::size_t>(j);
+    around.by_margin[0].groups[0] += left * v.value[index];
+    around.by_margin[1].groups[0] += right * v.value[index];
+    const Floats by_y = sums.value * v.by_x[index];
+    around.by_margin[2].groups[0] += internal::Choose(v.first + j == 0, by_y);
+    around.by_margin[3].groups[0] -= internal::Choose(v.first + j == last, by_y);
     return sums;
   });
+  return around;
 }
 
 // *b += factor * a.

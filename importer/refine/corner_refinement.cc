@@ -158,16 +158,15 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
 }
 
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
-                                            const cv::Mat& cells, const EdgeFitOptions& options) {
+                                            const cv::Mat& cells, const ImageFormation& formation,
+                                            const EdgeFitOptions& options) {
   if (!HasCells(corners_px, cells.total())) return std::nullopt;
   const double cell_px = QuadMeanSide(corners_px) / cells.rows;
   const QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
-  if (!HasClearSides(start_px, cells.rows, options)) {
-    const auto fitted = FitPattern(gray, start_px, cells);
-    if (fitted &&
-        MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
-      return fitted;
-    }
+  const auto fitted = FitPattern(gray, start_px, cells, formation);
+  if (fitted &&
+      MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
+    return fitted;
   }
   return RefineCornersByEdges(gray, start_px, cells.rows, options);
 }

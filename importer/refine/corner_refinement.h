@@ -16,6 +16,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
+#include "importer/refine/image_formation.h"
 #include "importer/refine/refined_corners.h"
 
 namespace velamap {
@@ -52,6 +53,7 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
 // size.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
                                             const cv::Mat& cells,
+                                            const ImageFormation& formation = ImageFormation(),
                                             const EdgeFitOptions& options = {});
 
 }  // namespace velamap

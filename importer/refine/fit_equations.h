@@ -112,7 +112,7 @@ class FitEquations {
   }
 
  private:
-  static constexpr int kRows = 2, kColumns = 5;  // the sums fit into the registers of the processor
+  static constexpr int kRows = 2, kColumns = kCount % 5 == 0 ? 5 : 6;  // sums fit the registers
   static_assert(kCount % kRows == 0 && kCount % kColumns == 0);
 
   void AddProducts(std::size_t begin, std::size_t end) {

@@ -11,6 +11,7 @@
 #include "importer/detect/detection_options.h"
 #include "importer/detect/marker_search.h"
 #include "importer/layout/dictionary.h"
+#include "importer/refine/image_formation.h"
 
 namespace velamap {
 
@@ -26,6 +27,7 @@ std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,
-                                           const ArucoDetectionOptions& options);
+                                           const ArucoDetectionOptions& options,
+                                           const ImageFormation& formation = ImageFormation());
 
 }  // namespace velamap

@@ -36,7 +36,7 @@ constexpr std::array<std::array<double, 2>, kNumCorners> kCornersInSquare = {
 // Grey levels half a cell from the corner along both sides: inside the marker, twice beside it, and
 // opposite.
 bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner, int num_cells) {
-  const auto [u, v] = kCornersInSquare[corner];
+  const double u = kCornersInSquare[corner][0], v = kCornersInSquare[corner][1];
   const double out_u = (u > 0.5 ? 0.5 : -0.5) / num_cells;
   const double out_v = (v > 0.5 ? 0.5 : -0.5) / num_cells;
   const auto gray_at = [&](double du, double dv) {

@@ -52,15 +52,11 @@ void WarnOfSymmetries(const FrameDetector& detector) {
 
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
                                 const PriorShape& prior_shape) {
-  FrameDetector detector{options,
-                         LoadDictionary(layout.dictionary),
-                         layout.border_bits,
-                         BuildAdjacencyGraph(layout),
-                         {},
-                         {},
-                         {},
-                         {},
-                         {}};
+  FrameDetector detector;
+  detector.options = options;
+  detector.dictionary = LoadDictionary(layout.dictionary);
+  detector.border_bits = layout.border_bits;
+  detector.graph = BuildAdjacencyGraph(layout);
   for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
     detector.looks.push_back(
         {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
@@ -98,6 +94,10 @@ std::string DescribeDetector(const FrameDetector& detector) {
   // Databases of earlier versions hold the prior shape under the name map.
   if (!detector.prior_shape.empty()) {
     search += fmt::format(" map={:016x}", Hash(PriorShapeText(detector.prior_shape)));
+  }
+  if (detector.options.corner_refinement == CornerRefinement::kEdge &&
+      detector.options.estimate_formation) {
+    search += " formation=estimated";
   }
   return fmt::format(
       "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
@@ -180,7 +180,8 @@ FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
   detections.time_s = frame.time_s;
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
-       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options)) {
+       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options,
+                     detector.formation)) {
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;
     if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {

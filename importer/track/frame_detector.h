@@ -18,6 +18,7 @@
 #include "importer/layout/dictionary.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
+#include "importer/refine/image_formation.h"
 #include "importer/video/frame_source.h"
 
 namespace velamap {
@@ -35,6 +36,7 @@ struct FrameDetector {
   std::map<int, std::string> part_of_id;  // empty: every id is accepted
   std::vector<MarkerLook> looks;          // by id of the dictionary
   std::vector<std::vector<int>> lines;    // ids along the lines of the layout; for tracked search
+  ImageFormation formation;               // of the camera and the print
   PriorShape prior_shape;                 // of markers that can be detected; may be empty
 };
 

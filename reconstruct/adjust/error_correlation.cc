@@ -1,6 +1,7 @@
 #include "reconstruct/adjust/error_correlation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -8,40 +9,35 @@
 
 #include <spdlog/spdlog.h>
 
-#include "importer/base/error.h"
+#include "importer/base/parallel.h"
 #include "reconstruct/adjust/marker_uncertainty.h"
 #include "reconstruct/geometry/covariance_update.h"
-#include "reconstruct/solve/double_lanes.h"
 
 namespace velamap {
 namespace {
 
 // Few, so that errors that last for a tenth of a video still fall into one group.
 constexpr std::size_t kMaxNumGroups = 5;
-// Draws go through the adjustment so many at a time, as columns, until their mean is known.
-constexpr int kNumDrawsAtOnce = 8;
-constexpr int kMinNumDraws = 16, kMaxNumDraws = 40;
-// 1 sigma of what chance moves the shape by, as a fraction.
-constexpr double kEnough = 0.005;
+// Simulated errors pass through the adjustment in batches, one draw a column, until their mean is
+// known well enough.
+constexpr int kBatchSize = 8, kMinNumBatches = 2, kMaxNumBatches = 5;
+// 1 sigma of the expected movement, as a fraction of it, at which no more errors are drawn.
+constexpr double kMaxMeanSigma = 0.005;
 
-// One case a column.
-template <int kNumCases>
-using Cases = Eigen::Matrix<double, Eigen::Dynamic, kNumCases,
-                            kNumCases == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-
-// The linearised adjustment: from errors of the residuals to movements of the points.
+// The linearized adjustment: maps errors of the residuals to movements of the points. Errors and
+// residuals have one row for each residual (corners, then priors) and one column for each case.
 class LinearAdjustment {
  public:
   LinearAdjustment(const MarkerState& state, const MarkerProblem& problem,
-                   const MarkerCovariance& covariance, const std::vector<int>& groups)
-      : covariance_(covariance), blocks_(ResidualJacobians(problem, problem.corner_residuals)) {
-    num_corner_blocks_ = blocks_.size();
-    for (ResidualJacobian& prior : ResidualJacobians(problem, problem.prior_residuals)) {
-      blocks_.push_back(std::move(prior));
-    }
-    for (const ResidualJacobian& block : blocks_) {
-      begins_.push_back(num_rows_);
-      num_rows_ += NumRows(block);
+                   const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
+                   const std::vector<int>& groups)
+      : covariance_(covariance), num_corner_blocks_(jacobian.corners.size()) {
+    for (const auto* blocks : {&jacobian.corners, &jacobian.priors}) {
+      for (const ResidualJacobian& block : *blocks) {
+        blocks_.push_back(&block);
+        begins_.push_back(num_rows_);
+        num_rows_ += block.NumRows();
+      }
     }
     const std::vector<Eigen::Vector3d> positions = Positions(state);
     motions_ = RigidMotions(positions);
@@ -52,52 +48,47 @@ class LinearAdjustment {
     for (std::size_t i = 0; i < groups.size(); ++i) {
       group_of_image[state.images[i].image_id] = groups[i];
     }
-    for (std::size_t i = 0, row = 0; i < num_corner_blocks_; ++i) {
-      group_of_block_.push_back(group_of_image.at(problem.corners[row / 2].second.image_id));
-      row += static_cast<std::size_t>(NumRows(blocks_[i]));
+    for (std::size_t i = 0; i < num_corner_blocks_; ++i) {
+      const auto first_corner = static_cast<std::size_t>(begins_[i] / 2);
+      group_of_block_.push_back(group_of_image.at(problem.corners[first_corner].second.image_id));
     }
   }
 
   Eigen::Index NumRows() const { return num_rows_; }
 
-  // Sum over the groups of the squared movement that the corners' residuals of the group alone
-  // make, by case. Takes errors of corners and priors.
-  template <int kNumCases>
-  Eigen::Matrix<double, kNumCases, 1> OfResiduals(const Cases<kNumCases>& residuals) const {
-    Parameters parameters = Zero(num_groups_ * kNumCases);
+  // Squared movement of the shape that the corners' residuals of one group alone cause, summed over
+  // the groups, for each case.
+  Eigen::VectorXd SquaredMovements(const RowMajorMatrix& residuals) const {
+    const Eigen::Index num_cases = residuals.cols();
+    Parameters parameters = Zero(num_groups_ * num_cases);
     for (std::size_t i = 0; i < num_corner_blocks_; ++i) {
-      AddGradient<kNumCases>(i, residuals, group_of_block_[i] * kNumCases, &parameters);
+      AddGradient(i, residuals, group_of_block_[i] * num_cases, &parameters);
     }
-    Solve(&parameters);
+    MultiplyByCovariance(&parameters);
     RowMajorMatrix& movements = parameters.of_points;
     movements -= motions_ * (motions_.transpose() * movements).eval();
     const Eigen::VectorXd squares = movements.colwise().squaredNorm().transpose();
-    return Eigen::Map<const Eigen::Matrix<double, kNumCases, Eigen::Dynamic>>(
-               squares.data(), kNumCases, num_groups_)
+    return Eigen::Map<const Eigen::MatrixXd>(squares.data(), num_cases, num_groups_)
         .rowwise()
         .sum();
   }
 
-  // What the adjustment leaves of such errors.
-  template <int kNumCases>
-  Cases<kNumCases> Residuals(const Cases<kNumCases>& errors) const {
-    Parameters step = Zero(kNumCases);
-    for (std::size_t i = 0; i < blocks_.size(); ++i) AddGradient<kNumCases>(i, errors, 0, &step);
-    Solve(&step);
-    Cases<kNumCases> residuals = errors;
+  // Residuals that the adjustment leaves of such errors.
+  RowMajorMatrix Residuals(const RowMajorMatrix& errors) const {
+    Parameters step = Zero(errors.cols());
+    for (std::size_t i = 0; i < blocks_.size(); ++i) AddGradient(i, errors, 0, &step);
+    MultiplyByCovariance(&step);
+    RowMajorMatrix residuals = errors;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      double* out = residuals.data() + begins_[i] * kNumCases;
-      const auto subtract = [out](const RowMajorMatrix& derivatives, const RowMajorMatrix& values,
-                                  Eigen::Index begin) {
-        AddProduct<kNumCases, -1>(derivatives, values.data() + begin * kNumCases, kNumCases, out,
-                                  kNumCases);
-      };
-      const ResidualJacobian& block = blocks_[i];
+      const ResidualJacobian& block = *blocks_[i];
+      auto rows = residuals.middleRows(begins_[i], block.NumRows());
       if (block.marker_idx >= 0) {
-        subtract(block.by_marker, step.of_points, covariance_.begins[block.marker_idx]);
+        rows -= block.by_marker.lazyProduct(step.of_points.middleRows(
+            covariance_.begins[static_cast<std::size_t>(block.marker_idx)],
+            block.by_marker.cols()));
       }
       for (const auto& [column, derivatives] : block.by_globals) {
-        subtract(derivatives, step.of_globals, column);
+        rows -= derivatives.lazyProduct(step.of_globals.middleRows(column, derivatives.cols()));
       }
     }
     return residuals;
@@ -108,36 +99,32 @@ class LinearAdjustment {
     RowMajorMatrix of_points, of_globals;
   };
 
-  static Eigen::Index NumRows(const ResidualJacobian& block) {
-    return block.marker_idx >= 0 ? block.by_marker.rows() : block.by_globals.front().second.rows();
-  }
-
   Parameters Zero(Eigen::Index num_columns) const {
     return {RowMajorMatrix::Zero(covariance_.factor.rows(), num_columns),
             RowMajorMatrix::Zero(covariance_.root.rows(), num_columns)};
   }
 
   // Adds J^T residuals of one block to the columns from `column` on.
-  template <int kNumCases>
-  void AddGradient(std::size_t block_idx, const Cases<kNumCases>& residuals, Eigen::Index column,
+  void AddGradient(std::size_t block_idx, const RowMajorMatrix& residuals, Eigen::Index column,
                    Parameters* gradient) const {
-    const double* of_block = residuals.data() + begins_[block_idx] * kNumCases;
+    const ResidualJacobian& block = *blocks_[block_idx];
+    const auto rows = residuals.middleRows(begins_[block_idx], block.NumRows());
     const auto add = [&](const RowMajorMatrix& derivatives, Eigen::Index begin,
                          RowMajorMatrix* sums) {
-      AddTransposedProduct<kNumCases>(derivatives, of_block, kNumCases,
-                                      sums->data() + begin * sums->cols() + column, sums->cols());
+      sums->block(begin, column, derivatives.cols(), residuals.cols()) +=
+          derivatives.transpose().lazyProduct(rows);
     };
-    const ResidualJacobian& block = blocks_[block_idx];
     if (block.marker_idx >= 0) {
-      add(block.by_marker, covariance_.begins[block.marker_idx], &gradient->of_points);
+      add(block.by_marker, covariance_.begins[static_cast<std::size_t>(block.marker_idx)],
+          &gradient->of_points);
     }
     for (const auto& [first, derivatives] : block.by_globals) {
       add(derivatives, first, &gradient->of_globals);
     }
   }
 
-  // From a gradient to the covariance times it: normal_equations.h.
-  void Solve(Parameters* parameters) const {
+  // With the matrices of normal_equations.h.
+  void MultiplyByCovariance(Parameters* parameters) const {
     auto& [points, globals] = *parameters;
     const auto root = covariance_.root.triangularView<Eigen::Lower>();
     root.solveInPlace(globals);
@@ -152,14 +139,55 @@ class LinearAdjustment {
   }
 
   const MarkerCovariance& covariance_;
-  std::vector<ResidualJacobian> blocks_;  // corners, then priors
   std::size_t num_corner_blocks_ = 0;
-  std::vector<Eigen::Index> begins_;  // first row, by block
+  std::vector<const ResidualJacobian*> blocks_;  // corners, then priors
+  std::vector<Eigen::Index> begins_;             // first row, by block
   Eigen::Index num_rows_ = 0;
   std::vector<int> group_of_block_;
   int num_groups_ = 0;
-  Eigen::MatrixXd motions_;  // orthonormal: rigid, and of scale
+  Eigen::MatrixXd motions_;  // orthonormal: rigid motions and scale
 };
+
+// Mean and standard deviation of the squared movement that independent errors cause.
+struct ExpectedMovement {
+  double mean = 0.0;
+  double sigma = 0.0;
+  double mean_sigma = 0.0;  // of the root of the mean, as a fraction
+};
+
+ExpectedMovement SimulateIndependentErrors(const LinearAdjustment& adjustment, int num_threads) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::array<Eigen::VectorXd, kMaxNumBatches> movements;
+  // Two batches at a time on two threads; a second one that is not needed is not counted.
+  const auto simulate = [&](int first_batch) {
+    const int count = std::min(2, kMaxNumBatches - first_batch);
+    std::array<RowMajorMatrix, 2> errors;
+    for (int i = 0; i < count; ++i) {
+      errors[i].resize(adjustment.NumRows(), kBatchSize);
+      for (auto column : errors[i].colwise()) {
+        for (double& error : column) error = normal(random);
+      }
+    }
+    ParallelFor(count, num_threads, [&](std::size_t i) {
+      movements[first_batch + i] = adjustment.SquaredMovements(adjustment.Residuals(errors[i]));
+    });
+  };
+  ExpectedMovement expected;
+  double sum = 0.0, sum_of_squares = 0.0;
+  for (int batch = 0; batch < kMaxNumBatches; ++batch) {
+    if (batch % 2 == 0) simulate(batch);
+    sum += movements[batch].sum();
+    sum_of_squares += movements[batch].squaredNorm();
+    const double num_draws = (batch + 1) * kBatchSize;
+    expected.mean = sum / num_draws;
+    expected.sigma =
+        std::sqrt(std::max(0.0, sum_of_squares / num_draws - expected.mean * expected.mean));
+    expected.mean_sigma = 0.5 * expected.sigma / (expected.mean * std::sqrt(num_draws));
+    if (batch + 1 >= kMinNumBatches && expected.mean_sigma <= kMaxMeanSigma) break;
+  }
+  return expected;
+}
 
 }  // namespace
 
@@ -178,37 +206,18 @@ std::vector<int> GroupImages(const Model& model, const MarkerState& state) {
 }
 
 double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
-                         const MarkerCovariance& covariance, const std::vector<int>& groups) {
-  const LinearAdjustment adjustment(state, problem, covariance, groups);
-  Cases<1> residuals = Cases<1>::Zero(adjustment.NumRows());
-  Eigen::Index row = 0;
-  const auto append = [&](const SchurResidual&, const Eigen::VectorXd& of_block,
-                          const std::vector<SchurSystem::RowMajor>&) {
-    residuals.segment(row, of_block.size()) = of_block;
-    row += of_block.size();
-  };
-  VELAMAP_CHECK(VisitResiduals(problem.schur, problem.corner_residuals, false, append));
-  const double found = adjustment.OfResiduals<1>(residuals)[0];
-
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal;
-  Cases<kNumDrawsAtOnce> errors(adjustment.NumRows(), kNumDrawsAtOnce);
-  double sum = 0.0, sum_of_squares = 0.0, mean = 0.0, sigma = 0.0;
-  for (int num_draws = kNumDrawsAtOnce; num_draws <= kMaxNumDraws; num_draws += kNumDrawsAtOnce) {
-    for (int draw = 0; draw < kNumDrawsAtOnce; ++draw) {
-      for (double& error : errors.col(draw)) error = normal(random);
-    }
-    const auto values =
-        adjustment.OfResiduals<kNumDrawsAtOnce>(adjustment.Residuals<kNumDrawsAtOnce>(errors));
-    sum += values.sum();
-    sum_of_squares += values.squaredNorm();
-    mean = sum / num_draws;
-    sigma = std::sqrt(std::max(0.0, sum_of_squares / num_draws - mean * mean));
-    if (num_draws >= kMinNumDraws && 0.5 * sigma <= kEnough * mean * std::sqrt(num_draws)) break;
-  }
+                         const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
+                         const std::vector<int>& groups, int num_threads) {
+  const LinearAdjustment adjustment(state, problem, jacobian, covariance, groups);
+  RowMajorMatrix residuals = RowMajorMatrix::Zero(adjustment.NumRows(), 1);
+  const std::vector<double> of_corners = CornerResiduals(problem);
+  std::copy(of_corners.begin(), of_corners.end(), residuals.data());
+  const double found = adjustment.SquaredMovements(residuals)[0];
+  const ExpectedMovement expected = SimulateIndependentErrors(adjustment, num_threads);
+  const double factor = std::sqrt(found / expected.mean);
   spdlog::debug("groups of images move the shape by {:.3f} times (+- {:.3f}) what chance does",
-                std::sqrt(found / mean), 0.5 * sigma / mean);
-  return found > mean + 2.0 * sigma ? std::sqrt(found / mean) : 1.0;
+                factor, 0.5 * expected.sigma / expected.mean);
+  return found > expected.mean + 2.0 * expected.sigma ? factor : 1.0;
 }
 
 }  // namespace velamap

@@ -1,6 +1,6 @@
-// How much farther the result moves than independent errors of the corners would move it. Errors
-// that neighbouring frames of a video have in common (the same pixel phases, the same blur), or the
-// corners of one image (its pose, the lens), count as one error, not as many. Private to this room.
+// Errors that several corners have in common. Neighbouring frames of a video share pixel phases and
+// blur, the corners of one image share errors of its pose and of the lens. Such errors move the
+// result farther than independent errors of the corners would.
 
 #pragma once
 
@@ -11,17 +11,19 @@
 
 namespace velamap {
 
-// Up to five groups of images that follow one another by name, about equally many in each: by image
-// of the state, 0, 1, ...
+// Divides the images, in order of their names, into up to five groups of about equal size. Returns
+// the group, 0, 1, ..., of each image of the state.
 std::vector<int> GroupImages(const Model& model, const MarkerState& state);
 
-// Factor of the corners' sigmas, 1 or more. What the residuals of each group move the shape by
-// (after alignment with scale) is held against what independent errors of the same weights would
-// move it by, which are drawn and taken through the same adjustment: so nothing is assumed of the
-// groups' share in the parameters. 1 where the excess is within two sigmas of chance. Errors that
-// are the same in all groups move nothing and are not seen. `problem` is that of `state` at its
-// solution, without loss and calibrated.
+// The factor, 1 or more, by which the corners' sigmas have to grow to account for common errors:
+// the root of the ratio of two squared movements of the shape (after alignment with scale). One is
+// the movement that the residuals of each group cause, the other what independent errors of the
+// same weights would cause; these are simulated and pass through the same linearized adjustment, so
+// that no share of the parameters has to be assumed for a group. 1 where the excess is within two
+// sigmas of chance. Errors that all groups share cause no residuals and are not detected. `problem`
+// belongs to `state` at its solution, has no loss and calibrated sigmas.
 double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
-                         const MarkerCovariance& covariance, const std::vector<int>& groups);
+                         const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
+                         const std::vector<int>& groups, int num_threads);
 
 }  // namespace velamap

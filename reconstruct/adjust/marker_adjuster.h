@@ -1,5 +1,4 @@
-// The course of a marker-aware bundle adjustment, one step a function, in this order. Private to
-// this room: AdjustWithMarkers runs it.
+// The steps of a marker-aware bundle adjustment, which AdjustWithMarkers calls in this order.
 
 #pragma once
 
@@ -9,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "reconstruct/adjust/corner_residuals.h"
 #include "reconstruct/adjust/marker_problem.h"
 #include "reconstruct/adjust/normal_equations.h"
 
@@ -16,63 +16,60 @@ namespace velamap {
 
 class MarkerAdjuster {
  public:
-  // The arguments must outlive it, but for the model.
+  // All arguments but the model must outlive the adjuster.
   MarkerAdjuster(const MarkerAdjustmentOptions& options, const Layout& layout,
                  const CornerSigmas& corner_sigmas, Model model);
 
-  // Takes out what stands out in the seed and what nothing determines; brings it to metres (median
-  // of the marker sides) in the first camera's frame. Throws DataError where too little is left.
+  // Removes outliers of the seed and underconstrained images and points, scales the model to metres
+  // by the median of the marker sides and moves the world to the first image's camera. Throws
+  // DataError where too little is left.
   void PrepareSeed();
 
-  // Markers may be of any size within some percent: what the images alone say, with robust weights
-  // and corner sigmas that follow the residuals.
+  // Minimizes with hardly any weight on the markers' sizes, so that the images decide, and
+  // calibrates the corners' sigmas by the residuals.
   void AdjustLoosely();
 
-  // Markers whose size contradicts that of the others lose their size; where they scatter more than
-  // the tolerance explains, the tolerance grows.
-  void JudgeMarkerSizes();
+  // Drops the size of markers that contradict the others, and raises the print tolerance where the
+  // sizes scatter more than it explains.
+  void RejectContradictingSizes();
 
-  // With the sizes. Corners beyond outlier_sigmas go and come back until nothing changes.
+  // Minimizes with the sizes. Removes corners beyond outlier_sigmas and restores those that have
+  // come to fit, until nothing changes.
   void AdjustTightly();
 
-  // Scale bars that agree with the markers take part from now on; false: there are none.
+  // Adds the scale bars that agree with the markers; returns false where there are none.
   bool AddScaleBars();
 
-  // Until a step is a small part of a sigma; what errors have in common; covariance, warnings,
-  // summary.
+  // Minimizes to a small fraction of a sigma, then finds the correlation of errors, the covariance,
+  // and the warnings and figures of the summary.
   void Finish();
 
   Model TakeModel() { return std::move(model_); }
   MarkerAdjustmentSummary TakeSummary() { return std::move(summary_); }
 
  private:
-  struct CornerResidual {
-    Point3DId point3D_id = 0;
-    TrackElement element;
-    double sigmas = 0.0;  // length in calibrated sigmas
-  };
-
-  // The problem at one state, without loss. Refers to itself, so it stays where it is.
-  struct Linearisation {
+  // The problem at one state, without loss. `problem` refers to `state`, so it must not be copied.
+  struct Linearization {
     MarkerState state;
     MarkerProblem problem;
+    MarkerJacobian jacobian;
     MarkerCovariance covariance;
   };
 
   MarkerProblem MakeProblem(const MarkerWeights& weights, const Model& model, MarkerState* state);
   MarkerState MakeState(const Model& model) const;
-  void Solve(double function_tolerance);
+  void Minimize(double function_tolerance);
   // Throws DataError where a combination of parameters is undetermined.
-  std::unique_ptr<const Linearisation> Linearise();
-  std::vector<CornerResidual> EvaluateCorners(const Model& model);
-  static std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem);
-  // Sets the corners' factor by the median residual; returns the relative change.
+  std::unique_ptr<const Linearization> Linearize();
+  std::vector<CornerResidual> EvaluateCornersOf(const Model& model);
+  // Sets the factor of the corners' sigmas by the median residual; returns the relative change.
   double CalibrateRobustly();
+  // Returns the number of corners that were removed or restored.
   int ReviseCorners();
   void RemoveUnderconstrainedParts();
-  // Corner sigmas by all residuals, solution, variance factor of the detector's sigmas, share of
-  // large residuals.
-  std::unique_ptr<const Linearisation> CalibrateCorners();
+  // Minimizes and sets the factor of the corners' sigmas by the sum of squares until it is stable.
+  // Sets the variance factor and the share of large residuals.
+  std::unique_ptr<const Linearization> CalibrateCorners();
 
   const MarkerAdjustmentOptions& options_;
   const Layout& layout_;
@@ -80,7 +77,7 @@ class MarkerAdjuster {
   const std::map<CameraId, Camera> calibration_;
   const std::size_t num_images_before_;
   Model model_;
-  MarkerState state_;  // of the last solution; beyond the model: inset, print scale, velocities
+  MarkerState state_;  // the last solution, with inset, print scale and velocities
   MarkerWeights weights_;
   MarkerAdjustmentSummary summary_;
 };

@@ -38,6 +38,46 @@ RowMajor<kMaxNumIntrinsics> ProjectionByIntrinsics(CameraModel model, const doub
   return jacobian;
 }
 
+Eigen::Map<const Eigen::Vector3d> Corner(const double* marker, int slot) {
+  return Eigen::Map<const Eigen::Vector3d>(marker + 3 * slot);
+}
+
+// Residual of the difference of the diagonals. Its derivative goes to a row of `jacobian`, unless
+// that is empty.
+double EvaluateDiagonals(const double* marker, double sigma_m, int row, JacobianMap* jacobian) {
+  const Eigen::Vector3d diagonal1 = Corner(marker, 2) - Corner(marker, 0);
+  const Eigen::Vector3d diagonal2 = Corner(marker, 3) - Corner(marker, 1);
+  if (jacobian->rows() > 0) {
+    const Eigen::RowVector3d direction1 = diagonal1.normalized().transpose() / sigma_m;
+    const Eigen::RowVector3d direction2 = diagonal2.normalized().transpose() / sigma_m;
+    jacobian->row(row) << -direction1, direction2, direction1, -direction2;
+  }
+  return (diagonal1.norm() - diagonal2.norm()) / sigma_m;
+}
+
+// The same for the distance of the corners from their plane. The signed distances from the best
+// plane are h, -h, h, -h.
+double EvaluateFlatness(const double* marker, double sigma_m, int row, JacobianMap* jacobian) {
+  const Eigen::Vector3d diagonal1 = Corner(marker, 2) - Corner(marker, 0);
+  const Eigen::Vector3d diagonal2 = Corner(marker, 3) - Corner(marker, 1);
+  const Eigen::Vector3d alternating =
+      Corner(marker, 0) - Corner(marker, 1) + Corner(marker, 2) - Corner(marker, 3);
+  const Eigen::Vector3d cross = diagonal1.cross(diagonal2);
+  const Eigen::Vector3d normal = cross.normalized();
+  const double factor = 0.25 / sigma_m;
+  if (jacobian->rows() > 0) {
+    const Eigen::Vector3d by_cross =
+        factor * (alternating - alternating.dot(normal) * normal) / cross.norm();
+    const Eigen::Vector3d by_diagonal1 = diagonal2.cross(by_cross);
+    const Eigen::Vector3d by_diagonal2 = by_cross.cross(diagonal1);
+    jacobian->block<1, 3>(row, 0) = factor * normal - by_diagonal1;
+    jacobian->block<1, 3>(row, 3) = -factor * normal - by_diagonal2;
+    jacobian->block<1, 3>(row, 6) = factor * normal + by_diagonal1;
+    jacobian->block<1, 3>(row, 9) = -factor * normal + by_diagonal2;
+  }
+  return factor * alternating.dot(normal);
+}
+
 }  // namespace
 
 Eigen::Vector2d RobustResidual(const Eigen::Vector2d& whitened, double loss_sigmas,
@@ -142,13 +182,12 @@ std::vector<std::pair<int, int>> MarkerPriorError::Sides(const std::vector<int>&
   return sides;
 }
 
-MarkerPriorError::MarkerPriorError(const MarkerKnowledge& knowledge,
-                                   const std::vector<int>& corners)
-    : knowledge_(knowledge) {
-  if (knowledge.side_sigma_m > 0) sides_ = Sides(corners);
+MarkerPriorError::MarkerPriorError(const MarkerPrior& prior, const std::vector<int>& corners)
+    : prior_(prior) {
+  if (prior.side_sigma_m > 0) sides_ = Sides(corners);
   const bool is_whole = corners.size() == kNumCorners;
-  has_diagonals_ = is_whole && knowledge.diagonals_sigma_m > 0;
-  has_flatness_ = is_whole && knowledge.flatness_sigma_m > 0;
+  has_diagonals_ = is_whole && prior.diagonals_sigma_m > 0;
+  has_flatness_ = is_whole && prior.flatness_sigma_m > 0;
   set_num_residuals(static_cast<int>(sides_.size()) + (has_diagonals_ ? 1 : 0) +
                     (has_flatness_ ? 1 : 0));
   *mutable_parameter_block_sizes() = {3 * static_cast<int>(corners.size()), 1};
@@ -156,59 +195,32 @@ MarkerPriorError::MarkerPriorError(const MarkerKnowledge& knowledge,
 
 bool MarkerPriorError::Evaluate(double const* const* parameters, double* residuals,
                                 double** jacobians) const {
-  const auto corner = [&](int slot) {
-    return Eigen::Map<const Eigen::Vector3d>(parameters[0] + 3 * slot);
-  };
-  const int num_sides = static_cast<int>(sides_.size()),
-            num_coordinates = parameter_block_sizes()[0];
+  const int num_sides = static_cast<int>(sides_.size());
   double* by_marker = jacobians == nullptr ? nullptr : jacobians[0];
   double* by_scale = jacobians == nullptr ? nullptr : jacobians[1];
-  JacobianMap marker_map(by_marker, by_marker == nullptr ? 0 : num_residuals(), num_coordinates);
+  JacobianMap marker_map(by_marker, by_marker == nullptr ? 0 : num_residuals(),
+                         parameter_block_sizes()[0]);
   marker_map.setZero();
+  if (by_scale != nullptr) std::fill(by_scale, by_scale + num_residuals(), 0.0);
   for (int i = 0; i < num_sides; ++i) {
     const auto [a, b] = sides_[i];
-    const Eigen::Vector3d side = corner(b) - corner(a);
+    const Eigen::Vector3d side = Corner(parameters[0], b) - Corner(parameters[0], a);
     const double length_m = side.norm();
-    residuals[i] =
-        (length_m - (1.0 + parameters[1][0]) * knowledge_.length_m) / knowledge_.side_sigma_m;
+    residuals[i] = (length_m - (1.0 + parameters[1][0]) * prior_.length_m) / prior_.side_sigma_m;
     if (by_marker != nullptr) {
-      const Eigen::RowVector3d direction = side.transpose() / (length_m * knowledge_.side_sigma_m);
+      const Eigen::RowVector3d direction = side.transpose() / (length_m * prior_.side_sigma_m);
       marker_map.block<1, 3>(i, 3 * a) = -direction;
       marker_map.block<1, 3>(i, 3 * b) = direction;
     }
-    if (by_scale != nullptr) by_scale[i] = -knowledge_.length_m / knowledge_.side_sigma_m;
+    if (by_scale != nullptr) by_scale[i] = -prior_.length_m / prior_.side_sigma_m;
   }
-  if (!has_diagonals_ && !has_flatness_) return true;
-  if (by_scale != nullptr) {
-    std::fill(by_scale + num_sides, by_scale + num_residuals(), 0.0);
-  }
-  const Eigen::Vector3d diagonal1 = corner(2) - corner(0), diagonal2 = corner(3) - corner(1);
   if (has_diagonals_) {
-    residuals[num_sides] = (diagonal1.norm() - diagonal2.norm()) / knowledge_.diagonals_sigma_m;
-    if (by_marker != nullptr) {
-      const Eigen::Vector3d direction1 = diagonal1.normalized() / knowledge_.diagonals_sigma_m;
-      const Eigen::Vector3d direction2 = diagonal2.normalized() / knowledge_.diagonals_sigma_m;
-      marker_map.row(num_sides) << -direction1.transpose(), direction2.transpose(),
-          direction1.transpose(), -direction2.transpose();
-    }
+    residuals[num_sides] =
+        EvaluateDiagonals(parameters[0], prior_.diagonals_sigma_m, num_sides, &marker_map);
   }
-  if (!has_flatness_) return true;
-  const int last = num_residuals() - 1;
-  // The best plane leaves the four corners by h, -h, h, -h.
-  const Eigen::Vector3d alternating = corner(0) - corner(1) + corner(2) - corner(3);
-  const Eigen::Vector3d cross = diagonal1.cross(diagonal2);
-  const Eigen::Vector3d normal = cross.normalized();
-  const double factor = 0.25 / knowledge_.flatness_sigma_m;
-  residuals[last] = factor * alternating.dot(normal);
-  if (by_marker != nullptr) {
-    const Eigen::Vector3d by_cross =
-        factor * (alternating - alternating.dot(normal) * normal) / cross.norm();
-    const Eigen::Vector3d by_diagonal1 = diagonal2.cross(by_cross);
-    const Eigen::Vector3d by_diagonal2 = by_cross.cross(diagonal1);
-    marker_map.block<1, 3>(last, 0) = factor * normal - by_diagonal1;
-    marker_map.block<1, 3>(last, 3) = -factor * normal - by_diagonal2;
-    marker_map.block<1, 3>(last, 6) = factor * normal + by_diagonal1;
-    marker_map.block<1, 3>(last, 9) = -factor * normal + by_diagonal2;
+  if (has_flatness_) {
+    const int row = num_residuals() - 1;
+    residuals[row] = EvaluateFlatness(parameters[0], prior_.flatness_sigma_m, row, &marker_map);
   }
   return true;
 }

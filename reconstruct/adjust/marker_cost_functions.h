@@ -1,13 +1,13 @@
-// Residuals of the marker-aware bundle adjustment, whitened by their sigmas, with analytic
-// derivatives. Private to this room: it shows Ceres.
+// Cost functions of the marker-aware bundle adjustment. Residuals are divided by their sigmas;
+// derivatives are analytic.
 //
 // Parameter blocks
-//   marker      3 x c    its c <= 4 corners that are in the model, world frame, m
+//   marker      3 x c    the c <= 4 corners of a marker that are in the model, world frame, m
 //   pose        7        cam_from_world at the middle row: quaternion x y z w, translation (m)
 //   inset       1        apparent inset of all corners, px
-//   intrinsics  3..12    of one camera, in COLMAP's order
-//   velocity    6        of the cam frame in one image: linear (m/s), angular (rad/s)
-//   print scale 1        of all printed sides, as a fraction beyond 0
+//   intrinsics  3..12    parameters of one camera, in COLMAP's order
+//   velocity    6        velocity of the cam frame in one image: linear (m/s), angular (rad/s)
+//   print scale 1        scale of all printed sides, less 1
 
 #pragma once
 
@@ -23,26 +23,28 @@ namespace velamap {
 
 // One corner of a marker in one image.
 struct CornerObservation {
-  int slot = 0;  // place in the marker block
+  int slot = 0;  // index among the corners of the marker block
   Eigen::Vector2d x_in_image_px = Eigen::Vector2d::Zero();
   double sigma_px = 1.0;  // of each coordinate
-  // Where an apparent inset of one px moves the corner: the sum of the unit vectors, in the image,
-  // along its two sides, away from the corner. A square seen straight on gets smaller by twice the
-  // inset. Zero where the neighbours are unknown.
+  // The movement of the corner by an apparent inset of one px: the sum of the unit vectors in the
+  // image that point from the corner along its two sides. The sides of a square seen straight on
+  // shrink by twice the inset. Zero where a neighbouring corner is unknown.
   Eigen::Vector2d inset_direction = Eigen::Vector2d::Zero();
-  double row_time_s = 0.0;  // of its image row after the middle row
+  double row_time_s = 0.0;  // time of the corner's image row after that of the middle row
 };
 
-// Cauchy's loss on the length of a whitened residual r, folded into the residual so that one
-// residual block can hold several corners: r becomes g r with |g r|^2 = a^2 log(1 + |r|^2 / a^2),
-// a = loss_sigmas. Infinite: no loss. `jacobian` of the result by r, may be null.
+// Applies the Cauchy loss to a whitened residual r itself, so that one residual block can hold
+// several corners with a loss each: r becomes g r with |g r|^2 = a^2 log(1 + |r|^2 / a^2) and
+// a = loss_sigmas. Infinite loss_sigmas: no loss. `jacobian` is the derivative of the result by r
+// and may be null.
 Eigen::Vector2d RobustResidual(const Eigen::Vector2d& whitened, double loss_sigmas,
                                Eigen::Matrix2d* jacobian);
 
-// All corners of one marker in one image: projection + inset - observation, two residuals a corner.
-// Blocks: marker, pose, inset, intrinsics, velocity. While rows are read the camera moves evenly,
-//   x_in_cam(row) = x + row_time (linear + angular x x),   x = cam_from_world * x_in_world,
-// to first order. Fails to evaluate for a corner that is not in front of the camera.
+// Projection + inset - observation of all corners of one marker in one image, two residuals for
+// each corner. Blocks: marker, pose, inset, intrinsics, velocity. The camera moves with constant
+// velocity while the rows are read; to first order,
+//   x_in_cam(row) = x + row_time (linear + angular x x),   x = cam_from_world * x_in_world.
+// Evaluation fails for a corner that is not in front of the camera.
 class MarkerViewError : public ceres::CostFunction {
  public:
   MarkerViewError(CameraModel camera_model, int num_corners_in_block,
@@ -57,39 +59,39 @@ class MarkerViewError : public ceres::CostFunction {
   double loss_sigmas_;
 };
 
-// What is known of a printed marker; sigmas that are not positive mean: not known.
-struct MarkerKnowledge {
-  double length_m = 0.0;
-  double side_sigma_m = 0.0;
-  double diagonals_sigma_m = 0.0;  // of their difference
-  double flatness_sigma_m = 0.0;
+// Prior of the shape of a printed marker. A sigma that is not positive switches its part off.
+struct MarkerPrior {
+  double length_m = 0.0;           // of a side
+  double side_sigma_m = 0.0;       // of a side
+  double diagonals_sigma_m = 0.0;  // of the difference of the diagonals
+  double flatness_sigma_m = 0.0;   // of a corner's distance from the plane of the marker
 };
 
-// Sides between neighbouring corners against (1 + print scale) * length, each with side_sigma_m,
-// and, for four corners, the difference of the diagonals (without it a square could become a
-// rhombus, which a single view does not tell from a tilt) with diagonals_sigma_m, and the corners'
-// distance from their plane, alternately in front and behind, with flatness_sigma_m. `corners`
-// are 1..4, ascending. Blocks: marker, print scale.
+// Residuals of a marker against its prior: sides between neighbouring corners less
+// (1 + print scale) * length; for a marker with four corners also the difference of the diagonals,
+// and the distance of the corners from their plane, which is in front and behind in turns. Without
+// the diagonals a square could become a rhombus, which a single view cannot tell from a tilted
+// square. `corners` are 1..4, ascending. Blocks: marker, print scale.
 class MarkerPriorError : public ceres::CostFunction {
  public:
-  MarkerPriorError(const MarkerKnowledge& knowledge, const std::vector<int>& corners);
+  MarkerPriorError(const MarkerPrior& prior, const std::vector<int>& corners);
 
-  // Slots of neighbouring corners that are both there.
+  // Pairs of slots of neighbouring corners.
   static std::vector<std::pair<int, int>> Sides(const std::vector<int>& corners);
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
  private:
-  MarkerKnowledge knowledge_;
+  MarkerPrior prior_;
   std::vector<std::pair<int, int>> sides_;
   bool has_diagonals_ = false;
   bool has_flatness_ = false;
 };
 
-// A distance between two points, each a corner or the mean of a marker's corners, as
-// (|sum of weight * corner| - length) / sigma. One block a marker, with the weights of its corners;
-// those of the first point are negative.
+// Known distance between two points, each of which is a corner or the mean of a marker's corners:
+// (|sum of weight * corner| - length) / sigma. There is one block for each marker, with the weights
+// of its corners; those of the first point are negative.
 class ScaleBarError : public ceres::CostFunction {
  public:
   ScaleBarError(double length_m, double sigma_m, std::vector<std::vector<double>> corner_weights);
@@ -102,7 +104,7 @@ class ScaleBarError : public ceres::CostFunction {
   std::vector<std::vector<double>> corner_weights_;
 };
 
-// (parameter - mean) / sigma for each parameter of one block; infinite sigmas add nothing.
+// (parameter - mean) / sigma for each parameter of one block. An infinite sigma adds nothing.
 class ParameterPriorError : public ceres::CostFunction {
  public:
   ParameterPriorError(std::vector<double> mean, std::vector<double> sigma);

@@ -11,13 +11,13 @@
 
 #include "importer/base/error.h"
 #include "importer/camera/camera_projection.h"
-#include "reconstruct/solve/schur_solver.h"
+#include "reconstruct/solve/schur_complement.h"
 
 namespace velamap {
 namespace {
 
-// Sigmas that the motion of a hand or a boat does not exceed; they only matter for images that say
-// nothing about their own velocity.
+// Priors that the motion of a hand or a boat does not exceed. They matter only for images that do
+// not determine their own velocity.
 constexpr double kLinearVelocitySigma = 3.0;   // m/s
 constexpr double kAngularVelocitySigma = 1.0;  // rad/s
 
@@ -26,7 +26,7 @@ int SlotOf(const MarkerBlock& marker, int corner) {
   return it == marker.corners.end() ? -1 : static_cast<int>(it - marker.corners.begin());
 }
 
-// Sum of the unit vectors along both sides away from the corner, as the image shows them now.
+// Sum of the unit vectors along both sides away from the corner, in the image.
 Eigen::Vector2d InsetDirection(const Camera& camera, const Rigid3& cam_from_world,
                                const MarkerBlock& marker, int slot_of_corner) {
   const int corner = marker.corners[static_cast<std::size_t>(slot_of_corner)];
@@ -51,7 +51,6 @@ double CornerSigma(const MarkerAdjustmentOptions& options, const std::vector<dou
                     options.corner_sigma_floor_px);
 }
 
-// Puts a marker problem together.
 class ProblemBuilder {
  public:
   ProblemBuilder(const MarkerAdjustmentOptions& options, const Model& model,
@@ -59,34 +58,25 @@ class ProblemBuilder {
       : options_(options), model_(model), weights_(weights), state_(*state) {}
 
   void AddParameters() {
-    using Kind = SchurBlock::Kind;
     for (MarkerBlock& marker : state_.markers) {
-      AddBlock(marker.x_in_world.data(), marker.x_in_world.size(), Kind::kEliminated);
+      result_.ceres->AddParameterBlock(marker.x_in_world.data(), marker.NumCoordinates());
+      result_.marker_blocks.push_back(marker.x_in_world.data());
     }
-    result_.num_markers = static_cast<int>(state_.markers.size());
-    result_.manifolds.push_back(std::make_unique<PoseManifold>());
-    const ceres::Manifold* pose_manifold = result_.manifolds.back().get();
+    auto* pose_manifold = new PoseManifold;  // of all images; the problem owns it
     for (ImageBlock& image : state_.images) {
-      pose_idxs_.push_back(AddBlock(image.cam_from_world.data(), 7,
-                                    KeptIf(&image != &state_.images.front()), pose_manifold));
-      velocity_idxs_.push_back(
-          AddBlock(image.velocity.data(), 6, KeptIf(options_.rolling_shutter_s > 0)));
+      AddGlobal(image.cam_from_world.data(), 7, &image != &state_.images.front(), pose_manifold);
+      AddGlobal(image.velocity.data(), 6, options_.rolling_shutter_s > 0);
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
       const std::vector<int> held = HeldIntrinsics(model_.cameras.at(camera_id).model);
+      const int size = static_cast<int>(intrinsics.size());
       const bool refines = held.size() < intrinsics.size();
-      const ceres::Manifold* manifold = nullptr;
-      if (refines && !held.empty()) {
-        result_.manifolds.push_back(
-            std::make_unique<ceres::SubsetManifold>(static_cast<int>(intrinsics.size()), held));
-        manifold = result_.manifolds.back().get();
-      }
-      intrinsics_idxs_[camera_id] =
-          AddBlock(intrinsics.data(), intrinsics.size(), KeptIf(refines), manifold);
+      ceres::Manifold* manifold =
+          refines && !held.empty() ? new ceres::SubsetManifold(size, held) : nullptr;
+      AddGlobal(intrinsics.data(), size, refines, manifold);
     }
-    inset_idx_ = AddBlock(&state_.inset_px, 1, KeptIf(EstimatesInset()));
-    print_scale_idx_ = AddBlock(&state_.print_scale, 1,
-                                KeptIf(PrintScaleSigma() > 0 && !weights_.holds_print_scale));
+    AddGlobal(&state_.inset_px, 1, EstimatesInset());
+    AddGlobal(&state_.print_scale, 1, PrintScaleSigma() > 0 && !weights_.holds_print_scale);
   }
 
   void AddCorners(const CornerSigmas& corner_sigmas) {
@@ -98,8 +88,7 @@ class ProblemBuilder {
       sigmas.push_back(of_image == corner_sigmas.end() ? nullptr : &of_image->second);
     }
     std::vector<std::vector<SeenCorner>> views(state_.images.size());  // of one marker, by image
-    for (std::size_t marker_idx = 0; marker_idx < state_.markers.size(); ++marker_idx) {
-      const MarkerBlock& marker = state_.markers[marker_idx];
+    for (MarkerBlock& marker : state_.markers) {
       for (int slot = 0; slot < static_cast<int>(marker.corners.size()); ++slot) {
         const int corner = marker.corners[static_cast<std::size_t>(slot)];
         const Point3DId point3D_id = Point3DIdFromCorner({marker.marker_id, corner});
@@ -109,49 +98,54 @@ class ProblemBuilder {
       }
       for (std::size_t image_idx = 0; image_idx < views.size(); ++image_idx) {
         if (views[image_idx].empty()) continue;
-        AddView(image_idx, views[image_idx], sigmas[image_idx], static_cast<int>(marker_idx));
+        AddView(image_idx, views[image_idx], sigmas[image_idx], &marker);
         views[image_idx].clear();
       }
     }
   }
 
   void AddPriors(const std::map<CameraId, Camera>& calibration) {
-    for (std::size_t marker_idx = 0; marker_idx < state_.markers.size(); ++marker_idx) {
-      const MarkerBlock& marker = state_.markers[marker_idx];
+    for (MarkerBlock& marker : state_.markers) {
       const bool has_size = weights_.markers_without_size.count(marker.marker_id) == 0;
       const double flatness = marker.is_rigid ? options_.rigid_flatness : options_.cloth_flatness;
       const double side_sigma_m = weights_.print_tolerance * marker.length_m;
-      const MarkerKnowledge knowledge{marker.length_m, has_size ? side_sigma_m : 0.0,
-                                      std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
-      auto error = std::make_unique<MarkerPriorError>(knowledge, marker.corners);
+      const MarkerPrior prior{marker.length_m, has_size ? side_sigma_m : 0.0,
+                              std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
+      auto error = std::make_unique<MarkerPriorError>(prior, marker.corners);
       if (error->num_residuals() == 0) continue;
-      AddPrior(std::move(error), {static_cast<int>(marker_idx), print_scale_idx_});
+      AddPrior(std::move(error), {marker.x_in_world.data(), &state_.print_scale});
     }
     if (EstimatesInset()) {
-      AddPrior(MakePrior({0.0}, {options_.inset_sigma_px}), {inset_idx_});
+      AddPrior(MakePrior({0.0}, {options_.inset_sigma_px}), {&state_.inset_px});
     }
     if (PrintScaleSigma() > 0) {
-      AddPrior(MakePrior({0.0}, {PrintScaleSigma()}), {print_scale_idx_});
+      AddPrior(MakePrior({0.0}, {PrintScaleSigma()}), {&state_.print_scale});
     }
     if (options_.rolling_shutter_s > 0) {
       constexpr double v = kLinearVelocitySigma, w = kAngularVelocitySigma;
-      for (const int block_idx : velocity_idxs_) {
-        AddPrior(MakePrior({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}), {block_idx});
+      for (ImageBlock& image : state_.images) {
+        AddPrior(MakePrior({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}), {image.velocity.data()});
       }
     }
-    for (const auto& [camera_id, intrinsics] : state_.intrinsics) {
+    for (auto& [camera_id, intrinsics] : state_.intrinsics) {
       const Camera& camera = calibration.at(camera_id);
       if (HeldIntrinsics(camera.model).size() == intrinsics.size()) continue;
-      AddPrior(MakePrior(camera.params, IntrinsicsSigmas(camera)),
-               {intrinsics_idxs_.at(camera_id)});
+      AddPrior(MakePrior(camera.params, IntrinsicsSigmas(camera)), {intrinsics.data()});
     }
   }
 
   void AddScaleBars() {
     for (const ScaleBar& bar : weights_.scale_bars) {
+      std::vector<double*> blocks;
+      for (const int idx : bar.marker_idxs) {
+        blocks.push_back(result_.marker_blocks[static_cast<std::size_t>(idx)]);
+      }
+      if (blocks.size() > 1 && result_.kept_markers.count(blocks[0]) == 0) {
+        result_.kept_markers.insert(blocks[1]);
+      }
       AddResidual(std::make_unique<ScaleBarError>(bar.distance.length_m, bar.distance.sigma_m,
                                                   bar.corner_weights),
-                  bar.marker_idxs);
+                  blocks);
     }
   }
 
@@ -166,30 +160,28 @@ class ProblemBuilder {
   using PoseManifold =
       ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
 
-  static SchurBlock::Kind KeptIf(bool varies) {
-    return varies ? SchurBlock::Kind::kKept : SchurBlock::Kind::kConstant;
+  // The problem takes the manifold.
+  void AddGlobal(double* values, int size, bool varies, ceres::Manifold* manifold = nullptr) {
+    result_.ceres->AddParameterBlock(values, size, manifold);
+    if (varies) {
+      result_.global_blocks.push_back(values);
+    } else {
+      result_.ceres->SetParameterBlockConstant(values);
+    }
   }
 
-  // These return indices.
-  int AddBlock(double* values, std::size_t size, SchurBlock::Kind kind,
-               const ceres::Manifold* manifold = nullptr) {
-    result_.schur.blocks.push_back({values, static_cast<int>(size), kind, manifold});
-    return static_cast<int>(result_.schur.blocks.size()) - 1;
+  ceres::ResidualBlockId AddResidual(std::unique_ptr<ceres::CostFunction> error,
+                                     const std::vector<double*>& blocks) {
+    return result_.ceres->AddResidualBlock(error.release(), nullptr, blocks);
   }
 
-  int AddResidual(std::unique_ptr<ceres::CostFunction> error, std::vector<int> block_idxs) {
-    result_.schur.residuals.push_back({error.get(), nullptr, std::move(block_idxs)});
-    result_.errors.push_back(std::move(error));
-    return static_cast<int>(result_.schur.residuals.size()) - 1;
-  }
-
-  void AddPrior(std::unique_ptr<ceres::CostFunction> error, std::vector<int> block_idxs) {
-    result_.prior_residuals.push_back(AddResidual(std::move(error), std::move(block_idxs)));
+  void AddPrior(std::unique_ptr<ceres::CostFunction> error, const std::vector<double*>& blocks) {
+    result_.prior_residuals.push_back(AddResidual(std::move(error), blocks));
   }
 
   void AddView(std::size_t image_idx, const std::vector<SeenCorner>& view,
-               const std::vector<double>* sigmas_px, int marker_idx) {
-    const MarkerBlock& marker = state_.markers[static_cast<std::size_t>(marker_idx)];
+               const std::vector<double>* sigmas_px, MarkerBlock* marker) {
+    ImageBlock& block = state_.images[image_idx];
     const ModelImage& image = model_.images[image_idx];
     const Camera& camera = model_.cameras.at(image.camera_id);
     std::vector<CornerObservation> observations(view.size());
@@ -201,17 +193,17 @@ class ProblemBuilder {
       observation.sigma_px =
           weights_.corner_factor * CornerSigma(options_, sigmas_px, element.point2D_idx);
       if (EstimatesInset()) {
-        observation.inset_direction = InsetDirection(camera, image.cam_from_world, marker, slot);
+        observation.inset_direction = InsetDirection(camera, image.cam_from_world, *marker, slot);
       }
       observation.row_time_s =
           options_.rolling_shutter_s * (observation.x_in_image_px.y() / camera.height_px - 0.5);
       result_.corners.emplace_back(point3D_id, element);
     }
     result_.corner_residuals.push_back(AddResidual(
-        std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker.corners.size()),
+        std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker->corners.size()),
                                           std::move(observations), weights_.loss_sigmas),
-        {marker_idx, pose_idxs_[image_idx], inset_idx_, intrinsics_idxs_.at(image.camera_id),
-         velocity_idxs_[image_idx]}));
+        {marker->x_in_world.data(), block.cam_from_world.data(), &state_.inset_px,
+         state_.intrinsics.at(image.camera_id).data(), block.velocity.data()}));
   }
 
   static std::unique_ptr<ceres::CostFunction> MakePrior(std::vector<double> mean,
@@ -252,10 +244,6 @@ class ProblemBuilder {
   const Model& model_;
   const MarkerWeights& weights_;
   MarkerState& state_;
-  // Of blocks; those of the markers come first.
-  std::vector<int> pose_idxs_, velocity_idxs_;  // by image
-  std::map<CameraId, int> intrinsics_idxs_;
-  int inset_idx_ = 0, print_scale_idx_ = 0;
   MarkerProblem result_;
 };
 
@@ -273,15 +261,21 @@ MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Mo
   return builder.Take();
 }
 
-int SolveMarkerProblem(int max_num_iterations, double function_tolerance, MarkerProblem* problem) {
-  SchurSolverOptions options;
+int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
+                          MarkerProblem* problem) {
+  SchurOptions options;
   options.max_num_iterations = max_num_iterations;
   options.function_tolerance = function_tolerance;
-  // So much is only asked for near the minimum, where damping would only add iterations.
-  if (function_tolerance < 1e-6) options.initial_radius = 1e8;
-  SchurProblem schur = problem->schur;
-  KeepCoupledBlocks(&schur);
-  const SchurSummary summary = SolveSchur(options, schur);
+  options.keeps_last_step = true;
+  // Such a tolerance is only asked for near the minimum, where damping would only add iterations.
+  if (function_tolerance < 1e-6) options.initial_trust_region_radius = 1e8;
+  std::vector<double*> eliminated, kept;
+  for (double* block : problem->marker_blocks) {
+    (problem->kept_markers.count(block) == 0 ? eliminated : kept).push_back(block);
+  }
+  kept.insert(kept.end(), problem->global_blocks.begin(), problem->global_blocks.end());
+  const SchurSummary summary =
+      MinimizeBySchurComplement(options, eliminated, kept, problem->ceres.get());
   spdlog::debug("{} iterations, cost {:.6g} -> {:.6g}", summary.num_iterations,
                 summary.initial_cost, summary.final_cost);
   if (!summary.is_usable) {
@@ -290,6 +284,14 @@ int SolveMarkerProblem(int max_num_iterations, double function_tolerance, Marker
         "number is not finite");
   }
   return summary.num_iterations;
+}
+
+std::vector<double> CornerResiduals(const MarkerProblem& problem) {
+  ceres::Problem::EvaluateOptions options;
+  options.residual_blocks = problem.corner_residuals;
+  std::vector<double> residuals;
+  VELAMAP_CHECK(problem.ceres->Evaluate(options, nullptr, &residuals, nullptr, nullptr));
+  return residuals;
 }
 
 }  // namespace velamap

@@ -7,6 +7,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "reconstruct/adjust/marker_adjustment_options.h"
 #include "reconstruct/geometry/covariance_update.h"
 
 namespace velamap {
@@ -14,13 +15,13 @@ namespace {
 
 constexpr double kMaxSigmas = 4.0;
 
-// A marker's mean side over its printed one, and how well the images know it.
+// The mean side of a marker divided by the printed length, and its uncertainty.
 struct MarkerSize {
   int marker_id = 0;
   int num_sides = 0;
   double ratio = 0.0;
-  double block_variance = 0.0;  // of the ratio, by the marker's own corners
-  Eigen::VectorXd by_factor;    // of the ratio, by what all markers have in common
+  double block_variance = 0.0;  // part of the ratio's variance that other markers do not share
+  Eigen::VectorXd by_factor;    // shared part: factor of the covariance times the ratio's gradient
 };
 
 std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
@@ -34,7 +35,7 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
     size.marker_id = marker.marker_id;
     size.num_sides = static_cast<int>(sides.size());
     const double weight = 1.0 / (size.num_sides * marker.length_m);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.x_in_world.size());
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.NumCoordinates());
     for (const auto& [a, b] : sides) {
       const Eigen::Vector3d side = CornerPosition(marker, b) - CornerPosition(marker, a);
       size.ratio += weight * side.norm();
@@ -48,8 +49,8 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
   return sizes;
 }
 
-// Deviations of the markers' ratios from their median, and the variance of each that the images
-// cause. What is common to all markers (the scale) drops out.
+// Deviations of the ratios from their median, and the variance of each that image noise causes.
+// Errors that all markers share (the scale) cancel.
 struct Deviations {
   double median = 1.0;
   std::vector<double> values;
@@ -85,7 +86,7 @@ std::vector<double> Normalize(const Deviations& deviations, const std::vector<Ma
   return normalized;
 }
 
-// The tolerance with which the deviations scatter as they should.
+// The tolerance that explains the scatter of the deviations, at least `print_tolerance`.
 double FitTolerance(const Deviations& deviations, const std::vector<MarkerSize>& sizes,
                     double print_tolerance) {
   constexpr std::size_t kMinMarkers = 10;
@@ -109,7 +110,7 @@ std::string PointName(int marker_id, int corner) {
                      : fmt::format("corner {} of marker {}", corner, marker_id);
 }
 
-// From the first point to the second.
+// Vector from the first point of the bar to the second.
 Eigen::Vector3d BarVector(const ScaleBar& bar, const MarkerState& state) {
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   for (std::size_t block = 0; block < bar.marker_idxs.size(); ++block) {
@@ -121,7 +122,7 @@ Eigen::Vector3d BarVector(const ScaleBar& bar, const MarkerState& state) {
   return vector;
 }
 
-// Adds one end of a bar; false where its corners are not all there.
+// Adds one end of a bar. Returns false where corners of it are missing.
 bool AddEnd(const MarkerState& state, int marker_id, int corner, double sign, ScaleBar* bar) {
   const auto marker =
       std::find_if(state.markers.begin(), state.markers.end(),
@@ -169,21 +170,22 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
   const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance);
   MarkerSizeVerdict verdict;
   verdict.print_tolerance = print_tolerance;
-  if (sizes.size() < 3) return verdict;  // two contradict each other, but which is wrong?
+  if (sizes.size() < 3) return verdict;  // of two, neither can be told to be the wrong one
   const Deviations deviations = FindDeviations(sizes);
   verdict.print_tolerance = FitTolerance(deviations, sizes, print_tolerance);
   if (verdict.print_tolerance > print_tolerance) {
     verdict.warnings.push_back(fmt::format(
         "the sides of the markers scatter by {:.2f} % more than the images explain, beyond the "
-        "{:.2f} % of --MarkerAdjustment.print_tolerance; the larger is used",
-        100 * verdict.print_tolerance, 100 * print_tolerance));
+        "{:.2f} % of {}; the larger is used",
+        100 * verdict.print_tolerance, 100 * print_tolerance,
+        OptionName(&MarkerAdjustmentOptions::print_tolerance)));
   }
   const std::vector<double> normalized = Normalize(deviations, sizes, verdict.print_tolerance);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     if (std::abs(normalized[i]) <= kMaxSigmas) continue;
     verdict.contradicting.insert(sizes[i].marker_id);
     verdict.warnings.push_back(fmt::format(
-        "marker {} is {:.2f} % {} than the layout says, measured by the other markers ({:.0f} "
+        "marker {} is {:.2f} % {} than the layout says, compared with the other markers ({:.0f} "
         "sigmas): its size is not used; check its marker_length and its print",
         sizes[i].marker_id, 100 * std::abs(deviations.values[i]),
         deviations.values[i] > 0 ? "larger" : "smaller", std::abs(normalized[i])));
@@ -209,7 +211,7 @@ Eigen::VectorXd BarGradient(const ScaleBar& bar, const MarkerState& state) {
   const Eigen::Vector3d direction = BarVector(bar, state).normalized();
   std::vector<Eigen::Index> begins = {0};
   for (const MarkerBlock& marker : state.markers) {
-    begins.push_back(begins.back() + static_cast<Eigen::Index>(marker.x_in_world.size()));
+    begins.push_back(begins.back() + marker.NumCoordinates());
   }
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(begins.back());
   for (std::size_t block = 0; block < bar.marker_idxs.size(); ++block) {

@@ -1,5 +1,5 @@
-// What the reconstructed markers say about their own size: initial scale, markers whose size
-// contradicts that of the others, scale bars that contradict the markers. Private to this room.
+// The sizes of the reconstructed markers: the initial scale, markers whose size contradicts the
+// others, scale bars that contradict the markers.
 
 #pragma once
 
@@ -13,30 +13,30 @@
 
 namespace velamap {
 
-// m per unit of the state: median over all sides of printed / reconstructed. Throws DataError
-// where no side has both corners.
+// Metres per unit of the state: the median over all sides of printed / reconstructed length. Throws
+// DataError where no side has both corners.
 double MedianScale(const MarkerState& state);
 
 struct MarkerSizeVerdict {
-  std::set<int> contradicting;   // markers, by id
-  double print_tolerance = 0.0;  // the given one, or more where the markers scatter more
+  std::set<int> contradicting;   // marker ids
+  double print_tolerance = 0.0;  // the given one, or a larger one where the markers scatter more
   std::vector<std::string> warnings;
 };
 
-// Compares each marker's mean side with the median of all. `covariance` is that of a solution in
-// which sizes hardly counted. A marker contradicts beyond four sigmas of image noise and
-// tolerance together. Ten markers or more that scatter 1.3 times as far as that tell that
-// `print_tolerance` is too small.
+// Compares the mean side of each marker with the median of all markers. `covariance` belongs to a
+// solution in which the sizes had hardly any weight. A marker contradicts the others if it deviates
+// by more than four sigmas of image noise and print tolerance together. If ten or more markers
+// scatter 1.3 times as far as these sigmas explain, the print tolerance is raised.
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
                                    double print_tolerance);
 
-// The layout's distances that are scale bars and have their corners in the state.
+// The scale bars of the layout whose corners are in the state.
 std::vector<ScaleBar> FindScaleBars(const MarkerState& state, const Layout& layout);
 
-// Gradient of the bar's length by all points, 3n.
+// Derivative of the bar's length by the coordinates of all points, 3n.
 Eigen::VectorXd BarGradient(const ScaleBar& bar, const MarkerState& state);
 
-// In words, where bar and markers differ by more than four sigmas of both; else empty.
+// A warning where bar and markers differ by more than four sigmas of both together; else empty.
 std::string FindContradiction(const ScaleBar& bar, const MarkerState& state,
                               const PointCovariance& points);
 

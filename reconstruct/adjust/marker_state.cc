@@ -1,5 +1,6 @@
 #include "reconstruct/adjust/marker_state.h"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -36,8 +37,9 @@ MarkerState MakeMarkerState(const Model& model, const Layout& layout) {
       state.markers.push_back(std::move(marker));
     }
     MarkerBlock& marker = state.markers.back();
+    std::copy(point.x_in_world.begin(), point.x_in_world.end(),
+              marker.x_in_world.begin() + marker.NumCoordinates());
     marker.corners.push_back(id.corner);
-    for (const double x : point.x_in_world) marker.x_in_world.push_back(x);
   }
   for (const ModelImage& image : model.images) {
     ImageBlock block{image.image_id, image.camera_id, {}, {}};

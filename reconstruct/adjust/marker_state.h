@@ -1,4 +1,4 @@
-// All parameters of the marker-aware bundle adjustment. Private to this room.
+// All parameters of the marker-aware bundle adjustment.
 
 #pragma once
 
@@ -15,10 +15,12 @@ namespace velamap {
 
 struct MarkerBlock {
   int marker_id = 0;
-  std::vector<int> corners;        // 1..4, ascending: those that are in the model
-  std::vector<double> x_in_world;  // x y z of each, m
-  double length_m = 0.0;           // of the layout
+  std::vector<int> corners;  // the corners, 1..4, that are in the model, ascending
+  std::array<double, 3 * kNumCorners> x_in_world{};  // x y z of each of them, m
+  double length_m = 0.0;                             // side by the layout
   bool is_rigid = false;
+
+  int NumCoordinates() const { return 3 * static_cast<int>(corners.size()); }
 };
 
 struct ImageBlock {
@@ -28,10 +30,10 @@ struct ImageBlock {
   std::array<double, 6> velocity{};
 };
 
-// All parameters. The first image's pose is the gauge.
+// The pose of the first image fixes the gauge.
 struct MarkerState {
-  std::vector<MarkerBlock> markers;  // ascending
-  std::vector<ImageBlock> images;    // in order of the model
+  std::vector<MarkerBlock> markers;  // by ascending id
+  std::vector<ImageBlock> images;    // in the order of the model
   std::map<CameraId, std::vector<double>> intrinsics;
   double inset_px = 0.0;
   double print_scale = 0.0;
@@ -39,11 +41,11 @@ struct MarkerState {
 
 Eigen::Map<const Eigen::Vector3d> CornerPosition(const MarkerBlock& marker, int slot);
 
-// Parts of the layout that say which markers are rigid, by marker; and the lengths. Throws
+// Takes points, poses and cameras from the model, lengths and rigid parts from the layout. Throws
 // DataError for a point that is no marker corner.
 MarkerState MakeMarkerState(const Model& model, const Layout& layout);
 
-// Poses, points and cameras of the state.
+// Writes points, poses and cameras of the state into the model.
 void WriteMarkerState(const MarkerState& state, Model* model);
 
 }  // namespace velamap

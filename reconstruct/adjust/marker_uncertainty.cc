@@ -11,16 +11,17 @@
 namespace velamap {
 namespace {
 
-// First column of a global block that varies; -1 for others.
+// Column of a global parameter; -1 where it does not vary.
 int GlobalColumn(const MarkerProblem& problem, const double* values) {
-  const SchurStructure structure = MakeSchurStructure(WithoutScaleBars(problem));
-  for (std::size_t idx = 0; idx < problem.schur.blocks.size(); ++idx) {
-    if (problem.schur.blocks[idx].values == values) return structure.column_of_block[idx];
+  int column = 0;
+  for (const double* block : problem.global_blocks) {
+    if (block == values) return column;
+    column += problem.ceres->ParameterBlockTangentSize(block);
   }
   return -1;
 }
 
-// 1 sigma of the global in `column`, once scale bars have been measured too.
+// 1 sigma of the global in `column`, with the scale bars as additional measurements.
 double GlobalSigma(const MarkerCovariance& covariance, int column, const PointCovariance& points,
                    const Eigen::MatrixXd& bar_gradients, const Eigen::VectorXd& bar_sigmas) {
   Eigen::VectorXd unit = Eigen::VectorXd::Unit(covariance.root.rows(), column);
@@ -41,9 +42,8 @@ double GlobalSigma(const MarkerCovariance& covariance, int column, const PointCo
 std::vector<Eigen::Vector3d> Positions(const MarkerState& state) {
   std::vector<Eigen::Vector3d> positions;
   for (const MarkerBlock& marker : state.markers) {
-    for (std::size_t i = 0; i < marker.x_in_world.size(); i += 3) {
-      positions.emplace_back(marker.x_in_world[i], marker.x_in_world[i + 1],
-                             marker.x_in_world[i + 2]);
+    for (std::size_t slot = 0; slot < marker.corners.size(); ++slot) {
+      positions.emplace_back(CornerPosition(marker, static_cast<int>(slot)));
     }
   }
   return positions;
@@ -62,15 +62,18 @@ PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covar
   return points;
 }
 
-double CornerRedundancy(const MarkerProblem& problem, const MarkerCovariance& covariance) {
-  const auto num_parameters =
-      static_cast<double>(covariance.root.rows() + covariance.factor.rows());
-  // All leverages add up to the number of parameters; what the priors have is not the corners'.
-  double of_priors = 0.0;
-  for (const ResidualJacobian& prior : ResidualJacobians(problem, problem.prior_residuals)) {
-    of_priors += Leverage(covariance, prior);
+double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& covariance) {
+  // All leverages add up to the number of parameters. The part of the priors is not determined by
+  // corners.
+  double num_parameters = static_cast<double>(covariance.root.rows() + covariance.factor.rows());
+  for (const ResidualJacobian& prior : jacobian.priors) {
+    num_parameters -= Leverage(covariance, prior);
   }
-  return 2.0 * static_cast<double>(problem.corners.size()) - (num_parameters - of_priors);
+  double num_residuals = 0.0;
+  for (const ResidualJacobian& view : jacobian.corners) {
+    num_residuals += static_cast<double>(view.NumRows());
+  }
+  return num_residuals - num_parameters;
 }
 
 AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeights& weights,

@@ -1,4 +1,4 @@
-// From the normal equations of a marker problem to what its user is told. Private to this room.
+// From the covariance of a marker problem to the uncertainty that users see.
 
 #pragma once
 
@@ -12,16 +12,17 @@
 
 namespace velamap {
 
-// Of all corners, in order of the parameters.
+// Positions of all corners, in the order of the parameters.
 std::vector<Eigen::Vector3d> Positions(const MarkerState& state);
 
-// Of all corners, in the frame that the first image's camera fixes.
+// Covariance of all corners in the frame of the first image's camera.
 PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covariance);
 
-// Number of residuals of the corners that no parameter absorbs.
-double CornerRedundancy(const MarkerProblem& problem, const MarkerCovariance& covariance);
+// Number of the corners' residuals less the number of parameters that they determine.
+double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& covariance);
 
-// All but the variance factor. `weights` and `problem` are those of `state`, without loss.
+// Everything but the variance factor, the correlation factor and the share of large residuals.
+// `weights` and `problem` belong to `state` and have no loss.
 AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeights& weights,
                                       const MarkerProblem& problem,
                                       const MarkerCovariance& covariance);

@@ -1,117 +1,197 @@
 #include "reconstruct/adjust/normal_equations.h"
 
 #include <algorithm>
+#include <atomic>
 
+#include <ceres/cost_function.h>
+#include <ceres/crs_matrix.h>
 #include <Eigen/Cholesky>
 
 #include "importer/base/error.h"
-#include "reconstruct/solve/gram_matrix.h"
+#include "importer/base/parallel.h"
 
 namespace velamap {
+namespace {
 
-SchurProblem WithoutScaleBars(const MarkerProblem& problem) {
-  const std::size_t num_residuals =
-      problem.corner_residuals.size() + problem.prior_residuals.size();
-  const auto& residuals = problem.schur.residuals;
-  return {problem.schur.blocks,
-          {residuals.begin(), residuals.begin() + static_cast<std::ptrdiff_t>(num_residuals)}};
+// Work is divided into panels of this many columns or rows, whatever the number of threads, so that
+// all sums are formed in the same order.
+constexpr Eigen::Index kPanelSize = 64;
+
+template <typename Work>
+void ForEachPanel(Eigen::Index size, int num_threads, const Work& work) {
+  const auto num_panels = static_cast<std::size_t>((size + kPanelSize - 1) / kPanelSize);
+  ParallelFor(num_panels, num_threads, [&](std::size_t panel) {
+    const Eigen::Index begin = static_cast<Eigen::Index>(panel) * kPanelSize;
+    work(begin, std::min(kPanelSize, size - begin));
+  });
 }
 
-std::vector<ResidualJacobian> ResidualJacobians(const MarkerProblem& problem,
-                                                const std::vector<int>& residual_idxs) {
-  const SchurStructure structure = MakeSchurStructure(WithoutScaleBars(problem));
-  std::vector<ResidualJacobian> result;
-  result.reserve(residual_idxs.size());
-  const auto add = [&](const SchurResidual& residual, const Eigen::VectorXd&,
-                       const std::vector<SchurSystem::RowMajor>& jacobians) {
-    ResidualJacobian& of_residual = result.emplace_back();
-    for (std::size_t k = 0; k < residual.block_idxs.size(); ++k) {
-      const int block_idx = residual.block_idxs[k];
-      const int column = structure.column_of_block[static_cast<std::size_t>(block_idx)];
-      if (block_idx < problem.num_markers) {
-        of_residual.marker_idx = block_idx;
-        of_residual.by_marker = jacobians[k];
-      } else if (column >= 0) {
-        of_residual.by_globals.emplace_back(column, jacobians[k]);
+// Splits the rows of one residual block, whose columns `cols` are ascending, by marker and globals.
+// `marker_of_column` ends where the globals begin.
+ResidualJacobian SplitColumns(const Eigen::Map<const RowMajorMatrix>& derivatives, const int* cols,
+                              const std::vector<int>& marker_of_column) {
+  const int num_marker_columns = static_cast<int>(marker_of_column.size());
+  ResidualJacobian jacobian;
+  for (Eigen::Index begin = 0, end = 0; begin < derivatives.cols(); begin = end) {
+    const int first = cols[begin];
+    end = begin + 1;
+    while (end < derivatives.cols() && cols[end] == cols[end - 1] + 1 &&
+           cols[end] != num_marker_columns) {
+      ++end;
+    }
+    const auto part = derivatives.middleCols(begin, end - begin);
+    if (first < num_marker_columns) {
+      jacobian.marker_idx = marker_of_column[static_cast<std::size_t>(first)];
+      jacobian.by_marker = part;
+    } else {
+      jacobian.by_globals.emplace_back(first - num_marker_columns, part);
+    }
+  }
+  return jacobian;
+}
+
+// Sums of products of derivatives: D and W by marker, and the lower triangle of B.
+struct NormalMatrix {
+  std::vector<Eigen::MatrixXd> marker_blocks;  // D
+  RowMajorMatrix coupling;                     // W
+  Eigen::MatrixXd globals;                     // B
+};
+
+NormalMatrix SumProducts(const MarkerJacobian& jacobian, int num_threads) {
+  const std::size_t num_markers = jacobian.begins.size() - 1;
+  NormalMatrix normal;
+  normal.marker_blocks.resize(num_markers);
+  normal.coupling.setZero(jacobian.begins.back(), jacobian.num_globals);
+  normal.globals.setZero(jacobian.num_globals, jacobian.num_globals);
+  std::vector<std::vector<const ResidualJacobian*>> of_marker(num_markers);
+  for (const auto* blocks : {&jacobian.corners, &jacobian.priors}) {
+    for (const ResidualJacobian& block : *blocks) {
+      if (block.marker_idx >= 0) {
+        of_marker[static_cast<std::size_t>(block.marker_idx)].push_back(&block);
+      }
+      for (const auto& [column, by_column] : block.by_globals) {
+        for (const auto& [row, by_row] : block.by_globals) {
+          if (row < column) continue;
+          normal.globals.block(row, column, by_row.cols(), by_column.cols()) +=
+              by_row.transpose().lazyProduct(by_column);
+        }
       }
     }
-  };
-  VELAMAP_CHECK(VisitResiduals(problem.schur, residual_idxs, true, add));
-  return result;
-}
-
-NormalEquations MakeNormalEquations(const MarkerProblem& problem) {
-  const SchurProblem schur = WithoutScaleBars(problem);
-  const SchurStructure structure = MakeSchurStructure(schur);
-  SchurSystem system;
-  VELAMAP_CHECK(Linearise(schur, structure, &system));
-  NormalEquations equations;
-  equations.globals = system.kept_hessian;
-  Eigen::Index num_rows = 0;
-  for (const SchurSystem::Eliminated& eliminated : system.eliminated) {
-    equations.marker_blocks.emplace_back(eliminated.hessian);
-    num_rows += eliminated.hessian.rows();
   }
-  equations.coupling.setZero(num_rows, structure.num_kept_columns);
-  Eigen::Index begin = 0;
-  for (std::size_t i = 0; i < system.eliminated.size(); ++i) {
-    const SchurSystem::RowMajor& coupling = system.eliminated[i].coupling;
-    Eigen::Index from = 0;
-    for (const int block_idx : structure.eliminated[i].kept_block_idxs) {
-      const int size = schur.blocks[static_cast<std::size_t>(block_idx)].TangentSize();
-      equations.coupling.block(begin,
-                               structure.column_of_block[static_cast<std::size_t>(block_idx)],
-                               coupling.rows(), size) = coupling.middleCols(from, size);
-      from += size;
+  ParallelFor(num_markers, num_threads, [&](std::size_t idx) {
+    const Eigen::Index begin = jacobian.begins[idx], size = jacobian.begins[idx + 1] - begin;
+    Eigen::MatrixXd& hessian = normal.marker_blocks[idx];
+    hessian.setZero(size, size);
+    for (const ResidualJacobian* block : of_marker[idx]) {
+      hessian += block->by_marker.transpose().lazyProduct(block->by_marker);
+      for (const auto& [column, by_globals] : block->by_globals) {
+        normal.coupling.block(begin, column, size, by_globals.cols()) +=
+            block->by_marker.transpose().lazyProduct(by_globals);
+      }
     }
-    begin += coupling.rows();
-  }
-  return equations;
+  });
+  return normal;
 }
 
-std::optional<MarkerCovariance> Invert(const NormalEquations& equations) {
-  const std::size_t num_markers = equations.marker_blocks.size();
-  MarkerCovariance covariance;
-  covariance.begins.push_back(0);
-  covariance.factor = equations.coupling;
-  std::vector<Eigen::LLT<Eigen::MatrixXd>> roots(num_markers);
-  const auto rows_of = [&covariance](std::size_t i) {
-    const Eigen::Index begin = covariance.begins[i];
-    return covariance.factor.middleRows(begin, covariance.begins[i + 1] - begin);
-  };
-  for (std::size_t i = 0; i < num_markers; ++i) {
-    covariance.begins.push_back(covariance.begins.back() + equations.marker_blocks[i].rows());
-    roots[i].compute(equations.marker_blocks[i]);
-    if (roots[i].info() != Eigen::Success) return std::nullopt;
-    auto rows = rows_of(i);
-    roots[i].matrixL().solveInPlace(rows);
+}  // namespace
+
+MarkerJacobian EvaluateJacobian(const MarkerProblem& problem) {
+  MarkerJacobian jacobian;
+  std::vector<int> marker_of_column;
+  for (const double* block : problem.marker_blocks) {
+    jacobian.begins.push_back(static_cast<Eigen::Index>(marker_of_column.size()));
+    const int marker_idx = static_cast<int>(jacobian.begins.size()) - 1;
+    marker_of_column.insert(marker_of_column.end(),
+                            static_cast<std::size_t>(problem.ceres->ParameterBlockSize(block)),
+                            marker_idx);
   }
-  Eigen::MatrixXd schur = equations.globals;
-  SubtractGramMatrix(covariance.factor, &schur);
-  // Of all sizes on the diagonal one scale, so that the test below means something.
+  jacobian.begins.push_back(static_cast<Eigen::Index>(marker_of_column.size()));
+
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = problem.marker_blocks;
+  options.parameter_blocks.insert(options.parameter_blocks.end(), problem.global_blocks.begin(),
+                                  problem.global_blocks.end());
+  options.residual_blocks = problem.corner_residuals;
+  options.residual_blocks.insert(options.residual_blocks.end(), problem.prior_residuals.begin(),
+                                 problem.prior_residuals.end());
+  ceres::CRSMatrix sparse;
+  VELAMAP_CHECK(problem.ceres->Evaluate(options, nullptr, nullptr, nullptr, &sparse));
+  jacobian.num_globals = sparse.num_cols - static_cast<int>(marker_of_column.size());
+
+  std::size_t row = 0;
+  for (const ceres::ResidualBlockId id : options.residual_blocks) {
+    const int num_rows = problem.ceres->GetCostFunctionForResidualBlock(id)->num_residuals();
+    const int begin = sparse.rows[row], width = sparse.rows[row + 1] - begin;
+    const Eigen::Map<const RowMajorMatrix> derivatives(sparse.values.data() + begin, num_rows,
+                                                       width);
+    auto& blocks = jacobian.corners.size() < problem.corner_residuals.size() ? jacobian.corners
+                                                                             : jacobian.priors;
+    blocks.push_back(SplitColumns(derivatives, sparse.cols.data() + begin, marker_of_column));
+    row += static_cast<std::size_t>(num_rows);
+  }
+  return jacobian;
+}
+
+std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jacobian,
+                                                      int num_threads) {
+  NormalMatrix normal = SumProducts(jacobian, num_threads);
+  const std::size_t num_markers = normal.marker_blocks.size();
+  MarkerCovariance covariance;
+  covariance.begins = jacobian.begins;
+  covariance.factor = std::move(normal.coupling);
+  RowMajorMatrix& factor = covariance.factor;
+  const auto rows_of = [&](std::size_t idx) {
+    const Eigen::Index begin = covariance.begins[idx];
+    return factor.middleRows(begin, covariance.begins[idx + 1] - begin);
+  };
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> roots(num_markers);
+  std::atomic<bool> is_definite{true};
+  ParallelFor(num_markers, num_threads, [&](std::size_t idx) {
+    roots[idx].compute(normal.marker_blocks[idx]);
+    if (roots[idx].info() != Eigen::Success) {
+      is_definite = false;
+      return;
+    }
+    auto rows = rows_of(idx);
+    roots[idx].matrixL().solveInPlace(rows);
+  });
+  if (!is_definite) return std::nullopt;
+
+  Eigen::MatrixXd schur = normal.globals;
+  ForEachPanel(schur.cols(), num_threads, [&](Eigen::Index begin, Eigen::Index width) {
+    const Eigen::Index height = schur.rows() - begin;
+    schur.block(begin, begin, height, width).noalias() -=
+        factor.rightCols(height).transpose() * factor.middleCols(begin, width);
+  });
   const Eigen::LLT<Eigen::MatrixXd> root(schur.selfadjointView<Eigen::Lower>());
   if (root.info() != Eigen::Success) return std::nullopt;
   covariance.root = root.matrixL();
+  // A global of which the markers take up all but rounding is undetermined.
   constexpr double kMinShareOfInformation = 1e-14;
   for (Eigen::Index i = 0; i < schur.rows(); ++i) {
     const double left = covariance.root(i, i) * covariance.root(i, i);
-    if (!(left > kMinShareOfInformation * equations.globals(i, i))) return std::nullopt;
+    if (!(left > kMinShareOfInformation * normal.globals(i, i))) return std::nullopt;
   }
-  for (std::size_t i = 0; i < num_markers; ++i) {
-    auto rows = rows_of(i);
-    covariance.marker_blocks.push_back(
-        roots[i].solve(Eigen::MatrixXd::Identity(rows.rows(), rows.rows())));
-    roots[i].matrixU().solveInPlace(rows);
-  }
-  SolveTransposedOnTheRight(covariance.root, &covariance.factor);
+
+  covariance.marker_blocks.resize(num_markers);
+  ParallelFor(num_markers, num_threads, [&](std::size_t idx) {
+    auto rows = rows_of(idx);
+    covariance.marker_blocks[idx] =
+        roots[idx].solve(Eigen::MatrixXd::Identity(rows.rows(), rows.rows()));
+    roots[idx].matrixU().solveInPlace(rows);
+  });
+  ForEachPanel(factor.rows(), num_threads, [&](Eigen::Index begin, Eigen::Index height) {
+    auto rows = factor.middleRows(begin, height);
+    covariance.root.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(
+        rows);
+  });
   return covariance;
 }
 
 double Leverage(const MarkerCovariance& covariance, const ResidualJacobian& jacobian) {
-  const Eigen::Index num_globals = covariance.root.rows();
-  Eigen::Index num_rows = jacobian.by_marker.rows(), first = num_globals;
+  const Eigen::Index num_globals = covariance.root.rows(), num_rows = jacobian.NumRows();
+  Eigen::Index first = num_globals;
   for (const auto& [column, derivatives] : jacobian.by_globals) {
-    num_rows = derivatives.rows();
     first = std::min<Eigen::Index>(first, column);
   }
   // L^-1 by_globals^T, which is zero where by_globals begins with zeros.

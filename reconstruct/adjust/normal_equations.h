@@ -1,48 +1,51 @@
 // The normal equations of a marker problem at its solution, and the covariance that follows.
-// Private to this room: it shows Ceres.
 //
-// Parameters are the markers' corners and the globals (cameras but the first, inset, print scale,
-// intrinsics, velocities; tangent spaces). Only globals couple one marker with another:
+// The parameters are the corners of the markers and the globals (poses but the first, velocities,
+// intrinsics, inset, print scale), all in their tangent spaces. Only the globals couple one marker
+// with another:
 //
 //   H = | D  W |   D block-diagonal by marker,    S = B - W^T D^-1 W = L L^T,
 //       | W' B |   cov(markers) = D^-1 + F F^T,   F = D^-1 W L^-T.
 
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "reconstruct/adjust/marker_problem.h"
-#include "reconstruct/geometry/point_covariance.h"
 
 namespace velamap {
 
-struct NormalEquations {
-  std::vector<Eigen::MatrixXd> marker_blocks;  // D, by marker
-  SchurSystem::RowMajor coupling;              // W
-  Eigen::MatrixXd globals;                     // B
-};
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Derivatives of one residual block, a row a residual. It touches one marker at most.
+// Derivatives of one residual block, one row for each residual.
 struct ResidualJacobian {
-  int marker_idx = -1;
-  SchurSystem::RowMajor by_marker;
-  std::vector<std::pair<int, SchurSystem::RowMajor>> by_globals;  // first column, derivatives
+  int marker_idx = -1;  // -1: depends on no marker
+  RowMajorMatrix by_marker;
+  // By consecutive globals: index of the first one, derivatives.
+  std::vector<std::pair<int, RowMajorMatrix>> by_globals;
+
+  Eigen::Index NumRows() const {
+    return marker_idx >= 0 ? by_marker.rows() : by_globals.front().second.rows();
+  }
 };
-std::vector<ResidualJacobian> ResidualJacobians(const MarkerProblem& problem,
-                                                const std::vector<int>& residual_idxs);
 
-// With corners and priors only: no residual has two markers, all are eliminated.
-SchurProblem WithoutScaleBars(const MarkerProblem& problem);
-
-// Of corners and priors; not of scale bars.
-NormalEquations MakeNormalEquations(const MarkerProblem& problem);
+// Derivatives of corners and priors. Scale bars, which would couple markers, are not part of it.
+struct MarkerJacobian {
+  std::vector<ResidualJacobian> corners;  // by corner_residuals of the problem
+  std::vector<ResidualJacobian> priors;   // by prior_residuals
+  std::vector<Eigen::Index> begins;       // first parameter of each marker, and the end
+  int num_globals = 0;
+};
+MarkerJacobian EvaluateJacobian(const MarkerProblem& problem);
 
 struct MarkerCovariance {
   std::vector<Eigen::MatrixXd> marker_blocks;  // D^-1
   std::vector<Eigen::Index> begins;            // first row of each marker in F, and the end
-  SchurSystem::RowMajor factor;                // F
+  RowMajorMatrix factor;                       // F
   Eigen::MatrixXd root;                        // L, lower triangular
 
   auto FactorOf(std::size_t marker_idx) const {
@@ -50,10 +53,12 @@ struct MarkerCovariance {
   }
 };
 
-// Nothing where the data leave a combination of parameters undetermined.
-std::optional<MarkerCovariance> Invert(const NormalEquations& equations);
+// Nothing where the data leave a combination of parameters undetermined. Runs on up to
+// `num_threads` threads (0: one a core), which do not change the result.
+std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jacobian,
+                                                      int num_threads);
 
-// Sum of the variances of the predictions of the observations with these rows.
+// Sum of the variances of the predicted residuals of one block.
 double Leverage(const MarkerCovariance& covariance, const ResidualJacobian& jacobian);
 
 }  // namespace velamap

@@ -13,19 +13,20 @@
 namespace velamap {
 namespace {
 
-// Points known so much worse along one direction than across. Where corners are very good and
-// prints are not, points may be long for another reason, so that the angle of the views counts too.
+// Geometry is weak where the points' ellipsoids are more elongated than this and the parallax is
+// small. Elongation alone is no proof: the sizes of the markers elongate ellipsoids, too, where
+// corners are precise and prints are not.
 constexpr double kMaxElongation = 10.0;
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180.0;
 constexpr double kMaxWeakParallax = 20.0 * kDegree;
 
-// Longest and shortest half-axis of the points' 1-sigma ellipsoids, medians, m.
+// Medians over the 1-sigma ellipsoids of the points.
 struct Ellipsoid {
-  double longest_m = 0.0;
-  double shortest_m = 0.0;
-  double elongation = 1.0;
+  double longest_m = 0.0;   // half-axis
+  double shortest_m = 0.0;  // half-axis
+  double elongation = 1.0;  // longest / shortest
 };
 
 Ellipsoid MedianEllipsoid(const PointCovariance& points) {
@@ -42,14 +43,14 @@ Ellipsoid MedianEllipsoid(const PointCovariance& points) {
           Median(std::move(elongations))};
 }
 
-// How the images see the points.
+// Geometry of the cameras and points.
 struct Views {
   double camera_extent_m = 0.0;  // largest distance between two cameras
-  double distance_m = 0.0;       // median, camera to middle of the points
+  double distance_m = 0.0;       // median distance of a camera from the centroid of the points
   double parallax_rad = 0.0;     // median over the points of the largest angle between two views
-  double object_extent_m = 0.0;  // RMS distance of the points from their middle
+  double object_extent_m = 0.0;  // RMS distance of the points from their centroid
   bool is_flat = false;
-  double max_tilt_rad = 0.0;  // of a flat object: largest angle of a view to its normal
+  double max_tilt_rad = 0.0;  // largest angle between a view and the normal of a flat object
 };
 
 double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -114,7 +115,7 @@ std::string Reason(const Views& views) {
   if (views.camera_extent_m < kOnePlace * views.distance_m) {
     return fmt::format(
         "all images are taken from one place (within {:.2g} m, at a distance of {:.2g} m): the "
-        "camera only turned, or moved hardly",
+        "camera turned, but hardly moved",
         views.camera_extent_m, views.distance_m);
   }
   if (views.is_flat && views.max_tilt_rad < kHeadOn) {
@@ -123,7 +124,7 @@ std::string Reason(const Views& views) {
         views.max_tilt_rad / kDegree);
   }
   return fmt::format(
-      "there is hardly any parallax: half of the points are seen under less than "
+      "there is hardly any parallax: half of the points are seen within less than "
       "{:.1f} degrees",
       views.parallax_rad / kDegree);
 }
@@ -131,7 +132,7 @@ std::string Reason(const Views& views) {
 }  // namespace
 
 std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovariance& points) {
-  // Beyond this part of the object's extent there is no shape to speak of.
+  // Points that are more uncertain than this fraction of the object's extent are no shape.
   constexpr double kMaxRelativeSigma = 0.2;
   if (points.IsEmpty()) return {};
   const Ellipsoid ellipsoid = MedianEllipsoid(points);
@@ -139,7 +140,7 @@ std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovaria
   const Views views = DescribeViews(model);
   if (views.parallax_rad > kMaxWeakParallax) return {};
   const std::string text = fmt::format(
-      "{}; so the points are known to {:.2g} mm along the line of sight and to {:.2g} mm across: "
+      "{}; so the points are known to {:.2g} mm along the line of sight, to {:.2g} mm across: "
       "take images from places more than 30 degrees apart",
       Reason(views), 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m);
   if (ellipsoid.longest_m > kMaxRelativeSigma * views.object_extent_m) {

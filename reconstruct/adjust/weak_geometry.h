@@ -1,4 +1,4 @@
-// Whether the images determine a shape well, in plain words.
+// Tells whether the images determine the shape well.
 
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace velamap {
 
-// Warnings for a metric model whose points are poorly known along the line of sight, with the
-// reason that the views suggest: all from one place, a flat object seen head-on, hardly any
-// parallax. Empty for good geometry. Throws DataError where points are known so poorly that there
-// is no shape (to a fifth of its extent).
+// Returns warnings for a metric model whose points are poorly determined along the line of sight,
+// with the likely reason: all images from one place, a flat object seen head-on, hardly any
+// parallax. Empty for good geometry. Throws DataError where the points are uncertain by more than a
+// fifth of the object's extent.
 std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovariance& points);
 
 }  // namespace velamap

@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/model/gauge.h"
@@ -24,30 +25,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where COLMAP reads and writes; removed with everything in it.
+// Temporary folder for COLMAP's input and output, removed on destruction.
 class ScratchFolder {
  public:
-  ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "velamap_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw InputError(fmt::format("{}: no folder for temporary files: {}; set TMPDIR", pattern,
-                                   std::strerror(errno)));
-    }
-    path_ = pattern;
-    fs::create_directory(path_ / "out");
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ScratchFolder() { CreateFolders(OutputPath()); }
 
-  std::string InputPath() const { return path_ / "in"; }
-  std::string OutputPath() const { return path_ / "out"; }
+  std::string InputPath() const { return folder_.path() / "in"; }
+  std::string OutputPath() const { return folder_.path() / "out"; }
 
  private:
-  fs::path path_;
+  const TemporaryFolder folder_;
 };
 
 std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& options,
@@ -55,7 +42,7 @@ std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& 
   std::vector<std::string> arguments = {"bundle_adjuster", "--input_path", scratch.InputPath(),
                                         "--output_path", scratch.OutputPath()};
   const auto add = [&](const std::string& name, const std::string& value) {
-    // Options of the solver changed their prefix in COLMAP 4.
+    // COLMAP 4 changed the prefix of the solver's options.
     for (const char* prefix : {"BundleAdjustment.", "BundleAdjustmentCeres."}) {
       if (ColmapHasOption(options.colmap_path, "bundle_adjuster", prefix + name)) {
         arguments.insert(arguments.end(), {"--" + (prefix + name), value});
@@ -83,9 +70,9 @@ bool RefinesCameras(const BundleAdjustmentOptions& options) {
          options.refine_extra_params;
 }
 
-// COLMAP exits with 0 whatever happened, so that its files are proof of nothing. `before` is what
-// it was given.
-void JudgeStructure(const Model& before, const Model& after, bool refines_cameras,
+// Checks that images, points, tracks and cameras came back: COLMAP's exit status is 0 even where it
+// failed. `before` is its input.
+void CheckStructure(const Model& before, const Model& after, bool refines_cameras,
                     const std::string& log_path) {
   if (after.images.size() != before.images.size()) {
     ThrowImplausible(
@@ -115,22 +102,23 @@ void JudgeStructure(const Model& before, const Model& after, bool refines_camera
       ThrowImplausible(fmt::format("camera {} is lost", camera_id), log_path);
     }
     if (refines_cameras ? !(MeanFocalLength(it->second) > 0) : !(it->second == camera)) {
-      ThrowImplausible(fmt::format("camera {} has parameters that cannot be", camera_id), log_path);
+      ThrowImplausible(fmt::format("camera {} has implausible parameters", camera_id), log_path);
     }
   }
 }
 
-// Over the points in front of their cameras; the others are left to the judgement of observations.
+// Leaves out points behind their cameras, which ReviseObservations removes.
 double RmsError(const Model& model) {
   std::vector<double> errors_px;
-  for (const ReprojectionError& error : ComputeReprojectionErrors(model)) {
+  for (const ObservationError& error : ComputeReprojectionErrors(model)) {
     if (std::isfinite(error.error_px)) errors_px.push_back(error.error_px);
   }
   return ComputeStatistics(std::move(errors_px)).rms;
 }
 
-// Poses, points and cameras of COLMAP's result; order, names and colours stay ours.
-void TakeOver(const Model& result, Model* model) {
+// Copies poses, points and cameras of COLMAP's result. The order of images, names and colours stay
+// those of `model`.
+void CopyGeometry(const Model& result, Model* model) {
   model->cameras = result.cameras;
   for (ModelImage& image : model->images) {
     image.cam_from_world = result.FindImage(image.image_id)->cam_from_world;
@@ -138,7 +126,7 @@ void TakeOver(const Model& result, Model* model) {
   for (auto& [point3D_id, point] : model->points3D) {
     point.x_in_world = result.points3D.at(point3D_id).x_in_world;
   }
-  // Where the first image's camera is already, unless this COLMAP fixes the gauge another way.
+  // Changes nothing where COLMAP has held the first image's pose; other versions may not.
   const Rigid3 first_from_world = model->images.front().cam_from_world;
   TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
 }
@@ -158,9 +146,9 @@ void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_p
   RunColmap(options.colmap_path, BundleAdjusterArguments(options, scratch), log_path);
 
   const Model result = ReadResult(scratch.OutputPath(), log_path);
-  JudgeStructure(*model, result, RefinesCameras(options), log_path);
+  CheckStructure(*model, result, RefinesCameras(options), log_path);
   const double rms_before_px = RmsError(*model);
-  TakeOver(result, model);
+  CopyGeometry(result, model);
   const double rms_after_px = RmsError(*model);
   constexpr double kRounding = 1e-6;
   if (!(rms_after_px <= (1.0 + kRounding) * rms_before_px + kRounding)) {
@@ -178,25 +166,7 @@ void CheckEnough(const Model& model, int num_images_before, std::size_t num_outl
       model.images.size(), num_images_before, num_outliers));
 }
 
-void CheckAtLeast(const char* option, double value, double min) {
-  if (!(value >= min) || !std::isfinite(value)) {
-    throw InputError(fmt::format("--BundleAdjustment.{}: {} is out of range; give {} or more",
-                                 option, value, min));
-  }
-}
-
 }  // namespace
-
-void BundleAdjustmentOptions::Check() const {
-  if (colmap_path.empty()) throw InputError("--colmap_path: is empty; give COLMAP's program");
-  CheckAtLeast("max_num_iterations", max_num_iterations, 1);
-  CheckAtLeast("function_tolerance", function_tolerance, 0);
-  CheckAtLeast("max_num_rounds", max_num_rounds, 1);
-  CheckAtLeast("outlier_ratio", outlier_ratio, 2);
-  CheckAtLeast("min_outlier_error", min_outlier_error_px, 0);
-  CheckAtLeast("min_track_length", min_track_length, 2);
-  CheckAtLeast("max_mean_error", max_mean_error_px, 0);
-}
 
 BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
                                          const std::string& log_path, Model* model) {
@@ -222,8 +192,9 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
   if (!(summary.error_after_px.mean <= options.max_mean_error_px)) {
     throw DataError(fmt::format(
         "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
-        "of --BundleAdjustment.max_mean_error; is the calibration of these images?",
-        summary.error_after_px.mean, options.max_mean_error_px));
+        "of {}; does the calibration belong to these images?",
+        summary.error_after_px.mean, options.max_mean_error_px,
+        OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
   }
   *model = std::move(adjusted);
   return summary;

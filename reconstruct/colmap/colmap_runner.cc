@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
@@ -33,7 +34,7 @@ std::string CommandLine(const std::string& program, const std::vector<std::strin
   return line;
 }
 
-// Both ends of a pipe, closed when it goes out of scope.
+// Owns both ends of a pipe.
 class Pipe {
  public:
   Pipe() {
@@ -53,7 +54,7 @@ class Pipe {
     ends_[1] = -1;
   }
 
-  // What has been written since; empty when every writer has closed its end.
+  // Waits for output. Returns an empty string once every writer has closed its end.
   std::string Read() const {
     std::array<char, 4096> buffer;
     ssize_t size;
@@ -65,10 +66,12 @@ class Pipe {
 
  private:
   [[noreturn]] static void Fail() {
-    throw ExternalToolError(fmt::format("no pipe for COLMAP's output: {}", std::strerror(errno)));
+    throw ExternalToolError(
+        fmt::format("a pipe for COLMAP's output cannot be made: {}", std::strerror(errno)));
   }
 
-  // Where our own stdin is closed an end would take its number, which the child's stdin needs.
+  // Where our own stdin is closed, an end of the pipe would get its number, which the child's stdin
+  // needs.
   static void MoveBeyondStandardStreams(int* end) {
     if (*end > STDERR_FILENO) return;
     const int moved = fcntl(*end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
@@ -87,7 +90,7 @@ std::vector<char*> Pointers(std::vector<std::string>& strings) {
   return pointers;
 }
 
-// Ours, and a Qt platform that needs no display: COLMAP links Qt, and some commands start it.
+// Our environment, with a Qt platform that needs no display: some commands of COLMAP start Qt.
 std::vector<std::string> ChildEnvironment() {
   constexpr const char* kQtPlatform = "QT_QPA_PLATFORM=";
   std::vector<std::string> variables{std::string(kQtPlatform) + "offscreen"};
@@ -99,7 +102,7 @@ std::vector<std::string> ChildEnvironment() {
   return variables;
 }
 
-// The child stays in our process group, so that an interrupt from the terminal reaches it too.
+// The child stays in our process group, so that an interrupt from the terminal reaches it.
 pid_t Spawn(const std::string& program, const std::vector<std::string>& arguments, int output_fd) {
   std::vector<std::string> words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -129,7 +132,7 @@ int WaitFor(pid_t pid) {
   return status;
 }
 
-// The line of COLMAP's output that says what went wrong, else its last one.
+// Quotes the first line of COLMAP's output that looks like an error, else the last line.
 std::string DescribeOutput(const std::string& output) {
   std::string last, line;
   std::istringstream lines(output);
@@ -142,12 +145,12 @@ std::string DescribeOutput(const std::string& output) {
   return last.empty() ? "it wrote nothing" : "it wrote last: " + last;
 }
 
-// Empty if the program ended well.
+// Returns an empty string if the program succeeded.
 std::string DescribeFailure(int wait_status) {
   if (WIFSIGNALED(wait_status)) {
     const int signal = WTERMSIG(wait_status);
     return fmt::format("was killed by signal {} ({}){}", signal, strsignal(signal),
-                       signal == SIGKILL ? ", perhaps for want of memory" : "");
+                       signal == SIGKILL ? ", perhaps because memory ran out" : "");
   }
   if (WEXITSTATUS(wait_status) != 0) {
     return fmt::format("exited with status {}", WEXITSTATUS(wait_status));
@@ -156,8 +159,7 @@ std::string DescribeFailure(int wait_status) {
 }
 
 std::ofstream OpenLog(const std::string& log_path) {
-  std::error_code ignored;
-  fs::create_directories(fs::absolute(log_path).parent_path(), ignored);
+  CreateFolders(AbsolutePath(log_path).parent_path());
   std::ofstream log(log_path, std::ios::app | std::ios::binary);
   if (!log) throw InputError(fmt::format("{}: the log cannot be written", log_path));
   return log;

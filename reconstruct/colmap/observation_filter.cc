@@ -17,14 +17,14 @@ constexpr int kMinImageObservations = 4;
 // Residuals along both axes, px.
 using AxisResiduals = std::vector<double>;
 
-void AddResidual(const ReprojectionError& error, AxisResiduals* residuals) {
+void AddResidual(const ObservationError& error, AxisResiduals* residuals) {
   if (!std::isfinite(error.error_px)) return;
   residuals->push_back(error.residual_in_image_px.x());
   residuals->push_back(error.residual_in_image_px.y());
 }
 
-// As RobustSigma, but about zero: a shift of all residuals counts as their error. Infinite when
-// there are no residuals.
+// Robust sigma about zero instead of the median: a shift of all residuals counts as an error.
+// Infinite for no residuals.
 double RobustSigmaAboutZero(AxisResiduals residuals) {
   if (residuals.empty()) return std::numeric_limits<double>::infinity();
   for (double& residual : residuals) residual = std::abs(residual);
@@ -35,26 +35,25 @@ double OutlierThreshold(const BundleAdjustmentOptions& options, double sigma_px)
   return std::max(options.min_outlier_error_px, options.outlier_ratio * sigma_px);
 }
 
-void Remove(const ReprojectionError& error, Model* model,
-            std::vector<RemovedObservation>* removed) {
+void Remove(const ObservationError& error, Model* model, std::vector<RemovedObservation>* removed) {
   RemoveObservation(model, error.point3D_id, error.element);
   removed->push_back({error.point3D_id, error.element, error.error_px});
 }
 
-// Outliers among the observations of one point. A gross one drags the point along and makes good
-// observations look bad, so that only those of its size go with it, and it goes alone where most of
-// them stand out; the others are judged again after the next adjustment. Points behind the camera
-// go at once: COLMAP would drop them.
-std::vector<ReprojectionError> FindOutliers(const std::vector<ReprojectionError>& track,
-                                            double threshold_px) {
+// Outliers among the observations of one point. A gross outlier shifts the point and increases the
+// errors of good observations, so only observations with errors of similar size are removed with
+// it, and it is removed alone where these are the majority; the next round decides on the others.
+// Observations of points behind the camera are all removed, because COLMAP would drop them.
+std::vector<ObservationError> FindOutliers(const std::vector<ObservationError>& track,
+                                           double threshold_px) {
   constexpr double kFractionOfWorst = 0.3;
-  const auto less = [](const ReprojectionError& a, const ReprojectionError& b) {
+  const auto less = [](const ObservationError& a, const ObservationError& b) {
     return a.error_px < b.error_px;
   };
   const auto worst = std::max_element(track.begin(), track.end(), less);
   if (worst->error_px <= threshold_px) return {};
-  std::vector<ReprojectionError> outliers;
-  for (const ReprojectionError& error : track) {
+  std::vector<ObservationError> outliers;
+  for (const ObservationError& error : track) {
     if (error.error_px > std::max(threshold_px, kFractionOfWorst * worst->error_px) ||
         std::isinf(error.error_px)) {
       outliers.push_back(error);
@@ -64,8 +63,8 @@ std::vector<ReprojectionError> FindOutliers(const std::vector<ReprojectionError>
   return is_dragged && std::isfinite(worst->error_px) ? std::vector{*worst} : outliers;
 }
 
-// Puts an observation back into the track and the image. False where one of them is gone or the
-// observation does not fit.
+// Restores an observation. Returns false where its point or image has been removed or its error
+// exceeds the threshold.
 bool RestoreIfFits(const RemovedObservation& observation, double threshold_px, Model* model) {
   const auto point = model->points3D.find(observation.point3D_id);
   const auto image = std::find_if(model->images.begin(), model->images.end(),
@@ -115,11 +114,11 @@ bool HasFewObservations(const ModelImage& image) {
 
 void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
                         std::vector<RemovedObservation>* removed) {
-  const std::vector<ReprojectionError> errors = ComputeReprojectionErrors(*model);
+  const std::vector<ObservationError> errors = ComputeReprojectionErrors(*model);
   AxisResiduals all;
   std::map<ImageId, AxisResiduals> by_image;
   std::map<Point3DId, AxisResiduals> by_point;
-  for (const ReprojectionError& error : errors) {
+  for (const ObservationError& error : errors) {
     AddResidual(error, &all);
     AddResidual(error, &by_image[error.element.image_id]);
     AddResidual(error, &by_point[error.point3D_id]);
@@ -133,7 +132,7 @@ void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
   for (const auto& [point3D_id, residuals] : by_point) {
     point_sigma_px[point3D_id] = RobustSigmaAboutZero(residuals);
   }
-  for (const ReprojectionError& error : errors) {
+  for (const ObservationError& error : errors) {
     const double sigma_px = std::max({model_sigma_px, image_sigma_px.at(error.element.image_id),
                                       point_sigma_px.at(error.point3D_id)});
     if (std::isfinite(error.error_px) && error.error_px <= OutlierThreshold(options, sigma_px)) {
@@ -145,18 +144,18 @@ void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
 
 int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
                        std::vector<RemovedObservation>* removed) {
-  std::map<Point3DId, std::vector<ReprojectionError>> tracks;
+  std::map<Point3DId, std::vector<ObservationError>> tracks;
   AxisResiduals residuals;
-  for (const ReprojectionError& error : ComputeReprojectionErrors(*model)) {
+  for (const ObservationError& error : ComputeReprojectionErrors(*model)) {
     tracks[error.point3D_id].push_back(error);
     AddResidual(error, &residuals);
   }
   if (residuals.empty()) return 0;
   const double threshold_px = OutlierThreshold(options, RobustSigma(residuals));
-  // First, so that what is taken out below is not judged again.
+  // Comes first, because observations that are removed below must not be restored.
   int num_changes = RestoreFitting(threshold_px, model, removed);
   for (const auto& [point3D_id, track] : tracks) {
-    for (const ReprojectionError& outlier : FindOutliers(track, threshold_px)) {
+    for (const ObservationError& outlier : FindOutliers(track, threshold_px)) {
       Remove(outlier, model, removed);
       ++num_changes;
     }
@@ -169,15 +168,15 @@ bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* remove
   for (const auto& [point3D_id, point] : model->points3D) {
     if (IsCornerPoint3DId(point3D_id)) ++num_corners[CornerFromPoint3DId(point3D_id).marker_id];
   }
-  const auto is_unproven = [&](const ReprojectionError& error) {
+  const auto is_unproven = [&](const ObservationError& error) {
     return IsCornerPoint3DId(error.point3D_id) &&
            num_corners[CornerFromPoint3DId(error.point3D_id).marker_id] < kNumCorners &&
            model->points3D.at(error.point3D_id).track.size() <= 2;
   };
-  std::vector<ReprojectionError> unproven = ComputeReprojectionErrors(*model);
+  std::vector<ObservationError> unproven = ComputeReprojectionErrors(*model);
   unproven.erase(std::remove_if(unproven.begin(), unproven.end(), std::not_fn(is_unproven)),
                  unproven.end());
-  for (const ReprojectionError& error : unproven) Remove(error, model, removed);
+  for (const ObservationError& error : unproven) Remove(error, model, removed);
   return !unproven.empty();
 }
 

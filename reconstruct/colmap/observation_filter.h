@@ -1,4 +1,4 @@
-// Which observations take part in a bundle adjustment that has no robust loss of its own.
+// Selects the observations for a bundle adjustment that has no robust loss.
 
 #pragma once
 
@@ -9,24 +9,25 @@
 
 namespace velamap {
 
-// Takes out what stands out before anything is adjusted: observations of points behind the camera,
-// and those far beyond the common error of the model, of their image and of their point. A seed's
-// image or point that is merely misplaced as a whole keeps its observations. Appends to `removed`.
+// Removes observations of points behind the camera, and those whose error is far beyond the usual
+// one of the model, of their image and of their point; an image or a point that is misplaced as a
+// whole keeps its observations. To be called before the first adjustment. Appends to `removed`.
 void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
                         std::vector<RemovedObservation>* removed);
 
-// Judges all observations of an adjusted model: takes outliers out and brings those of `removed`
-// back that fit now. Returns how many changed sides.
+// Removes the outliers of an adjusted model and restores the observations of `removed` that have
+// come to fit. Returns the number of observations that were removed or restored.
 int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
                        std::vector<RemovedObservation>* removed);
 
-// Takes out all observations of corners that only two images see and whose marker is not whole. Two
-// images place a corner somewhere whatever is wrong with one of them; that its marker's other
-// corners were outliers says that something is. Appends to `removed`; returns whether it did.
+// Removes all observations of corners that only two images see and whose marker has lost a corner.
+// Two images cannot show that one of them is wrong, but outliers among the other corners of the
+// marker make it likely. Appends to `removed`; returns whether any were removed.
 bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* removed);
 
-// Removes points with too short a track and images with fewer than four observations, until none is
-// left. Three fix a pose with nothing to check it; fewer make the normal equations singular.
+// Removes points with short tracks and images with fewer than four observations until there are
+// none. Three observations determine a pose but cannot check it; fewer make the normal equations
+// singular.
 void RemoveUnderconstrained(int min_track_length, Model* model,
                             std::vector<ImageId>* removed_images);
 

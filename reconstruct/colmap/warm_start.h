@@ -1,4 +1,4 @@
-// A bundle adjustment of one clip that starts where that of a neighbouring central frame has ended.
+// Starts a bundle adjustment from the result around a neighbouring central frame of the same clip.
 
 #pragma once
 
@@ -6,17 +6,17 @@
 
 namespace velamap {
 
-// How much of a seed is a neighbour's.
+// The part of a seed that has been replaced.
 struct WarmStart {
-  int num_images = 0;  // whose poses are the neighbour's
-  int num_points = 0;  // whose places are the neighbour's
+  int num_images = 0;  // images with adjusted poses
+  int num_points = 0;  // points with adjusted positions
 };
 
-// Moves `adjusted`, a model of the same database, onto `seed` by the points that both have, and
-// takes over its points and the poses of its images. Observations, tracks and the order of images
-// stay the seed's, and so does its world frame up to how well the two fit. Images that only
-// the seed has are resected by least squares against its points. With fewer than half of the
-// seed's points in common nothing is changed: {}.
+// Aligns `adjusted`, a model of the same database, with `seed` by the points that both have and
+// copies its points and poses into `seed`. Observations, tracks, the order of images and, up to the
+// accuracy of the alignment, the world frame of `seed` stay. Images that only the seed has are
+// resected by least squares against its points. If the models share fewer than half of the seed's
+// points, nothing changes and the result is {}.
 WarmStart StartFromAdjusted(const Model& adjusted, Model* seed);
 
 }  // namespace velamap

@@ -226,9 +226,10 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
                                  global.central_image_idx);
     central_idx = static_cast<int>(named - global.image_idx_of_frame.begin());
     if (!global.solution.cam_from_shape[static_cast<std::size_t>(central_idx)]) {
-      throw DataError("--Registration.central_frame " + options.central_frame +
-                      ": the image cannot be registered with the others; leave the option out to "
-                      "let the best one be chosen");
+      throw InputError(OptionName(&RegistrationOptions::central_frame) + " " +
+                       options.central_frame +
+                       ": the image cannot be registered with the others; leave the option out to "
+                       "let the best one be chosen");
     }
   }
   return MakeRegistration(central_idx, std::move(global));

@@ -4,15 +4,18 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <iterator>
+#include <optional>
 #include <vector>
 
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
+#include <ceres/problem.h>
 #include <ceres/product_manifold.h>
 
 #include "importer/geometry/pose_step.h"
 #include "reconstruct/global/map_refinement.h"
-#include "reconstruct/solve/schur_solver.h"
+#include "reconstruct/solve/schur_complement.h"
 
 namespace velamap {
 namespace {
@@ -40,13 +43,11 @@ Rigid3 Unpack(const double* values) {
   return {Eigen::Quaterniond(values).normalized(), Eigen::Vector3d::Map(values + 4)};
 }
 
-// The map as a least-squares problem; its blocks are the frames, then the markers.
+// The map as a least-squares problem.
 class AdjustableMap {
  public:
   AdjustableMap(const MapProblem& map, const MapSolution& solution)
-      : frames_(map.frames.size()), markers_(map.markers.size()) {
-    for (FrameParameters& frame : frames_) problem_.blocks.push_back({frame.data(), 7});
-    for (MarkerParameters& marker : markers_) problem_.blocks.push_back({marker.data(), 8});
+      : problem_(KeepOwnership()), frames_(map.frames.size()), markers_(map.markers.size()) {
     std::vector<const MapObservation*> observations;
     std::vector<int> num_views(map.markers.size());
     for (std::size_t idx = 0; idx < map.observations.size(); ++idx) {
@@ -67,71 +68,77 @@ class AdjustableMap {
       AddFrame(frame_idx, *solution.cam_from_shape[frame_idx]);
       AddMarker(marker_idx, solution.shape_from_marker[marker_idx].front());
       errors_.emplace_back(*observation, map.Marker(observation->marker_idx));
-      problem_.residuals.push_back(
-          {&errors_.back(),
-           &loss_,
-           {observation->frame_idx, static_cast<int>(frames_.size() + marker_idx)}});
+      problem_.AddResidualBlock(&errors_.back(), &loss_, frames_[frame_idx]->data(),
+                                markers_[marker_idx]->data());
     }
   }
 
-  // False where there is none.
-  bool HoldFirstFrame() {
-    const auto end = problem_.blocks.begin() + static_cast<std::ptrdiff_t>(frames_.size());
-    const auto first = std::find_if(problem_.blocks.begin(), end, IsUsed);
-    if (first == end) return false;
-    first->kind = SchurBlock::Kind::kConstant;
-    return true;
+  // Minimizes with the first frame that takes part held fixed. False where no frame takes part or
+  // no step can be computed.
+  bool Minimize(const SchurOptions& options) {
+    const auto first =
+        std::find_if(frames_.begin(), frames_.end(), [](const auto& f) { return f.has_value(); });
+    if (first == frames_.end()) return false;
+    problem_.SetParameterBlockConstant((*first)->data());
+    std::vector<double*> markers, frames;
+    for (auto& marker : markers_) {
+      if (marker) markers.push_back(marker->data());
+    }
+    for (auto frame = std::next(first); frame != frames_.end(); ++frame) {
+      if (*frame) frames.push_back((*frame)->data());
+    }
+    return MinimizeBySchurComplement(options, markers, frames, &problem_).is_usable;
   }
-
-  const SchurProblem& Problem() const { return problem_; }
 
   void WriteTo(MapSolution* solution) const {
     for (std::size_t idx = 0; idx < frames_.size(); ++idx) {
-      if (IsUsed(problem_.blocks[idx])) {
-        solution->cam_from_shape[idx] = Unpack(frames_[idx].data());
-      }
+      if (frames_[idx]) solution->cam_from_shape[idx] = Unpack(frames_[idx]->data());
     }
     for (std::size_t idx = 0; idx < markers_.size(); ++idx) {
-      if (!IsUsed(problem_.blocks[frames_.size() + idx])) continue;
-      const Rigid3 rigid = Unpack(markers_[idx].data());
+      if (!markers_[idx]) continue;
+      const Rigid3 rigid = Unpack(markers_[idx]->data());
       solution->shape_from_marker[idx].front() =
-          Sim3{std::exp(markers_[idx][7]), rigid.rotation, rigid.translation};
+          Sim3{std::exp((*markers_[idx])[7]), rigid.rotation, rigid.translation};
     }
   }
 
  private:
-  static bool IsUsed(const SchurBlock& block) { return block.kind != SchurBlock::Kind::kConstant; }
+  // Cost functions, losses and manifolds are members.
+  static ceres::Problem::Options KeepOwnership() {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+  }
 
   void AddFrame(std::size_t idx, const Rigid3& pose) {
-    SchurBlock& block = problem_.blocks[idx];
-    if (IsUsed(block)) return;
-    block.kind = SchurBlock::Kind::kKept;
-    block.manifold = &frame_manifold_;
-    Pack(pose.rotation, pose.translation, block.values);
+    if (frames_[idx]) return;
+    double* values = frames_[idx].emplace().data();
+    Pack(pose.rotation, pose.translation, values);
+    problem_.AddParameterBlock(values, 7, &frame_manifold_);
   }
 
   void AddMarker(std::size_t idx, const Sim3& place) {
-    SchurBlock& block = problem_.blocks[frames_.size() + idx];
-    if (IsUsed(block)) return;
-    block.kind = SchurBlock::Kind::kEliminated;
-    block.manifold = &marker_manifold_;
-    Pack(place.rotation, place.translation, block.values);
-    block.values[7] = std::log(place.scale);
-    problem_.residuals.push_back(
-        {&scale_prior_, &scale_loss_, {static_cast<int>(frames_.size() + idx)}});
+    if (markers_[idx]) return;
+    double* values = markers_[idx].emplace().data();
+    Pack(place.rotation, place.translation, values);
+    values[7] = std::log(place.scale);
+    problem_.AddParameterBlock(values, 8, &marker_manifold_);
+    problem_.AddResidualBlock(&scale_prior_, &scale_loss_, values);
   }
 
-  std::vector<FrameParameters> frames_;
-  std::vector<MarkerParameters> markers_;
-  std::deque<MapReprojectionCost> errors_;
-  const ceres::AutoDiffCostFunction<ScalePrior, 1, 8> scale_prior_{new ScalePrior};
-  const ceres::CauchyLoss loss_{kLossSigmas * std::sqrt(2.0 * kNumCorners)};
-  const ceres::CauchyLoss scale_loss_{kScaleLossSigmas};
-  const ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>
+  ceres::AutoDiffCostFunction<ScalePrior, 1, 8> scale_prior_{new ScalePrior};
+  ceres::CauchyLoss loss_{kLossSigmas * std::sqrt(2.0 * kNumCorners)};
+  ceres::CauchyLoss scale_loss_{kScaleLossSigmas};
+  ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>
       frame_manifold_;
-  const ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<4>>
+  ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<4>>
       marker_manifold_;
-  SchurProblem problem_;
+  std::deque<MapReprojectionCost> errors_;
+  ceres::Problem problem_;
+  std::vector<std::optional<FrameParameters>> frames_;  // those that take part
+  std::vector<std::optional<MarkerParameters>> markers_;
 };
 
 }  // namespace
@@ -180,12 +187,10 @@ bool MapReprojectionCost::Evaluate(double const* const* parameters, double* resi
 void AdjustMap(const MapProblem& problem, const MapAdjustmentOptions& options,
                MapSolution* solution) {
   AdjustableMap map(problem, *solution);
-  if (!map.HoldFirstFrame()) return;
-  SchurSolverOptions solver;
-  solver.max_num_iterations = options.max_num_iterations;
-  solver.function_tolerance = options.tolerance;
-  solver.gradient_tolerance = 1e-14;
-  if (SolveSchur(solver, map.Problem()).is_usable) map.WriteTo(solution);
+  SchurOptions schur;
+  schur.max_num_iterations = options.max_num_iterations;
+  schur.function_tolerance = options.tolerance;
+  if (map.Minimize(schur)) map.WriteTo(solution);
 }
 
 }  // namespace velamap

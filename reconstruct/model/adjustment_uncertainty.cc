@@ -9,11 +9,12 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
 
-// File: magic, version, six doubles, then points, blocks and factor; all little-endian.
+// Layout of the file: magic, version, six doubles, points, blocks, factor, signs; little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
 constexpr std::uint32_t kVersion = 2;
 
@@ -38,8 +39,8 @@ void WriteCount(std::size_t count, std::ostream* out) {
   Write(static_cast<std::uint64_t>(count), out);
 }
 
-// Reads what Write wrote; every count is held against what the file can still hold, so that a
-// broken one cannot ask for all memory.
+// Reads what Write wrote. Every count is compared with the bytes that are left, so that a damaged
+// file cannot make it allocate all memory.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path)
@@ -142,16 +143,14 @@ void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::strin
   if (!out) throw InputError(path.string() + ": cannot be written");
 }
 
-bool HasUncertainty(const std::string& folder) {
-  return std::filesystem::is_regular_file(FilePath(folder));
-}
+bool HasUncertainty(const std::string& folder) { return IsRegularFile(FilePath(folder)); }
 
 AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   Reader reader(FilePath(folder));
   char magic[sizeof(kMagic)];
   reader.Read(magic, sizeof(magic));
   if (!std::equal(magic, magic + sizeof(magic), kMagic))
-    reader.Fail("is no uncertainty of velamap");
+    reader.Fail("is not an uncertainty file of velamap");
   const auto version = reader.Read<std::uint32_t>();
   if (version != kVersion) reader.Fail(fmt::format("has the unknown version {}", version));
   AdjustmentUncertainty uncertainty;

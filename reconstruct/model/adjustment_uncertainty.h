@@ -1,5 +1,5 @@
-// What a marker-aware bundle adjustment knows about the quality of its result. It travels beside
-// the model as uncertainty.bin, which COLMAP ignores; a model folder that holds it is metric (m).
+// The uncertainty that a marker-aware bundle adjustment finds for its result. It is stored in the
+// model's folder as uncertainty.bin, which COLMAP ignores. A model with this file is metric (m).
 
 #pragma once
 
@@ -12,30 +12,30 @@ namespace velamap {
 inline constexpr char kUncertaintyFileName[] = "uncertainty.bin";
 
 struct AdjustmentUncertainty {
-  // In the shape's own frame: of all rigid motions of the result none is known, so the covariance
-  // is that after a least-squares alignment of all points with their true places (inner
-  // constraints; Triggs et al., "Bundle Adjustment - A Modern Synthesis", 2000, section 9). Scaled
-  // by the variance factor of the observations.
+  // Covariance after a least-squares rigid alignment of all points with their true positions (inner
+  // constraints; Triggs et al., "Bundle Adjustment - A Modern Synthesis", 2000, section 9), because
+  // images and markers do not determine a rigid motion of the whole. Includes the variance factor
+  // of the observations.
   PointCovariance points;
-  // 1 sigma of the scale that is common to all points, as a fraction: corner noise, print tolerance
-  // and apparent inset together. It is part of `points` too.
+  // 1 sigma of the common scale of all points, as a fraction, by corner noise, print tolerance and
+  // apparent inset together. `points` includes it.
   double relative_scale_sigma = 0.0;
-  // Of the weighted corner residuals: sum of squares / redundancy. 1 where the corners' sigmas are
+  // Sum of squares of the weighted corner residuals / redundancy. 1 where the corners' sigmas are
   // right.
   double variance_factor = 1.0;
-  // The corners' sigmas are taken this much larger in `points`, because errors that corners have in
-  // common move the shape farther than independent ones. 1 where nothing of the kind is found.
+  // Factor of the corners' sigmas in `points` that accounts for errors that several corners have in
+  // common; such errors move the shape farther than independent ones. 1 where none are found.
   double correlation_factor = 1.0;
-  // Of the corners that stayed, those off by more than 4 of their calibrated sigmas (without the
+  // Fraction of the corners in use with residuals above 4 calibrated sigmas (without the
   // correlation factor).
   double share_above_4_sigma = 0.0;
-  double apparent_inset_px =
-      0.0;  // corners lie this far inside along x and y of the marker; 0: not estimated
+  // How far corners appear inside along x and y of the marker. 0: not estimated.
+  double apparent_inset_px = 0.0;
   double apparent_inset_sigma_px = 0.0;
 };
 
-// In `folder`. Reading throws InputError that names the file for a truncated or foreign one; a
-// folder without the file gives nothing (std::nullopt is for the caller: see HasUncertainty).
+// The file in `folder`. ReadUncertainty throws InputError that names the file if it is missing (see
+// HasUncertainty), truncated or of another format.
 void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder);
 bool HasUncertainty(const std::string& folder);
 AdjustmentUncertainty ReadUncertainty(const std::string& folder);

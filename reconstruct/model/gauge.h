@@ -1,9 +1,10 @@
 // Orders a model for COLMAP's bundle adjuster.
 //
-// COLMAP 3.8 fixes the gauge by the pose of the first image and the x of the second image's
-// translation. In time order that x can be next to nothing, and the scale runs away. Here the
-// world frame is placed at the first image's camera and the image with the largest |t_x| comes
-// second. A similarity of the input changes nothing but the model's scale.
+// COLMAP 3.8 fixes the gauge by the pose of the first image and the x coordinate of the second
+// image's translation. With images in time order this coordinate can be nearly zero; the scale then
+// drifts by orders of magnitude. OrderForGauge therefore places the world frame at the first
+// image's camera and moves the image with the largest |t_x| to the second place. A similarity of
+// the input changes nothing but the model's scale.
 
 #pragma once
 
@@ -11,10 +12,11 @@
 
 namespace velamap {
 
-// `first_image_id` becomes the origin; the remaining images follow by image_id.
+// The camera of `first_image_id` becomes the world frame. Images from the third on are sorted by
+// id.
 void OrderForGauge(ImageId first_image_id, Model* model);
 
-// Moves the whole model into another world frame: x_in_new = new_from_world * x_in_world.
+// Transforms the model into another world frame: x_in_new = new_from_world * x_in_world.
 void TransformModel(const Sim3& new_from_world, Model* model);
 
 }  // namespace velamap

@@ -30,17 +30,20 @@ std::string FindCameraFault(CameraId camera_id, const Camera& camera) {
   return "";
 }
 
-// References from images to points. That they come back is checked by the tracks: as every track
-// element is proven and none is there twice, it suffices that the numbers agree.
+// Checks the references from images to points. FindUntrackedObservation checks the way back: as
+// every track element is valid and unique, comparing numbers of observations suffices.
 std::string FindImageFault(const Model& model, const ModelImage& image) {
   if (model.cameras.count(image.camera_id) == 0) {
-    return fmt::format("image {} has camera {}, which is not there", image.image_id,
+    return fmt::format("image {} has camera {}, which does not exist", image.image_id,
                        image.camera_id);
   }
   constexpr double kMaxNormError = 1e-6;
   if (!image.cam_from_world.translation.allFinite() ||
       !(std::abs(image.cam_from_world.rotation.norm() - 1.0) <= kMaxNormError)) {
-    return fmt::format("image {} has a pose that is not finite or no rotation", image.image_id);
+    return fmt::format(
+        "image {} has a pose that is not finite or whose rotation is not a unit "
+        "quaternion",
+        image.image_id);
   }
   for (std::size_t idx = 0; idx < image.points2D.size(); ++idx) {
     const Point2D& point2D = image.points2D[idx];
@@ -48,7 +51,7 @@ std::string FindImageFault(const Model& model, const ModelImage& image) {
       return fmt::format("2D point {} of image {} is not finite", idx, image.image_id);
     }
     if (point2D.point3D_id != kInvalidPoint3DId && model.points3D.count(point2D.point3D_id) == 0) {
-      return fmt::format("2D point {} of image {} observes point {}, which is not there", idx,
+      return fmt::format("2D point {} of image {} observes point {}, which does not exist", idx,
                          image.image_id, point2D.point3D_id);
     }
   }
@@ -64,7 +67,7 @@ std::string FindPointFault(const ImagesById& images, Point3DId point3D_id, const
   for (const TrackElement& element : point.track) {
     const auto image = images.find(element.image_id);
     if (image == images.end()) {
-      return fmt::format("the track of point {} has image {}, which is not there", point3D_id,
+      return fmt::format("the track of point {} has image {}, which does not exist", point3D_id,
                          element.image_id);
     }
     const std::vector<Point2D>& points2D = image->second->points2D;
@@ -114,7 +117,7 @@ std::string FindModelFault(const Model& model) {
   ImagesById images;
   for (const ModelImage& image : model.images) {
     if (!images.emplace(image.image_id, &image).second) {
-      return fmt::format("image {} is there twice", image.image_id);
+      return fmt::format("there are two images with the id {}", image.image_id);
     }
     const std::string fault = FindImageFault(model, image);
     if (!fault.empty()) return fault;

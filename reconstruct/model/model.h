@@ -46,24 +46,24 @@ struct Model {
   std::vector<ModelImage> images;
   std::map<Point3DId, Point3D> points3D;
 
-  // Null where there is no such image.
+  // Returns null where there is no such image.
   const ModelImage* FindImage(ImageId image_id) const;
 };
 
-// What is wrong with the model, in a line that names the ids; empty for a sound one. Ids must be
-// unique, every 2D point and track element refer to each other, every image have its camera, every
-// rotation unit length, and all numbers be finite (but mean_error_px, which a point behind its
-// camera makes infinite).
+// Describes the first fault of the model in one line that names the ids; empty for a valid model. A
+// model is valid if ids are unique, 2D points and track elements refer to each other, the camera of
+// every image exists, rotations have unit length, and all numbers are finite. Only mean_error_px
+// may be infinite: a point may lie behind its camera.
 std::string FindModelFault(const Model& model);
 
-// Throws std::logic_error for a model with a fault.
+// Throws std::logic_error if the model is not valid.
 void CheckModel(const Model& model);
 
-// Takes one observation out of the track and the image. A point that loses its last observation
-// stays until RemoveShortTracks.
+// Removes one observation from the track and the image. A point without observations stays until
+// RemoveShortTracks.
 void RemoveObservation(Model* model, Point3DId point3D_id, const TrackElement& element);
 
-// Removes points with fewer than `min_track_length` observations, and the references to them.
+// Removes points with fewer than `min_track_length` observations and the references to them.
 void RemoveShortTracks(Model* model, int min_track_length);
 
 }  // namespace velamap

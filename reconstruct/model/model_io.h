@@ -1,4 +1,4 @@
-// COLMAP model folders, binary and text: cameras, images, points3D (the three classic files only).
+// Reads and writes COLMAP model folders, binary and text: cameras, images and points3D.
 
 #pragma once
 
@@ -13,17 +13,18 @@ namespace velamap {
 
 enum class ModelFormat { kBinary, kText, kBinaryAndText };
 
-// Names of all files that a model folder may hold: what CheckReplaceableFolder() asks for.
+// Names of all files that a model folder may hold, for CheckReplaceableFolder().
 const std::set<std::string>& ModelFileNames();
 
-// Reads the folder; binary wins where both formats are there, as in COLMAP. Throws InputError that
-// names the file (and the line in text) for anything missing, truncated or inconsistent.
+// Reads the folder; prefers the binary format where both are there, as COLMAP does. Throws
+// InputError that names the file (in text also the line) if anything is missing, truncated or
+// inconsistent.
 Model ReadModel(const std::string& path);
 
-// Writes into a temporary sibling and renames it to `path`, so that an interrupted run leaves the
-// old model or none. Points and tracks are sorted by id: same model, same bytes. Text carries 17
-// digits and reads back to the same doubles. `write_more` may add files of ModelFileNames() to the
-// folder that it is given. Throws InputError if the folder cannot be written.
+// Writes a temporary folder and renames it to `path`, so that an interrupted run leaves the old
+// model or none. Points and tracks are sorted by id, so that equal models give equal bytes. Text
+// has 17 digits and reads back to the same doubles. `write_more` may add files of ModelFileNames()
+// to the temporary folder. Throws InputError if the folder cannot be written.
 void WriteModel(const Model& model, const std::string& path, ModelFormat format,
                 const std::function<void(const std::string& folder)>& write_more = {});
 

@@ -1,5 +1,5 @@
-// The binary half of model_io.h: little-endian, without padding, as COLMAP has written it since 3.0
-// (src/base/reconstruction.cc; its documentation, format.html).
+// The binary format of model_io.h: little-endian without padding, as COLMAP has written it
+// since 3.0 (format.html of its documentation).
 
 #include <array>
 #include <cstring>
@@ -23,7 +23,7 @@ class BinaryReader {
  public:
   BinaryReader(std::istream& in, const std::string& name) : in_(in), name_(name) {}
 
-  // `what` is being read, in words for the error.
+  // `what` is the name of the record for the error message.
   template <typename T>
   T Read(const std::string& what) {
     static_assert(std::is_arithmetic_v<T>);
@@ -56,7 +56,7 @@ class BinaryReader {
 
   void ExpectEnd() {
     if (in_.peek() != std::istream::traits_type::eof()) {
-      Fail("goes on after the last entry; it is no such COLMAP file, or a damaged one");
+      Fail("continues after the last entry; it is damaged or not a COLMAP file of this name");
     }
   }
 
@@ -101,7 +101,7 @@ void ReadCamerasBinary(std::istream& in, const std::string& name, Model* model) 
       camera.params.push_back(reader.Read<double>(what));
     }
     if (!model->cameras.emplace(camera_id, camera).second) {
-      reader.Fail(fmt::format("camera {} is there twice", camera_id));
+      reader.Fail(fmt::format("there are two cameras with the id {}", camera_id));
     }
   }
   reader.ExpectEnd();
@@ -147,7 +147,7 @@ void ReadPoints3DBinary(std::istream& in, const std::string& name, Model* model)
       point.track.push_back({image_id, reader.Read<std::uint32_t>(what)});
     }
     if (!model->points3D.emplace(point3D_id, std::move(point)).second) {
-      reader.Fail(fmt::format("point {} is there twice", point3D_id));
+      reader.Fail(fmt::format("there are two points with the id {}", point3D_id));
     }
   }
   reader.ExpectEnd();

@@ -1,4 +1,4 @@
-// The text half of model_io.h. Numbers are read and written without regard to the locale.
+// The text format of model_io.h. Numbers do not depend on the locale.
 
 #include <cctype>
 #include <charconv>
@@ -17,15 +17,14 @@
 namespace velamap {
 namespace {
 
-// The fields of one line after the other.
+// Reads line by line, and each line field by field.
 class LineReader {
  public:
   LineReader(std::istream& in, const std::string& name) : in_(in), name_(name) {}
 
-  // The next line, empty or not. False at the end of the file.
+  // Goes to the next line, even an empty one. Returns false at the end of the file.
   bool NextLine() {
     if (!std::getline(in_, line_)) {
-      // Reading stops at the end of the file or because the disk failed.
       if (in_.bad()) throw InputError(fmt::format("{}: cannot be read", name_));
       return false;
     }
@@ -36,7 +35,7 @@ class LineReader {
     return true;
   }
 
-  // The next line that is no comment and not empty.
+  // Goes to the next line that is neither empty nor a comment.
   bool NextRecord() {
     while (NextLine()) {
       if (!AtEnd() && rest_.front() != '#') return true;
@@ -46,7 +45,7 @@ class LineReader {
 
   bool AtEnd() const { return rest_.empty(); }
 
-  // `what` is the field's name, for the error.
+  // `what` is the field's name for the error message.
   template <typename T>
   T Number(const char* what) {
     static_assert(std::is_arithmetic_v<T>);
@@ -69,7 +68,7 @@ class LineReader {
     return word;
   }
 
-  // All that is left; names of images may hold spaces.
+  // The rest of the line; names of images may contain spaces.
   std::string Rest(const char* what) {
     if (AtEnd()) Fail(fmt::format("expected {}, but the line ends", what));
     const std::string rest(rest_);
@@ -105,7 +104,7 @@ class LineReader {
   std::string_view rest_;
 };
 
-// A list initialiser is evaluated in order, a list of function arguments is not.
+// Braces guarantee that the fields are read in order; function arguments would not.
 Eigen::Vector3d ReadVector3(LineReader* reader, const char* x, const char* y, const char* z) {
   return Eigen::Vector3d{reader->Number<double>(x), reader->Number<double>(y),
                          reader->Number<double>(z)};
@@ -142,7 +141,7 @@ void ReadCamerasText(std::istream& in, const std::string& name, Model* model) {
     }
     reader.ExpectEnd();
     if (!model->cameras.emplace(camera_id, camera).second) {
-      reader.Fail(fmt::format("camera {} is there twice", camera_id));
+      reader.Fail(fmt::format("there are two cameras with the id {}", camera_id));
     }
   }
 }
@@ -159,7 +158,7 @@ void ReadImagesText(std::istream& in, const std::string& name, Model* model) {
     image.cam_from_world = {*rotation, ReadVector3(&reader, "TX", "TY", "TZ")};
     image.camera_id = reader.Number<CameraId>("CAMERA_ID");
     image.name = reader.Rest("NAME");
-    // The second line of an image without 2D points is empty, but it is there.
+    // An image without 2D points has an empty second line.
     if (!reader.NextLine()) reader.Fail("the line of 2D points is missing; the file is truncated");
     ReadPoints2D(&reader, &image);
     model->images.push_back(std::move(image));
@@ -179,7 +178,7 @@ void ReadPoints3DText(std::istream& in, const std::string& name, Model* model) {
       point.track.push_back({image_id, reader.Number<std::uint32_t>("POINT2D_IDX")});
     }
     if (!model->points3D.emplace(point3D_id, std::move(point)).second) {
-      reader.Fail(fmt::format("point {} is there twice", point3D_id));
+      reader.Fail(fmt::format("there are two points with the id {}", point3D_id));
     }
   }
 }
@@ -200,9 +199,9 @@ void WriteImagesText(const Model& model, std::ostream& out) {
              "# POINTS2D[] as X Y POINT3D_ID\n");
   for (const ModelImage& image : model.images) {
     if (image.name.find_first_of("\r\n") != std::string::npos) {
-      throw InputError(fmt::format(
-          "image {}: a name with a line break does not fit into images.txt; rename the image",
-          image.image_id));
+      throw InputError(
+          fmt::format("image {}: images.txt cannot hold a name with a line break; rename the image",
+                      image.image_id));
     }
     const Eigen::Quaterniond& q = image.cam_from_world.rotation;
     const Eigen::Vector3d& t = image.cam_from_world.translation;
@@ -211,7 +210,7 @@ void WriteImagesText(const Model& model, std::ostream& out) {
                image.name);
     const char* separator = "";
     for (const Point2D& point2D : image.points2D) {
-      // As signed numbers, the id of no point reads -1.
+      // As a signed number, kInvalidPoint3DId is -1.
       fmt::print(out, "{}{:.17g} {:.17g} {}", separator, point2D.x_in_image_px.x(),
                  point2D.x_in_image_px.y(), static_cast<std::int64_t>(point2D.point3D_id));
       separator = " ";

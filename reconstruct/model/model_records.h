@@ -1,4 +1,4 @@
-// What the text and the binary form of a COLMAP model have in common.
+// Shared by the text and the binary format of COLMAP models.
 
 #pragma once
 
@@ -12,14 +12,14 @@
 
 namespace velamap {
 
-// The rotation of a file's quaternion (w, x, y, z): as it stands if it has unit length to rounding,
-// so that a model round-trips exactly; else normalised. Nothing for the length zero or not finite.
+// The rotation of a file's quaternion (w, x, y, z). It is normalized unless its length is 1 up to
+// rounding, so that models round-trip exactly. Nothing if its length is zero or not finite.
 std::optional<Eigen::Quaterniond> RotationFromFile(const Eigen::Vector4d& wxyz);
 
 // Ordered by image, then 2D point.
 std::vector<TrackElement> SortedTrack(const Point3D& point);
 
-// Texts of errors that both forms report.
+// Messages for errors in both formats.
 std::string UnknownCameraModel(CameraId camera_id, const std::string& found);
 std::string NoRotation(ImageId image_id);
 

@@ -7,18 +7,18 @@
 
 namespace velamap {
 
-std::vector<ReprojectionError> ComputeReprojectionErrors(const Model& model) {
+std::vector<ObservationError> ComputeReprojectionErrors(const Model& model) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::unordered_map<ImageId, const ModelImage*> images;
   for (const ModelImage& image : model.images) images.emplace(image.image_id, &image);
 
-  std::vector<ReprojectionError> errors;
+  std::vector<ObservationError> errors;
   for (const auto& [point3D_id, point] : model.points3D) {
     for (const TrackElement& element : point.track) {
       const ModelImage& image = *images.at(element.image_id);
       const auto projection =
           ImageFromCam(model.cameras.at(image.camera_id), image.cam_from_world * point.x_in_world);
-      ReprojectionError error{point3D_id, element, Eigen::Vector2d::Constant(kInfinity), kInfinity};
+      ObservationError error{point3D_id, element, Eigen::Vector2d::Constant(kInfinity), kInfinity};
       if (projection) {
         error.residual_in_image_px =
             *projection - image.points2D.at(element.point2D_idx).x_in_image_px;
@@ -30,16 +30,16 @@ std::vector<ReprojectionError> ComputeReprojectionErrors(const Model& model) {
   return errors;
 }
 
-Statistics SummarizeReprojectionErrors(const std::vector<ReprojectionError>& errors) {
+Statistics SummarizeReprojectionErrors(const std::vector<ObservationError>& errors) {
   std::vector<double> errors_px;
   errors_px.reserve(errors.size());
-  for (const ReprojectionError& error : errors) errors_px.push_back(error.error_px);
+  for (const ObservationError& error : errors) errors_px.push_back(error.error_px);
   return ComputeStatistics(std::move(errors_px));
 }
 
 void UpdatePointErrors(Model* model) {
   for (auto& [point3D_id, point] : model->points3D) point.mean_error_px = 0.0;
-  for (const ReprojectionError& error : ComputeReprojectionErrors(*model)) {
+  for (const ObservationError& error : ComputeReprojectionErrors(*model)) {
     Point3D& point = model->points3D.at(error.point3D_id);
     point.mean_error_px += error.error_px / static_cast<double>(point.track.size());
   }

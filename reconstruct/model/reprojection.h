@@ -1,4 +1,4 @@
-// Reprojection errors of a model: what every adjustment is judged by.
+// Reprojection errors of a model.
 
 #pragma once
 
@@ -9,19 +9,19 @@
 
 namespace velamap {
 
-struct ReprojectionError {
+struct ObservationError {
   Point3DId point3D_id = 0;
   TrackElement element;
   Eigen::Vector2d residual_in_image_px;  // projection minus observation
   double error_px = 0.0;                 // its length; infinite for a point behind the camera
 };
 
-// One entry an observation, ordered by point then track position.
-std::vector<ReprojectionError> ComputeReprojectionErrors(const Model& model);
+// Returns one entry for each observation, ordered by point, then by position in the track.
+std::vector<ObservationError> ComputeReprojectionErrors(const Model& model);
 
-Statistics SummarizeReprojectionErrors(const std::vector<ReprojectionError>& errors);
+Statistics SummarizeReprojectionErrors(const std::vector<ObservationError>& errors);
 
-// Sets every point's mean_error_px to the truth: COLMAP before 3.13 leaves stale ones.
+// Sets every point's mean_error_px. COLMAP before 3.13 does not update it.
 void UpdatePointErrors(Model* model);
 
 }  // namespace velamap

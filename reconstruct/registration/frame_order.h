@@ -1,4 +1,4 @@
-// The order in which images are looked at, and the one that the user names; for every method.
+// The order of the images in a registration, and the central image that the user names.
 
 #pragma once
 
@@ -10,15 +10,16 @@
 
 namespace velamap {
 
-// Images with markers by frame number or name, so that neither row order nor ids decide anything.
+// Images with markers, sorted by frame number, then name, so that the order of rows and ids in the
+// database do not change the result.
 std::vector<const DatabaseImage*> CanonicalOrder(const std::vector<DatabaseImage>& images);
 
-// Whether the images are a video. InputError where the option says so and frame numbers are
-// missing.
+// Tells whether the images are a video. Throws InputError where the option demands a video but
+// frame numbers are missing.
 bool UseTimeOrder(const std::vector<const DatabaseImage*>& images, FrameOrder order);
 
-// Index of the image that options.central_frame names; InputError where there is none, or where it
-// holds fewer markers than are needed.
+// Index of the image that options.central_frame names. Throws InputError if there is no such image
+// or it has too few markers.
 int FindCentralFrame(const std::vector<const DatabaseImage*>& images,
                      const RegistrationOptions& options);
 

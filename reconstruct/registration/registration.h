@@ -1,5 +1,5 @@
-// The result of a registration, by either method: poses of frames and places of markers, the first
-// guess of the surface.
+// The result of a registration by either method: poses of the frames and positions of the markers,
+// from which the bundle adjustment starts.
 
 #pragma once
 
@@ -16,12 +16,12 @@ namespace velamap {
 struct RegisteredFrame {
   ImageId image_id = 0;
   std::string image_name;
-  std::optional<Rigid3> cam_from_shape;      // none: left out, see `reason`
-  std::vector<int> marker_ids;               // markers that stay in this frame, ascending
-  std::vector<int> outlier_ids;              // markers that do not fit their place in the shape
+  std::optional<Rigid3> cam_from_shape;      // none: not registered, see `reason`
+  std::vector<int> marker_ids;               // inliers, ascending
+  std::vector<int> outlier_ids;              // markers that do not fit their position in the shape
   std::vector<std::string> outlier_reasons;  // kGlobal: by outlier_ids; empty with kThesis
   double rms_error_m = 0.0;                  // of the alignment with the mean shape
-  std::string reason;                        // why it was left out, empty for a registered frame
+  std::string reason;                        // why it is not registered, else empty
 };
 
 struct DroppedMarker {
@@ -30,16 +30,16 @@ struct DroppedMarker {
   std::string reason;
 };
 
-// The shape frame is the cam frame of the central image, m by the nominal marker side (kGlobal: by
-// the median over the markers).
+// The shape frame is the cam frame of the central image. Metres follow from the nominal marker
+// sides (kGlobal: from their median).
 struct Registration {
   ImageId central_image_id = 0;
   std::string central_image_name;
   std::string central_reason;           // why this frame is the central one
-  std::vector<RegisteredFrame> frames;  // all images with markers, in order
+  std::vector<RegisteredFrame> frames;  // all images with markers, in canonical order
   ShapePoints shape;                    // mean points by marker id
   std::vector<DroppedMarker> dropped_markers;
-  // Parameters that had to be fitted to the data, and doubts about the result, one a line.
+  // Parameters that were adapted to the data, and doubts about the result, one line each.
   std::vector<std::string> notes;
 
   int NumRegistered() const;

@@ -41,7 +41,7 @@ std::vector<SharedMarker> FindShared(const FrameShape& frame, const ShapePoints&
   return shared;
 }
 
-// The markers that both sides have, compared by centres or by all points (see ransac.h).
+// The shared markers of a frame and the shape, compared by centres or by all points (ransac.h).
 class AlignmentProblem {
  public:
   using Model = Rigid3;

@@ -1,12 +1,17 @@
 #include "reconstruct/thesis/frame_selection.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 
 #include "importer/base/error.h"
 
 namespace velamap {
 namespace {
+
+// Frame numbers are computed with 64 bits: options of any size then cannot overflow.
+using FrameNumber = std::int64_t;
 
 ShapePoints PointsOf(const FrameShape& frame) {
   ShapePoints points;
@@ -17,8 +22,9 @@ ShapePoints PointsOf(const FrameShape& frame) {
 }
 
 // Indices of the frames whose number lies within [first, last].
-std::pair<int, int> FramesInWindow(const std::vector<FrameShape>& frames, int first, int last) {
-  const auto by_number = [](const FrameShape& frame, int number) {
+std::pair<int, int> FramesInWindow(const std::vector<FrameShape>& frames, FrameNumber first,
+                                   FrameNumber last) {
+  const auto by_number = [](const FrameShape& frame, FrameNumber number) {
     return *frame.frame_number < number;
   };
   const auto begin = std::lower_bound(frames.begin(), frames.end(), first, by_number);
@@ -26,9 +32,9 @@ std::pair<int, int> FramesInWindow(const std::vector<FrameShape>& frames, int fi
   return {static_cast<int>(begin - frames.begin()), static_cast<int>(end - frames.begin())};
 }
 
-// One search: the thesis aligns every frame with the central one. Where the camera has moved on so
-// far that no frame of a window shares enough with it, `extended` (the central frame's markers and
-// those of the frames found so far) takes its place.
+// The thesis aligns every frame with the central one. Where the camera has moved so far that no
+// frame of a window aligns with it, `extended` takes its place: the markers of the central frame
+// and of the frames found so far.
 struct Search {
   const std::vector<FrameShape>& frames;
   const FrameSearchOptions& options;
@@ -37,13 +43,14 @@ struct Search {
   ShapePoints central;
   ShapePoints extended;
 
-  int Number(int frame_idx) const {
+  FrameNumber Number(int frame_idx) const {
     return *frames[static_cast<std::size_t>(frame_idx)].frame_number;
   }
 };
 
 std::optional<SelectedFrame> BestInWindow(const Search& search, const ShapePoints& shape,
-                                          int first_number, int last_number, int target_number) {
+                                          FrameNumber first_number, FrameNumber last_number,
+                                          FrameNumber target_number) {
   std::optional<SelectedFrame> best;
   const auto [begin, end] = FramesInWindow(search.frames, first_number, last_number);
   for (int idx = begin; idx < end; ++idx) {
@@ -64,16 +71,17 @@ std::optional<SelectedFrame> BestInWindow(const Search& search, const ShapePoint
 void SearchOneSide(int central_idx, int direction, Search* search,
                    std::vector<SelectedFrame>* selected) {
   const FrameSearchOptions& options = search->options;
-  const int first_number = search->Number(0) - options.neighborhood;
-  const int last_number = *search->frames.back().frame_number + options.neighborhood;
-  int from_number = search->Number(central_idx);
+  const FrameNumber skip = options.skip, neighborhood = options.neighborhood;
+  const FrameNumber first_number = *search->frames.front().frame_number;
+  const FrameNumber last_number = *search->frames.back().frame_number;
+  FrameNumber from_number = search->Number(central_idx);
   for (int count = 0; count < options.num_frames;) {
-    const int target = from_number + direction * options.skip;
-    if (target < first_number || target > last_number) return;
-    // Never back across the frame that the skip started from.
-    const int nearest = direction > 0 ? std::max(target - options.neighborhood, from_number + 1)
-                                      : std::min(target + options.neighborhood, from_number - 1);
-    const int furthest = target + direction * options.neighborhood;
+    const FrameNumber target = from_number + direction * skip;
+    // A window does not reach back across the frame that the skip started from.
+    const FrameNumber nearest = direction > 0 ? std::max(target - neighborhood, from_number + 1)
+                                              : std::min(target + neighborhood, from_number - 1);
+    if (direction > 0 ? nearest > last_number : nearest < first_number) return;
+    const FrameNumber furthest = target + direction * neighborhood;
     const auto [first, last] = std::minmax(nearest, furthest);
     auto best = BestInWindow(*search, search->central, first, last, target);
     if (!best) best = BestInWindow(*search, search->extended, first, last, target);
@@ -134,9 +142,10 @@ CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames) {
 
 FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side) {
   FrameSearchOptions fitted = options;
-  // Rounded: a frame less on a side costs less than half a clip left aside.
-  const int num_frames = std::max(options.num_frames, 1);
-  fitted.skip = std::clamp((num_frames_on_side + num_frames / 2) / num_frames, 1, options.skip);
+  // Rounded to nearest: one frame less on a side costs less than leaving half a clip unused.
+  const FrameNumber num_frames = std::max(options.num_frames, 1);
+  fitted.skip = static_cast<int>(
+      std::clamp<FrameNumber>((num_frames_on_side + num_frames / 2) / num_frames, 1, options.skip));
   if (fitted.skip < options.skip) {
     fitted.neighborhood = std::min(options.neighborhood, fitted.skip / 2);
   }
@@ -144,21 +153,34 @@ FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_
 }
 
 std::pair<int, int> ReachableFrames(int central_frame_number, const FrameSearchOptions& options) {
-  const int reach = options.num_frames * (options.skip + options.neighborhood);
-  return {central_frame_number - reach, central_frame_number + reach};
+  constexpr FrameNumber kLastNumber = std::numeric_limits<int>::max();
+  const FrameNumber reach = options.num_frames * (FrameNumber{options.skip} + options.neighborhood);
+  return {static_cast<int>(std::max<FrameNumber>(central_frame_number - reach, 0)),
+          static_cast<int>(std::min(central_frame_number + reach, kLastNumber))};
 }
 
 CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,
                                      const FrameSearchOptions& options) {
   VELAMAP_CHECK(!frames.empty());
-  int best_idx = 0, best_shared = -1;
+  const FrameNumber first_number = *frames.front().frame_number;
+  const FrameNumber last_number = *frames.back().frame_number;
+  const FrameNumber skip = options.skip;
+  const FrameNumber neighborhood =
+      std::min<FrameNumber>(options.neighborhood, last_number - first_number);
+  int best_idx = 0;
+  FrameNumber best_shared = -1;
   for (std::size_t idx = 0; idx < frames.size(); ++idx) {
-    int shared = 0;
-    for (int step = -options.num_frames; step <= options.num_frames; ++step) {
+    const FrameNumber number = *frames[idx].frame_number;
+    // Steps whose window lies before the first or behind the last frame share nothing.
+    const FrameNumber num_before = (number - first_number + neighborhood) / skip;
+    const FrameNumber num_behind = (last_number - number + neighborhood) / skip;
+    FrameNumber shared = 0;
+    for (FrameNumber step = -std::min<FrameNumber>(options.num_frames, num_before);
+         step <= std::min<FrameNumber>(options.num_frames, num_behind); ++step) {
       if (step == 0) continue;
-      const int target = *frames[idx].frame_number + step * options.skip;
+      const FrameNumber target = number + step * skip;
       const auto [begin, end] =
-          FramesInWindow(frames, target - options.neighborhood, target + options.neighborhood);
+          FramesInWindow(frames, target - neighborhood, target + neighborhood);
       int most = 0;
       for (int other = begin; other < end; ++other) {
         most =

@@ -1,4 +1,5 @@
-// Which frames take part: the central frame and, in a video, the frames around it (thesis 3.4.1).
+// Chooses the frames that take part: the central frame and, in a video, frames around it (thesis
+// 3.4.1).
 
 #pragma once
 
@@ -20,7 +21,7 @@ struct CentralFrame {
   std::string reason;
 };
 
-// The frame whose markers recur most in all others; ties go to the earlier frame.
+// The frame whose markers are seen most often in the other frames; of equals the first.
 CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames);
 
 struct FrameSearchOptions {
@@ -29,16 +30,16 @@ struct FrameSearchOptions {
   int neighborhood = 5;  // m
 };
 
-// The parameters that fit a video with `num_frames_on_side` frames on the longer side of the
-// central one: the skip shrinks so that n frames find room there, the neighbourhood so that windows
+// Adapts the parameters to a video with `num_frames_on_side` frames on the longer side of the
+// central one: reduces the skip until n frames fit there, and the neighbourhood until the windows
 // do not overlap.
 FrameSearchOptions FitToVideo(const FrameSearchOptions& options, int num_frames_on_side);
 
-// First and last frame number that the search can visit from a central frame: n times a skip that
-// ends up to m frames further.
+// First and last frame number that the search can visit from a central frame: n skips, each of
+// which may end m frames further. Limited to 0 and the largest int.
 std::pair<int, int> ReachableFrames(int central_frame_number, const FrameSearchOptions& options);
 
-// The frame that shares most markers with the windows that the search will visit around it.
+// The frame that shares the most markers with the windows that the search visits around it.
 CentralFrame ChooseCentralVideoFrame(const std::vector<FrameShape>& frames,
                                      const FrameSearchOptions& options);
 
@@ -47,11 +48,11 @@ struct SelectedFrame {
   FrameAlignment alignment;  // its shape frame is the central cam frame
 };
 
-// Thesis section 3.4.1: from the central frame skip s frames, take the frame within m of there that
-// has most RANSAC inliers, go on from it, n times on each side. Where the camera
-// has moved so far that no frame of a window aligns with the central frame, the markers of the
-// frames found so far take its place; a window in which that fails too is passed over. `frames`
-// ascend by frame_number. The central frame itself is not in the result.
+// Thesis section 3.4.1: skips s frames from the central frame, takes the frame within m frames of
+// there that has the most RANSAC inliers, continues from it, n times on each side. Where no frame
+// of a window aligns with the central frame, the window is aligned with the markers of all frames
+// found so far; if that fails too, the window is skipped. `frames` are sorted by frame_number. The
+// result does not contain the central frame.
 std::vector<SelectedFrame> SearchFrames(const std::vector<FrameShape>& frames, int central_idx,
                                         const FrameSearchOptions& search, const Layout& layout,
                                         const FrameAlignmentOptions& alignment);

@@ -1,6 +1,6 @@
-// What all registrations of one database by the thesis's method have in common, whatever their
-// central frame: its images in order, every marker posed alone (thesis 3.3). That is a large part
-// of the work of one.
+// The images of a database in order, with the pose of every single marker (thesis 3.3).
+// Registrations by the thesis's method around different central frames share them, which saves a
+// large part of the time of each.
 
 #pragma once
 
@@ -14,15 +14,17 @@
 
 namespace velamap {
 
-// By frame_idx: images with markers by frame number or name. Points into the images and cameras
-// that it was made of.
+// All lists are by frame_idx: the images with markers in the order of frame numbers or names.
+// Points into the images and cameras that it was made from.
 struct PosedImages {
   std::vector<const DatabaseImage*> images;
   std::vector<FrameShape> frames;
   std::vector<const Camera*> cameras;
 };
 
+// Poses the markers on up to `num_threads` threads (0: one a core).
 PosedImages PoseImages(const std::vector<DatabaseImage>& images,
-                       const std::map<CameraId, Camera>& cameras, const Layout& layout);
+                       const std::map<CameraId, Camera>& cameras, const Layout& layout,
+                       int num_threads = 0);
 
 }  // namespace velamap

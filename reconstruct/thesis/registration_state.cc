@@ -8,17 +8,18 @@
 namespace velamap {
 namespace {
 
-// Alternations of aligning every frame with the mean shape and averaging anew.
+// Rounds of aligning every frame with the mean shape and averaging the shape.
 constexpr int kNumRefinements = 4;
 
-// Images that reach this part of the best image's inliers join in the same round of growing.
+// Images with at least this fraction of the best image's inliers are added in the same round.
 constexpr double kJoinRatio = 0.8;
 
 bool IsOutlier(const FrameAlignment& alignment, int marker_id) {
   return std::binary_search(alignment.outlier_ids.begin(), alignment.outlier_ids.end(), marker_id);
 }
 
-// Solutions of every marker in the shape frame, from all registered frames that agree with it.
+// The pose solutions of every marker in the shape frame, by all registered frames in which it is no
+// outlier.
 std::map<int, std::vector<MarkerSolutions>> CollectSolutions(const RegistrationState& state) {
   std::map<int, std::vector<MarkerSolutions>> solutions_of;
   for (std::size_t idx = 0; idx < state.frames.size(); ++idx) {
@@ -95,9 +96,10 @@ void SearchInTimeOrder(int central_idx, const FrameSearchOptions& search, Regist
   StartAtCentralFrame(central_idx, state);
   auto selected_frames =
       SearchFrames(state->frames, central_idx, search, state->layout, state->AlignmentOptions());
-  if (static_cast<int>(selected_frames.size()) < 2 * search.num_frames) {
+  const std::size_t num_wanted = 2 * static_cast<std::size_t>(search.num_frames);
+  if (selected_frames.size() < num_wanted) {
     notes->push_back("the search found " + std::to_string(selected_frames.size()) + " of " +
-                     std::to_string(2 * search.num_frames) +
+                     std::to_string(num_wanted) +
                      " frames around the central one: the video ends, or no frame aligns");
   }
   for (SelectedFrame& selected : selected_frames) {

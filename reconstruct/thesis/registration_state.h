@@ -1,4 +1,5 @@
-// The state of a registration while it grows, and the steps that advance it (thesis 3.4, 3.5).
+// The state of a registration by the thesis's method, and the steps that advance it
+// (thesis 3.4, 3.5).
 
 #pragma once
 
@@ -16,25 +17,25 @@ struct RegistrationState {
   const Layout& layout;
   const RegistrationOptions& options;
   const std::vector<FrameShape>& frames;                  // in canonical order
-  const std::vector<const Camera*>& cameras;              // by frame_idx, as the next
-  std::vector<std::optional<FrameAlignment>> alignments;  // with the shape
-  ShapePoints shape;                                      // mean over the aligned frames
+  const std::vector<const Camera*>& cameras;              // by frame_idx
+  std::vector<std::optional<FrameAlignment>> alignments;  // by frame_idx; none: not registered
+  ShapePoints shape;                                      // mean over the registered frames
 
   FrameAlignmentOptions AlignmentOptions() const;
   int NumRegistered() const;
 };
 
-// Photographs: from the central frame's markers on, images that share most markers with the shape
-// join it, until none can.
+// For photographs: starts with the markers of the central frame and adds the images that share most
+// markers with the shape, until no image can be aligned.
 void GrowFromCentralFrame(int central_idx, RegistrationState* state);
 
-// Video: the thesis's search around the central frame. A note is added where it finds fewer frames
-// than asked for.
+// For videos: the thesis's search around the central frame. Adds a note if it finds fewer frames
+// than requested.
 void SearchInTimeOrder(int central_idx, const FrameSearchOptions& search, RegistrationState* state,
                        std::vector<std::string>* notes);
 
-// Alternates aligning every registered frame with the mean shape and averaging anew. A frame that
-// no longer aligns is dropped.
+// Alternates between aligning every registered frame with the mean shape and averaging the shape. A
+// frame that cannot be aligned any more is dropped.
 void RefineShape(RegistrationState* state);
 
 }  // namespace velamap

@@ -9,8 +9,8 @@
 namespace velamap {
 namespace {
 
-// The medoid is searched among the solutions of this many frames, spread over the list, so that the
-// cost stays linear in the number of frames.
+// The medoid is chosen among the solutions of at most this many frames, spread over the list, so
+// that the time is linear in the number of frames.
 constexpr std::size_t kMaxMedoidFrames = 16;
 
 const MarkerPoints& Nearest(const MarkerSolutions& solutions, const MarkerPoints& target) {
@@ -62,7 +62,7 @@ MarkerPoints AverageMarker(const std::vector<MarkerSolutions>& frames,
         weighted_sum += weight * (*points)[point];
         sum_of_weights += weight;
       }
-      if (!(sum_of_weights > 0)) break;  // all weights underflowed: the last mean stands
+      if (!(sum_of_weights > 0)) break;  // all weights underflow: keep the last mean
       mean[point] = weighted_sum / sum_of_weights;
     }
   }

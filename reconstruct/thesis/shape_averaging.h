@@ -17,10 +17,10 @@ struct ShapeAveragingOptions {
 // One marker in one registered frame: its pose solutions moved into the shape frame, m.
 using MarkerSolutions = std::vector<MarkerPoints>;
 
-// The iterated weighted mean of one marker's points: starts at the plain mean, then weighs every
-// point by exp(-|point - mean| / sigma). Each frame takes part with one of its pose solutions: the
-// one nearer to the medoid, the solution that all frames together agree with best. The order of
-// frames does not matter beyond rounding. `frames` must not be empty.
+// Iterated weighted mean of one marker's points: starts with the plain mean and weights every point
+// by exp(-|point - mean| / sigma). Each frame contributes the pose solution that is nearest to the
+// medoid, the solution with the smallest sum of distances to all frames. The order of the frames
+// matters only for rounding. `frames` must not be empty.
 MarkerPoints AverageMarker(const std::vector<MarkerSolutions>& frames,
                            const ShapeAveragingOptions& options);
 

@@ -11,9 +11,10 @@
 namespace velamap {
 namespace {
 
-// Whether a marker's place in the mean shape projects to within one marker side of where the frame
-// sees it: the thesis's 100 mm for a marker of 100 mm, but in the image, where the poor depth of a
-// single marker's pose plays no part. What is wrong by less is the bundle adjustment's to find.
+// Tells whether the marker's position in the mean shape projects to within one marker side of its
+// detection. This is the thesis's limit (100 mm for markers of 100 mm), applied in the image, where
+// the poor depth of single-marker poses does not matter. The bundle adjustment finds smaller
+// errors.
 bool FitsInImage(const Camera& camera, const Rigid3& cam_from_shape, const FrameMarker& marker,
                  const MarkerPoints& x_in_shape) {
   const auto& corners_px = marker.corners_in_image_px;
@@ -44,7 +45,7 @@ RegisteredFrame PlaceFrame(const RegistrationState& state, std::size_t idx) {
   return registered;
 }
 
-// Removes markers that too few registered frames see (thesis: |Q_k| < beta) from shape and frames.
+// Removes markers that too few registered frames see (thesis: |Q_k| < beta).
 void DropRareMarkers(int min_num_frames, Registration* registration) {
   std::map<int, int> num_frames_of;
   for (const auto& [marker_id, points] : registration->shape) num_frames_of[marker_id] = 0;
@@ -67,7 +68,7 @@ void DropRareMarkers(int min_num_frames, Registration* registration) {
   }
 }
 
-// Shrinks the search where the video is too short for it, with a note.
+// Reduces the skip if the video is too short for the search, and adds a note.
 FrameSearchOptions FitSearch(const std::vector<FrameShape>& frames,
                              const std::optional<CentralFrame>& central,
                              const FrameSearchOptions& search, std::vector<std::string>* notes) {
@@ -103,7 +104,7 @@ std::string ReasonLeftOut(const RegistrationState& state, const FrameShape& fram
          " shared markers do not agree on a position of the camera";
 }
 
-// Moves everything so that the central image's camera is the origin again after averaging.
+// Moves the shape frame back to the central image's camera, from which averaging has shifted it.
 void ReturnToCentralFrame(int central_idx, RegistrationState* state) {
   const Rigid3 central_from_shape =
       Inverse(state->alignments[static_cast<std::size_t>(central_idx)]->shape_from_cam);

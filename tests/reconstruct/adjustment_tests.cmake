@@ -3,12 +3,11 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
   SOURCES
     model/adjustment_uncertainty_test.cc
     geometry/covariance_update_test.cc
-    solve/gram_matrix_test.cc
     adjust/marker_adjustment_test.cc
     adjust/marker_cost_functions_test.cc
     adjust/marker_uncertainty_test.cc
     scene_model.cc
-    solve/schur_solver_test.cc
+    solve/schur_complement_test.cc
     colmap/warm_start_test.cc
     sheet_model.cc
     adjust/weak_geometry_test.cc

@@ -88,16 +88,19 @@ TEST_F(MarkerAdjustment, NoiseIsFoundOutAndPointErrorsAreTrue) {
 
 TEST_F(MarkerAdjustment, SameInputSameBytesWhateverTheThreads) {
   const Model seed = NoisyModel(0.2, 3);
-  Model one = seed, again = seed, four = seed;
   MarkerAdjustmentOptions options;
   options.num_threads = 1;
-  const auto summary_one = Adjust(&one, options);
-  Adjust(&again, options);
-  options.num_threads = 4;
-  const auto summary_four = Adjust(&four, options);
-  EXPECT_EQ(Bytes(one), Bytes(again));
-  EXPECT_EQ(Bytes(one), Bytes(four));
-  EXPECT_EQ(summary_one.uncertainty.points.factor, summary_four.uncertainty.points.factor);
+  Model expected = seed;
+  const auto expected_summary = Adjust(&expected, options);
+  for (const int num_threads : {1, 2, 5}) {
+    options.num_threads = num_threads;
+    Model model = seed;
+    const auto summary = Adjust(&model, options);
+    EXPECT_EQ(Bytes(model), Bytes(expected)) << num_threads;
+    EXPECT_EQ(summary.uncertainty.points.factor, expected_summary.uncertainty.points.factor);
+    EXPECT_EQ(summary.uncertainty.correlation_factor,
+              expected_summary.uncertainty.correlation_factor);
+  }
 }
 
 TEST_F(MarkerAdjustment, SimilarityOfTheInputChangesNothing) {

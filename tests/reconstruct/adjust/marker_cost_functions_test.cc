@@ -153,10 +153,10 @@ TEST(RobustResidual, JacobianHoldsWhereTheSeriesTakesOver) {
 
 TEST(MarkerPriorError, JacobiansAreThoseOfTheResiduals) {
   const auto marker = ViewParameters(CameraModel::kPinhole)[0];
-  const MarkerKnowledge knowledge{0.1, 1e-3, 3e-3, 2e-3};
-  CheckGradients(MarkerPriorError(knowledge, {1, 2, 3, 4}), {marker, {0.01}}, {nullptr, nullptr});
+  const MarkerPrior prior{0.1, 1e-3, 3e-3, 2e-3};
+  CheckGradients(MarkerPriorError(prior, {1, 2, 3, 4}), {marker, {0.01}}, {nullptr, nullptr});
   const std::vector<double> three(marker.begin(), marker.begin() + 9);
-  CheckGradients(MarkerPriorError(knowledge, {1, 3, 4}), {three, {0.01}}, {nullptr, nullptr});
+  CheckGradients(MarkerPriorError(prior, {1, 3, 4}), {three, {0.01}}, {nullptr, nullptr});
 }
 
 TEST(MarkerPriorError, KnowsSidesAndFlatness) {

@@ -10,8 +10,8 @@
 #include <Eigen/LU>
 
 #include "importer/geometry/alignment.h"
+#include "reconstruct/adjust/error_correlation.h"
 #include "reconstruct/adjust/marker_sizes.h"
-#include "tests/reconstruct/adjust/ceres_problem.h"
 #include "tests/reconstruct/scene_model.h"
 
 namespace velamap {
@@ -27,9 +27,11 @@ SyntheticScene TinyScene() {
 
 Eigen::MatrixXd DenseJacobian(const MarkerProblem& problem) {
   ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = VaryingBlocks(problem.schur);
+  options.parameter_blocks = problem.marker_blocks;
+  options.parameter_blocks.insert(options.parameter_blocks.end(), problem.global_blocks.begin(),
+                                  problem.global_blocks.end());
   ceres::CRSMatrix sparse;
-  MakeCeresProblem(problem.schur)->Evaluate(options, nullptr, nullptr, nullptr, &sparse);
+  problem.ceres->Evaluate(options, nullptr, nullptr, nullptr, &sparse);
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
   for (int row = 0; row < sparse.num_rows; ++row) {
     for (int i = sparse.rows[row]; i < sparse.rows[row + 1]; ++i) {
@@ -72,7 +74,7 @@ TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
   ASSERT_EQ(weights.scale_bars.size(), 2u);
   const MarkerProblem problem =
       MakeMarkerProblem(options, model, {}, model.cameras, weights, &state);
-  const auto covariance = Invert(MakeNormalEquations(problem));
+  const auto covariance = InvertNormalEquations(EvaluateJacobian(problem), 1);
   ASSERT_TRUE(covariance.has_value());
   const AdjustmentUncertainty uncertainty = MakeUncertainty(state, weights, problem, *covariance);
 
@@ -114,14 +116,73 @@ TEST(CornerRedundancy, IsWhatTheDenseHatMatrixLeaves) {
   weights.loss_sigmas = std::numeric_limits<double>::infinity();
   weights.print_tolerance = 1e-3;
   const MarkerProblem problem = MakeMarkerProblem({}, model, {}, model.cameras, weights, &state);
-  const Eigen::MatrixXd jacobian = DenseJacobian(problem);
-  const Eigen::VectorXd scales = jacobian.colwise().norm().cwiseInverse();
-  const Eigen::MatrixXd scaled = jacobian * scales.asDiagonal();
+  const Eigen::MatrixXd dense = DenseJacobian(problem);
+  const Eigen::VectorXd scales = dense.colwise().norm().cwiseInverse();
+  const Eigen::MatrixXd scaled = dense * scales.asDiagonal();
   const Eigen::VectorXd leverages =
       (scaled * (scaled.transpose() * scaled).inverse()).cwiseProduct(scaled).rowwise().sum();
   const auto num_corners = static_cast<Eigen::Index>(2 * problem.corners.size());
-  EXPECT_NEAR(CornerRedundancy(problem, *Invert(MakeNormalEquations(problem))),
+  const MarkerJacobian jacobian = EvaluateJacobian(problem);
+  EXPECT_NEAR(CornerRedundancy(jacobian, *InvertNormalEquations(jacobian, 1)),
               static_cast<double>(num_corners) - leverages.head(num_corners).sum(), 1e-6);
+}
+
+// Enough images for several panels of columns.
+TEST(MarkerCovariance, IsTheSameForAnyNumberOfThreads) {
+  SyntheticSceneOptions scene_options;
+  scene_options.num_rows = 2;
+  scene_options.num_columns = 4;
+  scene_options.num_frames = 30;
+  SyntheticScene scene = MakeSyntheticScene(scene_options);
+  AddNoise({0.2, 0, 0, 5, 1}, &scene);
+  const Model model = MakeSceneModel(scene);
+  MarkerState state = MakeMarkerState(model, scene.layout);
+  MarkerWeights weights;
+  weights.loss_sigmas = std::numeric_limits<double>::infinity();
+  weights.print_tolerance = 1e-3;
+  const MarkerProblem problem = MakeMarkerProblem({}, model, {}, model.cameras, weights, &state);
+  const std::vector<int> groups = GroupImages(model, state);
+  const MarkerJacobian jacobian = EvaluateJacobian(problem);
+  const auto covariance = InvertNormalEquations(jacobian, 1);
+  ASSERT_TRUE(covariance.has_value());
+  const double factor = CorrelationFactor(state, problem, jacobian, *covariance, groups, 1);
+  for (const int num_threads : {2, 5}) {
+    const auto other = InvertNormalEquations(jacobian, num_threads);
+    ASSERT_TRUE(other.has_value());
+    EXPECT_EQ(other->factor, covariance->factor);
+    EXPECT_EQ(other->root, covariance->root);
+    EXPECT_EQ(other->marker_blocks, covariance->marker_blocks);
+    EXPECT_EQ(CorrelationFactor(state, problem, jacobian, *other, groups, num_threads), factor);
+  }
+}
+
+// Central differences of the length.
+TEST(BarGradient, IsTheDerivativeOfTheLength) {
+  SyntheticScene scene = TinyScene();
+  scene.layout.distances = {{0, 0, 5, 1, 0.6, 1e-3, true}};
+  MarkerState state = MakeMarkerState(MakeSceneModel(scene), scene.layout);
+  const ScaleBar bar = FindScaleBars(state, scene.layout).at(0);
+  const Eigen::VectorXd gradient = BarGradient(bar, state);
+  const auto length = [&] {
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    for (int slot = 0; slot < kNumCorners; ++slot) {
+      center += CornerPosition(state.markers.at(0), slot) / kNumCorners;
+    }
+    return (CornerPosition(state.markers.at(5), 0) - center).norm();
+  };
+  constexpr double kStep = 1e-6;
+  Eigen::Index column = 0;
+  for (MarkerBlock& marker : state.markers) {
+    for (double& x : marker.x_in_world) {
+      const double before = x;
+      x = before + kStep;
+      const double above = length();
+      x = before - kStep;
+      const double below = length();
+      x = before;
+      EXPECT_NEAR(gradient[column++], (above - below) / (2 * kStep), 1e-8);
+    }
+  }
 }
 
 // Repetitions with everything at random that the sigmas claim to know: corner noise, printed sides,

@@ -92,7 +92,7 @@ TEST_F(FakeBundleAdjuster, ImplausibleModelsAreExternalToolErrors) {
 
   result = model_;
   result.cameras.at(1).params[0] += 1;
-  EXPECT_THAT(ErrorWithResult(result), HasSubstr("camera 1 has parameters"));
+  EXPECT_THAT(ErrorWithResult(result), HasSubstr("camera 1 has implausible parameters"));
 
   result = model_;
   PerturbSeed(0.01, 2, &result);

@@ -130,7 +130,7 @@ TEST_F(ModelFiles, EveryTruncationOfABinaryFileIsAnErrorThatNamesIt) {
       ASSERT_THAT(ErrorOf(path_), AllOf(HasSubstr(file), HasSubstr("truncated"))) << size;
     }
     WriteBytes(path_ / file, bytes + '\0');
-    EXPECT_THAT(ErrorOf(path_), AllOf(HasSubstr(file), HasSubstr("goes on")));
+    EXPECT_THAT(ErrorOf(path_), AllOf(HasSubstr(file), HasSubstr("continues after the last")));
     WriteBytes(path_ / file, bytes);
   }
   EXPECT_EQ(ErrorOf(path_), "no error");
@@ -158,7 +158,7 @@ TEST_F(ModelFiles, FaultyLinesAreNamed) {
   EXPECT_THAT(ErrorWithLine("cameras.txt", 2, "1 FOV 640 480 500 500 320 240 1"),
               HasSubstr("cameras.txt:2: camera 1 has the camera model FOV; velamap reads"));
   EXPECT_THAT(ErrorWithLine("cameras.txt", 2, "4294967295 PINHOLE 640 480 500 500 320 240"),
-              HasSubstr("cameras.txt:3: camera 4294967295 is there twice"));
+              HasSubstr("cameras.txt:3: there are two cameras with the id 4294967295"));
   EXPECT_THAT(ErrorWithLine("images.txt", 3, "1 1 0 0 0 zero 0 0 1 name"),
               HasSubstr("images.txt:3: expected TX as a number, found 'zero'"));
   EXPECT_THAT(ErrorWithLine("images.txt", 3, "1 0 0 0 0 0 0 0 1 name"),
@@ -172,7 +172,7 @@ TEST_F(ModelFiles, FaultyLinesAreNamed) {
   EXPECT_THAT(ErrorWithLine("points3D.txt", 2, "11 1 2 3 0 0 0 0.1 5"),
               HasSubstr("points3D.txt:2: expected POINT2D_IDX, but the line ends"));
   EXPECT_THAT(ErrorWithLine("points3D.txt", 2, "12 1 2 3 0 0 0 0.1"),
-              HasSubstr("points3D.txt:3: point 12 is there twice"));
+              HasSubstr("points3D.txt:3: there are two points with the id 12"));
 }
 
 TEST_F(ModelFiles, FilesThatDoNotFitTogetherAreAnError) {

@@ -41,7 +41,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 INSTANTIATE_TEST_SUITE_P(
     Faults, CheckModelTest,
     testing::Values(
-        Fault{"DuplicateImage", "image 2 is there twice",
+        Fault{"DuplicateImage", "there are two images with the id 2",
               [](Model* m) { m->images.push_back(m->images[1]); }},
         Fault{"NoCamera", "image 2 has camera 7", [](Model* m) { m->images[1].camera_id = 7; }},
         Fault{"CameraParams", "camera 1 has 7 parameters",

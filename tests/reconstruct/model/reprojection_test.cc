@@ -25,7 +25,7 @@ TEST(ComputeReprojectionErrors, ResidualIsProjectionMinusObservation) {
   Model model = MakeSheetModel();
   model.images[3].points2D[5].x_in_image_px += Eigen::Vector2d(3, -4);
   int num_affected = 0;
-  for (const ReprojectionError& error : ComputeReprojectionErrors(model)) {
+  for (const ObservationError& error : ComputeReprojectionErrors(model)) {
     if (error.error_px < 1e-9) continue;
     ++num_affected;
     EXPECT_EQ(error.element.image_id, 4u);
@@ -56,7 +56,7 @@ TEST(ComputeReprojectionErrors, PointBehindTheCameraIsInfinitelyWrong) {
   Model model = MakeSheetModel();
   Point3D& point = model.points3D.at(11);
   point.x_in_world *= -100;
-  for (const ReprojectionError& error : ComputeReprojectionErrors(model)) {
+  for (const ObservationError& error : ComputeReprojectionErrors(model)) {
     const bool behind =
         error.point3D_id == 11 &&
         (model.FindImage(error.element.image_id)->cam_from_world * point.x_in_world).z() <= 0;

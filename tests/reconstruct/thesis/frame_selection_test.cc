@@ -1,5 +1,7 @@
 #include "reconstruct/thesis/frame_selection.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "tests/reconstruct/registration_fixture.h"
@@ -76,6 +78,24 @@ TEST(FrameSelection, SearchStaysWithinReach) {
     EXPECT_GE(selected.frame_idx, first);
     EXPECT_LE(selected.frame_idx, last);
   }
+}
+
+// With an overflow the reach becomes too short, or the loops run over billions of steps.
+TEST(FrameSelection, HugeOptionsReachAllFrames) {
+  constexpr int kHuge = std::numeric_limits<int>::max();
+  const SyntheticScene scene = Clip(5);
+  const auto frames = FrameShapes(scene);
+  for (const FrameSearchOptions& search :
+       {FrameSearchOptions{kHuge, kHuge, kHuge}, FrameSearchOptions{kHuge, 1, kHuge},
+        FrameSearchOptions{kHuge, 1, 1}, FrameSearchOptions{100000, 100000, 5}}) {
+    EXPECT_EQ(ReachableFrames(60, search), std::make_pair(0, kHuge));
+    const int central_idx = ChooseCentralVideoFrame(frames, search).frame_idx;
+    EXPECT_GE(central_idx, 0);
+    EXPECT_LT(central_idx, 5);
+    EXPECT_LE(SearchFrames(frames, 2, search, scene.layout, {}).size(), 4u);
+  }
+  EXPECT_EQ(SearchFrames(frames, 2, {kHuge, 1, 0}, scene.layout, {}).size(), 4u);
+  EXPECT_EQ(FitToVideo({kHuge, 10, 5}, 80).skip, 1);
 }
 
 TEST(FrameSelection, ShortVideoShrinksTheSkip) {

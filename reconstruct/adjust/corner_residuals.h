@@ -1,0 +1,36 @@
+// Residuals of the corners in sigmas: what the corner noise is calibrated by, and which corners are
+// outliers.
+
+#pragma once
+
+#include <vector>
+
+#include "reconstruct/adjust/marker_problem.h"
+
+namespace velamap {
+
+struct CornerResidual {
+  Point3DId point3D_id = 0;
+  TrackElement element;
+  double sigmas = 0.0;  // length of the residual, in calibrated sigmas
+};
+
+std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem);
+
+// Variance factor of the corners by their median residual, which outliers do not move. Counts 6
+// parameters for each image but the first and 3 for each point.
+double RobustVarianceFactor(const std::vector<CornerResidual>& corners, const Model& model);
+
+// Returns the observation to the model, if its image and its point are still there and the point
+// lies in front of the camera; else returns false.
+bool RestoreObservation(const RemovedObservation& observation, Model* model);
+
+// Takes the corners beyond `max_sigmas` out of the model and appends them to `removed`.
+void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,
+                    std::vector<RemovedObservation>* removed);
+
+// Median length of the markers' sides in the images, px. Infinite where no image sees two
+// neighbouring corners.
+double MedianSidePx(const Model& model);
+
+}  // namespace velamap
