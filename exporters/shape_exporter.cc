@@ -5,14 +5,16 @@
 #include <map>
 #include <set>
 
-#include "exporters/formats/ply_writer.h"
 #include "exporters/formats/shape_csv.h"
+#include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "exporters/scale/scale_csv.h"
+#include "exporters/shape/shape_transform.h"
 #include "exporters/shape_report.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
 
@@ -34,11 +36,9 @@ bool IsInside(const fs::path& path, const fs::path& folder) {
   return mismatch == folder.end();
 }
 
-// The path without dots and a slash at its end; empty stays empty.
+// The absolute path without dots and a trailing slash; empty for an empty path.
 fs::path OutputFolder(const std::string& path) {
-  if (path.empty()) return {};
-  const fs::path absolute = fs::absolute(path).lexically_normal();
-  return absolute.has_filename() ? absolute : absolute.parent_path();
+  return path.empty() ? fs::path() : AbsoluteFolder(path);
 }
 
 void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) {
@@ -94,7 +94,7 @@ std::map<int, double> ScalesOf(const ScaleAudit& audit) {
   return m_per_unit_of;
 }
 
-// Moves model and uncertainty, which are metric, into the frame that the markers make.
+// Moves the metric model and its uncertainty into the chosen frame.
 void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choice,
                    ShapeExportReport* report) {
   report->frame = ChooseFrame(ShapeFromModel(report->metric_model, layout), layout, choice);
@@ -151,7 +151,8 @@ ShapeExportReport ExportShape(const Model& model, const Layout& layout,
                  if (report.uncertainty) WriteUncertainty(*report.uncertainty, folder);
                });
   }
-  // Last, so that a model that cannot be written leaves the old shape beside the old model.
+  // Committed last, so that an error while writing the model keeps the old shape beside the old
+  // model.
   if (shape_folder) shape_folder->Commit();
   return report;
 }

@@ -1,4 +1,5 @@
-// The room's door: a bundle-adjusted model and the marker sizes in, metric files out.
+// Entry point of the exporters: takes a bundle-adjusted model and the marker sizes, writes metric
+// files.
 
 #pragma once
 
@@ -19,10 +20,10 @@
 namespace velamap {
 
 struct ShapeExporterOptions {
-  std::string model_output_path;  // folder of the metric model, binary and text; empty: not written
-  std::string shape_output_path;  // folder of shape.csv, shape.ply, ...; empty: not written
+  std::string model_output_path;  // folder of the metric model, binary and text; empty for none
+  std::string shape_output_path;  // folder of shape.csv, shape.ply, ...; empty for none
   bool ascii_ply = false;
-  std::optional<FrameChoice> frame;  // nothing: as ChooseFrame() decides
+  std::optional<FrameChoice> frame;  // without it, ChooseFrame() decides
   SailOptions sail;
 };
 
@@ -39,15 +40,19 @@ struct ShapeExportReport {
 };
 
 // Writes shape.csv, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv, metrics.json
-// and what WriteSailFiles() writes into shape_output_path, and the metric COLMAP model with true
-// point errors, each folder to a temporary sibling that is renamed when whole. A folder that exists
-// is replaced if it holds nothing but files of these names. All of it is in the chosen frame.
+// and the files of WriteSailFiles() to shape_output_path, and the metric COLMAP model with true
+// point errors to model_output_path, all in the chosen frame. Each folder is written to a temporary
+// sibling and renamed when complete. An existing folder is replaced if it holds only files of these
+// names.
 //
-// With `uncertainty` (ReadUncertainty of the model's folder) the model is metric: it is not scaled,
-// all that is reported gets its sigma, and the metric model's folder keeps the uncertainty.
-// Without, the model is scaled by the markers' sides. Throws DataError (no marker gives a scale, no
-// image), InputError (unwritable output, a folder with other files, one folder inside the other,
-// bad options).
+// With `uncertainty` (ReadUncertainty of the model's folder) the model is metric already: it is not
+// scaled, all figures get their sigmas, and the folder of the metric model keeps the uncertainty.
+// Without it, the model is scaled by the sides of the markers.
+//
+// Throws DataError without a marker that gives a scale or without an image, and InputError for
+// unwritable output, a folder with other files, one folder inside the other, or bad options. An
+// option of the surface that the size of the part forbids is left to the caller, see
+// SailShape::ThrowSurfaceError().
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
                               const ShapeExporterOptions& options,
                               const AdjustmentUncertainty* uncertainty = nullptr);

@@ -4,20 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "exporters/shape/units.h"
+
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
-
-Statistics Scaled(double factor, Statistics statistics) {
-  for (double* figure : {&statistics.mean, &statistics.standard_deviation, &statistics.median,
-                         &statistics.min, &statistics.max, &statistics.rms}) {
-    *figure *= factor;
-  }
-  return statistics;
-}
-
-// Where it is known.
+// Adds a known sigma.
 void AddSigma(const char* key, const std::optional<double>& sigma, Metrics* metrics,
               double factor = 1.0) {
   if (sigma) metrics->push_back({key, factor * *sigma});

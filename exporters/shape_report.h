@@ -1,5 +1,5 @@
-// What the metrics are called: one function a kind, each adds its figures and tables to a report.
-// The keys and what they mean stand in the README of this room.
+// Keys of the metrics. Each function adds the figures and tables of one kind to a report. README.md
+// of this room explains the keys.
 
 #pragma once
 
@@ -17,36 +17,37 @@
 
 namespace velamap {
 
-// Keys of sigmas are there where the sigmas are.
+// Keys of sigmas exist if the sigmas are known.
 
-// frame_name, frame_description, frame_reasons.
+// Adds frame_name, frame_description, frame_reasons.
 void AddMetrics(const ShapeFrame& frame, MetricsReport* report);
 
-// section_notes, surface_notes; table surfaces. The sections have files of their own.
+// Adds section_notes, surface_notes and table surfaces. The sections have their own files.
 void AddMetrics(const SailShape& sail, MetricsReport* report);
 
-// num_markers, area_error_mm2, area_error_percent, side_error_mm; where the layout names its
-// markers, num_layout_markers, reconstruction_ratio and missing_marker_ids. Table markers.
+// Adds num_markers, area_error_mm2, area_error_percent, side_error_mm and table markers, and, if
+// the layout names its markers, num_layout_markers, reconstruction_ratio and missing_marker_ids.
 void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report);
 
-// central_image_name, central_reprojection_error_px, reprojection_error_px, num_behind_camera,
-// image_marker_ratio. Table images.
+// Adds central_image_name, central_reprojection_error_px, reprojection_error_px, num_behind_camera,
+// image_marker_ratio and table images.
 void AddMetrics(const ModelMetrics& metrics, MetricsReport* report);
 
-// scale_m_per_unit, scale_sigma_percent, scale_spread_percent, num_scale_markers.
+// Adds scale_m_per_unit, scale_sigma_percent, scale_spread_percent and num_scale_markers.
 void AddMetrics(const ScaleEstimate& scale, MetricsReport* report);
 
-// Tables parts and part_pairs; the pairs' sigmas are those of `covariance`.
+// Adds tables parts and part_pairs. `covariance` (may be null) gives the sigmas of the pairs.
 void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report,
                 const PointCovariance* covariance = nullptr);
 
-// adjacent_distance_error_mm, adjacent_distance_deviation_percent. Table adjacent_distances.
+// Adds adjacent_distance_error_mm, adjacent_distance_deviation_percent and table
+// adjacent_distances.
 void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* report);
 
-// corners_above_4_sigma_percent, corner_sigma_factor, correlation_factor.
+// Adds corners_above_4_sigma_percent, corner_sigma_factor and correlation_factor.
 void AddMetrics(const AdjustmentUncertainty& uncertainty, MetricsReport* report);
 
-// num_points, distance_mm, scale, scale_error_percent, distance_after_scaling_mm. Table
+// Adds num_points, distance_mm, scale, scale_error_percent, distance_after_scaling_mm and table
 // reference_markers.
 void AddMetrics(const ShapeComparison& comparison, MetricsReport* report);
 

@@ -16,7 +16,7 @@ constexpr int kMinNumMarkers = 2;
 constexpr int kConvincingNumMarkers = 20;
 constexpr std::size_t kMaxNumHints = 3;
 
-// Dictionaries that hold no other; those below 1000 are the first markers of the one with 1000.
+// The largest dictionaries. The smaller ones of a family are the first markers of the largest.
 constexpr std::array<const char*, 9> kFamilies = {
     "DICT_4X4_1000",      "DICT_5X5_1000",       "DICT_6X6_1000",
     "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5",

@@ -1,4 +1,4 @@
-// When no marker is found: which dictionary and polarity would have found some.
+// Suggests the dictionary and polarity that would have found markers where none were found.
 
 #pragma once
 
@@ -13,14 +13,14 @@
 namespace velamap {
 
 struct DictionaryHint {
-  std::string dictionary;  // the smallest of its family that has all ids found
+  std::string dictionary;  // the smallest of its family that contains all detected ids
   bool inverted = false;
-  int num_markers = 0;  // found in the images that were looked at
-  int num_images = 0;   // that were looked at
+  int num_markers = 0;  // detected in the images
+  int num_images = 0;   // searched
 };
 
-// Tries all predefined dictionaries, without error correction, in both polarities. Those with at
-// least two detections, most first, at most three. Ends early once one explains many.
+// Tries all predefined dictionaries in both polarities, without error correction. Returns at most
+// three with two or more detections, in descending order. Stops early when one has detected many.
 std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray_images,
                                                 int border_bits,
                                                 const ArucoDetectionOptions& options);
@@ -28,7 +28,7 @@ std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray
 // "--dictionary DICT_4X4_50 --ArucoDetection.inverted 1 (20 markers in 3 images), or ...".
 std::string DescribeHints(const std::vector<DictionaryHint>& hints);
 
-// Grey images spread evenly over a stream of unknown length, at most twelve.
+// Keeps at most twelve grey images, spread evenly over a stream of unknown length.
 class ImageSample {
  public:
   void Add(int idx, const cv::Mat& gray);

@@ -3,9 +3,12 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "importer/base/bounded_queue.h"
 #include "importer/base/error.h"
@@ -23,7 +26,7 @@ struct Done {
   FrameResult result;
 };
 
-// Frames run in parallel; threads within a frame would only compete with them.
+// Frames are processed in parallel; threads within a frame would compete with them.
 class SingleThreadedOpenCv {
  public:
   SingleThreadedOpenCv() : num_threads_(cv::getNumThreads()) { cv::setNumThreads(1); }
@@ -35,35 +38,31 @@ class SingleThreadedOpenCv {
   int num_threads_;
 };
 
-// The threads and what they share; ends and joins them whatever happens.
+// Owns the threads and what they share, and joins them however the work ends.
 class Pipeline {
  public:
   Pipeline(FrameSource* source, int num_threads,
            const std::function<FrameResult(int, Frame*)>& process)
-      : jobs_(static_cast<std::size_t>(num_threads)),
-        source_(source),
-        process_(process),
-        num_working_(num_threads) {
-    threads_.emplace_back([this] { Run([this] { ReadFrames(); }); });
-    for (int i = 0; i < num_threads; ++i) {
-      threads_.emplace_back([this] {
-        Run([this] { ProcessFrames(); });
-        const std::lock_guard<std::mutex> lock(mutex_);
-        if (--num_working_ == 0) done_.Close();
-      });
+      : jobs_(static_cast<std::size_t>(num_threads)), source_(source), process_(process) {
+    try {
+      StartThreads(num_threads);
+    } catch (const std::system_error& error) {
+      // The threads that have started share the work, if there is one to read and one to process.
+      if (threads_.size() >= 2) return;
+      End();
+      throw InputError(fmt::format(
+          "the system starts no more threads ({}); raise the limit of processes (ulimit -u), or "
+          "end other programs",
+          error.code().message()));
     }
   }
 
-  ~Pipeline() {
-    jobs_.Abort();
-    done_.Abort();
-    for (std::thread& thread : threads_) thread.join();
-  }
+  ~Pipeline() { End(); }
 
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
-  // Nothing at the end. Throws what a thread has thrown.
+  // Returns nothing at the end. Throws the first exception of a thread.
   std::optional<Done> NextDone() {
     std::optional<Done> done = done_.Pop();
     if (!done) {
@@ -74,6 +73,39 @@ class Pipeline {
   }
 
  private:
+  void StartThreads(int num_threads) {
+    threads_.emplace_back([this] { Run([this] { ReadFrames(); }); });
+    for (int i = 0; i < num_threads; ++i) {
+      BeginWorker();
+      try {
+        threads_.emplace_back([this] {
+          Run([this] { ProcessFrames(); });
+          EndWorker();
+        });
+      } catch (...) {
+        EndWorker();
+        throw;
+      }
+    }
+  }
+
+  void BeginWorker() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++num_working_;
+  }
+
+  void EndWorker() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (--num_working_ == 0) done_.Close();
+  }
+
+  void End() {
+    jobs_.Abort();
+    done_.Abort();
+    for (std::thread& thread : threads_) thread.join();
+    threads_.clear();
+  }
+
   template <typename Function>
   void Run(const Function& function) {
     try {
@@ -104,8 +136,8 @@ class Pipeline {
     }
   }
 
-  // A frame waits for each worker, so that none stands still while a slow one is decoded, and the
-  // decoder goes on while all are busy. Each worker holds one more, and the reader one.
+  // One frame waits for each worker, so that no worker stands still while a slow frame is decoded.
+  // Each worker holds one more frame, and the reader one.
   BoundedQueue<Job> jobs_;
   // Results hold no pixels, so their number need not be bounded tightly.
   BoundedQueue<Done> done_{1000};
@@ -113,7 +145,7 @@ class Pipeline {
   const std::function<FrameResult(int, Frame*)>& process_;
   std::mutex mutex_;
   std::exception_ptr failure_;
-  int num_working_;
+  int num_working_ = 0;
   std::vector<std::thread> threads_;
 };
 
@@ -125,7 +157,7 @@ void RunFramePipeline(FrameSource* source, int num_threads,
   VELAMAP_CHECK(num_threads >= 1);
   const SingleThreadedOpenCv single_threaded;
   Pipeline pipeline(source, num_threads, process);
-  std::map<int, FrameResult> early;  // done before a frame that precedes them
+  std::map<int, FrameResult> early;  // processed before a frame that precedes them
   int next_idx = 0;
   while (std::optional<Done> done = pipeline.NextDone()) {
     early.emplace(done->frame_idx, std::move(done->result));

@@ -1,4 +1,4 @@
-// Frames from one reading thread through many working threads to the caller, in order.
+// Passes frames from one reading thread through many working threads to the caller, in order.
 
 #pragma once
 
@@ -17,15 +17,16 @@ struct FrameResult {
   FrameDetections detections;
   Camera camera;                    // for the frame's size
   std::string skipped_because;      // not empty: the file was no whole image
-  PriorShapeAgreement prior_shape;  // of what was found without its help
+  PriorShapeAgreement prior_shape;  // of the markers that were found without it
   ImportTimes times;                // of the thread that processed it
   double reading_s = 0.0;           // Frame::decode_s
 };
 
-// Reads all frames of `source`, calls `process` for each on `num_threads` threads (frame_idx counts
-// from 0) and `consume` with the results in order on the calling thread. No more than
-// 2 num_threads + 1 frames are in memory. An exception of any of them ends all threads and is
-// thrown again here. OpenCV's own threads are switched off meanwhile.
+// Reads all frames of `source`, calls `process` for each on up to `num_threads` threads (frame_idx
+// counts from 0) and `consume` with the results in order on the calling thread. Where the system
+// refuses a thread, the threads that it has given do the work; throws InputError if these are fewer
+// than two. No more than 2 num_threads + 1 frames are in memory. The first exception of any of the
+// three ends all threads and is thrown again here. OpenCV's own threads are switched off meanwhile.
 void RunFramePipeline(FrameSource* source, int num_threads,
                       const std::function<FrameResult(int frame_idx, Frame* frame)>& process,
                       const std::function<void(int frame_idx, FrameResult result)>& consume);

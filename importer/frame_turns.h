@@ -1,4 +1,4 @@
-// One step of each frame in the order of the frames, while all other work on them runs in parallel.
+// Lets one step run in the order of the frames while all other work on them runs in parallel.
 
 #pragma once
 
@@ -8,13 +8,12 @@
 
 namespace velamap {
 
-// Holds a value that goes from frame to frame. For threads that take frames in order, from 0 and
-// without a gap, as those of frame_pipeline.h do; every frame must have a Turn.
+// Holds a value that is passed from frame to frame. The threads must take frames in order, from 0
+// and without a gap, as those of frame_pipeline.h do, and create a Turn for every frame.
 template <typename Value>
 class FrameTurns {
  public:
-  // A frame's place in the order. The next frame's turn comes when this one ends, however it does:
-  // a frame that fails keeps nobody waiting.
+  // The turn of one frame. The next frame's turn begins when this one ends, even by an exception.
   class Turn {
    public:
     Turn(FrameTurns* turns, int frame_idx) : turns_(turns), frame_idx_(frame_idx) {}
@@ -22,7 +21,7 @@ class FrameTurns {
     Turn(const Turn&) = delete;
     Turn& operator=(const Turn&) = delete;
 
-    // Waits until the turns of all frames before have ended.
+    // Waits until the turns of all earlier frames have ended.
     Value* Wait() {
       std::unique_lock<std::mutex> lock(turns_->mutex_);
       turns_->changed_.wait(lock, [&] { return turns_->next_idx_ == frame_idx_; });

@@ -1,7 +1,6 @@
 #include "importer/import_checks.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -14,25 +13,21 @@
 namespace velamap {
 namespace {
 
-// What another dictionary or polarity has to find more a frame to be the right one instead.
+// Another dictionary or polarity has to find this many times as many markers a frame to be
+// suggested.
 constexpr double kConvincingRatio = 10.0;
 
 }  // namespace
 
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
                    const ColmapDatabase& database) {
-  const std::string remedy = "delete it or give a new --database_path";
+  const std::string remedy = "delete it, or write to a new place";
   const std::optional<std::string> known_detector = database.ReadDetector();
-  const std::map<std::string, ImageId> names = database.ReadImageIdsByName();
-  if (!known_detector) {
-    if (names.empty()) return;
-    throw InputError(fmt::format("{}: holds images that velamap has not imported, such as {}; {}",
-                                 options.database_path, names.begin()->first, remedy));
-  }
+  if (!known_detector) return;  // it holds no images
   if (*known_detector != detector) {
     throw InputError(
         fmt::format("{}: was made with other detection options, another layout or "
-                    "another prior shape ({}; now {}); {}",
+                    "another prior shape ({}; this run has {}); {}",
                     options.database_path, *known_detector, detector, remedy));
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {
@@ -70,8 +65,8 @@ void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& 
   }
   if (report.num_rejected > 0) {
     throw DataError(
-        fmt::format("{}: only markers whose id is there more than once; give a layout "
-                    "(--layout_path) that tells them apart",
+        fmt::format("{}: every marker id is there more than once; give a layout "
+                    "(--layout_path) that tells the markers apart",
                     options.image_path));
   }
   throw DataError(fmt::format(

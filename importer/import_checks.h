@@ -1,4 +1,4 @@
-// What an import refuses: a database that was made in another way, and frames without markers.
+// Refuses a database that was made with other settings, and frames without markers.
 
 #pragma once
 
@@ -10,17 +10,17 @@
 
 namespace velamap {
 
-// Fewer markers a frame than this are as good as none: false ones turn up in any picture.
+// With fewer markers a frame than this, those found are probably false ones.
 inline constexpr double kFewMarkersPerFrame = 0.5;
 
-// Throws InputError if `database` holds images that velamap has not imported, or was made with
-// another `detector` (DescribeDetector()) or calibration.
+// Throws InputError if `database` was made with another `detector` (DescribeDetector()) or
+// calibration.
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
                    const ColmapDatabase& database);
 
 // Throws DataError if the frames hold no marker, or hardly any while another dictionary finds many.
-// What the wrong dictionary or polarity finds are false ids, mostly some that the layout does not
-// name; the hint therefore comes before any complaint about ids.
+// A wrong dictionary or polarity finds false ids, most of which the layout does not name, so the
+// hint at another dictionary comes before any complaint about ids.
 void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,
                        const ImageSample& sample, const ImportReport& report);
 

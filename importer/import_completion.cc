@@ -33,21 +33,20 @@ int WriteAllMatches(ColmapDatabase* database) {
   std::sort(images.begin(), images.end(), [](const DatabaseImage& a, const DatabaseImage& b) {
     return NaturalLess(a.detections.image_name, b.detections.image_name);
   });
-  const std::vector<std::pair<int, int>> pairs = PairsToMatch(static_cast<int>(images.size()));
-  int num_pairs = 0;
+  std::vector<FrameDetections> frames;
+  for (DatabaseImage& image : images) frames.push_back(std::move(image.detections));
+  const std::vector<std::pair<int, int>> pairs = PairsToMatch(frames);
   ColmapDatabase::Transaction transaction(database);
-  for (const auto& [first_idx, second_idx] : pairs) {
-    const DatabaseImage& first = images[static_cast<std::size_t>(first_idx)];
-    const DatabaseImage& second = images[static_cast<std::size_t>(second_idx)];
-    const FeatureMatches matches = MatchByMarkerId(first.detections, second.detections);
-    if (matches.empty()) continue;
-    ++num_pairs;
-    if (!database->HasMatches(first.image_id, second.image_id)) {
-      database->WriteMatches(first.image_id, second.image_id, matches);
-    }
+  for (const auto& [first, second] : pairs) {
+    const auto first_idx = static_cast<std::size_t>(first);
+    const auto second_idx = static_cast<std::size_t>(second);
+    const ImageId image_id1 = images[first_idx].image_id, image_id2 = images[second_idx].image_id;
+    if (database->HasMatches(image_id1, image_id2)) continue;
+    database->WriteMatches(image_id1, image_id2,
+                           MatchByMarkerId(frames[first_idx], frames[second_idx]));
   }
   transaction.Commit();
-  return num_pairs;
+  return static_cast<int>(pairs.size());
 }
 
 }  // namespace velamap

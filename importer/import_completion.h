@@ -1,4 +1,4 @@
-// What can only be done when all frames are in the database.
+// The steps of an import that need all frames in the database.
 
 #pragma once
 
@@ -7,13 +7,13 @@
 
 namespace velamap {
 
-// Numbers the corners of symmetric markers that the frames alone could not (rotation_evidence.h),
-// in images of this and of earlier runs, and writes those images anew in one transaction. Returns
-// how many detections were resolved; less than zero when new frames contradict what was resolved
-// before.
+// Resolves the rotation of symmetric markers that single frames left open (rotation_evidence.h), in
+// images of this and of earlier runs, and replaces those images in one transaction. Returns by how
+// many the accepted detections grew; negative if new frames contradict earlier resolutions.
 int ResolveDoubtfulRotations(const FrameDetector& detector, ColmapDatabase* database);
 
-// Matches every pair that is worth it and has none yet; returns the number of pairs with matches.
+// Writes the matches of all pairs of PairsToMatch() that have none yet. Returns the number of
+// pairs.
 int WriteAllMatches(ColmapDatabase* database);
 
 }  // namespace velamap

@@ -11,12 +11,15 @@
 
 #include <fmt/format.h>
 
+#include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/parallel.h"
 #include "importer/camera/calibration.h"
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
 #include "importer/dictionary_hint.h"
+#include "importer/formation_sampling.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
 #include "importer/import_checks.h"
@@ -28,8 +31,6 @@
 
 namespace velamap {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string ProgressLine(const FrameResult& result) {
   const FrameDetections& detections = result.detections;
@@ -44,7 +45,7 @@ bool HoldsMarkers(const ColmapDatabase& database) {
                      [](const DatabaseImage& image) { return !image.detections.markers.empty(); });
 }
 
-// One run over all frames. Process() is called on many threads, Consume() on one, in order.
+// One pass over all frames. Process() runs on many threads, Consume() on one thread in order.
 class ImportRun {
  public:
   ImportRun(const MarkerImporterOptions& options, const FrameDetector& detector,
@@ -52,7 +53,9 @@ class ImportRun {
       : options_(options),
         detector_(detector),
         source_(source),
-        writer_(DescribeDetector(detector), database),
+        writes_images_(source->IsVideo() && !options.frame_output_path.empty()),
+        writer_(
+            DescribeDetector(detector), [this] { SecureImages(); }, database),
         held_markers_(HoldsMarkers(*database)),
         few_found_(!held_markers_) {}
 
@@ -99,14 +102,14 @@ class ImportRun {
     few_found_ =
         !held_markers_ && report_.num_markers < kFewMarkersPerFrame * report_.num_frames_read;
     if (!few_found_) ClearSample();
-    // A video has frames enough; a photograph without markers is still one that the user gave.
+    // Frames of a video without markers are dropped; a photograph is in the database in any case.
     if (source_->IsVideo() && detections.markers.empty()) return;
     writer_.Add(detections, result.camera);
     ++report_.num_images_added;
   }
 
-  // Writes what is left. Throws if the run found nothing. `cpu_s`: of the whole program for the
-  // frames on `num_threads` threads.
+  // Commits the last batch. Throws if the run found nothing. `cpu_s` is the CPU time that the whole
+  // program has spent on the frames, with `num_threads` threads.
   ImportReport Finish(double cpu_s, int num_threads) {
     const StageTimer timer(ImportStage::kDatabase);
     report_.times += TakeStageTimes();
@@ -126,8 +129,8 @@ class ImportRun {
  private:
   using Turn = FrameTurns<MarkerTracks>::Turn;
 
-  // Tracked from frame to frame, so in their order; a search of the whole frame that is due waits
-  // for nobody.
+  // Tracks markers from frame to frame, which has to follow the order of the frames. The searches
+  // of whole frames, which need no other frame, run before the turn.
   std::vector<MarkerQuad> SearchInTurn(int frame_idx, const Frame& frame, Turn* turn,
                                        FrameResult* result) const {
     std::vector<MarkerQuad> quads, seen_coarsely;
@@ -162,14 +165,21 @@ class ImportRun {
   }
 
   void WriteImage(const Frame& frame, const FrameDetections& detections) const {
-    if (!source_->IsVideo() || options_.frame_output_path.empty() || detections.markers.empty()) {
-      return;
-    }
+    if (!writes_images_ || detections.markers.empty()) return;
     const StageTimer timer(ImportStage::kImages);
-    WriteFrameImage(frame, fs::path(options_.frame_output_path) / frame.image_name);
+    WriteFrameImage(frame, std::filesystem::path(options_.frame_output_path) / frame.image_name);
   }
 
-  // From sums over threads to what ImportReport::times promises.
+  // A frame that the database holds is not written again by a later run, so it has to be on the
+  // disk first.
+  void SecureImages() const {
+    const StageTimer timer(ImportStage::kImages);
+    if (writes_images_ && Exists(options_.frame_output_path)) {
+      SyncFileSystem(options_.frame_output_path);
+    }
+  }
+
+  // Turns sums over threads into the times that ImportReport::times describes.
   void SettleTimes(double cpu_s, int num_threads) {
     ImportTimes& times = report_.times;
     BusyTime& decode = times[ImportStage::kDecode];
@@ -181,7 +191,7 @@ class ImportRun {
     decode.wall_s += reading_s_;
   }
 
-  // Straight from the working threads: results that wait for their turn hold no pixels.
+  // Called on the working threads, because results that wait for earlier frames hold no pixels.
   void AddToSample(int frame_idx, const cv::Mat& gray) {
     if (!few_found_) return;
     const std::lock_guard<std::mutex> lock(sample_mutex_);
@@ -205,10 +215,11 @@ class ImportRun {
   const MarkerImporterOptions& options_;
   const FrameDetector& detector_;
   FrameSource* source_;
+  bool writes_images_;
   DatabaseWriter writer_;
   FrameTurns<MarkerTracks> turns_;  // videos
-  bool held_markers_;               // before this run
-  std::atomic<bool> few_found_;     // so far, so that frames are sampled for a hint
+  bool held_markers_;               // whether the database held markers before this run
+  std::atomic<bool> few_found_;     // few markers so far: frames are sampled for a hint
   std::mutex sample_mutex_;
   ImageSample sample_;
   ImportReport report_;
@@ -216,8 +227,8 @@ class ImportRun {
   std::set<int> ids_not_in_layout_;
 };
 
-// All frames that the database does not hold. The decoder and its pictures are gone at the end:
-// what follows needs memory that grows with the number of frames.
+// Imports all frames that the database does not hold. Decoder and pictures are freed at the end,
+// because the steps that follow need memory in proportion to the number of frames.
 ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetector& detector,
                           const std::vector<std::string>& known_names, int num_threads,
                           const ProgressCallback& progress, ColmapDatabase* database) {
@@ -235,7 +246,7 @@ ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetec
   return run.Finish(ProcessCpuSeconds() - cpu_begin_s, num_threads);
 }
 
-// What needs all frames.
+// Runs the steps that need all frames.
 void CompleteDatabase(const FrameDetector& detector, ColmapDatabase* database,
                       ImportReport* report) {
   const StageTimer timer(ImportStage::kDatabase);
@@ -248,7 +259,7 @@ void CompleteDatabase(const FrameDetector& detector, ColmapDatabase* database,
 }  // namespace
 
 ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressCallback& progress) {
-  TakeStageTimes();  // of an earlier call on this thread
+  TakeStageTimes();  // drops those of an earlier call on this thread
   options.detection.Check();
   options.video.Check();
   if (options.num_threads < 0) {
@@ -257,14 +268,19 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   }
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;
-  if (fs::is_directory(options.image_path)) detection.search = SearchMode::kExhaustive;
-  const FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
+  if (IsFolder(options.image_path)) detection.search = SearchMode::kExhaustive;
+  FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
 
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
   CheckExisting(options, DescribeDetector(detector), database);
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
+  if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
+    detector.formation = ImageFormation(
+        EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector)
+            .parameters);
+  }
   ImportReport report =
       ImportFrames(options, detector, known_names, num_threads, progress, &database);
   report.num_images_present = static_cast<int>(known_names.size());

@@ -1,4 +1,4 @@
-// The room's door: frames in, COLMAP database out.
+// The entry point of the importer: from frames to a COLMAP database.
 
 #pragma once
 
@@ -15,21 +15,20 @@
 
 namespace velamap {
 
-// Called with work done and total (0 if unknown) and a short line on what was done last.
+// Called with the numbers of frames done and in total (0 if unknown) and a line on the last frame.
 using ProgressCallback = std::function<void(int done, int total, const std::string& message)>;
 
 struct MarkerImporterOptions {
   std::string image_path;     // folder of images, or a video file
   std::string database_path;  // created, or added to
-  Camera camera;            // for one image size; scaled where the frames' differs by a pure scale
-  std::string camera_path;  // only for messages
+  Camera camera;              // for one image size; scaled for frames of the same aspect ratio
+  std::string camera_path;    // for messages only
   Layout layout;
   ArucoDetectionOptions detection;
   VideoOptions video;
   PriorShape prior_shape;  // empty: none
-  // Video only: folder for the frames that hold markers, as JPEG, so that a later step can show
-  // them without decoding the video again; empty: none are written. Photographs stay where they
-  // are.
+  // Video only: the folder into which frames with markers are written as JPEG, so that later steps
+  // need not decode the video again; empty: none are written. Photographs stay where they are.
   std::string frame_output_path;
   int num_threads = 0;  // 0: one a core
 };
@@ -41,31 +40,31 @@ struct SkippedImage {
 
 struct ImportReport {
   int num_frames_read = 0;     // decoded in this run
-  int num_images_added = 0;    // rows added to the database
-  int num_images_present = 0;  // were there before
+  int num_images_added = 0;    // to the database
+  int num_images_present = 0;  // in the database before this run
   int num_images_without_markers = 0;
-  int num_markers = 0;    // detections accepted in this run
-  int num_rejected = 0;   // detections left out in this run
-  int num_fallbacks = 0;  // accepted ones whose corner fit failed: cv::cornerSubPix's corners
-  int num_pairs = 0;      // pairs of images with matches
+  int num_markers = 0;                 // detections accepted in this run
+  int num_rejected = 0;                // detections rejected in this run
+  int num_fallbacks = 0;               // accepted without a corner fit: corners of cv::cornerSubPix
+  int num_pairs = 0;                   // image pairs with matches
   PriorShapeAgreement prior_shape;     // of all frames
-  std::vector<int> ids_not_in_layout;  // found, not named by the layout, left out
+  std::vector<int> ids_not_in_layout;  // detected and rejected, because no part names them
   std::vector<SkippedImage> skipped;   // unreadable files
-  // CPU time summed over the threads; that of decoding is what no other stage claims, because
-  // FFmpeg decodes on threads of its own. The stages overlap: their wall times are those of the
-  // reading thread (decode), of one of the working threads in the mean (detect, refine, images) and
-  // of the calling one (database).
+  // CPU times are sums over the threads. Decoding has the CPU time that no other stage claims,
+  // because FFmpeg decodes on threads of its own. The stages overlap, so wall times are those of
+  // the reading thread (decode), the mean of the working threads (detect, refine, images) and those
+  // of the calling thread (database).
   ImportTimes times;
 };
 
-// Detects the markers of every frame on all cores while frames stream through a bounded queue,
-// resolves duplicates, leaves out ids that the layout does not name, and writes images in order in
-// batches; then what needs all frames (import_completion.h). Frames that the database already holds
-// (by name) are left as they are.
+// Streams frames through a bounded queue, detects their markers on all cores, resolves duplicates,
+// rejects ids that the layout does not name, and writes the images in order and in batches. The
+// steps that need all frames follow (import_completion.h). Frames whose name is in the database
+// are skipped.
 //
-// Throws InputError (unreadable input, calibration for another size, a database made with another
-// camera or detector settings) and DataError: no marker found at all, naming the dictionaries and
-// polarity that would have found some.
+// Throws InputError for unreadable input, a calibration for another image size, and a database that
+// was made with another camera or other detector settings. Throws DataError that names the
+// dictionaries and polarity that would have found markers if there are none.
 ImportReport ImportMarkers(const MarkerImporterOptions& options,
                            const ProgressCallback& progress = {});
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
@@ -86,16 +87,17 @@ Model MakeSeedModel(const Registration& registration, const std::vector<Database
 }
 
 void WriteRegistrationCsv(const Registration& registration, std::ostream& out) {
-  out << "image_name,registered,num_markers,num_outliers,rms_error_mm,reason,outliers\n";
+  CsvWriter csv(out);
+  csv.WriteRecord("image_name", "registered", "num_markers", "num_outliers", "rms_error_mm",
+                  "reason", "outliers");
   for (const RegisteredFrame& frame : registration.frames) {
-    out << frame.image_name << ',' << (frame.cam_from_shape ? 1 : 0) << ','
-        << frame.marker_ids.size() << ',' << frame.outlier_ids.size() << ','
-        << 1e3 * frame.rms_error_m << ",\"" << frame.reason << "\",\"";
+    std::string outliers;
     for (std::size_t i = 0; i < frame.outlier_ids.size(); ++i) {
-      out << (i > 0 ? "; " : "") << frame.outlier_ids[i];
-      if (i < frame.outlier_reasons.size()) out << ": " << frame.outlier_reasons[i];
+      outliers += (i > 0 ? "; " : "") + std::to_string(frame.outlier_ids[i]);
+      if (i < frame.outlier_reasons.size()) outliers += ": " + frame.outlier_reasons[i];
     }
-    out << "\"\n";
+    csv.WriteRecord(frame.image_name, frame.cam_from_shape.has_value(), frame.marker_ids.size(),
+                    frame.outlier_ids.size(), 1e3 * frame.rms_error_m, frame.reason, outliers);
   }
 }
 

@@ -3,20 +3,22 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue csv error ids natural_order numbers parallel stage_timer statistics
-  text_file)
+  atomic_output bounded_queue csv error files ids natural_order numbers option parallel stage_timer
+  statistics text_file)
 house_folder(importer/geometry PUBLIC
-  alignment consensus_pose pose_step quad rigid3 triple_pose unit_square_map)
+  alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
+  rigid3 unit_square_map)
 house_folder(importer/camera PUBLIC
-  calibration camera camera_projection)
+  calibration camera camera_jacobian camera_projection)
 house_folder(importer/layout PUBLIC
   dictionary frame_choice layout prior_shape)
 house_folder(importer/video PUBLIC
   frame_image frame_source image_file video_options)
 house_folder(importer/detect PUBLIC
   corner_colors detection detection_options duplicates interpolate marker_alignment
-  marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
+  marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
 house_folder(importer/refine PUBLIC
+  formation_estimation image_formation
   marker_detector)
 house_folder(importer/track PUBLIC
   frame_detector marker_tracking)
@@ -37,17 +39,18 @@ house_folder(reconstruct/thesis PUBLIC
 house_folder(reconstruct/global PUBLIC
   global_registration)
 house_folder(reconstruct/colmap PUBLIC
-  bundle_adjustment colmap_runner observation_filter warm_start)
+  bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/adjust PUBLIC
   marker_adjustment)
 house_folder(reconstruct PUBLIC
   register_frames seed_model)
 house_folder(exporters/shape PUBLIC
-  adjacent_distances joint_covariance known_distances marker_shape part_planes sail_lines
-  shape_frame shape_metrics shape_sigma)
+  adjacent_distances common_corners joint_covariance known_distances marker_shape part_planes
+  principal_axes sail_lines shape_frame shape_metrics shape_sigma shape_transform
+  units)
 house_folder(exporters/formats PUBLIC
   cad_writer diverging_color mesh_reader mesh_triangles mesh_writer metrics_report
-  ply_writer shape_csv surface_spline)
+  ply_writer round_number shape_csv shape_ply surface_spline)
 house_folder(exporters/scale PUBLIC
   metric_scale metric_shape model_metrics scale_audit scale_audit_report scale_csv)
 house_folder(exporters/sail PUBLIC
@@ -62,7 +65,7 @@ house_folder(workflows/run PUBLIC
   central_frame_sweep logging pipeline progress stage_times summary version versions
   workspace)
 house_folder(workflows/options PUBLIC
-  option_parser sail_options shared_options)
+  nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC
   commands)
 house_folder(workflows)

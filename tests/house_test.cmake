@@ -10,6 +10,9 @@ set(num_files 0)
 # Only the database's files know SQL; only the search, the detector and the dictionaries know
 # cv::aruco.
 set(SQL_FILES "^importer/database/(colmap_(database|schema)|marker_detections_table)\\.cc$")
+# Only these files call the operations of std::filesystem, because they turn a failure into an input
+# error; elsewhere its exceptions would end the program as a broken invariant.
+set(FILE_SYSTEM_FILES "^importer/base/(files|atomic_output)\\.cc$")
 set(ARUCO_FILES "^importer/(detect/marker_search|refine/marker_detector|layout/dictionary)\\.(h|cc)$")
 
 set(folders "")
@@ -75,6 +78,13 @@ foreach(room IN LISTS ROOMS)
          REGEX "(SELECT .* FROM|INSERT (OR [A-Z]+ )?INTO|CREATE (UNIQUE )?(TABLE|INDEX)|DELETE FROM|PRAGMA )")
     if(sql AND NOT file MATCHES "${SQL_FILES}")
       fail("${file} holds SQL, which only the database's files may: ${sql}")
+    endif()
+    if(NOT file MATCHES "${FILE_SYSTEM_FILES}")
+      file(STRINGS ${SOURCE_DIR}/${file} file_system
+           REGEX "(fs|filesystem)::([a-oq-z_]|p[b-z_])|directory_(iterator|entry)")
+      if(file_system)
+        fail("${file} calls std::filesystem instead of importer/base/files.h: ${file_system}")
+      endif()
     endif()
   endforeach()
 endforeach()

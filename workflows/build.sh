@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Configures and builds velamap.
-# usage: workflows/build.sh PRESET [TARGET]   (presets: release, debug, ci; target: all or velamap)
+# usage: workflows/build.sh PRESET [TARGET]
+# PRESET: release, debug, ci (release, warnings are errors) or sanitize (clang with the address and
+# undefined-behaviour sanitizers). TARGET: such as velamap; default all, with sanitize the unit tests.
 # VELAMAP_JOBS: parallel compilers, default one a core (each takes up to 1 GB of memory).
 set -euo pipefail
 
 preset="${1:?usage: $0 PRESET [TARGET]}"
-target="${2:-all}"
+target=(${2:+--target "$2"})
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 echo "== build: preset $preset, in build/$preset"
 cmake --preset "$preset"
-cmake --build --preset "$preset" --target "$target" --parallel "${VELAMAP_JOBS:-$(nproc)}"
+cmake --build --preset "$preset" "${target[@]}" --parallel "${VELAMAP_JOBS:-$(nproc)}"

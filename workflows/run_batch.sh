@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Reconstructs several inputs (folders of images, or videos) with one camera and layout, each into
-# its own workspace, and writes one row each into OUTPUT/summary.csv.
+# Reconstructs several inputs (folders of images, or videos) with one camera and layout, each into its
+# own workspace, and writes a row for each into OUTPUT/summary.csv.
 #
 # usage: workflows/run_batch.sh --output_path FOLDER [--keep_going] INPUT... [-- VELAMAP_OPTION...]
 #
-# What follows -- goes to every `velamap automatic_reconstructor` call:
+# Options after -- go to every call of `velamap automatic_reconstructor`:
 #   workflows/run_batch.sh --output_path results sail1.mp4 sail2.mp4 -- \
 #     --camera_path camera.yml --layout_path layout.yml
 #
 # Stops at the first failure unless --keep_going; the exit code is that of the first failure.
-# VELAMAP: the program, default the one of build/release, else the one on the PATH.
+# VELAMAP: the program; the default is that of build/release, else that on the PATH.
 set -euo pipefail
 
 fail() {
@@ -25,7 +25,7 @@ while [[ $# -gt 0 && "$1" != -- ]]; do
     --output_path) output_path="${2:-}"; shift 2 || fail "--output_path needs a folder" ;;
     --keep_going) keep_going=1; shift ;;
     --help) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"; exit 0 ;;
-    --*) fail "$1: unknown option; velamap's own go behind --" ;;
+    --*) fail "$1: unknown option; options of velamap go after --" ;;
     *) inputs+=("$1"); shift ;;
   esac
 done
@@ -37,7 +37,7 @@ velamap="${VELAMAP:-$(dirname "${BASH_SOURCE[0]}")/../build/release/workflows/ve
 [[ -x "$velamap" ]] || velamap="$(command -v velamap)" ||
   fail "velamap is not built; run workflows/build.sh release"
 
-# sail.mp4 and sail/ become the workspace sail; two inputs of one name would overwrite each other.
+# sail.mp4 and sail/ both become the workspace sail, so that two inputs of one name would collide.
 workspace_name() {
   local name
   name="$(basename "$1")"

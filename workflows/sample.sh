@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 machine to a metric shape: installs the packages, builds velamap and
-# reconstructs the sample project, real photographs of a cube with printed markers.
+# Installs the packages on a fresh Debian 12 machine, builds velamap and reconstructs the photographs of
+# a cube with printed markers in sample_project.
 # usage: workflows/sample.sh [WORKSPACE]   (default: ./workspace/cube)
-# VELAMAP_PRESET: the build to use, default release.
+# VELAMAP_PRESET: the build; default release.
 set -euo pipefail
 
 workspace="$(realpath --canonicalize-missing "${1:-workspace/cube}")"

@@ -13,7 +13,10 @@ packages=(
   libocct-data-exchange-dev libassimp-dev libjs-three libjs-chart.js
   libgtest-dev libgmock-dev libbenchmark-dev
 )
-test_packages=(xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium)
+test_packages=(
+  xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium
+  clang libclang-rt-dev llvm clang-format-14  # llvm: names functions in the sanitizers' reports
+)
 
 case "${1:-}" in
   "") ;;

@@ -1,4 +1,4 @@
-// The program: finds the command, and turns what it throws into a line and an exit code.
+// The program: runs the command line and turns an exception into a line and an exit code.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -18,8 +18,8 @@ namespace {
 
 enum ExitCode { kOk = 0, kNoResult = 1, kBadInput = 2, kExternalTool = 3, kBrokenInvariant = 4 };
 
-// Where the caller has closed a standard stream, a file of ours would take its number, and text
-// that is meant for the terminal would go into it. What takes its place cannot be written to.
+// If the caller has closed a standard stream, the next file that is opened takes its number and
+// gets the text for the terminal. A stream that cannot be written to takes the number instead.
 void OccupyStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) < 0) open("/dev/null", O_RDONLY);  // takes the lowest free number
@@ -27,14 +27,7 @@ void OccupyStandardStreams() {
 }
 
 void Run(const Arguments& arguments) {
-  const std::string name = arguments.empty() ? "help" : arguments.front();
-  if (name == "--help" || name == "-h") {
-    RunHelp({});
-  } else if (name == "--version") {
-    RunVersion({});
-  } else {
-    FindCommand(name).run({arguments.begin() + (arguments.empty() ? 0 : 1), arguments.end()});
-  }
+  RunCommandLine(arguments);
   std::cout.flush();
   if (!std::cout) throw InputError("standard output: cannot be written; is the disk full?");
 }
@@ -56,8 +49,7 @@ int Main(int argc, char** argv) {
   } catch (const ExternalToolError& error) {
     return fail(kExternalTool, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(kBrokenInvariant,
-                "out of memory; give fewer frames (--Video.frame_step) or fewer --num_threads");
+    return fail(kBrokenInvariant, "out of memory; use fewer images or fewer threads");
   } catch (const std::exception& error) {
     return fail(kBrokenInvariant, std::string(error.what()) + " (an error of velamap itself)");
   }

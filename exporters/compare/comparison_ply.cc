@@ -3,74 +3,133 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ostream>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "exporters/formats/diverging_color.h"
+#include "exporters/formats/ply_writer.h"
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
+struct Vertex {
+  Eigen::Vector3d x_in_reference_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Array3d color = Eigen::Array3d::Zero();
+  double distance_m = 0.0;
+  double sigma_m = 0.0;
+  int marker_id = 0;
+  int corner = 0;
+};
 
-double LimitOf(const ShapeDeviation& deviation, std::optional<double> color_limit_m) {
-  return color_limit_m.value_or(
-      std::max(std::abs(deviation.distance_m.min), std::abs(deviation.distance_m.max)));
+template <std::size_t kSize>
+struct Face {
+  std::array<int, kSize> vertex_indices;
+  int marker_id = 0;
+};
+
+std::vector<std::string> Comments(const std::string& content, double limit_m) {
+  return {content, "distance: positive on the side of the reference's normal",
+          fmt::format("colours: blue -{0:g} mm, white 0, red +{0:g} mm, grey beside the reference",
+                      kMmPerM * limit_m)};
 }
 
-std::string Header(const ShapeDeviation& deviation, double limit_m, bool has_sigma) {
-  const std::string limit = fmt::format("{:g} mm", kMmPerM * limit_m);
-  return fmt::format(
-      "ply\nformat ascii 1.0\n"
-      "comment velamap comparison, metres, frame of the reference, alignment: {}\n"
-      "comment distance: positive on the side of the reference's normal\n"
-      "comment colours: blue -{}, white 0, red +{}, grey beside the reference\n"
-      "element vertex {}\n"
-      "property double x\nproperty double y\nproperty double z\n"
-      "property float nx\nproperty float ny\nproperty float nz\n"
-      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-      "property float distance\n{}property int marker_id\nproperty int corner\n"
-      "element face {}\nproperty list uchar int vertex_indices\nproperty int marker_id\n"
-      "end_header\n",
-      AlignmentMethodName(deviation.alignment.method), limit, limit,
-      kNumCorners * deviation.markers.size(), has_sigma ? "property float sigma\n" : "",
-      deviation.markers.size());
+void AddPosition(PlyElement<Vertex>* vertices) {
+  vertices->Add("x", PlyType::kDouble, [](const Vertex& v) { return v.x_in_reference_m.x(); });
+  vertices->Add("y", PlyType::kDouble, [](const Vertex& v) { return v.x_in_reference_m.y(); });
+  vertices->Add("z", PlyType::kDouble, [](const Vertex& v) { return v.x_in_reference_m.z(); });
+}
+
+void AddColorAndDistance(PlyElement<Vertex>* vertices) {
+  vertices->Add("red", PlyType::kUchar, [](const Vertex& v) { return v.color[0]; });
+  vertices->Add("green", PlyType::kUchar, [](const Vertex& v) { return v.color[1]; });
+  vertices->Add("blue", PlyType::kUchar, [](const Vertex& v) { return v.color[2]; });
+  vertices->Add("distance", PlyType::kFloat, [](const Vertex& v) { return v.distance_m; });
+}
+
+template <std::size_t kSize>
+PlyElement<Face<kSize>> FaceElement() {
+  PlyElement<Face<kSize>> faces{"face", {}, {}};
+  faces.AddList("vertex_indices", PlyType::kInt, static_cast<int>(kSize),
+                [](const Face<kSize>& face, int i) {
+                  return face.vertex_indices[static_cast<std::size_t>(i)];
+                });
+  return faces;
 }
 
 }  // namespace
 
 void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> color_limit_m,
                         std::ostream& out) {
-  const double limit_m = LimitOf(deviation, color_limit_m);
-  const bool has_sigma = std::all_of(deviation.markers.begin(), deviation.markers.end(),
-                                     [](const auto& marker) { return marker.sigma_m.has_value(); });
-  std::string text = Header(deviation, limit_m, has_sigma);
-  for (const MarkerDeviation& deviating : deviation.markers) {
-    const ShapeMarker* marker = FindWholeMarker(deviation.aligned_shape, deviating.marker_id);
+  const double limit_m = color_limit_m.value_or(
+      std::max(std::abs(deviation.distance_m.min), std::abs(deviation.distance_m.max)));
+  PlyElement<Vertex> vertices{"vertex", {}, {}};
+  AddPosition(&vertices);
+  vertices.Add("nx", PlyType::kFloat, [](const Vertex& v) { return v.normal.x(); });
+  vertices.Add("ny", PlyType::kFloat, [](const Vertex& v) { return v.normal.y(); });
+  vertices.Add("nz", PlyType::kFloat, [](const Vertex& v) { return v.normal.z(); });
+  AddColorAndDistance(&vertices);
+  if (std::all_of(deviation.markers.begin(), deviation.markers.end(),
+                  [](const auto& marker) { return marker.sigma_m.has_value(); })) {
+    vertices.Add("sigma", PlyType::kFloat, [](const Vertex& v) { return v.sigma_m; });
+  }
+  vertices.Add("marker_id", PlyType::kInt, [](const Vertex& v) { return v.marker_id; });
+  vertices.Add("corner", PlyType::kInt, [](const Vertex& v) { return v.corner; });
+  auto faces = FaceElement<kNumCorners>();
+  faces.Add("marker_id", PlyType::kInt, [](const auto& face) { return face.marker_id; });
+  for (const MarkerDeviation& compared : deviation.markers) {
+    const ShapeMarker* marker = FindWholeMarker(deviation.aligned_shape, compared.marker_id);
     VELAMAP_CHECK(marker != nullptr);
-    const Eigen::Vector3f normal = MarkerNormal(*marker).cast<float>();
-    const Eigen::Array3d color = DivergingColor(
-        deviating.is_over_surface ? std::optional(deviating.distance_m) : std::nullopt, limit_m);
-    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
-      const Eigen::Vector3d& x = *marker->x_in_shape_m[corner];
-      text += fmt::format("{} {} {} {} {} {} {:.0f} {:.0f} {:.0f} {}", x.x(), x.y(), x.z(),
-                          normal.x(), normal.y(), normal.z(), color[0], color[1], color[2],
-                          static_cast<float>(deviating.distance_m));
-      if (has_sigma) text += fmt::format(" {}", static_cast<float>(*deviating.sigma_m));
-      text += fmt::format(" {} {}\n", deviating.marker_id, corner);
+    Vertex vertex;
+    vertex.normal = MarkerNormal(*marker);
+    vertex.color = DivergingColor(
+        compared.is_over_surface ? std::optional(compared.distance_m) : std::nullopt, limit_m);
+    vertex.distance_m = compared.distance_m;
+    vertex.sigma_m = compared.sigma_m.value_or(0.0);
+    vertex.marker_id = compared.marker_id;
+    // Corners 1..4 run clockwise seen from the front; a face runs the other way.
+    const int first = static_cast<int>(vertices.rows.size());
+    faces.rows.push_back({{first, first + 3, first + 2, first + 1}, compared.marker_id});
+    for (vertex.corner = 1; vertex.corner <= kNumCorners; ++vertex.corner) {
+      vertex.x_in_reference_m = *marker->x_in_shape_m[static_cast<std::size_t>(vertex.corner)];
+      vertices.rows.push_back(vertex);
     }
   }
-  // Corners 1..4 run clockwise seen from the front; a face runs the other way.
-  for (std::size_t i = 0; i < deviation.markers.size(); ++i) {
-    const std::size_t first = kNumCorners * i;
-    text += fmt::format("4 {} {} {} {} {}\n", first, first + 3, first + 2, first + 1,
-                        deviation.markers[i].marker_id);
+  const std::string content =
+      fmt::format("velamap comparison, metres, frame of the reference, alignment: {}",
+                  AlignmentMethodName(deviation.alignment.method));
+  WritePly(PlyFormat::kAscii, Comments(content, limit_m), out, vertices, faces);
+}
+
+void WriteComparisonSurfacePly(const SurfaceComparison& comparison,
+                               std::optional<double> color_limit_m, std::ostream& out) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const double limit_m = color_limit_m.value_or(LargestDistance(comparison));
+  PlyElement<Vertex> vertices{"vertex", {}, {}};
+  AddPosition(&vertices);
+  AddColorAndDistance(&vertices);
+  auto faces = FaceElement<3>();
+  for (const SurfaceDeviation& part : comparison.parts) {
+    const int first = static_cast<int>(vertices.rows.size());
+    for (std::size_t i = 0; i < part.mesh.vertices_m.size(); ++i) {
+      Vertex vertex;
+      vertex.x_in_reference_m = part.mesh.vertices_m[i];
+      vertex.color = DivergingColor(part.distance_m[i], limit_m);
+      vertex.distance_m = part.distance_m[i].value_or(kUnknown);
+      vertices.rows.push_back(vertex);
+    }
+    for (const auto& [a, b, c] : part.mesh.triangles) {
+      faces.rows.push_back({{first + a, first + b, first + c}});
+    }
   }
-  out << text;
+  WritePly(PlyFormat::kAscii,
+           Comments("velamap comparison of surfaces, metres, frame of the reference", limit_m), out,
+           vertices, faces);
 }
 
 }  // namespace velamap

@@ -1,4 +1,9 @@
-// The compared markers, coloured by their signed distance from the reference.
+// The compared markers and surfaces as PLY, colored by their signed distance from the reference.
+//
+// Both files are ASCII, in the frame of the reference, in m: opened together with the reference,
+// they lie on it. Colors are those of DivergingColor(): blue, white and red for -limit, 0 and
+// +limit, grey for points outside the edge of the reference. `color_limit_m` is the largest
+// distance by default. Comments in the header name the limit, the sign and the alignment.
 
 #pragma once
 
@@ -6,18 +11,19 @@
 #include <optional>
 
 #include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/surface_comparison.h"
 
 namespace velamap {
 
-// ASCII PLY in the reference's frame, m, so that it lies on the design when both are opened. One
-// quadrilateral a marker that was compared: four vertices (corners 1..4) with double x y z, float
-// nx ny nz, uchar red green blue, float distance (m, of the marker), float sigma (m; only if all
-// have one), int marker_id, int corner; faces with vertex_indices and int marker_id.
-//
-// Blue, white, red for -limit, 0, +limit and beyond (ColorBrewer's RdBu, which colour-blind eyes
-// tell apart); grey for markers beside the surface. `color_limit_m`: nothing takes the largest
-// distance. The comments of the header say limit, sign and alignment.
+// One quadrilateral per compared marker: four vertices (corners 1..4) with double x y z, float nx
+// ny nz, uchar red green blue, float distance (m, of the marker), float sigma (m, only if all
+// markers have one), int marker_id, int corner; faces with vertex_indices and int marker_id.
 void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> color_limit_m,
                         std::ostream& out);
+
+// The meshes of all parts: double x y z, uchar red green blue, float distance (m, nan where it is
+// unknown), and triangles.
+void WriteComparisonSurfacePly(const SurfaceComparison& comparison,
+                               std::optional<double> color_limit_m, std::ostream& out);
 
 }  // namespace velamap

@@ -6,19 +6,12 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/units.h"
+
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
-constexpr double kDegPerRad = 180.0 / M_PI;
-
-Statistics InMm(Statistics statistics) {
-  for (double* figure : {&statistics.mean, &statistics.standard_deviation, &statistics.median,
-                         &statistics.min, &statistics.max, &statistics.rms}) {
-    *figure *= kMmPerM;
-  }
-  return statistics;
-}
+Statistics InMm(const Statistics& in_m) { return Scaled(kMmPerM, in_m); }
 
 void AddVector(const std::string& name, const Eigen::Vector3d& value_m, Metrics* metrics) {
   const char* axes[] = {"x", "y", "z"};

@@ -1,5 +1,4 @@
-// What the figures of a comparison are called: keys and tables for stdout, CSV and JSON. They are
-// listed in the README of this room.
+// Keys and tables of a comparison for stdout, CSV and JSON. README.md of this room lists them.
 
 #pragma once
 
@@ -10,14 +9,14 @@
 
 namespace velamap {
 
-// Keys of sigmas and significance are there where the sigmas are. Tables parts, lines, and, for the
-// files only, markers.
+// Keys of sigmas and significance exist if the sigmas are known. Adds tables parts, lines and, for
+// the files only, markers.
 void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report);
 
-// surface_note; table surfaces: part and surface_distance_mm.
+// Adds surface_note and table surfaces with part and surface_distance_mm.
 void AddMetrics(const SurfaceComparison& comparison, MetricsReport* report);
 
-// section_frame, num_significant_section_numbers, section_note; table section_differences.
+// Adds section_frame, num_significant_section_numbers, section_note and table section_differences.
 void AddMetrics(const SectionComparison& comparison, MetricsReport* report);
 
 }  // namespace velamap

@@ -13,11 +13,10 @@
 namespace velamap {
 namespace {
 
-// Motions that change the sum of squares by less than this part of what the best known one does are
-// not known at all.
+// Motions with a smaller eigenvalue, relative to the largest one, count as undetermined.
 constexpr double kMinEigenvalueRatio = 1e-9;
 
-// Of the corners that have a sigma, in order; 3c x 3c.
+// Covariance of the corners that have a sigma, in order; 3c x 3c.
 Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& corners) {
   const auto num_corners = static_cast<Eigen::Index>(corners.size());
   Eigen::MatrixXd block = Eigen::MatrixXd::Zero(3 * num_corners, 3 * num_corners);
@@ -28,8 +27,8 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
   for (int axis = 0; axis < 3; ++axis) {
     double mean = 0.0;
     for (const int corner : corners) mean += variance(corner, axis) / num_corners;
-    // Without a centre nothing is known to be common. With it, the corners' own parts do not move
-    // the centre: they have a sum of zero, each a variance of 3/4 of `own`.
+    // The sigma of the center gives the common part. The individual parts sum to zero, so that they
+    // do not move the center, and each has a variance of 3/4 of `own`.
     const double common = has_center ? variance(0, axis) : 0.0;
     const double own = std::max(0.0, mean - common) * 4.0 / 3.0;
     for (Eigen::Index i = 0; i < num_corners; ++i) {
@@ -46,7 +45,7 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
   return block;
 }
 
-std::vector<PointGradient> TurnedInto(
+std::vector<PointGradient> RotatedInto(
     const Eigen::Quaterniond& target_from_reference,
     const std::array<std::map<CornerId, Eigen::Vector3d>, 3>& by) {
   std::vector<PointGradient> gradients;
@@ -59,8 +58,8 @@ std::vector<PointGradient> TurnedInto(
   return gradients;
 }
 
-bool HoldsAll(const PointCovariance& covariance,
-              const std::map<CornerId, Eigen::Vector3d>& by_corner) {
+bool HasAllCorners(const PointCovariance& covariance,
+                   const std::map<CornerId, Eigen::Vector3d>& by_corner) {
   return std::all_of(by_corner.begin(), by_corner.end(), [&](const auto& entry) {
     return covariance.IndexOf(Point3DIdFromCorner(entry.first)) >= 0;
   });
@@ -149,14 +148,14 @@ std::optional<Eigen::Matrix3d> AlignmentSensitivity::DifferenceCovariance(
     by_axis[static_cast<std::size_t>(axis)] =
         CenterGradient(marker_id, center_in_reference_m, Eigen::Vector3d::Unit(axis));
   }
-  if (!HoldsAll(shape, by_axis[0])) return std::nullopt;
+  if (!HasAllCorners(shape, by_axis[0])) return std::nullopt;
   Eigen::Matrix3d covariance_m2 = JointCovarianceOf(
-      shape, TurnedInto(alignment_.reference_from_shape.rotation.conjugate(), by_axis));
+      shape, RotatedInto(alignment_.reference_from_shape.rotation.conjugate(), by_axis));
   if (reference == nullptr) return covariance_m2;
-  if (!HoldsAll(*reference, by_axis[0])) return std::nullopt;
-  // Errors of the reference's corners count the other way, which no variance tells.
+  if (!HasAllCorners(*reference, by_axis[0])) return std::nullopt;
+  // The reference's errors enter with the opposite sign, which does not change the covariance.
   covariance_m2 +=
-      JointCovarianceOf(*reference, TurnedInto(Eigen::Quaterniond::Identity(), by_axis));
+      JointCovarianceOf(*reference, RotatedInto(Eigen::Quaterniond::Identity(), by_axis));
   return covariance_m2;
 }
 

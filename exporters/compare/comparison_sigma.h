@@ -1,5 +1,5 @@
-// How well differences between aligned shapes are known: the noise of both, and what it does to the
-// alignment, propagated linearly.
+// Covariances of differences between aligned shapes: linear propagation of the noise of both
+// shapes, including its effect on the alignment.
 
 #pragma once
 
@@ -14,35 +14,37 @@
 
 namespace velamap {
 
-// The covariance that the sigmas of a shape.csv allow for, where the joint one is not at hand: the
-// errors of a marker's corners are a part that is common to them, as the sigma of its centre says,
-// and a part of each corner's own; axes and markers are independent. What markers have in common,
-// such as the scale and long waves of the shape, is missing. Points without a sigma are left out.
+// Approximates the covariance by the sigmas of a shape.csv if the joint one is not available. The
+// errors of a marker's corners have a common part, given by the sigma of the center, and an
+// individual part; axes and markers are independent. Errors that markers share, such as the scale
+// and long waves of the shape, are missing. Points without a sigma are left out.
 PointCovariance CovarianceFromSigmas(const MarkerShape& shape);
 
-// The least-squares pose as a function of the corners it was made of.
+// Derivatives of the least-squares pose with respect to the corners of the alignment.
 class AlignmentSensitivity {
  public:
   explicit AlignmentSensitivity(const Alignment& alignment);
 
-  // Of (aligned centre - centre in the reference) of a marker that is whole, m^2, reference frame.
-  // `reference` is null for a surface, which is taken as exact. Nothing where a corner of the
-  // marker or of those that the alignment is made of is not in a covariance.
+  // Covariance of (aligned center - center in the reference) of a whole marker, m^2, in the frame
+  // of the reference. `reference` is null for a surface, which counts as exact. Nothing if a
+  // covariance lacks a corner of the marker or of the alignment.
   std::optional<Eigen::Matrix3d> DifferenceCovariance(int marker_id,
                                                       const Eigen::Vector3d& center_in_reference_m,
                                                       const PointCovariance& shape,
                                                       const PointCovariance* reference) const;
 
-  // Rigid motions that the equations leave open, such as the turns of a sphere: of six.
+  // Number of the six rigid motions that the equations do not determine, such as the rotations of a
+  // sphere.
   int NumFreeDirections() const { return num_free_directions_; }
 
  private:
   using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-  // d (direction . x) / d (turn, shift), the turn about center_ in units of 1 / radius_m_.
+  // d (direction . x) / d (rotation, translation), with the rotation about center_ in units of
+  // 1 / radius_m_.
   Vector6d MotionGradient(const Eigen::Vector3d& x_in_reference_m,
                           const Eigen::Vector3d& direction) const;
-  // Of direction . (aligned centre), by the errors of the aligned corners.
+  // Gradient of direction . (aligned center) with respect to the aligned corners.
   std::map<CornerId, Eigen::Vector3d> CenterGradient(int marker_id,
                                                      const Eigen::Vector3d& center_in_reference_m,
                                                      const Eigen::Vector3d& direction) const;

@@ -23,8 +23,8 @@ using Triple = std::array<Eigen::Vector3d, 3>;
 
 constexpr double kWeldTolerance = 1e-8;  // of the diagonal
 
-// Foot of a perpendicular as weights of the corners; a weight of exactly 0 means that the foot is
-// on the edge or vertex opposite.
+// Nearest point of a triangle with its barycentric weights. A weight of exactly 0 means that the
+// foot is on the opposite edge or vertex.
 struct TriangleFoot {
   std::array<double, 3> weights;
   Eigen::Vector3d x_m;
@@ -103,14 +103,14 @@ std::uint64_t EdgeKey(int a, int b) {
 struct Edge {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // sum over its triangles
   int num_triangles = 0;
-  int direction = 0;  // times that it runs up minus times that it runs down the vertices
+  int direction = 0;  // triangles with ascending minus triangles with descending vertices
 };
 
 double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Vertices of one place get one number.
+// Gives vertices in the same place the same number.
 std::vector<int> Weld(const std::vector<Eigen::Vector3d>& vertices_m, const Eigen::Vector3d& min_m,
                       double tolerance_m, std::vector<Eigen::Vector3d>* welded_m) {
   std::map<std::array<std::int64_t, 3>, int> cells;
@@ -252,7 +252,7 @@ MeshFoot MeshDistance::Project(const Eigen::Vector3d& x_m) const {
     normal = edge.normal;
     is_on_border = edge.num_triangles == 1;
   }
-  // Within the triangle, or where triangles that look to opposite sides cancel.
+  // The foot is within the triangle, or the normals of opposite triangles cancel.
   if (normal.norm() < 1e-6) {
     const auto [a, b, c] = CornersOf(index_->triangles, search.Nearest());
     normal = (b - a).cross(c - a);

@@ -1,9 +1,9 @@
 // Signed distances of points to a triangle mesh.
 //
-// The nearest triangle comes from Open CASCADE's bounding volume hierarchy, the foot on it is
-// exact. The sign is that of the angle-weighted normal at the foot (Baerentzen and Aanaes, "Signed
-// distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3), 2005), right also
-// where the foot is on an edge or a vertex.
+// Open CASCADE's bounding volume hierarchy finds the nearest triangle; the foot on it is exact. The
+// angle-weighted normal at the foot gives the sign, also on edges and vertices (Baerentzen and
+// Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 11(3),
+// 2005).
 
 #pragma once
 
@@ -17,28 +17,28 @@ namespace velamap {
 
 struct MeshFoot {
   Eigen::Vector3d x_m = Eigen::Vector3d::Zero();      // nearest point of the mesh
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // there, unit length
-  // Distance, positive on the side to which the normal looks. Where the foot is on the mesh's
-  // border: along the normal only, and the rest, within the tangent plane, is beside_m.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // at x_m, unit length
+  // Distance, positive on the side to which the normal points. If the foot is on the border of the
+  // mesh, the distance along the normal; beside_m is the distance within the tangent plane.
   double distance_m = 0.0;
   double beside_m = 0.0;
 
-  // Whether the foot is a perpendicular's, to 1e-4 of the mesh's diagonal; otherwise the point lies
-  // beside the surface, and no distance of it from the surface is defined.
+  // Whether the line to the foot is along the normal, to 1e-4 of the mesh's diagonal. Otherwise the
+  // point lies beside the surface and has no distance from it.
   bool IsOverSurface(double diagonal_m) const { return beside_m <= 1e-4 * diagonal_m; }
 };
 
-// How the surface lies in space, by area.
+// Moments of the surface, weighted by area.
 struct MeshMoments {
   Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
 };
 
-// Copies what it needs of the mesh. Vertices in one place, to 1e-8 of the mesh's extent, count as
-// one: STL has no shared vertices, and the faces of CAD files share none.
+// Keeps no reference to the mesh. Merges vertices within 1e-8 of the extent of the mesh, because
+// STL files and the faces of CAD files share no vertices.
 class MeshDistance {
  public:
-  // Needs a triangle with an area.
+  // Needs a triangle with a positive area.
   explicit MeshDistance(const TriangleMesh& mesh);
   ~MeshDistance();
   MeshDistance(const MeshDistance&) = delete;
@@ -48,7 +48,7 @@ class MeshDistance {
 
   double Diagonal_m() const;  // of the box around the mesh
   const MeshMoments& Moments() const;
-  // Edges whose two triangles look to opposite sides: signs near them mean nothing.
+  // Number of edges whose two triangles have opposite orientations. Signs near them are undefined.
   int NumFlippedEdges() const;
 
  private:

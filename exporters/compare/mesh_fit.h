@@ -1,7 +1,7 @@
-// Lays a shape onto a surface: iterated nearest points, each pulled along the surface's normal
-// (Chen and Medioni, "Object modelling by registration of multiple range images", Image and Vision
-// Computing 10(3), 1992), with Tukey's weights so that parts that differ do not pull the rest
-// along, from several starts because the nearest points of a bad start lead nowhere.
+// Fits a shape to a surface by iterated closest points with distances along the normal of the
+// surface (Chen and Medioni, "Object modelling by registration of multiple range images", Image and
+// Vision Computing 10(3), 1992). Tukey's weights exclude parts that differ, and several starts
+// avoid local minima.
 
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace velamap {
 
-// By all corners; kBestFit or kNone (kAuto: best fit). Points whose foot is on the mesh's border do
-// not count in the end: the surface is not where they are (Turk and Levoy, "Zippered polygon meshes
-// from range images", SIGGRAPH 1994). Starts: the frames as they are, and all 24 ways to lay the
-// principal axes of the markers onto those of the surface (`starts_as_is`: the first only). Notes
-// say which motions the surface leaves open, and when another pose fits as well.
-// Throws DataError with fewer than six corners, or when nothing comes to lie over the surface;
-// InputError for the other methods, which need markers in the reference.
+// Aligns all corners with kBestFit (also for kAuto) or kNone. Corners whose foot is on the border
+// of the mesh get no weight in the end, because they lie beside the surface (Turk and Levoy,
+// "Zippered polygon meshes from range images", SIGGRAPH 1994). The starts are the frames as they
+// are and the 24 rotations of the principal axes of the markers to those of the surface
+// (`starts_as_is`: the first only). Notes name motions that the surface does not determine and
+// other poses with an equal fit. Throws DataError with fewer than six corners or if none lies over
+// the surface, and InputError for other methods, which need markers in the reference.
 Alignment AlignToMesh(const MarkerShape& shape, const MeshDistance& mesh,
                       const AlignmentOptions& options);
 

@@ -7,11 +7,12 @@
 #include <fmt/format.h>
 
 #include "exporters/shape/shape_frame.h"
+#include "exporters/shape/shape_transform.h"
+#include "exporters/shape/units.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
 constexpr double kPercent = 100.0;
 
 SectionReport CutInFrame(const Rigid3& frame_from_shape, const ShapeFrame& frame,
@@ -64,7 +65,7 @@ const Section* FindSection(const SectionReport& report, const Section& like) {
   return it == report.sections.end() ? nullptr : &*it;
 }
 
-// The section that twists are measured against, as part and name, by part.
+// The reference of the twists of each part, as part and name.
 std::vector<std::string> LowestSections(const SectionReport& report) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < report.sections.size(); ++i) {
@@ -106,7 +107,7 @@ SectionComparison CompareSections(const UncertainShape& shape, const UncertainSh
   AddNotes(of_reference, "reference", &comparison.notes);
   const bool with_twist = HaveSameTwistReference(of_shape, of_reference);
   if (!with_twist && !of_shape.sections.empty() && !of_reference.sections.empty()) {
-    comparison.notes.push_back("twists do not compare: they are against different sections");
+    comparison.notes.push_back("twists cannot be compared: they have different references");
   }
   for (const Section& section : of_shape.sections) {
     const Section* other = FindSection(of_reference, section);

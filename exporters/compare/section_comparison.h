@@ -1,4 +1,4 @@
-// How the section numbers of two shapes differ: camber, draft, twist and so on, line by line.
+// Differences of the section numbers of two shapes: camber, draft, twist and so on, by section.
 
 #pragma once
 
@@ -15,12 +15,12 @@ namespace velamap {
 
 struct SectionDifference {
   std::string part;
-  std::string section;  // name of the line or of the height
+  std::string section;  // name of the line or the height
   std::string number;   // chord_mm, camber_percent, draft_position_percent, entry_angle_deg,
                         // exit_angle_deg, twist_deg
   double value = 0.0;   // of the shape
   double reference = 0.0;
-  std::optional<double> sigma;         // of value - reference; both are independent
+  std::optional<double> sigma;         // of value - reference, which are independent
   std::optional<double> significance;  // (value - reference) / sigma
 
   double Difference() const { return value - reference; }
@@ -30,14 +30,14 @@ struct SectionDifference {
 };
 
 struct SectionComparison {
-  std::string frame_name;  // in which both were cut: that of the reference, by ChooseFrame()
+  std::string frame_name;  // of the sections: the reference's, by ChooseFrame()
   std::vector<SectionDifference> differences;
-  std::vector<std::string>
-      notes;  // sections that only one has, and why; twists that do not compare
+  // Sections that one of the shapes lacks, with the reason; twists that cannot be compared.
+  std::vector<std::string> notes;
 };
 
-// Both shapes are cut in one frame, the reference's, after `alignment`: a change of height or
-// heading of the whole sail is no change of a section.
+// Cuts both shapes in the frame of the reference after `alignment`, so that a change of height or
+// heading of the whole sail does not change a section.
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
                                   const Alignment& alignment, const Layout& layout,
                                   const SectionOptions& options = {});

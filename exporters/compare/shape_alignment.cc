@@ -2,23 +2,23 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "exporters/shape/common_corners.h"
 #include "exporters/shape/sail_lines.h"
 #include "importer/base/error.h"
+#include "importer/base/numbers.h"
 #include "importer/geometry/alignment.h"
 
 namespace velamap {
 namespace {
 
 constexpr std::size_t kMinCorners = 3;
-// Of the reference part, for it to be chosen unasked: a rotation from one or two small markers
-// would swing the far end of the sail.
+// Markers of the reference part that kAuto needs. A rotation from one or two small markers would be
+// inaccurate at the far end of the sail.
 constexpr int kMinAutomaticMarkers = 3;
 
 constexpr std::array<std::pair<AlignmentMethod, const char*>, 5> kNames = {
@@ -30,8 +30,8 @@ constexpr std::array<std::pair<AlignmentMethod, const char*>, 5> kNames = {
 
 struct Choice {
   AlignmentMethod method = AlignmentMethod::kBestFit;
-  std::vector<int> marker_ids;  // empty: all
-  std::string note;             // why it is not the reference part
+  std::vector<int> marker_ids;  // empty for all markers
+  std::string note;             // why the reference part was not chosen
 };
 
 std::vector<int> ReferencePartIds(const Layout& layout) {
@@ -55,8 +55,8 @@ Choice ChooseAutomatically(const MarkerShape& shape, const MarkerShape& referenc
     return FindWholeMarker(shape, id) != nullptr && FindWholeMarker(reference, id) != nullptr;
   });
   if (num_common < kMinAutomaticMarkers) {
-    choice.note = fmt::format("of the reference part '{}' {} whole marker{} in both, {} are needed",
-                              *layout.reference_part, num_common, num_common == 1 ? " is" : "s are",
+    choice.note = fmt::format("reference part '{}' has {} marker{} whole in both, {} are needed",
+                              *layout.reference_part, num_common, num_common == 1 ? "" : "s",
                               kMinAutomaticMarkers);
     return choice;
   }
@@ -73,10 +73,9 @@ std::vector<int> NamedMarkers(const MarkerShape& shape, const MarkerShape& refer
   for (const int id : ids) {
     const bool in_shape = FindMarker(shape, id) != nullptr;
     if (in_shape && FindMarker(reference, id) != nullptr) continue;
-    throw InputError(
-        fmt::format("--align_markers: marker {} is not in the {}; name markers that "
-                    "both shapes have",
-                    id, in_shape ? "reference" : "shape"));
+    throw InputError(fmt::format(
+        "--align_markers: the {1} has no marker {0}; give markers that both shapes have", id,
+        in_shape ? "reference" : "shape"));
   }
   return ids;
 }
@@ -101,13 +100,13 @@ void CheckCorners(const CommonCorners& corners, const std::string& what) {
   if (corners.ids.size() < kMinCorners) {
     throw DataError(
         fmt::format("the shape and its reference have {} marker corners in common{}, an alignment "
-                    "needs {}; are both of one layout?",
+                    "needs {}; check that both have the same layout",
                     corners.ids.size(), what, kMinCorners));
   }
   if (!HasSpread(corners.x_in_shape_m) || !HasSpread(corners.x_in_reference_m)) {
     throw DataError(fmt::format(
-        "the corners that the shape and its reference share{} lie on one line, which leaves the "
-        "rotation about it open; align by more markers",
+        "the corners that the shape and its reference share{} lie on one line, which does not "
+        "determine the rotation about it; align by more markers",
         what));
   }
 }
@@ -144,38 +143,13 @@ AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::stri
 }
 
 std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& what) {
-  std::vector<int> ids;
-  const char* const end = text.data() + text.size();
-  for (const char* begin = text.data();; ++begin) {
-    int id = -1;
-    const auto [rest, error] = std::from_chars(begin, end, id);
-    if (error != std::errc() || id < 0 || id > kMaxMarkerId || (rest != end && *rest != ',')) {
-      throw InputError(
-          fmt::format("{}: '{}' is no list of marker ids such as 120,121,122", what, text));
-    }
-    ids.push_back(id);
-    if (rest == end) return ids;
-    begin = rest;
+  const auto ids = ParseNumberList<int>(text);
+  const auto is_id = [](int id) { return id >= 0 && id <= kMaxMarkerId; };
+  if (!ids || !std::all_of(ids->begin(), ids->end(), is_id)) {
+    throw InputError(fmt::format(
+        "{}: expected a list of marker ids such as 120,121,122, found '{}'", what, text));
   }
-}
-
-CommonCorners FindCommonCorners(const MarkerShape& shape, const MarkerShape& reference,
-                                const std::vector<int>& marker_ids) {
-  CommonCorners corners;
-  for (const ShapeMarker& marker : shape.markers) {
-    const bool is_wanted = marker_ids.empty() || std::find(marker_ids.begin(), marker_ids.end(),
-                                                           marker.marker_id) != marker_ids.end();
-    const ShapeMarker* other = FindMarker(reference, marker.marker_id);
-    if (!is_wanted || other == nullptr) continue;
-    for (int corner = 1; corner <= kNumCorners; ++corner) {
-      const auto idx = static_cast<std::size_t>(corner);
-      if (!marker.x_in_shape_m[idx] || !other->x_in_shape_m[idx]) continue;
-      corners.ids.push_back({marker.marker_id, corner});
-      corners.x_in_shape_m.push_back(*marker.x_in_shape_m[idx]);
-      corners.x_in_reference_m.push_back(*other->x_in_shape_m[idx]);
-    }
-  }
-  return corners;
+  return *ids;
 }
 
 Alignment AlignShapes(const MarkerShape& shape, const MarkerShape& reference, const Layout& layout,
@@ -185,8 +159,8 @@ Alignment AlignShapes(const MarkerShape& shape, const MarkerShape& reference, co
   alignment.method = choice.method;
   if (!choice.note.empty()) alignment.notes.push_back(choice.note);
   if (choice.method == AlignmentMethod::kNone) {
-    alignment.description = "both frames are taken as one";
-    alignment.notes.push_back("the sigmas do not hold how well each frame is known");
+    alignment.description = "none, both frames count as the same";
+    alignment.notes.push_back("the sigmas do not include the uncertainty of the frames");
     return alignment;
   }
   const CommonCorners corners = FindCommonCorners(shape, reference, choice.marker_ids);

@@ -1,4 +1,4 @@
-// How a shape is laid onto its reference before the two are compared. Rigid: scale is never fitted.
+// Rigid alignment of a shape with its reference before a comparison. The scale is never fitted.
 
 #pragma once
 
@@ -16,29 +16,30 @@
 namespace velamap {
 
 enum class AlignmentMethod {
-  kAuto,           // the reference part where it can be done, else best fit
+  kAuto,           // by the reference part if possible, otherwise best fit
   kReferencePart,  // by the markers of the layout's reference part, such as the hull
-  kMarkers,        // by markers that are named
-  kBestFit,        // by all common corners; onto a surface: by all corners
-  kNone,           // the frames of both are the same
+  kMarkers,        // by given markers
+  kBestFit,        // by all common corners, or by all corners for a surface
+  kNone,           // both frames are the same
 };
 
 // "auto", "reference_part", "markers", "best_fit", "none".
 const char* AlignmentMethodName(AlignmentMethod method);
-// Throws InputError that names `what` for any other name.
+// Throws InputError naming `what` for any other name.
 AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::string& what);
 
-// Ids that commas separate, such as "120,121". Throws InputError that names `what`.
+// Parses marker ids separated by commas, such as "120,121". Throws InputError naming `what`.
 std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& what);
 
 struct AlignmentOptions {
   AlignmentMethod method = AlignmentMethod::kAuto;
   std::vector<int> marker_ids;  // for kMarkers
-  // Best fit onto a surface: starts from the frames as they are only, not from several poses.
+  // Best fit to a surface: start only from the frames as they are, not from several poses.
   bool starts_as_is = false;
 };
 
-// A residual that the alignment made small: how far the corner is from its place along `direction`.
+// An equation of the alignment: the distance of the corner from its target along `direction` is
+// zero.
 struct AlignmentEquation {
   CornerId corner;
   Eigen::Vector3d x_in_reference_m;  // of the aligned corner
@@ -48,27 +49,18 @@ struct AlignmentEquation {
 
 struct Alignment {
   AlignmentMethod method = AlignmentMethod::kNone;
-  std::string description;  // what it was made of
+  std::string description;  // the corners of the alignment
   std::vector<std::string> notes;
   Rigid3 reference_from_shape;
-  std::vector<AlignmentEquation> equations;  // none for kNone
-  Statistics residual_m;  // of the corners it was made of: distances to their places
+  std::vector<AlignmentEquation> equations;  // empty for kNone
+  Statistics residual_m;                     // distances of the used corners from their targets
 };
 
-// Shape onto shape, by least squares over the corners that both have. Throws DataError with fewer
-// than three common corners or when they lie on one line; InputError for kReferencePart without a
-// reference part in the layout, for kMarkers without ids or with one that is not in both.
+// Aligns a shape with a shape by least squares over their common corners. Throws DataError with
+// fewer than three common corners or if they lie on one line, and InputError for kReferencePart
+// without a reference part in the layout and for kMarkers without ids or with an id that one shape
+// lacks.
 Alignment AlignShapes(const MarkerShape& shape, const MarkerShape& reference, const Layout& layout,
                       const AlignmentOptions& options);
-
-// The same corners of both, in the same order.
-struct CommonCorners {
-  std::vector<CornerId> ids;
-  std::vector<Eigen::Vector3d> x_in_shape_m;
-  std::vector<Eigen::Vector3d> x_in_reference_m;
-};
-// Of these markers; of all for an empty list.
-CommonCorners FindCommonCorners(const MarkerShape& shape, const MarkerShape& reference,
-                                const std::vector<int>& marker_ids = {});
 
 }  // namespace velamap

@@ -12,12 +12,11 @@
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/compare/mesh_fit.h"
 #include "exporters/shape/shape_metrics.h"
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
 namespace velamap {
 namespace {
-
-constexpr double kMmPerM = 1e3;
 
 MarkerShape Aligned(const Rigid3& reference_from_shape, MarkerShape shape) {
   for (ShapeMarker& marker : shape.markers) {
@@ -120,7 +119,7 @@ double ScaleOf(const Alignment& alignment, const MarkerShape& shape, const Marke
   return CompareShapes(Keep(shape, counts), Keep(reference, counts)).scale;
 }
 
-// Largest distance between two corners of a box around all corners, m.
+// Diagonal of the bounding box of all corners, m.
 double DiagonalOf(const MarkerShape& shape) {
   std::optional<Eigen::Vector3d> low, high;
   for (const ShapeMarker& marker : shape.markers) {
@@ -181,8 +180,8 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
   }
   if (deviation.markers.empty()) {
     throw DataError(
-        "the shape and its reference have no whole marker in common; are both of one "
-        "layout?");
+        "the shape and its reference have no whole marker in common; check that both have the same "
+        "layout");
   }
   deviation.scale = ScaleOf(deviation.alignment, shape.shape, reference.shape);
   Summarize(layout, &deviation);
@@ -216,8 +215,8 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
   Summarize(layout, &deviation);
   if (deviation.distance_m.count == 0) {
     throw DataError(fmt::format(
-        "none of the {} whole markers lies over the reference's surface ({:.0f} mm beside it at "
-        "least); align them (--align best_fit) or give the surface of the same part",
+        "none of the {} whole markers lies over the surface of the reference (at least {:.0f} mm "
+        "beside it); align them (--align best_fit) or give the surface of the same part",
         deviation.markers.size(),
         kMmPerM * (deviation.markers.empty()
                        ? 0.0
@@ -230,10 +229,10 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
 }
 
 std::optional<double> UnitHint(const MarkerShape& shape, const MeshDistance& mesh) {
-  constexpr double kMuch = 100.0;
+  constexpr double kMaxRatio = 100.0;
   const double ratio = DiagonalOf(shape) / mesh.Diagonal_m();
-  if (ratio > kMuch) return 1e3;
-  if (ratio < 1 / kMuch) return 1e-3;
+  if (ratio > kMaxRatio) return 1e3;
+  if (ratio < 1 / kMaxRatio) return 1e-3;
   return std::nullopt;
 }
 

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <ostream>
 
 #include <fmt/format.h>
 
-#include "exporters/formats/diverging_color.h"
 #include "exporters/sail/surface.h"
 #include "importer/base/error.h"
 
 namespace velamap {
 namespace {
 
-// Edges of half a marker's side, or longer where that were more than 100 000 triangles.
 TriangleMesh MeshOf(const MarkerShape& shape, const LayoutPart& part, const Layout& layout) {
   const SplineSurface surface = FitSurface(CollectSurfaceInput(shape, part)).surface;
   return MeshSurface(surface, DefaultMeshOptions(surface, layout.marker_length_m));
@@ -37,10 +33,11 @@ SurfaceDeviation Measure(const std::string& part, TriangleMesh mesh,
   return deviation;
 }
 
-// `measure` compares one part's mesh and throws DataError where the reference has none.
+// `measure` compares the mesh of one part. It throws DataError if the reference has no surface
+// there.
 template <typename Function>
-SurfaceComparison CompareParts(const MarkerShape& shape, const Layout& layout,
-                               const std::string& wanted_part, const Function& measure) {
+SurfaceComparison CompareEachPart(const MarkerShape& shape, const Layout& layout,
+                                  const std::string& wanted_part, const Function& measure) {
   SurfaceComparison comparison;
   for (const LayoutPart& part : layout.parts) {
     if (part.horizontal.empty() || (!wanted_part.empty() && part.name != wanted_part)) continue;
@@ -53,36 +50,18 @@ SurfaceComparison CompareParts(const MarkerShape& shape, const Layout& layout,
   return comparison;
 }
 
-std::string Header(const SurfaceComparison& comparison, double limit_m) {
-  std::size_t num_vertices = 0, num_triangles = 0;
-  for (const SurfaceDeviation& part : comparison.parts) {
-    num_vertices += part.mesh.vertices_m.size();
-    num_triangles += part.mesh.triangles.size();
-  }
-  return fmt::format(
-      "ply\nformat ascii 1.0\n"
-      "comment velamap comparison of surfaces, metres, frame of the reference\n"
-      "comment distance: positive on the side of the reference's normal\n"
-      "comment colours: blue -{0:g} mm, white 0, red +{0:g} mm, grey beside the reference\n"
-      "element vertex {1}\n"
-      "property double x\nproperty double y\nproperty double z\n"
-      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float distance\n"
-      "element face {2}\nproperty list uchar int vertex_indices\nend_header\n",
-      1e3 * limit_m, num_vertices, num_triangles);
-}
-
 }  // namespace
 
 SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MarkerShape& reference,
                                   const Layout& layout, const std::string& part) {
-  return CompareParts(aligned_shape, layout, part, [&](const LayoutPart& p, TriangleMesh mesh) {
+  return CompareEachPart(aligned_shape, layout, part, [&](const LayoutPart& p, TriangleMesh mesh) {
     return Measure(p.name, std::move(mesh), MeshDistance(MeshOf(reference, p, layout)));
   });
 }
 
 SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MeshDistance& reference,
                                   const Layout& layout, const std::string& part) {
-  return CompareParts(aligned_shape, layout, part, [&](const LayoutPart& p, TriangleMesh mesh) {
+  return CompareEachPart(aligned_shape, layout, part, [&](const LayoutPart& p, TriangleMesh mesh) {
     return Measure(p.name, std::move(mesh), reference);
   });
 }
@@ -95,28 +74,6 @@ double LargestDistance(const SurfaceComparison& comparison) {
         std::max({largest_m, std::abs(part.statistics_m.min), std::abs(part.statistics_m.max)});
   }
   return largest_m;
-}
-
-void WriteComparisonSurfacePly(const SurfaceComparison& comparison,
-                               std::optional<double> color_limit_m, std::ostream& out) {
-  const double limit_m = color_limit_m.value_or(LargestDistance(comparison));
-  std::string vertices, triangles;
-  int first = 0;
-  for (const SurfaceDeviation& part : comparison.parts) {
-    for (std::size_t i = 0; i < part.mesh.vertices_m.size(); ++i) {
-      const Eigen::Vector3d& x = part.mesh.vertices_m[i];
-      const Eigen::Array3d color = DivergingColor(part.distance_m[i], limit_m);
-      vertices += fmt::format("{} {} {} {:.0f} {:.0f} {:.0f} ", x.x(), x.y(), x.z(), color[0],
-                              color[1], color[2]);
-      vertices += part.distance_m[i] ? fmt::format("{}\n", static_cast<float>(*part.distance_m[i]))
-                                     : std::string("nan\n");
-    }
-    for (const auto& [a, b, c] : part.mesh.triangles) {
-      triangles += fmt::format("3 {} {} {}\n", first + a, first + b, first + c);
-    }
-    first += static_cast<int>(part.mesh.vertices_m.size());
-  }
-  out << Header(comparison, limit_m) << vertices << triangles;
 }
 
 }  // namespace velamap

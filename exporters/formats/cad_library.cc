@@ -20,7 +20,7 @@ CadSession::CadSession() : lock_(GlobalMutex()) {
   Message::DefaultMessenger()->ChangePrinters().Clear();
   STEPControl_Controller::Init();
   IGESControl_Controller::Init();
-  // Shapes in memory are in mm, whichever unit a file has.
+  // Shapes in memory are in mm, whatever the unit of the file.
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
 }
 

@@ -1,4 +1,4 @@
-// What the CAD writer and reader share: Open CASCADE's global state, kept in hand.
+// Access to the global state of Open CASCADE for the CAD writer and reader.
 
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace velamap {
 
-// While it lives: no other thread is in Open CASCADE's data exchange, and its messages go nowhere
-// (they would go to stdout). Sets up both formats the first time.
+// Locks Open CASCADE's data exchange for other threads and silences its messages, which would go to
+// stdout. The first session initializes both formats.
 class CadSession {
  public:
   CadSession();

@@ -23,6 +23,7 @@
 #include <TopoDS_Face.hxx>
 
 #include "exporters/formats/cad_library.h"
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -30,15 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMPerMm = 1e-3;
-constexpr double kAngularDeflection = 0.2;  // rad; the chord deviation is what counts
-
-std::string LowerExtension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
+constexpr double kAngularDeflection = 0.2;  // rad; coarse, so that the chord deviation decides
 
 [[noreturn]] void ThrowUnreadable(const fs::path& path, const char* format) {
   throw InputError(fmt::format("{}: cannot be read as {}; export it again from the CAD program",
@@ -101,22 +94,27 @@ CadShape Describe(const TopoDS_Shape& shape, double chord_deviation_mm) {
 
 }  // namespace
 
+std::string LowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
 CadShape ReadCad(const fs::path& path, double chord_deviation_mm) {
   VELAMAP_CHECK(chord_deviation_mm > 0);
   const std::string extension = LowerExtension(path);
   const bool is_step = extension == ".step" || extension == ".stp";
   if (!is_step && extension != ".iges" && extension != ".igs") {
     throw InputError(
-        fmt::format("{}: not a CAD file by its extension; expected .step, .stp, .iges "
-                    "or .igs",
-                    path.string()));
+        fmt::format("{}: unknown extension; expected .step, .stp, .iges or .igs", path.string()));
   }
   const CadSession session;
   std::string unit;
   try {
     const TopoDS_Shape shape = is_step ? ReadStep(path, &unit) : ReadIges(path, &unit);
     if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
-      throw InputError(fmt::format("{}: holds no faces; export the surface, not its curves or mesh",
+      throw InputError(fmt::format("{}: has no faces; export the surface, not its curves or mesh",
                                    path.string()));
     }
     CadShape result = Describe(shape, chord_deviation_mm);

@@ -10,16 +10,19 @@
 namespace velamap {
 
 struct CadShape {
-  std::string length_unit;  // of the file, as it names it: MM, millimetre, INCH, metre ...
+  std::string length_unit;  // as the file names it: MM, millimetre, INCH, metre ...
   int num_faces = 0;
   double area_m2 = 0.0;                             // of the exact faces
-  Eigen::Vector3d min_m = Eigen::Vector3d::Zero();  // extents of the exact faces
+  Eigen::Vector3d min_m = Eigen::Vector3d::Zero();  // bounds of the exact faces
   Eigen::Vector3d max_m = Eigen::Vector3d::Zero();
-  TriangleMesh mesh;  // without normals; its triangles look where their face does
+  TriangleMesh mesh;  // without normals; triangles have the orientation of their face
 };
 
-// By extension: .step .stp .iges .igs, in any case. Lengths are converted from the file's unit.
-// Throws InputError that names the file: another extension, unreadable, no faces.
+// The extension of a path with its dot, in lower case.
+std::string LowerExtension(const std::filesystem::path& path);
+
+// Reads .step, .stp, .iges and .igs files, in any case of the extension, and converts their unit.
+// Throws InputError naming the file if it has another extension, cannot be read, or has no faces.
 CadShape ReadCad(const std::filesystem::path& path, double chord_deviation_mm);
 
 }  // namespace velamap

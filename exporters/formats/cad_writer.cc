@@ -24,14 +24,14 @@
 #include <XSControl_WorkSession.hxx>
 
 #include "exporters/formats/cad_library.h"
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1000.0;
 constexpr double kToleranceMm = 1e-5;
-// Both formats want a time stamp; one that tells nothing keeps the bytes the same.
+// Both formats require a time stamp; a constant one keeps the bytes the same.
 constexpr const char* kTimeStamp = "1970-01-01T00:00:00";
 
 struct Knots {
@@ -83,7 +83,7 @@ Handle(TCollection_HAsciiString) Text(const std::string& text) {
   return new TCollection_HAsciiString(text.c_str());
 }
 
-// Both formats are ASCII; what is not becomes an underscore.
+// Replaces characters outside ASCII, which neither format allows, by underscores.
 std::string Ascii(std::string name) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '_');
@@ -98,7 +98,7 @@ void DescribeStep(const std::string& name, const Handle(StepData_StepModel) & mo
   header.SetOrganizationValue(1, Text(""));
   header.SetOriginatingSystem(Text("velamap"));
   header.SetDescriptionValue(1, Text("surface through markers, unit mm"));
-  // Named here because Open CASCADE's own setting appends a number that grows with every file.
+  // Open CASCADE's own setting would append a number that grows with every file.
   for (int i = 1; i <= model->NbEntities(); ++i) {
     const auto product = Handle(StepBasic_Product)::DownCast(model->Value(i));
     if (product.IsNull()) continue;
@@ -132,7 +132,7 @@ void WriteStep(const SplineSurface& surface, const std::string& name, std::ostre
   DescribeStep(Ascii(name), writer.Model());
   StepData_StepWriter text(writer.Model());
   text.SendModel(Handle(StepData_Protocol)::DownCast(writer.WS()->Protocol()));
-  // A stream that fails is for whoever opened it to report.
+  // The owner of the stream reports its failure.
   VELAMAP_CHECK(text.Print(out) || !out);
 }
 

@@ -1,9 +1,8 @@
-// Spline surfaces as STEP (AP214) and IGES (5.3), through Open CASCADE, which only this file's and
-// cad_reader's sources include. Unit mm, in the coordinates and in the header. One face; poles and
-// knots as they are, no approximation. The files carry no time of day: same surface, same bytes.
+// Writes spline surfaces as STEP (AP214) and IGES (5.3) with Open CASCADE. Coordinates and header
+// are in mm. The surface becomes one face with its poles and knots, without approximation. The
+// files have no time stamp, so that the same surface gives the same bytes.
 //
-// Not to be called from two threads at a time wishing for speed: Open CASCADE keeps its settings in
-// globals, so a lock lets one call through.
+// Calls are serialized, because Open CASCADE keeps its settings in global variables.
 
 #pragma once
 
@@ -14,7 +13,8 @@
 
 namespace velamap {
 
-// `name` becomes the product's name (of the part). Throws std::logic_error if Open CASCADE refuses.
+// `name`, of the part, becomes the name of the product. Throws std::logic_error if Open CASCADE
+// fails.
 void WriteStep(const SplineSurface& surface, const std::string& name, std::ostream& out);
 void WriteIges(const SplineSurface& surface, const std::string& name, std::ostream& out);
 

@@ -1,4 +1,4 @@
-// Colours of signed distances.
+// Colors of signed distances.
 
 #pragma once
 
@@ -8,8 +8,9 @@
 
 namespace velamap {
 
-// Blue, white, red for -limit, 0, +limit and beyond (ColorBrewer's RdBu, which colour-blind eyes
-// tell apart), 0 to 255; grey for a distance that is not known. White for a limit of 0.
+// Blue, white and red (0 to 255) for -limit, 0 and +limit, clamped beyond; grey for an unknown
+// distance; white for a limit of 0. The scale is ColorBrewer's RdBu, which suits all kinds of color
+// vision.
 Eigen::Array3d DivergingColor(const std::optional<double>& distance_m, double limit_m);
 
 }  // namespace velamap

@@ -1,7 +1,6 @@
 #include "exporters/formats/mesh_reader.h"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <string>
 
@@ -13,30 +12,23 @@
 
 #include "exporters/formats/cad_reader.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string LowerExtension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 void CheckFile(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) {
-    throw InputError(fmt::format("{}: there is no such file", path.string()));
+  if (!Exists(path)) {
+    throw InputError(fmt::format("{}: no such file", path.string()));
   }
-  if (!fs::is_regular_file(path, error)) {
-    throw InputError(fmt::format("{}: is no regular file", path.string()));
+  if (!IsRegularFile(path)) {
+    throw InputError(fmt::format("{}: not a regular file", path.string()));
   }
 }
 
-// Assimp reads on for ever in a PLY file whose header does not end.
+// Assimp does not terminate on a PLY file whose header does not end.
 bool HasWholePlyHeader(const fs::path& path) {
   constexpr int kMaxHeaderLines = 10000;
   std::ifstream stream(path, std::ios::binary);
@@ -69,7 +61,7 @@ void AppendTriangles(const aiMesh& part, double m_per_unit, TriangleMesh* mesh) 
 
 TriangleMesh ReadWithAssimp(const fs::path& path, double m_per_unit) {
   if (LowerExtension(path) == ".ply" && !HasWholePlyHeader(path)) {
-    ThrowUnreadable(path, "its header has no end");
+    ThrowUnreadable(path, "its header does not end");
   }
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
@@ -116,8 +108,7 @@ double MPerUnitFromName(const std::string& name, const std::string& what) {
 TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
   if (!IsMeshPath(path)) {
     throw InputError(
-        fmt::format("{}: not a surface by its extension; expected .ply, .stl, .obj, .step, .stp, "
-                    ".iges or .igs",
+        fmt::format("{}: unknown extension; expected .ply, .stl, .obj, .step, .stp, .iges or .igs",
                     path.string()));
   }
   CheckFile(path);
@@ -127,11 +118,11 @@ TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
   const bool is_finite = std::all_of(mesh.vertices_m.begin(), mesh.vertices_m.end(),
                                      [](const Eigen::Vector3d& x) { return x.allFinite(); });
   if (!is_finite) {
-    throw InputError(fmt::format("{}: a coordinate is no number; export it again", path.string()));
+    throw InputError(fmt::format("{}: a coordinate is not finite; export it again", path.string()));
   }
   if (!HasArea(mesh)) {
     throw InputError(fmt::format(
-        "{}: holds no triangles; export the surface, not its points or curves", path.string()));
+        "{}: has no triangles; export the surface, not its points or curves", path.string()));
   }
   return mesh;
 }

@@ -6,16 +6,17 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
 namespace velamap {
 namespace {
 
 struct GridSize {
-  double num_u = 1, num_v = 1;  // cells; not int, so that the absurd can be counted
+  double num_u = 1, num_v = 1;  // cells; double, because a refused mesh may have more than 2^31
 };
 
-// Parameters for looking at the whole surface: this many a knot span.
+// Parameters that sample the whole surface.
 std::vector<double> Probes(const Eigen::ArrayXd& knots) {
   constexpr int kPerSpan = 6;
   std::vector<double> probes = {0.0};
@@ -33,7 +34,8 @@ struct Extremes {
   double bend_uu = 0, bend_uv = 0, bend_vv = 0;  // largest |second derivative|, m
 };
 
-// Not only along the normal: near a fold of the parameters the whole derivative moves the chord.
+// Takes the whole second derivative, because it moves the chord near a fold of the parameters also
+// within the tangent plane.
 Extremes FindExtremes(const SplineSurface& surface) {
   Extremes extremes;
   const std::vector<double> vs = Probes(surface.knots_v);
@@ -61,12 +63,12 @@ double Deviation(const Extremes& extremes, const GridSize& grid) {
 GridSize ChooseGrid(const SplineSurface& surface, const MeshOptions& options) {
   const Extremes extremes = FindExtremes(surface);
   if (options.edge_length_mm) {
-    const double edge_m = *options.edge_length_mm / 1000;
+    const double edge_m = *options.edge_length_mm / kMmPerM;
     return {std::max(1.0, std::ceil(extremes.speed_u / edge_m)),
             std::max(1.0, std::ceil(extremes.speed_v / edge_m))};
   }
-  // Cells that are about square bound the mixed term best.
-  const double deviation_m = *options.chord_deviation_mm / 1000;
+  // Square cells give the lowest bound of the mixed term.
+  const double deviation_m = *options.chord_deviation_mm / kMmPerM;
   const double ratio = std::clamp(extremes.speed_u / extremes.speed_v, 1e-2, 1e2);
   const double needed = Deviation(extremes, {std::sqrt(ratio), 1 / std::sqrt(ratio)}) / deviation_m;
   const double factor = std::sqrt(needed);
@@ -78,18 +80,18 @@ void CheckCount(const GridSize& grid, const MeshOptions& options) {
   const double num_triangles = 2 * grid.num_u * grid.num_v;
   if (num_triangles <= kMaxTriangles) return;
   const double excess = num_triangles / kMaxTriangles;
-  const double given =
-      options.edge_length_mm ? *options.edge_length_mm : *options.chord_deviation_mm;
-  // Triangles go with the inverse square of the edge, and with the inverse of the deviation.
+  const auto member =
+      options.edge_length_mm ? &MeshOptions::edge_length_mm : &MeshOptions::chord_deviation_mm;
+  const double given = *(options.*member);
+  // The number is proportional to the inverse square of the edge length and to the inverse of the
+  // deviation.
   const double possible = options.edge_length_mm ? given * std::sqrt(excess) : given * excess;
   throw InputError(
-      fmt::format("a mesh with {} of {:.3g} mm would need {:.4g} triangles, more than {}; take "
-                  "{:.2g} mm or more",
-                  options.edge_length_mm ? "an edge length" : "a chord deviation", given,
-                  num_triangles, kMaxTriangles, 1.1 * possible));
+      fmt::format("{}: {:.3g} mm would need {:.4g} triangles, more than {}; give {:.2g} mm or more",
+                  OptionName(member), given, num_triangles, kMaxTriangles, 1.1 * possible));
 }
 
-// Where the surface shrinks to a point it has no normal; the one beside it is taken.
+// Takes the normal of a neighboring point where the surface degenerates to a point.
 Eigen::Vector3d NormalAt(const SplineSurface& surface, double u, double v, const SurfaceJet& jet) {
   if (!jet.normal.isZero()) return jet.normal;
   constexpr double kInward = 1e-4;
@@ -98,15 +100,21 @@ Eigen::Vector3d NormalAt(const SplineSurface& surface, double u, double v, const
 
 }  // namespace
 
+OptionGroup DescribeOptions(MeshOptions* options) {
+  return {"Mesh of the surface",
+          {{"Surface.edge_length", &options->edge_length_mm, "mm",
+            "longest edge of the mesh; left out: half a marker's side", MoreThan(0)},
+           {"Surface.chord_deviation", &options->chord_deviation_mm, "mm",
+            "instead: how far the mesh may be from the surface", MoreThan(0)}}};
+}
+
 void MeshOptions::Check() const {
   if (edge_length_mm.has_value() == chord_deviation_mm.has_value()) {
-    throw InputError("a mesh needs its edge length or its chord deviation, and not both");
+    throw InputError(fmt::format("{} and {}: give one of the two",
+                                 OptionName(&MeshOptions::edge_length_mm),
+                                 OptionName(&MeshOptions::chord_deviation_mm)));
   }
-  const double given = edge_length_mm ? *edge_length_mm : *chord_deviation_mm;
-  if (!(given > 0 && std::isfinite(given))) {
-    throw InputError(fmt::format("a mesh's {} is {} mm; it must be more than 0",
-                                 edge_length_mm ? "edge length" : "chord deviation", given));
-  }
+  CheckRanges(*this);
 }
 
 double CountTriangles(const SplineSurface& surface, const MeshOptions& options) {
@@ -148,7 +156,8 @@ MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_lengt
   constexpr double kEnoughTriangles = 1e5, kCoarser = 1.5;
   MeshOptions options;
   options.edge_length_mm =
-      1e3 * std::max(marker_length_m / 2, std::sqrt(2 * SurfaceArea(surface) / kEnoughTriangles));
+      kMmPerM *
+      std::max(marker_length_m / 2, std::sqrt(2 * SurfaceArea(surface) / kEnoughTriangles));
   while (CountTriangles(surface, options) > 2 * kEnoughTriangles) {
     *options.edge_length_mm *= kCoarser;
   }

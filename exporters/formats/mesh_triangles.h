@@ -9,37 +9,40 @@
 #include <Eigen/Core>
 
 #include "exporters/formats/surface_spline.h"
+#include "importer/base/option.h"
 
 namespace velamap {
 
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices_m;
-  std::vector<Eigen::Vector3d> normals;             // one a vertex, unit length; or empty
-  std::vector<Eigen::Vector2d> surface_parameters;  // (u, v), one a vertex; or empty
-  std::vector<std::array<int, 3>> triangles;        // counter-clockwise seen against the normal
+  std::vector<Eigen::Vector3d> normals;             // one unit vector per vertex, or empty
+  std::vector<Eigen::Vector2d> surface_parameters;  // one (u, v) per vertex, or empty
+  std::vector<std::array<int, 3>> triangles;        // counter-clockwise seen from the outside
 };
 
 struct MeshOptions {
-  // How fine: exactly one of the two. Longest edge along the grid lines (diagonals are up to 1.42
-  // times as long), or how far the triangles may be from the surface.
+  // Exactly one of the two: the longest edge along the grid lines (diagonals are up to 1.42 times
+  // as long), or the largest distance of the triangles from the surface.
   std::optional<double> edge_length_mm;
   std::optional<double> chord_deviation_mm;
 
-  // Throws InputError for none, both, or a value that is not positive.
+  // Throws InputError for none or both of them and for a value that is not positive.
   void Check() const;
 };
 
-// Edges of half a marker's side, longer where that would be more than 100 000 triangles.
+OptionGroup DescribeOptions(MeshOptions* options);
+
+// Edges of half a marker's side, or longer ones to stay below 100 000 triangles.
 MeshOptions DefaultMeshOptions(const SplineSurface& surface, double marker_length_m);
 
-// Triangles that MeshSurface would make, also where it would refuse to; not fewer than it makes.
+// Upper bound of the number of triangles of MeshSurface(), also above kMaxTriangles.
 double CountTriangles(const SplineSurface& surface, const MeshOptions& options);
 
 constexpr int kMaxTriangles = 5'000'000;
 
-// A grid in u and v with equal steps in each, two triangles a cell; cells that shrink to a line (a
-// head that ends in a point) have one or none. Throws InputError, with the number of triangles that
-// it would take, above kMaxTriangles.
+// Makes a grid with equal steps in u and in v and two triangles per cell. Cells that degenerate to
+// a line (a head that ends in a point) have one or none. Throws InputError if the mesh would have
+// more than kMaxTriangles.
 TriangleMesh MeshSurface(const SplineSurface& surface, const MeshOptions& options);
 
 }  // namespace velamap

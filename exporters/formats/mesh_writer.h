@@ -1,6 +1,6 @@
-// Triangle meshes as PLY, OBJ and STL. PLY is in m, as all PLY files of velamap, so that it lies on
-// the markers of shape.ply; OBJ and STL are for CAD programs and in mm, as STEP and IGES. Each says
-// its unit in its header. `name` goes there too (of the part; line breaks become spaces).
+// Writes triangle meshes as PLY, OBJ and STL. PLY is in m like all PLY files of velamap, so that
+// the mesh lies on the markers of shape.ply. OBJ and STL are for CAD programs and in mm like STEP
+// and IGES. The header names the unit and `name`, the part; line breaks in it become spaces.
 
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace velamap {
 
-// Binary little-endian: double x y z, float nx ny nz, float s t (u and v of the surface), faces
-// with vertex_indices. What the mesh does not have is left out.
+// Binary little-endian: double x y z, float nx ny nz and float s t (u and v of the surface) if the
+// mesh has them, and faces with vertex_indices.
 void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostream& out);
 
 void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, std::ostream& out);
 
-// Binary STL: float coordinates and the normals of the triangles.
+// Binary STL: float coordinates and normals of the triangles.
 void WriteMeshStl(const TriangleMesh& mesh, const std::string& name, std::ostream& out);
 
 }  // namespace velamap

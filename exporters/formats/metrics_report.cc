@@ -1,5 +1,6 @@
 #include "exporters/formats/metrics_report.h"
 
+#include <optional>
 #include <ostream>
 #include <type_traits>
 
@@ -10,14 +11,6 @@
 
 namespace velamap {
 namespace {
-
-// A line break would end the line of a key and its value.
-std::string OneLine(std::string text) {
-  for (char& c : text) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  return text.empty() ? "none" : text;
-}
 
 std::string ValueText(const MetricValue& metric_value, const char* double_format) {
   return std::visit(
@@ -40,7 +33,10 @@ std::string ValueText(const MetricValue& metric_value, const char* double_format
       metric_value);
 }
 
-std::string Text(const MetricValue& value) { return OneLine(ValueText(value, "{:.6g}")); }
+std::string Text(const MetricValue& value) {
+  const std::string text = SingleLine(ValueText(value, "{:.6g}"));
+  return text.empty() ? "none" : text;
+}
 
 Metrics StatisticFigures(const std::string& key, const Statistics& statistics) {
   Metrics metrics = {{key + "_count", statistics.count}};
@@ -54,7 +50,7 @@ Metrics StatisticFigures(const std::string& key, const Statistics& statistics) {
   return metrics;
 }
 
-// The metrics with every statistic taken apart into its figures.
+// The metrics with every statistic replaced by its figures.
 Metrics Figures(const Metrics& metrics) {
   Metrics figures;
   for (const Metric& metric : metrics) {
@@ -69,10 +65,10 @@ Metrics Figures(const Metrics& metrics) {
   return figures;
 }
 
-void WriteCsvRows(const std::string& table_and_row, const Metrics& metrics, std::ostream& out) {
+void WriteCsvRows(const std::string& table, std::optional<std::size_t> row, const Metrics& metrics,
+                  CsvWriter* csv) {
   for (const Metric& figure : Figures(metrics)) {
-    out << table_and_row << ',' << CsvField(figure.key) << ','
-        << CsvField(ValueText(figure.value, "{}")) << '\n';
+    csv->WriteRecord(table, row, figure.key, ValueText(figure.value, "{}"));
   }
 }
 
@@ -90,6 +86,14 @@ nlohmann::ordered_json JsonObject(const Metrics& metrics) {
 }
 
 }  // namespace
+
+Statistics Scaled(double factor, Statistics statistics) {
+  for (double* figure : {&statistics.mean, &statistics.standard_deviation, &statistics.median,
+                         &statistics.min, &statistics.max, &statistics.rms}) {
+    *figure *= factor;
+  }
+  return statistics;
+}
 
 void PrintMetrics(const MetricsReport& report, std::ostream& out) {
   for (const Metric& figure : Figures(report.metrics)) {
@@ -110,11 +114,12 @@ void PrintMetrics(const MetricsReport& report, std::ostream& out) {
 }
 
 void WriteMetricsCsv(const MetricsReport& report, std::ostream& out) {
-  out << "table,row,key,value\n";
-  WriteCsvRows(",", report.metrics, out);
+  CsvWriter csv(out);
+  csv.WriteRecord("table", "row", "key", "value");
+  WriteCsvRows("", std::nullopt, report.metrics, &csv);
   for (const MetricTable& table : report.tables) {
     for (std::size_t row_idx = 0; row_idx < table.rows.size(); ++row_idx) {
-      WriteCsvRows(fmt::format("{},{}", CsvField(table.name), row_idx), table.rows[row_idx], out);
+      WriteCsvRows(table.name, row_idx, table.rows[row_idx], &csv);
     }
   }
 }
@@ -125,7 +130,7 @@ void WriteMetricsJson(const MetricsReport& report, std::ostream& out) {
     nlohmann::ordered_json& rows = json[table.name] = nlohmann::ordered_json::array();
     for (const Metrics& row : table.rows) rows.push_back(JsonObject(row));
   }
-  // A file name need not be UTF-8; what is not is replaced rather than refused.
+  // File names need not be UTF-8; invalid bytes are replaced.
   constexpr int kIndent = 1;
   out << json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }

@@ -1,8 +1,8 @@
-// Named figures: the one source of every form in which velamap shows metrics, so that the text on
-// stdout, the CSV and the JSON have the same keys and cannot disagree. Units stand in the keys.
+// Named figures. The text on stdout, the CSV and the JSON are all written from one report, so that
+// they have the same keys and values. Keys end in the unit.
 //
 // A statistic S has the keys S_count and, if that is not 0, S_mean, S_std, S_median, S_min, S_max,
-// S_rms. A figure that is not known has no key.
+// S_rms. An unknown figure has no key.
 
 #pragma once
 
@@ -23,28 +23,31 @@ struct Metric {
 };
 using Metrics = std::vector<Metric>;
 
-// What there is once an image, a part, a marker, ...
+// Figures of each image, part, marker, ...
 struct MetricTable {
   std::string name;
-  bool in_text = true;  // whether the text has it too; long tables are for the files
+  bool in_text = true;  // false for long tables, which only the files have
   std::vector<Metrics> rows;
 };
+
+// The statistics of all values times a positive factor, such as a change of unit.
+Statistics Scaled(double factor, Statistics statistics);
 
 struct MetricsReport {
   Metrics metrics;
   std::vector<MetricTable> tables;
 };
 
-// `key: value` lines with six digits; a row of a table is one line with the table's name as key,
-// its statistics shortened to `S mean 1 std 2 median 3 min 4 max 5`.
+// Prints `key: value` lines with six digits. A row of a table is one line with the name of the
+// table as its key and statistics as `S mean 1 std 2 median 3 min 4 max 5`.
 void PrintMetrics(const MetricsReport& report, std::ostream& out);
 
-// Header table,row,key,value, one line a figure; table and row are empty for what is no table's,
-// rows count from 0. Shortest digits that read back to the same double.
+// Header table,row,key,value, one line per figure with the fewest digits that read back to the same
+// double. Rows count from 0; table and row are empty for figures outside tables.
 void WriteMetricsCsv(const MetricsReport& report, std::ostream& out);
 
-// One object of the figures in order, the tables as arrays of objects. Digits as in the CSV; a
-// number that is not finite, which JSON does not know, is null.
+// One object with the figures in order and the tables as arrays of objects. Digits as in the CSV;
+// a number that is not finite is null.
 void WriteMetricsJson(const MetricsReport& report, std::ostream& out);
 
 }  // namespace velamap

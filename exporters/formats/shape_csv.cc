@@ -1,7 +1,6 @@
 #include "exporters/formats/shape_csv.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <istream>
@@ -13,6 +12,7 @@
 
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
+#include "importer/base/numbers.h"
 
 namespace velamap {
 namespace {
@@ -22,8 +22,8 @@ enum Column { kMarkerId, kCorner, kX, kSigmaX = kX + 3, kNumFrames = kSigmaX + 3
 constexpr std::array<const char*, kPart + 1> kColumns = {
     "marker_id", "corner", "x", "y", "z", "sigma_x", "sigma_y", "sigma_z", "num_frames", "part"};
 
-// A centre is the mean of its corners; files rounded to a millimetre still pass.
-constexpr double kCentreTolerance_m = 1e-3;
+// Lets a file pass whose coordinates are rounded to a millimetre.
+constexpr double kCenterTolerance_m = 1e-3;
 
 std::string Header() { return fmt::format("{}", fmt::join(kColumns, ",")); }
 
@@ -43,7 +43,7 @@ std::string_view Trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-// One record with the means to say where it stands.
+// Reads the fields of one record. Errors name the file, the line and the column.
 class RecordReader {
  public:
   RecordReader(const CsvRecord& record, const std::string& name) : record_(record), name_(name) {
@@ -83,13 +83,11 @@ class RecordReader {
   bool IsEmpty(int column) const { return Trim(record_.fields[column]).empty(); }
 
  private:
-  // Independent of the locale. Nothing unless the whole field is one number.
+  // Nothing unless the whole field is one number.
   template <typename T>
   std::optional<T> Parse(int column) const {
-    const std::string_view text = Trim(record_.fields[column]);
     T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    if (!ParseNumber(Trim(record_.fields[column]), &value)) return std::nullopt;
     return value;
   }
 
@@ -117,11 +115,11 @@ void AddRow(const Row& row, const RecordReader& reader, bool is_new, ShapeMarker
     marker->part = row.part;
   }
   if (marker->part != row.part) {
-    reader.Fail(kPart, fmt::format("marker {} is on '{}' here and on '{}' in a row before",
+    reader.Fail(kPart, fmt::format("marker {} is on '{}' here and on '{}' in an earlier row",
                                    row.marker_id, row.part, marker->part));
   }
   if (marker->x_in_shape_m[row.corner]) {
-    reader.Fail(kCorner, fmt::format("corner {} of marker {} stands in a row before; remove one",
+    reader.Fail(kCorner, fmt::format("corner {} of marker {} has a row already; remove one of them",
                                      row.corner, row.marker_id));
   }
   marker->x_in_shape_m[row.corner] = row.x_in_shape_m;
@@ -129,9 +127,9 @@ void AddRow(const Row& row, const RecordReader& reader, bool is_new, ShapeMarker
   marker->num_frames[row.corner] = row.num_frames;
 }
 
-// Makes the centre what marker_shape.h promises: there if and only if all corners are, their mean.
-// Returns what is wrong with the file's centre, or nothing.
-std::string SettleCentre(ShapeMarker* marker) {
+// Fills in the center if all corners are known, as marker_shape.h requires. Returns what is wrong
+// with a center of the file, or an empty text.
+std::string CompleteCenter(ShapeMarker* marker) {
   auto& x = marker->x_in_shape_m;
   if (!std::all_of(x.begin() + 1, x.end(), [](const auto& corner) { return bool(corner); })) {
     return x[0] ? "a centre without its four corners; add them or remove this row" : "";
@@ -144,7 +142,7 @@ std::string SettleCentre(ShapeMarker* marker) {
     return "";
   }
   const double distance_m = (*x[0] - mean).norm();
-  if (distance_m <= kCentreTolerance_m) return "";
+  if (distance_m <= kCenterTolerance_m) return "";
   return fmt::format("the centre is {:.3g} m from the mean of its corners; remove this row",
                      distance_m);
 }
@@ -152,19 +150,23 @@ std::string SettleCentre(ShapeMarker* marker) {
 }  // namespace
 
 void WriteShapeCsv(const MarkerShape& shape, std::ostream& out, const std::string& frame) {
-  if (!frame.empty()) out << "# frame " << SingleLine(frame) << '\n';
-  out << Header() << '\n';
+  CsvWriter csv(out);
+  if (!frame.empty()) csv.WriteComment("frame " + frame);
+  csv.AddFields(kColumns);
+  csv.EndRecord();
   for (const ShapeMarker& marker : shape.markers) {
     for (int corner = 0; corner <= kNumCorners; ++corner) {
       if (!marker.x_in_shape_m[corner]) continue;
-      const Eigen::Vector3d& x = *marker.x_in_shape_m[corner];
-      std::string sigmas = ",,";
-      if (marker.sigma_m[corner]) {
-        const Eigen::Vector3d& sigma = *marker.sigma_m[corner];
-        sigmas = fmt::format("{},{},{}", sigma.x(), sigma.y(), sigma.z());
+      csv.AddField(marker.marker_id);
+      csv.AddField(corner);
+      csv.AddFields(*marker.x_in_shape_m[corner]);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto& sigma_m = marker.sigma_m[corner];
+        csv.AddField(sigma_m ? std::optional((*sigma_m)[axis]) : std::nullopt);
       }
-      out << fmt::format("{},{},{},{},{},{},{},{}\n", marker.marker_id, corner, x.x(), x.y(), x.z(),
-                         sigmas, marker.num_frames[corner], CsvField(marker.part));
+      csv.AddField(marker.num_frames[corner]);
+      csv.AddField(marker.part);
+      csv.EndRecord();
     }
   }
 }
@@ -191,7 +193,7 @@ MarkerShape ReadShapeCsv(std::istream& in, const std::string& name) {
 
   MarkerShape shape;
   for (auto& [marker_id, marker] : markers) {
-    const std::string problem = SettleCentre(&marker);
+    const std::string problem = CompleteCenter(&marker);
     if (!problem.empty()) {
       throw InputError(fmt::format("{}:{}: column {}: marker {}: {}", name,
                                    centre_lines.at(marker_id), kColumns[kCorner], marker_id,

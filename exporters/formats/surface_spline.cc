@@ -18,7 +18,7 @@ using ScalarSpline = Eigen::Spline<double, 1>;
 
 constexpr int kSamplesPerSpan = 6;
 
-// Parameters at equal distances within each knot span, both ends included.
+// Equidistant parameters within each knot span, including both ends.
 std::vector<double> SpanSamples(const Eigen::ArrayXd& knots, int per_span) {
   std::vector<double> samples = {knots(0)};
   for (Eigen::Index k = 0; k + 1 < knots.size(); ++k) {
@@ -30,7 +30,7 @@ std::vector<double> SpanSamples(const Eigen::ArrayXd& knots, int per_span) {
   return samples;
 }
 
-// Rows of the basis functions' values at several parameters.
+// One row of basis function values per parameter.
 Eigen::MatrixXd BasisValues(const Eigen::ArrayXd& knots, int degree,
                             const std::vector<double>& parameters) {
   Eigen::MatrixXd values(parameters.size(), knots.size() - degree - 1);
@@ -53,7 +53,7 @@ Eigen::Vector3d Combine(const SplineSurface& surface, const Eigen::VectorXd& bas
   return sum;
 }
 
-// A parameter at a bound that the step would leave stays there.
+// Whether a parameter stays at its bound because the step would leave the domain.
 bool IsHeld(double parameter, double gradient) {
   return (parameter <= 0 && gradient < 0) || (parameter >= 1 && gradient > 0);
 }

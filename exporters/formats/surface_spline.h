@@ -1,11 +1,11 @@
-// A tensor-product B-spline surface and what can be asked of it: points, derivatives, area, the
-// foot of a perpendicular, a plane cut. Basis functions are Eigen's (de Boor's recursion; Piegl and
-// Tiller, The NURBS Book, 1997, chapter 2).
+// A tensor-product B-spline surface: points, derivatives, area, nearest points and plane cuts.
+// Eigen evaluates the basis functions (de Boor's recursion; Piegl and Tiller, The NURBS Book, 1997,
+// chapter 2).
 //
 //   S(u, v) = sum_ij N_i(u) M_j(v) P_ij,   0 <= u, v <= 1
 //
-// On a sail u runs from luff to leech and v from foot to head. The normal is that of S_u x S_v: it
-// looks at the one who has the luff on the left and the foot below.
+// On a sail u runs from luff to leech and v from foot to head. The normal is along S_u x S_v: it
+// points to a viewer who sees the luff on the left and the foot below.
 
 #pragma once
 
@@ -27,11 +27,11 @@ struct SplineSurface {
   int NumPolesV() const { return static_cast<int>(knots_v.size()) - degree_v - 1; }
 };
 
-// Values of all basis functions, and of their derivatives up to `max_order`, at one parameter: row
-// `order`, one column a pole. Orders above the degree are zero.
+// Values of all basis functions and of their derivatives up to `max_order` at one parameter: one
+// row per order, one column per pole. Orders above the degree are zero.
 Eigen::MatrixXd BasisRow(const Eigen::ArrayXd& knots, int degree, double parameter, int max_order);
 
-// Gauss-Legendre nodes, four a knot span, which integrate products of two cubics exactly.
+// Four Gauss-Legendre nodes per knot span, which integrate products of two cubics exactly.
 struct QuadratureNode {
   double parameter = 0.0;
   double weight = 0.0;
@@ -40,7 +40,7 @@ std::vector<QuadratureNode> SpanQuadrature(const Eigen::ArrayXd& knots);
 
 struct SurfaceJet {
   Eigen::Vector3d x, x_u, x_v, x_uu, x_uv, x_vv;  // m, and per unit of parameter
-  Eigen::Vector3d normal;                         // unit length; zero where S_u x S_v vanishes
+  Eigen::Vector3d normal;                         // unit; zero where S_u x S_v vanishes
 };
 SurfaceJet EvaluateJet(const SplineSurface& surface, double u, double v);
 Eigen::Vector3d EvaluatePoint(const SplineSurface& surface, double u, double v);
@@ -50,16 +50,16 @@ double SurfaceArea(const SplineSurface& surface);  // m^2
 struct SurfaceFoot {
   double u = 0.0, v = 0.0;
   Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // nearest point of the surface
-  double distance_m = 0.0;     // from there along the normal, with its sign
-  double beyond_edge_m = 0.0;  // the rest, within the tangent plane; 0 unless at an edge
+  double distance_m = 0.0;                                 // signed, from there along the normal
+  double beyond_edge_m = 0.0;  // distance within the tangent plane; 0 unless at an edge
 };
 
-// Nearest points of the surface: the nearest of a dense grid, refined by Gauss-Newton steps.
+// Nearest points of the surface: the nearest point of a dense grid, refined by Gauss-Newton steps.
 std::vector<SurfaceFoot> ProjectOnSurface(const SplineSurface& surface,
                                           const std::vector<Eigen::Vector3d>& points_in_shape_m);
 
-// Where the plane through `point_in_shape_m` cuts the surface: for each of `num_samples` values of
-// u from 0 to 1 the first v that lies on the plane, if there is one. Empty when the plane misses.
+// Cuts the surface with the plane through `point_in_shape_m`: returns, for each of `num_samples`
+// values of u from 0 to 1, the point with the lowest v on the plane, if there is one.
 std::vector<Eigen::Vector3d> CutSurface(const SplineSurface& surface,
                                         const Eigen::Vector3d& point_in_shape_m,
                                         const Eigen::Vector3d& normal, int num_samples);

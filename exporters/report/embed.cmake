@@ -1,6 +1,6 @@
-# Turns text files into a C++ source of string literals, which compile in no time.
+# Writes text files as string literals to a C++ source.
 #   cmake -DOUTPUT=assets.cc -DkReportPage=page.html -DkReportScript="a.js|b.js" ... -P embed.cmake
-# Files of one variable are joined in order.
+# Joins the files of one variable in order.
 
 set(ASSETS kReportPage kReportStyle kReportScript kReportThree kReportChart kReportLicences)
 
@@ -12,12 +12,12 @@ foreach(asset IN LISTS ASSETS)
     file(READ "${file}" text)
     string(FIND "${text}" ")velamap\"" delimiter)
     if("${text}" STREQUAL "" OR NOT delimiter EQUAL -1)
-      message(FATAL_ERROR "${file}: empty, or holds the delimiter of the string literals")
+      message(FATAL_ERROR "${file}: empty, or contains the delimiter of the string literals")
     endif()
-    # Scripts stand inside a script element, which this would end.
+    # The text would end the script element of the page.
     string(FIND "${text}" "</script" end_of_script)
     if("${file}" MATCHES "\\.js$" AND NOT end_of_script EQUAL -1)
-      message(FATAL_ERROR "${file}: holds </script and cannot stand inside a page")
+      message(FATAL_ERROR "${file}: contains </script and cannot be part of a page")
     endif()
     file(APPEND ${OUTPUT}.tmp "\n    R\"velamap(${text}\n)velamap\"")
   endforeach()

@@ -1,6 +1,6 @@
-# The report's page with the libraries inside, as part of the exporters.
+# Adds the report and its page, with the JavaScript libraries inside, to the exporters.
 set(JAVASCRIPT_DIR /usr/share/javascript CACHE PATH
-    "Where Debian's packages libjs-three and libjs-chart.js put their files")
+    "Folder of the files of the Debian packages libjs-three and libjs-chart.js")
 set(REPORT_DIR ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
 set(REPORT_THREE ${JAVASCRIPT_DIR}/three/three.min.js
                  ${JAVASCRIPT_DIR}/three/examples/js/controls/OrbitControls.js)

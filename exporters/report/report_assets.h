@@ -1,5 +1,5 @@
-// The page and the libraries that are built into the program; exporters/report/embed.cmake writes
-// the definitions. All are text in UTF-8.
+// The page and its libraries as part of the program, in UTF-8. exporters/report/embed.cmake writes
+// the definitions.
 
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace velamap {
 
-extern const std::string_view kReportPage;      // HTML with {{NAME}} where the others go
+extern const std::string_view kReportPage;      // HTML with {{NAME}} as placeholders of the others
 extern const std::string_view kReportStyle;     // CSS
 extern const std::string_view kReportScript;    // JavaScript of the page
 extern const std::string_view kReportThree;     // three.js and its OrbitControls

@@ -26,7 +26,7 @@ Json JsonOf(const ReportFrame& frame) {
 ReportFrame FrameOfCentralCamera(const Model& model) {
   const Eigen::Quaterniond world_from_cam =
       model.images.front().cam_from_world.rotation.conjugate();
-  return {"axes of the model; up and front are those of the central camera",
+  return {"axes of the model; up and front as for the central camera",
           world_from_cam * -Eigen::Vector3d::UnitY(), world_from_cam * Eigen::Vector3d::UnitZ()};
 }
 
@@ -68,8 +68,8 @@ Json ScaleJson(const ScaleEstimate& scale) {
   return json;
 }
 
-// The lines of the audit's text form, as pairs of key and figures; the page has a histogram of its
-// own.
+// The lines of the audit's text as pairs of key and figures, without the histogram, which the page
+// draws itself.
 Json AuditJson(const ScaleAudit& audit) {
   MetricsReport report;
   AddMetrics(audit, &report);
@@ -104,7 +104,7 @@ Json JsonOf(const std::vector<ReportLeftOut>& left_out) {
   return json;
 }
 
-// Those that the caller knows a reason for, then the layout's that miss all the same.
+// Markers for which the caller knows a reason, then other missing markers of the layout.
 std::vector<ReportLeftOut> MarkersLeftOut(const ReportInput& input) {
   std::vector<ReportLeftOut> left_out = input.markers_left_out;
   std::set<std::string> names;
@@ -119,10 +119,9 @@ std::vector<ReportLeftOut> MarkersLeftOut(const ReportInput& input) {
     const std::string name = std::to_string(marker_id);
     if (names.count(name) > 0) continue;
     const int num_corners = num_corners_of[marker_id];
-    left_out.push_back(
-        {name, num_corners == 0
-                   ? "no corner reconstructed: not seen, or not in two of the images used"
-                   : fmt::format("{} of its 4 corners reconstructed", num_corners)});
+    left_out.push_back({name, num_corners == 0
+                                  ? "no corner reconstructed: not seen in two of the images used"
+                                  : fmt::format("{} of its 4 corners reconstructed", num_corners)});
   }
   return left_out;
 }
@@ -153,7 +152,7 @@ Json JsonOf(const ReportSection& section) {
   return json;
 }
 
-// Flat lists, as the page hands them to the graphics card.
+// Flat lists in the format of vertex buffers.
 Json JsonOf(const ReportSurface& surface) {
   Json vertices = Json::array(), triangles = Json::array();
   for (const Eigen::Vector3d& x : surface.x_in_shape_m) {
@@ -165,7 +164,7 @@ Json JsonOf(const ReportSurface& surface) {
   return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}};
 }
 
-// Valid inside a script element: a `<` could end it or begin a comment.
+// Escapes `<`, which could end the script element or begin a comment.
 std::string EscapeForScript(const std::string& json) {
   std::string escaped;
   escaped.reserve(json.size());
@@ -205,7 +204,7 @@ std::string ReportJson(const ReportInput& input) {
     for (const ReportSection& section : input.sections) json["sections"].push_back(JsonOf(section));
   }
   if (input.surface) json["surface"] = JsonOf(*input.surface);
-  // Names of files need not be UTF-8; a browser shows what is not as a question mark.
+  // File names need not be UTF-8; invalid bytes are replaced.
   return EscapeForScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -1,5 +1,5 @@
-// Everything that the report shows, gathered to one JSON text. The page computes nothing but
-// colours and pictures from it; its keys stand in the README of this room.
+// Collects everything that the report shows in one JSON text, from which the page computes only
+// colors and drawings. README.md of this room lists the keys.
 
 #pragma once
 
@@ -23,18 +23,18 @@
 namespace velamap {
 
 struct ReportLeftOut {
-  std::string name;  // of the image; the id of the marker
+  std::string name;  // of an image, or the id of a marker
   std::string reason;
 };
 
-// The frame of the shape, and how to look at it.
+// The frame of the shape and its view directions.
 struct ReportFrame {
-  std::string name;         // what origin and axes are, in a few words
+  std::string name;         // a short description of origin and axes
   Eigen::Vector3d up;       // unit length, shape frame
-  Eigen::Vector3d forward;  // the direction in which "front" looks, unit length, normal to `up`
+  Eigen::Vector3d forward;  // viewing direction of the front view, unit length, normal to `up`
 };
 
-// A figure and its standard deviation.
+// A value with its standard deviation.
 struct ReportFigure {
   double value = 0.0;
   std::optional<double> sigma;
@@ -46,7 +46,7 @@ struct ReportSection {
   std::optional<ReportFigure> chord_m, camber_percent, draft_percent, entry_deg, exit_deg,
       twist_deg;
   std::vector<Eigen::Vector2d> profile_m;           // in the section's plane, x along the chord
-  std::vector<Eigen::Vector3d> profile_in_shape_m;  // the same curve in 3D; may be empty
+  std::vector<Eigen::Vector3d> profile_in_shape_m;  // the same curve in 3D; can be empty
 };
 
 struct ReportSurface {
@@ -63,23 +63,25 @@ struct ReportInput {
   const ScaleEstimate& scale;
   std::string title = {};
   std::string version = {};     // of the program
-  std::string created = {};     // date and time; empty: the report names none
-  std::string image_path = {};  // folder of the images; empty: no picture of the central one
-  // Nothing: as the central camera sees the shape.
+  std::string created = {};     // date and time; empty for none
+  std::string image_path = {};  // folder of the images; empty for a report without picture
+  // The view of the central camera by default.
   std::optional<ReportFrame> frame = {};
-  const AdjustmentUncertainty* uncertainty = nullptr;  // null where none was computed
-  const ScaleAudit* audit = nullptr;                   // null where none was made
+  const AdjustmentUncertainty* uncertainty = nullptr;  // may be null
+  const ScaleAudit* audit = nullptr;                   // may be null
   std::vector<ReportLeftOut> images_left_out = {};
-  std::vector<ReportLeftOut> markers_left_out = {};  // those of the layout that miss are added
-  // Needed to repeat the run: options as they were given, versions of the libraries.
+  std::vector<ReportLeftOut> markers_left_out =
+      {};  // other missing markers of the layout are added
+  // The given options and the versions of the libraries, for repeating the run.
   std::vector<std::pair<std::string, std::string>> options = {};
   std::vector<std::pair<std::string, std::string>> versions = {};
   std::vector<ReportSection> sections = {};
   std::optional<ReportSurface> surface = {};
 };
 
-// A JSON object in UTF-8 without line breaks; `<` only as an escape, so that it can stand inside an
-// HTML script element. What is not known has no key. Throws DataError for a model without images.
+// Returns a JSON object in UTF-8 without line breaks. `<` is escaped, so that the text can be part
+// of an HTML script element. Unknown values have no key. Throws DataError for a model without
+// images.
 std::string ReportJson(const ReportInput& input);
 
 }  // namespace velamap

@@ -3,23 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exporters/formats/round_number.h"
 #include "importer/base/statistics.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kMaxNumBins = 30;  // one more at either end where the range is rounded outwards
+constexpr double kMaxNumBins = 30;  // plus one at either end, where the range is rounded outwards
 constexpr double kMaxSigmas = 6;
-
-// The least of 1, 2, 5 times a power of ten that is not below `width`.
-double RoundUp(double width) {
-  const double power = std::pow(10.0, std::floor(std::log10(width)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    // The tolerance keeps 0.1 (as a quotient of two numbers) from becoming 0.2.
-    if (factor * power >= width * (1 - 1e-9)) return factor * power;
-  }
-  return 10 * power;
-}
 
 }  // namespace
 
@@ -33,12 +24,12 @@ Histogram MakeHistogram(std::vector<double> values) {
   const double sigma = RobustSigma(values);
   double low = median, high = median;
   for (const double value : values) {
-    // No scatter says nothing of strays: more than half of the values are equal.
+    // Without scatter, more than half of the values are equal and outliers are not defined.
     if (sigma > 0 && std::abs(value - median) > kMaxSigmas * sigma) continue;
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  // Equal values get one bin, of a width that rounding does not swallow.
+  // Equal values get one bin, wide enough for double precision.
   const double least_width = std::max(1e-12, 1e-9 * std::abs(median));
   histogram.bin_width = RoundUp(std::max((high - low) / kMaxNumBins, least_width));
   const double first = std::floor(low / histogram.bin_width);

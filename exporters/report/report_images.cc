@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kMaxPictureSide_px = 1600;
 
-// Directions of the image's corners in the shape frame, at depth 1: top-left, top-right,
-// bottom-right, bottom-left. Without the distortion, which a small pyramid cannot show.
+// Directions of the image's corners in the shape frame at depth 1: top-left, top-right,
+// bottom-right, bottom-left, without distortion.
 ReportJsonValue FrustumJson(const Camera& camera, const Rigid3& world_from_cam) {
   const double f = MeanFocalLength(camera);
   const double x = 0.5 * camera.width_px / f, y = 0.5 * camera.height_px / f;
@@ -72,7 +72,7 @@ ReportJsonValue PictureJson(const ReportInput& input, const std::vector<Observat
   } else {
     json["problem"] = picture.problem;
   }
-  // id and corner, detected x y, residual x y
+  // Point id, detected x y, residual x y.
   ReportJsonValue points = ReportJsonValue::array();
   for (const ObservationError& error : errors) {
     if (error.element.image_id != image.image_id || !std::isfinite(error.error_px)) continue;

@@ -1,4 +1,4 @@
-// The parts of the report's JSON. Only the report's own files include this.
+// Parts of the report's JSON. Private to the report.
 
 #pragma once
 
@@ -19,13 +19,13 @@ ReportJsonValue VectorJson(const Eigen::Vector3d& vector);
 // Signed deviation of a whole marker's area from the printed one, %.
 double AreaDeviationPercent(const ShapeMarker& marker, const Layout& layout);
 
-// One object a marker of the shape, by id.
+// One object per marker of the shape, by id.
 ReportJsonValue MarkersJson(const ReportInput& input, const std::vector<ObservationError>& errors);
 
-// One object an image of the model, by name.
+// One object per image of the model, by name.
 ReportJsonValue ImagesJson(const ReportInput& input);
 
-// The central image as a JPEG, detected and reprojected corners in its pixels.
+// The central image as a JPEG with detected and reprojected corners, px.
 ReportJsonValue PictureJson(const ReportInput& input, const std::vector<ObservationError>& errors);
 
 }  // namespace velamap

@@ -5,14 +5,15 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/units.h"
 #include "importer/base/statistics.h"
 
 namespace velamap {
 namespace {
 
-// Limits of the verdicts. Right reconstructions have reprojection errors of 0.1 to 0.3 px, wrong
-// shapes that register all the same 0.8 px and more. Prints and corners are good to about 1 % of an
-// area, a marker that is bent or misread is off by several.
+// Limits of the verdicts. Correct reconstructions have reprojection errors of 0.1 to 0.3 px, wrong
+// shapes that nevertheless register 0.8 px and more. Prints and corners are accurate to about 1 %
+// of an area; the area of a bent or misread marker is wrong by several percent.
 constexpr double kGoodError_px = 0.5, kBadError_px = 0.8;
 constexpr double kGoodAreaError_percent = 2, kBadAreaError_percent = 5;
 constexpr double kGoodRatio = 0.95, kBadRatio = 0.7;
@@ -29,7 +30,7 @@ ReportStatus HighIsGood(double value, double good, double bad) {
 
 KeyNumber MarkersNumber(const ShapeMetrics& metrics) {
   KeyNumber number{"Markers", fmt::format("{}", metrics.num_markers),
-                   "whole markers: all four corners reconstructed", ReportStatus::kNone};
+                   "markers with all four corners reconstructed", ReportStatus::kNone};
   if (metrics.reconstruction_ratio) {
     const double ratio = *metrics.reconstruction_ratio;
     number.value = fmt::format("{} of {}, {:.1f} %", metrics.num_markers,
@@ -46,14 +47,14 @@ KeyNumber ImagesNumber(const ReportInput& input) {
   const std::size_t num_used = input.metric_model.images.size();
   const std::size_t num_all = num_used + input.images_left_out.size();
   return {"Images", fmt::format("{} of {}", num_used, num_all),
-          "used; the others are listed below with the reason", ReportStatus::kNone};
+          "used; the others are listed below with reasons", ReportStatus::kNone};
 }
 
 KeyNumber ErrorNumber(const Statistics& error_px) {
   return {"Reprojection error",
           fmt::format("{:.3f} px mean, {:.2f} px at most", error_px.mean, error_px.max),
-          fmt::format("distance of each corner in the images from where the shape puts it; good up "
-                      "to {:g} px in the mean, above {:g} px the shape may be wrong",
+          fmt::format("distance between detected and projected corners; good up to a mean of {:g} "
+                      "px, above {:g} px the shape may be wrong",
                       kGoodError_px, kBadError_px),
           LowIsGood(error_px.mean, kGoodError_px, kBadError_px)};
 }
@@ -62,7 +63,7 @@ KeyNumber AreaNumber(const ShapeMetrics& metrics) {
   const Statistics& percent = metrics.area_error_percent;
   return {"Marker area error",
           fmt::format("{:.2f} % mean, {:.2f} % at most", percent.mean, percent.max),
-          fmt::format("of the markers' areas from the printed ones; good up to {:g} % in the mean",
+          fmt::format("difference from the printed area; good up to a mean of {:g} %",
                       kGoodAreaError_percent),
           LowIsGood(percent.mean, kGoodAreaError_percent, kBadAreaError_percent)};
 }
@@ -74,8 +75,8 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale) {
     value = fmt::format("\u00b1{:.3f} %, {}", 100 * *scale.relative_sigma, value);
   }
   return {"Scale", value,
-          fmt::format("standard deviation of the metric scale, and of the scales that the {} "
-                      "markers give alone; good up to {:g} % spread",
+          fmt::format("standard deviations of the metric scale and of the scales from each of {} "
+                      "markers alone; good up to {:g} % spread",
                       scale.num_markers, kGoodScaleSpread_percent),
           LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent)};
 }
@@ -90,24 +91,24 @@ KeyNumber SizeNumber(const MarkerShape& shape) {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
   if (!box.isEmpty()) size = box.sizes();
   const bool is_small = size.maxCoeff() < 1;
-  const Eigen::Vector3d shown = is_small ? 1e3 * size : size;
+  const Eigen::Vector3d shown = is_small ? kMmPerM * size : size;
   return {"Size",
           fmt::format("{:.4g} \u00d7 {:.4g} \u00d7 {:.4g} {}", shown.x(), shown.y(), shown.z(),
                       is_small ? "mm" : "m"),
-          "of the box around all corners along x, y and z of the shape's frame",
-          ReportStatus::kNone};
+          "bounding box of all corners along x, y and z of the shape's frame", ReportStatus::kNone};
 }
 
 std::optional<KeyNumber> PrecisionNumber(const MarkerShape& shape) {
   std::vector<double> sigmas_mm;
   for (const ShapeMarker& marker : shape.markers) {
-    if (marker.sigma_m[0]) sigmas_mm.push_back(1e3 * marker.sigma_m[0]->norm());
+    if (marker.sigma_m[0]) sigmas_mm.push_back(kMmPerM * marker.sigma_m[0]->norm());
   }
   if (sigmas_mm.empty()) return std::nullopt;
   return KeyNumber{"Precision",
                    fmt::format("{:.3g} mm median, {:.3g} mm at most", Median(sigmas_mm),
                                *std::max_element(sigmas_mm.begin(), sigmas_mm.end())),
-                   "1 sigma of a marker's centre in space, scale included", ReportStatus::kNone};
+                   "1 sigma of a marker's centre in space, including the scale",
+                   ReportStatus::kNone};
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The figures at the head of the report: what each means in one line, and whether it is good.
+// The key numbers at the top of the report, each with an explanation and a verdict.
 
 #pragma once
 
@@ -10,10 +10,10 @@
 namespace velamap {
 
 enum class ReportStatus {
-  kNone,  // a figure that is neither good nor bad
+  kNone,  // no verdict
   kGood,
-  kCheck,  // worth a look at the charts below
-  kBad,    // do not use the shape before the cause is found
+  kCheck,  // check the charts
+  kBad,    // find the cause before using the shape
 };
 
 struct KeyNumber {
@@ -25,7 +25,7 @@ struct KeyNumber {
 
 std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input);
 
-// good, check, bad; empty for kNone.
+// "good", "check", "bad", or empty for kNone.
 std::string StatusName(ReportStatus status);
 
 }  // namespace velamap

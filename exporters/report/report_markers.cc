@@ -4,6 +4,9 @@
 #include <Eigen/Eigenvalues>
 
 #include "exporters/report/report_json.h"
+#include "exporters/shape/joint_covariance.h"
+#include "exporters/shape/shape_sigma.h"
+#include "exporters/shape/units.h"
 
 namespace velamap {
 namespace {
@@ -13,7 +16,7 @@ struct CornerErrors {
   double sum_px = 0.0;
 };
 
-// By marker id, of observations with a projection.
+// Errors by marker id. Points behind their camera have none.
 std::map<int, CornerErrors> ErrorsByMarker(const std::vector<ObservationError>& errors) {
   std::map<int, CornerErrors> errors_of;
   for (const ObservationError& error : errors) {
@@ -25,32 +28,24 @@ std::map<int, CornerErrors> ErrorsByMarker(const std::vector<ObservationError>& 
   return errors_of;
 }
 
-// Joint covariance of the centre, m^2; nothing where the corners' is not known.
-std::optional<Eigen::Matrix3d> CentreCovariance(const PointCovariance& points, int marker_id) {
-  std::array<PointGradient, 3> gradients;
-  for (int corner = 1; corner <= kNumCorners; ++corner) {
-    const Point3DId id = Point3DIdFromCorner({marker_id, corner});
-    if (points.IndexOf(id) < 0) return std::nullopt;
-    for (int axis = 0; axis < 3; ++axis) {
-      gradients[axis].emplace_back(id, Eigen::Vector3d::Unit(axis) / kNumCorners);
-    }
+// Joint covariance of the center, m^2; nothing if that of a corner is unknown.
+std::optional<Eigen::Matrix3d> CenterCovariance(const PointCovariance& points, int marker_id) {
+  std::vector<PointGradient> gradients(3);
+  for (int axis = 0; axis < 3; ++axis) {
+    AddPointGradient(marker_id, 0, Eigen::Vector3d::Unit(axis),
+                     &gradients[static_cast<std::size_t>(axis)]);
   }
-  Eigen::Matrix3d covariance;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      covariance(row, column) = CovarianceOf(points, gradients[row], gradients[column]);
-    }
-  }
-  return covariance;
+  if (!HasPointsOf(gradients.front(), &points)) return std::nullopt;
+  return Eigen::Matrix3d(JointCovarianceOf(points, gradients));
 }
 
-// Columns are the half axes of the 1 sigma ellipsoid of the centre, m, longest last. Without a
+// Columns are the half axes of the 1 sigma ellipsoid of the center, m, longest last. Without a
 // joint covariance they are along x, y and z.
-std::optional<Eigen::Matrix3d> CentreEllipsoid(const ReportInput& input,
+std::optional<Eigen::Matrix3d> CenterEllipsoid(const ReportInput& input,
                                                const ShapeMarker& marker) {
   std::optional<Eigen::Matrix3d> covariance;
   if (input.uncertainty != nullptr) {
-    covariance = CentreCovariance(input.uncertainty->points, marker.marker_id);
+    covariance = CenterCovariance(input.uncertainty->points, marker.marker_id);
   }
   if (!covariance && marker.sigma_m[0]) {
     covariance = marker.sigma_m[0]->cwiseAbs2().asDiagonal().toDenseMatrix();
@@ -66,11 +61,11 @@ void AddWholeMarker(const ReportInput& input, const ShapeMarker& marker, ReportJ
   double mean_side_m = 0;
   for (const double side_m : MarkerSides(marker)) mean_side_m += side_m / kNumCorners;
   (*json)["centre"] = VectorJson(*marker.x_in_shape_m[0]);
-  (*json)["length_mm"] = 1e3 * length_m;
+  (*json)["length_mm"] = kMmPerM * length_m;
   (*json)["side_deviation_percent"] = 100 * (mean_side_m / length_m - 1);
   (*json)["area_deviation_percent"] = AreaDeviationPercent(marker, input.layout);
-  if (const auto ellipsoid = CentreEllipsoid(input, marker)) {
-    (*json)["sigma_mm"] = 1e3 * ellipsoid->norm();
+  if (const auto ellipsoid = CenterEllipsoid(input, marker)) {
+    (*json)["sigma_mm"] = kMmPerM * ellipsoid->norm();
     (*json)["ellipsoid"] = {VectorJson(ellipsoid->col(0)), VectorJson(ellipsoid->col(1)),
                             VectorJson(ellipsoid->col(2))};
   }

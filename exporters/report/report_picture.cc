@@ -34,8 +34,8 @@ std::string Base64(const std::string& bytes) {
   using boost::archive::iterators::base64_from_binary;
   using boost::archive::iterators::transform_width;
   using Encoder = base64_from_binary<transform_width<const char*, 6, 8>>;
-  // The iterator reads whole groups of three bytes: zeros fill the last one, and the characters
-  // that stand for them become the padding.
+  // The iterator reads whole groups of three bytes. Zeros fill the last one, and their characters
+  // become the padding.
   const std::size_t num_missing = (3 - bytes.size() % 3) % 3;
   const std::string padded = bytes + std::string(num_missing, '\0');
   std::string text(Encoder(padded.data()), Encoder(padded.data() + padded.size()));

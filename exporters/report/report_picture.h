@@ -1,4 +1,4 @@
-// The central image as the report shows it (Figure 4.25 of the thesis): a smaller JPEG.
+// The central image of the report (figure 4.25 of the thesis) as a smaller JPEG.
 
 #pragma once
 
@@ -8,10 +8,10 @@ namespace velamap {
 
 struct ReportPicture {
   std::string jpeg_base64;
-  std::string problem;  // why there is no picture; empty where there is one
+  std::string problem;  // why there is no picture; empty if there is one
 };
 
-// The image, not larger than `max_side_px` in width and height, as base64 (RFC 4648) of a JPEG.
+// The image as base64 (RFC 4648) of a JPEG, at most `max_side_px` wide and high.
 ReportPicture MakeReportPicture(const std::string& image_path, int max_side_px);
 
 std::string Base64(const std::string& bytes);

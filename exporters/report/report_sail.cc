@@ -5,13 +5,13 @@
 #include <Eigen/Geometry>
 
 #include "exporters/sail/section_writer.h"
+#include "exporters/shape/units.h"
 
 namespace velamap {
 namespace {
 
 constexpr double kMaxReportTriangles = 1e4;
-constexpr double kMmPerM = 1e3;
-constexpr double kMinHorizontal = 0.1;  // of a camera that looks straight up or down
+constexpr double kMinHorizontal = 0.1;  // below it, a camera looks straight up or down
 
 ReportFigure Figure(double factor, const Estimate& estimate) {
   ReportFigure figure{factor * estimate.value, std::nullopt};

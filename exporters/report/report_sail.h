@@ -1,4 +1,4 @@
-// What the report shows of frame, sections and surfaces, from the values that the files hold.
+// Frame, sections and surfaces for the report.
 
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace velamap {
 
-// Nothing for a frame that knows no up: the central camera's then is the one to take. "Front" looks
-// as the central camera does, levelled.
+// The front view has the leveled viewing direction of the central camera. Nothing for a frame
+// without an up direction.
 std::optional<ReportFrame> MakeReportFrame(const ShapeFrame& frame, const Model& metric_model);
 
 std::vector<ReportSection> MakeReportSections(const SectionReport& sections);
 
-// All surfaces as one, in at most about 10 000 triangles each; nothing without one.
+// All surfaces as one mesh, with about 10 000 triangles each; nothing without a surface.
 std::optional<ReportSurface> MakeReportSurface(const SailShape& sail);
 
 }  // namespace velamap

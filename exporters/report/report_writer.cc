@@ -42,7 +42,7 @@ std::string_view Asset(std::string_view name) {
 void WriteReport(const ReportInput& input, std::ostream& out) {
   const std::string json = ReportJson(input);
   std::string_view rest = kReportPage;
-  // What is put in is never searched: data may hold braces.
+  // Searches the page only, because the inserted data can contain braces.
   for (std::size_t begin; (begin = rest.find("{{")) != std::string_view::npos;) {
     const std::size_t end = rest.find("}}", begin);
     VELAMAP_CHECK(end != std::string_view::npos);

@@ -1,6 +1,7 @@
-// report.html: one file that shows a result in any browser, without a network. Data, page, three.js
-// (turning 3D view) and Chart.js (charts) are inside; the libraries come from Debian's packages
-// libjs-three and libjs-chart.js and are built into this program (exporters/report/embed.cmake).
+// Writes report.html, one file that shows a result in any browser without a network. It contains
+// the data, the page, three.js (3D view) and Chart.js (charts). The libraries come from the Debian
+// packages libjs-three and libjs-chart.js and are part of this program
+// (exporters/report/embed.cmake).
 
 #pragma once
 
@@ -10,8 +11,8 @@
 
 namespace velamap {
 
-// Throws DataError for a model without images. A central image that cannot be read is no error: the
-// page says why there is no picture.
+// Throws DataError for a model without images. If the central image cannot be read, the page says
+// so.
 void WriteReport(const ReportInput& input, std::ostream& out);
 
 }  // namespace velamap

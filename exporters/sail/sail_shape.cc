@@ -17,11 +17,11 @@
 namespace velamap {
 namespace {
 
-// A boat has a few sails; more parts with lines get no surface files.
+// A boat has a few sails. Further parts with lines get no surface.
 constexpr int kMaxSurfaces = 20;
 
-SailSurface MakeSurface(const MarkerShape& shape, const Layout& layout, const LayoutPart& part,
-                        const PointCovariance* covariance, const SailOptions& options) {
+SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, const LayoutPart& part,
+                            const PointCovariance* covariance, const SailOptions& options) {
   SailSurface surface;
   surface.part = part.name;
   surface.fit = FitSurface(CollectSurfaceInput(shape, part, covariance), options.surface);
@@ -36,7 +36,6 @@ std::string Suffix(int surface_idx) {
   return surface_idx == 0 ? "" : fmt::format("_{}", surface_idx + 1);
 }
 
-// Of the files that hold this surface.
 struct SurfaceFile {
   std::string name;
   std::function<void(const SailSurface&, const std::string& title, std::ostream&)> write;
@@ -79,6 +78,10 @@ const std::vector<std::pair<std::string, SectionWriter>>& SectionFiles() {
 
 }  // namespace
 
+void SailShape::ThrowSurfaceError() const {
+  if (surface_error) std::rethrow_exception(surface_error);
+}
+
 void SailOptions::Check() const {
   sections.Check();
   surface.Check();
@@ -94,16 +97,18 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
     if (part.horizontal.empty()) continue;
     if (static_cast<int>(sail.surfaces.size()) == kMaxSurfaces) {
       sail.surface_notes.push_back(
-          fmt::format("{}: no surface, {} parts have one already", part.name, kMaxSurfaces));
+          fmt::format("{}: no surface: at most {} parts get one", part.name, kMaxSurfaces));
       continue;
     }
     try {
-      sail.surfaces.push_back(MakeSurface(shape, layout, part, covariance, options));
+      sail.surfaces.push_back(MakeSailSurface(shape, layout, part, covariance, options));
       for (const std::string& note : sail.surfaces.back().fit.notes) {
         sail.surface_notes.push_back(fmt::format("{}: {}", part.name, note));
       }
-    } catch (const DataError& error) {
+    } catch (const std::exception& error) {
       sail.surface_notes.push_back(fmt::format("{}: no surface: {}", part.name, error.what()));
+      const bool is_of_data = dynamic_cast<const DataError*>(&error) != nullptr;
+      if (!is_of_data && !sail.surface_error) sail.surface_error = std::current_exception();
     }
   }
   return sail;

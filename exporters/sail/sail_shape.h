@@ -1,8 +1,9 @@
-// What the layout's lines make of a shape: sections, and a smooth surface through each part that
+// The sections of a shape at the lines of the layout, and a smooth surface through each part that
 // has horizontal lines.
 
 #pragma once
 
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -22,10 +23,10 @@ namespace velamap {
 struct SailOptions {
   SectionOptions sections;
   SurfaceOptions surface;
-  // Nothing: edges of half a marker's side, longer where that would be more than 100 000 triangles.
+  // By default edges of half a marker's side, or longer ones to stay below 100 000 triangles.
   std::optional<MeshOptions> mesh;
 
-  void Check() const;  // throws InputError as those of its members do
+  void Check() const;  // throws InputError like those of its members
 };
 
 struct SailSurface {
@@ -38,23 +39,28 @@ struct SailSurface {
 struct SailShape {
   SectionReport sections;
   std::vector<SailSurface> surfaces;  // by part in the layout's order
-  // One line each: a part whose markers bear no surface and why, and what odd things its fit met.
+  // One line per part without a surface, with the reason, and one per gap or outlier of a fit.
   std::vector<std::string> surface_notes;
+  // The first error of a surface that the markers are not to blame for, such as an option beyond
+  // the limit that the size of the part sets; null without one.
+  std::exception_ptr surface_error;
+
+  // Throws surface_error. Callers write everything else first: the shape does not depend on it.
+  void ThrowSurfaceError() const;
 };
 
-// `shape` and `covariance` (null: none) are in `frame`. For a layout without horizontal lines
-// there is no more than a note of the sections that says so. Throws InputError for bad options,
-// such as a mesh of millions of triangles.
+// `shape` and `covariance` (may be null) are in `frame`. A layout without horizontal lines gives a
+// note and nothing else. Throws InputError for options that are bad whatever the shape.
 SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const Layout& layout,
                       const PointCovariance* covariance, const SailOptions& options);
 
 // Writes the tables and drawings of the sections (sections.*, section_profiles.*) and, for each
-// surface, surface.step .igs .ply .obj .stl and surface_residuals.csv; those of a second part have
-// names with _2. `folder` has to be there. Throws InputError where it cannot be written.
+// surface, surface.step .igs .ply .obj .stl and surface_residuals.csv. The names of a second part
+// end in _2. `folder` has to exist. Throws InputError if it is not writable.
 void WriteSailFiles(const SailShape& sail, const ShapeFrame& frame,
                     const std::filesystem::path& folder);
 
-// All names that WriteSailFiles() may use.
+// All names that WriteSailFiles() can use.
 std::set<std::string> SailFileNames();
 
 }  // namespace velamap

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -15,31 +13,13 @@
 #include "exporters/shape/sail_lines.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
+#include "importer/base/numbers.h"
 
 namespace velamap {
 namespace {
 
 constexpr double kMinCamber = 1e-3;
-constexpr double kStep_m = 1e-5;  // of the numeric derivatives
 constexpr const char* kBoomPart = "boom";
-
-// Numbers of one section and their derivatives by all marker centres: one column a coordinate.
-struct NumbersWithGradient {
-  SectionNumbers numbers;
-  Eigen::MatrixXd gradient;
-};
-
-struct Boom {
-  int first_idx = 0, last_idx = 0;  // into the CenterSet, from the mast aft
-};
-
-// What all sections of one part have in common.
-struct PartContext {
-  const LayoutPart& part;
-  const CenterSet& centers;
-  SectionAxes axes;
-  PartCurves curves;
-};
 
 CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
                          const PointCovariance* covariance) {
@@ -82,7 +62,7 @@ CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
   return centers;
 }
 
-// The two markers of the boom that are farthest apart, the first nearer to the luff.
+// The two markers of the boom that are farthest apart, starting at the luff.
 std::optional<Boom> FindBoom(const Layout& layout, const CenterSet& centers,
                              const Eigen::Vector3d& aft) {
   std::vector<int> indices;
@@ -100,100 +80,6 @@ std::optional<Boom> FindBoom(const Layout& layout, const CenterSet& centers,
     }
   }
   return boom;
-}
-
-// Central differences of function(centers, index) by every coordinate of the listed markers; not
-// computed (NaN) where none of them has a sigma.
-template <typename Function>
-Eigen::MatrixXd Differentiate(const CenterSet& centers, const std::vector<int>& indices,
-                              const Function& function) {
-  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(kNumSectionNumbers, centers.x_m.size());
-  const auto has_sigma = [&](int index) {
-    return centers.has_sigma[static_cast<std::size_t>(index)];
-  };
-  if (std::none_of(indices.begin(), indices.end(), has_sigma)) {
-    gradient.setConstant(std::numeric_limits<double>::quiet_NaN());
-    return gradient;
-  }
-  CenterSet moved = centers;
-  for (const int index : indices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      double& coordinate = moved.x_m(axis, index);
-      const double x = coordinate;
-      coordinate = x + kStep_m;
-      const SectionNumbers above = function(moved, index);
-      coordinate = x - kStep_m;
-      const SectionNumbers below = function(moved, index);
-      coordinate = x;
-      gradient.col(3 * index + axis) = (above - below) / (2 * kStep_m);
-    }
-  }
-  return gradient;
-}
-
-NumbersWithGradient NumbersOfLine(const PartContext& context, const LineCurve& line) {
-  return {ComputeNumbers(line.fit.curve, context.axes),
-          Differentiate(context.centers, line.indices, [&](const CenterSet& moved, int) {
-            return ComputeNumbers(line.Refit(moved), context.axes);
-          })};
-}
-
-std::vector<Eigen::Matrix3Xd> SampleLines(const std::vector<LineCurve>& lines) {
-  std::vector<Eigen::Matrix3Xd> samples;
-  for (const LineCurve& line : lines) samples.push_back(SampleForCut(line.fit.curve));
-  return samples;
-}
-
-NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& cut,
-                                 double height_m) {
-  const std::vector<LineCurve>& lines = context.curves.lines;
-  const std::vector<Eigen::Matrix3Xd> samples = SampleLines(lines);
-  std::set<int> indices;
-  for (const LineCurve& line : lines) indices.insert(line.indices.begin(), line.indices.end());
-  const auto numbers = [&](const CenterSet& moved, int index) -> SectionNumbers {
-    std::vector<Eigen::Matrix3Xd> moved_samples = samples;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const std::vector<int>& on_line = lines[i].indices;
-      if (std::find(on_line.begin(), on_line.end(), index) != on_line.end()) {
-        moved_samples[i] = SampleForCut(lines[i].Refit(moved));
-      }
-    }
-    const HeightCut moved_cut = CutAtHeight(moved_samples, context.axes.up, height_m);
-    // At the very end of the lines a step may leave them: there is no derivative then.
-    if (!moved_cut.curve) {
-      return SectionNumbers::Constant(std::numeric_limits<double>::quiet_NaN());
-    }
-    return ComputeNumbers(*moved_cut.curve, context.axes);
-  };
-  return {ComputeNumbers(cut, context.axes),
-          Differentiate(context.centers, {indices.begin(), indices.end()}, numbers)};
-}
-
-// Nothing where a marker without a sigma takes part.
-std::optional<double> SigmaOfGradient(const CenterSet& centers,
-                                      const Eigen::RowVectorXd& gradient) {
-  for (std::size_t i = 0; i < centers.has_sigma.size(); ++i) {
-    const auto by_marker = gradient.segment<3>(static_cast<Eigen::Index>(3 * i));
-    if (!by_marker.allFinite() || (!centers.has_sigma[i] && !by_marker.isZero(0.0))) {
-      return std::nullopt;
-    }
-  }
-  const double variance = gradient * centers.covariance_m2 * gradient.transpose();
-  return std::sqrt(std::max(0.0, variance));
-}
-
-// Azimuth of the boom with its gradient, in the place of a chord's.
-NumbersWithGradient NumbersOfBoom(const PartContext& context, const Boom& boom) {
-  const auto azimuth = [&](const CenterSet& centers, int) -> SectionNumbers {
-    SectionNumbers numbers = SectionNumbers::Zero();
-    numbers[kAzimuth] =
-        context.axes.leeward *
-        AngleAboutDeg(context.axes.up, context.axes.reference,
-                      centers.x_m.col(boom.last_idx) - centers.x_m.col(boom.first_idx));
-    return numbers;
-  };
-  return {azimuth(context.centers, 0),
-          Differentiate(context.centers, {boom.first_idx, boom.last_idx}, azimuth)};
 }
 
 Section DescribeSection(const PartContext& context, const SpaceCurve& curve,
@@ -271,7 +157,7 @@ void AddPartSections(const PartContext& context, const std::optional<Boom>& boom
     sections.back().name = name;
     sections.back().is_line = false;
   }
-  // The lines come first and from the lowest up.
+  // The first section is the lowest line.
   const NumbersWithGradient reference = boom ? NumbersOfBoom(context, *boom) : numbers.front();
   for (std::size_t i = 0; i < sections.size(); ++i) {
     SetTwist(context.centers, numbers[i], reference, &sections[i]);
@@ -282,7 +168,7 @@ void AddPartSections(const PartContext& context, const std::optional<Boom>& boom
 }
 
 SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& up) {
-  // Azimuths count from the lowest chord, so that no angle is near 180 degrees.
+  // Azimuths relative to the lowest chord are far from the jump at 180 degrees.
   const Eigen::Vector3d reference =
       EvaluateCurve(lines.front().fit.curve, 1.0) - EvaluateCurve(lines.front().fit.curve, 0.0);
   SectionAxes axes{up, reference, 1};
@@ -294,20 +180,34 @@ SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& u
 
 }  // namespace
 
+OptionGroup DescribeOptions(SectionOptions* options) {
+  const auto set_heights = [options](const std::string& text, const std::string& option) {
+    const auto heights_m = ParseNumberList<double>(text);
+    if (!heights_m) {
+      throw InputError(
+          fmt::format("{}: '{}' is no list of heights in m such as 1,2.5,4", option, text));
+    }
+    options->heights_m = *heights_m;
+  };
+  return {"Sections",
+          {{"Section.heights", ParsedValue{&options->heights_m, "", set_heights}, "m,m,...",
+            "heights of sections besides the lines, z of the frame"},
+           {"Section.min_markers", &options->min_markers, "markers",
+            "fewest whole markers on a line that make a section", AtLeast(4)}}};
+}
+
 void SectionOptions::Check() const {
   constexpr std::size_t kMaxHeights = 500;
+  CheckRanges(*this);
+  const std::string name = OptionName(&SectionOptions::heights_m);
   if (heights_m.size() > kMaxHeights) {
-    throw InputError(
-        fmt::format("{} section heights: at most {} are drawn", heights_m.size(), kMaxHeights));
+    throw InputError(fmt::format("{}: {} heights are too many; give at most {}", name,
+                                 heights_m.size(), kMaxHeights));
   }
   for (const double height_m : heights_m) {
     if (!std::isfinite(height_m)) {
-      throw InputError(fmt::format("section height {}: a number of metres is expected", height_m));
+      throw InputError(fmt::format("{}: {} is no height; give numbers of metres", name, height_m));
     }
-  }
-  if (min_markers < 4) {
-    throw InputError(
-        fmt::format("min_markers {}: a section needs at least 4 markers", min_markers));
   }
 }
 
@@ -321,7 +221,7 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
     return report;
   }
   if (!frame.up_in_frame) {
-    report.notes.push_back("no sections: the markers of the lines do not tell where up is");
+    report.notes.push_back("no sections: the markers of the lines do not determine where up is");
     return report;
   }
   const CenterSet centers = CollectCenters(shape, layout, covariance);
@@ -341,7 +241,7 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
   }
   if (wants_boom && report.twist_reference != kBoomPart) {
     report.notes.push_back(
-        "twist counts from the lowest section: fewer than two markers of the boom are whole");
+        "twist against the lowest section: fewer than two markers of the boom are whole");
   }
   return report;
 }

@@ -1,8 +1,8 @@
-// Section drawings for CAD and for the eye, in mm.
+// Drawings of sections in mm: DXF for CAD programs, SVG for reading.
 //
-// The DXF is ASCII of AutoCAD R12, the version that every program reads, with $INSUNITS = 4 (mm).
-// Of Debian's C++ libraries libdxflib and libdxfrw are under the GPL, which velamap's licence does
-// not bear, and dime has had no release since 2011; what is written here is three kinds of entity.
+// The DXF is ASCII of AutoCAD R12, which every program reads, with $INSUNITS = 4 (mm). It needs
+// three kinds of entities only. Of the C++ libraries in Debian, libdxflib and libdxfrw are under
+// the GPL, which velamap's license does not allow, and dime has had no release since 2011.
 
 #pragma once
 
@@ -13,18 +13,18 @@
 
 namespace velamap {
 
-// Every section where it is in the frame: a 3D polyline a section, each on a layer of its own
-// (PART_SECTION, with what a layer's name must not have replaced by _), the markers as points on
-// MARKERS.
+// Sections at their positions in the frame: one 3D polyline per section on its own layer
+// (PART_SECTION, with characters that a layer name does not allow replaced by _), and the markers
+// as points on layer MARKERS.
 void WriteSectionsDxf(const SectionReport& report, const ShapeFrame& frame, std::ostream& out);
 
-// Every section as seen along the sail: x along the chord from the luff, y the depth, one below the
-// other from the head down; chords on layer CHORDS, names on layer NAMES.
+// Profiles of the sections: x along the chord from the luff, y the depth, one below the other from
+// the head down; chords on layer CHORDS, names on layer NAMES.
 void WriteSectionProfilesDxf(const SectionReport& report, const ShapeFrame& frame,
                              std::ostream& out);
 
-// The same profiles with their numbers, drawn to one scale (both axes), which stands in the
-// drawing; missing sections with their reasons, notes and the frame below.
+// The same profiles with their numbers, with one scale for both axes and a scale bar; below them
+// the frame, notes, and missing sections with their reasons.
 void WriteSectionProfilesSvg(const SectionReport& report, const ShapeFrame& frame,
                              std::ostream& out);
 

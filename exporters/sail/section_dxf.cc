@@ -1,4 +1,5 @@
-// The DXF side of section_drawing.h. A DXF file is pairs of lines: a group code and its value.
+// DXF functions of section_drawing.h. A DXF file consists of pairs of lines: a group code and its
+// value.
 
 #include <algorithm>
 #include <cctype>
@@ -13,13 +14,13 @@
 
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
+#include "exporters/shape/units.h"
 #include "importer/base/csv.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
-constexpr double kGapPerDepth = 0.5;  // between drawings, of the largest depth
+constexpr double kGapPerDepth = 0.5;  // gap between profiles over the largest depth
 constexpr double kMinGap_mm = 100.0;
 
 void Write(std::ostream& out, int code, const std::string& value) {
@@ -28,13 +29,13 @@ void Write(std::ostream& out, int code, const std::string& value) {
 void Write(std::ostream& out, int code, int value) { Write(out, code, std::to_string(value)); }
 
 void WritePoint(std::ostream& out, const Eigen::Vector3d& x_mm) {
-  // A ten-thousandth of a millimetre; adding 0 turns -0 into 0.
+  // Rounds to 0.0001 mm; adding 0 turns -0 into 0.
   for (int axis = 0; axis < 3; ++axis) {
     Write(out, 10 * (axis + 1), fmt::format("{:.4f}", std::round(x_mm[axis] * 1e4) / 1e4 + 0.0));
   }
 }
 
-// R12 allows letters, digits, $ - and _, at most 31 of them, in capitals.
+// R12 allows at most 31 capital letters, digits, $, - and _.
 std::string LayerName(const std::string& name) {
   constexpr std::size_t kMaxLength = 31;
   std::string layer;
@@ -46,7 +47,7 @@ std::string LayerName(const std::string& name) {
   return layer.substr(0, kMaxLength);
 }
 
-// By section, all different.
+// One unique layer name per section.
 std::vector<std::string> SectionLayers(const SectionReport& report) {
   std::vector<std::string> layers;
   std::set<std::string> used = {"MARKERS", "CHORDS", "NAMES"};
@@ -106,12 +107,12 @@ void WritePolyline(const std::vector<Eigen::Vector3d>& points_mm, const std::str
   Write(out, 8, layer);
   Write(out, 66, 1);  // vertices follow
   WritePoint(out, Eigen::Vector3d::Zero());
-  Write(out, 70, 8);  // in space
+  Write(out, 70, 8);  // 3D
   for (const Eigen::Vector3d& x_mm : points_mm) {
     Write(out, 0, "VERTEX");
     Write(out, 8, layer);
     WritePoint(out, x_mm);
-    Write(out, 70, 32);  // of a polyline in space
+    Write(out, 70, 32);  // of a 3D polyline
   }
   Write(out, 0, "SEQEND");
   Write(out, 8, layer);

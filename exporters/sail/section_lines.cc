@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double kSamePlace_m = 1e-3;
 
-// Why no curve can be laid through the markers; empty if it can.
+// The reason why no curve can be fitted to the markers; empty if one can.
 std::string WhyNoCurve(const CenterSet& centers, const std::vector<int>& indices,
                        const Eigen::Vector3d& up) {
   constexpr double kMinSine = 0.1;  // about 6 degrees
@@ -24,17 +25,17 @@ std::string WhyNoCurve(const CenterSet& centers, const std::vector<int>& indices
     return centers.marker_ids[static_cast<std::size_t>(indices[static_cast<std::size_t>(i)])];
   };
   if (up.cross(chord).norm() <= kMinSine * chord.norm()) {
-    return "it runs up, not across; list it under 'vertical', or name another frame";
+    return "it runs upwards; list it under 'vertical', or choose another frame";
   }
   for (Eigen::Index i = 1; i < x.cols(); ++i) {
     const Eigen::Vector3d step = x.col(i) - x.col(i - 1);
     if (step.norm() < kSamePlace_m) {
-      return fmt::format("markers {} and {} are in one place", id(i - 1), id(i));
+      return fmt::format("markers {} and {} are in the same place", id(i - 1), id(i));
     }
     if (step.dot(chord) <= 0) {
       return fmt::format(
-          "marker {} does not lie behind marker {} on the way from luff to leech; "
-          "correct their order in the layout",
+          "marker {} is not aft of marker {} between luff and leech; correct their order in the "
+          "layout",
           id(i), id(i - 1));
     }
   }
@@ -49,7 +50,7 @@ double MiddleHeight(const LineCurve& line, const Eigen::Vector3d& up) {
   return up.dot(EvaluateCurve(line.fit.curve, 0.0) + EvaluateCurve(line.fit.curve, 1.0)) / 2;
 }
 
-// Lines against the sense of most, or of the lowest if as many run either way.
+// Removes lines that run opposite to the majority, or to the lowest line in a tie.
 void DropReversed(const Eigen::Vector3d& up, PartCurves* curves) {
   if (curves->lines.empty()) return;
   const auto flat = [&](const LineCurve& line) -> Eigen::Vector3d {
@@ -64,20 +65,20 @@ void DropReversed(const Eigen::Vector3d& up, PartCurves* curves) {
       kept.push_back(std::move(line));
     } else {
       curves->missing.push_back({line.name,
-                                 "it runs against the other lines; list its markers from luff to "
-                                 "leech"});
+                                 "it runs opposite to the other lines; list its markers from luff "
+                                 "to leech"});
     }
   }
   curves->lines = std::move(kept);
 }
 
-// Curve parameters at which lines are compared and joined.
+// Curve parameters at which lines are compared and connected.
 Eigen::ArrayXd Fractions() {
   constexpr int kNumFractions = 25;
   return Eigen::ArrayXd::LinSpaced(kNumFractions, 0.0, 1.0);
 }
 
-// Where the curve, which starts below the height and ends above it, passes it.
+// The parameter at which a curve, which starts below the height and ends above it, reaches it.
 double ParameterAtHeight(const SpaceCurve& curve, const Eigen::Vector3d& up, double height_m) {
   constexpr int kMaxSteps = 60;
   double low = 0.0, high = 1.0, t = 0.5;
@@ -93,7 +94,7 @@ double ParameterAtHeight(const SpaceCurve& curve, const Eigen::Vector3d& up, dou
   return t;
 }
 
-// Mean distances between neighbouring lines, added up, over the whole.
+// Cumulative mean distances between neighboring lines, normalized to 1.
 Eigen::ArrayXd SpanParameters(const std::vector<Eigen::Matrix3Xd>& samples) {
   Eigen::ArrayXd parameters(static_cast<Eigen::Index>(samples.size()));
   parameters[0] = 0.0;
@@ -105,7 +106,7 @@ Eigen::ArrayXd SpanParameters(const std::vector<Eigen::Matrix3Xd>& samples) {
   return parameters / parameters[parameters.size() - 1];
 }
 
-// Fits the lines of which all markers have a sigma, or those of which some have none.
+// Fits the lines whose markers all have a sigma, or the other lines.
 void SmoothTogether(bool with_sigma, const CenterSet& centers, std::vector<LineCurve>* lines) {
   std::vector<LineCurve*> alike;
   std::vector<CurveData> data;
@@ -192,7 +193,7 @@ std::vector<std::string> FindCrossings(const std::vector<LineCurve>& lines,
     if (gap_m > 0) continue;
     crossings.push_back(fmt::format(
         "sections {} and {} cross: at {:.0f} % of their length {} is {:.1f} mm below {}",
-        lines[i - 1].name, lines[i].name, 100 * Fractions()[place], lines[i].name, -1e3 * gap_m,
+        lines[i - 1].name, lines[i].name, 100 * Fractions()[place], lines[i].name, -kMmPerM * gap_m,
         lines[i - 1].name));
   }
   return crossings;
@@ -209,13 +210,13 @@ Eigen::Matrix3Xd SampleForCut(const SpaceCurve& line) {
 
 HeightCut CutAtHeight(const std::vector<Eigen::Matrix3Xd>& line_points, const Eigen::Vector3d& up,
                       double height_m) {
-  constexpr double kTolerance_m = 1e-6;  // a height that is a line's own is within the lines
+  constexpr double kTolerance_m = 1e-6;  // includes the heights of the outer lines themselves
   if (line_points.size() < 2) return {std::nullopt, "fewer than two lines have a section"};
   const double lowest_m = (up.transpose() * line_points.front()).maxCoeff();
   const double highest_m = (up.transpose() * line_points.back()).minCoeff();
   if (height_m < lowest_m - kTolerance_m || height_m > highest_m + kTolerance_m) {
     return {std::nullopt,
-            fmt::format("the lines give whole horizontal sections from {:.3f} to {:.3f} m only",
+            fmt::format("the lines cover whole horizontal sections only from {:.3f} to {:.3f} m",
                         lowest_m, highest_m)};
   }
   const Interpolation across = MakeInterpolation(SpanParameters(line_points));

@@ -1,5 +1,5 @@
-// The curves of one part's horizontal lines, and the horizontal cuts between them. Private to
-// section.cc.
+// Curves through the horizontal lines of one part, and horizontal cuts between them. Private to the
+// sections.
 
 #pragma once
 
@@ -15,16 +15,16 @@
 
 namespace velamap {
 
-// Marker centres and what is known of their noise, in one place for all sections.
+// Marker centers and their noise, shared by all sections.
 struct CenterSet {
   std::vector<int> marker_ids;    // ascending
   Eigen::Matrix3Xd x_m;           // by index
-  Eigen::MatrixXd covariance_m2;  // 3n x 3n; rows of markers without sigma are zero
+  Eigen::MatrixXd covariance_m2;  // 3n x 3n; zero rows for markers without a sigma
   std::vector<bool> has_sigma;
 
   std::optional<int> IndexOf(int marker_id) const;
   Eigen::Matrix3Xd Points(const std::vector<int>& indices) const;
-  // With an empty covariance where one of them has no sigma.
+  // The covariance is empty if one of the markers has no sigma.
   CurveData Data(const std::vector<int>& indices) const;
 };
 
@@ -34,7 +34,7 @@ struct LineCurve {
   double smoothing = 0.0;
   CurveFit fit;
 
-  // The same with moved markers.
+  // Fits the same line with moved markers.
   SpaceCurve Refit(const CenterSet& centers) const;
 };
 
@@ -48,17 +48,17 @@ struct PartCurves {
   std::vector<MissingLine> missing;
 };
 
-// Leaves out lines with too few markers, with markers in one place or not in order along the chord,
-// and those that run against the others.
+// Fits the lines of the part. Leaves out lines with too few markers, with markers in the same place
+// or out of order along the chord, and lines that run opposite to the others.
 PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const Eigen::Vector3d& up,
                         int min_markers);
 
-// "h1 and h2 cross at ..." for neighbours of which one is not above the other all along.
+// Messages about neighboring lines that cross.
 std::vector<std::string> FindCrossings(const std::vector<LineCurve>& lines,
                                        const Eigen::Vector3d& up);
 
-// The cut at `height_m` along up through lines that were sampled, from the lowest up; nothing and
-// why where they do not give it whole.
+// The cut at `height_m` along up through sampled lines, from the lowest up. If the lines do not
+// cover the whole cut, `reason` says so.
 struct HeightCut {
   std::optional<SpaceCurve> curve;
   std::string reason;
@@ -66,7 +66,7 @@ struct HeightCut {
 HeightCut CutAtHeight(const std::vector<Eigen::Matrix3Xd>& line_points, const Eigen::Vector3d& up,
                       double height_m);
 
-// The points that CutAtHeight joins: at equal fractions of the curve.
+// Points at equal fractions of the line, for CutAtHeight.
 Eigen::Matrix3Xd SampleForCut(const SpaceCurve& line);
 
 }  // namespace velamap

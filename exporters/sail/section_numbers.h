@@ -1,13 +1,16 @@
-// The numbers of one section curve, and how they depend on the markers. Private to section.cc and
-// section_lines.cc.
+// The numbers of one section curve, and their derivatives with respect to the marker centers for
+// their sigmas. Private to the sections.
 
 #pragma once
 
-#include <array>
+#include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "exporters/sail/section_lines.h"
 #include "exporters/sail/section_spline.h"
+#include "importer/layout/layout.h"
 
 namespace velamap {
 
@@ -15,20 +18,20 @@ enum SectionNumber {
   kChord,  // m
   kCamber,
   kDraftPosition,
-  kEntryAngle,  // deg, to the side of up x chord
+  kEntryAngle,  // deg
   kExitAngle,   // deg
-  kAzimuth,     // deg, of the chord about up, from a reference direction
+  kAzimuth,     // deg, of the chord about up, from the reference direction
   kNumSectionNumbers
 };
 using SectionNumbers = Eigen::Matrix<double, kNumSectionNumbers, 1>;
 
 struct SectionAxes {
   Eigen::Vector3d up;         // unit
-  Eigen::Vector3d reference;  // from which azimuths count, not along up
-  int leeward = 1;            // 1: depth counts along up x chord, -1: against it
+  Eigen::Vector3d reference;  // direction of azimuth 0, not along up
+  int leeward = 1;            // 1 if leeward is on the side of up x chord, otherwise -1
 };
 
-// Unit vectors of the chord and of the depth.
+// Unit vectors along chord and depth.
 struct ProfileAxes {
   Eigen::Vector3d chord, depth;
 };
@@ -36,10 +39,43 @@ ProfileAxes ProfileAxesOf(const SpaceCurve& curve, const SectionAxes& axes);
 
 SectionNumbers ComputeNumbers(const SpaceCurve& curve, const SectionAxes& axes);
 
-// Mean of the depths, m, with their sign: tells on which side the curve bulges.
+// Signed mean depth, m; its sign tells to which side the curve bulges.
 double MeanDepth(const SpaceCurve& curve, const SectionAxes& axes);
 
-// Of b against a about up, -180..180.
+// Angle from a to b about up, -180..180.
 double AngleAboutDeg(const Eigen::Vector3d& up, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+// Common to all sections of one part.
+struct PartContext {
+  const LayoutPart& part;
+  const CenterSet& centers;
+  SectionAxes axes;
+  PartCurves curves;
+};
+
+// Two markers of the boom as indices into the CenterSet, from the mast aft.
+struct Boom {
+  int first_idx = 0, last_idx = 0;
+};
+
+// One row per number, one column per coordinate of the marker centers. NaN if no marker of the
+// section has a sigma.
+struct NumbersWithGradient {
+  SectionNumbers numbers;
+  Eigen::MatrixXd gradient;
+};
+
+NumbersWithGradient NumbersOfLine(const PartContext& context, const LineCurve& line);
+// `cut` is the section at `height_m`.
+NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& cut,
+                                 double height_m);
+// The azimuth of the boom; the other numbers are zero.
+NumbersWithGradient NumbersOfBoom(const PartContext& context, const Boom& boom);
+
+// Sigma of a number with this gradient; nothing if it depends on a marker without a sigma.
+std::optional<double> SigmaOfGradient(const CenterSet& centers, const Eigen::RowVectorXd& gradient);
+
+// Points of the lines as CutAtHeight takes them.
+std::vector<Eigen::Matrix3Xd> SampleLines(const std::vector<LineCurve>& lines);
 
 }  // namespace velamap

@@ -36,8 +36,8 @@ Eigen::MatrixXd DesignAt(const Eigen::ArrayXd& knots, int degree,
   return design;
 }
 
-// Rows of which the squares of row * poles add up to the integral of |f'''|^2: the third derivative
-// is constant within a knot span.
+// Rows whose products with the poles have squares that sum to the integral of |f'''|^2. The third
+// derivative is constant within a knot span.
 Eigen::MatrixXd ThirdDerivativeRows(const Eigen::ArrayXd& knots) {
   const Eigen::Index num_poles = knots.size() - kCubic - 1;
   Eigen::MatrixXd rows(num_poles - kCubic, num_poles);
@@ -49,11 +49,11 @@ Eigen::MatrixXd ThirdDerivativeRows(const Eigen::ArrayXd& knots) {
   return rows;
 }
 
-// Least squares |design * poles - values|^2 + lambda |penalty * poles|^2, everything whitened.
+// Whitened least squares |design * poles - values|^2 + lambda |penalty * poles|^2.
 struct Smoother {
   Eigen::MatrixXd design, penalty;
   Eigen::VectorXd values;
-  Eigen::Vector3d origin;  // values are relative to it, for the sake of digits
+  Eigen::Vector3d origin;  // of the values, for numerical precision
   Eigen::ArrayXd knots, parameters;
   bool is_noise_known = false;
 };
@@ -82,13 +82,13 @@ Smoother MakeSmoother(const CurveData& data) {
     root.matrixL().solveInPlace(smoother.values);
   }
   const Eigen::MatrixXd third = ThirdDerivativeRows(smoother.knots);
-  // The weights of points and penalty alike; lambda is relative to this.
+  // Gives points and penalty equal weight; lambda is relative to this.
   smoother.penalty = smoother.design.norm() / (std::sqrt(3.0) * third.norm()) *
                      Eigen::kroneckerProduct(third, identity).eval();
   return smoother;
 }
 
-// By QR of design over penalty, whose condition is the square root of the normal equations'.
+// QR decomposition of design over penalty, which is better conditioned than the normal equations.
 Eigen::HouseholderQR<Eigen::MatrixXd> Decompose(const Smoother& smoother, double smoothing) {
   Eigen::MatrixXd stacked(smoother.design.rows() + smoother.penalty.rows(), smoother.design.cols());
   stacked << smoother.design, std::sqrt(smoothing) * smoother.penalty;
@@ -102,7 +102,7 @@ Eigen::VectorXd SolvePoles(const Smoother& smoother,
   return qr.solve(right);
 }
 
-// Trace of the hat matrix: squares of the orthonormal columns within the rows of the points.
+// Trace of the hat matrix: sum of the squares of Q over the rows of the points.
 double HatTrace(const Smoother& smoother, const Eigen::HouseholderQR<Eigen::MatrixXd>& qr) {
   const Eigen::MatrixXd columns =
       qr.householderQ() * Eigen::MatrixXd::Identity(qr.rows(), qr.cols());
@@ -119,7 +119,7 @@ SpaceCurve CurveFromPoles(const Smoother& smoother, const Eigen::VectorXd& poles
   return curve;
 }
 
-// The less the better: Mallows' Cp or the cross-validation error of all curves together.
+// Mallows' Cp or the cross-validation error of all curves together; lower is better.
 double Score(const std::vector<Smoother>& smoothers, double smoothing) {
   double residual = 0.0, trace = 0.0, num_values = 0.0;
   for (const Smoother& smoother : smoothers) {
@@ -129,7 +129,7 @@ double Score(const std::vector<Smoother>& smoothers, double smoothing) {
     num_values += static_cast<double>(smoother.values.size());
   }
   if (smoothers.front().is_noise_known) return residual + 2 * trace;
-  // Noise of a micrometre is assumed at least, so that exact points leave no choice to rounding.
+  // A noise of at least a micrometre keeps rounding from deciding for exact points.
   residual += num_values * kMinSigma_m * kMinSigma_m;
   return residual / std::pow(std::max(num_values - trace, 1e-9), 2);
 }
@@ -158,10 +158,10 @@ Eigen::ArrayXd ChordLengthParameters(const Eigen::Matrix3Xd& points) {
 }
 
 double ChooseSmoothing(const std::vector<CurveData>& curves) {
-  constexpr int kFirst = -16, kLast = 16;  // from curves that interpolate to parabolas
+  constexpr int kFirst = -16, kLast = 16;  // from interpolation to parabolas
   constexpr double kStepsPerDecade = 2.0;
-  // What is best for the points is too much for their derivatives, and so for angles and draft:
-  // with a tenth their bias on smooth sections stays below their noise.
+  // The optimum for the points oversmooths their derivatives, and so angles and draft. With a tenth
+  // of it, their bias on smooth sections stays below their noise.
   constexpr double kShare = 0.1;
   VELAMAP_CHECK(!curves.empty());
   std::vector<Smoother> smoothers;
@@ -200,7 +200,7 @@ Interpolation MakeInterpolation(const Eigen::ArrayXd& parameters) {
         DesignAt(result.knots, result.degree, parameters).inverse().transpose();
     return result;
   }
-  // The least penalty under the points as constraints, with multipliers:
+  // Minimizes the penalty with the points as constraints by Lagrange multipliers:
   // [penalty  design^T; design  0] [poles; multipliers] = [0; points].
   result.knots = KnotsAt(parameters, kCubic);
   const Eigen::MatrixXd design = DesignAt(result.knots, kCubic, parameters);

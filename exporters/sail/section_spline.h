@@ -1,14 +1,15 @@
-// Smoothing spline through the markers of a line, as a curve in space:
+// Smoothing spline through the markers of a line, as a space curve:
 //
 //   min over f   (f(t) - x)^T C^-1 (f(t) - x)  +  lambda * integral of |f'''|^2,   0 <= t <= 1
 //
-// f is a cubic B-spline with a knot at every marker's chord length, C the joint covariance of the
-// markers. The usual penalty on f'' would make f straight at both ends and a sail's entry and exit
-// angles too small; f''' leaves parabolas alone. lambda is chosen once for all lines of a sail,
-// which are of one cloth and together tell more than each alone. It minimises the expected error:
-// Mallows' Cp ("Some comments on Cp", 1973) where C is known, else generalised cross-validation
-// (Golub, Heath and Wahba, 1979), which needs the noise to be alike, not known; a tenth of that is
-// used, because angles and draft suffer sooner than the points. For lambda to 0 f interpolates.
+// f is a cubic B-spline with a knot at the chord length of every marker; C is the joint covariance
+// of the markers. The usual penalty on f'' would straighten both ends and reduce the entry and exit
+// angles of a sail, while a penalty on f''' costs nothing for parabolas. All lines of a sail share
+// one lambda, because they are of one cloth and determine it better together. It minimizes the
+// expected error: Mallows' Cp ("Some comments on Cp", 1973) if C is known, otherwise generalized
+// cross-validation (Golub, Heath and Wahba, 1979), which only assumes equal noise. A tenth of that
+// lambda is used, because smoothing biases angles and draft more than the points. As lambda
+// approaches 0, f interpolates.
 
 #pragma once
 
@@ -31,35 +32,36 @@ struct CurveJet {
 Eigen::Vector3d EvaluateCurve(const SpaceCurve& curve, double t);
 CurveJet EvaluateCurveJet(const SpaceCurve& curve, double t);
 
-// Chord lengths from the first point over that of the whole line. At least two points, no two
-// neighbours in one place.
+// Chord lengths from the first point, normalized to 1. Needs at least two points and distinct
+// neighbors.
 Eigen::ArrayXd ChordLengthParameters(const Eigen::Matrix3Xd& points_in_shape_m);
 
-// Points of one curve, in order along it, and their noise: 3n x 3n (x y z of each point in turn,
-// m^2) or empty where it is not known. At least four points; sigmas count with 1 micrometre at
-// least.
+// Points of one curve, in order, and the covariance of their noise: 3n x 3n (x y z of each point in
+// turn, m^2), or empty if it is unknown. Needs at least four points. Sigmas are at least 1
+// micrometre.
 struct CurveData {
   Eigen::Matrix3Xd points_in_shape_m;
   Eigen::MatrixXd covariance_m2;
 };
 
-// The smoothing for these curves, all with or all without a covariance: lambda relative to the
-// ratio of the squared weights of the points to those of the penalty, so that it has no unit.
+// Chooses the smoothing of these curves, all with or all without a covariance: lambda relative to
+// the ratio of the squared weights of points and penalty, which makes it dimensionless.
 double ChooseSmoothing(const std::vector<CurveData>& curves);
 
 struct CurveFit {
   SpaceCurve curve;
-  Eigen::ArrayXd parameters;              // of the points
-  double num_effective_parameters = 0.0;  // trace of the hat matrix / 3: the number of points means
-                                          // that it interpolates, 3 that it is a parabola
+  Eigen::ArrayXd parameters;  // of the points
+  // Trace of the hat matrix / 3, from 3 for a parabola to the number of points for interpolation.
+  double num_effective_parameters = 0.0;
 };
 CurveFit FitCurve(const CurveData& data, double smoothing);
 
-// Only the curve, in less time.
+// Returns the curve only, which is faster.
 SpaceCurve FitCurveOnly(const CurveData& data, double smoothing);
 
-// The interpolating curves with common parameters (ascending from 0 to 1): poles = points * result.
-// Cubic with the least integral of |f'''|^2; of a lower degree for fewer than four points.
+// Interpolating curves with common parameters (ascending from 0 to 1): poles = points *
+// poles_from_points. Cubic with the smallest integral of |f'''|^2, or of a lower degree for fewer
+// than four points.
 struct Interpolation {
   int degree = 3;
   Eigen::ArrayXd knots;

@@ -1,4 +1,4 @@
-// The SVG side of section_drawing.h.
+// SVG function of section_drawing.h.
 
 #include <algorithm>
 #include <cmath>
@@ -10,17 +10,17 @@
 
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
+#include "exporters/shape/units.h"
 #include "importer/base/csv.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
 constexpr double kMargin = 24, kDrawingWidth = 640, kNumbersWidth = 300;
 constexpr double kWidth = 3 * kMargin + kDrawingWidth + kNumbersWidth;
-constexpr double kLine = 15;            // of text
+constexpr double kLine = 15;            // height of a line of text
 constexpr int kNumberLines = 4;         // beside a profile
-constexpr std::size_t kMaxChars = 150;  // of a line of text at the foot
+constexpr std::size_t kMaxChars = 150;  // per line of text below the profiles
 
 std::string Escaped(const std::string& text) {
   std::string escaped;
@@ -51,7 +51,7 @@ void WriteText(double x, double y, const std::string& style, const std::string& 
                      Escaped(text));
 }
 
-// `value ± sigma`, or the value alone where it has none.
+// `value ± sigma`, or only the value if it has no sigma.
 std::string WithSigma(const Estimate& estimate, double factor, int digits) {
   const double value = factor * estimate.value;
   if (!estimate.sigma) return fmt::format("{:.{}f}", value, digits);
@@ -69,12 +69,12 @@ std::vector<std::string> NumbersText(const Section& section) {
       fmt::format("camber {} %, draft {}", WithSigma(section.camber, 100, 2), draft),
       fmt::format("entry {}°, exit {}°", WithSigma(section.entry_angle_deg, 1, 1),
                   WithSigma(section.exit_angle_deg, 1, 1)),
-      is_reference ? "twist counts from here"
+      is_reference ? "reference of the twist"
                    : fmt::format("twist {}°", WithSigma(section.twist_deg, 1, 2)),
   };
 }
 
-// At spaces; a word too long for a line stays whole.
+// Breaks the text at spaces; words longer than a line are kept.
 std::vector<std::string> Wrapped(std::string text) {
   constexpr std::size_t kMinChars = 40;
   std::vector<std::string> lines;
@@ -93,7 +93,7 @@ struct Scale {
   double left = kMargin;
 };
 
-// Depths above and below the chord, mm.
+// Largest depths above and below the chord, mm.
 struct Range {
   double above = 0.0, below = 0.0;
 };
@@ -141,7 +141,7 @@ void WriteProfile(const Section& section, const Scale& scale, double chord_y, st
 }
 
 void WriteScaleBar(const Scale& scale, double y, std::ostream& out) {
-  // 1, 2 or 5 times a power of ten, at most a quarter of the width.
+  // 1, 2 or 5 times a power of ten, up to a quarter of the width.
   const double quarter_mm = kDrawingWidth / 4 / scale.px_per_mm;
   double length_mm = std::pow(10.0, std::floor(std::log10(quarter_mm)));
   for (const double factor : {5.0, 2.0}) {
@@ -184,10 +184,10 @@ void WriteSectionProfilesSvg(const SectionReport& report, const ShapeFrame& fram
     ranges.push_back(DepthRange(section));
   }
   const Scale scale{kDrawingWidth / longest_mm, kMargin};
-  // Heights of the panels first, for the size of the drawing stands at its beginning.
+  // Lays out the profiles first, because the drawing starts with its size.
   std::vector<double> chord_ys(ranges.size());
   double y = kMargin;
-  for (std::size_t i = ranges.size(); i-- > 0;) {  // the head on top
+  for (std::size_t i = ranges.size(); i-- > 0;) {  // from the head down
     const double above = scale.px_per_mm * ranges[i].above + kLine;
     const double below = scale.px_per_mm * ranges[i].below + kLine;
     chord_ys[i] = y + std::max(above, kLine);

@@ -2,20 +2,23 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <ostream>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "exporters/shape/units.h"
 #include "importer/base/csv.h"
+#include "importer/base/statistics.h"
 
 namespace velamap {
 namespace {
 
-// Keys of the numbers, the same in CSV and JSON; a sigma has the key with sigma_ before it.
+// Keys of the numbers in CSV and JSON. The key of a sigma starts with sigma_.
 using KeyedEstimates = std::array<std::pair<const char*, std::optional<Estimate>>, 6>;
 
 KeyedEstimates EstimatesOf(const Section& section) {
@@ -27,42 +30,52 @@ KeyedEstimates EstimatesOf(const Section& section) {
            {"twist_deg", section.twist_deg}}};
 }
 
-double ResidualRms(const Section& section) {
-  double sum = 0.0;
-  for (const SectionMarker& marker : section.markers) sum += marker.residual_m * marker.residual_m;
-  return std::sqrt(sum / static_cast<double>(section.markers.size()));
+double ResidualRmsMm(const Section& section) {
+  std::vector<double> residuals_m;
+  for (const SectionMarker& marker : section.markers) residuals_m.push_back(marker.residual_m);
+  return kMmPerM * Rms(residuals_m);
 }
 
-void WriteFrameLine(const ShapeFrame& frame, std::ostream& out) {
-  out << "# frame " << SingleLine(FrameText(frame)) << '\n';
+void WriteSectionRecord(const Section& section, CsvWriter* csv) {
+  csv->AddField(section.part);
+  csv->AddField(section.name);
+  csv->AddField(section.height_m);
+  csv->AddField(section.is_line ? std::optional(section.markers.size()) : std::nullopt);
+  for (const auto& [key, estimate] : EstimatesOf(section)) {
+    csv->AddField(estimate ? std::optional(estimate->value) : std::nullopt);
+    csv->AddField(estimate ? estimate->sigma : std::nullopt);
+  }
+  csv->AddField(section.is_line ? std::optional(ResidualRmsMm(section)) : std::nullopt);
+  csv->AddField("");  // reason
+  csv->EndRecord();
 }
 
-std::string Shortest(double value) { return fmt::format("{}", value); }
+void WriteMissingRecord(const MissingSection& missing, CsvWriter* csv) {
+  constexpr std::size_t kNumEmpty = 2 + 2 * std::tuple_size_v<KeyedEstimates> + 1;
+  csv->AddField(missing.part);
+  csv->AddField(missing.name);
+  for (std::size_t i = 0; i < kNumEmpty; ++i) csv->AddField("");
+  csv->AddField(missing.reason);
+  csv->EndRecord();
+}
 
 }  // namespace
 
 void WriteSectionsCsv(const SectionReport& report, const ShapeFrame& frame, std::ostream& out) {
-  WriteFrameLine(frame, out);
-  if (!report.twist_reference.empty()) out << "# twist against " << report.twist_reference << '\n';
-  for (const std::string& note : report.notes) out << "# " << SingleLine(note) << '\n';
-  out << "part,section,height_m,num_markers";
-  for (const auto& [key, estimate] : EstimatesOf({})) out << fmt::format(",{},sigma_{}", key, key);
-  out << ",residual_rms_mm,reason\n";
-  for (const Section& section : report.sections) {
-    out << fmt::format("{},{},{},", CsvField(section.part), CsvField(section.name),
-                       section.height_m);
-    if (section.is_line) out << section.markers.size();
-    for (const auto& [key, estimate] : EstimatesOf(section)) {
-      const bool has_sigma = estimate && estimate->sigma;
-      out << ',' << (estimate ? Shortest(estimate->value) : "") << ','
-          << (has_sigma ? Shortest(*estimate->sigma) : "");
-    }
-    out << ',' << (section.is_line ? Shortest(1e3 * ResidualRms(section)) : "") << ",\n";
+  CsvWriter csv(out);
+  csv.WriteComment("frame " + FrameText(frame));
+  if (!report.twist_reference.empty()) csv.WriteComment("twist against " + report.twist_reference);
+  for (const std::string& note : report.notes) csv.WriteComment(note);
+  for (const char* key : {"part", "section", "height_m", "num_markers"}) csv.AddField(key);
+  for (const auto& [key, estimate] : EstimatesOf({})) {
+    csv.AddField(key);
+    csv.AddField(fmt::format("sigma_{}", key));
   }
-  for (const MissingSection& missing : report.missing) {
-    out << fmt::format("{},{},,,,,,,,,,,,,,,,{}\n", CsvField(missing.part), CsvField(missing.name),
-                       CsvField(missing.reason));
-  }
+  csv.AddField("residual_rms_mm");
+  csv.AddField("reason");
+  csv.EndRecord();
+  for (const Section& section : report.sections) WriteSectionRecord(section, &csv);
+  for (const MissingSection& missing : report.missing) WriteMissingRecord(missing, &csv);
 }
 
 void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std::ostream& out) {
@@ -83,11 +96,11 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
     }
     if (section.is_line) {
       object["num_effective_parameters"] = section.num_effective_parameters;
-      object["residual_rms_mm"] = 1e3 * ResidualRms(section);
+      object["residual_rms_mm"] = ResidualRmsMm(section);
       object["markers"] = Json::array();
       for (const SectionMarker& marker : section.markers) {
         object["markers"].push_back(
-            {{"marker_id", marker.marker_id}, {"residual_mm", 1e3 * marker.residual_m}});
+            {{"marker_id", marker.marker_id}, {"residual_mm", kMmPerM * marker.residual_m}});
       }
     }
     root["sections"].push_back(std::move(object));
@@ -102,18 +115,20 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
 
 void WriteSectionProfilesCsv(const SectionReport& report, const ShapeFrame& frame,
                              std::ostream& out) {
-  WriteFrameLine(frame, out);
-  out << "part,section,marker_id,x,y,z,chordwise_mm,depth_mm\n";
+  CsvWriter csv(out);
+  csv.WriteComment("frame " + FrameText(frame));
+  csv.WriteRecord("part", "section", "marker_id", "x", "y", "z", "chordwise_mm", "depth_mm");
   for (const Section& section : report.sections) {
-    const auto write = [&](const std::string& marker_id, const ProfilePoint& point) {
+    const auto write = [&](const std::optional<int>& marker_id, const ProfilePoint& point) {
       const Eigen::Vector3d& x = point.x_in_frame_m;
-      out << fmt::format("{},{},{},{},{},{},{},{}\n", CsvField(section.part),
-                         CsvField(section.name), marker_id, x.x(), x.y(), x.z(),
-                         1e3 * point.chordwise_m, 1e3 * point.depth_m);
+      csv.WriteRecord(section.part, section.name, marker_id, x.x(), x.y(), x.z(),
+                      kMmPerM * point.chordwise_m, kMmPerM * point.depth_m);
     };
-    for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) write("", point);
+    for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) {
+      write(std::nullopt, point);
+    }
     for (const SectionMarker& marker : section.markers) {
-      write(std::to_string(marker.marker_id), ProfilePointOf(section, marker.x_in_frame_m));
+      write(marker.marker_id, ProfilePointOf(section, marker.x_in_frame_m));
     }
   }
 }

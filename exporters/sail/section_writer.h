@@ -1,7 +1,7 @@
-// Section tables: sections.csv, sections.json and section_profiles.csv. The columns stand in
-// README.md of this room. Classic locale, shortest digits that read back to the same double; what
-// is not known is empty (CSV) or not there (JSON). The CSV files begin with # lines that name the
-// frame.
+// Section tables: sections.csv, sections.json and section_profiles.csv. README.md of this room
+// lists the columns. Numbers have the fewest digits that read back to the same double; an unknown
+// number is an empty field (CSV) or has no key (JSON). The CSV files begin with # lines that name
+// the frame.
 
 #pragma once
 
@@ -12,15 +12,15 @@
 
 namespace velamap {
 
-constexpr int kNumProfilePoints = 101;  // of the files
+constexpr int kNumProfilePoints = 101;  // per section in all files
 
-// One row a section, from the lowest up; then one with a reason for each that is missing.
+// One row per section from the lowest up, then one row per missing section with the reason.
 void WriteSectionsCsv(const SectionReport& report, const ShapeFrame& frame, std::ostream& out);
 
-// An object: frame, twist_reference, notes, sections (with markers and residuals), missing.
+// One object: frame, twist_reference, notes, sections (with markers and residuals), missing.
 void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std::ostream& out);
 
-// Points of the curves, then the markers of each: marker_id is empty for a point of a curve.
+// For each section the points of the curve, with an empty marker_id, then the markers.
 void WriteSectionProfilesCsv(const SectionReport& report, const ShapeFrame& frame,
                              std::ostream& out);
 

@@ -16,71 +16,72 @@ namespace velamap {
 namespace {
 
 constexpr std::size_t kMinMarkers = 3, kMinLines = 2;
-// Of the surface over straight strips from line to line: a half circle has 1.57 of its chord.
+// Limits of the surface's area over that of straight strips between the lines. A half cylinder has
+// a ratio of 1.57.
 constexpr double kMaxAreaRatio = 1.6, kMaxAreaRatioWithEdges = 4.0;
-// The feet of the markers between the lines move a little with every fit.
+// Each fit moves the feet of the markers between the lines a little.
 constexpr int kNumFits = 4;
-// A foot this near to an edge, in parameters, is taken for one on the edge.
+// A foot within this parameter distance of an edge counts as a foot on the edge.
 constexpr double kInside = 1e-9;
 
-struct Given {
-  std::vector<SurfaceLine> lines;      // with enough markers
-  std::vector<SurfaceMarker> markers;  // all others
-  std::map<int, SurfaceMarker> by_id;  // every one
+struct SortedInput {
+  std::vector<SurfaceLine> lines;      // those with enough markers
+  std::vector<SurfaceMarker> markers;  // those on no such line
+  std::map<int, SurfaceMarker> by_id;  // all of them
   std::vector<std::string> notes;
 };
 
-Given SortInput(const SurfaceInput& input) {
-  Given given;
-  given.markers = input.markers;
-  for (const SurfaceMarker& marker : input.markers) given.by_id[marker.marker_id] = marker;
+SortedInput SortInput(const SurfaceInput& input) {
+  SortedInput sorted;
+  sorted.markers = input.markers;
+  for (const SurfaceMarker& marker : input.markers) sorted.by_id[marker.marker_id] = marker;
   for (const SurfaceLine& line : input.lines) {
     std::vector<SurfaceMarker> present;
     for (const auto& marker : line.markers) {
       if (!marker) continue;
       present.push_back(*marker);
-      given.by_id[marker->marker_id] = *marker;
+      sorted.by_id[marker->marker_id] = *marker;
     }
     if (present.size() >= kMinMarkers) {
-      given.lines.push_back(line);
+      sorted.lines.push_back(line);
       continue;
     }
-    given.markers.insert(given.markers.end(), present.begin(), present.end());
-    given.notes.push_back(fmt::format("line {}: {} of its {} markers whole, {} needed; left out",
-                                      line.name, present.size(), line.markers.size(), kMinMarkers));
+    sorted.markers.insert(sorted.markers.end(), present.begin(), present.end());
+    sorted.notes.push_back(fmt::format("line {}: {} of its {} markers whole, {} needed; left out",
+                                       line.name, present.size(), line.markers.size(),
+                                       kMinMarkers));
   }
-  if (given.lines.size() < kMinLines) {
-    throw DataError(
-        fmt::format("no surface: {} of {} horizontal lines have {} whole markers, {} needed{}{}",
-                    given.lines.size(), input.lines.size(), kMinMarkers, kMinLines,
-                    given.notes.empty() ? "" : ": ", fmt::join(given.notes, "; ")));
+  if (sorted.lines.size() < kMinLines) {
+    throw DataError(fmt::format("{} of {} horizontal lines have {} whole markers, {} needed{}{}",
+                                sorted.lines.size(), input.lines.size(), kMinMarkers, kMinLines,
+                                sorted.notes.empty() ? "" : ": ", fmt::join(sorted.notes, "; ")));
   }
-  return given;
+  return sorted;
 }
 
-// The sigma of every marker, and what it says about how to smooth.
+// The sigma of every marker, and the way of smoothing that follows from the sigmas.
 struct Noise {
   std::map<int, double> sigma_m;
   double edge_sigma_m = 1.0;
   Smoothing smoothing = Smoothing::kCrossValidation;
 };
 
-Noise DescribeNoise(const Given& given, const SurfaceOptions& options) {
+Noise DescribeNoise(const SortedInput& sorted, const SurfaceOptions& options) {
   std::vector<double> known;
   bool some_zero = false;
-  for (const auto& [id, marker] : given.by_id) {
+  for (const auto& [id, marker] : sorted.by_id) {
     const std::optional<double> sigma = marker.sigma_m ? marker.sigma_m : options.default_sigma_m;
     if (sigma && *sigma > 0) known.push_back(*sigma);
     some_zero = some_zero || (sigma && *sigma <= 0);
   }
   Noise noise;
-  if (some_zero || (known.empty() && given.by_id.size() < kMinCrossValidated)) {
+  if (some_zero || (known.empty() && sorted.by_id.size() < kMinCrossValidated)) {
     noise.smoothing = Smoothing::kInterpolate;
   } else if (!known.empty()) {
     noise.smoothing = Smoothing::kKnownSigma;
     noise.edge_sigma_m = Median(known);
   }
-  for (const auto& [id, marker] : given.by_id) {
+  for (const auto& [id, marker] : sorted.by_id) {
     const std::optional<double> sigma = marker.sigma_m ? marker.sigma_m : options.default_sigma_m;
     noise.sigma_m[id] =
         noise.smoothing == Smoothing::kKnownSigma ? sigma.value_or(noise.edge_sigma_m) : 1.0;
@@ -109,14 +110,15 @@ std::vector<Eigen::Vector3d> Centers(const std::vector<SurfaceMarker>& markers) 
   return centers;
 }
 
-std::vector<SurfaceResidual> Residuals(const Given& given, const SurfaceParameters& parameters,
+std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
+                                       const SurfaceParameters& parameters,
                                        const SplineSurface& surface) {
   std::map<int, const SurfaceObservation*> used;
   for (const SurfaceObservation& observation : parameters.observations) {
     if (observation.marker_id >= 0) used[observation.marker_id] = &observation;
   }
   std::vector<SurfaceMarker> markers;
-  for (const auto& [id, marker] : given.by_id) markers.push_back(marker);
+  for (const auto& [id, marker] : sorted.by_id) markers.push_back(marker);
   const std::vector<SurfaceFoot> feet = ProjectOnSurface(surface, Centers(markers));
   std::vector<SurfaceResidual> residuals;
   for (std::size_t k = 0; k < markers.size(); ++k) {
@@ -128,8 +130,8 @@ std::vector<SurfaceResidual> Residuals(const Given& given, const SurfaceParamete
   return residuals;
 }
 
-// Of the polyline through the points, at a fraction of its length.
-Eigen::Vector3d PointAt(const std::vector<Eigen::Vector3d>& points, double fraction) {
+// The point of a polyline at a fraction of its length.
+Eigen::Vector3d PointAtFraction(const std::vector<Eigen::Vector3d>& points, double fraction) {
   std::vector<double> lengths_m = {0.0};
   for (std::size_t i = 1; i < points.size(); ++i) {
     lengths_m.push_back(lengths_m.back() + (points[i] - points[i - 1]).norm());
@@ -141,7 +143,7 @@ Eigen::Vector3d PointAt(const std::vector<Eigen::Vector3d>& points, double fract
   return points[i - 1] + part * (points[i] - points[i - 1]);
 }
 
-// Of straight strips from line to line.
+// Area of straight strips from line to line.
 double RuledArea(const std::vector<SurfaceLine>& lines) {
   constexpr int kNumStrips = 50;
   std::vector<std::vector<Eigen::Vector3d>> polylines;
@@ -156,100 +158,115 @@ double RuledArea(const std::vector<SurfaceLine>& lines) {
     for (int i = 0; i < kNumStrips; ++i) {
       const double from = i / static_cast<double>(kNumStrips);
       const double to = (i + 1) / static_cast<double>(kNumStrips);
-      const Eigen::Vector3d a = PointAt(polylines[j - 1], from), b = PointAt(polylines[j - 1], to);
-      const Eigen::Vector3d c = PointAt(polylines[j], to), d = PointAt(polylines[j], from);
+      const Eigen::Vector3d a = PointAtFraction(polylines[j - 1], from),
+                            b = PointAtFraction(polylines[j - 1], to);
+      const Eigen::Vector3d c = PointAtFraction(polylines[j], to),
+                            d = PointAtFraction(polylines[j], from);
       area_m2 += (c - a).cross(d - b).norm() / 2;
     }
   }
   return area_m2;
 }
 
-// A surface through markers that lie scattered swings between them; better none than that.
-void CheckThatItIsCalm(const Given& given, const SurfaceOptions& options,
-                       const SplineSurface& surface) {
+// Rejects a surface that oscillates between its markers, as one through scattered points does.
+void CheckArea(const SortedInput& sorted, const SurfaceOptions& options,
+               const SplineSurface& surface) {
   const SurfaceEdges& edges = options.edges;
-  const bool goes_on = options.luff_extension_m + options.leech_extension_m +
-                               options.foot_extension_m + options.head_extension_m >
-                           0 ||
-                       !edges.luff.empty() || !edges.leech.empty() || !edges.foot.empty() ||
-                       !edges.head.empty();
-  const double area_m2 = SurfaceArea(surface), ruled_area_m2 = RuledArea(given.lines);
-  if (area_m2 <= (goes_on ? kMaxAreaRatioWithEdges : kMaxAreaRatio) * ruled_area_m2) return;
+  const bool is_extended = options.luff_extension_mm + options.leech_extension_mm +
+                               options.foot_extension_mm + options.head_extension_mm >
+                           0;
+  const bool has_edges =
+      !edges.luff.empty() || !edges.leech.empty() || !edges.foot.empty() || !edges.head.empty();
+  const double max_ratio = is_extended || has_edges ? kMaxAreaRatioWithEdges : kMaxAreaRatio;
+  const double area_m2 = SurfaceArea(surface), ruled_area_m2 = RuledArea(sorted.lines);
+  if (area_m2 <= max_ratio * ruled_area_m2) return;
   throw DataError(fmt::format(
-      "it would swing between the markers ({:.3g} m2 instead of some {:.3g}): they do not lie on a "
-      "smooth surface, so check their errors and the order of the lines",
-      area_m2, ruled_area_m2));
+      "the surface would oscillate between the markers ({:.3g} m2 instead of about {:.3g} m2); "
+      "check the errors of the markers and the order of the lines{}",
+      area_m2, ruled_area_m2, is_extended ? ", or extend the surface by less" : ""));
+}
+
+void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name, double extension_mm,
+               const std::string& extension_option) {
+  if (edge.size() == 1) {
+    throw InputError(fmt::format("the {} edge has one point; it needs two or more", name));
+  }
+  if (!edge.empty() && extension_mm > 0) {
+    throw InputError(
+        fmt::format("{}: the surface cannot go {} mm beyond the {} and end at its given edge; give "
+                    "one of the two",
+                    extension_option, extension_mm, name));
+  }
 }
 
 }  // namespace
 
+OptionGroup DescribeOptions(SurfaceOptions* options) {
+  return {"Surface",
+          {{"Surface.luff_extension", &options->luff_extension_mm, "mm",
+            "how far the surface continues beyond the first markers of the lines", AtLeast(0)},
+           {"Surface.leech_extension", &options->leech_extension_mm, "mm",
+            "the same beyond the last markers of the lines", AtLeast(0)},
+           {"Surface.foot_extension", &options->foot_extension_mm, "mm",
+            "the same below the lowest line", AtLeast(0)},
+           {"Surface.head_extension", &options->head_extension_mm, "mm",
+            "the same above the highest line", AtLeast(0)}}};
+}
+
 void SurfaceOptions::Check() const {
+  CheckRanges(*this);
   if (default_sigma_m && !(*default_sigma_m >= 0 && std::isfinite(*default_sigma_m))) {
     throw InputError(
-        fmt::format("the surface's default sigma is {} m; it must be 0 (interpolate) or more",
+        fmt::format("the default sigma of the surface is {} m; it must be 0 (interpolate) or more",
                     *default_sigma_m));
   }
-  const auto check_edge = [](const char* name, double extension_m,
-                             const std::vector<Eigen::Vector3d>& edge) {
-    if (!(extension_m >= 0 && std::isfinite(extension_m))) {
-      throw InputError(fmt::format(
-          "the surface's extension at the {} is {} m; it must be 0 or more", name, extension_m));
-    }
-    if (edge.size() == 1) {
-      throw InputError(fmt::format("the {} edge has one point; two or more are needed", name));
-    }
-    if (!edge.empty() && extension_m > 0) {
-      throw InputError(fmt::format(
-          "the surface shall go {} m beyond the {} and end at its edge; give one of the two",
-          extension_m, name));
-    }
-  };
-  check_edge("luff", luff_extension_m, edges.luff);
-  check_edge("leech", leech_extension_m, edges.leech);
-  check_edge("foot", foot_extension_m, edges.foot);
-  check_edge("head", head_extension_m, edges.head);
+  CheckEdge(edges.luff, "luff", luff_extension_mm, OptionName(&SurfaceOptions::luff_extension_mm));
+  CheckEdge(edges.leech, "leech", leech_extension_mm,
+            OptionName(&SurfaceOptions::leech_extension_mm));
+  CheckEdge(edges.foot, "foot", foot_extension_mm, OptionName(&SurfaceOptions::foot_extension_mm));
+  CheckEdge(edges.head, "head", head_extension_mm, OptionName(&SurfaceOptions::head_extension_mm));
 }
 
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options) {
   options.Check();
-  const Given given = SortInput(input);
-  const Noise noise = DescribeNoise(given, options);
-  SurfaceParameters parameters = AssignParameters(given.lines, !given.markers.empty(), options);
+  const SortedInput sorted = SortInput(input);
+  const Noise noise = DescribeNoise(sorted, options);
+  SurfaceParameters parameters = AssignParameters(sorted.lines, !sorted.markers.empty(), options);
   const std::size_t num_on_lines = parameters.observations.size();
   SmoothSurface smooth =
       SmoothObservations(parameters, Weights(parameters.observations, noise), noise.smoothing);
-  for (int fit = 1; fit < kNumFits && !given.markers.empty(); ++fit) {
+  for (int fit = 1; fit < kNumFits && !sorted.markers.empty(); ++fit) {
     parameters.observations.resize(num_on_lines);
-    const auto feet = ProjectOnSurface(smooth.surface, Centers(given.markers));
+    const auto feet = ProjectOnSurface(smooth.surface, Centers(sorted.markers));
     for (std::size_t k = 0; k < feet.size(); ++k) {
       if (!IsInside(feet[k])) continue;
       parameters.observations.push_back(
-          {given.markers[k].marker_id, "", given.markers[k].x_in_shape_m, feet[k].u, feet[k].v});
+          {sorted.markers[k].marker_id, "", sorted.markers[k].x_in_shape_m, feet[k].u, feet[k].v});
     }
     if (parameters.observations.size() == num_on_lines) break;
     smooth =
         SmoothObservations(parameters, Weights(parameters.observations, noise), noise.smoothing);
   }
-  CheckThatItIsCalm(given, options, smooth.surface);
+  CheckArea(sorted, options, smooth.surface);
   FittedSurface result;
   result.surface = smooth.surface;
   result.num_effective_parameters = smooth.num_effective_parameters;
-  result.residuals = Residuals(given, parameters, smooth.surface);
-  result.notes = given.notes;
+  result.residuals = Residuals(sorted, parameters, smooth.surface);
+  result.notes = sorted.notes;
   result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());
-  std::vector<double> distances;
-  std::vector<int> beside;
+  std::vector<double> distances_m;
+  std::vector<int> outside;
   for (const SurfaceResidual& residual : result.residuals) {
     if (residual.is_used) {
-      distances.push_back(residual.distance_m);
+      distances_m.push_back(residual.distance_m);
     } else {
-      beside.push_back(residual.marker_id);
+      outside.push_back(residual.marker_id);
     }
   }
-  result.distance_m = ComputeStatistics(distances);
-  if (!beside.empty()) {
-    result.notes.push_back(fmt::format("markers beside the surface, without a part in it: {}",
-                                       fmt::join(beside, " ")));
+  result.distance_m = ComputeStatistics(distances_m);
+  if (!outside.empty()) {
+    result.notes.push_back(fmt::format("markers outside the edge of the surface, not used: {}",
+                                       fmt::join(outside, " ")));
   }
   return result;
 }

@@ -1,20 +1,18 @@
 // A smooth surface through the horizontal lines of markers on a sail: a tensor-product B-spline
 //
-//   min over P   sum_k w_k |S(u_k, v_k) - x_k|^2  +  lambda * integral of |third derivatives of
-//   S|^2
+//   min over P   sum_k w_k |S(u_k, v_k) - x_k|^2  +  lambda * integral of |S'''|^2
 //
-// Each line is a curve of constant v, each marker on it has the u of its chord length from the
-// luff, so for a small lambda this is the skinning of the lines' smoothing splines (Piegl and
-// Tiller, The NURBS Book, 1997, section 10.3). One system for all lines rather than one spline a
-// line: lines need not have the same number of markers, gaps are bridged in the sense of the
-// neighbours, and markers between the lines take part at their feet on the surface. The third
-// derivative leaves parabolas alone, so that the camber is not pulled flat at luff and leech as a
-// natural spline does.
+// Each line is a curve of constant v, and each marker on it has the u of its chord length from the
+// luff. For a small lambda this is the skinning of the lines' smoothing splines (Piegl and Tiller,
+// The NURBS Book, 1997, section 10.3). All lines are solved in one system because they may have
+// different numbers of markers, gaps are filled from the neighboring lines, and markers between the
+// lines take part at their feet on the surface. A penalty on the third derivative costs nothing for
+// parabolas; the usual one on the second derivative flattens the camber at luff and leech.
 //
-// lambda: where the markers have sigmas it minimises the expected error (Mallows' Cp of the
-// distances along the normal; Mallows, "Some comments on Cp", 1973), but is not smaller than what
-// generalised cross-validation finds (Golub, Heath and Wahba, 1979), which it is without sigmas; a
-// sigma of 0 interpolates.
+// If the markers have sigmas, lambda minimizes the expected error of the distances along the normal
+// (Mallows, "Some comments on Cp", 1973), but is at least the lambda of generalized
+// cross-validation (Golub, Heath and Wahba, 1979). Without sigmas, cross-validation alone decides.
+// A sigma of 0 interpolates.
 
 #pragma once
 
@@ -24,49 +22,55 @@
 
 #include "exporters/formats/surface_spline.h"
 #include "exporters/sail/surface_input.h"
+#include "importer/base/option.h"
 #include "importer/base/statistics.h"
 
 namespace velamap {
 
 struct SurfaceOptions {
-  // Of markers without a sigma. Nothing: the median of the others; where no marker has one,
-  // cross-validation finds the noise (of 30 markers or more; fewer are interpolated).
-  // 0: the surface passes through all markers.
+  // Sigma of markers that have none of their own; 0 interpolates all markers. By default the median
+  // of the other markers' sigmas. If no marker has a sigma, cross-validation estimates the noise of
+  // 30 markers or more, and fewer are interpolated.
   std::optional<double> default_sigma_m;
-  // The surface goes on by this much beyond the outer markers, with the curvature it has there.
-  double luff_extension_m = 0.0;
-  double leech_extension_m = 0.0;
-  double foot_extension_m = 0.0;
-  double head_extension_m = 0.0;
-  // Or it goes on to these edges.
+  // How far the surface continues beyond the outer markers, with the curvature it has there: at
+  // most the length of the lines (luff, leech) or the distance from the lowest to the highest line
+  // (foot, head).
+  double luff_extension_mm = 0.0;
+  double leech_extension_mm = 0.0;
+  double foot_extension_mm = 0.0;
+  double head_extension_mm = 0.0;
+  // Edges to which the surface continues instead.
   SurfaceEdges edges;
 
-  // Throws InputError: a negative sigma or extension, an edge of one point, an edge that is both
-  // given and extended.
+  // Throws InputError that names the option for a value beyond its range and an edge that is both
+  // given and extended; also for a negative sigma and an edge of one point.
   void Check() const;
 };
 
+OptionGroup DescribeOptions(SurfaceOptions* options);
+
 struct SurfaceResidual {
   int marker_id = 0;
-  std::string line;            // "" for a marker on no horizontal line that was used
-  double u = 0.0, v = 0.0;     // of its foot
-  double distance_m = 0.0;     // of the marker's centre from the surface, along its normal
-  double beyond_edge_m = 0.0;  // how far it lies beside the surface
-  bool is_used = false;        // false: beside the surface, so it took no part in the fit
+  std::string line;            // empty for a marker on no line of the fit
+  double u = 0.0, v = 0.0;     // of the marker's foot on the surface
+  double distance_m = 0.0;     // of the marker's center from the surface, along the normal
+  double beyond_edge_m = 0.0;  // how far the marker lies outside the surface's edge
+  bool is_used = false;        // false for markers outside the edge, which the fit ignores
 };
 
 struct FittedSurface {
   SplineSurface surface;
-  std::vector<SurfaceResidual> residuals;  // of every marker centre of the part, by marker id
-  Statistics distance_m;                   // of the used ones, with their sign
-  double num_effective_parameters = 0.0;   // trace of the hat matrix; close to the number of used
-                                           // points: it interpolates
-  std::vector<std::string> notes;          // lines left out and why, gaps, markers beside it
+  std::vector<SurfaceResidual> residuals;  // of every marker center of the part, by marker id
+  Statistics distance_m;                   // signed, of the used markers
+  // Trace of the hat matrix. A value near the number of used markers means interpolation.
+  double num_effective_parameters = 0.0;
+  std::vector<std::string> notes;  // lines left out and why, gaps, markers outside the edge
 };
 
-// Throws InputError for bad options and DataError where the data bear no surface: fewer than two
-// lines with three whole markers, two markers in one place, lines that cross or run against each
-// other, or a surface that swings between its markers.
+// Throws InputError for bad options and for an extension beyond its limit. Throws DataError where
+// the markers do not determine a surface: fewer than two lines with three whole markers, two
+// markers in one place, lines that cross or run in opposite directions, or a surface that
+// oscillates between its markers.
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options = {});
 
 }  // namespace velamap

@@ -22,8 +22,8 @@ Eigen::Vector3d ReadPoint(const CsvRecord& record, const std::string& name) {
   for (std::size_t i = 1; i < kEdgeColumns.size(); ++i) {
     double value = 0.0;
     if (!ParseNumber(record.fields[i], &value) || !std::isfinite(value)) {
-      throw InputError(fmt::format("{}:{}: column {}: '{}' is no number; expected metres", name,
-                                   record.line, kEdgeColumns[i], record.fields[i]));
+      throw InputError(fmt::format("{}:{}: column {}: expected a number in metres, found '{}'",
+                                   name, record.line, kEdgeColumns[i], record.fields[i]));
     }
     x_m[static_cast<Eigen::Index>(i) - 1] = value;
   }
@@ -33,11 +33,11 @@ Eigen::Vector3d ReadPoint(const CsvRecord& record, const std::string& name) {
 }  // namespace
 
 void WriteSurfaceResidualsCsv(const FittedSurface& surface, std::ostream& out) {
-  out << "marker_id,line,u,v,distance,beyond_edge,is_used\n";
+  CsvWriter csv(out);
+  csv.WriteRecord("marker_id", "line", "u", "v", "distance", "beyond_edge", "is_used");
   for (const SurfaceResidual& residual : surface.residuals) {
-    out << fmt::format("{},{},{},{},{},{},{}\n", residual.marker_id, CsvField(residual.line),
-                       residual.u, residual.v, residual.distance_m, residual.beyond_edge_m,
-                       residual.is_used ? 1 : 0);
+    csv.WriteRecord(residual.marker_id, residual.line, residual.u, residual.v, residual.distance_m,
+                    residual.beyond_edge_m, residual.is_used);
   }
 }
 
@@ -57,14 +57,16 @@ SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name) {
     }
     const auto edge = edge_of.find(record.fields[0]);
     if (edge == edge_of.end()) {
-      throw InputError(fmt::format("{}:{}: column edge: '{}'; expected luff, leech, foot or head",
-                                   name, record.line, record.fields[0]));
+      throw InputError(
+          fmt::format("{}:{}: column edge: expected luff, leech, foot or head, found '{}'", name,
+                      record.line, record.fields[0]));
     }
     edge->second->push_back(ReadPoint(record, name));
   }
   for (const auto& [edge, points] : edge_of) {
     if (points->size() == 1) {
-      throw InputError(fmt::format("{}: the {} has one point, an edge needs two", name, edge));
+      throw InputError(
+          fmt::format("{}: the {} edge has one point; it needs two or more", name, edge));
     }
   }
   return edges;
@@ -72,7 +74,7 @@ SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name) {
 
 SurfaceEdges ReadSurfaceEdges(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(path + ": cannot be read; is there such a file?");
+  if (!in) throw InputError(path + ": cannot be opened; expected a CSV with edge,x,y,z");
   return ReadSurfaceEdges(in, path);
 }
 

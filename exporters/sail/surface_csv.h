@@ -1,4 +1,4 @@
-// What goes with a surface as CSV: its residuals out, the sail's edges in.
+// CSV files of a surface: writes its residuals, reads the edges of the sail.
 
 #pragma once
 
@@ -10,13 +10,13 @@
 
 namespace velamap {
 
-// Header marker_id,line,u,v,distance,beyond_edge,is_used; lengths in m, one row a marker of the
-// part, by id. As SurfaceResidual has them.
+// Header marker_id,line,u,v,distance,beyond_edge,is_used: the members of SurfaceResidual, one row
+// per marker of the part, by id; lengths in m.
 void WriteSurfaceResidualsCsv(const FittedSurface& surface, std::ostream& out);
 
-// Header edge,x,y,z; edge is luff, leech, foot or head, points in m, luff and leech from foot to
-// head, foot and head from luff to leech. Throws InputError that names file, line and column:
-// another header or edge, a coordinate that is no finite number, an edge of a single point.
+// Header edge,x,y,z: edge is luff or leech (points from foot to head), foot or head (points from
+// luff to leech), coordinates in m. Throws InputError naming file, line and column for another
+// header or edge, a coordinate that is no finite number, or an edge of a single point.
 SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name);
 SurfaceEdges ReadSurfaceEdges(const std::string& path);
 

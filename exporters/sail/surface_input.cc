@@ -9,7 +9,7 @@
 namespace velamap {
 namespace {
 
-// Without what couples the markers.
+// The covariance without the errors that markers share.
 std::optional<PointCovariance> OwnCovariance(const PointCovariance* covariance) {
   if (covariance == nullptr) return std::nullopt;
   PointCovariance own = *covariance;

@@ -1,4 +1,4 @@
-// The marker centres that a surface is laid through, by their lines.
+// The marker centers that a surface is fitted to, by their lines.
 
 #pragma once
 
@@ -16,12 +16,12 @@ namespace velamap {
 
 struct SurfaceMarker {
   int marker_id = 0;
-  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // its centre
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // of the center
   std::optional<double> sigma_m;                           // of each coordinate
 };
 
-// A horizontal line of the layout from luff to leech. A marker that the layout names and the shape
-// lacks keeps its place, so that gaps are known.
+// A horizontal line of the layout from luff to leech. A marker that the shape lacks keeps its place
+// in the list, so that gaps are known.
 struct SurfaceLine {
   std::string name;
   std::vector<std::optional<SurfaceMarker>> markers;
@@ -29,19 +29,19 @@ struct SurfaceLine {
 
 struct SurfaceInput {
   std::vector<SurfaceLine> lines;      // from foot to head
-  std::vector<SurfaceMarker> markers;  // of the part, on no horizontal line
+  std::vector<SurfaceMarker> markers;  // markers of the part on no horizontal line
 };
 
 // Edges of the sail, measured or from the design, as polylines in the shape frame (m): luff and
-// leech from foot to head, foot and head from luff to leech. An empty one is not known.
+// leech from foot to head, foot and head from luff to leech. An unknown edge is empty.
 struct SurfaceEdges {
   std::vector<Eigen::Vector3d> luff, leech, foot, head;
 };
 
-// The horizontal lines of `part`, in the layout's order, and its other markers: whole markers only.
-// A marker's sigma is the root mean square of the three of its centre. With the joint covariance it
-// is that of the marker's own noise (the covariance's blocks): what all markers have in common,
-// such as the scale, bends no surface.
+// Collects the horizontal lines of `part` in the order of the layout, and its other markers, whole
+// markers only. The sigma of a marker is the root mean square of the three sigmas of its center.
+// From a joint covariance it takes the noise of the marker alone (the blocks), because errors that
+// all markers share, such as the scale, do not bend the surface.
 SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part,
                                  const PointCovariance* covariance = nullptr);
 

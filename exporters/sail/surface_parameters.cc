@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -14,11 +15,11 @@ namespace {
 
 using Polyline = std::vector<Eigen::Vector3d>;
 
-constexpr int kMaxSpans = 20;     // in each direction: more poles than any sail has markers
-constexpr int kLineSamples = 9;   // where neighbouring lines are compared
-constexpr double kWideGap = 2.5;  // in mean spacings: worth a note
+constexpr int kMaxSpans = 20;     // in each direction; no sail has more markers on a line
+constexpr int kLineSamples = 9;   // at which neighboring lines are compared
+constexpr double kWideGap = 2.5;  // in mean spacings; wider gaps get a note
 
-// A line, or a foot or head edge, with the u of its points.
+// A line, or a foot or head edge, with u of its points.
 struct Row {
   std::string name;
   std::vector<int> marker_ids;
@@ -35,14 +36,14 @@ std::vector<double> ChordLengths(const Polyline& points) {
   return lengths;
 }
 
-// The point of the edge that is nearest to the line's straight continuation, a ray from `start`.
-Eigen::Vector3d WhereRayMeets(const Polyline& edge, const Eigen::Vector3d& start,
-                              const Eigen::Vector3d& direction) {
+// The point of the edge nearest to the straight continuation of a line, a ray from `start`.
+Eigen::Vector3d NearestToRay(const Polyline& edge, const Eigen::Vector3d& start,
+                             const Eigen::Vector3d& direction) {
   Eigen::Vector3d best = edge.front();
   double best_distance = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + 1 < edge.size(); ++k) {
     const Eigen::Vector3d along = edge[k + 1] - edge[k];
-    // Distance from the ray's line, a quadratic in the place on the segment.
+    // The squared distance from the line of the ray is quadratic in the position on the segment.
     const Eigen::Vector3d across = along - direction * direction.dot(along);
     const Eigen::Vector3d offset = edge[k] - start - direction * direction.dot(edge[k] - start);
     const double size = across.squaredNorm();
@@ -84,7 +85,7 @@ void NoteGaps(const SurfaceLine& line, const PresentMarkers& present,
     const double gap_m = lengths[k] - lengths[k - 1];
     if (num_missing == 0 && gap_m < kWideGap * spacing) continue;
     notes->push_back(fmt::format(
-        "line {}: hole of {:.3g} m between markers {} and {} ({} of the layout missing), bridged",
+        "line {}: gap of {:.3g} m between markers {} and {} ({} of the layout missing), filled",
         line.name, gap_m, present.marker_ids[k - 1], present.marker_ids[k], num_missing));
   }
   const std::size_t missing_luff = present.places.front();
@@ -92,7 +93,7 @@ void NoteGaps(const SurfaceLine& line, const PresentMarkers& present,
   if (missing_luff + missing_leech > 0) {
     notes->push_back(fmt::format(
         "line {}: {} markers missing at the luff and {} at the leech; the surface follows the "
-        "neighbouring lines there",
+        "neighboring lines there",
         line.name, missing_luff, missing_leech));
   }
 }
@@ -101,21 +102,21 @@ void CheckApart(const SurfaceLine& line, const PresentMarkers& present) {
   for (std::size_t k = 1; k < present.points.size(); ++k) {
     if ((present.points[k] - present.points[k - 1]).norm() > 1e-6) continue;
     throw DataError(
-        fmt::format("line {}: markers {} and {} are in one place; check the shape or the layout",
-                    line.name, present.marker_ids[k - 1], present.marker_ids[k]));
+        fmt::format("line {}: markers {} and {} are in the same place; check the layout", line.name,
+                    present.marker_ids[k - 1], present.marker_ids[k]));
   }
 }
 
-// One end of a line: how far the surface goes on beyond its last marker, and the edge point there.
+// One end of a line: how far the surface continues beyond the last marker, and the edge point.
 struct LineEnd {
   double length_m = 0.0;
   std::optional<Eigen::Vector3d> edge_point;
 };
 
-LineEnd MakeLineEnd(const Polyline& edge, double extension_m, double missing_m,
+LineEnd MakeLineEnd(const Polyline& edge, double extension_mm, double missing_m,
                     const Eigen::Vector3d& last, const Eigen::Vector3d& before_last) {
-  if (edge.empty()) return {missing_m + extension_m, std::nullopt};
-  const Eigen::Vector3d x = WhereRayMeets(edge, last, (last - before_last).normalized());
+  if (edge.empty()) return {missing_m + kMPerMm * extension_mm, std::nullopt};
+  const Eigen::Vector3d x = NearestToRay(edge, last, (last - before_last).normalized());
   const double length_m = (x - last).norm();
   if (length_m < 1e-6) return {};  // the marker lies on the edge
   return {length_m, x};
@@ -130,10 +131,10 @@ Row MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
   const double place_spacing = lengths.back() / (present.places.back() - present.places.front());
   const std::size_t n = present.points.size();
   const LineEnd luff =
-      MakeLineEnd(options.edges.luff, options.luff_extension_m,
+      MakeLineEnd(options.edges.luff, options.luff_extension_mm,
                   place_spacing * present.places.front(), present.points[0], present.points[1]);
   const LineEnd leech =
-      MakeLineEnd(options.edges.leech, options.leech_extension_m,
+      MakeLineEnd(options.edges.leech, options.leech_extension_mm,
                   place_spacing * (line.markers.size() - 1 - present.places.back()),
                   present.points[n - 1], present.points[n - 2]);
   Row row{line.name, present.marker_ids, present.points, {}, 0.0};
@@ -156,20 +157,20 @@ Row MakeEdgeRow(const std::string& name, const Polyline& edge) {
   Row row{name, std::vector<int>(edge.size(), -1), edge, ChordLengths(edge), 0.0};
   row.length_m = row.us.back();
   if (row.length_m < 1e-6) {
-    throw InputError(fmt::format("the {} edge has no length; leave it out instead", name));
+    throw InputError(fmt::format("the {} edge has no length; remove it", name));
   }
   for (double& u : row.us) u /= row.length_m;
   return row;
 }
 
-Eigen::Vector3d PointAt(const Row& row, double u) {
+Eigen::Vector3d PointAtU(const Row& row, double u) {
   const auto above = std::upper_bound(row.us.begin() + 1, row.us.end() - 1, u);
   const std::size_t k = above - row.us.begin();
   const double part = (u - row.us[k - 1]) / (row.us[k] - row.us[k - 1]);
   return row.points[k - 1] + part * (row.points[k] - row.points[k - 1]);
 }
 
-// Mean distance between two neighbouring lines over the u that both have.
+// Mean distance between two neighboring lines over their common range of u.
 double MeanDistance(const Row& lower, const Row& upper) {
   const double first = std::max(lower.us.front(), upper.us.front());
   const double last = std::min(lower.us.back(), upper.us.back());
@@ -178,7 +179,7 @@ double MeanDistance(const Row& lower, const Row& upper) {
   double sum = 0.0;
   for (int i = 0; i < kLineSamples; ++i) {
     const double u = first + (last - first) * i / (kLineSamples - 1);
-    gaps.push_back(PointAt(upper, u) - PointAt(lower, u));
+    gaps.push_back(PointAtU(upper, u) - PointAtU(lower, u));
     mean += gaps.back() / kLineSamples;
     sum += gaps.back().norm();
   }
@@ -186,7 +187,7 @@ double MeanDistance(const Row& lower, const Row& upper) {
   const Eigen::Vector3d along_upper = upper.points.back() - upper.points.front();
   if (along_lower.dot(along_upper) < 0) {
     throw DataError(fmt::format(
-        "lines {} and {} run against each other; the layout has to list both from luff to leech",
+        "lines {} and {} run in opposite directions; list both from luff to leech in the layout",
         lower.name, upper.name));
   }
   for (const Eigen::Vector3d& gap : gaps) {
@@ -206,7 +207,7 @@ Eigen::ArrayXd ClampedKnots(int degree, const std::vector<double>& interior) {
   return knots;
 }
 
-// Interior knots where the data are: quantiles of the parameters strictly inside.
+// Interior knots at quantiles of the parameters, so that every span holds data.
 std::vector<double> QuantileKnots(std::vector<double> parameters, int num_spans) {
   std::sort(parameters.begin(), parameters.end());
   std::vector<double> knots;
@@ -216,12 +217,29 @@ std::vector<double> QuantileKnots(std::vector<double> parameters, int num_spans)
     const std::size_t above = std::min(below + 1, parameters.size() - 1);
     const double knot =
         parameters[below] + (place - below) * (parameters[above] - parameters[below]);
-    // Knots closer than this would only make the surface heavier and the equations worse.
+    // Closer knots would add poles that the markers do not determine.
     const double previous = knots.empty() ? 0.0 : knots.back();
     const double min_span = 0.2 / num_spans;
     if (knot - previous > min_span && 1.0 - knot > min_span) knots.push_back(knot);
   }
   return knots;
+}
+
+double MeanLength(const std::vector<SurfaceLine>& lines) {
+  double sum_m = 0.0;
+  for (const SurfaceLine& line : lines) sum_m += ChordLengths(Present(line).points).back();
+  return sum_m / static_cast<double>(lines.size());
+}
+
+// A surface that is extrapolated by more than its own size has a shape that no marker determines,
+// and its equations lose their rank in double precision.
+void CheckExtension(const SurfaceOptions& options, double SurfaceOptions::*extension_mm,
+                    double size_m, const char* size_name) {
+  const double max_mm = size_m / kMPerMm;
+  if (options.*extension_mm <= max_mm) return;
+  throw InputError(fmt::format("{}: {:g} mm, expected at most {:.0f} mm, {}",
+                               OptionName(extension_mm), options.*extension_mm, std::floor(max_mm),
+                               size_name));
 }
 
 std::vector<Row> MakeRows(const std::vector<SurfaceLine>& lines, const SurfaceOptions& options,
@@ -240,17 +258,28 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
   VELAMAP_CHECK(lines.size() >= 2);
   SurfaceParameters parameters;
   parameters.has_markers_between = has_markers_between;
-  const std::vector<Row> rows = MakeRows(lines, options, &parameters.notes);
-  std::vector<double> heights = {options.foot_extension_m};
-  for (std::size_t j = 1; j < rows.size(); ++j) {
-    heights.push_back(heights.back() + MeanDistance(rows[j - 1], rows[j]));
+  const double length_m = MeanLength(lines);
+  for (const auto extension_mm :
+       {&SurfaceOptions::luff_extension_mm, &SurfaceOptions::leech_extension_mm}) {
+    CheckExtension(options, extension_mm, length_m, "the length of the lines");
   }
-  parameters.length_v_m = heights.back() + options.head_extension_m;
+  const std::vector<Row> rows = MakeRows(lines, options, &parameters.notes);
+  std::vector<double> heights_m = {kMPerMm * options.foot_extension_mm};
+  for (std::size_t j = 1; j < rows.size(); ++j) {
+    heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
+  }
+  const double span_m = heights_m.back() - heights_m.front();
+  for (const auto extension_mm :
+       {&SurfaceOptions::foot_extension_mm, &SurfaceOptions::head_extension_mm}) {
+    CheckExtension(options, extension_mm, span_m,
+                   "the distance from the lowest to the highest line");
+  }
+  parameters.length_v_m = heights_m.back() + kMPerMm * options.head_extension_mm;
 
   std::vector<double> all_us;
   std::size_t max_points = 0;
   for (std::size_t j = 0; j < rows.size(); ++j) {
-    const double v = heights[j] / parameters.length_v_m;
+    const double v = heights_m[j] / parameters.length_v_m;
     for (std::size_t k = 0; k < rows[j].points.size(); ++k) {
       parameters.observations.push_back({rows[j].marker_ids[k],
                                          rows[j].marker_ids[k] < 0 ? "" : rows[j].name,

@@ -1,5 +1,4 @@
-// Where on a surface the markers of its lines lie: u and v of each, and the knots that go with
-// them.
+// The parameters u and v of the markers on the lines, and the knots of the surface.
 
 #pragma once
 
@@ -19,7 +18,7 @@ struct SurfaceObservation {
 
 struct SurfaceParameters {
   std::vector<SurfaceObservation> observations;
-  std::vector<double> line_vs;  // of the lines, and of foot and head edges
+  std::vector<double> line_vs;  // v of each line and of the foot and head edges
   bool has_markers_between = false;
   int degree_u = 3, degree_v = 3;
   Eigen::ArrayXd knots_u, knots_v;
@@ -27,11 +26,11 @@ struct SurfaceParameters {
   std::vector<std::string> notes;
 };
 
-// `lines` have at least three markers each and are at least two. u is the chord length from the
-// luff over that of the whole line; v adds up the mean distances between neighbouring lines. A
-// missing marker at a line's end counts with the line's mean spacing, so that the surface's edge is
-// not drawn in. `has_markers_between`: v gets twice as many knots, so that the surface can follow
-// markers between the lines as well. Throws DataError as FitSurface does.
+// Needs at least two lines with at least three markers each. u is the chord length from the luff
+// over the length of the whole line; v sums the mean distances between neighboring lines. A missing
+// marker at the end of a line counts with the mean spacing of the line, so that the edge of the
+// surface keeps its place. `has_markers_between` doubles the knots in v, so that the surface can
+// follow markers between the lines. Throws the same errors as FitSurface.
 SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool has_markers_between,
                                    const SurfaceOptions& options);
 

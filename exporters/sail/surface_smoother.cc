@@ -12,14 +12,13 @@ namespace velamap {
 namespace {
 
 constexpr int kPenaltyOrder = 3;
-// Penalty over data term, as a ratio of traces. The lowest interpolates to far below a micrometre
-// and leaves the equations well enough conditioned for double precision, if neither of the two
-// penalties goes below it on its own.
+// Penalty over data term, as a ratio of traces. The lowest ratio interpolates to far below a
+// micrometre. Each of the two penalties has to stay above it for the condition of the equations.
 constexpr double kMinLog10Ratio = -9.0, kMaxLog10Ratio = 3.0;
 constexpr double kCoarseStep = 1.0, kFineStep = 0.25;
 
-// Integrals of the products of the basis functions' derivatives of one order.
-Eigen::MatrixXd GramMatrix(const Eigen::ArrayXd& knots, int degree, int order) {
+// Integrals of the products of the derivatives of two basis functions.
+Eigen::MatrixXd DerivativeProducts(const Eigen::ArrayXd& knots, int degree, int order) {
   const Eigen::Index num_poles = knots.size() - degree - 1;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(num_poles, num_poles);
   for (const QuadratureNode& node : SpanQuadrature(knots)) {
@@ -40,9 +39,9 @@ void AddKronecker(double factor, const Eigen::MatrixXd& left, const Eigen::Matri
   }
 }
 
-// Third derivatives squared, as if u and v were lengths on the surface: S_uuu along the lines and
-// S_vvv everywhere. Were S_uuu held down between the lines as well, the profile would lose its
-// fullness there; a little of it, where there are markers, keeps single ones from making bumps.
+// Integrals of the squared third derivatives, with u and v as lengths on the surface: S_uuu along
+// the lines and S_vvv everywhere. S_uuu between the lines would flatten the profile there. A small
+// share of it keeps single markers between the lines from making bumps.
 struct Penalties {
   Eigen::MatrixXd along_u, along_v;
 };
@@ -50,10 +49,10 @@ struct Penalties {
 Penalties PenaltyMatrices(const SurfaceParameters& parameters) {
   const double between_lines = parameters.has_markers_between ? 1e-3 : 0.0;
   const auto gram_u = [&](int order) {
-    return GramMatrix(parameters.knots_u, parameters.degree_u, order);
+    return DerivativeProducts(parameters.knots_u, parameters.degree_u, order);
   };
   const auto gram_v = [&](int order) {
-    return GramMatrix(parameters.knots_v, parameters.degree_v, order);
+    return DerivativeProducts(parameters.knots_v, parameters.degree_v, order);
   };
   Eigen::MatrixXd over_lines = between_lines * gram_v(0);
   for (const double v : parameters.line_vs) {
@@ -71,7 +70,7 @@ Penalties PenaltyMatrices(const SurfaceParameters& parameters) {
   return penalties;
 }
 
-// One row an observation: N_i(u) M_j(v) times the root of its weight.
+// One row per observation: N_i(u) M_j(v) times the square root of the weight.
 Eigen::MatrixXd DesignMatrix(const SurfaceParameters& parameters,
                              const std::vector<double>& weights) {
   const auto& observations = parameters.observations;
@@ -103,7 +102,7 @@ struct Solution {
 Solution Solve(const System& system, double log10_ratio) {
   const double data_trace = system.normal.trace();
   const double trace_u = system.penalties.along_u.trace();
-  const double trace_v = system.penalties.along_v.trace();  // 0 for up to three lines
+  const double trace_v = system.penalties.along_v.trace();  // 0 for two or three lines
   const double lambda = std::pow(10, log10_ratio) * data_trace / (trace_u + trace_v);
   const double smallest = std::pow(10, kMinLog10Ratio) * data_trace;
   const double lambda_u = std::max(lambda, smallest / trace_u);
@@ -111,10 +110,13 @@ Solution Solve(const System& system, double log10_ratio) {
   const Eigen::MatrixXd penalty =
       lambda_u * system.penalties.along_u + lambda_v * system.penalties.along_v;
   const Eigen::LLT<Eigen::MatrixXd> factor(system.normal + penalty);
-  VELAMAP_CHECK(factor.info() == Eigen::Success);
+  if (factor.info() != Eigen::Success) {
+    throw DataError("the equations of the surface are too badly conditioned to be solved");
+  }
   Solution solution;
   solution.poles = Eigen::MatrixX3d::Zero(penalty.rows(), 3);
-  // The poles that hardly any marker holds suffer from the squared design; refinement mends that.
+  // Iterative refinement restores the digits that the normal equations lose for poles that hardly
+  // any marker determines.
   for (int step = 0; step < 4; ++step) {
     solution.poles +=
         factor.solve(system.design.transpose() * (system.data - system.design * solution.poles) -
@@ -129,7 +131,8 @@ SplineSurface MakeSurface(const SurfaceParameters& parameters, const Solution& s
           solution.poles};
 }
 
-// Only the error along the normal counts: along the line, chord length parameters follow the noise.
+// Counts the error along the normal only, because chord length parameters absorb the noise along
+// the line.
 double NormalSquaredResiduals(const System& system, const Solution& solution,
                               const Eigen::MatrixX3d& normals) {
   const Eigen::MatrixX3d residuals = system.data - system.design * solution.poles;
@@ -141,7 +144,7 @@ struct Choice {
   Solution solution;
 };
 
-// The smoothing with the least score.
+// The smoothing with the lowest score.
 template <typename Score>
 Choice Search(const System& system, const Score& score_of) {
   Choice best;
@@ -197,7 +200,7 @@ SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
   }
   const Choice known = Search(
       system, [&](const Solution& solution) { return squares_of(solution) + 2 * solution.trace; });
-  // Sigmas that are too small would have the surface swing from marker to marker.
+  // Sigmas that are too small would make the surface oscillate between the markers.
   const bool is_known = n < kMinCrossValidated || known.log10_ratio > validated.log10_ratio;
   const Solution& best = is_known ? known.solution : validated.solution;
   return {MakeSurface(parameters, best), best.trace};

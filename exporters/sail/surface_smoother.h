@@ -1,4 +1,4 @@
-// Penalised least squares of a tensor-product B-spline, and the choice of its smoothing.
+// Penalized least squares of a tensor-product B-spline, and the choice of its smoothing.
 
 #pragma once
 
@@ -12,21 +12,22 @@ namespace velamap {
 
 // How the weight of the penalty is chosen.
 enum class Smoothing {
-  kInterpolate,  // as small as the arithmetic bears
-  // Mallows' Cp; the weights are 1 / sigma^2. Of kMinCrossValidated observations or more it is
-  // never closer than cross-validation finds right.
+  kInterpolate,  // the smallest weight that double precision allows
+  // Mallows' Cp, with weights of 1 / sigma^2. With kMinCrossValidated observations or more, the
+  // penalty is at least that of cross-validation.
   kKnownSigma,
-  kCrossValidation,  // generalised; only the ratios of the weights count
+  kCrossValidation,  // generalized; only the ratios of the weights count
 };
 
-constexpr std::size_t kMinCrossValidated = 30;  // fewer tell too little of the noise
+constexpr std::size_t kMinCrossValidated = 30;  // fewer do not determine the noise
 
 struct SmoothSurface {
   SplineSurface surface;
   double num_effective_parameters = 0.0;
 };
 
-// One weight an observation, positive.
+// Takes one positive weight per observation. Throws DataError if the equations have no solution in
+// double precision.
 SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
                                  const std::vector<double>& weights, Smoothing smoothing);
 

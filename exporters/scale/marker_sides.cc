@@ -11,55 +11,41 @@
 #include "exporters/scale/metric_shape.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/statistics.h"
+#include "importer/camera/camera_jacobian.h"
+#include "importer/geometry/least_squares.h"
+#include "importer/geometry/pose_step.h"
 
 namespace velamap {
 namespace {
 
 using Corners = std::array<Eigen::Vector2d, kNumCorners>;
 
-// The normal equations of one point, cameras held.
-struct PointEquations {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // of one px of noise
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();     // of half the sum of squares
-  double sum_of_squares_px2 = 0.0;
+// The normal equations of one point with fixed cameras.
+class PointEquations : public GaussNewtonEquations<3> {
+ public:
   int num_observations = 0;
-};
 
-// d image / d cam by central differences; nothing for a point that is not in front of the camera.
-std::optional<Eigen::Matrix<double, 2, 3>> ProjectionJacobian(const Camera& camera,
-                                                              const Eigen::Vector3d& x_in_cam) {
-  const double step = 1e-6 * x_in_cam.norm();
-  Eigen::Matrix<double, 2, 3> jacobian;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d offset = step * Eigen::Vector3d::Unit(axis);
-    const auto after = ImageFromCam(camera, x_in_cam + offset);
-    const auto before = ImageFromCam(camera, x_in_cam - offset);
-    if (!after || !before) return std::nullopt;
-    jacobian.col(axis) = (*after - *before) / (2 * step);
-  }
-  return jacobian;
-}
+  const Eigen::Matrix3d& Information() const { return hessian(); }  // of one px of noise
+  double SumOfSquares_px2() const { return 2 * cost(); }
+};
 
 PointEquations EquationsOf(const Model& model, const std::map<ImageId, const ModelImage*>& images,
                            const Point3D& point) {
   PointEquations equations;
-  // By image, so that sums do not depend on the track's order.
+  // Sorted by image, so that sums do not depend on the order of the track.
   std::map<ImageId, TrackElement> track;
   for (const TrackElement& element : point.track) track[element.image_id] = element;
   for (const auto& [image_id, element] : track) {
     const ModelImage& image = *images.at(image_id);
     const Camera& camera = model.cameras.at(image.camera_id);
     const Eigen::Vector3d x_in_cam = image.cam_from_world * point.x_in_world;
-    const auto x_in_image_px = ImageFromCam(camera, x_in_cam);
-    const auto by_cam = x_in_image_px ? ProjectionJacobian(camera, x_in_cam) : std::nullopt;
-    if (!by_cam) continue;
-    const Eigen::Matrix<double, 2, 3> by_world =
-        *by_cam * image.cam_from_world.rotation.toRotationMatrix();
-    const Eigen::Vector2d residual_px =
-        *x_in_image_px - image.points2D.at(element.point2D_idx).x_in_image_px;
-    equations.information += by_world.transpose() * by_world;
-    equations.gradient += by_world.transpose() * residual_px;
-    equations.sum_of_squares_px2 += residual_px.squaredNorm();
+    if (!(x_in_cam.z() > 0)) continue;
+    const RayFunction x_in_image_px =
+        ImageFromRayWithJacobian(camera.model, camera.params.data(), x_in_cam.hnormalized());
+    const Eigen::Matrix<double, 2, 3> by_world = x_in_image_px.by_ray * RayByPoint(x_in_cam) *
+                                                 image.cam_from_world.rotation.toRotationMatrix();
+    equations.Add<2>(by_world,
+                     x_in_image_px.value - image.points2D.at(element.point2D_idx).x_in_image_px);
     ++equations.num_observations;
   }
   return equations;
@@ -71,7 +57,7 @@ std::map<ImageId, const ModelImage*> ImagesById(const Model& model) {
   return images;
 }
 
-// The four image points of every marker that an image sees as a whole.
+// The four image points of every marker whose corners an image sees all.
 std::map<int, Corners> WholeMarkersIn(const ModelImage& image) {
   std::map<int, std::map<int, Eigen::Vector2d>> corners;
   for (const Point2D& point : image.points2D) {
@@ -87,7 +73,7 @@ std::map<int, Corners> WholeMarkersIn(const ModelImage& image) {
   return whole;
 }
 
-// By marker: sum of squares over sum of its mean side in the images, px.
+// The mean side of each marker in the images, weighted by the side itself, px.
 std::map<int, double> SidesInImages(const Model& model) {
   std::map<int, std::pair<double, double>> sums;
   for (const auto& [image_id, image] : ImagesById(model)) {
@@ -108,7 +94,7 @@ std::map<int, double> SidesInImages(const Model& model) {
 struct MarkerEquations {
   std::array<PointEquations, kNumCorners> corners;
   double sum_of_squares_px2 = 0.0;
-  int redundancy = 0;  // residuals less the points' coordinates
+  int redundancy = 0;  // number of residuals minus number of coordinates
   double variance_px2 = 0.0;
 
   bool IsDetermined() const {
@@ -117,7 +103,7 @@ struct MarkerEquations {
   }
 };
 
-// What the cameras absorb of the residuals too, as a factor of the variance.
+// Factor of the variance for the part of the residuals that the cameras absorb.
 double CameraFactor(const std::map<int, MarkerEquations>& markers, std::size_t num_images) {
   constexpr double kMaxFactor = 3.0;
   double redundancy = 0.0;
@@ -152,14 +138,14 @@ std::map<int, MarkerEquations> EquationsOfMarkers(const Model& model) {
     MarkerEquations& marker = markers[id.marker_id];
     PointEquations& corner = marker.corners[id.corner - 1];
     corner = EquationsOf(model, images, point);
-    marker.sum_of_squares_px2 += corner.sum_of_squares_px2;
+    marker.sum_of_squares_px2 += corner.SumOfSquares_px2();
     marker.redundancy += std::max(0, 2 * corner.num_observations - 3);
   }
   SetVariances(model.images.size(), &markers);
   return markers;
 }
 
-// 1 sigma of the function with this gradient by the four corners.
+// 1 sigma of the function with this gradient with respect to the four corners.
 double SigmaOf(const MarkerEquations& equations, const PointGradient& gradient) {
   std::array<Eigen::Vector3d, kNumCorners> by_corner;
   by_corner.fill(Eigen::Vector3d::Zero());
@@ -169,7 +155,7 @@ double SigmaOf(const MarkerEquations& equations, const PointGradient& gradient) 
   double variance = 0.0;
   for (int i = 0; i < kNumCorners; ++i) {
     variance += equations.variance_px2 *
-                by_corner[i].dot(equations.corners[i].information.ldlt().solve(by_corner[i]));
+                by_corner[i].dot(equations.corners[i].Information().ldlt().solve(by_corner[i]));
   }
   return std::sqrt(std::max(0.0, variance));
 }
@@ -187,27 +173,49 @@ PointGradient RatioGradient(const ShapeMarker& marker, const MarkerSidesMeasured
   return gradient;
 }
 
-// Gauss and Newton's steps; the point stays where they do not converge.
+// The position of a point with fixed cameras, as a problem of MinimizeSquares().
+struct IntersectionProblem : LeastSquaresProblem<3> {
+  using Parameters = Eigen::Vector3d;
+  using Equations = PointEquations;
+
+  const Model& model;
+  const std::map<ImageId, const ModelImage*>& images;
+  const Point3D& point;
+
+  IntersectionProblem(const Model& m, const std::map<ImageId, const ModelImage*>& by_id,
+                      const Point3D& p)
+      : model(m), images(by_id), point(p) {}
+
+  void Evaluate(const Eigen::Vector3d& x_in_world, bool, PointEquations* equations) const {
+    Point3D moved = point;
+    moved.x_in_world = x_in_world;
+    *equations = EquationsOf(model, images, moved);
+    if (equations->num_observations < 2) equations->Reject();
+  }
+  Eigen::Vector3d Plus(const Eigen::Vector3d& x_in_world, const Step& step) const {
+    return x_in_world + step;
+  }
+  // RMS change of the residuals, px.
+  double StepSize(const Step& step, const PointEquations& equations) const {
+    return std::sqrt(step.dot(equations.Information() * step) / equations.num_observations);
+  }
+};
+
+// Keeps the point if the search does not converge.
 void IntersectPoint(const Model& model, const std::map<ImageId, const ModelImage*>& images,
                     Point3D* point) {
-  constexpr int kMaxSteps = 20;
-  constexpr double kMinStep_px = 1e-7;
-  Point3D moved = *point;
-  for (int step = 0; step < kMaxSteps; ++step) {
-    const PointEquations equations = EquationsOf(model, images, moved);
-    if (equations.num_observations < 2) return;
-    const Eigen::Vector3d change = -equations.information.ldlt().solve(equations.gradient);
-    moved.x_in_world += change;
-    if (!moved.x_in_world.allFinite()) return;
-    const double change_px2 =
-        change.dot(equations.information * change) / equations.num_observations;
-    if (change_px2 > kMinStep_px * kMinStep_px) continue;
-    *point = moved;
-    return;
+  LeastSquaresOptions options;
+  options.initial_damping = 1e-9;
+  options.min_step = 1e-7;
+  Eigen::Vector3d x_in_world = point->x_in_world;
+  PointEquations equations;
+  if (MinimizeSquares(options, IntersectionProblem(model, images, *point), &x_in_world,
+                      &equations) == Convergence::kConverged) {
+    point->x_in_world = x_in_world;
   }
 }
 
-// The detector sees corners by `inset_px` too far inside along both sides of the marker.
+// Corrects corners that the detector sees `inset_px` too far inside along both sides of the marker.
 void MoveOut(double inset_px, ModelImage* image) {
   const std::map<int, Corners> markers = WholeMarkersIn(*image);
   for (Point2D& point : image->points2D) {

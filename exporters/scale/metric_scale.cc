@@ -14,23 +14,23 @@
 namespace velamap {
 namespace {
 
-// Keeps rounding from deciding where all markers agree and the robust sigma is next to nothing.
+// Tolerates rounding errors if all markers agree and the robust sigma is almost zero.
 constexpr double kRoundingTolerance = 1e-9;
 
 [[noreturn]] void ThrowNoWholeMarker(const Model& model) {
   const auto is_corner = [](const auto& point) { return IsCornerPoint3DId(point.first); };
   const auto num_corners = std::count_if(model.points3D.begin(), model.points3D.end(), is_corner);
   std::string message =
-      "no marker of the model has all four corners, so that nothing gives the metric scale (" +
+      "no marker of the model has all four corners, so the metric scale is unknown (" +
       std::to_string(model.points3D.size()) + " points, " + std::to_string(num_corners) +
       " of them marker corners)";
   if (num_corners == 0 && !model.points3D.empty()) {
-    message += "; point ids have to be 10 * marker id + corner, as velamap writes them";
+    message += "; point ids must be 10 * marker id + corner, as velamap writes them";
   }
   throw DataError(message);
 }
 
-// What each marker alone says; markers in one point say nothing.
+// The scale from each marker alone, without markers that degenerate to a point.
 std::map<int, double> RatiosOf(const std::vector<MarkerSidesMeasured>& markers,
                                const Layout& layout) {
   std::map<int, double> ratios;
@@ -43,7 +43,7 @@ std::map<int, double> RatiosOf(const std::vector<MarkerSidesMeasured>& markers,
 
 struct Agreement {
   double robust_sigma = 0.0;
-  std::vector<double> ratios;  // those that agree
+  std::vector<double> ratios;  // within the limit
 };
 
 Agreement FindAgreement(const std::map<int, double>& ratio_of) {
@@ -84,7 +84,7 @@ ScaleEstimate MetricScale(std::map<int, double> m_per_unit_of,
   estimate.m_per_unit = 1.0;
   estimate.relative_sigma = uncertainty.relative_scale_sigma;
   estimate.m_per_unit_of = std::move(m_per_unit_of);
-  if (estimate.m_per_unit_of.empty()) return estimate;  // a scale bar can do without
+  if (estimate.m_per_unit_of.empty()) return estimate;  // a scale bar needs no marker
   const Agreement agreement = FindAgreement(estimate.m_per_unit_of);
   estimate.relative_spread = agreement.robust_sigma;
   estimate.num_markers = static_cast<int>(agreement.ratios.size());

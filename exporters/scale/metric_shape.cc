@@ -15,7 +15,7 @@ int CountImages(const Point3D& point) {
   return static_cast<int>(image_ids.size());
 }
 
-void AddCentre(ShapeMarker* marker) {
+void AddCenter(ShapeMarker* marker) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int corner = 1; corner <= kNumCorners; ++corner) {
     if (!marker->x_in_shape_m[corner]) return;
@@ -37,7 +37,7 @@ void ScaleModel(const ScaleEstimate& scale, Model* model) {
 MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout,
                            const PointCovariance* covariance) {
   MarkerShape shape;
-  // Ids ascend by marker, then corner.
+  // Ids are sorted by marker, then corner.
   for (const auto& [point3D_id, point] : metric_model.points3D) {
     if (!IsCornerPoint3DId(point3D_id)) continue;
     const CornerId id = CornerFromPoint3DId(point3D_id);
@@ -51,7 +51,7 @@ MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout,
     marker.num_frames[id.corner] = CountImages(point);
   }
   for (ShapeMarker& marker : shape.markers) {
-    AddCentre(&marker);
+    AddCenter(&marker);
     for (int corner = 0; corner <= kNumCorners; ++corner) {
       if (!marker.x_in_shape_m[corner]) continue;
       marker.sigma_m[corner] = PointSigma(covariance, marker.marker_id, corner);

@@ -1,4 +1,4 @@
-// From a bundle-adjusted model to the metric shape.
+// Derives the metric shape from a bundle-adjusted model.
 
 #pragma once
 
@@ -14,13 +14,14 @@ namespace velamap {
 // shape frame.
 void ScaleModel(const ScaleEstimate& scale, Model* model);
 
-// Corners and centres of a metric model (unit m). Points whose id is no corner are left out. Sigmas
-// are those of `covariance` where it is given; a centre's follows from its corners jointly.
+// Collects the corners of a metric model (unit m) and computes the centers. Ignores points whose id
+// is no corner. Sigmas come from `covariance` (may be null); the sigma of a center takes the
+// correlation of its corners into account.
 MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout,
                            const PointCovariance* covariance = nullptr);
 
-// Whether every corner of the shape lies where the model has it, to a micrometre: then a covariance
-// of the model is the shape's.
+// Whether every corner of the shape has the position of the model's point to a micrometre, so that
+// the covariance of the model applies to the shape.
 bool IsShapeOf(const MarkerShape& shape, const Model& metric_model);
 
 }  // namespace velamap

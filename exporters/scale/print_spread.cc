@@ -9,11 +9,11 @@ namespace velamap {
 namespace {
 
 constexpr double kUmPerM = 1e6;
-// Fewer markers than this say too little to tell a slope from chance.
+// Fewer markers do not determine a slope.
 constexpr std::size_t kMinMarkers = 8;
-// Least relative standard deviation of a term over the markers.
+// Lowest relative standard deviation of a term over the markers.
 constexpr double kMinVariation = 0.05;
-// Terms that go together as closely as this are one.
+// Terms with a higher correlation cannot be separated.
 constexpr double kMaxCorrelation = 0.95;
 
 using Vector = Eigen::VectorXd;
@@ -65,8 +65,8 @@ PrintSpread NotDetermined(const std::string& why) {
   return spread;
 }
 
-// Both vary, but as one: each is what it would be if the other were nothing.
-PrintSpread ExplainEitherWay(const Columns& columns) {
+// Both terms vary, but together: the note gives each as it would be without the other.
+PrintSpread NoteBothExplanations(const Columns& columns) {
   const auto as_print = Fit(columns, {&columns.by_print});
   const auto as_image = Fit(columns, {&columns.by_image});
   if (!as_print || !as_image) return NotDetermined("too few markers agree");
@@ -74,7 +74,7 @@ PrintSpread ExplainEitherWay(const Columns& columns) {
   const UncertainValue image_px = EstimateOf(*as_image, 1);
   return NotDetermined(
       fmt::format("the larger markers are larger in the images too, so that {:.3g} +- {:.2g} um in "
-                  "the print and {:.3g} +- {:.2g} px in the image explain the sides alike",
+                  "the print and {:.3g} +- {:.2g} px in the image explain the sides equally well",
                   print_um.value, print_um.sigma, image_px.value, image_px.sigma));
 }
 
@@ -92,11 +92,11 @@ PrintSpread EstimateSpread(const std::vector<SpreadSample>& samples) {
   if (!print_varies && !image_varies) {
     return NotDetermined(has_images
                              ? "all markers are of one size in the print and in the images"
-                             : "all markers are of one size, and images (a model) are not given");
+                             : "all markers are of one size, and no images (a model) are given");
   }
   if (print_varies && image_varies &&
       std::abs(Correlation(columns.by_print, columns.by_image)) > kMaxCorrelation) {
-    return ExplainEitherWay(columns);
+    return NoteBothExplanations(columns);
   }
   std::vector<const Vector*> terms;
   if (print_varies) terms.push_back(&columns.by_print);
@@ -108,14 +108,14 @@ PrintSpread EstimateSpread(const std::vector<SpreadSample>& samples) {
   if (print_varies) spread.print_um = EstimateOf(*fit, 1, kUmPerM);
   if (image_varies) spread.image_px = EstimateOf(*fit, print_varies ? 2 : 1);
   if (print_varies && image_varies) {
-    spread.note = "print and image told apart";
+    spread.note = "print and image separated";
   } else if (image_varies) {
     spread.note =
         "image only: all markers are printed in one size, so that a spread of the print "
         "is part of the scale error";
   } else {
     spread.note = has_images ? "print only: all markers have one size in the images"
-                             : "print only: images (a model) are not given";
+                             : "print only: no images (a model) are given";
   }
   return spread;
 }

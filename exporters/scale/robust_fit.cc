@@ -11,17 +11,17 @@
 namespace velamap {
 namespace {
 
-// Keeps rounding from making outliers where all values agree; they are of order 1.
+// Tolerates rounding errors of values of order 1 if all of them agree.
 constexpr double kRounding = 1e-9;
 
 using Vector = Eigen::VectorXd;
 
-// Weighted least squares; nothing where the design lacks rank.
+// Weighted least squares; nothing if the design is rank deficient.
 std::optional<Vector> Solve(const Eigen::MatrixXd& design, const Vector& values,
                             const Vector& weights) {
   const Vector roots = weights.cwiseSqrt();
   const Eigen::MatrixXd weighted = roots.asDiagonal() * design;
-  // Columns of the same length, so that the rank does not depend on their units.
+  // Normalized columns make the rank independent of their units.
   Vector lengths = weighted.colwise().norm();
   if (!(lengths.minCoeff() > 0)) return std::nullopt;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(weighted * lengths.cwiseInverse().asDiagonal());
@@ -31,12 +31,13 @@ std::optional<Vector> Solve(const Eigen::MatrixXd& design, const Vector& values,
   return Vector(scaled.cwiseQuotient(lengths));
 }
 
-double RobustSize(const Vector& normalised, Eigen::Index num_coefficients) {
-  std::vector<double> sizes(normalised.data(), normalised.data() + normalised.size());
+// Robust standard deviation of residuals, which have a mean of zero.
+double ResidualSigma(const Vector& residuals, Eigen::Index num_coefficients) {
+  std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
   for (double& size : sizes) size = std::abs(size);
-  const double n = static_cast<double>(normalised.size());
+  const double n = static_cast<double>(residuals.size());
   const double p = static_cast<double>(num_coefficients);
-  return 1.4826 * Median(std::move(sizes)) * std::sqrt(n / (n - p));
+  return kMadToSigma * Median(std::move(sizes)) * std::sqrt(n / (n - p));
 }
 
 Vector TotalSigmas(const Vector& sigmas, double excess_sigma) {
@@ -46,10 +47,11 @@ Vector TotalSigmas(const Vector& sigmas, double excess_sigma) {
 double ExcessSigma(const Vector& residuals, const Vector& sigmas, Eigen::Index num_coefficients) {
   if (residuals.size() <= num_coefficients) return 0.0;
   const auto size_at = [&](double excess_sigma) {
-    return RobustSize(residuals.cwiseQuotient(TotalSigmas(sigmas, excess_sigma)), num_coefficients);
+    return ResidualSigma(residuals.cwiseQuotient(TotalSigmas(sigmas, excess_sigma)),
+                         num_coefficients);
   };
   if (size_at(0.0) <= 1.0) return 0.0;
-  double low = 0.0, high = RobustSize(residuals, num_coefficients);  // right where no own sigma is
+  double low = 0.0, high = ResidualSigma(residuals, num_coefficients);  // exact for zero sigmas
   constexpr int kNumHalvings = 60;
   for (int i = 0; i < kNumHalvings; ++i) {
     const double middle = 0.5 * (low + high);
@@ -58,7 +60,7 @@ double ExcessSigma(const Vector& residuals, const Vector& sigmas, Eigen::Index n
   return high;
 }
 
-// Least sum of absolute residuals by reweighting, near enough for a start.
+// Approximates the smallest sum of absolute residuals by iterative reweighting.
 std::optional<Vector> SolveAbsolute(const Eigen::MatrixXd& design, const Vector& values) {
   Vector weights = Vector::Ones(values.size());
   std::optional<Vector> coefficients;

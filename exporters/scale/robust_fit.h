@@ -1,5 +1,4 @@
-// A line or a mean through values that have a noise of their own, a common scatter beyond it that
-// is not known, and outliers.
+// Robust linear fits of values with known noise, unknown common scatter, and outliers.
 
 #pragma once
 
@@ -13,19 +12,20 @@ namespace velamap {
 struct RobustFit {
   Eigen::VectorXd coefficients;
   Eigen::MatrixXd covariance;  // of the coefficients
-  // 1 sigma of the values beyond their own: what makes the robust standard deviation of the
-  // normalised residuals 1; 0 where their own explains all.
+  // Common sigma in addition to the sigmas of the values, such that the normalized residuals have a
+  // robust standard deviation of 1; 0 if the sigmas of the values explain all scatter.
   double excess_sigma = 0.0;
-  // Residual / root of (own sigma^2 + excess^2), by value. Beyond 3: an outlier, not used.
+  // Residual / sqrt(sigma^2 + excess_sigma^2) of each value. Values beyond kMaxRobustSigmas are
+  // outliers, which the fit does not use.
   Eigen::VectorXd sigmas_off;
   int num_used = 0;
 };
 
 constexpr double kMaxRobustSigmas = 3.0;
 
-// values = design * coefficients + noise; `sigmas` are the values' own, 0 where unknown. Starts
-// from the least sum of absolute residuals. Nothing where there are fewer values than coefficients,
-// or where the values that are used do not determine them.
+// Fits values = design * coefficients + noise, starting from the smallest sum of absolute
+// residuals. `sigmas` are those of the values, 0 if unknown. Nothing if there are fewer values than
+// coefficients or if the used values do not determine the coefficients.
 std::optional<RobustFit> FitRobustly(const Eigen::MatrixXd& design, const Eigen::VectorXd& values,
                                      const Eigen::VectorXd& sigmas);
 
@@ -37,7 +37,7 @@ struct RobustMean {
   int num_used = 0;
 };
 
-// The same of a constant. `values` must not be empty; `sigmas` as above.
+// Fits a constant in the same way. `values` must not be empty.
 RobustMean FitMeanRobustly(const std::vector<double>& values, const std::vector<double>& sigmas);
 
 }  // namespace velamap

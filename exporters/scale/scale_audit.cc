@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 
+#include "exporters/formats/round_number.h"
 #include "exporters/scale/marker_sides.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/robust_fit.h"
@@ -33,8 +34,8 @@ std::vector<MarkerSidesMeasured> MeasureForShape(const MarkerShape& shape, const
   return markers;
 }
 
-// Markers in one point have no scale.
-void RemovePoints(std::vector<MarkerSidesMeasured>* markers) {
+// Markers that degenerate to a point have no scale.
+void RemoveDegenerateMarkers(std::vector<MarkerSidesMeasured>* markers) {
   const auto is_point = [](const MarkerSidesMeasured& marker) {
     return *std::min_element(marker.sides.begin(), marker.sides.end()) == 0;
   };
@@ -58,7 +59,7 @@ std::vector<MarkerScale> ScalesOf(const std::vector<MarkerSidesMeasured>& measur
   return markers;
 }
 
-// Logarithms of scales, so that a marker of half the size and one of twice the size are as far off.
+// Averages logarithms, so that half and twice the size deviate equally.
 RobustMean MeanScale(const std::vector<const MarkerScale*>& markers, double marker_spread) {
   std::vector<double> values, sigmas;
   for (const MarkerScale* marker : markers) {
@@ -68,7 +69,7 @@ RobustMean MeanScale(const std::vector<const MarkerScale*>& markers, double mark
   return FitMeanRobustly(values, sigmas);
 }
 
-void JudgeMarkers(ScaleAudit* audit) {
+void CompareMarkersWithMean(ScaleAudit* audit) {
   std::vector<const MarkerScale*> all;
   for (const MarkerScale& marker : audit->markers) all.push_back(&marker);
   const RobustMean mean = MeanScale(all, 0.0);
@@ -78,18 +79,9 @@ void JudgeMarkers(ScaleAudit* audit) {
   for (std::size_t i = 0; i < all.size(); ++i) audit->markers[i].sigmas_off = mean.sigmas_off[i];
 }
 
-// The least of 1, 2, 5, 10, 20, ... times a power of ten that is no less than `x`.
-double RoundUp(double x) {
-  const double power = std::pow(10.0, std::floor(std::log10(x)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (step * power >= x) return step * power;
-  }
-  return 10.0 * power;
-}
-
-// Bins of about half a robust sigma, one of them around 0, within ten bins of the median; what lies
-// outside joins the first and the last.
-std::vector<HistogramBin> MakeHistogram(const std::vector<MarkerScale>& markers) {
+// Makes bins of about half a robust sigma, one of them around 0, within ten bins of the median. The
+// first and the last bin take everything beyond.
+std::vector<HistogramBin> MakeDeviationHistogram(const std::vector<MarkerScale>& markers) {
   constexpr double kLeastWidth = 1e-6;
   constexpr int kMaxBinsASide = 10;
   std::vector<double> deviations;
@@ -126,7 +118,7 @@ void CompareWidthAndHeight(const std::vector<MarkerSidesMeasured>& measured, Sca
   audit->x_over_y_sigma = mean.sigma;
 }
 
-// Every group against all other markers; nothing where all are in one.
+// Compares every group with all other markers. Empty if all markers are in one group.
 template <typename Key>
 std::map<Key, GroupScale> CompareGroups(const ScaleAudit& audit,
                                         const std::function<Key(const MarkerScale&)>& key_of) {
@@ -139,7 +131,7 @@ std::map<Key, GroupScale> CompareGroups(const ScaleAudit& audit,
     for (const auto& [other_key, other] : groups) {
       if (other_key != key) others.insert(others.end(), other.begin(), other.end());
     }
-    // The scatter of all markers, so that a group of two does not pass for exact by chance.
+    // The scatter of all markers, because two markers of a group can agree by chance.
     const RobustMean own = MeanScale(group, audit.marker_spread);
     const RobustMean rest = MeanScale(others, audit.marker_spread);
     GroupScale& scale = scales[key];
@@ -203,12 +195,12 @@ ScaleAudit AuditScale(const MarkerShape& shape, const Layout& layout, const Mode
                                uncertainty->apparent_inset_sigma_px};
   }
   std::vector<MarkerSidesMeasured> measured = MeasureForShape(shape, layout, model, uncertainty);
-  RemovePoints(&measured);
+  RemoveDegenerateMarkers(&measured);
   audit.markers = ScalesOf(measured, layout);
   audit.spread = SpreadOf(audit.markers);
   if (audit.markers.empty()) return audit;
-  JudgeMarkers(&audit);
-  audit.histogram = MakeHistogram(audit.markers);
+  CompareMarkersWithMean(&audit);
+  audit.histogram = MakeDeviationHistogram(audit.markers);
   CompareWidthAndHeight(measured, &audit);
   CompareParts(&audit);
   CompareSizes(&audit);

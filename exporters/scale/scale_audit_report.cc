@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
+#include "exporters/shape/units.h"
+
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
-
-// `value` in percent under KEY_percent, its sigma, where it is known, under KEY_sigma_percent.
+// Adds `value` as KEY_percent and its sigma, if known, as KEY_sigma_percent.
 void AddPercent(const std::string& key, double value, const std::optional<double>& sigma,
                 Metrics* metrics) {
   metrics->push_back({key + "_percent", 100.0 * value});
@@ -125,7 +125,7 @@ void PrintParts(const ScaleAudit& audit, std::ostream& out) {
       std::max_element(audit.parts.begin(), audit.parts.end(),
                        [&](const GroupScale& a, const GroupScale& b) { return size(a) < size(b); });
   if (worst == audit.parts.end()) return;
-  out << fmt::format("scale_of_part_against_others: {} {} (of {} parts the one most off)\n",
+  out << fmt::format("scale_of_part_against_others: {} {} (largest of {} parts)\n",
                      worst->part.empty() ? "without a part" : worst->part,
                      PercentText(worst->deviation, worst->sigma), audit.parts.size());
 }

@@ -1,5 +1,4 @@
-// A scale audit in figures and in words. The keys and what they mean stand in the README of this
-// room.
+// Reports of a scale audit. README.md of this room lists the keys.
 
 #pragma once
 
@@ -11,12 +10,12 @@
 
 namespace velamap {
 
-// Figures of the markers' scales, x against y, spread and known distances. Tables scale_histogram,
-// disagreeing_markers, scale_markers, scale_parts, scale_sizes, known_distances.
+// Adds the figures of the audit and the tables scale_histogram, disagreeing_markers, scale_markers,
+// scale_parts, scale_sizes and known_distances.
 void AddMetrics(const ScaleAudit& audit, MetricsReport* report);
 
-// The short form for a summary, `key: value` in at most four lines: what the scale's sigma is,
-// which markers disagree, the part that differs most from the others, known distances.
+// Prints at most four lines `key: value` for a summary: the sigma of the scale, the markers that
+// disagree, the part that differs most from the others, and the known distances.
 void PrintScaleAudit(const ScaleEstimate& scale, const ScaleAudit& audit, std::ostream& out);
 
 }  // namespace velamap

@@ -2,14 +2,15 @@
 
 #include <ostream>
 
-#include <fmt/format.h>
+#include "importer/base/csv.h"
 
 namespace velamap {
 
 void WriteScaleCsv(const ScaleEstimate& scale, std::ostream& out) {
-  out << "marker_id,m_per_unit,relative_deviation\n";
+  CsvWriter csv(out);
+  csv.WriteRecord("marker_id", "m_per_unit", "relative_deviation");
   for (const auto& [marker_id, m_per_unit] : scale.m_per_unit_of) {
-    out << fmt::format("{},{},{}\n", marker_id, m_per_unit, m_per_unit / scale.m_per_unit - 1.0);
+    csv.WriteRecord(marker_id, m_per_unit, m_per_unit / scale.m_per_unit - 1.0);
   }
 }
 

@@ -1,7 +1,6 @@
-// scale.csv: what each marker alone says of the metric scale. Header
-// marker_id,m_per_unit,relative_deviation
-// relative_deviation is m_per_unit / the scale of the whole model - 1; classic locale, shortest
-// digits that read back to the same double. Outliers are listed too: this is where they show.
+// scale.csv: the metric scale from each marker alone, outliers included. Header
+//   marker_id,m_per_unit,relative_deviation
+// relative_deviation is m_per_unit over the scale of the whole model, minus 1.
 
 #pragma once
 

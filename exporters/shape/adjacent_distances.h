@@ -1,4 +1,4 @@
-// Distances between adjacent markers against known ones (thesis sections 4.1, 4.2).
+// Compares distances between adjacent markers with known ones (thesis sections 4.1 and 4.2).
 
 #pragma once
 
@@ -16,13 +16,13 @@ struct AdjacentDistance {
   int marker_id1 = 0, marker_id2 = 0;
   double distance_m = 0.0;
   double reference_distance_m = 0.0;
-  // Of distance_m, where `covariance` holds the corners.
+  // Of distance_m; known if `covariance` has the corners.
   std::optional<double> sigma_m = std::nullopt;
 };
 
-// Every pair that is adjacent in the layout's graph (neighbours on a line, all markers of a rigid
-// part) and whole in both shapes, by ids. No alignment is involved, so the frames do not matter.
-// Empty for a layout without lines or rigid parts.
+// Returns every pair that is adjacent in the layout's graph (neighbors on a line, all markers of a
+// rigid part) and whole in both shapes, sorted by ids. The shapes may be in different frames. Empty
+// for a layout without lines or rigid parts.
 std::vector<AdjacentDistance> CompareAdjacentDistances(const MarkerShape& shape,
                                                        const MarkerShape& reference,
                                                        const Layout& layout,

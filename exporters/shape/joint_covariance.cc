@@ -8,7 +8,7 @@
 namespace velamap {
 namespace {
 
-// For every point its block and its first row there.
+// The block of every point and its first row there.
 std::vector<std::pair<std::size_t, int>> PlacesInBlocks(const PointCovariance& covariance) {
   std::vector<std::pair<std::size_t, int>> places;
   for (std::size_t block = 0; block < covariance.blocks.size(); ++block) {
@@ -26,7 +26,7 @@ Eigen::MatrixXd JointCovarianceOf(const PointCovariance& covariance,
   const auto places = PlacesInBlocks(covariance);
   const auto num_functions = static_cast<Eigen::Index>(gradients.size());
   Eigen::MatrixXd by_factor = Eigen::MatrixXd::Zero(num_functions, covariance.factor.cols());
-  // By block, the gradients that it takes part in.
+  // The gradients that involve each block.
   std::map<std::size_t, std::map<Eigen::Index, Eigen::VectorXd>> by_block;
   for (Eigen::Index i = 0; i < num_functions; ++i) {
     for (const auto& [point3D_id, value] : gradients[static_cast<std::size_t>(i)]) {

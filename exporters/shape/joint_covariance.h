@@ -1,4 +1,4 @@
-// Joint covariance of several reported figures.
+// Joint covariance of several figures.
 
 #pragma once
 
@@ -10,9 +10,8 @@
 
 namespace velamap {
 
-// Covariance matrix of linear functions of the points, in the product of their units: what
-// CovarianceOf() gives for every pair, in one go. Throws std::logic_error for a point that is not
-// in `covariance`.
+// Covariance matrix of linear functions of the points: CovarianceOf() for every pair, at a lower
+// cost. Throws std::logic_error for a point that `covariance` lacks.
 Eigen::MatrixXd JointCovarianceOf(const PointCovariance& covariance,
                                   const std::vector<PointGradient>& gradients);
 

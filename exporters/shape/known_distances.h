@@ -1,4 +1,4 @@
-// The layout's distances, measured by hand, against the result.
+// Compares the distances of the layout, measured by hand, with the result.
 
 #pragma once
 
@@ -13,14 +13,14 @@ namespace velamap {
 
 struct CheckedDistance {
   KnownDistance known;
-  std::optional<double> distance_m;  // of the shape; nothing where it lacks one of the points
+  std::optional<double> distance_m;  // in the shape; nothing if it lacks one of the points
   std::optional<double> sigma_m;     // of distance_m
 
-  // Of the difference: the tape's and, where it is known, the result's.
+  // Sigma of the difference: that of the tape and, if known, that of the result.
   double DifferenceSigma() const;
 };
 
-// In the layout's order.
+// One entry per distance of the layout, in its order.
 std::vector<CheckedDistance> CheckDistances(const MarkerShape& shape, const Layout& layout,
                                             const PointCovariance* covariance = nullptr);
 

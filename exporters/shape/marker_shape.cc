@@ -7,8 +7,9 @@
 namespace velamap {
 namespace {
 
-// Cross product of the diagonals: along the outward normal, twice the area long. Corners 1..4 are
-// top-left, top-right, bottom-right, bottom-left with y up, clockwise seen from the front.
+// Cross product of the diagonals: along the outward normal, with twice the area as its length.
+// Corners 1..4 are top-left, top-right, bottom-right, bottom-left with y up, clockwise seen from
+// the front.
 Eigen::Vector3d DiagonalProduct(const ShapeMarker& marker) {
   VELAMAP_CHECK(marker.IsWhole());
   const auto& x = marker.x_in_shape_m;

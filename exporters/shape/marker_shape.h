@@ -1,4 +1,4 @@
-// The metric result: where every marker's corners and centre are.
+// The metric result: positions of the corners and the center of every marker.
 
 #pragma once
 
@@ -13,16 +13,16 @@
 
 namespace velamap {
 
-// Index 0 is the centre, the mean of the four corners; 1..4 the corners. Shape frame, m.
+// Index 0 is the center, the mean of the four corners; 1..4 are the corners. Shape frame, m.
 struct ShapeMarker {
   int marker_id = 0;
   std::string part;
   std::array<std::optional<Eigen::Vector3d>, kNumCorners + 1> x_in_shape_m;
-  // 1 sigma along x, y, z; nothing where no covariance was computed.
+  // 1 sigma along x, y and z; nothing without a covariance.
   std::array<std::optional<Eigen::Vector3d>, kNumCorners + 1> sigma_m;
-  std::array<int, kNumCorners + 1> num_frames{};  // for the centre: the fewest of its corners
+  std::array<int, kNumCorners + 1> num_frames{};  // for the center, the minimum of its corners
 
-  // All four corners are there, and with them the centre.
+  // Whether all four corners are known, and with them the center.
   bool IsWhole() const { return x_in_shape_m[0].has_value(); }
 };
 
@@ -30,16 +30,16 @@ struct MarkerShape {
   std::vector<ShapeMarker> markers;  // by ascending marker id
 };
 
-// Null where there is no such marker.
+// Null without such a marker.
 const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id);
-// Null where it is not whole either.
+// Null also for a marker that is not whole.
 const ShapeMarker* FindWholeMarker(const MarkerShape& shape, int marker_id);
 
-// Outward normal of the face (unit length): z of the marker frame. Needs a whole marker.
+// Outward unit normal, z of the marker frame. Needs a whole marker.
 Eigen::Vector3d MarkerNormal(const ShapeMarker& marker);
 
-// Area of the quadrilateral of the corners, half the length of the cross product of its diagonals,
-// m^2 (thesis section 4.3.2 compares it with the printed one). Needs a whole marker.
+// Area of the quadrilateral of the corners, m^2: half the length of the cross product of its
+// diagonals (thesis section 4.3.2). Needs a whole marker.
 double MarkerArea(const ShapeMarker& marker);
 
 // Lengths of the sides 1-2, 2-3, 3-4, 4-1, m. Needs a whole marker.

@@ -4,41 +4,20 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
 #include "exporters/shape/joint_covariance.h"
+#include "exporters/shape/principal_axes.h"
 #include "exporters/shape/shape_sigma.h"
+#include "exporters/shape/units.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kParallelDeg = 10.0;
 
-// The plane of least squares: the axis of the scatter with the least spread is its normal.
-struct Plane {
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d axes;             // columns; the first is the normal
-  Eigen::Vector3d sums_of_squares;  // of the points along the axes
-
-  Eigen::Vector3d Normal() const { return axes.col(0); }
-};
-
-Plane FitPlane(const std::vector<Eigen::Vector3d>& points) {
-  Plane plane;
-  for (const Eigen::Vector3d& x : points) plane.centroid += x;
-  plane.centroid /= static_cast<double>(points.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& x : points) {
-    scatter += (x - plane.centroid) * (x - plane.centroid).transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-  plane.axes = solver.eigenvectors();
-  plane.sums_of_squares = solver.eigenvalues();
-  return plane;
-}
+Eigen::Vector3d NormalOf(const PrincipalAxes& plane) { return plane.directions.col(0); }
 
 std::vector<Eigen::Vector3d> PositionsOf(const PartPlane& plane) {
   std::vector<Eigen::Vector3d> positions;
@@ -46,17 +25,18 @@ std::vector<Eigen::Vector3d> PositionsOf(const PartPlane& plane) {
   return positions;
 }
 
-// Adds `weight` . normal, differentiated by the corners: to first order the normal turns towards
-// each other axis by what the scatter changes between the two, over the difference of their sums.
+// Adds the gradient of `weight` . normal with respect to the corners. To first order, the normal
+// turns towards each other axis by the change of the scatter between the two over the difference of
+// their sums of squares.
 void AddNormalGradient(const PartPlane& part_plane, const Eigen::Vector3d& weight,
                        PointGradient* gradient) {
-  const Plane plane = FitPlane(PositionsOf(part_plane));
+  const PrincipalAxes plane = ComputePrincipalAxes(PositionsOf(part_plane));
   const Eigen::Vector3d& normal = part_plane.normal;
   for (const auto& [point3D_id, x] : part_plane.corners_m) {
-    const Eigen::Vector3d from_centroid = x - plane.centroid;
+    const Eigen::Vector3d from_centroid = x - plane.mean;
     Eigen::Vector3d by_point = Eigen::Vector3d::Zero();
     for (int i = 1; i < 3; ++i) {
-      const Eigen::Vector3d axis = plane.axes.col(i);
+      const Eigen::Vector3d axis = plane.directions.col(i);
       by_point += weight.dot(axis) / (plane.sums_of_squares[0] - plane.sums_of_squares[i]) *
                   (normal.dot(from_centroid) * axis + axis.dot(from_centroid) * normal);
     }
@@ -72,19 +52,19 @@ void AddCentroidGradient(const PartPlane& plane, const Eigen::Vector3d& weight,
   }
 }
 
-// Root of the mean variance of the centres' distances from their own plane, to first order: of
-// their displacements along the normal, the plane takes up what is linear in the plane.
+// Root of the mean variance of the distances of the centers from their own plane, to first order.
+// The plane absorbs displacements along the normal that are linear in the plane.
 std::optional<double> CenterDistanceSigma(const std::vector<int>& marker_ids,
                                           const std::vector<Eigen::Vector3d>& centers,
                                           const PointCovariance* covariance) {
   if (covariance == nullptr) return std::nullopt;
-  const Plane plane = FitPlane(centers);
+  const PrincipalAxes plane = ComputePrincipalAxes(centers);
   const auto num_centers = static_cast<Eigen::Index>(centers.size());
   Eigen::MatrixXd linear(num_centers, 3);
   std::vector<PointGradient> gradients(centers.size());
   for (std::size_t i = 0; i < centers.size(); ++i) {
-    linear.row(i) << 1, (centers[i] - plane.centroid).transpose() * plane.axes.rightCols<2>();
-    AddPointGradient(marker_ids[i], 0, plane.Normal(), &gradients[i]);
+    linear.row(i) << 1, (centers[i] - plane.mean).transpose() * plane.directions.rightCols<2>();
+    AddPointGradient(marker_ids[i], 0, NormalOf(plane), &gradients[i]);
     if (!SigmaOf(covariance, gradients[i])) return std::nullopt;
   }
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(linear);
@@ -94,17 +74,17 @@ std::optional<double> CenterDistanceSigma(const std::vector<int>& marker_ids,
   return std::sqrt(std::max(0.0, variance) / static_cast<double>(num_centers));
 }
 
-Statistics DistancesMm(const std::vector<Eigen::Vector3d>& points, const Plane& plane) {
+Statistics DistancesMm(const std::vector<Eigen::Vector3d>& points, const PrincipalAxes& plane) {
   std::vector<double> distances_mm;
   for (const Eigen::Vector3d& x : points) {
-    distances_mm.push_back(1e3 * std::abs(plane.Normal().dot(x - plane.centroid)));
+    distances_mm.push_back(kMmPerM * std::abs(NormalOf(plane).dot(x - plane.mean)));
   }
   return ComputeStatistics(std::move(distances_mm));
 }
 
 double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  // Exact for small angles too, where the arc cosine is not.
-  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / kPi;
+  // Unlike the arc cosine, exact for small angles.
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * kDegPerRad;
 }
 
 Statistics SpreadDeg(const std::vector<Eigen::Vector3d>& directions) {
@@ -139,24 +119,24 @@ PartPlane PlaneOfPart(const std::string& part, const std::vector<const ShapeMark
     facing += normals.back();
   }
   const std::vector<Eigen::Vector3d> corners = PositionsOf(result);
-  const Plane plane = FitPlane(corners);
+  const PrincipalAxes plane = ComputePrincipalAxes(corners);
   result.part = part;
   result.num_markers = static_cast<int>(markers.size());
-  result.centroid_m = plane.centroid;
+  result.centroid_m = plane.mean;
   result.normal =
-      plane.Normal().dot(facing) < 0 ? Eigen::Vector3d(-plane.Normal()) : plane.Normal();
+      NormalOf(plane).dot(facing) < 0 ? Eigen::Vector3d(-NormalOf(plane)) : NormalOf(plane);
   result.corner_distance_mm = DistancesMm(corners, plane);
   if (centers.size() >= kMinCenters) {
-    result.center_distance_mm = DistancesMm(centers, FitPlane(centers));
+    result.center_distance_mm = DistancesMm(centers, ComputePrincipalAxes(centers));
     const auto sigma_m = CenterDistanceSigma(marker_ids, centers, covariance);
-    if (sigma_m) result.center_distance_sigma_mm = 1e3 * *sigma_m;
+    if (sigma_m) result.center_distance_sigma_mm = kMmPerM * *sigma_m;
   }
   result.normal_spread_deg = SpreadDeg(normals);
   result.tangent_spread_deg = SpreadDeg(tangents);
   return result;
 }
 
-// Unit vector in the plane of `normal`, towards `other`; any where the two are parallel.
+// Unit vector orthogonal to `normal` towards `other`; an arbitrary one if both are parallel.
 Eigen::Vector3d Towards(const Eigen::Vector3d& normal, const Eigen::Vector3d& other) {
   constexpr double kParallel = 1e-9;
   const Eigen::Vector3d across = other - normal.dot(other) * normal;
@@ -168,12 +148,12 @@ void AddSigmas(const PartPlane& a, const PartPlane& b, const PointCovariance* co
   if (covariance == nullptr) return;
   PointGradient by_angle;
   const Eigen::Vector3d a_to_b = Towards(a.normal, b.normal);
-  // Both turn about the same axis; where they are parallel, `b` has to take the direction of `a`.
+  // Both normals turn about one axis, which `a` defines where they are parallel.
   const Eigen::Vector3d axis = a.normal.cross(a_to_b);
   AddNormalGradient(a, -a_to_b, &by_angle);
   AddNormalGradient(b, axis.cross(b.normal), &by_angle);
   const std::optional<double> angle_sigma_rad = SigmaOf(covariance, by_angle);
-  if (angle_sigma_rad) pair->angle_sigma_deg = *angle_sigma_rad * 180 / kPi;
+  if (angle_sigma_rad) pair->angle_sigma_deg = *angle_sigma_rad * kDegPerRad;
   if (!IsNearlyParallel(*pair)) return;
 
   const double sign = pair->angle_deg > 90 ? -1.0 : 1.0;
@@ -188,7 +168,7 @@ void AddSigmas(const PartPlane& a, const PartPlane& b, const PointCovariance* co
   AddNormalGradient(a, by_normal, &by_distance);
   AddNormalGradient(b, sign * by_normal, &by_distance);
   const std::optional<double> distance_sigma_m = SigmaOf(covariance, by_distance);
-  if (distance_sigma_m) pair->distance_sigma_mm = 1e3 * *distance_sigma_m;
+  if (distance_sigma_m) pair->distance_sigma_mm = kMmPerM * *distance_sigma_m;
 }
 
 }  // namespace
@@ -221,7 +201,7 @@ std::vector<PlanePair> ComparePlanes(const std::vector<PartPlane>& planes,
       if (IsNearlyParallel(pair)) {
         const Eigen::Vector3d axis =
             (a.normal + (pair.angle_deg > 90 ? -1.0 : 1.0) * b.normal).normalized();
-        pair.distance_mm = 1e3 * std::abs(axis.dot(a.centroid_m - b.centroid_m));
+        pair.distance_mm = kMmPerM * std::abs(axis.dot(a.centroid_m - b.centroid_m));
       }
       AddSigmas(a, b, covariance, &pair);
       pairs.push_back(pair);

@@ -19,7 +19,7 @@ std::vector<Eigen::Vector3d> WholeCenters(const MarkerShape& shape, const Marker
   return centers;
 }
 
-// Sum of the unit vectors from the first to the last whole marker of every line.
+// Sum over the lines of the unit vectors from the first to the last whole marker.
 Eigen::Vector3d SumOfDirections(const MarkerShape& shape, const std::vector<MarkerLine>& lines) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const MarkerLine& line : lines) {

@@ -1,5 +1,5 @@
-// What the layout's lines say of a reconstructed sail: ends, up, aft, and to which side it bulges.
-// Only whole markers count; all by their centres, shape frame, m.
+// Directions of a reconstructed sail from the lines of the layout: ends, up, aft, and the side to
+// which the sail bulges. All functions use the centers of whole markers, in the shape frame, m.
 
 #pragma once
 
@@ -14,10 +14,10 @@
 
 namespace velamap {
 
-// The marker has to be whole.
+// Needs a whole marker.
 Eigen::Vector3d CenterOf(const MarkerShape& shape, int marker_id);
 
-// All ids of the part in the layout's order, lines first, each once.
+// Each id of the part once, in the order of the layout, lines first.
 std::vector<int> MarkersOfPart(const Layout& layout, const std::string& part);
 
 // The first part with horizontal lines; null without any.
@@ -28,22 +28,22 @@ struct LineEnds {
   Eigen::Vector3d Middle() const { return (first + last) / 2; }
 };
 
-// The lines of at least two markers of which the first and the last are whole, in order.
+// The lines with at least two markers whose first and last markers are whole, in order.
 std::vector<const MarkerLine*> LinesWithEnds(const MarkerShape& shape,
                                              const std::vector<MarkerLine>& lines);
-// Of such a line.
+// Ends of such a line.
 LineEnds EndsOf(const MarkerShape& shape, const MarkerLine& line);
 
-// Unit vector from foot to head of the first part with lines: along its vertical lines, without
-// them from its lowest to its highest horizontal line. Markers at the ends may be missing. Nothing
-// when the markers do not say it.
+// Unit vector from foot to head of the first part with lines: along its vertical lines or, without
+// any, from its lowest to its highest horizontal line. Markers at the ends may be missing. Nothing
+// if the markers do not determine it.
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout);
 
-// Unit vector from luff to leech, mean of the horizontal lines of the same part.
+// Unit vector from luff to leech, the mean over the horizontal lines of the same part.
 std::optional<Eigen::Vector3d> SailAft(const MarkerShape& shape, const Layout& layout);
 
-// To which side of their chords the horizontal lines bulge along the unit vector: 1 or -1, and 0
-// when less than 0.1 % of the chords or without three markers on any line.
+// The side of their chords to which the horizontal lines bulge along the unit vector: 1 or -1, or 0
+// below 0.1 % of the chords and if no line has three markers.
 int BulgeSide(const MarkerShape& shape, const Layout& layout, const Eigen::Vector3d& direction);
 
 }  // namespace velamap

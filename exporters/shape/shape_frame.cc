@@ -5,18 +5,16 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/principal_axes.h"
 #include "exporters/shape/sail_lines.h"
-#include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
-#include "reconstruct/model/gauge.h"
 
 namespace velamap {
 namespace {
 
-// Two directions that shall span a plane have at least this sine between them: 3 degrees.
+// Least sine of the angle between two directions that span a plane: 3 degrees.
 constexpr double kMinSine = 0.05;
 
 struct Attempt {
@@ -24,7 +22,7 @@ struct Attempt {
   std::string reason;  // why there is none
 };
 
-// x along `x_in_shape`, z as near to `up_in_shape` as a right angle allows.
+// x along `x_in_shape`; z orthogonal to it, in the plane of `x_in_shape` and `up_in_shape`.
 Rigid3 FrameFromAxes(const Eigen::Vector3d& origin_in_shape, const Eigen::Vector3d& x_in_shape,
                      const Eigen::Vector3d& up_in_shape) {
   const Eigen::Vector3d x = x_in_shape.normalized();
@@ -69,7 +67,7 @@ Attempt TryMarkers(const MarkerShape& shape, const FrameChoice& choice) {
   const Eigen::Vector3d up = CenterOf(shape, ids[2]) - origin;
   const std::string names = fmt::format("{}", fmt::join(ids, " "));
   if (!SpanPlane(x, up)) {
-    return {std::nullopt, fmt::format("markers {} stand on one line, to 3 degrees", names)};
+    return {std::nullopt, fmt::format("markers {} lie on one line to within 3 degrees", names)};
   }
   return {MakeUpright(FrameKind::kMarkers, FrameFromAxes(origin, x, up), "markers " + names,
                       fmt::format("origin at marker {}, x to marker {}, z on the side of marker {}",
@@ -77,34 +75,33 @@ Attempt TryMarkers(const MarkerShape& shape, const FrameChoice& choice) {
           ""};
 }
 
-// Three directions at right angles that belong to a rigid part alone.
+// Three orthogonal directions of a rigid part.
 struct PartAxes {
   Eigen::Vector3d center;
   std::array<Eigen::Vector3d, 3> axes;  // first to last marker, normal, across
   Eigen::Vector3d marker_up;            // sum of the markers' own y axes
-  bool is_flat = true;                  // false: the normal is the mean of the markers' own
+  bool is_flat = true;                  // if false, the normal is the mean of the markers' normals
 };
 
 std::optional<PartAxes> FitPartAxes(const MarkerShape& shape, const std::vector<int>& ids) {
   PartAxes part{Eigen::Vector3d::Zero(), {}, Eigen::Vector3d::Zero()};
   Eigen::Vector3d facing = Eigen::Vector3d::Zero();
-  for (const int id : ids) part.center += CenterOf(shape, id) / static_cast<double>(ids.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  std::vector<Eigen::Vector3d> corners;
   for (const int id : ids) {
     const auto& x = FindWholeMarker(shape, id)->x_in_shape_m;
-    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
-      scatter += (*x[corner] - part.center) * (*x[corner] - part.center).transpose();
-    }
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) corners.push_back(*x[corner]);
     facing += MarkerNormal(*FindWholeMarker(shape, id));
     part.marker_up += (*x[1] - *x[4] + *x[2] - *x[3]).normalized();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(scatter);
+  const PrincipalAxes principal = ComputePrincipalAxes(corners);
+  part.center = principal.mean;
   const Eigen::Vector3d along = CenterOf(shape, ids.back()) - CenterOf(shape, ids.front());
-  // A strip around a curved side is about as thick as it is wide: noise would turn its plane.
+  // A strip around a curved side is about as thick as it is wide, so that noise would turn its
+  // plane.
   constexpr double kMinSpreadRatio = 4.0;  // of variances
-  part.is_flat = principal.eigenvalues()[1] >= kMinSpreadRatio * principal.eigenvalues()[0];
+  part.is_flat = principal.sums_of_squares[1] >= kMinSpreadRatio * principal.sums_of_squares[0];
   const Eigen::Vector3d normal =
-      part.is_flat ? principal.eigenvectors().col(0).eval() : facing.normalized();
+      part.is_flat ? principal.directions.col(0).eval() : facing.normalized();
   if (!SpanPlane(along, normal)) return std::nullopt;
   if (part.is_flat) {
     part.axes[1] = normal;
@@ -117,7 +114,7 @@ std::optional<PartAxes> FitPartAxes(const MarkerShape& shape, const std::vector<
   return part;
 }
 
-// Index of the axis that is nearest to the direction, either way round.
+// Index of the axis with the smallest angle to the direction, up to its sign.
 int NearestAxis(const std::array<Eigen::Vector3d, 3>& axes, const Eigen::Vector3d& direction,
                 int except) {
   int nearest = -1;
@@ -139,13 +136,12 @@ Attempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
   }
   const std::string& part = *layout.reference_part;
   if (ids.size() < 2) {
-    return {std::nullopt,
-            fmt::format("of part '{}' {} whole marker{} reconstructed, two are needed", part,
-                        ids.size(), ids.size() == 1 ? " is" : "s are")};
+    return {std::nullopt, fmt::format("part '{}' has {} whole marker{}, two are needed", part,
+                                      ids.size(), ids.size() == 1 ? "" : "s")};
   }
   const auto axes = FitPartAxes(shape, ids);
   if (!axes) {
-    return {std::nullopt, fmt::format("part '{}' has no plane: marker {} stands before marker {}",
+    return {std::nullopt, fmt::format("part '{}' has no axes: marker {} is in front of marker {}",
                                       part, ids.front(), ids.back())};
   }
   const Eigen::Vector3d up = SailUp(shape, layout).value_or(axes->marker_up);
@@ -158,7 +154,7 @@ Attempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
   };
   const std::array<const char*, 3> names = {
       "its line from first to last marker",
-      axes->is_flat ? "the normal of its plane" : "where its markers face on the whole",
+      axes->is_flat ? "the normal of its plane" : "the mean direction its markers face",
       "at right angles to its line and its normal"};
   const std::string by_facing = axes->is_flat ? "" : " by its markers' facing";
   const std::string without =
@@ -199,10 +195,11 @@ Attempt TryLines(const MarkerShape& shape, const Layout& layout) {
   }
   const Rigid3 frame_from_shape = FrameFromAxes(ends.first, x, up);
   if (lines.size() > 1 && (frame_from_shape * EndsOf(shape, *lines.back()).Middle()).z() < 0) {
-    return {std::nullopt,
-            fmt::format("line {} says that up is where {} is below {}; list horizontal lines and "
-                        "the markers of vertical ones from foot to head",
-                        up_name, lines.back()->name, lowest.name)};
+    return {
+        std::nullopt,
+        fmt::format("along line {} as up, {} is below {}; list horizontal lines and the markers "
+                    "of vertical ones from foot to head",
+                    up_name, lines.back()->name, lowest.name)};
   }
   return {MakeUpright(FrameKind::kLines, frame_from_shape,
                       fmt::format("lines {} {}", lowest.name, up_name),
@@ -216,7 +213,7 @@ Attempt TryLines(const MarkerShape& shape, const Layout& layout) {
 ShapeFrame CameraFrame(const MarkerShape& shape, const Layout& layout) {
   ShapeFrame frame;
   frame.description =
-      "the model's own, by default of the central camera: x right, y down, z forward";
+      "the frame of the model, by default the central camera: x right, y down, z forward";
   frame.up_in_frame = SailUp(shape, layout);
   return frame;
 }
@@ -280,48 +277,6 @@ ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
   }
   VELAMAP_CHECK(false && "the camera's frame is always there");
   return {};
-}
-
-PointCovariance RotateCovariance(const Eigen::Quaterniond& frame_from_shape,
-                                 const PointCovariance& covariance) {
-  const Eigen::Matrix3d rotation = frame_from_shape.toRotationMatrix();
-  PointCovariance rotated = covariance;
-  for (Eigen::MatrixXd& block : rotated.blocks) {
-    for (Eigen::Index row = 0; row < block.rows(); row += 3) {
-      for (Eigen::Index column = 0; column < block.cols(); column += 3) {
-        const Eigen::Matrix3d turned =
-            rotation * block.block<3, 3>(row, column) * rotation.transpose();
-        block.block<3, 3>(row, column) = turned;
-      }
-    }
-  }
-  for (Eigen::Index row = 0; row < rotated.factor.rows(); row += 3) {
-    rotated.factor.middleRows<3>(row) = (rotation * covariance.factor.middleRows<3>(row)).eval();
-  }
-  return rotated;
-}
-
-void MoveShape(const Rigid3& frame_from_shape, const PointCovariance* covariance_in_frame,
-               MarkerShape* shape) {
-  const bool is_turned =
-      frame_from_shape.rotation.angularDistance(Eigen::Quaterniond::Identity()) > 0;
-  for (ShapeMarker& marker : shape->markers) {
-    for (int corner = 0; corner <= kNumCorners; ++corner) {
-      auto& x = marker.x_in_shape_m[static_cast<std::size_t>(corner)];
-      auto& sigma_m = marker.sigma_m[static_cast<std::size_t>(corner)];
-      if (!x) continue;
-      x = frame_from_shape * *x;
-      if (!sigma_m || !is_turned) continue;
-      const double largest = sigma_m->maxCoeff();
-      const bool is_round = largest - sigma_m->minCoeff() <= 1e-9 * largest;
-      const auto turned = PointSigma(covariance_in_frame, marker.marker_id, corner);
-      if (turned || !is_round) sigma_m = turned;
-    }
-  }
-}
-
-void MoveModel(const Rigid3& frame_from_shape, Model* model) {
-  TransformModel({1.0, frame_from_shape.rotation, frame_from_shape.translation}, model);
 }
 
 }  // namespace velamap

@@ -5,7 +5,9 @@
 #include <map>
 #include <string>
 
+#include "exporters/shape/common_corners.h"
 #include "exporters/shape/shape_sigma.h"
+#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 #include "importer/geometry/alignment.h"
 #include "reconstruct/geometry/covariance_update.h"
@@ -13,26 +15,13 @@
 namespace velamap {
 namespace {
 
-constexpr double kMmPerM = 1e3;
 constexpr int kMinCommonPoints = 3;
-
-std::map<CornerId, Eigen::Vector3d> CornersOf(const MarkerShape& shape) {
-  std::map<CornerId, Eigen::Vector3d> corners;
-  for (const ShapeMarker& marker : shape.markers) {
-    for (int corner = 1; corner <= kNumCorners; ++corner) {
-      const auto& x_in_shape_m = marker.x_in_shape_m[corner];
-      if (x_in_shape_m) corners[{marker.marker_id, corner}] = *x_in_shape_m;
-    }
-  }
-  return corners;
-}
 
 bool LieInOnePoint(const std::vector<Eigen::Vector3d>& points) {
   return std::all_of(points.begin(), points.end(),
                      [&](const Eigen::Vector3d& x) { return x == points.front(); });
 }
 
-// Distance of every point, in the order of the points.
 template <typename Transform>
 std::vector<double> Distances(const Transform& reference_from_shape,
                               const std::vector<Eigen::Vector3d>& x_in_shape_m,
@@ -44,7 +33,7 @@ std::vector<double> Distances(const Transform& reference_from_shape,
   return distances_m;
 }
 
-// `ids` are those of the points, by marker.
+// Means of the distances by marker. `ids` are the ids of the points, sorted by marker.
 std::vector<MarkerDistance> DistancesOfMarkers(const std::vector<CornerId>& ids,
                                                const std::vector<double>& distances_m,
                                                const std::vector<double>& after_scaling_m) {
@@ -64,7 +53,7 @@ std::vector<MarkerDistance> DistancesOfMarkers(const std::vector<CornerId>& ids,
   return markers;
 }
 
-// Sum of variances; nothing as soon as one is not known.
+// Mean of variances; unknown if one of them is.
 class VarianceMean {
  public:
   void Add(const std::optional<double>& sigma) {
@@ -108,7 +97,8 @@ MarkerMetrics MetricsOfMarker(const ShapeMarker& marker, double printed_side_m,
   return metrics;
 }
 
-// Of the points `ids`, which lie at `x_in_shape_m`, once they are aligned with their true places.
+// Predicts the distances of the points `ids` at `x_in_shape_m` from their true places after an
+// alignment.
 void PredictDistances(const PointCovariance* covariance, const std::vector<CornerId>& ids,
                       const std::vector<Eigen::Vector3d>& x_in_shape_m,
                       ShapeComparison* comparison) {
@@ -118,7 +108,7 @@ void PredictDistances(const PointCovariance* covariance, const std::vector<Corne
   PointCovariance points = Subset(*covariance, point3D_ids);
   if (points.point3D_ids != point3D_ids) return;
   ToInnerConstraints(x_in_shape_m, &points);
-  // A change of scale moves the points at right angles to all rigid motions.
+  // A change of scale is orthogonal to all rigid motions of the points.
   const Eigen::VectorXd by_scale = ScaleGradient(x_in_shape_m).normalized();
   const double of_scale = by_scale.dot(Multiply(points, by_scale).col(0));
   const double trace = Trace(points), count = static_cast<double>(ids.size());
@@ -168,16 +158,9 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
 
 ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference,
                               const PointCovariance* covariance) {
-  const auto reference_corners = CornersOf(reference);
-  std::vector<CornerId> ids;
-  std::vector<Eigen::Vector3d> x_in_shape_m, x_in_reference_m;
+  const auto [ids, x_in_shape_m, x_in_reference_m] = FindCommonCorners(shape, reference);
   VarianceMean point_variance;
-  for (const auto& [id, x] : CornersOf(shape)) {
-    const auto common = reference_corners.find(id);
-    if (common == reference_corners.end()) continue;
-    ids.push_back(id);
-    x_in_shape_m.push_back(x);
-    x_in_reference_m.push_back(common->second);
+  for (const CornerId& id : ids) {
     const auto& sigma_m = FindMarker(shape, id.marker_id)->sigma_m[id.corner];
     point_variance.Add(sigma_m ? std::optional(sigma_m->norm()) : std::nullopt);
   }
@@ -185,13 +168,13 @@ ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& refer
   comparison.num_points = static_cast<int>(x_in_shape_m.size());
   if (comparison.num_points < kMinCommonPoints) {
     throw DataError("the shape and its reference have " + std::to_string(comparison.num_points) +
-                    " marker corners in common, an alignment needs " +
+                    " marker corners in common; an alignment needs " +
                     std::to_string(kMinCommonPoints));
   }
   if (LieInOnePoint(x_in_shape_m) || LieInOnePoint(x_in_reference_m)) {
     throw DataError("the corners that the shape and its reference share lie in one point");
   }
-  // Both are taken into the reference's frame, so that distances are in the reference's metres.
+  // Distances are in the frame and the metres of the reference.
   const std::vector<double> distances_m =
       Distances(EstimateRigid3(x_in_shape_m, x_in_reference_m), x_in_shape_m, x_in_reference_m);
   const Sim3 reference_from_shape = EstimateSim3(x_in_shape_m, x_in_reference_m);

@@ -45,8 +45,8 @@ PointGradient MeanSideGradient(const ShapeMarker& marker) {
 }
 
 PointGradient AreaGradient(const ShapeMarker& marker) {
-  // The area is n . (d42 x d31) / 2 with d42 = x2 - x4, d31 = x1 - x3, and n, the normal, turns
-  // without changing it.
+  // The area is n . (d42 x d31) / 2 with d42 = x2 - x4 and d31 = x1 - x3. To first order it does
+  // not depend on the direction of the normal n.
   const Eigen::Vector3d normal = MarkerNormal(marker);
   const auto& x = marker.x_in_shape_m;
   const Eigen::Vector3d by_x2 = 0.5 * (*x[1] - *x[3]).cross(normal);
@@ -59,12 +59,14 @@ PointGradient AreaGradient(const ShapeMarker& marker) {
   return gradient;
 }
 
+bool HasPointsOf(const PointGradient& gradient, const PointCovariance* covariance) {
+  return covariance != nullptr &&
+         std::all_of(gradient.begin(), gradient.end(),
+                     [&](const auto& entry) { return covariance->IndexOf(entry.first) >= 0; });
+}
+
 std::optional<double> SigmaOf(const PointCovariance* covariance, const PointGradient& gradient) {
-  if (covariance == nullptr || gradient.empty()) return std::nullopt;
-  const bool is_known = std::all_of(gradient.begin(), gradient.end(), [&](const auto& entry) {
-    return covariance->IndexOf(entry.first) >= 0;
-  });
-  if (!is_known) return std::nullopt;
+  if (gradient.empty() || !HasPointsOf(gradient, covariance)) return std::nullopt;
   return std::sqrt(VarianceOf(*covariance, gradient));
 }
 

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
@@ -24,22 +25,14 @@ namespace fs = std::filesystem;
   throw InputError(fmt::format("{}: cannot be written: {}", path.string(), why));
 }
 
-// Absolute, without a trailing slash, so that a sibling's name can be derived.
-fs::path WithoutTrailingSlash(const fs::path& path) {
-  std::error_code error;
-  const fs::path normal = fs::absolute(path, error).lexically_normal();
-  if (error) ThrowCannotWrite(path, error.message());
-  return normal.has_filename() ? normal : normal.parent_path();
-}
-
-// Unique among the processes and threads of this machine.
+// A path that no other process or thread of this machine uses.
 fs::path TemporarySibling(const fs::path& path) {
   static std::atomic<int> counter{0};
   return path.parent_path() /
          fmt::format(".{}.tmp-{}-{}", path.filename().string(), getpid(), counter++);
 }
 
-// The path that a file in a temporary folder will have once the folder is renamed.
+// Returns the path that a file in a temporary folder will have when the folder has been renamed.
 fs::path FinalPath(const fs::path& path) {
   fs::path final_path;
   for (const fs::path& component : path) {
@@ -51,16 +44,10 @@ fs::path FinalPath(const fs::path& path) {
   return final_path;
 }
 
-void CreateParentFolder(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path.parent_path(), error);
-  if (error) ThrowCannotWrite(path, error.message());
-}
-
-// A full disk may show itself no earlier than here.
-void SyncToDisk(const fs::path& path) {
+// Calls fsync() or syncfs(), which may be the first to notice a full disk.
+void Sync(const fs::path& path, int (*sync)(int)) {
   const int file = open(path.c_str(), O_RDONLY);
-  const int status = file < 0 ? -1 : fsync(file);
+  const int status = file < 0 ? -1 : sync(file);
   const int saved_errno = errno;
   if (file >= 0) close(file);
   if (status != 0) ThrowCannotWrite(path, std::strerror(saved_errno));
@@ -78,41 +65,60 @@ void WriteStream(const fs::path& path, const fs::path& shown_path,
   if (!stream) {
     ThrowCannotWrite(shown_path, errno != 0 ? std::strerror(errno) : "the stream failed");
   }
-  SyncToDisk(path);
+}
+
+void WriteAndRename(const fs::path& path, bool is_synced,
+                    const std::function<void(std::ostream&)>& write) {
+  // A link stays a link: the file that it points at is replaced.
+  std::error_code error;
+  const fs::path target = AbsoluteFolder(fs::is_symlink(path, error) ? CanonicalPath(path) : path);
+  if (Exists(target) && !IsRegularFile(target)) {
+    ThrowCannotWrite(path, "it exists and is no regular file; choose another output path");
+  }
+  CreateFolders(target.parent_path());
+  const fs::path temporary_path = TemporarySibling(target);
+  try {
+    WriteStream(temporary_path, path, write);
+    if (is_synced) Sync(temporary_path, fsync);
+    fs::rename(temporary_path, target, error);
+    if (error) ThrowCannotWrite(path, error.message());
+  } catch (...) {
+    RemoveAll(temporary_path);
+    throw;
+  }
 }
 
 }  // namespace
 
-AtomicFolder::AtomicFolder(const fs::path& path) : path_(WithoutTrailingSlash(path)) {
-  std::error_code error;
-  if (fs::exists(path_, error) && !fs::is_directory(path_, error)) {
+AtomicFolder::AtomicFolder(const fs::path& path) : path_(AbsoluteFolder(path)) {
+  if (Exists(path_) && !IsFolder(path_)) {
     ThrowCannotWrite(path_, "it exists and is no folder; choose another output path");
   }
-  CreateParentFolder(path_);
+  CreateFolders(path_.parent_path());
   temporary_path_ = TemporarySibling(path_);
+  std::error_code error;
   fs::create_directory(temporary_path_, error);
   if (error) ThrowCannotWrite(path_, error.message());
 }
 
 AtomicFolder::~AtomicFolder() {
-  std::error_code ignored;
-  if (!committed_) fs::remove_all(temporary_path_, ignored);
+  if (!committed_) RemoveAll(temporary_path_);
 }
 
 void AtomicFolder::Commit() {
   VELAMAP_CHECK(!committed_);
   std::error_code error;
-  if (!fs::exists(path_, error)) {
+  if (!Exists(path_)) {
     fs::rename(temporary_path_, path_, error);
     if (error) ThrowCannotWrite(path_, error.message());
     committed_ = true;
     return;
   }
-  // The old folder and the new one change places in one step where the file system can, else the
-  // old one steps aside for the blink of an eye.
+  // Exchanges the old folder and the new one in one step if the file system can do it. Otherwise
+  // there is no folder for a moment between two renames.
   if (renameat2(AT_FDCWD, temporary_path_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0) {
     committed_ = true;
-    fs::remove_all(temporary_path_, error);
+    RemoveAll(temporary_path_);
     return;
   }
   const fs::path old_path = TemporarySibling(path_);
@@ -125,52 +131,38 @@ void AtomicFolder::Commit() {
     ThrowCannotWrite(path_, error.message());
   }
   committed_ = true;
-  fs::remove_all(old_path, error);
+  RemoveAll(old_path);
 }
 
 void CheckReplaceableFolder(const fs::path& path, const std::set<std::string>& known_files) {
-  std::error_code error;
-  const bool exists = fs::exists(path, error);
-  if (error) ThrowCannotWrite(path, error.message());
-  if (!exists) return;
-  if (!fs::is_directory(path, error)) {
+  if (!Exists(path)) return;
+  if (!IsFolder(path)) {
     ThrowCannotWrite(path, "it exists and is no folder; choose another output path");
   }
-  for (fs::directory_iterator entry(path, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (known_files.count(name) > 0 && entry->is_regular_file(error)) continue;
+  for (const fs::path& entry : FolderEntries(path)) {
+    const std::string name = entry.filename().string();
+    if (known_files.count(name) > 0 && IsRegularFile(entry)) continue;
     throw InputError(fmt::format(
         "{}: the output folder holds {}, which velamap did not write there; choose another folder "
         "or empty it",
         path.string(), name));
   }
-  if (error)
-    throw InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
+}
+
+void WriteFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  WriteAndRename(path, true, write);
+}
+
+void WriteFileAtomicallyUnsynced(const fs::path& path,
+                                 const std::function<void(std::ostream&)>& write) {
+  WriteAndRename(path, false, write);
 }
 
 void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   WriteStream(path, FinalPath(path), write);
+  Sync(path, fsync);
 }
 
-void WriteFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  std::error_code error;
-  // A link stays a link: what it points at is replaced.
-  fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
-  target = WithoutTrailingSlash(target);
-  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) {
-    ThrowCannotWrite(path, "it exists and is no regular file; choose another output path");
-  }
-  CreateParentFolder(target);
-  const fs::path temporary_path = TemporarySibling(target);
-  try {
-    WriteStream(temporary_path, path, write);
-    fs::rename(temporary_path, target, error);
-    if (error) ThrowCannotWrite(path, error.message());
-  } catch (...) {
-    fs::remove(temporary_path, error);
-    throw;
-  }
-}
+void SyncFileSystem(const fs::path& folder) { Sync(folder, syncfs); }
 
 }  // namespace velamap

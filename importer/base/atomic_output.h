@@ -1,4 +1,5 @@
-// Output that is whole or not there: written to a temporary sibling, renamed when complete.
+// Output that is there as a whole or not at all: it is written to a temporary sibling and renamed
+// when it is complete.
 
 #pragma once
 
@@ -10,9 +11,8 @@
 
 namespace velamap {
 
-// A fresh folder beside `path` that Commit() renames to `path`, replacing what is there; without
-// Commit() it is removed again and what was there stays. Throws InputError, naming the path, when
-// it cannot be made.
+// A fresh folder beside `path`. Commit() renames it to `path`, replacing a folder that is there;
+// without Commit() it is removed. Throws InputError, naming the path, if it cannot be created.
 class AtomicFolder {
  public:
   explicit AtomicFolder(const std::filesystem::path& path);
@@ -29,9 +29,9 @@ class AtomicFolder {
   bool committed_ = false;
 };
 
-// A folder is replaced as a whole, so it must hold nothing but what an earlier run wrote: a
-// mistyped path shall not cost anyone their files. Throws InputError, naming the path and what is
-// in the way, unless `path` is not there, or is a folder with no other files than `known_files`.
+// Throws InputError, naming the path and the first other file, unless `path` is missing or is a
+// folder that holds no files but `known_files`. An AtomicFolder replaces a folder as a whole, and a
+// mistyped path must not cost anyone their files.
 void CheckReplaceableFolder(const std::filesystem::path& path,
                             const std::set<std::string>& known_files);
 
@@ -40,7 +40,16 @@ void CheckReplaceableFolder(const std::filesystem::path& path,
 void WriteFileAtomically(const std::filesystem::path& path,
                          const std::function<void(std::ostream&)>& write);
 
+// The same without waiting for the disk: for many files in a row, which SyncFileSystem() secures in
+// one go.
+void WriteFileAtomicallyUnsynced(const std::filesystem::path& path,
+                                 const std::function<void(std::ostream&)>& write);
+
 // The same without the rename, for files inside an AtomicFolder.
 void WriteFile(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+// Waits until everything that was written to the file system of `folder` has reached the disk.
+// Throws InputError, naming the folder, if some of it cannot be written.
+void SyncFileSystem(const std::filesystem::path& folder);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// A queue between threads that never holds more than its capacity.
+// A queue between threads with a bounded number of values.
 
 #pragma once
 
@@ -16,7 +16,7 @@ class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  // Waits for room. False, and the value is dropped, once the queue is closed.
+  // Waits for room. Returns false and drops the value if the queue is closed.
   bool Push(T value) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || items_.size() < capacity_; });
@@ -26,7 +26,7 @@ class BoundedQueue {
     return true;
   }
 
-  // Waits for a value; nothing once the queue is closed and empty.
+  // Waits for a value. Returns nothing if the queue is closed and empty.
   std::optional<T> Pop() {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || !items_.empty(); });
@@ -37,14 +37,14 @@ class BoundedQueue {
     return value;
   }
 
-  // No more values come; those that are there can still be taken.
+  // Ends the input; the values in the queue can still be taken.
   void Close() {
     const std::lock_guard<std::mutex> lock(mutex_);
     closed_ = true;
     changed_.notify_all();
   }
 
-  // Closes the queue and drops what it holds.
+  // Closes the queue and drops its values.
   void Abort() {
     const std::lock_guard<std::mutex> lock(mutex_);
     closed_ = true;

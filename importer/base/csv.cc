@@ -11,12 +11,12 @@ namespace {
 
 constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
 
-// Takes one line after another until the record is complete.
+// Parses one line after another until the record is complete.
 class RecordParser {
  public:
   RecordParser(const std::string& name, int line) : name_(name) { record_.line = line; }
 
-  // Returns whether the record ends with this line; it does not inside quotes.
+  // Returns whether the record ends with this line, which it does not inside quotes.
   bool ParseLine(const std::string& text) {
     for (std::size_t i = 0; i < text.size(); ++i) {
       if (inside_quotes_) {
@@ -65,7 +65,7 @@ class RecordParser {
   bool closed_quotes_ = false;
 };
 
-// The next line without its line feed; false at the end.
+// Reads the next line without its line feed. Returns false at the end.
 bool GetLine(std::istream& in, int* line, std::string* text) {
   if (!std::getline(in, *text)) return false;
   ++*line;
@@ -102,7 +102,7 @@ std::string SingleLine(std::string text) {
 }
 
 std::string CsvField(const std::string& text) {
-  // A leading # would read back as a comment if the field came first.
+  // A leading # would be read as a comment if the field came first.
   if (text.find_first_of(",\"\r\n") == std::string::npos && text.rfind('#', 0) != 0) return text;
   std::string field = "\"";
   for (const char c : text) {

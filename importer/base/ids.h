@@ -1,9 +1,9 @@
 // Identifiers that all rooms share.
 //
 // Marker corner c (1..4 = top-left, top-right, bottom-right, bottom-left of the upright marker) of
-// marker k has the permanent COLMAP point id 10*k + c, so that it reads in the COLMAP GUI: point
-// 793 is marker 79, corner 3. Corner 0 stands for the marker's centre, which is derived in 3D and
-// never observed; it is no COLMAP point.
+// marker k has the permanent COLMAP point id 10*k + c, which can be read in the COLMAP GUI: point
+// 793 is corner 3 of marker 79. Corner 0 stands for the marker's centre, which is derived from the
+// corners in 3D; it is never observed and is no COLMAP point.
 
 #pragma once
 
@@ -18,13 +18,13 @@ using CameraId = std::uint32_t;
 using ImageId = std::uint32_t;
 using Point3DId = std::uint64_t;
 
-// What COLMAP stores for a 2D point that belongs to no 3D point.
+// COLMAP stores this for a 2D point without a 3D point.
 constexpr Point3DId kInvalidPoint3DId = ~Point3DId{0};
 
 constexpr int kNumCorners = 4;
 
-// The largest marker id for which the identity-coding descriptors stay distinct
-// (importer/database/correspondence.h); OpenCV's own dictionaries end at 1023.
+// Up to this marker id the descriptors of importer/database/correspondence.h are distinct. OpenCV's
+// own dictionaries end at 1023.
 constexpr int kMaxMarkerId = 8191;
 
 struct CornerId {
@@ -46,7 +46,7 @@ inline Point3DId Point3DIdFromCorner(const CornerId& id) {
   return 10 * static_cast<Point3DId>(id.marker_id) + static_cast<Point3DId>(id.corner);
 }
 
-// Whether a point id can be one of ours (its last digit is a corner).
+// Whether the id has the form 10*k + c.
 inline bool IsCornerPoint3DId(Point3DId id) {
   return id % 10 >= 1 && id % 10 <= kNumCorners && id / 10 <= static_cast<Point3DId>(kMaxMarkerId);
 }

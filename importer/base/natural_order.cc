@@ -8,7 +8,7 @@ namespace {
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-// The run of digits that begins at `begin`, without leading zeros; moves `begin` behind it.
+// Returns the run of digits at `begin` without leading zeros, and moves `begin` behind the run.
 std::string_view TakeNumber(const std::string& text, std::size_t* begin) {
   std::size_t end = *begin;
   while (end < text.size() && IsDigit(text[end])) ++end;

@@ -1,4 +1,4 @@
-// The order in which people number files: frame2 before frame10.
+// The order in which people number files: frame2 comes before frame10.
 
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace velamap {
 
-// Compares runs of digits by value and all else byte by byte; a total order (ties, such as 01 and
-// 1, are decided by plain comparison).
+// Compares runs of digits by value and other characters byte by byte. This is a total order: plain
+// comparison decides ties, such as 01 and 1.
 bool NaturalLess(const std::string& a, const std::string& b);
 
 }  // namespace velamap

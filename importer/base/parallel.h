@@ -1,4 +1,4 @@
-// Work that is spread over threads. What is computed never depends on how many there are.
+// Spreads work over threads. Results never depend on the number of threads.
 
 #pragma once
 
@@ -7,14 +7,14 @@
 
 namespace velamap {
 
-// `num_threads`, or one thread a core where it is 0. At least 1.
+// Returns `num_threads`, or the number of cores if it is 0, but at least 1.
 int NumThreads(int num_threads);
 
-// Calls work(idx) once for every 0 <= idx < count, on up to `num_threads` threads (0: one a core),
-// the calling one among them. Calls run in any order and at the same time, so each must write to
-// places of its own. Where the system refuses a thread, the threads that it has given do the work.
-// The first exception that a call throws is thrown again here, once all threads have ended; indices
-// that no thread had taken by then are left out.
+// Calls work(idx) once for every 0 <= idx < count, on up to `num_threads` threads (0: one a core)
+// including the calling one. The calls run in any order and in parallel, so each must write to its
+// own memory. If the system refuses a thread, the threads that have started do the work. The first
+// exception of a call is thrown again when all threads have ended; indices that no thread has taken
+// by then are skipped.
 void ParallelFor(std::size_t count, int num_threads, const std::function<void(std::size_t)>& work);
 
 }  // namespace velamap

@@ -17,7 +17,7 @@ double Seconds(clockid_t clock) {
 BusyTime Now() { return {Seconds(CLOCK_MONOTONIC), Seconds(CLOCK_THREAD_CPUTIME_ID)}; }
 
 struct ThreadClock {
-  int stage = kNoStage;  // that is charged at the moment
+  int stage = kNoStage;  // charged at the moment
   BusyTime since;
   ImportTimes times;
 };
@@ -27,7 +27,7 @@ ThreadClock& ClockOfThread() {
   return clock;
 }
 
-// Charges what has passed, goes on with `stage` and returns the one before.
+// Charges the time that has passed, continues with `stage` and returns the previous stage.
 int SwitchTo(int stage) {
   ThreadClock& clock = ClockOfThread();
   const BusyTime now = Now();

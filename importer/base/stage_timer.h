@@ -1,5 +1,5 @@
-// Where the time of an import goes. Its stages run at the same time on many threads, so each is
-// charged where it runs: by the clock of the thread, one stage at a time.
+// Measures the time of each stage of an import. The stages run in parallel on many threads, so each
+// thread charges its own time to the stage that it is in.
 
 #pragma once
 
@@ -10,10 +10,10 @@ namespace velamap {
 
 enum class ImportStage {
   kDecode,    // from the file to a grey image
-  kDetect,    // from there to markers, duplicates and rotations resolved, colours
+  kDetect,    // from the grey image to markers with colours, duplicates and rotations resolved
   kRefine,    // corners to a fraction of a pixel
-  kImages,    // frames of a video as JPEG, where they are asked for
-  kDatabase,  // rows, matches, what needs all frames
+  kImages,    // writing frames of a video as JPEG
+  kDatabase,  // writing rows and matches, and the steps that need all frames
 };
 inline constexpr std::size_t kNumImportStages = 5;
 
@@ -39,8 +39,8 @@ class ImportTimes {
   std::array<BusyTime, kNumImportStages> times_;
 };
 
-// Charges the time until its end to `stage`, and to no stage around it: the timer in whose life
-// this one lies stands still meanwhile. Half a microsecond each.
+// Charges the time of its life to `stage`. An enclosing timer of the same thread is paused
+// meanwhile. Takes half a microsecond.
 class StageTimer {
  public:
   explicit StageTimer(ImportStage stage);
@@ -52,10 +52,10 @@ class StageTimer {
   int outer_;
 };
 
-// What the timers of this thread have charged since the last call.
+// Returns what the timers of this thread have charged since the last call.
 ImportTimes TakeStageTimes();
 
-// CPU time of the whole program so far, all threads.
+// CPU time of all threads of the program so far.
 double ProcessCpuSeconds();
 
 }  // namespace velamap

@@ -11,7 +11,7 @@ namespace velamap {
 Statistics ComputeStatistics(std::vector<double> values) {
   Statistics statistics;
   if (values.empty()) return statistics;
-  // Sorting first makes the sums independent of the order of the input.
+  // Sorting makes the sums independent of the order of the input.
   std::sort(values.begin(), values.end());
   const double count = static_cast<double>(values.size());
   statistics.count = static_cast<int>(values.size());

@@ -1,21 +1,20 @@
 #include "importer/base/text_file.h"
 
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 
 std::string ReadTextFile(const std::string& path, const std::string& what) {
-  std::error_code error;
-  if (path.empty() || !std::filesystem::exists(path, error)) {
+  if (path.empty() || !Exists(path)) {
     throw InputError(fmt::format("{}: there is no such {}", path.empty() ? "''" : path, what));
   }
-  if (!std::filesystem::is_regular_file(path, error)) {
+  if (!IsRegularFile(path)) {
     throw InputError(fmt::format("{}: the {} is no regular file", path, what));
   }
   std::ifstream stream(path, std::ios::binary);

@@ -6,7 +6,8 @@
 
 namespace velamap {
 
-// Throws InputError, naming `what` and the path: missing, a folder, unreadable or empty.
+// Throws InputError, naming `what` and the path, if the file is missing, a folder, unreadable or
+// empty.
 std::string ReadTextFile(const std::string& path, const std::string& what);
 
 }  // namespace velamap

@@ -185,7 +185,7 @@ Camera ReadColmapCamera(const std::string& text, const std::string& path) {
     const std::size_t begin = line.find_first_not_of(" \t\r");
     if (begin == std::string::npos || line[begin] == '#') continue;
     const std::string place = fmt::format("{}:{}", path, line_number);
-    if (camera) Fail(place, "a second camera; all frames are of one camera, keep one line");
+    if (camera) Fail(place, "a second camera; all frames have one camera, so keep one line");
     camera = ParseColmapCameraLine(line, place);
   }
   if (!camera) Fail(path, "holds no camera");
@@ -213,10 +213,10 @@ Camera ScaleToImageSize(const Camera& camera, int width_px, int height_px,
   if (!pure_scale) {
     const bool turned = (width_px < height_px) != (camera.width_px < camera.height_px);
     Fail(calibration_path,
-         fmt::format("is for {}x{} px, the frames have {}x{}: {}; calibrate with frames of the "
-                     "same kind",
+         fmt::format("the calibration is for {}x{} px, but the frames have {}x{}: {}; calibrate "
+                     "with frames of the same kind",
                      camera.width_px, camera.height_px, width_px, height_px,
-                     turned ? "they are turned by 90 degrees" : "no pure scale"));
+                     turned ? "they are turned by 90 degrees" : "the aspect ratio differs"));
   }
   Camera scaled = camera;
   scaled.width_px = width_px;

@@ -1,4 +1,4 @@
-// Reads a camera calibration and turns it into the COLMAP camera model that holds it exactly.
+// Reads a camera calibration into the COLMAP camera model that represents it exactly.
 
 #pragma once
 
@@ -12,15 +12,15 @@ namespace velamap {
 // camera_matrix, distortion_coefficients (none, 4, 5 or 8 values) and optionally
 // distortion_model: fisheye (4 values), or a COLMAP cameras.txt that holds one camera.
 //
-// An OpenCV principal point counts from the first pixel's centre; the 0.5 px that COLMAP's image
-// frame adds is added here and nowhere else. Chosen models: PINHOLE without distortion, OPENCV for
-// k1 k2 p1 p2, FULL_OPENCV with k3..k6, OPENCV_FISHEYE. A cameras.txt is taken as it is.
+// An OpenCV calibration becomes PINHOLE without distortion, OPENCV with k1 k2 p1 p2, FULL_OPENCV
+// with k3..k6, or OPENCV_FISHEYE. OpenCV's principal point is relative to the centre of the first
+// pixel, COLMAP's to its corner; the 0.5 px between them are added here and nowhere else.
 //
 // Throws InputError that names the file, the key or line, and what was expected.
 Camera ReadCalibration(const std::string& path);
 
-// The camera for frames of another size: parameters are scaled if the aspect ratio is the same to
-// within half a pixel. Throws InputError, naming `calibration_path`, for any other size.
+// Returns the camera for frames of another size, with its parameters scaled. Throws InputError,
+// naming `calibration_path`, unless the aspect ratio is the same to half a pixel.
 Camera ScaleToImageSize(const Camera& camera, int width_px, int height_px,
                         const std::string& calibration_path);
 

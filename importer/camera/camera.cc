@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "importer/base/error.h"
+#include "importer/camera/camera_jacobian.h"
 #include "importer/camera/camera_projection.h"
 
 namespace velamap {
@@ -33,7 +34,7 @@ const ModelEntry& Entry(CameraModel model) {
   throw std::logic_error("unknown camera model");
 }
 
-// Affine part of the model: image = focal * distorted + principal point.
+// The affine part of the model: image = focal * distorted + principal point.
 struct Intrinsics {
   Eigen::Vector2d focal_px;
   Eigen::Vector2d principal_point_px;
@@ -45,18 +46,6 @@ Intrinsics GetIntrinsics(const Camera& camera) {
   const double* p = camera.params.data();
   if (HasOneFocalLength(camera.model)) return {{p[0], p[0]}, {p[1], p[2]}, p + 3};
   return {{p[0], p[1]}, {p[2], p[3]}, p + 4};
-}
-
-Eigen::Matrix2d DistortionJacobian(CameraModel model, const double* k, const Eigen::Vector2d& ray) {
-  constexpr double kStep = 1e-6;
-  Eigen::Matrix2d jacobian;
-  for (int axis = 0; axis < 2; ++axis) {
-    const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
-    jacobian.col(axis) = (DistortRay<double, double>(model, k, ray + step) -
-                          DistortRay<double, double>(model, k, ray - step)) /
-                         (2 * kStep);
-  }
-  return jacobian;
 }
 
 }  // namespace
@@ -98,13 +87,12 @@ std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
       (x_in_image_px - intrinsics.principal_point_px).cwiseQuotient(intrinsics.focal_px);
   Eigen::Vector2d ray = distorted;
   for (int i = 0; i < kMaxIterations; ++i) {
-    const Eigen::Vector2d error =
-        DistortRay<double, double>(camera.model, intrinsics.distortion, ray) - distorted;
+    const RayFunction found = DistortRayWithJacobian(camera.model, intrinsics.distortion, ray);
+    const Eigen::Vector2d error = found.value - distorted;
     if (error.norm() < kTolerance) return ray;
-    const Eigen::Matrix2d jacobian = DistortionJacobian(camera.model, intrinsics.distortion, ray);
-    // Beyond the turning point of the distortion the map folds over and has no honest inverse.
-    if (!(jacobian.determinant() > 1e-6)) return std::nullopt;
-    ray -= jacobian.inverse() * error;
+    // Beyond its turning point the distortion folds over and has no unique inverse.
+    if (!(found.by_ray.determinant() > 1e-6)) return std::nullopt;
+    ray -= found.by_ray.inverse() * error;
   }
   return std::nullopt;
 }

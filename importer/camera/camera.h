@@ -15,8 +15,8 @@
 
 namespace velamap {
 
-// An image position is OpenCV's plus this, in x and in y: OpenCV has (0,0) at the first pixel's
-// centre.
+// Added to OpenCV's image positions, in x and in y: OpenCV has (0,0) at the centre of the first
+// pixel.
 inline constexpr double kImageFromOpenCvPx = 0.5;
 
 // Values are COLMAP's model ids.
@@ -42,7 +42,7 @@ struct Camera {
   }
 };
 
-// COLMAP's upper-case name, and back. An unknown name or id gives nothing.
+// COLMAP's names are upper case. An unknown name or id yields nothing.
 std::string CameraModelName(CameraModel model);
 std::optional<CameraModel> CameraModelFromName(const std::string& name);
 std::optional<CameraModel> CameraModelFromId(int model_id);
@@ -51,11 +51,11 @@ int NumCameraParams(CameraModel model);
 // Mean of the focal lengths in x and y, px.
 double MeanFocalLength(const Camera& camera);
 
-// Image position (px) of a point in the cam frame; nothing for a point not in front of the camera.
+// Projects a point into the image (px). Nothing for a point that is not in front of the camera.
 std::optional<Eigen::Vector2d> ImageFromCam(const Camera& camera, const Eigen::Vector3d& x_in_cam);
 
-// Undistorted ray of an image position: (x/z, y/z) in the cam frame, by Newton's method on the
-// distortion to 1e-12. Nothing where the distortion cannot be inverted (far outside the image).
+// Returns the undistorted ray (x/z, y/z) of an image position in the cam frame, by Newton's method
+// to 1e-12. Nothing where the distortion cannot be inverted, far outside the image.
 std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
                                             const Eigen::Vector2d& x_in_image_px);
 

@@ -1,6 +1,5 @@
-// The camera models of importer/camera/camera.h for any scalar type, so that an adjustment can
-// differentiate them automatically: T of rays, K of camera parameters (double where they are
-// fixed).
+// The camera models of importer/camera/camera.h for any scalar type, for automatic differentiation:
+// T is the scalar type of rays, K that of camera parameters (double if they are fixed).
 
 #pragma once
 
@@ -43,7 +42,7 @@ Eigen::Matrix<T, 2, 1> DistortFisheye(const K* k, const Eigen::Matrix<T, 2, 1>& 
   return {ray.x() * factor, ray.y() * factor};
 }
 
-// `k` are the parameters behind the principal point; `ray` is (x/z, y/z) in the cam frame.
+// `k` are the parameters after the principal point; `ray` is (x/z, y/z) in the cam frame.
 template <typename T, typename K>
 Eigen::Matrix<T, 2, 1> DistortRay(CameraModel model, const K* k,
                                   const Eigen::Matrix<T, 2, 1>& ray) {
@@ -66,7 +65,7 @@ Eigen::Matrix<T, 2, 1> DistortRay(CameraModel model, const K* k,
   throw std::logic_error("unknown camera model");
 }
 
-// Image position (px); `params` are all of the camera's, in COLMAP's order.
+// Returns the image position (px). `params` are all parameters of the camera in COLMAP's order.
 template <typename T, typename K>
 Eigen::Matrix<T, 2, 1> ImageFromRay(CameraModel model, const K* params,
                                     const Eigen::Matrix<T, 2, 1>& ray) {

@@ -1,62 +1,24 @@
 #include "importer/database/colmap_database.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/correspondence.h"
 #include "importer/database/marker_detections_table.h"
 #include "importer/database/sqlite_blob.h"
+#include "importer/database/sqlite_errors.h"
 
 namespace velamap {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr ImageId kMaxNumImages = 2147483647;
 constexpr int kTwoViewConfigCalibrated = 2;  // COLMAP's TwoViewGeometry::CALIBRATED
-
-// One clear line for what SQLite says.
-[[noreturn]] void ThrowInputError(const std::string& path, const SQLite::Exception& exception) {
-  std::string message;
-  switch (exception.getErrorCode()) {
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-      message = "locked by another program; close it (the COLMAP GUI?) and run again";
-      break;
-    case SQLITE_FULL:
-      message = "cannot be written: the disk is full";
-      break;
-    case SQLITE_READONLY:
-    case SQLITE_CANTOPEN:
-    case SQLITE_PERM:
-      message = "cannot be opened for writing; check the folder and the rights";
-      break;
-    case SQLITE_NOTADB:
-      message = "no SQLite database";
-      break;
-    case SQLITE_CORRUPT:
-      message = "a damaged database; delete it and import again";
-      break;
-    default:
-      message = fmt::format("SQLite reports: {}", exception.what());
-  }
-  throw InputError(fmt::format("{}: {}", path, message));
-}
-
-template <typename Function>
-auto Guarded(const std::string& path, const Function& function) {
-  try {
-    return function();
-  } catch (const SQLite::Exception& exception) {
-    ThrowInputError(path, exception);
-  }
-}
 
 std::int64_t PairId(ImageId image_id1, ImageId image_id2) {
   const auto [first, second] = std::minmax(image_id1, image_id2);
@@ -96,29 +58,46 @@ ColmapDatabase::ColmapDatabase(const std::string& path, Mode mode, int busy_time
     : path_(path) {
   const bool writing = mode == Mode::kReadWriteCreate;
   CheckDatabaseFile(path, writing);
-  std::error_code ignored;
-  const bool existed = fs::exists(path, ignored);
+  const bool existed = Exists(path);
   try {
-    Guarded(path, [&] {
-      // A reader that may not write would leave the -wal and -shm files of a database behind that
-      // COLMAP has put in write-ahead mode; SQLite itself falls back to reading a protected file.
-      const int flags = SQLite::OPEN_READWRITE | (writing ? SQLite::OPEN_CREATE : 0);
-      database_ = std::make_unique<SQLite::Database>(path, flags, busy_timeout_ms);
-      if (writing) {
-        // Takes the write lock at once, so that a locked or read-only file shows itself here.
-        SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
-        CreateMissingTables(path, database_.get());
-        transaction.commit();
-      } else {
-        database_->exec("PRAGMA query_only = 1");
-        CheckColmapTables(path, *database_);
-      }
-    });
+    if (existed && writing) CheckUnfinishedCanBeAddedTo(path);
+    Guarded(path,
+            [&] { writing ? OpenForWriting(busy_timeout_ms) : OpenForReading(busy_timeout_ms); });
   } catch (...) {
     database_.reset();
-    if (!existed) fs::remove(path, ignored);
+    if (!existed) RemoveAll(path);
     throw;
   }
+}
+
+void ColmapDatabase::OpenForWriting(int busy_timeout_ms) {
+  database_ = std::make_unique<SQLite::Database>(
+      path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms);
+  // Matches of a pair take some kilobytes, which fill pages of the usual 4096 bytes badly. SQLite
+  // ignores this for a database that has tables.
+  database_->exec("PRAGMA page_size = 16384");
+  // Takes the write lock, so that a locked or read-only file is reported here. Nothing is written
+  // to a file that has tables: one that is refused stays as it is.
+  SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
+  if (IsFresh(*database_)) {
+    CreateTables(database_.get());
+  } else {
+    CheckCanBeAddedTo(path_, database_.get());
+  }
+  transaction.commit();
+}
+
+void ColmapDatabase::OpenForReading(int busy_timeout_ms) {
+  const bool has_log = IsRegularFile(path_ + "-wal") && FileSize(path_ + "-wal") > 0;
+  // A connection without write access would leave -wal and -shm files beside a database that COLMAP
+  // has put into write-ahead mode. SQLite falls back to reading if the file is write-protected.
+  database_ = std::make_unique<SQLite::Database>(path_, SQLite::OPEN_READWRITE, busy_timeout_ms);
+  // Leaves a log that another program has written in place.
+  if (has_log) {
+    sqlite3_db_config(database_->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  }
+  database_->exec("PRAGMA query_only = 1");
+  CheckColmapTables(path_, *database_);
 }
 
 ColmapDatabase::~ColmapDatabase() = default;

@@ -1,8 +1,9 @@
-// The COLMAP database: the only file of velamap that knows its tables.
+// The COLMAP database. Only the files of this folder know its tables.
 //
-// Layout: COLMAP 3.8's (six tables, images with seven nullable prior columns), which every COLMAP
-// from 3.5 to 4.x opens. One extra table, marker_detections, holds what COLMAP has no place for;
-// COLMAP ignores and keeps it. The layout of an existing file is recognised by its columns.
+// The layout is COLMAP 3.8's (six tables, images with seven nullable prior columns), which every
+// COLMAP from 3.5 to 4.x opens. Two more tables, marker_detections and marker_detector, hold what
+// COLMAP has no place for; COLMAP ignores and keeps them. The layout of an existing file is
+// recognised by its columns.
 
 #pragma once
 
@@ -23,8 +24,8 @@ class Database;
 
 namespace velamap {
 
-// One row of `images` with its detections. Keypoints are the corners of detections.markers in
-// order of marker id then corner: keypoint_idx = 4 * position of the marker + corner - 1.
+// One row of `images` with its detections. Keypoints are the corners of detections.markers, ordered
+// by marker id and corner: keypoint_idx = 4 * marker_idx + corner - 1.
 struct DatabaseImage {
   ImageId image_id = 0;
   CameraId camera_id = 0;
@@ -38,13 +39,14 @@ class ColmapDatabase {
  public:
   enum class Mode { kReadOnly, kReadWriteCreate };
 
-  // Opens or creates the file. Throws InputError, naming the path, if it is missing (read only), no
-  // SQLite file, lacks COLMAP's tables, has an unknown layout, is locked for longer than
-  // `busy_timeout_ms`, or cannot be written.
+  // Opens or creates the file. Throws InputError, naming the path, if it is missing (read only), is
+  // no SQLite file, lacks COLMAP's tables, is locked for longer than `busy_timeout_ms`, or, for
+  // writing, has the layout of another version, holds images that velamap has not imported, or
+  // cannot be written. A file that is refused stays as it is, byte for byte.
   ColmapDatabase(const std::string& path, Mode mode, int busy_timeout_ms = 5000);
   ~ColmapDatabase();
 
-  // All statements between Begin() and Commit() are written or none is.
+  // Everything that is written between construction and Commit() reaches the file, or nothing does.
   class Transaction {
    public:
     explicit Transaction(ColmapDatabase* database);
@@ -56,17 +58,17 @@ class ColmapDatabase {
     std::unique_ptr<Impl> impl_;
   };
 
-  // Adds the camera, or returns the id of an equal one that is there.
+  // Adds the camera unless the database holds an equal one. Returns its id.
   CameraId AddCamera(const Camera& camera);
   std::map<CameraId, Camera> ReadCameras() const;
 
   // Adds image, keypoints, identity-coding descriptors and marker rows. The name must be new.
-  // `detector` says how the detections were made; see ReadDetector().
+  // `detector` says how the detections were made; it must be the same for all images.
   ImageId AddImage(CameraId camera_id, const FrameDetections& detections,
                    const std::string& detector);
 
-  // Writes keypoints, descriptors and marker rows of an image anew. Its matches with other images
-  // go: they name keypoints by their place.
+  // Replaces keypoints, descriptors and marker rows of an image, and removes its matches, which
+  // refer to keypoints by index.
   void ReplaceDetections(ImageId image_id, const FrameDetections& detections,
                          const std::string& detector);
 
@@ -75,17 +77,20 @@ class ColmapDatabase {
 
   bool HasMatches(ImageId image_id1, ImageId image_id2) const;
 
-  // All images that velamap imported, by image_id. Detections carry the exact double corners of
-  // our table. Throws InputError when the database holds no marker detections of velamap.
+  // Returns all images that velamap imported, by image_id, with the corners in double precision
+  // that COLMAP's keypoints do not have. Throws InputError if there are none.
   std::vector<DatabaseImage> ReadImages() const;
 
   std::map<std::string, ImageId> ReadImageIdsByName() const;
 
-  // How the detections that are there were made (dictionary, refinement, polarity), so that one
-  // database never mixes two ways; nothing in a database without detections.
+  // Returns how the detections were made (dictionary, refinement, polarity), so that an import can
+  // refuse to mix two ways; nothing if there are no detections.
   std::optional<std::string> ReadDetector() const;
 
  private:
+  void OpenForWriting(int busy_timeout_ms);
+  void OpenForReading(int busy_timeout_ms);
+
   struct PairStatements;  // prepared once for all pairs
   PairStatements& Prepared() const;
 

@@ -1,21 +1,21 @@
 #include "importer/database/colmap_schema.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <set>
+#include <string>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/database/marker_detections_table.h"
 
 namespace velamap {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 6> kColmapTables = {
     "cameras", "images", "keypoints", "descriptors", "matches", "two_view_geometries"};
@@ -73,7 +73,9 @@ CREATE TABLE two_view_geometries (
 PRAGMA user_version = 3800;
 )";
 
-std::set<std::string> ColumnNames(SQLite::Database& database, const std::string& table) {
+}  // namespace
+
+std::set<std::string> ColumnNames(const SQLite::Database& database, const std::string& table) {
   std::set<std::string> names;
   SQLite::Statement query(database, "SELECT name FROM pragma_table_info(?)");
   query.bind(1, table);
@@ -81,11 +83,8 @@ std::set<std::string> ColumnNames(SQLite::Database& database, const std::string&
   return names;
 }
 
-}  // namespace
-
 void CheckDatabaseFile(const std::string& path, bool writing) {
-  std::error_code error;
-  const bool exists = fs::exists(path, error);
+  const bool exists = Exists(path);
   if (!exists && !writing) {
     throw InputError(
         fmt::format("{}: there is no such database; make it with velamap "
@@ -93,21 +92,21 @@ void CheckDatabaseFile(const std::string& path, bool writing) {
                     path));
   }
   if (!exists) {
-    const fs::path folder = fs::absolute(path, error).parent_path();
-    if (!fs::is_directory(folder, error)) {
+    const std::filesystem::path folder = AbsolutePath(path).parent_path();
+    if (!IsFolder(folder)) {
       throw InputError(
           fmt::format("{}: cannot be created: there is no folder {}", path, folder.string()));
     }
     return;
   }
-  if (!fs::is_regular_file(path, error)) throw InputError(path + ": no regular file");
+  if (!IsRegularFile(path)) throw InputError(path + ": no regular file");
   constexpr char kMagic[] = "SQLite format 3";
   char begin[sizeof(kMagic)] = {};
   std::ifstream stream(path, std::ios::binary);
   stream.read(begin, sizeof(begin));
   const bool empty = stream.gcount() == 0 && stream.eof();
   if (!empty && std::memcmp(begin, kMagic, sizeof(kMagic)) != 0) {
-    throw InputError(fmt::format("{}: no SQLite database; give another --database_path", path));
+    throw InputError(fmt::format("{}: no SQLite database; choose another file", path));
   }
 }
 
@@ -116,31 +115,67 @@ void CheckColmapTables(const std::string& path, const SQLite::Database& database
     if (!database.tableExists(table)) {
       throw InputError(
           fmt::format("{}: a database of another program (no table '{}' of COLMAP); "
-                      "give another --database_path",
+                      "choose another file",
                       path, table));
     }
   }
 }
 
-void CreateMissingTables(const std::string& path, SQLite::Database* database) {
-  const bool fresh = database->execAndGet("SELECT COUNT(*) FROM sqlite_master").getInt64() == 0;
-  if (fresh) database->exec(kColmapSchema);
+bool IsFresh(const SQLite::Database& database) {
+  SQLite::Statement query(database, "SELECT COUNT(*) FROM sqlite_master");
+  query.executeStep();
+  return query.getColumn(0).getInt64() == 0;
+}
+
+void CreateTables(SQLite::Database* database) {
+  database->exec(kColmapSchema);
+  CreateMarkerDetectionsTable(database);
+}
+
+void CheckCanBeAddedTo(const std::string& path, SQLite::Database* database) {
   CheckColmapTables(path, *database);
   if (ColumnNames(*database, "images").count("prior_qw") == 0) {
     throw InputError(
         fmt::format("{}: made by COLMAP 3.10 or later, whose layout the other "
-                    "versions refuse; give a new --database_path (velamap writes the "
-                    "layout that COLMAP 3.5 to 4.x open)",
+                    "versions refuse; choose a new file (velamap writes the layout that "
+                    "COLMAP 3.5 to 4.x open)",
                     path));
   }
   if (database->tableExists("frames") &&
       database->execAndGet("SELECT COUNT(*) FROM frames").getInt64() > 0) {
     throw InputError(
         fmt::format("{}: holds frames of COLMAP 3.12 or later, which every image "
-                    "would need; give a new --database_path",
+                    "would need; choose a new file",
                     path));
   }
-  CreateMarkerDetectionsTable(database);
+  SQLite::Statement images(*database, "SELECT name FROM images ORDER BY name LIMIT 1");
+  if (!ReadDetectorOfDetections(database) && images.executeStep()) {
+    throw InputError(
+        fmt::format("{}: holds images that velamap has not imported, such as {}; delete it, or "
+                    "write to a new place",
+                    path, images.getColumn(0).getString()));
+  }
+}
+
+void CheckUnfinishedCanBeAddedTo(const std::string& path) {
+  constexpr std::array<const char*, 2> kSuffixes = {"-journal", "-wal"};
+  const auto is_there = [&](const char* suffix) {
+    return IsRegularFile(path + suffix) && FileSize(path + suffix) > 0;
+  };
+  if (std::none_of(kSuffixes.begin(), kSuffixes.end(), is_there)) return;
+  const TemporaryFolder folder;
+  const std::string copy_path = folder.path() / "database.db";
+  CopyFile(path, copy_path);
+  for (const char* suffix : kSuffixes) {
+    if (is_there(suffix)) CopyFile(path + suffix, copy_path + suffix);
+  }
+  try {
+    SQLite::Database copy(copy_path, SQLite::OPEN_READWRITE);
+    if (!IsFresh(copy)) CheckCanBeAddedTo(path, &copy);
+  } catch (const SQLite::Exception&) {
+    // Another program may have written while the files were copied; it then holds a lock, which
+    // the database itself will report.
+  }
 }
 
 }  // namespace velamap

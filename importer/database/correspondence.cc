@@ -1,10 +1,30 @@
 #include "importer/database/correspondence.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "importer/base/error.h"
 
 namespace velamap {
+namespace {
+
+bool AreNeighbors(int distance) {
+  constexpr int kOverlap = 4, kMaxDistance = 512;
+  const bool is_power_of_two = (distance & (distance - 1)) == 0;
+  return distance <= kOverlap || (is_power_of_two && distance <= kMaxDistance);
+}
+
+bool ShareMarker(const FrameDetections& image1, const FrameDetections& image2) {
+  auto marker1 = image1.markers.begin(), marker2 = image2.markers.begin();
+  while (marker1 != image1.markers.end() && marker2 != image2.markers.end()) {
+    if (marker1->marker_id == marker2->marker_id) return true;
+    marker1->marker_id < marker2->marker_id ? ++marker1 : ++marker2;
+  }
+  return false;
+}
+
+}  // namespace
 
 Descriptor EncodeDescriptor(const CornerId& id) {
   constexpr int kNumSymbols = 32;
@@ -39,20 +59,27 @@ FeatureMatches MatchByMarkerId(const FrameDetections& image1, const FrameDetecti
   return matches;
 }
 
-std::vector<std::pair<int, int>> PairsToMatch(int num_images, int max_exhaustive) {
-  constexpr int kOverlap = 10;
-  std::vector<std::pair<int, int>> pairs;
+std::vector<std::pair<int, int>> PairsToMatch(const std::vector<FrameDetections>& images) {
+  const int num_images = static_cast<int>(images.size());
+  std::set<std::pair<int, int>> pairs;
   for (int first = 0; first < num_images; ++first) {
     for (int second = first + 1; second < num_images; ++second) {
-      const int distance = second - first;
-      if (num_images > max_exhaustive && distance > kOverlap) {
-        if (distance >= 1 << kOverlap) break;
-        if ((distance & (distance - 1)) != 0) continue;
+      if (num_images > kMaxNumExhaustive && !AreNeighbors(second - first)) continue;
+      if (ShareMarker(images[static_cast<std::size_t>(first)],
+                      images[static_cast<std::size_t>(second)])) {
+        pairs.emplace(first, second);
       }
-      pairs.emplace_back(first, second);
     }
   }
-  return pairs;
+  std::map<int, int> last_idx_of_marker;
+  for (int idx = 0; idx < num_images; ++idx) {
+    for (const MarkerDetection& marker : images[static_cast<std::size_t>(idx)].markers) {
+      const auto [last, is_first] = last_idx_of_marker.emplace(marker.marker_id, idx);
+      if (!is_first) pairs.emplace(last->second, idx);
+      last->second = idx;
+    }
+  }
+  return {pairs.begin(), pairs.end()};
 }
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// From detections to what COLMAP matches: keypoints, descriptors, image pairs and matches.
+// Descriptors, image pairs and matches, by marker id.
 
 #pragma once
 
@@ -12,21 +12,25 @@
 
 namespace velamap {
 
-// 128 bytes of a SIFT descriptor that encode one corner's identity.
+// As long as a SIFT descriptor, so that COLMAP's matchers take it for one.
 using Descriptor = std::array<std::uint8_t, 128>;
 
-// A code of four symbols out of 32, the fourth a checksum of the others, each a single 255 in its
-// block of 32 bytes: two corners share at most two symbols. COLMAP (feature/sift.cc) compares
-// descriptors by the angle acos(a.b / 512^2); equal ones are 0.12 rad apart and others at least
-// 1.05, which its limits (0.7 rad, ratio 0.8) tell apart with ease.
+// Encodes the corner as four symbols out of 32, the fourth being a checksum of the others. A symbol
+// is a single 255 in its block of 32 bytes, and two corners share at most two symbols. COLMAP
+// (feature/sift.cc) compares descriptors by the angle acos(a.b / 512^2): equal ones are 0.12 rad
+// apart and others at least 1.05, on both sides of its limits (0.7 rad, ratio 0.8).
 Descriptor EncodeDescriptor(const CornerId& id);
 
-// The corners that two images share, by marker id, as keypoint indices.
+// Returns the corners of the markers that both images show, as keypoint indices.
 FeatureMatches MatchByMarkerId(const FrameDetections& image1, const FrameDetections& image2);
 
-// Pairs (first < second, positions in a list of images ordered by name) that are worth matching:
-// all of them up to `max_exhaustive` images, beyond it those of COLMAP's sequential_matcher with
-// overlap 10 and quadratic overlap (distances 1..10 and powers of two up to 2^9).
-std::vector<std::pair<int, int>> PairsToMatch(int num_images, int max_exhaustive = 200);
+// Pairs (first < second, indices into images ordered by name) to write matches of. Up to
+// kMaxNumExhaustive images these are all pairs that share a marker. Matches of all pairs would take
+// most of the space of a larger database, so there each image is paired with its neighbours, as
+// COLMAP's sequential_matcher does with quadratic overlap (1 to 4 and powers of two up to 512
+// apart), and, for each of its markers, with the next image that shows the marker: the track of
+// every corner is connected.
+constexpr int kMaxNumExhaustive = 50;
+std::vector<std::pair<int, int>> PairsToMatch(const std::vector<FrameDetections>& images);
 
 }  // namespace velamap

@@ -1,28 +1,24 @@
 #include "importer/database/database_writer.h"
 
-#include <filesystem>
-#include <system_error>
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kBatchSize = 50;  // images a transaction
 
 }  // namespace
 
-NewDatabaseGuard::NewDatabaseGuard(const std::string& path)
-    : path_(path), is_new_(!fs::exists(path)) {}
+NewDatabaseGuard::NewDatabaseGuard(const std::string& path) : path_(path), is_new_(!Exists(path)) {}
 
 NewDatabaseGuard::~NewDatabaseGuard() {
   if (!is_new_) return;
-  std::error_code ignored;
-  for (const char* suffix : {"", "-journal"}) fs::remove(path_ + suffix, ignored);
+  for (const char* suffix : {"", "-journal"}) RemoveAll(path_ + suffix);
 }
 
-DatabaseWriter::DatabaseWriter(const std::string& detector, ColmapDatabase* database)
-    : detector_(detector), database_(database) {}
+DatabaseWriter::DatabaseWriter(const std::string& detector,
+                               const std::function<void()>& before_commit, ColmapDatabase* database)
+    : detector_(detector), before_commit_(before_commit), database_(database) {}
 
 void DatabaseWriter::Add(const FrameDetections& detections, const Camera& camera) {
   if (!transaction_) transaction_.emplace(database_);
@@ -31,7 +27,10 @@ void DatabaseWriter::Add(const FrameDetections& detections, const Camera& camera
 }
 
 void DatabaseWriter::Commit() {
-  if (transaction_) transaction_->Commit();
+  if (transaction_) {
+    before_commit_();
+    transaction_->Commit();
+  }
   transaction_.reset();
   num_in_batch_ = 0;
 }

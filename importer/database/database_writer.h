@@ -1,8 +1,9 @@
-// The writing side of an import: a database that is there whole or not at all, and images in
-// batches.
+// The writing side of an import: images in batches, and a new database that is removed if the import
+// fails.
 
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -12,7 +13,7 @@
 
 namespace velamap {
 
-// Removes a database that this run creates unless Keep() was called.
+// Removes a database that this run has created, unless Keep() was called.
 class NewDatabaseGuard {
  public:
   explicit NewDatabaseGuard(const std::string& path);  // before the database is opened
@@ -27,17 +28,20 @@ class NewDatabaseGuard {
   bool is_new_;
 };
 
-// One transaction a batch of images.
+// Writes images in one transaction a batch.
 class DatabaseWriter {
  public:
-  // `detector` as ColmapDatabase::AddImage() wants it.
-  DatabaseWriter(const std::string& detector, ColmapDatabase* database);
+  // For `detector` see ColmapDatabase::AddImage(). `before_commit` secures what the rows of a batch
+  // refer to.
+  DatabaseWriter(const std::string& detector, const std::function<void()>& before_commit,
+                 ColmapDatabase* database);
 
   void Add(const FrameDetections& detections, const Camera& camera);
-  void Commit();  // what is left
+  void Commit();  // the images since the last full batch
 
  private:
   std::string detector_;
+  std::function<void()> before_commit_;
   ColmapDatabase* database_;
   std::optional<ColmapDatabase::Transaction> transaction_;
   int num_in_batch_ = 0;

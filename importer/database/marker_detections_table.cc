@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/database/colmap_schema.h"
 #include "importer/database/sqlite_blob.h"
 
 namespace velamap {
@@ -21,7 +22,6 @@ CREATE TABLE IF NOT EXISTS marker_detections (
     image_id INTEGER NOT NULL,
     frame_number INTEGER,
     time_s REAL,
-    detector TEXT NOT NULL,
     marker_id INTEGER,
     part TEXT,
     first_keypoint_idx INTEGER,
@@ -32,32 +32,24 @@ CREATE TABLE IF NOT EXISTS marker_detections (
     is_fallback INTEGER,
     FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
 CREATE INDEX IF NOT EXISTS index_marker_detections_image_id ON marker_detections(image_id);
+CREATE TABLE IF NOT EXISTS marker_detector (detector TEXT NOT NULL);
 )";
 
-// Name and type of what later versions of velamap have added to the table.
+// Columns that the first versions of velamap did not have, with their types.
 constexpr std::array<std::pair<const char*, const char*>, 2> kAddedColumns = {
     {{"corner_sigmas", "BLOB"}, {"is_fallback", "INTEGER"}}};
 
-std::set<std::string> ColumnNames(const SQLite::Database& database) {
-  std::set<std::string> names;
-  SQLite::Statement query(database, "SELECT name FROM pragma_table_info('marker_detections')");
-  while (query.executeStep()) names.insert(query.getColumn(0).getString());
-  return names;
-}
-
 class RowWriter {
  public:
-  RowWriter(ImageId image_id, const FrameDetections& detections, const std::string& detector,
-            SQLite::Database* database)
+  RowWriter(ImageId image_id, const FrameDetections& detections, SQLite::Database* database)
       : insert_(*database,
-                "INSERT INTO marker_detections(image_id, frame_number, time_s, detector, marker_id,"
-                " part, first_keypoint_idx, corners, colors, rejected_because, corner_sigmas,"
-                " is_fallback) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+                "INSERT INTO marker_detections(image_id, frame_number, time_s, marker_id, part,"
+                " first_keypoint_idx, corners, colors, rejected_because, corner_sigmas,"
+                " is_fallback) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         image_id_(image_id),
-        detections_(detections),
-        detector_(detector) {}
+        detections_(detections) {}
 
-  // The row of an image without any detection: nothing but the image's own columns.
+  // The row of an image without detections holds the image's own columns only.
   void InsertNone() {
     BindImage();
     insert_.exec();
@@ -74,14 +66,14 @@ class RowWriter {
       colors.insert(colors.end(), marker.colors[i].begin(), marker.colors[i].end());
     }
     const std::vector<double> sigmas(marker.corner_sigma_px.begin(), marker.corner_sigma_px.end());
-    insert_.bind(5, marker.marker_id);
-    if (!marker.part.empty()) insert_.bind(6, marker.part);
-    if (first_keypoint_idx) insert_.bind(7, *first_keypoint_idx);
-    BindBlob(insert_, 8, corners);
-    BindBlob(insert_, 9, colors);
-    if (!rejected_because.empty()) insert_.bind(10, rejected_because);
-    if (*std::max_element(sigmas.begin(), sigmas.end()) > 0) BindBlob(insert_, 11, sigmas);
-    insert_.bind(12, marker.is_fallback ? 1 : 0);
+    insert_.bind(4, marker.marker_id);
+    if (!marker.part.empty()) insert_.bind(5, marker.part);
+    if (first_keypoint_idx) insert_.bind(6, *first_keypoint_idx);
+    BindBlob(insert_, 7, corners);
+    BindBlob(insert_, 8, colors);
+    if (!rejected_because.empty()) insert_.bind(9, rejected_because);
+    if (*std::max_element(sigmas.begin(), sigmas.end()) > 0) BindBlob(insert_, 10, sigmas);
+    insert_.bind(11, marker.is_fallback ? 1 : 0);
     insert_.exec();
   }
 
@@ -92,14 +84,24 @@ class RowWriter {
     insert_.bind(1, image_id_);
     if (detections_.frame_number) insert_.bind(2, *detections_.frame_number);
     if (detections_.time_s) insert_.bind(3, *detections_.time_s);
-    insert_.bind(4, detector_);
   }
 
   SQLite::Statement insert_;
   ImageId image_id_;
   const FrameDetections& detections_;
-  const std::string& detector_;
 };
+
+// Writes the row of marker_detector for the first image.
+void InsertDetector(const std::string& detector, SQLite::Database* database) {
+  const std::optional<std::string> known_detector = ReadDetectorOfDetections(database);
+  if (known_detector) {
+    VELAMAP_CHECK(*known_detector == detector);
+    return;
+  }
+  SQLite::Statement insert(*database, "INSERT INTO marker_detector(detector) VALUES(?)");
+  insert.bind(1, detector);
+  insert.exec();
+}
 
 // Columns from `begin` on: marker_id, part, corners, colors, corner_sigmas, is_fallback.
 MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::string& path) {
@@ -129,16 +131,23 @@ MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::stri
 
 void CreateMarkerDetectionsTable(SQLite::Database* database) {
   database->exec(kSchema);
-  const std::set<std::string> names = ColumnNames(*database);
+  const std::set<std::string> names = ColumnNames(*database, "marker_detections");
   for (const auto& [name, type] : kAddedColumns) {
     if (names.count(name) > 0) continue;
     database->exec(fmt::format("ALTER TABLE marker_detections ADD COLUMN {} {}", name, type));
   }
+  // An earlier velamap repeated the detector in every row.
+  if (names.count("detector") == 0) return;
+  database->exec(
+      "INSERT INTO marker_detector(detector) SELECT detector FROM marker_detections LIMIT 1;"
+      "ALTER TABLE marker_detections DROP COLUMN detector");
 }
 
 void InsertMarkerDetections(ImageId image_id, const FrameDetections& detections,
                             const std::string& detector, SQLite::Database* database) {
-  RowWriter writer(image_id, detections, detector, database);
+  CreateMarkerDetectionsTable(database);
+  InsertDetector(detector, database);
+  RowWriter writer(image_id, detections, database);
   for (std::size_t i = 0; i < detections.markers.size(); ++i) {
     writer.Insert(detections.markers[i], kNumCorners * static_cast<int>(i), "");
   }
@@ -156,7 +165,7 @@ void DeleteMarkerDetections(ImageId image_id, SQLite::Database* database) {
 
 std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
                                                     SQLite::Database* database) {
-  const std::set<std::string> names = ColumnNames(*database);
+  const std::set<std::string> names = ColumnNames(*database, "marker_detections");
   std::string columns = "marker_id, part, corners, colors";
   for (const auto& [name, type] : kAddedColumns) {
     columns += std::string(", ") + (names.count(name) > 0 ? name : "NULL");
@@ -192,10 +201,14 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
 }
 
 std::optional<std::string> ReadDetectorOfDetections(SQLite::Database* database) {
-  if (!database->tableExists("marker_detections")) return std::nullopt;
-  SQLite::Statement query(*database, "SELECT detector FROM marker_detections LIMIT 1");
-  if (!query.executeStep()) return std::nullopt;
-  return query.getColumn(0).getString();
+  for (const char* table : {"marker_detector", "marker_detections"}) {
+    if (!database->tableExists(table) || ColumnNames(*database, table).count("detector") == 0) {
+      continue;
+    }
+    SQLite::Statement query(*database, fmt::format("SELECT detector FROM {} LIMIT 1", table));
+    if (query.executeStep()) return query.getColumn(0).getString();
+  }
+  return std::nullopt;
 }
 
 }  // namespace velamap

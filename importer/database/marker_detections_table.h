@@ -1,6 +1,7 @@
-// marker_detections: the table that velamap adds to COLMAP's. The README says what it holds.
+// The tables that velamap adds to COLMAP's: marker_detections, and marker_detector with the one row
+// that says how the detections were made. importer/README.md describes their columns.
 //
-// Errors of SQLite come as SQLite::Exception, as ColmapDatabase, the only user, expects them.
+// Errors of SQLite arrive as SQLite::Exception; ColmapDatabase turns them into input errors.
 
 #pragma once
 
@@ -18,21 +19,23 @@ class Database;
 
 namespace velamap {
 
-// Creates the table, or adds the columns that one of an earlier velamap lacks.
+// Creates the tables if they are missing, and brings those of an earlier velamap up to date.
 void CreateMarkerDetectionsTable(SQLite::Database* database);
 
-// One row for each detection, or one with a NULL marker_id for an image without any.
+// Inserts one row for each detection, or one with a NULL marker_id for an image without any.
+// `detector` must be the same for all images of a database.
 void InsertMarkerDetections(ImageId image_id, const FrameDetections& detections,
                             const std::string& detector, SQLite::Database* database);
 
 void DeleteMarkerDetections(ImageId image_id, SQLite::Database* database);
 
-// All images with rows in the table, by image_id. Columns that an earlier velamap did not write are
-// read as unknown. Throws InputError, naming the path, for a row that cannot be.
+// Returns all images with rows in the table, by image_id. Columns that an earlier velamap did not
+// write are read as unknown. Throws InputError, naming the path, for a row with values of a wrong
+// size.
 std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
                                                     SQLite::Database* database);
 
-// What the rows say on how they were made; nothing without a table or rows.
+// Returns how the detections were made, or nothing if there are none.
 std::optional<std::string> ReadDetectorOfDetections(SQLite::Database* database);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// Arrays of numbers in SQLite's columns; the machine's own byte order, as COLMAP does it.
+// Arrays of numbers as blobs in SQLite's columns, in the machine's byte order, as in COLMAP.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the detector finds in one image.
+// The result of detection in one image.
 
 #pragma once
 
@@ -20,9 +20,9 @@ struct MarkerDetection {
   std::array<Eigen::Vector2d, kNumCorners> corners_in_image_px;
   std::array<Rgb, kNumCorners> colors{};  // of the image at the corners
   std::string part{};                     // of the layout that names it; empty without a layout
-  // 1 sigma of a coordinate by the image's noise, px; 0 where unknown: no edge fit, or it failed.
+  // 1 sigma of a coordinate from the noise of the image, px; 0 without an edge fit.
   std::array<double, kNumCorners> corner_sigma_px{};
-  // The corner fit failed here, so that cv::cornerSubPix had to do.
+  // The corner fit failed, and the corners are those of cv::cornerSubPix.
   bool is_fallback = false;
 };
 
@@ -31,9 +31,9 @@ struct RejectedDetection {
   std::string reason;
 };
 
-// All markers of one image; an id stands at most once in `markers`, ascending.
+// All markers of one image; `markers` holds each id at most once, in ascending order.
 struct FrameDetections {
-  std::string image_name;           // relative to the image folder, as COLMAP wants it
+  std::string image_name;           // relative to the image folder, as in COLMAP
   std::optional<int> frame_number;  // zero-based position in the video; none for photographs
   std::optional<double> time_s;     // presentation time in the video
   std::vector<MarkerDetection> markers;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kNumNeighbors = 3;
 
-// A total order, so that the input's order decides nothing.
+// A total order, so that the result does not depend on the order of the input.
 bool ComesBefore(const MarkerDetection& a, const MarkerDetection& b) {
   if (a.marker_id != b.marker_id) return a.marker_id < b.marker_id;
   for (int i = 0; i < kNumCorners; ++i) {

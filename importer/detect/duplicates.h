@@ -15,8 +15,8 @@ struct ResolvedDetections {
 };
 
 // Of several candidates with one id, keeps the one whose centre has the smallest mean distance (px)
-// to the centres of the (at most) three topologically nearest markers that were found once. Where
-// the graph names no such neighbour nothing tells the candidates apart and all are left out.
+// to the centres of the (at most) three topologically nearest markers that were found once. Without
+// such a neighbour the candidates cannot be told apart, and all are left out.
 // The order of `candidates` does not matter.
 ResolvedDetections ResolveDuplicates(std::vector<MarkerDetection> candidates,
                                      const AdjacencyGraph& graph);

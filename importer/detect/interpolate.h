@@ -10,11 +10,12 @@
 
 namespace velamap {
 
-// Bilinear value of an 8-bit grey image at a place in OpenCV's pixel frame; places outside take the
-// nearest value inside.
+// Bilinear value of an 8-bit grey image at a place in OpenCV's pixel frame. Outside of the image,
+// the nearest value inside; a coordinate that is not a number counts as 0.
 inline double InterpolateGray(const cv::Mat& gray, const Eigen::Vector2d& x_px) {
-  const double x = std::clamp(x_px.x(), 0.0, gray.cols - 1.001);
-  const double y = std::clamp(x_px.y(), 0.0, gray.rows - 1.001);
+  // In this order of arguments std::max turns NaN into 0.
+  const double x = std::min(std::max(0.0, x_px.x()), gray.cols - 1.001);
+  const double y = std::min(std::max(0.0, x_px.y()), gray.rows - 1.001);
   const int column = static_cast<int>(x), row = static_cast<int>(y);
   const double fx = x - column, fy = y - row;
   const std::uint8_t* upper = gray.ptr<std::uint8_t>(row) + column;

@@ -14,15 +14,15 @@ namespace {
 
 constexpr int kMinBorderDistancePx = 3;  // of a corner
 
-// `region_size_px` of an image of `image_size_px`: the smallest perimeter is the image's.
+// For a region of an image; the smallest perimeter is relative to the size of the image.
 cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
                                                       const ArucoDetectionOptions& options,
                                                       int image_size_px, int region_size_px) {
   const auto parameters = cv::aruco::DetectorParameters::create();
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
-  // Windows of 5 and 13 px. Measured on photographs of 34 to 110 px markers and at 4K on 12 to 500
-  // px ones, sharp and blurred: no fewer markers than with OpenCV's 3, 13 and 23 px, small ones
-  // among other black squares more, in three quarters of the time.
+  // Windows of 5 and 13 px find as many markers as OpenCV's 3, 13 and 23 px, and more small ones
+  // among other black squares, in three quarters of the time (measured on photographs of markers of
+  // 34 to 110 px and at 4K on 12 to 500 px, sharp and blurred).
   parameters->adaptiveThreshWinSizeMin = 5;
   parameters->adaptiveThreshWinSizeMax = 13;
   parameters->adaptiveThreshWinSizeStep = 8;
@@ -31,8 +31,8 @@ cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
   parameters->minMarkerPerimeterRate = options.min_marker_perimeter_rate;
   parameters->errorCorrectionRate = options.error_correction_rate;
   if (region_size_px != image_size_px) {
-    // OpenCV cuts the product of rate and size to whole pixels; half a pixel more comes out as the
-    // image's whole number.
+    // OpenCV truncates the product of rate and size to whole pixels; half a pixel more makes it the
+    // number of the whole image.
     const double perimeter_px = std::floor(options.min_marker_perimeter_rate * image_size_px);
     parameters->minMarkerPerimeterRate = (perimeter_px + 0.5) / region_size_px;
   }
@@ -56,7 +56,7 @@ void SearchRegion(const cv::Mat& gray, const cv::Rect& region, const Dictionary&
                   std::vector<MarkerQuad>* quads) {
   cv::Mat dark_on_light = gray(region);
   if (options.inverted) {
-    cv::Mat inverted;  // a fresh one, so that the caller's picture stays
+    cv::Mat inverted;  // a new one, so that the image of the caller does not change
     cv::bitwise_not(dark_on_light, inverted);
     dark_on_light = inverted;
   }
@@ -82,8 +82,8 @@ bool IsLargeEnough(const QuadCorners& corners, const cv::Size& image_size,
          options.min_marker_perimeter_rate * std::max(image_size.width, image_size.height);
 }
 
-bool SearchTakes(const QuadCorners& corners, const cv::Size& image_size,
-                 const ArucoDetectionOptions& options) {
+bool IsSearchable(const QuadCorners& corners, const cv::Size& image_size,
+                  const ArucoDetectionOptions& options) {
   const double min = kMinBorderDistancePx;
   const double max_x = image_size.width - 1 - min, max_y = image_size.height - 1 - min;
   return IsLargeEnough(corners, image_size, options) &&
@@ -120,7 +120,7 @@ std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Diction
   std::vector<MarkerQuad> quads = SearchMarkers(half, dictionary, border_bits, options);
   for (MarkerQuad& quad : quads) {
     for (Eigen::Vector2d& corner : quad.corners_px) {
-      corner = 2.0 * corner + Eigen::Vector2d(0.5, 0.5);  // places are of pixels' centres
+      corner = 2.0 * corner + Eigen::Vector2d(0.5, 0.5);  // of pixel centres
     }
   }
   return quads;
@@ -139,7 +139,7 @@ std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dic
       if (Contains(region, Surroundings(quad.corners_px, kSearchReachPx) & image)) {
         quads.push_back(quad);
       } else {
-        // The border cut into what decides on it.
+        // The border cuts into the pixels that the search depends on.
         SearchRegion(gray, Surroundings(quad.corners_px, 2 * kSearchReachPx) & image, dictionary,
                      border_bits, options, &quads);
       }

@@ -10,8 +10,9 @@ namespace {
 
 constexpr std::size_t kNumNeighbors = 3;
 
-// The mean cosine between top sides by which the best turn must beat the second. For a half turn it
-// means that the marker stands within 75 degrees of its neighbours, for quarter turns within 24.
+// The margin in the mean cosine between top sides by which the best turn must beat the second. It
+// means that a marker with half turns is within 75 degrees of its neighbours, with quarter turns
+// within 24.
 constexpr double kMinMargin = 0.5;
 
 // Unit vector along the top side, from corner 1 to corner 2, after `turn` quarter turns.
@@ -44,7 +45,7 @@ std::vector<const MarkerDetection*> NearestUnambiguous(
   return neighbors;
 }
 
-// The turn that fits the neighbours best, or -1 where they leave a doubt.
+// The turn that fits the neighbours best, or -1 where they do not decide.
 int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_turns,
                const std::vector<const MarkerDetection*>& neighbors) {
   if (neighbors.empty()) return -1;

@@ -15,15 +15,15 @@ namespace {
 
 constexpr std::size_t kMinFrames = 3;
 constexpr double kMinAgreement = 0.9;
-// A quarter of the step between a marker's turns: 45 and 22.5 degrees.
+// A quarter of the angle between the possible turns of a marker: 45 and 22.5 degrees.
 constexpr double kMinCosineHalfTurn = 0.70710678118654752;
 constexpr double kMinCosineQuarterTurn = 0.92387953251128674;
-// How far a place may be off: bent cloth and perspective change it. In sides of the other marker,
-// and as a part of the distance.
+// Tolerance of a place, which bent cloth and perspective change: in sides of the other marker, and
+// as a part of the distance.
 constexpr double kMaxPlaceError = 0.5;
 constexpr double kMaxRelativePlaceError = 0.3;
 
-// Of a marker seen from another one, in the affine frame of the other's sides.
+// A marker in the affine frame that the sides of another one span.
 struct Relation {
   Eigen::Vector2d top_side;  // unit vector
   Eigen::Vector2d place;     // of the centre, in sides
@@ -63,7 +63,7 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-// What the frames agree on; nothing if too few show it or too many depart from it.
+// The relation on which the frames agree; nothing if too few show it or too many depart from it.
 std::optional<Relation> Consensus(const std::vector<Relation>& relations, double min_cosine) {
   if (relations.size() < kMinFrames) return std::nullopt;
   Relation known{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
@@ -87,11 +87,12 @@ std::optional<Relation> Consensus(const std::vector<Relation>& relations, double
 
 bool IsDoubtful(const RejectedDetection& rejected) { return rejected.reason == kDoubtfulRotation; }
 
-// By the ids of a symmetric marker and of another one.
+// Keys are the ids of a symmetric marker and of another one.
 using KnownRelations = std::map<std::pair<int, int>, Relation>;
 
-// Relations of all markers that some frame is in doubt about.
-KnownRelations Learn(const CodeSymmetries& symmetries, const std::vector<FrameDetections>& frames) {
+// Relations of all markers that are unresolved in some frame.
+KnownRelations LearnRelations(const CodeSymmetries& symmetries,
+                              const std::vector<FrameDetections>& frames) {
   std::set<int> doubtful_ids;
   for (const FrameDetections& frame : frames) {
     for (const RejectedDetection& rejected : frame.rejected) {
@@ -116,8 +117,8 @@ KnownRelations Learn(const CodeSymmetries& symmetries, const std::vector<FrameDe
   return known;
 }
 
-// The turn that every known relation with the frame's markers wants, or -1 where none says anything
-// or one stands against it. A marker that is not where it should be (a false id, say) says nothing.
+// The turn on which all known relations with the markers of the frame agree, or -1 where there are
+// none or they disagree. A marker that is not where it should be, such as a false id, is ignored.
 int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_turns,
                const KnownRelations& known, const std::vector<MarkerDetection>& others) {
   std::vector<int> turns = {0};
@@ -143,9 +144,9 @@ void SortById(std::vector<MarkerDetection>* markers) {
                    [](const auto& a, const auto& b) { return a.marker_id < b.marker_id; });
 }
 
-// Each frame for itself, from its resolved and its doubtful markers.
-void StartAnew(const CodeSymmetries& symmetries, const AdjacencyGraph& graph,
-               FrameDetections* frame) {
+// Resolves a frame alone, from its resolved and its unresolved markers.
+void ResolveAlone(const CodeSymmetries& symmetries, const AdjacencyGraph& graph,
+                  FrameDetections* frame) {
   std::vector<RejectedDetection> others;
   for (RejectedDetection& rejected : frame->rejected) {
     if (IsDoubtful(rejected)) {
@@ -194,11 +195,11 @@ std::vector<std::size_t> ResolveRotationsAcrossFrames(const CodeSymmetries& symm
                                                       std::vector<FrameDetections>* frames) {
   if (symmetries.empty()) return {};
   const std::vector<FrameDetections> before = *frames;
-  for (FrameDetections& frame : *frames) StartAnew(symmetries, graph, &frame);
-  // Every round but the last resolves a marker, so that it ends.
+  for (FrameDetections& frame : *frames) ResolveAlone(symmetries, graph, &frame);
+  // Every round but the last resolves a marker, so that the loop ends.
   for (bool any = true; any;) {
     any = false;
-    const KnownRelations known = Learn(symmetries, *frames);
+    const KnownRelations known = LearnRelations(symmetries, *frames);
     for (FrameDetections& frame : *frames) any |= ResolveByOthers(symmetries, known, &frame);
   }
   std::vector<std::size_t> changed;

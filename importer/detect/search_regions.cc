@@ -8,7 +8,7 @@
 namespace velamap {
 namespace {
 
-// A call of the detector for a region costs about as much as so many pixels more.
+// The fixed cost of searching a region, in pixels.
 constexpr int kCallCostPx = 4000;
 
 }  // namespace

@@ -10,16 +10,16 @@
 
 namespace velamap {
 
-// Whether a marker may lie in the image as a whole, its place known to `margin_px`; a negative one
-// asks whether it does for sure.
+// Whether the whole marker may lie in the image when its place is known to `margin_px`; with a
+// negative margin, whether it certainly does.
 bool FitsIn(const Box& box, const cv::Size& size, double margin_px);
 
-// Where a marker is to be searched, its place known to `margin_px`.
+// The region to search for a marker whose place is known to `margin_px`.
 cv::Rect RegionAround(const Box& box, const cv::Size& size, double margin_px);
 
-double AreaOf(const std::vector<cv::Rect>& regions);  // px, where they overlap more than once
+double AreaOf(const std::vector<cv::Rect>& regions);  // px; overlaps count more than once
 
-// Rectangles that cover what `regions` cover, joined where one costs less than two.
+// Rectangles that cover all `regions`, joined where one costs less than two.
 std::vector<cv::Rect> MergeRegions(std::vector<cv::Rect> regions);
 
 }  // namespace velamap

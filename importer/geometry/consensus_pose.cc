@@ -5,19 +5,15 @@
 #include <limits>
 #include <random>
 
-#include <opencv2/calib3d.hpp>
-
-#include "importer/geometry/triple_pose.h"
+#include "importer/geometry/p3p.h"
+#include "importer/geometry/pose_refinement.h"
+#include "importer/geometry/ransac.h"
 
 namespace velamap {
 namespace {
 
-// Of adjustments to those that agree, each of which may make some more agree.
+// Fits to the markers that agree; each may bring more of them to agree.
 constexpr int kNumRounds = 2;
-
-// 160 are enough for half of the markers wrong.
-constexpr int kMinDraws = 12, kMaxDraws = 160;
-constexpr unsigned int kRandomSeed = 0;
 
 // x_in_unit = scale * (x_in_space - center_in_space)
 struct UnitFrame {
@@ -25,8 +21,8 @@ struct UnitFrame {
   double scale = 1.0;
 };
 
-// Brings all corners to mean 0 and RMS distance 1, so that neither frame nor unit of the space
-// matters to what follows. Nothing for corners without extent.
+// Brings all corners to mean 0 and RMS distance 1, so that the frame and the unit of the space do
+// not affect the search. Nothing for corners without extent.
 std::optional<UnitFrame> CenterAndScale(std::vector<MarkerRays>* markers) {
   UnitFrame frame;
   const double num_corners = static_cast<double>(kNumCorners * markers->size());
@@ -51,111 +47,91 @@ std::optional<UnitFrame> CenterAndScale(std::vector<MarkerRays>* markers) {
   return frame;
 }
 
-Eigen::Isometry3d CamFromSpace(const Eigen::Isometry3d& cam_from_unit, const UnitFrame& frame) {
-  Eigen::Isometry3d cam_from_space = cam_from_unit;
-  cam_from_space.translation() =
-      cam_from_unit.translation() / frame.scale - cam_from_unit.linear() * frame.center_in_space;
-  return cam_from_space;
+Rigid3 CamFromSpace(const Rigid3& cam_from_unit, const UnitFrame& frame) {
+  return {cam_from_unit.rotation,
+          cam_from_unit.translation / frame.scale - cam_from_unit.rotation * frame.center_in_space};
 }
 
-// Of the marker's corner that is farthest from its place, in sides of the marker.
-double ErrorInSides(const MarkerRays& marker, const Eigen::Isometry3d& cam_from_unit) {
-  double max_error = 0.0;
-  for (std::size_t c = 0; c < kNumCorners; ++c) {
-    const Eigen::Vector3d x_in_cam = cam_from_unit * marker.corners_in_space[c];
-    if (!(x_in_cam.z() > 0)) return std::numeric_limits<double>::infinity();
-    max_error = std::max(max_error, (x_in_cam.hnormalized() - marker.rays[c]).norm());
+struct PoseHypothesis {
+  Rigid3 cam_from_unit;
+  double cost = 0.0;  // truncated sum of squared errors, in sides
+  std::vector<std::size_t> agreeing_idxs;
+};
+
+// See ransac.h.
+class MarkerConsensus {
+ public:
+  using Model = Rigid3;
+  using Hypothesis = PoseHypothesis;
+  static constexpr int kSampleSize = 3;
+
+  explicit MarkerConsensus(const std::vector<MarkerRays>& markers) : markers_(markers) {}
+
+  std::vector<Rigid3> Generate(std::mt19937* generator) const {
+    const auto sample = SampleCorners(markers_.size(), generator);
+    if (!sample) return {};
+    std::array<Eigen::Vector3d, 3> x_in_unit;
+    std::array<Eigen::Vector2d, 3> rays;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [marker_idx, corner_idx] = (*sample)[i];
+      x_in_unit[i] = markers_[marker_idx].corners_in_space[corner_idx];
+      rays[i] = markers_[marker_idx].rays[corner_idx];
+    }
+    return SolveP3P(x_in_unit, rays);
   }
-  return max_error / QuadMeanSide(marker.rays);
-}
 
-std::vector<std::size_t> Agreeing(const std::vector<MarkerRays>& markers,
-                                  const Eigen::Isometry3d& cam_from_unit) {
-  std::vector<std::size_t> idxs;
-  for (std::size_t i = 0; i < markers.size(); ++i) {
-    if (ErrorInSides(markers[i], cam_from_unit) < 1.0) idxs.push_back(i);
+  PoseHypothesis Score(const Rigid3& cam_from_unit) const {
+    PoseHypothesis hypothesis{cam_from_unit, 0.0, {}};
+    const Eigen::Matrix3d rotation = cam_from_unit.rotation.toRotationMatrix();
+    for (std::size_t i = 0; i < markers_.size(); ++i) {
+      const double error = ErrorInSides(markers_[i], rotation, cam_from_unit.translation);
+      hypothesis.cost += error < 1.0 ? error * error : 1.0;
+      if (error < 1.0) hypothesis.agreeing_idxs.push_back(i);
+    }
+    return hypothesis;
   }
-  return idxs;
-}
 
-Eigen::Isometry3d ToIsometry(const Eigen::Vector3d& rotation_vector,
-                             const Eigen::Vector3d& translation) {
-  Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
-  const double angle = rotation_vector.norm();
-  if (angle > 0) isometry.linear() = Eigen::AngleAxisd(angle, rotation_vector / angle).matrix();
-  isometry.translation() = translation;
-  return isometry;
-}
-
-// Poses that see one corner of each of three markers where it is; none for a marker drawn twice.
-std::vector<Eigen::Isometry3d> DrawPoses(const std::vector<MarkerRays>& markers,
-                                         std::mt19937* generator) {
-  std::vector<Eigen::Isometry3d> poses;
-  std::array<std::size_t, 3> idxs{};
-  std::array<Eigen::Vector3d, 3> x_in_unit;
-  std::array<Eigen::Vector2d, 3> rays;
-  for (std::size_t i = 0; i < 3; ++i) {
-    idxs[i] = RandomIndex(generator, markers.size());
-    const std::size_t corner = RandomIndex(generator, kNumCorners);
-    x_in_unit[i] = markers[idxs[i]].corners_in_space[corner];
-    rays[i] = markers[idxs[i]].rays[corner];
+  double InlierRatio(const PoseHypothesis& hypothesis) const {
+    return static_cast<double>(hypothesis.agreeing_idxs.size()) /
+           static_cast<double>(markers_.size());
   }
-  if (idxs[0] == idxs[1] || idxs[1] == idxs[2] || idxs[0] == idxs[2]) return poses;
-  for (const TriplePose& pose : PosesOfTriple(x_in_unit, rays)) {
-    poses.push_back(ToIsometry(pose.rotation_vector, pose.translation));
-  }
-  return poses;
-}
 
-// The drawn pose with the least sum of squared errors, those of a side and more alike.
-Eigen::Isometry3d FindConsensus(const std::vector<MarkerRays>& markers) {
-  Eigen::Isometry3d best_pose = Eigen::Isometry3d::Identity();
-  double least_cost = std::numeric_limits<double>::infinity();
-  double agreeing_part = 0.0;
-  std::mt19937 generator(kRandomSeed);
-  for (int draw = 0; draw < NumTriples(agreeing_part, kMinDraws, kMaxDraws); ++draw) {
-    for (const Eigen::Isometry3d& pose : DrawPoses(markers, &generator)) {
-      double cost = 0.0, num_agreeing = 0.0;
-      for (const MarkerRays& marker : markers) {
-        const double error = ErrorInSides(marker, pose);
-        num_agreeing += error < 1.0;
-        cost += error < 1.0 ? error * error : 1.0;
+  PoseHypothesis Refine(const PoseHypothesis& hypothesis) const {
+    if (!IsSupported(hypothesis)) return hypothesis;
+    std::vector<RayObservation> observations;
+    for (const std::size_t i : hypothesis.agreeing_idxs) {
+      for (std::size_t c = 0; c < kNumCorners; ++c) {
+        observations.push_back({markers_[i].corners_in_space[c], markers_[i].rays[c]});
       }
-      if (!(cost < least_cost)) continue;
-      least_cost = cost;
-      best_pose = pose;
-      agreeing_part = num_agreeing / static_cast<double>(markers.size());
     }
+    return Score(RefinePose(observations, hypothesis.cam_from_unit));
   }
-  return best_pose;
-}
 
-Eigen::Isometry3d Refine(const std::vector<MarkerRays>& markers,
-                         const std::vector<std::size_t>& agreeing_idxs,
-                         const Eigen::Isometry3d& cam_from_unit) {
-  std::vector<cv::Point3d> in_unit;
-  std::vector<cv::Point2d> rays;
-  for (const std::size_t i : agreeing_idxs) {
+  bool HasSameInliers(const PoseHypothesis& a, const PoseHypothesis& b) const {
+    return a.agreeing_idxs == b.agreeing_idxs;
+  }
+
+  // At least four markers, and half of all.
+  bool IsSupported(const PoseHypothesis& hypothesis) const {
+    const std::size_t num_agreeing = hypothesis.agreeing_idxs.size();
+    return num_agreeing >= kMinConsensus && 2 * num_agreeing >= markers_.size();
+  }
+
+ private:
+  // The largest distance of a corner from its ray, in sides of the marker.
+  static double ErrorInSides(const MarkerRays& marker, const Eigen::Matrix3d& rotation,
+                             const Eigen::Vector3d& translation) {
+    double max_error = 0.0;
     for (std::size_t c = 0; c < kNumCorners; ++c) {
-      const Eigen::Vector3d& x = markers[i].corners_in_space[c];
-      in_unit.emplace_back(x.x(), x.y(), x.z());
-      rays.emplace_back(markers[i].rays[c].x(), markers[i].rays[c].y());
+      const Eigen::Vector3d x_in_cam = rotation * marker.corners_in_space[c] + translation;
+      if (!(x_in_cam.z() > 0)) return std::numeric_limits<double>::infinity();
+      max_error = std::max(max_error, (x_in_cam.hnormalized() - marker.rays[c]).norm());
     }
+    return max_error / QuadMeanSide(marker.rays);
   }
-  const Eigen::AngleAxisd turn(cam_from_unit.linear());
-  const Eigen::Vector3d axis_angle = turn.angle() * turn.axis();
-  cv::Vec3d rotation_vector(axis_angle.x(), axis_angle.y(), axis_angle.z());
-  const Eigen::Vector3d& t = cam_from_unit.translation();
-  cv::Vec3d translation(t.x(), t.y(), t.z());
-  cv::solvePnPRefineLM(in_unit, rays, cv::Matx33d::eye(), cv::noArray(), rotation_vector,
-                       translation);
-  return ToIsometry({rotation_vector[0], rotation_vector[1], rotation_vector[2]},
-                    {translation[0], translation[1], translation[2]});
-}
 
-bool IsEnough(std::size_t num_agreeing, std::size_t num_markers) {
-  return num_agreeing >= kMinConsensus && 2 * num_agreeing >= num_markers;
-}
+  const std::vector<MarkerRays>& markers_;
+};
 
 }  // namespace
 
@@ -163,15 +139,13 @@ std::optional<ConsensusPose> FindConsensusPose(std::vector<MarkerRays> markers) 
   if (markers.size() < kMinConsensus) return std::nullopt;
   const std::optional<UnitFrame> frame = CenterAndScale(&markers);
   if (!frame) return std::nullopt;
-  Eigen::Isometry3d cam_from_unit = FindConsensus(markers);
-  for (int round = 0; round < kNumRounds; ++round) {
-    const std::vector<std::size_t> agreeing_idxs = Agreeing(markers, cam_from_unit);
-    if (!IsEnough(agreeing_idxs.size(), markers.size())) return std::nullopt;
-    cam_from_unit = Refine(markers, agreeing_idxs, cam_from_unit);
-  }
-  ConsensusPose pose{CamFromSpace(cam_from_unit, *frame), Agreeing(markers, cam_from_unit)};
-  if (!IsEnough(pose.agreeing_idxs.size(), markers.size())) return std::nullopt;
-  return pose;
+  const MarkerConsensus consensus(markers);
+  std::vector<PoseHypothesis> hypotheses = Ransac({}, consensus);
+  if (hypotheses.empty()) return std::nullopt;
+  const PoseHypothesis best =
+      RefineHypothesis(consensus, kNumRounds, std::move(hypotheses.front()));
+  if (!consensus.IsSupported(best)) return std::nullopt;
+  return ConsensusPose{CamFromSpace(best.cam_from_unit, *frame), best.agreeing_idxs};
 }
 
 }  // namespace velamap

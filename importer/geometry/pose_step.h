@@ -1,5 +1,5 @@
-// Steps of a pose in the small Gauss-Newton problems of this room: first the turn, a rotation
-// vector on the left, then the shift. Derivatives are of rays (x/z, y/z). Private to this room.
+// Steps of a pose in least squares, and the derivatives that go with them. A step of 6 is a
+// rotation vector (rad), applied on the left, followed by a translation; a ray is (x/z, y/z).
 
 #pragma once
 
@@ -19,35 +19,27 @@ inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& a) {
   return matrix;
 }
 
-inline Eigen::Matrix<double, 2, 3> RayFromPoint(const Eigen::Vector3d& x_in_cam) {
+// Derivative of the ray of a point by that point.
+inline Eigen::Matrix<double, 2, 3> RayByPoint(const Eigen::Vector3d& x_in_cam) {
   const double inverse = 1 / x_in_cam.z();
-  Eigen::Matrix<double, 2, 3> ray_from_x;
-  ray_from_x << inverse, 0, -x_in_cam.x() * inverse * inverse, 0, inverse,
+  Eigen::Matrix<double, 2, 3> jacobian;
+  jacobian << inverse, 0, -x_in_cam.x() * inverse * inverse, 0, inverse,
       -x_in_cam.y() * inverse * inverse;
-  return ray_from_x;
+  return jacobian;
 }
 
-// Derivative by a turn of a point at `rotated`, from that of whatever by the point: each row r
-// becomes rotated x r.
-inline Eigen::Matrix<double, 2, 3> ByTurn(const Eigen::Matrix<double, 2, 3>& by_point,
-                                          const Eigen::Vector3d& rotated) {
-  Eigen::Matrix<double, 2, 3> by_turn;
-  by_turn.row(0) = rotated.cross(by_point.row(0));
-  by_turn.row(1) = rotated.cross(by_point.row(1));
-  return by_turn;
+// Chain rule for a rotation: given the derivative of a quantity by the point R x, returns its
+// derivative by a rotation vector applied to R on the left. `rotated` is R x.
+inline Eigen::Matrix<double, 2, 3> ByRotation(const Eigen::Matrix<double, 2, 3>& by_point,
+                                              const Eigen::Vector3d& rotated) {
+  Eigen::Matrix<double, 2, 3> by_rotation;
+  by_rotation.row(0) = rotated.cross(by_point.row(0));
+  by_rotation.row(1) = rotated.cross(by_point.row(1));
+  return by_rotation;
 }
 
-// Derivative of the ray of rotated + translation.
-inline Eigen::Matrix<double, 2, 6> RayFromPoseStep(const Eigen::Vector3d& rotated,
-                                                   const Eigen::Vector3d& x_in_cam) {
-  const Eigen::Matrix<double, 2, 3> ray_from_x = RayFromPoint(x_in_cam);
-  Eigen::Matrix<double, 2, 6> ray_from_step;
-  ray_from_step << ByTurn(ray_from_x, rotated), ray_from_x;
-  return ray_from_step;
-}
-
-// Derivative of q x by a unit quaternion q = (v, w), in the order x y z w, from
-// q x = x + 2 w (v x x) + 2 v x (v x x).
+// Derivative of R x by the unit quaternion (x y z w) of R, from
+// R x = x + 2 w (v x x) + 2 v x (v x x) with its vector part v.
 inline Eigen::Matrix<double, 3, 4> RotatedFromQuaternion(const Eigen::Quaterniond& q,
                                                          const Eigen::Vector3d& x) {
   const Eigen::Vector3d v = q.vec();
@@ -58,14 +50,15 @@ inline Eigen::Matrix<double, 3, 4> RotatedFromQuaternion(const Eigen::Quaternion
   return jacobian;
 }
 
-inline Eigen::Quaterniond Turned(const Eigen::Vector3d& turn, const Eigen::Quaterniond& rotation) {
-  const double angle = turn.norm();
+inline Eigen::Quaterniond PlusRotation(const Eigen::Quaterniond& rotation,
+                                       const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
   if (!(angle > 0)) return rotation;
-  return (Eigen::AngleAxisd(angle, turn / angle) * rotation).normalized();
+  return (Eigen::AngleAxisd(angle, rotation_vector / angle) * rotation).normalized();
 }
 
-inline Rigid3 Moved(const Rigid3& pose, const PoseStep& step) {
-  return {Turned(step.head<3>(), pose.rotation), pose.translation + step.tail<3>()};
+inline Rigid3 PlusPose(const Rigid3& pose, const PoseStep& step) {
+  return {PlusRotation(pose.rotation, step.head<3>()), pose.translation + step.tail<3>()};
 }
 
 }  // namespace velamap

@@ -17,12 +17,12 @@ using QuadCorners = std::array<Eigen::Vector2d, kNumCorners>;
 
 Eigen::Vector2d QuadCenter(const QuadCorners& quad);
 double QuadMeanSide(const QuadCorners& quad);
-double QuadArea(const QuadCorners& quad);  // of a simple one, never negative
+double QuadArea(const QuadCorners& quad);  // never negative; of a quad without crossing sides
 
-// Whether the corners are finite and the quad has room for so many cells of a pixel each.
+// Whether the corners are finite and the quad has an area of at least `num_cells` pixels.
 bool HasCells(const QuadCorners& quad, std::size_t num_cells);
 
-// The longest way from a corner of one to the same of the other, px.
+// The largest distance between corresponding corners, px.
 double MaxCornerShift(const QuadCorners& a, const QuadCorners& b);
 
 struct Box {

@@ -34,7 +34,7 @@ class UnitSquareMap {
     return (square_from_image_ * x_px.homogeneous()).hnormalized();
   }
 
-  // Of homogeneous vectors.
+  // Maps homogeneous vectors.
   const Eigen::Matrix3d& square_from_image() const { return square_from_image_; }
 
  private:

@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/ids.h"
 #include "importer/base/text_file.h"
 
@@ -116,8 +117,8 @@ cv::Mat Turned(const cv::Mat& bits, int quarter_turns) {
   return turned;
 }
 
-// Smallest number of bits in which two different markers differ, over all rotations. Throws for
-// two equal ones, which nothing could tell apart.
+// Returns the smallest number of bits in which two markers differ, over all rotations. Throws
+// InputError if two markers are equal.
 int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
   int min_distance = static_cast<int>(bits.front().total()) + 1;
   for (std::size_t i = 0; i < bits.size(); ++i) {
@@ -160,8 +161,8 @@ Dictionary ReadDictionaryFile(const std::string& path) {
   }
   const int unique_bits = (MinDistance(bits, path) - 1) / 2;
   if (correction_bits > unique_bits) {
-    spdlog::warn("{}: maxCorrectionBits {} would confuse markers; {} is used", path,
-                 correction_bits, unique_bits);
+    spdlog::warn("{}: maxCorrectionBits {} would confuse markers; using {}", path, correction_bits,
+                 unique_bits);
     correction_bits = unique_bits;
   }
   return {std::filesystem::path(path).filename().string(),
@@ -174,8 +175,7 @@ Dictionary LoadDictionary(const std::string& name_or_path) {
   if (const PredefinedEntry* entry = FindPredefined(name_or_path)) {
     return {entry->first, cv::aruco::getPredefinedDictionary(entry->second)};
   }
-  std::error_code error;
-  if (name_or_path.empty() || !std::filesystem::exists(name_or_path, error)) {
+  if (name_or_path.empty() || !Exists(name_or_path)) {
     throw InputError(fmt::format("dictionary '{}': neither a file nor one of {}", name_or_path,
                                  fmt::join(PredefinedDictionaryNames(), " ")));
   }

@@ -1,5 +1,5 @@
-// Which frame the metric result is given in. How each is made from markers stands in
-// exporters/shape/shape_frame.h.
+// The choice of the frame of the metric result. exporters/shape/shape_frame.h says how each frame
+// is computed from markers.
 
 #pragma once
 
@@ -16,19 +16,19 @@ enum class FrameKind {
 
 struct FrameChoice {
   FrameKind kind = FrameKind::kCamera;
-  // For kMarkers only. By their centres: the origin; the marker to which x points; a marker in the
-  // half plane of x and z with z > 0.
+  // For kMarkers only: the marker at the origin, the marker to which x points, and a marker in the
+  // half plane of x and z with z > 0. All by their centres.
   int origin_id = -1, axis_id = -1, plane_id = -1;
 };
 
-// "reference_part", "lines", "camera", or the ids of origin, axis and plane such as "12,15,40".
-// Throws InputError; `what` names the option.
+// Parses "reference_part", "lines", "camera", or the ids of origin, axis and plane such as
+// "12,15,40". Throws InputError; `what` names the option.
 FrameChoice ParseFrameChoice(const std::string& text, const std::string& what);
 
-// Throws std::logic_error for kMarkers, which no single word says.
+// Throws std::logic_error for kMarkers, which has no keyword.
 std::string FrameKeyword(FrameKind kind);
 
-// The other way round; false for any other text.
+// The inverse of FrameKeyword(). Returns false for any other text.
 bool ParseFrameKeyword(const std::string& text, FrameKind* kind);
 
 }  // namespace velamap

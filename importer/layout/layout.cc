@@ -45,11 +45,11 @@ Layout MakeLayout(const std::string& dictionary, double marker_length_m) {
 }
 
 void CheckMarkerLength(double length_m, const std::string& what) {
-  if (!(length_m >= 0.0001 && length_m <= 10.0)) {
+  if (!(length_m >= kMinMarkerLength_m && length_m <= kMaxMarkerLength_m)) {
     throw InputError(
-        fmt::format("{}: {} m is no marker side; give the outer edge of the black "
-                    "square in metres, 0.0001 to 10",
-                    what, length_m));
+        fmt::format("{}: {} m is no marker side; give the outer edge of the black square in "
+                    "metres, {} to {}",
+                    what, length_m, kMinMarkerLength_m, kMaxMarkerLength_m));
   }
 }
 

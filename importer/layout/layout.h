@@ -1,4 +1,4 @@
-// What is known of the markers beforehand: dictionary, sizes, and where on the object they sit.
+// The prior knowledge of the markers: dictionary, sizes, and their places on the object.
 //
 // The adjacency graph of thesis section 3.1 follows from the lines: neighbours on a line are
 // adjacent, and so are all markers of a rigid part.
@@ -34,7 +34,7 @@ struct KnownDistance {
   int marker_id2 = 0, corner2 = 0;
   double length_m = 0.0;
   double sigma_m = 0.0;       // of the measurement
-  bool is_scale_bar = false;  // takes part in the adjustment; else it is only checked against
+  bool is_scale_bar = false;  // takes part in the adjustment; otherwise it is a check of the result
 };
 
 struct Layout {
@@ -43,39 +43,43 @@ struct Layout {
   double marker_length_m = 0.0;               // outer edge of the black square
   std::map<int, double> marker_lengths_m;     // exceptions
   int border_bits = 1;                        // width of the black border, cells
-  std::vector<LayoutPart> parts;              // empty: every id found belongs to one part
-  std::optional<std::string> reference_part;  // what motion is measured against
+  std::vector<LayoutPart> parts;              // empty: all ids belong to one part
+  std::optional<std::string> reference_part;  // motion is measured relative to it
   std::vector<KnownDistance> distances;
-  std::optional<FrameChoice> frame;  // of the result; nothing: the best there is
+  std::optional<FrameChoice> frame;  // of the result; nothing: the best available
 
-  // Whether the layout lists its markers; without a list every id is welcome.
+  // Whether the layout lists its markers; without a list every id is accepted.
   bool HasMarkers() const { return !parts.empty(); }
 };
 
-// Reads a layout file (YAML; keys in the README of this room). A dictionary file is taken relative
-// to the layout file. Throws InputError that names file, line and key: unknown keys, a marker twice
-// on one line or in two parts, a length that is not between 0.1 mm and 10 m, a negative id, a
-// distance of a marker that no part names, of a point from itself, or without a sigma.
+// Reads a layout file (YAML; importer/README.md lists the keys). The path of a dictionary file is
+// relative to the layout file. Throws InputError that names file, line and key for unknown keys, a
+// marker twice on one line or in two parts, a length that is not between 0.1 mm and 10 m, a
+// negative id, and a distance of a marker that no part names, of a point from itself, or without a
+// sigma.
 Layout ReadLayout(const std::string& path);
 
-// The layout that --dictionary and --marker_length replace: no lines, every id welcome.
+// The layout of --dictionary and --marker_length: no lines, and every id is accepted.
 Layout MakeLayout(const std::string& dictionary, double marker_length_m);
 
-// Throws InputError unless 0.0001 <= length <= 10 (metres); `what` names the key or option.
+// Of the black square's outer edge.
+constexpr double kMinMarkerLength_m = 1e-4, kMaxMarkerLength_m = 10.0;
+
+// Throws InputError for a length beyond these; `what` names the key or option.
 void CheckMarkerLength(double length_m, const std::string& what);
 
 double MarkerLength(const Layout& layout, int marker_id);
 
-// All ids that the layout names, ascending, each once.
+// The ids that the layout names, ascending, each once.
 std::vector<int> MarkerIds(const Layout& layout);
 
-// Name of the part that holds the marker; "" for an id that is in none.
+// The name of the part that holds the marker, or "" if none does.
 std::string PartOfMarker(const Layout& layout, int marker_id);
 
 using AdjacencyGraph = std::map<int, std::vector<int>>;
 AdjacencyGraph BuildAdjacencyGraph(const Layout& layout);
 
-// Number of edges from `marker_id` to every marker that can be reached from it.
+// The number of edges from `marker_id` to every marker that can be reached from it.
 std::map<int, int> TopologicalDistances(const AdjacencyGraph& graph, int marker_id);
 
 }  // namespace velamap

@@ -11,14 +11,14 @@
 
 namespace velamap {
 
-// Corners 1..4 of each marker, by its id, in the shape frame, m; any other scale does as well.
+// Corners 1..4 by marker id, in the shape frame, m. Another scale serves as well.
 using PriorShape = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 
-// How well the markers found in frames agree with a prior shape. Frames that show too few of its
-// markers to tell are not counted.
+// How well the detections of frames agree with a prior shape. Frames with too few of its markers to
+// decide do not count.
 struct PriorShapeAgreement {
-  int num_known = 0;     // markers found that the prior shape holds
-  int num_agreeing = 0;  // of these, those that one pose of their frame's camera explains
+  int num_known = 0;     // detected markers that the prior shape holds
+  int num_agreeing = 0;  // those of them that one camera pose of the frame explains
 
   PriorShapeAgreement& operator+=(const PriorShapeAgreement& other) {
     num_known += other.num_known;

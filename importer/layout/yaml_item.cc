@@ -25,8 +25,8 @@ void ForEachKey(const YamlItem& map,
     if (!entry.first.IsScalar()) FailYaml(map.path, entry.first.Mark(), "a plain key is expected");
     const std::string name = entry.first.Scalar();
     const std::string key = map.key.empty() ? name : map.key + "." + name;
-    if (!seen.insert(name).second) FailYaml(map.path, entry.first.Mark(), key + ": stands twice");
-    // An empty value has no mark of its own in yaml-cpp; the key's line serves.
+    if (!seen.insert(name).second) FailYaml(map.path, entry.first.Mark(), key + ": is given twice");
+    // An empty value has no mark in yaml-cpp, so the error names the line of the key.
     if (entry.second.IsNull()) FailYaml(map.path, entry.first.Mark(), key + ": has no value");
     handle(name, YamlItem{map.path, entry.second, key});
   }

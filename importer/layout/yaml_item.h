@@ -13,7 +13,7 @@ namespace velamap {
 [[noreturn]] void FailYaml(const std::string& path, const YAML::Mark& mark,
                            const std::string& message);
 
-// A node, the file it comes from and its key from the top, as errors name it.
+// A node with its file and its full key, which errors name.
 struct YamlItem {
   const std::string& path;
   YAML::Node node;
@@ -25,13 +25,14 @@ struct YamlItem {
   std::string Text() const { return node.IsScalar() ? node.Scalar() : ""; }
 };
 
-// Calls handle(name, value) for every key of a map, each key once.
+// Calls handle(name, value) for every key of a map. A repeated key is an error.
 void ForEachKey(const YamlItem& map,
                 const std::function<void(const std::string&, const YamlItem&)>& handle);
 
 using KeyHandlers = std::map<std::string, std::function<void(const YamlItem&)>>;
 
-// Calls the handler of every key that is there; a key without one is an error that lists them.
+// Calls the handler of every key in the map. A key without a handler is an error that lists the
+// known keys.
 void ReadMap(const YamlItem& map, const KeyHandlers& handlers);
 
 void ForEachElement(const YamlItem& list, const std::function<void(const YamlItem&)>& handle);

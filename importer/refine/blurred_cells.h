@@ -1,8 +1,9 @@
 // A pattern of square cells blurred by a Gaussian, at a group of places at once, with derivatives.
 //
-// The blurred pattern is separable: sum_ij lightness_ij a_i(u) b_j(v), where a_i is the unit step
-// of column i blurred. Places and blurs are in cells, (0, 0) at the first cell's outer corner. The
-// pattern of n cells has kRing more around it; the outermost reach to infinity.
+// The blurred pattern is separable: sum_ij lightness_ij a_i(u) b_j(v), where a_i is the blurred
+// unit step of column i. Places and blurs are in cells, with (0, 0) at the outer corner of the
+// first cell. kRing more cells surround the n cells of the pattern; the outermost extend to
+// infinity.
 
 #pragma once
 
@@ -20,14 +21,14 @@ namespace velamap {
 constexpr int kRing = 2;             // quiet zone, then its surroundings
 constexpr int kMaxRingedCells = 32;  // along a side, with the rings
 
-// Of column i, row j at (j + kRing, i + kRing); 0 for dark, 1 for light.
+// The cell of column i and row j is at (j + kRing, i + kRing); 0 for dark, 1 for light.
 using Lightness = Eigen::Matrix<float, kMaxRingedCells, kMaxRingedCells, Eigen::RowMajor>;
 
-// The light ones among the cells: column i is bit i + kRing of the number at j + kRing.
+// Bit i + kRing of the number at j + kRing is set where the cell of column i and row j is light.
 using LightCells = std::array<std::int32_t, kMaxRingedCells>;
 static_assert(kMaxRingedCells <= 32);
 
-// How the blurred columns (or rows) share a group of places, in cells: for each, weights of the
+// The weights of the blurred columns (or rows) at a group of places: for each place those of the
 // cells first ... first + count - 1, counted with the rings, and their derivatives by the place and
 // by the blur.
 struct Shares {
@@ -38,18 +39,20 @@ struct Shares {
   FloatsArray<kMaxRingedCells> value, by_x, by_blur;
 };
 
-inline void ComputeShares(Floats x, Floats blur, int num_cells, Shares* shares) {
+inline void ComputeShares(Floats x, Floats blur, int num_cells, float margin_low, float margin_high,
+                          Shares* shares) {
   constexpr float kReach = 3.3f;  // sigmas
-  // Edge k lies between the ringed cells k and k + 1.
+  // Edge k lies between the ringed cells k and k + 1. Edges are one cell apart, except the first
+  // and the last, where the quiet zone ends after `margin_low` and `margin_high` cells.
   const int all_edges = num_cells + 2 * kRing - 1;
   const Floats place = x + static_cast<float>(kRing - 1);
-  // Where a fit runs away these need not be finite: the limits keep the cells inside the pattern.
+  // A diverging fit makes these infinite or NaN; the limits keep the cells inside the pattern.
   const Floats limit = AllLanes(2 * kMaxRingedCells);
   const Floats reach = Min(kReach * blur, limit);
-  // As many edges for each of the places; those out of reach do no harm.
-  const int num_edges = std::min(static_cast<int>(2 * MaxLane(reach)) + 1, all_edges);
+  // The same number of edges for all places; edges out of reach have no effect.
+  const int num_edges = std::min(static_cast<int>(2 * MaxLane(reach)) + 2, all_edges);
   Ints low = Floor(Max(Min(place, limit), -limit) - reach) + 1;
-  low = low < 0 ? Ints{} : low;
+  low = low < 2 ? Ints{} : low;
   low = low > all_edges - num_edges ? Ints{} + (all_edges - num_edges) : low;
   shares->first = low;
   shares->least_first = MinLane(low);
@@ -58,11 +61,15 @@ inline void ComputeShares(Floats x, Floats blur, int num_cells, Shares* shares) 
   shares->count = num_edges + 1;
   const Floats inverse_blur = 1.0f / blur;
   const Floats from_low = place - __builtin_convertvector(low, Floats);
-  // What one edge leaves, the next takes.
+  // Each weight is the difference between the steps of two neighbouring edges.
   Floats distribution = AllLanes(1.0), density{}, moment{};
   for (int i = 0; i < num_edges; ++i) {
     const auto index = static_cast<std::size_t>(i);
-    const Floats z = (from_low - static_cast<float>(i)) * inverse_blur;
+    const Ints edge = low + i;
+    const Floats none{};
+    const Floats inwards = (edge == 0 ? AllLanes(1 - margin_low) : none) -
+                           (edge == all_edges - 1 ? AllLanes(1 - margin_high) : none);
+    const Floats z = (from_low - static_cast<float>(i) - inwards) * inverse_blur;
     const NormalLanes normal = NormalAt(z);
     const Floats next_density = normal.density * inverse_blur;
     const Floats next_moment = -z * next_density;
@@ -93,13 +100,13 @@ struct Blended {
 
 namespace internal {
 
-// What a row, or all columns together, give a group of places, and its derivatives by the place and
-// by the blur.
+// The contribution of one row, or of all columns, to a group of places, and its derivatives by the
+// place and by the blur.
 struct Sums {
   Floats value{}, by_x{}, by_blur{};
 };
 
-// Adds the i-th column that shares in the places; `weigh` says how much of its share counts.
+// Adds the i-th column with a weight at the places; `weigh` selects how much of it counts.
 template <typename Weigh>
 void AddColumn(const Shares& shares, int i, const Weigh& weigh, Sums* sums) {
   const auto index = static_cast<std::size_t>(i);
@@ -108,7 +115,7 @@ void AddColumn(const Shares& shares, int i, const Weigh& weigh, Sums* sums) {
   sums->by_blur += weigh(shares.by_blur[index]);
 }
 
-// `row(j)` gives the Sums of the j-th row that shares in the places.
+// `row(j)` returns the Sums of the j-th row with a weight at the places.
 template <typename Row>
 Blended BlendRows(const Shares& u, const Shares& v, const Row& row) {
   Blended sum;
@@ -137,7 +144,7 @@ inline Floats Choose(Ints is_chosen, Floats x) {
   return x;
 }
 
-// Of the columns that are the black square's.
+// Sums over the columns of the black square.
 inline Sums WithinSquare(const Shares& shares, int num_cells) {
   Sums sums;
   for (int i = 0; i < shares.count; ++i) {
@@ -151,7 +158,7 @@ inline Sums WithinSquare(const Shares& shares, int num_cells) {
 
 }  // namespace internal
 
-// Of cells that are light or dark.
+// For cells that are light or dark.
 inline Blended BlendLight(const LightCells& light, const Shares& u, const Shares& v) {
   return internal::BlendRows(u, v, [&](int j) {
     Ints columns;
@@ -169,7 +176,7 @@ inline Blended BlendLight(const LightCells& light, const Shares& u, const Shares
   });
 }
 
-// Of a dark square on light ground: all but the rings are dark.
+// For a dark square on light ground: all cells but the rings are dark.
 inline Blended BlendGround(const Shares& u, const Shares& v, int num_cells) {
   const internal::Sums a = internal::WithinSquare(u, num_cells);
   const internal::Sums b = internal::WithinSquare(v, num_cells);
@@ -182,9 +189,16 @@ inline Blended BlendGround(const Shares& u, const Shares& v, int num_cells) {
           -a.by_blur * b.by_blur / (u.blur * v.blur)};
 }
 
-// Of cells that are dark except in the outermost ring.
-inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const Shares& v,
-                              int num_cells) {
+// The surroundings of the quiet zone, and the derivatives by its widths: before the first column,
+// after the last column, before the first row, after the last row.
+struct Around {
+  Blended blended;
+  std::array<FloatsArray<1>, 4> by_margin{};
+};
+
+// For cells that are dark except in the outermost ring.
+inline Around BlendOutermost(const Lightness& lightness, const Shares& u, const Shares& v,
+                             int num_cells) {
   std::array<const float*, kLanes> corners;
   for (int lane = 0; lane < kLanes; ++lane) {
     corners[static_cast<std::size_t>(lane)] =
@@ -194,9 +208,13 @@ inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const
   const auto is_outermost = [&](const Shares& shares, int i) {
     return shares.least_first + i == 0 || shares.largest_first + i == last;
   };
-  return internal::BlendRows(u, v, [&](int j) {
+  Around around;
+  int j = 0;
+  around.blended = internal::BlendRows(u, v, [&](int row) {
+    j = row;
     const bool is_outermost_row = is_outermost(v, j);
     internal::Sums sums;
+    Floats left{}, right{};
     for (int i = 0; i < u.count; ++i) {
       if (!is_outermost_row && !is_outermost(u, i)) continue;
       Floats cells;
@@ -205,9 +223,19 @@ inline Blended BlendOutermost(const Lightness& lightness, const Shares& u, const
       }
       internal::AddColumn(
           u, i, [&](Floats share) { return cells * share; }, &sums);
+      const Floats by_x = cells * u.by_x[static_cast<std::size_t>(i)];
+      left += internal::Choose(u.first + i == 0, by_x);
+      right -= internal::Choose(u.first + i == last, by_x);
     }
+    const auto index = static_cast<std::size_t>(j);
+    around.by_margin[0].groups[0] += left * v.value[index];
+    around.by_margin[1].groups[0] += right * v.value[index];
+    const Floats by_y = sums.value * v.by_x[index];
+    around.by_margin[2].groups[0] += internal::Choose(v.first + j == 0, by_y);
+    around.by_margin[3].groups[0] -= internal::Choose(v.first + j == last, by_y);
     return sums;
   });
+  return around;
 }
 
 // *b += factor * a.

@@ -15,14 +15,14 @@ namespace velamap {
 namespace {
 
 constexpr double kMinContrast = 12.0;    // grey levels
-constexpr double kMaxRelativeRms = 0.2;  // of the residuals, by contrast
+constexpr double kMaxRelativeRms = 0.2;  // of the residuals, relative to the contrast
 constexpr double kFirstBlurPx = 1.0;
 
 struct Pass {
   double band_px;
   int max_samples;  // of a side
   double tolerance_px;
-  bool is_last;  // the uncertainty of the others is of no use
+  bool is_last;  // only the last pass estimates the uncertainty
 };
 
 struct FittedSide {
@@ -31,7 +31,7 @@ struct FittedSide {
   EdgeUncertainty uncertainty;
 };
 
-// Room that the fits of a marker's sides use one after the other.
+// Memory that the fits of a marker's sides share.
 struct Workspace {
   EdgeSamples samples;
   EdgeFit fit;
@@ -58,7 +58,7 @@ std::optional<FittedSide> FitSide(const cv::Mat& gray, const SideModel& model, c
   return fitted;
 }
 
-// The tangent of the fitted edge at its end s = -1 or 1, where the bend adds nothing.
+// The tangent of the fitted edge at its end s = -1 or 1, where the bend is zero.
 ImageLine TangentAtEnd(const FittedSide& fitted, double s) {
   using P = EdgeParameters;
   const Side& side = fitted.side;
@@ -69,7 +69,7 @@ ImageLine TangentAtEnd(const FittedSide& fitted, double s) {
           side.along + slope * side.outward};
 }
 
-// Variance of the edge's place across the side at its end, by noise of one grey level, px^2.
+// Variance of the place of the edge at its end, across the side, for noise of one grey level, px^2.
 double VarianceAtEnd(const FittedSide& fitted, double s) {
   const Eigen::Vector2d by_place(1, s);
   return by_place.dot(fitted.uncertainty.place_covariance * by_place);
@@ -158,16 +158,15 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
 }
 
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
-                                            const cv::Mat& cells, const EdgeFitOptions& options) {
+                                            const cv::Mat& cells, const ImageFormation& formation,
+                                            const EdgeFitOptions& options) {
   if (!HasCells(corners_px, cells.total())) return std::nullopt;
   const double cell_px = QuadMeanSide(corners_px) / cells.rows;
   const QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
-  if (!HasClearSides(start_px, cells.rows, options)) {
-    const auto fitted = FitPattern(gray, start_px, cells);
-    if (fitted &&
-        MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
-      return fitted;
-    }
+  const auto fitted = FitPattern(gray, start_px, cells, formation);
+  if (fitted &&
+      MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
+    return fitted;
   }
   return RefineCornersByEdges(gray, start_px, cells.rows, options);
 }

@@ -1,11 +1,11 @@
 // Sub-pixel corners of a dark square on light ground as intersections of fitted edges.
 //
-// cv::cornerSubPix pulls a marker's corners inwards by 0.1 to 0.4 px, which scaling by the marker's
-// side turns into a scale error of 0.4 to 6 %. Here each side is modelled as a step edge blurred by
-// a Gaussian (edge_fit.h), whose place, bend, blur and grey levels are fitted by least squares to
-// the pixels within a band around the side. The corners are where neighbouring sides meet. A marker
-// of small cells is fitted as a whole (pattern_fit.h), because there the blur of one edge reaches
-// the next.
+// cv::cornerSubPix pulls the corners of a marker inwards by 0.1 to 0.4 px, which becomes a scale
+// error of 0.4 to 6 % when the scale comes from the marker's side. Here each side is modelled as a
+// step edge blurred by a Gaussian (edge_fit.h), whose place, bend, blur and grey levels are fitted
+// by least squares to the pixels within a band around the side. Neighbouring sides intersect in the
+// corners. A marker with small cells is fitted as a whole (pattern_fit.h), because the blur of one
+// edge reaches the next.
 
 #pragma once
 
@@ -16,6 +16,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
+#include "importer/refine/image_formation.h"
 #include "importer/refine/refined_corners.h"
 
 namespace velamap {
@@ -29,28 +30,30 @@ struct EdgeFitOptions {
   double max_shift_in_cells = 0.8;
   // Markers with cells narrower than this anywhere are fitted as a whole (pattern_fit.h).
   double min_edge_cell_px = 5.0;
-  // The same for slanted ones: near an acute corner each side's band holds the other side's blur,
-  // which pulled corners of markers tilted by 60 to 70 degrees inwards by up to 0.2 px.
+  // The same for slanted markers: near an acute corner the band of each side contains the blur of
+  // the other, which pulled corners of markers tilted by 60 to 70 degrees inwards by up to 0.2 px.
   double min_slanted_cell_px = 7.0;
   double min_sine_of_corner = 0.9;
 };
 
-// Whether every side stands far enough from what is beside it, and upright enough on its
-// neighbours, to be fitted on its own. Corners in px; `num_cells` along a side, with the border.
+// Whether every side is far enough from the next edges, and perpendicular enough to its neighbours,
+// to be fitted alone. Corners in px; `num_cells` along a side, with the border.
 bool HasClearSides(const QuadCorners& corners_px, int num_cells,
                    const EdgeFitOptions& options = {});
 
-// `corners_px` in OpenCV's pixel frame (first pixel's centre at (0,0)), in order around the square,
-// the refined ones likewise, with their uncertainty. `num_cells` is the number of cells along a
-// side with the border. Nothing if an edge has too little contrast, leaves the image, or the fit
-// moves a corner too far.
+// Returns the corners with their uncertainty. `corners_px` and the result are in OpenCV's pixel
+// frame (first pixel's centre at (0,0)), in order around the square; `num_cells` is the number of
+// cells along a side with the border. Nothing if an edge has too little contrast or leaves the
+// image, or if the fit moves a corner too far.
 std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
                                                    const QuadCorners& corners_px, int num_cells,
                                                    const EdgeFitOptions& options = {});
 
-// The same for a marker whose cells are known (as in pattern_fit.h): the best way for its size.
+// The same for a marker whose cells are known (as in pattern_fit.h), by the method that suits its
+// size.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
                                             const cv::Mat& cells,
+                                            const ImageFormation& formation = ImageFormation(),
                                             const EdgeFitOptions& options = {});
 
 }  // namespace velamap

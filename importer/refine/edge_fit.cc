@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "importer/refine/least_squares.h"
+#include "importer/geometry/least_squares.h"
 #include "importer/refine/normal_lanes.h"
 
 namespace velamap {
@@ -16,15 +16,15 @@ using Matrix = EdgeEquations::Matrix;
 
 constexpr double kMinBlurPx = 0.3;
 constexpr double kMaxBlurPx = 5.0;
-constexpr double kPixelNoise = 3.0;  // grey levels, against which the priors weigh
+constexpr double kPixelNoise = 3.0;  // grey levels; sets the weight of the priors
 
 Vector PriorWeight(const EdgePrior& prior) {
   return (kPixelNoise * prior.sigma.values.cwiseInverse()).cwiseAbs2();
 }
 
-VELAMAP_CLONE_FOR_AVX2 void Evaluate(const EdgeSamples& samples, const EdgePrior& prior,
-                                     const Vector& weight, const Vector& values, bool with_hessian,
-                                     EdgeEquations* equations) {
+VELAMAP_CLONE_FOR_AVX2 void SumUp(const EdgeSamples& samples, const EdgePrior& prior,
+                                  const Vector& weight, const Vector& values, bool with_hessian,
+                                  EdgeEquations* equations) {
   const EdgeParameters parameters{values};
   equations->Clear(with_hessian);
   EdgeEquations::Jacobian jacobian;
@@ -35,6 +35,32 @@ VELAMAP_CLONE_FOR_AVX2 void Evaluate(const EdgeSamples& samples, const EdgePrior
   }
   equations->Finish(values - prior.mean.values, weight);
 }
+
+// The fit as a problem of MinimizeSquares().
+struct EdgeProblem {
+  using Parameters = Vector;
+  using Equations = EdgeEquations;
+  using Step = Vector;
+
+  const EdgeSamples& samples;
+  const EdgePrior& prior;
+  Vector prior_weight;
+
+  void Evaluate(const Vector& values, bool with_hessian, EdgeEquations* equations) const {
+    SumUp(samples, prior, prior_weight, values, with_hessian, equations);
+  }
+  Vector Plus(const Vector& values, const Vector& step) const { return values + step; }
+  // How far the edge moves, px.
+  double StepSize(const Vector& step, const EdgeEquations&) const {
+    return step.head<3>().cwiseAbs().maxCoeff();
+  }
+  Vector LimitStep(const Vector& values, Vector step) const {
+    LimitParameter(kMinBlurPx, kMaxBlurPx, values[EdgeParameters::kBlur],
+                   &step[EdgeParameters::kBlur]);
+    return step;
+  }
+  void Predict(const Vector& step, EdgeEquations* equations) const { equations->Predict(step); }
+};
 
 // `inverse` of the Hessian.
 VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const EdgeEquations& equations,
@@ -80,23 +106,14 @@ Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& sam
 
 bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double tolerance_px,
              EdgeFit* fit) {
+  if (samples.count <= EdgeParameters::kCount) return false;
   LeastSquaresOptions options;
   options.max_iterations = 8;
-  options.first_damping = 1e-4;
-  options.tolerance_px = tolerance_px;
+  options.min_step = tolerance_px;
+  options.min_step_for_new_hessian = 0.02;
   fit->parameters = prior.mean;
-  const Vector weight = PriorWeight(prior);
-  return MinimizeSquares(
-      options,
-      [&](const Vector& values, bool with_hessian, EdgeEquations* equations) {
-        Evaluate(samples, prior, weight, values, with_hessian, equations);
-      },
-      [](const Vector& step) { return step.head<3>().cwiseAbs().maxCoeff(); },
-      [](Vector* values) {
-        double& blur = (*values)[EdgeParameters::kBlur];
-        blur = std::clamp(blur, kMinBlurPx, kMaxBlurPx);
-      },
-      &fit->parameters.values, &fit->equations);
+  return MinimizeSquares(options, EdgeProblem{samples, prior, PriorWeight(prior)},
+                         &fit->parameters.values, &fit->equations) != Convergence::kFailed;
 }
 
 std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior) {

@@ -7,9 +7,9 @@
 //       + outer_gain * outer * step(d - e - outer_depth)
 //   e = offset + slope * s + bend * (1 - s^2),   step(x) = Phi(x / blur)
 //
-// Phi is the normal distribution; dark and light are linear in s. `cover` lets the neighbouring
-// sides end the dark square; `inner` and `outer` are what the cells beyond the border and beyond
-// the quiet zone add, whose blur reaches the edge when cells are only a few px wide.
+// Phi is the normal distribution; dark and light are linear in s. `cover` ends the dark square at
+// the neighbouring sides; `inner` and `outer` are the contributions of the cells beyond the border
+// and beyond the quiet zone, whose blur reaches the edge when cells are only a few px wide.
 
 #pragma once
 
@@ -40,7 +40,7 @@ constexpr int kMaxEdgeSamples = 512;
 
 struct EdgeSamples {
   std::array<EdgeSampleGroup, kMaxEdgeSamples / kLanes> groups;
-  int count = 0;  // of samples; the last group may have less
+  int count = 0;  // of samples; the last group may be incomplete
 };
 
 struct EdgeParameters {
@@ -65,8 +65,7 @@ struct EdgeParameters {
   double Contrast() const { return values[kLight] - values[kDark]; }
 };
 
-// What is known beforehand: each parameter's most likely value and how far it strays from it
-// (1 sigma; infinite where nothing is known).
+// Prior of each parameter: its most likely value and 1 sigma (infinite without a prior).
 struct EdgePrior {
   EdgeParameters mean;
   EdgeParameters sigma;
@@ -79,7 +78,7 @@ struct EdgeFit {
   EdgeEquations equations;  // near the minimum
 };
 
-// Grey values of the model at a group of samples, and their derivatives by the parameters.
+// Grey levels of the model at a group of samples, and their derivatives by the parameters.
 Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& samples,
                     EdgeEquations::Jacobian* jacobian);
 
@@ -87,15 +86,15 @@ Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& sam
 // `tolerance_px`. False with too few samples or a singular system.
 bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double tolerance_px, EdgeFit* fit);
 
-// How well noise lets the place of a fitted edge be known.
+// The uncertainty of the place of a fitted edge.
 struct EdgeUncertainty {
   // Covariance of offset and slope (px^2) for noise of one grey level.
   Eigen::Matrix2d place_covariance = Eigen::Matrix2d::Zero();
   ResidualNoise noise;
 };
 
-// At the minimum that FitEdge() found. The priors hold weak parameters but are no observations:
-// their own error does not count. Nothing for a singular system.
+// At the minimum that FitEdge() found. The priors stabilise weak parameters but are not
+// observations, so that their own error does not count. Nothing for a singular system.
 std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior);
 
 }  // namespace velamap

@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-constexpr double kQuietZoneCells = 1.0;  // what every marker has; more does no harm
+constexpr double kQuietZoneCells = 1.0;  // the width that every marker has at least
 
 Side MakeSide(const QuadCorners& quad) {
   Side side{0.5 * (quad[0] + quad[1]),
@@ -71,7 +71,8 @@ Parallel MakeParallel(const Side& side, const UnitSquareMap& map, double v) {
   return {line.depth_px, FromEnds(facing_u(-1), facing_u(1))};
 }
 
-// How much of the step that `neighbour` is, which ends the side, lies inwards of it.
+// The blurred step of the neighbouring side that ends this one: 1 on the inner side of it, 0
+// beyond.
 Floats Cover(const Side& neighbour, const Eigen::Vector2d& origin_px, Floats x, Floats y,
              double blur_px) {
   const Eigen::Vector2f outward = neighbour.outward.cast<float>();
@@ -85,7 +86,8 @@ Floats At(const LinearInS& line, Floats s) {
   return static_cast<float>(line.middle) + static_cast<float>(line.slope) * s;
 }
 
-// Fills in what follows from the place of the samples: x and y from the middle of the side.
+// Fills in everything that follows from the place of the samples; x and y are relative to the
+// middle of the side.
 void FillSamples(const SideModel& model, Floats x, Floats y, EdgeSampleGroup* samples) {
   const Side& side = model.side;
   const Eigen::Vector2f along = (side.along / side.half_length_px).cast<float>();
@@ -138,6 +140,8 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
   const double margin_px =
       std::clamp(0.24 * side.half_length_px, model.blur_px, 2.5 * model.blur_px);
   const double reach_px = side.half_length_px - margin_px;
+  samples->count = 0;
+  if (!(reach_px > 0)) return;
   const int major = std::abs(side.along.x()) >= std::abs(side.along.y()) ? 0 : 1;
   const int minor = 1 - major;
   const double major_reach =
@@ -148,10 +152,10 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
   const int major_size = major == 0 ? gray.cols : gray.rows;
   const int minor_size = major == 0 ? gray.rows : gray.cols;
   int first = std::max(0, static_cast<int>(std::ceil(side.middle_px[major] - major_reach)));
-  first += (stride - first % stride) % stride;  // the same lines wherever the band begins
+  first += (stride - first % stride) %
+           stride;  // so that the choice of lines does not depend on the band
   const int last =
       std::min(major_size - 1, static_cast<int>(std::floor(side.middle_px[major] + major_reach)));
-  samples->count = 0;
   Floats x{}, y{};
   const auto fill = [&] {
     FillSamples(model, x, y,
@@ -171,7 +175,7 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
       if (std::abs(along_px) > reach_px || samples->count == kMaxEdgeSamples) continue;
       const int lane = samples->count % kLanes;
       Floats& values = samples->groups[static_cast<std::size_t>(samples->count++ / kLanes)].gray;
-      // What is missing of the last group is a copy of this pixel.
+      // Copies of this pixel complete the last group.
       for (int k = lane; k < kLanes; ++k) {
         x[k] = static_cast<float>(from_middle.x());
         y[k] = static_cast<float>(from_middle.y());

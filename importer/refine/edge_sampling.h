@@ -1,4 +1,4 @@
-// From the pixels around one side of a marker to the samples that edge_fit.h fits.
+// Samples the pixels around one side of a marker for the fit of edge_fit.h.
 
 #pragma once
 
@@ -24,17 +24,17 @@ struct LinearInS {
   double operator()(double s) const { return middle + slope * s; }
 };
 
-// A line of the print parallel to the side, at v in the unit square: how far it is from the side,
-// and the place u on it that faces a place s of the side.
+// A line of the print parallel to the side, at v in the unit square: its distance from the side,
+// and the place u on it opposite to a place s of the side.
 struct Parallel {
   LinearInS depth_px, u;
 };
 
-// Places along a side where the cells beyond the border and the quiet zone are looked up.
+// Places along a side at which the grey levels beyond the border and the quiet zone are read.
 constexpr int kNumPlaces = 33;
 using GrayLine = std::array<float, kNumPlaces>;
 
-// Everything about one side that a fit keeps fixed.
+// The constants of the fit of one side.
 struct SideModel {
   Side side, previous, next;
   GrayLine inner_gray, outer_gray;
@@ -48,7 +48,8 @@ SideModel MakeSideModel(const cv::Mat& gray, const QuadCorners& quad_px, int sid
                         int num_cells, double blur_px);
 
 // All pixels no further than `band_px` from the side, or every k-th row or column of them, about
-// `max_samples`. Two sides' blur mixes near the corners, which are left out.
+// `max_samples`. The ends of the side, where its blur mixes with that of the next sides, are left
+// out: a side that is no longer than its blur has no samples.
 void SampleSide(const cv::Mat& gray, const SideModel& model, double band_px, int max_samples,
                 EdgeSamples* samples);
 

@@ -1,5 +1,6 @@
-// Sums of a least-squares problem of few parameters and many observations, a group at a time in
-// single precision: J^T J, J^T r and r^T r. The sums over all are kept in double precision.
+// Normal equations of a least-squares problem with few parameters and many observations: J^T J, J^T
+// r and r^T r. Groups of observations are summed in single precision, the groups in double
+// precision.
 
 #pragma once
 
@@ -15,6 +16,12 @@
 
 namespace velamap {
 
+// Shortens a step of one parameter, so that it stays within its limits.
+inline void LimitParameter(double min, double max, double value, double* step) {
+  if (value + *step < min) *step = min - value;
+  if (value + *step > max) *step = max - value;
+}
+
 template <int kCount>
 class FitEquations {
  public:
@@ -22,7 +29,7 @@ class FitEquations {
   using Matrix = Eigen::Matrix<double, kCount, kCount>;
   using Jacobian = FloatsArray<kCount>;
 
-  // Begins anew. Without the Hessian, the one from before stays, and so do the Jacobians.
+  // Resets the sums. Without `with_hessian` the Hessian and the Jacobians stay.
   void Clear(bool with_hessian) {
     with_hessian_ = with_hessian;
     num_observations_ = 0;
@@ -32,7 +39,7 @@ class FitEquations {
     if (with_hessian) jacobians_.clear();
   }
 
-  // A group of observations, of which the first `num_valid` count. `jacobian` is used as scratch.
+  // Adds a group of observations, of which the first `num_valid` count. Changes `jacobian`.
   void Add(Jacobian* jacobian, Floats residual, int num_valid) {
     if (num_valid < kLanes) {
       const Floats mask = FirstLanes(num_valid);
@@ -46,8 +53,8 @@ class FitEquations {
     if (with_hessian_) jacobians_.push_back(*jacobian);
   }
 
-  // Once all are added; `departure` is the parameters less what the priors say, `weight` how much
-  // that counts.
+  // Completes the sums. `departure` is the difference between the parameters and their priors,
+  // `weight` the weight of its square.
   void Finish(const Vector& departure, const Vector& weight) {
     for (int i = 0; i < kCount; ++i) {
       gradient_[i] = Sum(gradient_lanes_[static_cast<std::size_t>(i)]);
@@ -56,7 +63,7 @@ class FitEquations {
     cost_ = squared_residuals() + departure.cwiseAbs2().dot(weight);
     if (!with_hessian_) return;
     hessian_ = weight.asDiagonal();
-    // Not more at a time than the first cache holds.
+    // Blocks that fit into the first-level cache.
     constexpr std::size_t kBlock = 64;
     for (std::size_t begin = 0; begin < jacobians_.size(); begin += kBlock) {
       AddProducts(begin, std::min(begin + kBlock, jacobians_.size()));
@@ -64,7 +71,7 @@ class FitEquations {
     hessian_.template triangularView<Eigen::StrictlyUpper>() = hessian_.transpose();
   }
 
-  // Moves the residuals by a short step of the parameters, as the Jacobians say.
+  // Changes the residuals to first order for a short step of the parameters.
   void Predict(const Vector& step) {
     const Eigen::Matrix<float, kCount, 1> by = step.template cast<float>();
     squares_ = Floats{};
@@ -85,8 +92,8 @@ class FitEquations {
   double cost() const { return cost_; }  // with the priors
   double Rms() const { return std::sqrt(squared_residuals() / num_observations_); }
 
-  // `inverse` of the Hessian; slopes(jacobian) is the squared slope of the grey values. How far the
-  // fit follows the noise is looked up for some observations only.
+  // `inverse` is that of the Hessian; squared_slope(jacobian) is the squared slope of the grey
+  // levels. The leverage is averaged over a part of the observations.
   template <typename SquaredSlope>
   ResidualNoise Noise(const Matrix& inverse, const SquaredSlope& squared_slope) const {
     constexpr std::size_t kStride = 4;
@@ -105,7 +112,7 @@ class FitEquations {
   }
 
  private:
-  static constexpr int kRows = 2, kColumns = 5;  // sums that fit the processor's registers
+  static constexpr int kRows = 2, kColumns = kCount % 5 == 0 ? 5 : 6;  // sums fit the registers
   static_assert(kCount % kRows == 0 && kCount % kColumns == 0);
 
   void AddProducts(std::size_t begin, std::size_t end) {

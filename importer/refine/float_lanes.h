@@ -1,7 +1,6 @@
-// Numbers in single precision that go through the same arithmetic together, a group of kLanes at a
-// time: the vector extension of GCC and Clang, which every processor of 64 bits has instructions
-// for. Bytes are the same on all of them, because each lane is rounded by itself and lanes are
-// added in a fixed order.
+// Groups of kLanes single-precision numbers that are processed together, by the vector extension of
+// GCC and Clang, for which every 64-bit processor has instructions. Results have the same bytes on
+// all of them, because each lane is rounded alone and lanes are added in a fixed order.
 
 #pragma once
 
@@ -9,10 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// Before a function that goes over many groups: it is compiled for processors with AVX2 and for any
-// of 64 bits, and the program takes the one that its processor can run. Functions that take or
-// return groups are called differently in the two, so `flatten` draws all of them in; they have to
-// be inline or in the same file.
+// Attribute of a function that loops over many groups. It is compiled twice, for processors with
+// AVX2 and for any 64-bit processor, and the program chooses at run time. Functions that take or
+// return groups have different calling conventions in the two, so `flatten` inlines all of them;
+// they have to be inline or in the same file.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__)
 #define VELAMAP_CLONE_FOR_AVX2 __attribute__((target_clones("avx2", "default"), flatten))
@@ -27,7 +26,7 @@ constexpr std::size_t kGroupBytes = kLanes * sizeof(float);
 using Floats = float __attribute__((vector_size(kGroupBytes), aligned(kGroupBytes)));
 using Ints = std::int32_t __attribute__((vector_size(kGroupBytes), aligned(kGroupBytes)));
 
-// In std::array and std::vector groups would lose their alignment.
+// std::array and std::vector would lose the alignment of groups.
 template <std::size_t kSize>
 struct alignas(kGroupBytes) FloatsArray {
   Floats groups[kSize];
@@ -47,13 +46,13 @@ inline Floats Min(Floats a, Floats b) { return a < b ? a : b; }
 inline Floats Max(Floats a, Floats b) { return a < b ? b : a; }
 inline Floats Abs(Floats x) { return Max(x, -x); }
 
-// Exact; Eigen's is an approximation that differs between processors.
+// Exact; the one of Eigen is an approximation that differs between processors.
 inline Floats Sqrt(Floats x) {
   for (int lane = 0; lane < kLanes; ++lane) x[lane] = std::sqrt(x[lane]);
   return x;
 }
 
-// Towards minus infinity, for |x| < 2^31.
+// Rounds towards minus infinity, for |x| < 2^31.
 inline Ints Floor(Floats x) {
   const Ints truncated = __builtin_convertvector(x, Ints);
   return truncated + (x < __builtin_convertvector(truncated, Floats));  // a true lane is -1
@@ -63,7 +62,7 @@ inline double Sum(Floats x) {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
 
-// The lanes with the halves, then quarters, then neighbours in each other's place.
+// Swaps the halves of the lanes, then the quarters, then neighbours.
 template <typename Lanes>
 Lanes SwapHalves(Lanes x) {
   return __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
@@ -89,7 +88,7 @@ auto MinLane(Lanes x) {
   return -MaxLane(-x);
 }
 
-// The first `count` lanes one, the others zero.
+// One in the first `count` lanes, zero in the others.
 inline Floats FirstLanes(int count) {
   return LaneIndex() < static_cast<float>(count) ? AllLanes(1.0) : Floats{};
 }

@@ -41,9 +41,10 @@ std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,
-                                           const ArucoDetectionOptions& options) {
+                                           const ArucoDetectionOptions& options,
+                                           const ImageFormation& formation) {
   VELAMAP_CHECK(gray.type() == CV_8UC1);
-  cv::Mat dark_on_light;  // a fresh one, so that the caller's picture stays
+  cv::Mat dark_on_light;  // a new one, so that the image of the caller does not change
   if (options.inverted) {
     cv::bitwise_not(gray, dark_on_light);
   } else {
@@ -61,7 +62,7 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
       refined = RefinedCorners{quad.corners_px, {}};
     } else if (options.corner_refinement == CornerRefinement::kEdge) {
       refined = RefineCorners(dark_on_light, quad.corners_px,
-                              MarkerCells(dictionary, quad.marker_id, border_bits));
+                              MarkerCells(dictionary, quad.marker_id, border_bits), formation);
       detection.is_fallback = !refined;
       num_fallbacks += !refined;
     }

@@ -1,5 +1,5 @@
-// The markers of one grey image: where they are (marker_search.h), and their corners to a fraction
-// of a pixel.
+// Detects the markers of one grey image: searches them (marker_search.h) and refines their corners
+// to a fraction of a pixel.
 
 #pragma once
 
@@ -11,21 +11,23 @@
 #include "importer/detect/detection_options.h"
 #include "importer/detect/marker_search.h"
 #include "importer/layout/dictionary.h"
+#include "importer/refine/image_formation.h"
 
 namespace velamap {
 
 // Detects all markers of `dictionary` in an 8-bit grey image. Corners are in the image frame (px);
 // the half pixel between OpenCV's pixel centres and COLMAP's is added here and nowhere else. Edge
-// refinement gives each corner its sigma, or marks the detection as a fallback.
+// refinement sets the sigma of each corner, or marks the detection as a fallback.
 // Ids may occur more than once (duplicates.h). Thread-safe; colours are left zero.
 std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                            int border_bits, const ArucoDetectionOptions& options);
 
-// The second half of it: the corners of markers that have been found. One detection for each of
-// `quads`, in their order.
+// The second half of DetectMarkers(): refines the corners of markers that have been found. One
+// detection for each of `quads`, in their order.
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,
-                                           const ArucoDetectionOptions& options);
+                                           const ArucoDetectionOptions& options,
+                                           const ImageFormation& formation = ImageFormation());
 
 }  // namespace velamap

@@ -1,4 +1,5 @@
-// The normal distribution and its density: blurred edges ask for them thousands of times a marker.
+// The normal distribution and its density, which blurred edges need thousands of times for a
+// marker.
 
 #pragma once
 
@@ -9,10 +10,11 @@
 
 namespace velamap {
 
-// exp(x) for -80 < x <= 0, to 3e-6 of its value: a power of two times a Taylor series.
+// exp(x) for -80 < x <= 0 to a relative error of 3e-6: a power of two times a Taylor series.
 inline Floats ExpOfNegative(Floats x) {
   constexpr float kLog2E = 1.44269504f, kLn2 = 0.693147181f;
-  const Ints power = __builtin_convertvector(x * kLog2E - 0.5f, Ints);  // truncates: the nearest
+  const Ints power =
+      __builtin_convertvector(x * kLog2E - 0.5f, Ints);  // truncation rounds to the nearest
   const Floats rest = x - __builtin_convertvector(power, Floats) * kLn2;
   const Floats series =
       1.0f +

@@ -1,198 +1,22 @@
 #include "importer/refine/pattern_fit.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <utility>
-#include <vector>
 
 #include <Eigen/Cholesky>
 
 #include "importer/base/error.h"
-#include "importer/detect/interpolate.h"
-#include "importer/geometry/unit_square_map.h"
-#include "importer/refine/least_squares.h"
-#include "importer/refine/pattern_picture.h"
+#include "importer/refine/pattern_problem.h"
 
 namespace velamap {
 namespace {
 
 using P = PatternParameters;
 
-constexpr double kMinContrast = 12.0;    // grey levels
-constexpr double kMaxRelativeRms = 0.2;  // of the residuals, by contrast
-constexpr double kPixelNoise = 3.0;      // grey levels, against which the priors weigh
-constexpr double kMinBlurPx = 0.3;
-constexpr double kMaxBlurPx = 4.0;
-constexpr double kBendOfDiagonal = 0.003;  // what cloth usually has; a can's label has ten times
-constexpr int kFirstPixels = 200;
-constexpr int kPixels = 1000;
-
-using Equations = FitEquations<P::kCount>;
-
-struct Problem {
-  const cv::Mat* gray;
-  cv::Rect box;
-  PatternModel model;
-  P::Vector mean, weight;  // priors
-};
-
-// Pixels of a marker and around it, in groups.
-struct Pixels {
-  struct Group {
-    Floats x, y;  // less the model's center_px
-    Floats gray;
-  };
-  std::vector<Group> groups;
-  int count = 0;  // the last group may have less
-};
-
-// What is missing of the last group becomes a copy of its first pixel.
-inline void FillUp(Pixels* pixels) {
-  for (int lane = pixels->count % kLanes; lane > 0 && lane < kLanes; ++lane) {
-    Pixels::Group& last = pixels->groups.back();
-    last.x[lane] = last.x[0];
-    last.y[lane] = last.y[0];
-    last.gray[lane] = last.gray[0];
-  }
-}
-
-// Every k-th pixel that the model covers with these parameters, so many that about `max_pixels` are
-// used.
-VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const Problem& problem, const P::Vector& parameters,
-                                           int max_pixels) {
-  const PatternPicture picture(problem.model, parameters);
-  const cv::Rect& box = problem.box;
-  const Eigen::Vector2d& center = problem.model.center_px;
-  const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
-  const int stride = static_cast<int>(std::ceil(area_px / max_pixels));
-  Pixels pixels;
-  pixels.groups.reserve(
-      static_cast<std::size_t>(box.height * (box.width / stride + 1) / kLanes + 1));
-  for (int row = box.y; row < box.y + box.height; ++row) {
-    const std::uint8_t* values = problem.gray->ptr<std::uint8_t>(row);
-    const Floats y = AllLanes(row - center.y());
-    // Odd rows are shifted, so that every column has its share. Which pixels are used does not
-    // depend on where the box begins.
-    const int shift = row * ((stride + 1) / 2) % stride;
-    const int first = box.x + (shift + stride - box.x % stride) % stride;
-    for (int begin = first; begin < box.x + box.width; begin += kLanes * stride) {
-      const Floats x =
-          static_cast<float>(begin - center.x()) + static_cast<float>(stride) * LaneIndex();
-      const Ints covered = picture.Covers(x, y);
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const int column = begin + lane * stride;
-        if (!covered[lane] || column >= box.x + box.width) continue;
-        const int place = pixels.count++ % kLanes;
-        if (place == 0) pixels.groups.emplace_back();
-        Pixels::Group& group = pixels.groups.back();
-        group.x[place] = x[lane];
-        group.y[place] = y[lane];
-        group.gray[place] = values[column];
-      }
-    }
-  }
-  FillUp(&pixels);
-  return pixels;
-}
-
-VELAMAP_CLONE_FOR_AVX2 void Evaluate(const Problem& problem, const Pixels& pixels,
-                                     const P::Vector& parameters, bool with_hessian,
-                                     Equations* equations) {
-  const PatternPicture picture(problem.model, parameters);
-  equations->Clear(with_hessian);
-  PatternPixels modelled;
-  int left = pixels.count;
-  for (const Pixels::Group& group : pixels.groups) {
-    picture.At(group.x, group.y, &modelled);
-    equations->Add(&modelled.jacobian, modelled.gray - group.gray, left);
-    left -= kLanes;
-  }
-  equations->Finish(parameters - problem.mean, problem.weight);
-}
-
-// Levels that explain the pixels best while the corners stay.
-std::optional<P::Vector> Start(const cv::Mat& cells, const QuadCorners& corners, Problem* problem) {
-  P::Vector p = P::Vector::Zero();
-  for (int i = 0; i < kNumCorners; ++i) {
-    p.segment<2>(2 * i) = corners[static_cast<std::size_t>(i)];
-  }
-  p[P::kBlurU] = p[P::kBlurV] = p[P::kSurround] = p[P::kInnerLight] = 1.0;
-  double sum[2] = {0, 0};
-  int count[2] = {0, 0};
-  const UnitSquareMap map(corners);
-  const int n = problem->model.num_cells;
-  for (int j = -1; j <= n; ++j) {
-    for (int i = -1; i <= n; ++i) {
-      const bool inside = i >= 0 && j >= 0 && i < n && j < n;
-      const int is_light = !inside || cells.at<std::uint8_t>(j, i) != 0;
-      sum[is_light] += InterpolateGray(*problem->gray, map.ToImage((i + 0.5) / n, (j + 0.5) / n));
-      ++count[is_light];
-    }
-  }
-  p[P::kDark] = sum[0] / count[0];
-  p[P::kLight] = sum[1] / count[1];
-  if (!(p[P::kLight] - p[P::kDark] > kMinContrast / 2)) return std::nullopt;
-  problem->mean = p;
-  P::Vector sigma;
-  sigma << P::Vector::Constant(1e3).head<8>(), 0.7, 0.7, 1e3, 1e3, 0.15, 0.15, 0.3, 0.1,
-      Eigen::Vector4d::Constant(kBendOfDiagonal * problem->model.diagonal_px);
-  problem->weight = (kPixelNoise * sigma.cwiseInverse()).cwiseAbs2();
-  return p;
-}
-
-// The best parameters so far, and how the model meets the pixels there.
-struct Minimum {
-  P::Vector parameters;
-  Equations equations;
-};
-
-void LimitBlur(P::Vector* parameters) {
-  for (const int index : {P::kBlurU, P::kBlurV}) {
-    (*parameters)[index] = std::clamp((*parameters)[index], kMinBlurPx, kMaxBlurPx);
-  }
-}
-
-// Over about `max_pixels` pixels, until a step moves no corner further than `tolerance_px`. False
-// for too few pixels or a singular system.
-bool Minimize(const Problem& problem, int max_pixels, double tolerance_px, Minimum* minimum) {
-  const Pixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
-  LeastSquaresOptions options;
-  options.tolerance_px = tolerance_px;
-  options.new_hessian_px = 0.1;
-  return MinimizeSquares(
-      options,
-      [&](const P::Vector& parameters, bool with_hessian, Equations* equations) {
-        Evaluate(problem, pixels, parameters, with_hessian, equations);
-      },
-      [](const P::Vector& step) { return step.head<8>().cwiseAbs().maxCoeff(); }, LimitBlur,
-      &minimum->parameters, &minimum->equations);
-}
-
-// A quick fit on some pixels, then an exact one on more from there, with the surroundings read
-// anew; and once more where the blur is wide, because then grey levels, blur and surroundings are
-// only found together. False if there is no marker like this.
-bool MinimizeInPasses(const cv::Mat& cells, Problem* problem, Minimum* minimum) {
-  constexpr double kWideBlur = 0.3;  // in cells
-  struct Pass {
-    int max_pixels;
-    double tolerance_px, min_blur_cells;
-  };
-  for (const Pass& pass :
-       {Pass{kFirstPixels, 0.1, 0.0}, {kPixels, 0.02, 0.0}, {kPixels, 0.02, kWideBlur}}) {
-    const double blur_cells =
-        FillLightness(*problem->gray, cells, minimum->parameters, &problem->model);
-    if (blur_cells < pass.min_blur_cells) break;
-    if (!Minimize(*problem, pass.max_pixels, pass.tolerance_px, minimum)) return false;
-  }
-  const double contrast = minimum->parameters[P::kLight] - minimum->parameters[P::kDark];
-  return contrast > kMinContrast && minimum->equations.Rms() < kMaxRelativeRms * contrast;
-}
-
 // `inverse` of the Hessian.
-VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const Equations& equations, const P::Matrix& inverse) {
-  return equations.Noise(inverse, [](const Equations::Jacobian& jacobian) {
-    // All corners move: the slope of the grey values.
+VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const PatternEquations& equations,
+                                             const P::Matrix& inverse) {
+  return equations.Noise(inverse, [](const PatternEquations::Jacobian& jacobian) {
+    // The sum over all corners is the slope of the grey levels.
     Floats slope_x{}, slope_y{};
     for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
       slope_x += jacobian[i];
@@ -202,8 +26,10 @@ VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const Equations& equations, const P
   });
 }
 
-// The priors hold weak parameters but are no observations: their own error does not count.
-std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Minimum& minimum) {
+// The priors stabilise weak parameters but are not observations, so that their error does not
+// count.
+std::optional<RefinedCorners> WithUncertainty(const PatternProblem& problem,
+                                              const PatternMinimum& minimum) {
   const Eigen::LLT<P::Matrix> factors(minimum.equations.hessian());
   if (factors.info() != Eigen::Success) return std::nullopt;
   const P::Matrix inverse = factors.solve(P::Matrix::Identity());
@@ -222,34 +48,13 @@ std::optional<RefinedCorners> WithUncertainty(const Problem& problem, const Mini
 }  // namespace
 
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
-                                         const cv::Mat& cells) {
+                                         const cv::Mat& cells, const ImageFormation& formation) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && cells.type() == CV_8UC1 && cells.rows == cells.cols);
-  Problem problem;
-  problem.gray = &gray;
-  problem.model.num_cells = cells.rows;
-  if (problem.model.num_cells + 2 * kRing > kMaxRingedCells) return std::nullopt;
-  const UnitSquareMap map(corners_px);
-  const double reach = 1.0 / problem.model.num_cells;
-  Eigen::Vector2d low = map.ToImage(-reach, -reach), high = low;
-  for (const auto& [u, v] : {std::pair(1 + reach, -reach), std::pair(1 + reach, 1 + reach),
-                             std::pair(-reach, 1 + reach)}) {
-    low = low.cwiseMin(map.ToImage(u, v));
-    high = high.cwiseMax(map.ToImage(u, v));
-  }
-  if (!low.allFinite() || !high.allFinite() || low.minCoeff() < 0 || high.x() > gray.cols - 1 ||
-      high.y() > gray.rows - 1) {
-    return std::nullopt;
-  }
-  problem.box = cv::Rect(cv::Point(static_cast<int>(low.x()), static_cast<int>(low.y())),
-                         cv::Point(static_cast<int>(high.x()) + 1, static_cast<int>(high.y()) + 1));
-  problem.model.center_px = map.ToImage(0.5, 0.5);
-  problem.model.diagonal_px =
-      0.5 * ((corners_px[2] - corners_px[0]).norm() + (corners_px[3] - corners_px[1]).norm());
-  const auto start = Start(cells, corners_px, &problem);
-  if (!start) return std::nullopt;
-  Minimum minimum{*start, {}};
-  if (!MinimizeInPasses(cells, &problem, &minimum)) return std::nullopt;
-  return WithUncertainty(problem, minimum);
+  PatternMinimum minimum;
+  std::optional<PatternProblem> problem =
+      MakePatternProblem(gray, corners_px, cells, formation, &minimum);
+  if (!problem || !FitPatternInPasses(&*problem, &minimum)) return std::nullopt;
+  return WithUncertainty(*problem, minimum);
 }
 
 }  // namespace velamap

@@ -1,17 +1,17 @@
-// Corners of a small marker from all of its pixels, by least squares on a picture of the marker.
+// Corners of a marker by a least-squares fit of a model of the whole marker to its pixels.
 //
-// When cells are only one to four px wide, the blur of each edge reaches the next one and a side
-// cannot be fitted on its own. The marker's cells are known, so the whole picture is:
+// A fit of the outer sides alone cannot tell a camera that sees black squares too small from a
+// small marker. The cells of the marker are known, and its inner edges have both polarities, so the
+// light is modelled as
 //
-//   I(x) = (1 + gradient . x) * (dark + (light - dark) * sum_ij cell_ij a_i(u) b_j(v))
+//   L(x) = (1 + gradient . x) * (dark + (light - dark) * sum_ij cell_ij a_i(u) b_j(v))
 //   x = H(u, v) + 4 u (1 - u) bend_u + 4 v (1 - v) bend_v
 //
-// H is the homography given by the four corners; the bends (px) are what cloth or a lens adds; a_i
-// and b_j are the unit steps of column i and row j blurred by a Gaussian (px, one width along u and
-// one along v, which also covers shaken pictures). Around the black square lie one cell of quiet
-// zone and then whatever the image shows there. The marker's own light cells have a level apart
-// from the quiet zone's: with one level for both, markers of 50 px in real photographs, and the
-// same scaled down to 17 px, came out another 0.4 % too small.
+// and becomes grey values by what camera and print do (image_formation.h). H is the homography of
+// the four corners; the bends (px) are due to cloth or a lens; a_i and b_j are the unit steps of
+// column i and row j blurred by a Gaussian (px; separate widths along u and v model motion blur as
+// well). A quiet zone surrounds the black square; beyond its width, which is fitted for each side,
+// lie the surroundings as the image shows them.
 
 #pragma once
 
@@ -22,6 +22,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
+#include "importer/refine/image_formation.h"
 #include "importer/refine/refined_corners.h"
 
 namespace velamap {
@@ -30,6 +31,7 @@ namespace velamap {
 // column 0 from corner 0 to 3. Corners in OpenCV's pixel frame. Nothing if the marker leaves the
 // image, has too little contrast or does not look like its cells.
 std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners& corners_px,
-                                         const cv::Mat& cells);
+                                         const cv::Mat& cells,
+                                         const ImageFormation& formation = ImageFormation());
 
 }  // namespace velamap

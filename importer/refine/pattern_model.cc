@@ -4,14 +4,12 @@
 #include <cmath>
 #include <cstdint>
 
-#include "importer/detect/interpolate.h"
-
 namespace velamap {
 namespace {
 
 using P = PatternParameters;
 
-// Sigma of the blur across columns and across rows, in cells of the marker's middle.
+// Sigma of the blur across columns and across rows, in cells at the centre of the marker.
 Eigen::Vector2d BlurInCells(const P::Vector& parameters, const QuadCorners& quad, int num_cells) {
   const Eigen::Vector2d along_u = 0.5 * (quad[1] - quad[0] + quad[2] - quad[3]);
   const Eigen::Vector2d along_v = 0.5 * (quad[3] - quad[0] + quad[2] - quad[1]);
@@ -21,38 +19,41 @@ Eigen::Vector2d BlurInCells(const P::Vector& parameters, const QuadCorners& quad
                          parameters[P::kBlurV] * along_u.norm());
 }
 
-// How much of a blurred place lies within the rows (or columns) of the black square, and within
-// those and the quiet zone's.
+// The part of a blurred place within the rows (or columns) of the black square, and the part within
+// these and the quiet zone.
 struct Within {
   double square = 1.0, quiet_zone = 1.0;
 };
 
-// Where the surroundings are read along one axis: the middle of their first cell, or a sigma of the
-// blur beyond the quiet zone if that is further out.
+// Place along one axis where the surroundings are read: the middle of their first cell, or one
+// sigma of the blur beyond the quiet zone if that is further out.
 class RingReading {
  public:
-  explicit RingReading(double blur_cells)
+  RingReading(double blur_cells, double margin_low, double margin_high)
       : beyond_cells_(std::max(0.5, blur_cells)),
-        at_ring_{NormalDistribution(-(1 + beyond_cells_) / blur_cells),
-                 NormalDistribution(-beyond_cells_ / blur_cells)} {}
+        margin_low_(margin_low),
+        margin_high_(margin_high),
+        blur_cells_(blur_cells) {}
 
-  // Of cell `i` of `n`, in sides of the square.
+  // Place of cell `i` of `n`, in sides of the square.
   double Place(int i, int n) const {
-    if (i == -kRing) return -(1 + beyond_cells_) / n;
-    if (i == n + kRing - 1) return 1 + (1 + beyond_cells_) / n;
+    if (i == -kRing) return -(margin_low_ + beyond_cells_) / n;
+    if (i == n + kRing - 1) return 1 + (margin_high_ + beyond_cells_) / n;
     return (i + 0.5) / n;
   }
 
-  // The other cells are taken to lie deep within.
+  // The other cells count as far inside.
   Within Weights(int i, int n) const {
-    return i == -kRing || i == n + kRing - 1 ? at_ring_ : Within{};
+    if (i != -kRing && i != n + kRing - 1) return {};
+    const double margin = i < 0 ? margin_low_ : margin_high_;
+    return {NormalDistribution(-(margin + beyond_cells_) / blur_cells_),
+            NormalDistribution(-beyond_cells_ / blur_cells_)};
   }
 
  private:
   static double NormalDistribution(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-  double beyond_cells_;
-  Within at_ring_;
+  double beyond_cells_, margin_low_, margin_high_, blur_cells_;
 };
 
 }  // namespace
@@ -65,13 +66,15 @@ QuadCorners CornersOf(const P::Vector& parameters) {
   return quad;
 }
 
-double FillLightness(const cv::Mat& gray, const cv::Mat& cells, const P::Vector& parameters,
+double FillLightness(const GrayPatch& patch, const cv::Mat& cells, const P::Vector& parameters,
                      PatternModel* model) {
   const QuadCorners quad = CornersOf(parameters);
   const UnitSquareMap map(quad);
   const int n = model->num_cells;
   const Eigen::Vector2d blur_cells = BlurInCells(parameters, quad, n);
-  const RingReading across_u(blur_cells.x()), across_v(blur_cells.y());
+  const auto margin = parameters.segment<4>(P::kMargin);
+  const RingReading across_u(blur_cells.x(), margin[0], margin[1]);
+  const RingReading across_v(blur_cells.y(), margin[2], margin[3]);
   const double dark = parameters[P::kDark], contrast = parameters[P::kLight] - dark;
   model->inner = {};
   for (int j = -kRing; j < n + kRing; ++j) {
@@ -83,11 +86,12 @@ double FillLightness(const cv::Mat& gray, const cv::Mat& cells, const P::Vector&
         model->inner[static_cast<std::size_t>(j + kRing)] |= is_light << (i + kRing);
       } else if (outside == kRing) {
         const Eigen::Vector2d uv(across_u.Place(i, n), across_v.Place(j, n));
-        const double value = InterpolateGray(gray, map.ToImage(uv.x(), uv.y()));
+        const double value =
+            model->tone->Decode(InterpolatePatch(patch, map.ToImage(uv.x(), uv.y())));
         const Within u = across_u.Weights(i, n), v = across_v.Weights(j, n);
         const double surround_share = 1 - u.quiet_zone * v.quiet_zone;
         const double read = (value - dark) / contrast - 1 + u.square * v.square;
-        surround = static_cast<float>(std::clamp(read / surround_share, -1.0, 0.2));
+        surround = static_cast<float>(std::clamp(read / surround_share, -1.2, 0.5));
       }
       model->surround(j + kRing, i + kRing) = surround;
     }

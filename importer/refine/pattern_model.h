@@ -1,4 +1,4 @@
-// What the model of pattern_fit.h is made of: its parameters, and what a fit keeps fixed.
+// The parameters and the constants of the model of pattern_fit.h.
 
 #pragma once
 
@@ -10,6 +10,7 @@
 #include "importer/geometry/quad.h"
 #include "importer/geometry/unit_square_map.h"
 #include "importer/refine/blurred_cells.h"
+#include "importer/refine/image_formation.h"
 
 namespace velamap {
 
@@ -18,15 +19,17 @@ struct PatternParameters {
     kCorners = 0,  // x0 y0 x1 y1 ..., OpenCV's pixel frame
     kBlurU = 8,    // px
     kBlurV,
-    kDark,  // grey levels
+    kDark,  // light, 0 to 255
     kLight,
     kGradientX,  // relative change of the light over one side of the marker
     kGradientY,
-    kSurround,    // contrast of the surroundings in parts of what the blurred image shows there
-    kInnerLight,  // lightness of the marker's own light cells in parts of the quiet zone's
-    kBendU,       // x y of the departure from the plane halfway along u and along v, px
+    kSurround,    // contrast of the surroundings relative to the blurred image
+    kInnerLight,  // lightness of the marker's light cells relative to the quiet zone
+    kBendU,       // x y of the deviation from the plane in the middle of u and of v, px
     kBendV = kBendU + 2,
-    kCount = kBendV + 2
+    kMargin = kBendV + 2,  // width of the quiet zone before the first and after the last column,
+                           // before the first and after the last row, cells
+    kCount = kMargin + 4
   };
   using Vector = Eigen::Matrix<double, kCount, 1>;
   using Matrix = Eigen::Matrix<double, kCount, kCount>;
@@ -34,20 +37,22 @@ struct PatternParameters {
 
 QuadCorners CornersOf(const PatternParameters::Vector& parameters);
 
-// What a fit keeps fixed.
+// The constants of a fit.
 struct PatternModel {
   int num_cells = 0;      // along a side, with the border
-  LightCells inner = {};  // the marker's own cells
-  Lightness surround;     // how far from light the outermost ring is; the other cells are zero
+  LightCells inner = {};  // the cells of the marker
+  Lightness surround;     // of the outermost ring, relative to light; the other cells are zero
   Eigen::Vector2d center_px;
   double diagonal_px = 0.0;
+  double ink_spread_cells = 0.0;  // how far dark cells reach beyond their outlines
+  const ToneCurve* tone = nullptr;
 };
 
-// Fills the pictures of cells: the marker's own (zero for black) are known, what surrounds the
-// quiet zone is read from the image. Where it is read, blur also brings some of the quiet zone and
-// of the black border; that is taken off, with the corners, blurs and grey levels of `parameters`.
-// Returns the larger blur, in cells.
-double FillLightness(const cv::Mat& gray, const cv::Mat& cells,
+// Fills in the lightness of the cells: those of the marker are known (zero for black), the
+// surroundings of the quiet zone are read from the image. The quiet zone and the black border blur
+// into the places where it is read; their part is subtracted, by the corners, blurs and grey levels
+// of `parameters`. Returns the larger blur, in cells.
+double FillLightness(const GrayPatch& patch, const cv::Mat& cells,
                      const PatternParameters::Vector& parameters, PatternModel* model);
 
 }  // namespace velamap

@@ -1,5 +1,5 @@
-// The picture of a whole marker and its derivatives: the inner step of pattern_fit.h, which says
-// what the model is. Inline as a whole, for VELAMAP_CLONE_FOR_AVX2.
+// Evaluates the model of pattern_fit.h and its derivatives. All of it is inline, for
+// VELAMAP_CLONE_FOR_AVX2.
 
 #pragma once
 
@@ -19,8 +19,8 @@ struct PatternPixels {
   FloatsArray<PatternParameters::kCount> jacobian;  // by the parameters
 };
 
-// The model with its parameters, ready for many pixels. Places are in OpenCV's pixel frame, less
-// the model's `center_px`.
+// The model with given parameters, prepared for many pixels. Places are in OpenCV's pixel frame,
+// relative to `center_px` of the model.
 class PatternPicture {
  public:
   PatternPicture(const PatternModel& model, const PatternParameters::Vector& parameters)
@@ -30,8 +30,7 @@ class PatternPicture {
     square_from_image_ = UnitSquareMap(quad).square_from_image().cast<float>();
   }
 
-  // Whether a place is no further outside the black square than the model says what is there; -1
-  // for yes.
+  // Whether the model covers a place, inside or near the black square; -1 for yes.
   Ints Covers(Floats x, Floats y) const {
     const Place place = ToSquare(x, y);
     const auto margin = static_cast<float>(kMarginInCells / model_.num_cells);
@@ -47,11 +46,18 @@ class PatternPicture {
     const Floats cells_u = Sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
     const Floats cells_v = Sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
     Shares u, v;
-    ComputeShares(n * flat.u, cells_u * p[P::kBlurU], model_.num_cells, &u);
-    ComputeShares(n * flat.v, cells_v * p[P::kBlurV], model_.num_cells, &v);
-    Floats inner{}, surround{};
-    const Blended pattern = BlendAll(
-        u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner, &surround);
+    ComputeShares(n * flat.u, cells_u * p[P::kBlurU], model_.num_cells, p[P::kMargin],
+                  p[P::kMargin + 1], &u);
+    ComputeShares(n * flat.v, cells_v * p[P::kBlurV], model_.num_cells, p[P::kMargin + 2],
+                  p[P::kMargin + 3], &v);
+    Floats inner{};
+    Around around;
+    Blended pattern = BlendAll(
+        u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner, &around);
+    if (model_.ink_spread_cells != 0) {
+      ApplySpread(static_cast<float>(model_.ink_spread_cells), cells_u * p[P::kBlurU],
+                  cells_v * p[P::kBlurV], &pattern);
+    }
 
     const auto inverse_diagonal = static_cast<float>(1 / model_.diagonal_px);
     const Floats place_x = inverse_diagonal * x, place_y = inverse_diagonal * y;
@@ -61,13 +67,14 @@ class PatternPicture {
     const Floats level = p[P::kDark] + step * pattern.value;
     const Floats by_x = contrast * (u_by_x * pattern.by_u + v_by_x * pattern.by_v);
     const Floats by_y = contrast * (u_by_y * pattern.by_u + v_by_y * pattern.by_v);
-    pixels->gray = light * level;
+    Floats slope;
+    pixels->gray = model_.tone->Encode(light * level, &slope);
     FloatsArray<P::kCount>& jacobian = pixels->jacobian;
     const auto set_place = [&](std::size_t index, Floats share) {
       jacobian[index] = -share * by_x;
       jacobian[index + 1] = -share * by_y;
     };
-    // A corner that moves takes each place along by its bilinear share, nearly enough for a step.
+    // A moving corner shifts each place by its bilinear weight; this is accurate enough for a step.
     set_place(P::kCorners, (1.0f - flat.u) * (1.0f - flat.v));
     set_place(P::kCorners + 2, flat.u * (1.0f - flat.v));
     set_place(P::kCorners + 4, flat.u * flat.v);
@@ -80,8 +87,14 @@ class PatternPicture {
     jacobian[P::kLight] = light * pattern.value;
     jacobian[P::kGradientX] = level * place_x;
     jacobian[P::kGradientY] = level * place_y;
-    jacobian[P::kSurround] = contrast * surround;
+    jacobian[P::kSurround] = contrast * around.blended.value;
     jacobian[P::kInnerLight] = contrast * inner;
+    for (std::size_t i = 0; i < 4; ++i) {
+      jacobian[P::kMargin + i] = contrast * p[P::kSurround] * around.by_margin[i].groups[0];
+    }
+    if (!model_.tone->IsLinear()) {
+      for (Floats& derivative : jacobian) derivative *= slope;
+    }
   }
 
  private:
@@ -94,6 +107,19 @@ class PatternPicture {
   struct Place {
     Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
   };
+
+  // Moves every edge by `spread` cells towards the light side, to second order in the spread. The
+  // derivatives keep their values without it, which is enough for a step.
+  static void ApplySpread(float spread, Floats blur_u, Floats blur_v, Blended* pattern) {
+    const Floats squared_slope =
+        pattern->by_u * pattern->by_u + pattern->by_v * pattern->by_v + 1e-8f;
+    const Floats by_uu = pattern->by_blur_u / blur_u, by_vv = pattern->by_blur_v / blur_v;
+    const Floats bend = (pattern->by_u * pattern->by_u * by_uu +
+                         2.0f * pattern->by_u * pattern->by_v * pattern->by_u_v +
+                         pattern->by_v * pattern->by_v * by_vv) /
+                        squared_slope;
+    pattern->value += spread * (0.5f * spread * bend - Sqrt(squared_slope));
+  }
 
   // Zero at both ends of a side, one in its middle.
   static Floats Hump(Floats place) { return 4.0f * place * (1.0f - place); }
@@ -121,7 +147,7 @@ class PatternPicture {
   }
 
   Blended BlendAll(const Shares& u, const Shares& v, Floats correlation_px, Floats* inner_value,
-                   Floats* surround_value) const {
+                   Around* around) const {
     const int n = model_.num_cells;
     const Blended inner = BlendLight(model_.inner, u, v);
     *inner_value = inner.value;
@@ -129,11 +155,9 @@ class PatternPicture {
     if (Reaches(kRing, u, n) || Reaches(kRing, v, n)) pattern = BlendGround(u, v, n);
     Add(AllLanes(parameters_[P::kInnerLight]), inner, &pattern);
     AddCorrelation(correlation_px, &pattern);
-    *surround_value = Floats{};
     if (Reaches(1, u, n) || Reaches(1, v, n)) {
-      const Blended around = BlendOutermost(model_.surround, u, v, n);
-      *surround_value = around.value;
-      Add(AllLanes(parameters_[P::kSurround]), around, &pattern);
+      *around = BlendOutermost(model_.surround, u, v, n);
+      Add(AllLanes(parameters_[P::kSurround]), around->blended, &pattern);
     }
     return pattern;
   }

@@ -1,4 +1,4 @@
-// What a fit of a marker's corners finds, and the noise of the pixels that it was found from.
+// Result of a fit of a marker's corners, and the noise of the pixels that were fitted.
 
 #pragma once
 
@@ -14,18 +14,18 @@ namespace velamap {
 
 struct RefinedCorners {
   QuadCorners corners_px;  // OpenCV's pixel frame
-  // 1 sigma of a coordinate by the image's noise: root mean square over x and y.
+  // 1 sigma of a coordinate from the noise of the image: root mean square over x and y.
   std::array<double, kNumCorners> sigma_px{};
 };
 
-// The noise of pixels from what a least-squares fit leaves of them. Each counts by its weight, the
-// squared slope of the grey values: what moves a corner is the noise on the edges, and pixels
+// The noise of pixels from the residuals of a least-squares fit. Each pixel is weighted by the
+// squared slope of the grey levels, because only noise on the edges moves a corner, and pixels
 // beside them may have none where black and white are clipped.
 class ResidualNoise {
  public:
   ResidualNoise() = default;
-  // Sums over pixels: of weight * residual^2, and of weight * (1 - leverage), where leverage is the
-  // part of the pixel's own noise that the fit follows.
+  // Sums over pixels of weight * residual^2 and of weight * (1 - leverage); the leverage is the
+  // part of its own noise that the fit of a pixel follows.
   ResidualNoise(double weighted_squares, double weights)
       : weighted_squares_(weighted_squares), weights_(weights) {}
 
@@ -34,7 +34,7 @@ class ResidualNoise {
     weights_ += other.weights_;
   }
 
-  // Variance of a pixel. An 8-bit picture without noise still rounds: no less than a step's 1/12.
+  // Variance of a pixel, at least 1/12 for the rounding of an 8-bit image.
   double VarianceGray() const {
     constexpr double kRounding = 1.0 / 12;
     return weights_ > 0 ? std::max(weighted_squares_ / weights_, kRounding) : kRounding;

@@ -17,8 +17,8 @@ using Quad = QuadCorners;
 
 constexpr double kMinCellPx = 4.0;
 constexpr double kMinContrast = 12.0;  // grey levels
-// The touching square is as dark as the marker to this part of the contrast. A quiet zone that is
-// blurred by dark squares around it stays lighter.
+// The touching square is as dark as the marker to within this part of the contrast. A quiet zone
+// into which dark squares around it blur stays lighter.
 constexpr double kMaxDarkness = 0.35;
 
 double MeanCellPx(const Quad& quad, int num_cells) {
@@ -29,13 +29,14 @@ double MeanCellPx(const Quad& quad, int num_cells) {
   return perimeter_px / kNumCorners / num_cells;
 }
 
-// Corner i stands at (u, v) of the unit square.
+// Corner i is at (u, v) of the unit square.
 constexpr std::array<std::array<double, 2>, kNumCorners> kCornersInSquare = {
     {{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
-// Half a cell from the corner along both sides: within the marker, beside it twice, and opposite.
+// Grey levels half a cell from the corner along both sides: inside the marker, twice beside it, and
+// opposite.
 bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner, int num_cells) {
-  const auto [u, v] = kCornersInSquare[corner];
+  const double u = kCornersInSquare[corner][0], v = kCornersInSquare[corner][1];
   const double out_u = (u > 0.5 ? 0.5 : -0.5) / num_cells;
   const double out_v = (v > 0.5 ? 0.5 : -0.5) / num_cells;
   const auto gray_at = [&](double du, double dv) {
@@ -63,7 +64,8 @@ int RefineSaddleCorners(const cv::Mat& gray, int num_cells, Quad* corners_px) {
                         static_cast<float>((*corners_px)[i].y()));
   }
   if (saddles.empty()) return 0;
-  // The window ends within the cell beside the corner, whose other edges are none of the saddle's.
+  // The window ends within the cell beside the corner, whose other edges are not part of the
+  // saddle.
   const int half_window = std::clamp(static_cast<int>(std::lround(0.7 * cell_px)), 2, 8);
   cv::cornerSubPix(gray, points, cv::Size(half_window, half_window), cv::Size(-1, -1),
                    cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 1e-3));

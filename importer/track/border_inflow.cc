@@ -8,8 +8,8 @@
 namespace velamap {
 namespace {
 
-// Inflow at which the band along a border is searched, as a part of the picture's width, and how
-// much farther than the largest marker it reaches.
+// The inflow at which the band along a border is searched, as a part of the width of the picture,
+// and how much wider than the largest marker the band is.
 constexpr double kMinInflowPart = 0.004;
 constexpr double kBandPerMarker = 1.3;
 
@@ -22,7 +22,7 @@ BorderInflow AddInflow(const std::vector<PointMotion>& motions, const cv::Size& 
   inflow_px[1] += LocalMotion(motions, {0.5 * w, 0.0}).y();
   inflow_px[2] -= LocalMotion(motions, {w, 0.5 * h}).x();
   inflow_px[3] -= LocalMotion(motions, {0.5 * w, h}).y();
-  // What has gone out for long comes back with other things.
+  // After a long motion outwards, other things may come in.
   for (double& inflow : inflow_px) inflow = std::max(inflow, -0.02 * size.width);
   return inflow_px;
 }

@@ -1,4 +1,4 @@
-// Where new markers can have come into the picture: along the borders at which it moves inwards.
+// The borders at which the picture moves inwards, along which new markers can have come in.
 
 #pragma once
 
@@ -11,16 +11,16 @@
 
 namespace velamap {
 
-// How far the picture has come in at the left, top, right and bottom border, px; negative: it went
-// out.
+// How far the picture has moved inwards at the left, top, right and bottom border, px; negative:
+// outwards.
 using BorderInflow = std::array<double, 4>;
 
-// `inflow_px` and what the motions of a frame add to it.
+// `inflow_px` plus the inflow from the motions of a frame.
 BorderInflow AddInflow(const std::vector<PointMotion>& motions, const cv::Size& size,
                        BorderInflow inflow_px);
 
-// The bands along the borders at which new markers can have come in, none larger than
-// `marker_px`; their inflow starts again.
+// The bands along the borders at which new markers of up to `marker_px` can have come in. Resets
+// the inflow of these borders.
 std::vector<cv::Rect> BorderRegions(double marker_px, const cv::Size& size,
                                     BorderInflow* inflow_px);
 

@@ -60,6 +60,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
                          {},
                          {},
                          {},
+                         {},
                          {}};
   for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
     detector.looks.push_back(
@@ -85,8 +86,7 @@ std::string DescribeDetector(const FrameDetector& detector) {
   for (const auto& [id, neighbors] : detector.graph) {
     known += fmt::format("|{}: {}", id, fmt::join(neighbors, " "));
   }
-  // An exhaustive search is not named: it is how earlier versions searched. Only a tracked one
-  // looks for markers along lines.
+  // Earlier versions searched exhaustively without naming it. Only a tracked search uses the lines.
   std::string search;
   if (detector.options.search == SearchMode::kTracked) {
     search =
@@ -99,6 +99,10 @@ std::string DescribeDetector(const FrameDetector& detector) {
   // Databases of earlier versions hold the prior shape under the name map.
   if (!detector.prior_shape.empty()) {
     search += fmt::format(" map={:016x}", Hash(PriorShapeText(detector.prior_shape)));
+  }
+  if (detector.options.corner_refinement == CornerRefinement::kEdge &&
+      detector.options.estimate_formation) {
+    search += " formation=estimated";
   }
   return fmt::format(
       "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
@@ -122,10 +126,11 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
                                          int marker_id, const QuadCorners& expected,
                                          double reach_px) {
   const auto idx = static_cast<std::size_t>(marker_id);
-  if (idx >= detector.looks.size()) return std::nullopt;  // a layout may name more than there are
+  if (idx >= detector.looks.size())
+    return std::nullopt;  // a layout may name ids beyond the dictionary
   const MarkerLook& look = detector.looks[idx];
   const auto located = LocateMarker(gray, expected, look, reach_px);
-  if (!located || !SearchTakes(*located, gray.size(), detector.options)) return std::nullopt;
+  if (!located || !IsSearchable(*located, gray.size(), detector.options)) return std::nullopt;
   return located;
 }
 
@@ -161,7 +166,7 @@ std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const 
 }
 
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray) {
-  constexpr double kReachPx = 3.0;  // a pixel and a half of the half resolution
+  constexpr double kReachPx = 3.0;  // 1.5 px at half the resolution
   std::vector<MarkerQuad> quads;
   for (const MarkerQuad& coarse :
        SearchMarkersCoarsely(gray, detector.dictionary, detector.border_bits, detector.options)) {
@@ -180,7 +185,8 @@ FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
   detections.time_s = frame.time_s;
   std::vector<MarkerDetection> candidates;
   for (MarkerDetection& marker :
-       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options)) {
+       RefineMarkers(gray, quads, detector.dictionary, detector.border_bits, detector.options,
+                     detector.formation)) {
     const auto part = detector.part_of_id.find(marker.marker_id);
     if (part != detector.part_of_id.end()) marker.part = part->second;
     if (detector.part_of_id.empty() || part != detector.part_of_id.end()) {

@@ -1,5 +1,4 @@
-// Everything that is done to one frame: detection, colours, the layout's filter, duplicates,
-// rotations.
+// All steps for one frame: detection, colours, the filter of the layout, duplicates, rotations.
 
 #pragma once
 
@@ -13,67 +12,71 @@
 #include "importer/camera/camera.h"
 #include "importer/detect/detection.h"
 #include "importer/detect/detection_options.h"
-#include "importer/detect/marker_alignment.h"
+#include "importer/detect/marker_location.h"
 #include "importer/detect/marker_quad.h"
 #include "importer/detect/rotation_ambiguity.h"
 #include "importer/layout/dictionary.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
+#include "importer/refine/image_formation.h"
 #include "importer/video/frame_source.h"
 
 namespace velamap {
 
-// Why an id that the layout does not name is left out.
+// The reason for leaving out an id that the layout does not name.
 inline constexpr char kNotInLayout[] = "not in layout";
 
-// What every thread reads and none changes.
+// Read by all threads and changed by none.
 struct FrameDetector {
   ArucoDetectionOptions options;
   Dictionary dictionary;
   int border_bits = 1;
   AdjacencyGraph graph;
-  CodeSymmetries symmetries;              // of the markers that look the same when turned
-  std::map<int, std::string> part_of_id;  // empty: every id is welcome
-  std::vector<MarkerLook> looks;          // of every id of the dictionary
-  std::vector<std::vector<int>> lines;    // ids along those of the layout; tracked search only
+  CodeSymmetries symmetries;              // of markers with a rotational symmetry
+  std::map<int, std::string> part_of_id;  // empty: every id is accepted
+  std::vector<MarkerLook> looks;          // by id of the dictionary
+  std::vector<std::vector<int>> lines;    // ids along the lines of the layout; for tracked search
+  ImageFormation formation{};             // of the camera and the print
   PriorShape prior_shape;                 // of markers that can be detected; may be empty
 };
 
-// Throws InputError for a dictionary that does not exist or has wrong bits. Markers of
-// `prior_shape` that the dictionary lacks or the layout does not name are passed over.
+// Throws InputError for a dictionary that does not exist or has wrong bits. Ignores markers of
+// `prior_shape` that are missing in the dictionary or the layout.
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
                                 const PriorShape& prior_shape = {});
 
-// Where the markers of the whole frame, or of regions of it, are to a pixel. Thread-safe.
+// The markers of the whole frame, or of regions of it, to a pixel. Thread-safe.
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray);
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                       const std::vector<cv::Rect>& regions);
 
-// Where markers that are not found should be visible: by the prior shape, but none that is too
-// small for a search to take; and on the layout's lines those that the prior shape does not hold,
-// or all if the frame cannot be placed in it. Thread-safe.
+// The places of markers that were not found but should be visible. Markers of the prior shape are
+// expected at their reprojection, unless they are too small to be found; the others, or all where
+// the frame cannot be placed in it, on the lines of the layout. Thread-safe.
 std::vector<ExpectedMarker> ExpectInFrame(const FrameDetector& detector, const Camera& camera,
                                           const std::vector<MarkerQuad>& found,
                                           PriorShapeAgreement* agreement);
 
-// The whole frame, and what is expected in it and was missed. Thread-safe.
+// Searches the whole frame, and the places of expected markers that this missed. Thread-safe.
 std::vector<MarkerQuad> SearchInWholeFrame(const FrameDetector& detector, const Camera& camera,
                                            const cv::Mat& gray, PriorShapeAgreement* agreement);
 
 // Large markers of the whole frame, in a quarter of the time. Thread-safe.
 std::vector<MarkerQuad> SearchInFrameCoarsely(const FrameDetector& detector, const cv::Mat& gray);
 
-// One marker whose place is known to `reach_px`; as LocateMarker().
-// Nothing also where a search would take no marker. Thread-safe.
+// Locates one marker whose place is known to `reach_px`, as LocateMarker() does. Nothing also where
+// a search would not accept it. Thread-safe.
 std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv::Mat& gray,
                                          int marker_id, const QuadCorners& expected,
                                          double reach_px);
 
-// One line on everything that decides which detections a frame yields, so that one database never
-// mixes two ways. The dictionary's codes and the layout's parts and neighbours go in as a checksum.
+// One line that describes everything on which the detections of a frame depend, so that a database
+// never mixes two kinds. The codes of the dictionary and the parts and neighbours of the layout
+// enter as a checksum.
 std::string DescribeDetector(const FrameDetector& detector);
 
-// All else. `gray` is the frame in grey, `quads` what was found in it. Thread-safe.
+// The steps after the search. `gray` is the frame in grey, `quads` are the markers found in it.
+// Thread-safe.
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,
                               const cv::Mat& gray, const std::vector<MarkerQuad>& quads);
 

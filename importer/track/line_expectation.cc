@@ -8,13 +8,14 @@
 namespace velamap {
 namespace {
 
-// Markers of one line stand alike when their first sides differ by less than 30 degrees.
+// Two markers have the same orientation when their first sides differ by less than 30 degrees.
 constexpr double kMinCosine = 0.87;
 
-// Of its neighbour; where perspective makes it smaller, the line's end is not to be foretold.
+// Smallest size relative to the neighbour; where perspective makes a marker smaller, its place
+// beyond the end of a line cannot be predicted.
 constexpr double kMinSize = 0.6;
 
-// Spacing varies, and so does perspective.
+// Spacing and perspective vary.
 constexpr double kReachPerDistance = 0.12, kReachPerSide = 0.3;
 
 using QuadById = std::map<int, QuadCorners>;
@@ -29,16 +30,16 @@ QuadById SingleMarkers(const std::vector<MarkerQuad>& found) {
   return quads;
 }
 
-bool StandAlike(const QuadCorners& a, const QuadCorners& b) {
+bool HaveSameOrientation(const QuadCorners& a, const QuadCorners& b) {
   const Eigen::Vector2d side_a = a[1] - a[0], side_b = b[1] - b[0];
   return side_a.dot(side_b) > kMinCosine * side_a.norm() * side_b.norm();
 }
 
-// weight_a a + (1 - weight_a) b, corner by corner.
+// weight_a * a + (1 - weight_a) * b for each corner.
 std::optional<ExpectedMarker> Expect(int marker_id, const QuadById& quads, int id_a, int id_b,
                                      double weight_a) {
   const auto a = quads.find(id_a), b = quads.find(id_b);
-  if (a == quads.end() || b == quads.end() || !StandAlike(a->second, b->second)) {
+  if (a == quads.end() || b == quads.end() || !HaveSameOrientation(a->second, b->second)) {
     return std::nullopt;
   }
   ExpectedMarker expected;

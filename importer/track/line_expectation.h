@@ -1,5 +1,4 @@
-// Where the layout says that markers should be visible: on its lines, between and beside those
-// that are found.
+// Expects missing markers on the lines of the layout, between and beside those that are found.
 
 #pragma once
 
@@ -11,12 +10,12 @@
 namespace velamap {
 
 // Ids along each line of the layout, horizontal and vertical, and those that a part lists outside
-// its lines: most often they stand in a row as well, and where not, none is located there.
+// its lines: these usually stand in a row too, and where they do not, no marker is located there.
 std::vector<std::vector<int>> LinesOfLayout(const Layout& layout);
 
-// Of every marker whose two neighbours on a line are found, or the next two on one side of it:
-// midway between them, or as far beyond as they are apart; none where the two stand differently.
-// An id that is found twice says nothing.
+// Expects every marker whose two neighbours on a line are found midway between them, and every
+// marker whose next two on one side are found as far beyond these as they are apart. Pairs of
+// different orientation and ids that are found twice are ignored.
 std::vector<ExpectedMarker> ExpectOnLines(const std::vector<std::vector<int>>& lines,
                                           const std::vector<MarkerQuad>& found);
 

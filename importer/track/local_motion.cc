@@ -7,13 +7,14 @@ namespace {
 
 constexpr std::size_t kNumNearest = 5;
 
-// Points that spread less than this say nothing of turn and scale, since each is known to a pixel.
+// Points with a smaller spread do not determine rotation and scale, since each is known to a pixel.
 constexpr double kSmallSpreadPx = 50.0;
 
 }  // namespace
 
 // With q = from - mean(from) and d the displacement less its mean, the similarity's linear part
-// (s -r; r s) minimises sum |d - (s q + r Jq)|^2 + spread^2 (s^2 + r^2), J the quarter turn.
+// (s -r; r s) minimises sum |d - (s q + r J q)|^2 + spread^2 (s^2 + r^2), where J is a quarter
+// turn.
 Eigen::Vector2d LocalMotion(const std::vector<PointMotion>& motions,
                             const Eigen::Vector2d& point_px) {
   if (motions.empty()) return Eigen::Vector2d::Zero();

@@ -1,4 +1,4 @@
-// How the picture has moved around a place, by the markers found before and after.
+// The local motion of the picture, from the markers found in both of two frames.
 
 #pragma once
 
@@ -14,8 +14,8 @@ struct PointMotion {
   Eigen::Vector2d to_px;
 };
 
-// Displacement (px) of `point_px` by a similarity through the nearest of `motions`. A turn or a
-// change of scale is held small where those stand close together. Zero without any.
+// Displacement (px) of `point_px` by a similarity fitted to the nearest of `motions`. Rotation and
+// change of scale are regularised where these stand close together. Zero without motions.
 Eigen::Vector2d LocalMotion(const std::vector<PointMotion>& motions,
                             const Eigen::Vector2d& point_px);
 

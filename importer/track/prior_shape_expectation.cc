@@ -12,8 +12,8 @@
 namespace velamap {
 namespace {
 
-// Area over the square of the longest side: seen at 80 degrees from its normal, hardly a marker can
-// be read.
+// Smallest ratio of area to squared longest side: a marker seen at more than 80 degrees from its
+// normal can hardly be read.
 constexpr double kMinFacing = 0.17;
 
 std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corners_px) {
@@ -42,9 +42,9 @@ std::vector<const MarkerQuad*> FindKnown(const PriorShape& prior_shape,
   return quads;
 }
 
-// Nothing unless all of it is in front of the camera and within the field of view, beyond which a
-// distortion model may fold over.
-std::optional<QuadCorners> Reproject(const Camera& camera, const Eigen::Isometry3d& cam_from_shape,
+// Nothing unless the whole marker is in front of the camera and within the field of view, outside
+// of which a distortion model may fold over.
+std::optional<QuadCorners> Reproject(const Camera& camera, const Rigid3& cam_from_shape,
                                      const std::array<Eigen::Vector3d, kNumCorners>& in_shape_m) {
   QuadCorners corners_px;
   for (std::size_t c = 0; c < kNumCorners; ++c) {
@@ -58,7 +58,8 @@ std::optional<QuadCorners> Reproject(const Camera& camera, const Eigen::Isometry
   return corners_px;
 }
 
-double SignedArea(const QuadCorners& quad) {  // positive: clockwise on the screen, a face seen
+double SignedArea(
+    const QuadCorners& quad) {  // positive: clockwise in the image, the face is visible
   return 0.5 * Cross(quad[2] - quad[0], quad[3] - quad[1]);
 }
 

@@ -39,7 +39,7 @@ JpegBytes EncodePlanes(const cv::Mat& luma, const ChromaPlanes& chroma) {
 
 template <typename Byte>
 void WriteBytes(const std::filesystem::path& path, const Byte* data, std::size_t size) {
-  WriteFileAtomically(path, [&](std::ostream& stream) {
+  WriteFileAtomicallyUnsynced(path, [&](std::ostream& stream) {
     stream.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   });
 }

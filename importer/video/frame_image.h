@@ -1,4 +1,4 @@
-// Frames of a video as image files.
+// Writes frames of a video as image files.
 
 #pragma once
 
@@ -8,9 +8,11 @@
 
 namespace velamap {
 
-// Writes a loaded frame as JPEG, atomically. Planes of a video that JPEG can take go into it as
-// they are, with the frame's grey image as luma: twice as fast as through BGR, and what reads the
-// file as grey sees what the detector saw. Throws InputError if the file cannot be written.
+// Writes a loaded frame as JPEG: the whole file or none, without waiting for the disk (see
+// SyncFileSystem() of importer/base/atomic_output.h). Planes of a video that JPEG can hold are
+// taken over, with the frame's grey image as luma. This is twice as fast as a conversion through
+// BGR, and the file read as grey is the image that the detector saw. Throws InputError if the file
+// cannot be written.
 void WriteFrameImage(const Frame& frame, const std::filesystem::path& path);
 
 }  // namespace velamap

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <mutex>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,7 +16,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/base/natural_order.h"
+#include "importer/base/numbers.h"
 #include "importer/video/image_file.h"
 #include "importer/video/video_decoder.h"
 
@@ -23,36 +27,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Our one line about a broken file shall stand alone.
+// OpenCV would add its own lines to our one about a broken file.
 void SilenceOpenCv() {
   static std::once_flag once;
   std::call_once(once,
                  [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
 }
 
-bool IsHidden(const fs::path& path) { return path.filename().string().rfind('.', 0) == 0; }
-
-// Names relative to the folder, in natural order; files that are no images by name are told of.
+// Returns names relative to the folder in natural order, and warns of files that are no images.
 std::vector<std::string> ListImages(const fs::path& folder) {
   std::vector<std::string> names, others;
-  std::error_code error;
-  const auto flags = fs::directory_options::follow_directory_symlink;
-  fs::recursive_directory_iterator it(folder, flags, error);
-  if (error) {
-    throw InputError(
-        fmt::format("{}: the folder cannot be read: {}", folder.string(), error.message()));
-  }
-  for (; it != fs::recursive_directory_iterator(); it.increment(error)) {
-    if (IsHidden(it->path())) {
-      it.disable_recursion_pending();
-    } else if (it->is_regular_file(error)) {
-      const std::string name = it->path().lexically_relative(folder).generic_string();
-      (HasImageExtension(name) ? names : others).push_back(name);
-    }
-  }
-  if (error) {
-    throw InputError(
-        fmt::format("{}: the folder cannot be read: {}", folder.string(), error.message()));
+  for (const fs::path& file : FilesBelow(folder)) {
+    const std::string name = file.lexically_relative(folder).generic_string();
+    (HasImageExtension(name) ? names : others).push_back(name);
   }
   std::sort(names.begin(), names.end(), NaturalLess);
   std::sort(others.begin(), others.end(), NaturalLess);
@@ -105,6 +92,17 @@ std::string VideoFrameName(int frame_number) {
   return fmt::format("frame_{:06}.jpg", frame_number);
 }
 
+// Nothing for a name that VideoFrameName() does not give.
+std::optional<int> NumberOfVideoFrame(const std::string& name) {
+  const std::size_t begin = name.find('_') + 1, end = name.find('.');
+  int number = -1;
+  if (end == std::string::npos || begin > end) return std::nullopt;
+  const bool is_number =
+      ParseNumber(std::string_view(name).substr(begin, end - begin), &number) && number >= 0;
+  if (!is_number || VideoFrameName(number) != name) return std::nullopt;
+  return number;
+}
+
 class VideoFile : public FrameSource {
  public:
   VideoFile(const std::string& path, const VideoOptions& options,
@@ -127,9 +125,9 @@ class VideoFile : public FrameSource {
         break;
       }
       num_read_ = read->number + 1;
-      const bool wanted = read->number >= options_.first_frame &&
-                          (read->number - options_.first_frame) % options_.frame_step == 0;
-      if (!wanted || known_names_.count(VideoFrameName(read->number)) > 0) continue;
+      if (!IsWanted(read->number) || known_names_.count(VideoFrameName(read->number)) > 0) {
+        continue;
+      }
       Frame frame;
       frame.image_name = VideoFrameName(read->number);
       frame.frame_number = read->number;
@@ -155,35 +153,43 @@ class VideoFile : public FrameSource {
   int NumFrames() const override { return num_frames_; }
 
  private:
-  int CountFrames() const {
-    if (num_container_frames_ == 0 && options_.last_frame < 0) return 0;
-    int end = num_container_frames_;
-    if (options_.last_frame >= 0 && (end == 0 || options_.last_frame < end)) {
-      end = options_.last_frame + 1;
-    }
-    const int num_frames = end - options_.first_frame;
-    if (num_frames <= 0) return 0;
-    const int num_wanted = (num_frames + options_.frame_step - 1) / options_.frame_step;
-    return std::max(0, num_wanted - NumKnownBefore(end));
+  // Whether first_frame and frame_step include the frame.
+  bool IsWanted(int number) const {
+    return number >= options_.first_frame &&
+           (number - options_.first_frame) % options_.frame_step == 0;
   }
 
-  int NumKnownBefore(int end) const {
-    int num_known = 0;
-    for (int i = options_.first_frame; i < end; i += options_.frame_step) {
-      num_known += known_names_.count(VideoFrameName(i)) > 0;
+  // In 64 bits, because options may be as large as an int.
+  int CountFrames() const {
+    if (num_container_frames_ == 0 && options_.last_frame < 0) return 0;
+    std::int64_t end = num_container_frames_;
+    if (options_.last_frame >= 0 && (end == 0 || options_.last_frame < end)) {
+      end = std::int64_t{options_.last_frame} + 1;
     }
-    return num_known;
+    const std::int64_t num_frames = end - options_.first_frame;
+    if (num_frames <= 0) return 0;
+    const std::int64_t num_wanted = (num_frames - 1) / options_.frame_step + 1;
+    const std::int64_t num_left = num_wanted - NumKnownBefore(end);
+    return static_cast<int>(std::clamp<std::int64_t>(num_left, 0, std::numeric_limits<int>::max()));
+  }
+
+  int NumKnownBefore(std::int64_t end) const {
+    return static_cast<int>(
+        std::count_if(known_names_.begin(), known_names_.end(), [&](const std::string& name) {
+          const std::optional<int> number = NumberOfVideoFrame(name);
+          return number && *number < end && IsWanted(*number);
+        }));
   }
 
   void End() {
     ended_ = true;
     if (num_read_ <= options_.first_frame) {
       throw InputError(fmt::format(
-          "{}: the video has {} frames, none at or after frame {} (--Video.first_frame, "
-          "or the first that the search around --central_frame can reach)",
+          "{}: the video has {} frames, none at or after frame {}, the first that is "
+          "wanted",
           path_, num_read_, options_.first_frame));
     }
-    // Counts that a container derives from its duration are off by a frame or so.
+    // A container that derives the count from its duration is off by a frame or so.
     const int tolerance = std::max(2, num_container_frames_ / 100);
     if (num_read_ < num_container_frames_ - tolerance) {
       spdlog::warn("{}: the video breaks off after {} of {} frames; what is there is used", path_,
@@ -196,8 +202,8 @@ class VideoFile : public FrameSource {
   std::set<std::string> known_names_;
   VideoDecoder decoder_;
   int num_container_frames_;
-  int num_frames_;    // that are to come at most
-  int num_read_ = 0;  // from the video's start, also where decoding began later
+  int num_frames_;    // to come, at most
+  int num_read_ = 0;  // counted from the video's start, even if decoding began later
   bool ended_ = false;
 };
 
@@ -212,12 +218,11 @@ std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const Vide
                                              int num_threads) {
   options.Check();
   SilenceOpenCv();
-  std::error_code error;
-  if (path.empty() || !fs::exists(path, error)) {
+  if (path.empty() || !Exists(path)) {
     throw InputError(fmt::format("--image_path '{}': there is no such folder or video", path));
   }
-  if (!fs::is_directory(path, error)) {
-    if (fs::file_size(path, error) == 0) throw InputError(path + ": the file is empty");
+  if (!IsFolder(path)) {
+    if (FileSize(path) == 0) throw InputError(path + ": the file is empty");
     if (HasImageExtension(path)) {
       throw InputError(path + ": a single image; give the folder that holds the images");
     }

@@ -1,5 +1,4 @@
-// A stream of frames from a folder of images or a video file. Nothing is decoded twice, and one
-// frame at a time is in memory.
+// A stream of frames from a folder of images or a video file. No frame is decoded twice.
 
 #pragma once
 
@@ -16,13 +15,13 @@
 namespace velamap {
 
 struct Frame {
-  std::string image_name;           // images: path relative to the folder; video: frame_000123.jpg
+  std::string image_name;  // photographs: path relative to the folder; video: frame_000123.jpg
   std::optional<int> frame_number;  // video only, zero-based
   std::optional<double> time_s;     // video only
-  // Pixels are never rotated by metadata, as COLMAP reads them. A video's colours are converted
-  // only where they are asked for: see ColorImage() and detect/corner_colors.h.
+  // Metadata never rotates the pixels, because COLMAP does not rotate them either. A video's
+  // colours are converted on demand only: see ColorImage() and detect/corner_colors.h.
   cv::Mat gray;                         // 8 bit, once the frame is loaded
-  cv::Mat color;                        // images only: BGR, 8 bit, once loaded
+  cv::Mat color;                        // photographs only: BGR, 8 bit, once loaded
   std::optional<VideoPicture> picture;  // video only
   double decode_s = 0.0;                // video only: wall time of Next()
 };
@@ -34,24 +33,24 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  // The next frame, or nothing at the end. An unreadable image is skipped with a warning.
+  // Returns the next frame, or nothing at the end.
   virtual std::optional<Frame> Next() = 0;
 
-  // Next() hands out frames without pixels and Load() fills them, so that what can be done on many
-  // threads is: decoding of an image file, the grey image of a picture of a video. Thread-safe.
-  // False, with a warning and the reason, if the file is no whole image.
+  // Fills the pixels of a frame, which Next() leaves empty so that many threads can decode image
+  // files and compute grey images in parallel. Thread-safe. Returns false, with a warning and the
+  // reason, if the file is no whole image.
   virtual bool Load(Frame* frame, std::string* reason) const = 0;
 
   virtual bool IsVideo() const = 0;
 
-  // How many frames are to come at most; 0 when the container does not say.
+  // The largest number of frames to come; 0 if the container does not say.
   virtual int NumFrames() const = 0;
 };
 
-// `path` is a folder (searched recursively, hidden files left out, natural order of names) or a
-// video file. Throws InputError: nothing there, empty folder, not a video that FFmpeg can read.
-// Frames whose name is in `known_names` are passed over without being decoded where possible.
-// `num_threads` decode a video; 0: as FFmpeg thinks best.
+// `path` is a folder (with its sub-folders and without hidden files, in natural order of names) or
+// a video file. Throws InputError if there is nothing, the folder holds no images, or FFmpeg cannot
+// read the video. Frames whose name is in `known_names` are skipped, without being decoded where
+// possible. `num_threads` threads decode a video; 0 leaves the number to FFmpeg.
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const VideoOptions& options,
                                              const std::vector<std::string>& known_names = {},
                                              int num_threads = 0);

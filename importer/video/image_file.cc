@@ -22,8 +22,8 @@ bool StartsWith(const Bytes& bytes, const std::vector<std::uint8_t>& signature) 
          std::equal(signature.begin(), signature.end(), bytes.begin());
 }
 
-// Walks the segments of a JPEG up to its end-of-image marker (ITU T.81, annex B). Looking for the
-// marker's two bytes alone would find the end of an embedded preview.
+// Walks the segments of a JPEG to its end-of-image marker (ITU T.81, annex B). A search for the two
+// bytes of the marker would also find the end of an embedded preview.
 bool JpegHasEnd(const Bytes& bytes) {
   constexpr std::uint8_t kEndOfImage = 0xD9, kStartOfScan = 0xDA;
   std::size_t i = 2;  // behind the start-of-image marker
@@ -38,7 +38,7 @@ bool JpegHasEnd(const Bytes& bytes) {
     if (i + 3 >= bytes.size()) return false;
     i += 2 + (static_cast<std::size_t>(bytes[i + 2]) << 8 | bytes[i + 3]);
     if (marker != kStartOfScan) continue;
-    // Compressed data: a stuffed FF 00 and the restart markers D0 to D7 are part of them.
+    // Skips compressed data, which include stuffed FF 00 and the restart markers D0 to D7.
     while (i + 1 < bytes.size() && !(bytes[i] == 0xFF && bytes[i + 1] != 0 &&
                                      (bytes[i + 1] < 0xD0 || bytes[i + 1] > 0xD7))) {
       ++i;
@@ -47,7 +47,8 @@ bool JpegHasEnd(const Bytes& bytes) {
   return false;
 }
 
-// Walks the chunks of a PNG up to IEND: 4 bytes length, 4 bytes type, data, 4 bytes checksum.
+// Walks the chunks of a PNG to IEND. A chunk is 4 bytes length, 4 bytes type, data, 4 bytes
+// checksum.
 bool PngHasEnd(const Bytes& bytes) {
   std::size_t i = 8;
   while (i + 12 <= bytes.size()) {

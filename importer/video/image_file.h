@@ -8,12 +8,12 @@
 
 namespace velamap {
 
-// Whether the name ends like a picture that OpenCV reads (.jpg, .png, .tif ...).
+// Whether the name has an extension of an image that OpenCV reads (.jpg, .png, .tif ...).
 bool HasImageExtension(const std::string& path);
 
-// Decodes the file to BGR, 8 bit, not rotated by its metadata (COLMAP ignores it too). Decoders
-// fill what is missing of a broken file with grey, so JPEG and PNG are checked for their end first.
-// Returns an empty image and a reason if the file is missing, empty, cut off or no image.
+// Decodes the file to BGR, 8 bit, without the rotation of its metadata, which COLMAP ignores too.
+// Returns an empty image and a reason if the file is missing, empty, cut off or no image. JPEG and
+// PNG files are checked for their end first, because decoders fill missing pixels with grey.
 cv::Mat DecodeImageFile(const std::string& path, std::string* reason);
 
 }  // namespace velamap

@@ -19,7 +19,7 @@ extern "C" {
 namespace velamap {
 namespace {
 
-// Packets in a row that yield no frame: the rest of the file is taken as broken.
+// After so many failures in a row the rest of the file is taken as broken.
 constexpr int kMaxNumFailures = 4096;
 
 struct FormatCloser {
@@ -45,7 +45,7 @@ using FormatPtr = std::unique_ptr<AVFormatContext, FormatCloser>;
 
 FormatPtr OpenFormat(const std::string& path) {
   AVFormatContext* opened = nullptr;
-  // With the protocol, so that a colon in a name is not taken for one.
+  // Without the protocol, FFmpeg would look for one before a colon in the name.
   if (avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr) < 0) {
     ThrowUnreadable(path);
   }
@@ -54,7 +54,7 @@ FormatPtr OpenFormat(const std::string& path) {
   return format;
 }
 
-// The first that is no cover picture; the others are not read.
+// Chooses the first video stream that is no cover picture; the other streams are not read.
 AVStream* ChooseVideoStream(const std::string& path, AVFormatContext* format) {
   AVStream* chosen = nullptr;
   for (unsigned i = 0; i < format->nb_streams; ++i) {
@@ -71,8 +71,8 @@ AVStream* ChooseVideoStream(const std::string& path, AVFormatContext* format) {
   return chosen;
 }
 
-// Codecs of which every packet is known to be one frame. Others hide frames among the packets
-// (VP8, VP9, AV1) or leave some out (MPEG-4 part 2), and fields may come one a packet.
+// Whether every packet of the codec is one frame. VP8, VP9 and AV1 have packets without a shown
+// frame, MPEG-4 part 2 leaves frames out, and interlaced video may have one field a packet.
 bool CanCountPackets(const AVCodecParameters& parameters) {
   switch (parameters.codec_id) {
     case AV_CODEC_ID_H264:
@@ -88,7 +88,7 @@ bool CanCountPackets(const AVCodecParameters& parameters) {
 
 }  // namespace
 
-// What FFmpeg holds for one pass over the file.
+// The state of FFmpeg for one pass over the file.
 class VideoDecoder::Stream {
  public:
   explicit Stream(const std::string& path)
@@ -102,12 +102,16 @@ class VideoDecoder::Stream {
   void OpenCodec(const std::string& path, int num_threads) {
     const AVCodec* decoder = avcodec_find_decoder(stream_->codecpar->codec_id);
     if (decoder == nullptr) ThrowUnreadable(path);
-    codec_.reset(avcodec_alloc_context3(decoder));
-    if (codec_ == nullptr) throw std::bad_alloc();
-    if (avcodec_parameters_to_context(codec_.get(), stream_->codecpar) < 0) ThrowUnreadable(path);
-    codec_->pkt_timebase = stream_->time_base;
-    codec_->thread_count = num_threads;
-    if (avcodec_open2(codec_.get(), decoder, nullptr) < 0) ThrowUnreadable(path);
+    // FFmpeg opens no decoder at all if the system refuses one of its threads.
+    for (const int count : {num_threads, 1}) {
+      codec_.reset(avcodec_alloc_context3(decoder));
+      if (codec_ == nullptr) throw std::bad_alloc();
+      if (avcodec_parameters_to_context(codec_.get(), stream_->codecpar) < 0) break;
+      codec_->pkt_timebase = stream_->time_base;
+      codec_->thread_count = count;
+      if (avcodec_open2(codec_.get(), decoder, nullptr) >= 0) return;
+    }
+    ThrowUnreadable(path);
   }
 
   const AVStream& stream() const { return *stream_; }
@@ -125,7 +129,7 @@ class VideoDecoder::Stream {
     return 0.0;
   }
 
-  // The first packets of the video, without decoding; empty if one is damaged.
+  // Lists the first packets of the video without decoding. Empty if one is damaged.
   std::vector<VideoPacket> ListPackets(std::size_t max_num_packets) {
     std::vector<VideoPacket> packets;
     while (packets.size() < max_num_packets && ReadPacket()) {
@@ -139,9 +143,10 @@ class VideoDecoder::Stream {
     return packets;
   }
 
-  // Decodes the frame at `point`. False if the container or the decoder ends up elsewhere.
+  // Decodes the frame at `point`. Returns false if the container or the decoder arrives elsewhere.
   bool SeekTo(const SeekPoint& point) {
-    // Some containers search by the one time, some by the other; the earlier one suits both.
+    // Some containers search by time of decoding, some by time of presentation. The former is the
+    // earlier one and serves both.
     if (!point.is_start && av_seek_frame(format_.get(), stream_->index, point.key_decode_time,
                                          AVSEEK_FLAG_BACKWARD) < 0) {
       return false;
@@ -151,22 +156,22 @@ class VideoDecoder::Stream {
     } while (packet_->pts != point.key_time || (packet_->flags & AV_PKT_FLAG_KEY) == 0);
     avcodec_send_packet(codec_.get(), packet_.get());
     skip_before_time_ = point.skip_before_time;
-    // Among those passed over may be pictures shown before the key frame but stored behind it,
-    // which miss what they refer to.
+    // The skipped frames include pictures that are shown before the key frame but stored after it;
+    // their references are missing.
     do {
       if (!Decode()) return false;
     } while (frame_->pts != AV_NOPTS_VALUE && frame_->pts < point.time);
     return frame_->pts == point.time;
   }
 
-  // The next frame in order of presentation; false at the end.
+  // Decodes the next frame in order of presentation. Returns false at the end.
   bool Decode() {
     for (int num_failures = 0; num_failures < kMaxNumFailures;) {
       const int result = avcodec_receive_frame(codec_.get(), frame_.get());
       if (result == 0) return true;
       if (result == AVERROR_EOF) return false;
       if (result == AVERROR(EAGAIN)) {
-        // At the end, nothing instead of a packet: the decoder hands out what it still holds.
+        // At the end of the file a null packet makes the decoder return the frames that it holds.
         AVPacket* packet = ReadPacket() ? packet_.get() : nullptr;
         const bool is_unwanted = packet != nullptr && packet->pts < skip_before_time_;
         codec_->skip_frame = is_unwanted ? AVDISCARD_NONREF : AVDISCARD_DEFAULT;
@@ -179,7 +184,7 @@ class VideoDecoder::Stream {
   }
 
  private:
-  // A read error ends the video, as its end does.
+  // Returns false at the end and at a read error.
   bool ReadPacket() {
     int result = 0;
     do {
@@ -200,7 +205,7 @@ class VideoDecoder::Stream {
 VideoDecoder::VideoDecoder(const std::string& path, int num_threads)
     : path_(path), num_threads_(num_threads) {
   VELAMAP_CHECK(num_threads >= 0);
-  // Our one line about a broken file shall stand alone.
+  // FFmpeg would add its own lines to our one about a broken file.
   av_log_set_level(AV_LOG_QUIET);
   stream_ = std::make_unique<Stream>(path_);
   stream_->OpenCodec(path_, num_threads_);

@@ -1,4 +1,4 @@
-// Reads a video with FFmpeg's own libraries: frames in order of presentation, numbered from 0.
+// Reads a video with FFmpeg's libraries: frames in order of presentation, numbered from 0.
 
 #pragma once
 
@@ -11,33 +11,34 @@
 namespace velamap {
 
 struct VideoFrame {
-  int number = 0;                // how many frames the decoder yields before it
-  std::optional<double> time_s;  // from the video's start; also right for a variable frame rate
-  VideoPicture picture;          // as it is stored: never rotated by metadata
+  int number = 0;                // the number of frames that the decoder yields before it
+  std::optional<double> time_s;  // since the video's start; correct for a variable frame rate, too
+  VideoPicture picture;          // as stored, without the rotation of the metadata
 };
 
 class VideoDecoder {
  public:
-  // The first video stream of the file. `num_threads` decode, 0: as FFmpeg thinks best. Throws
-  // InputError: no file that FFmpeg can read, no video in it, no decoder for it.
+  // Opens the first video stream of the file. `num_threads` threads decode it; 0 leaves the number
+  // to FFmpeg. Throws InputError if FFmpeg cannot read the file, or it holds no video or one
+  // without a decoder.
   VideoDecoder(const std::string& path, int num_threads);
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;
 
-  // By the container, which may be off by a frame or so; 0 when it does not say.
+  // The number that the container states, which may be off by a frame or so; 0 if it states none.
   int NumContainerFrames() const;
 
-  // Before the first Next(): pass over the frames before `number` without decoding more of them
-  // than that frame needs. Next() then begins with it (with the last one, if there are fewer), or
-  // with frame 0 where the video does not let frames be counted without decoding. Numbers stay the
-  // same.
+  // Skips the frames before `number` without decoding more of them than that frame needs. To be
+  // called before the first Next(), which then returns that frame (the last frame if there are
+  // fewer), or frame 0 if frames of this video cannot be counted without decoding. The numbers of
+  // frames stay the same.
   void SkipTo(int number);
 
-  // The next frame, or nothing at the end. What cannot be decoded is passed over.
+  // Returns the next frame, or nothing at the end. Skips frames that cannot be decoded.
   std::optional<VideoFrame> Next();
 
-  // How many frames there are up to the end, once Next() has yielded nothing.
+  // The number of frames of the video, once Next() has returned nothing.
   int NumFramesRead() const;
 
  private:
@@ -47,7 +48,7 @@ class VideoDecoder {
   int num_threads_;
   std::unique_ptr<Stream> stream_;
   int next_number_ = 0;
-  bool has_frame_ = false;  // the next frame is decoded already
+  bool has_frame_ = false;  // whether the next frame is decoded already
 };
 
 }  // namespace velamap

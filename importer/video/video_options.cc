@@ -6,19 +6,22 @@
 
 namespace velamap {
 
+OptionGroup DescribeOptions(VideoOptions* options) {
+  return {
+      "Video",
+      {{"Video.first_frame", &options->first_frame, "frame", "first frame to read, from 0",
+        AtLeast(0)},
+       {"Video.last_frame", &options->last_frame, "frame", "last frame to read; -1: the end",
+        AtLeast(-1)},
+       {"Video.frame_step", &options->frame_step, "frames", "read every k-th frame", AtLeast(1)}}};
+}
+
 void VideoOptions::Check() const {
-  if (first_frame < 0) {
-    throw InputError(
-        fmt::format("--Video.first_frame: {} is negative; give 0 or more", first_frame));
-  }
-  if (last_frame < -1 || (last_frame >= 0 && last_frame < first_frame)) {
-    throw InputError(fmt::format(
-        "--Video.last_frame: {} is before the first frame {}; give -1 for the end of the video",
-        last_frame, first_frame));
-  }
-  if (frame_step < 1) {
-    throw InputError(
-        fmt::format("--Video.frame_step: {} is too small; give 1 or more", frame_step));
+  CheckRanges(*this);
+  if (last_frame >= 0 && last_frame < first_frame) {
+    throw InputError(fmt::format("{}: {} is before {} {}; give -1 for the end of the video",
+                                 OptionName(&VideoOptions::last_frame), last_frame,
+                                 OptionName(&VideoOptions::first_frame), first_frame));
   }
 }
 

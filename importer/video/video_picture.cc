@@ -34,14 +34,14 @@ bool HasFlag(const AVPixFmtDescriptor& format, int flags) {
   return (format.flags & static_cast<std::uint64_t>(flags)) != 0;
 }
 
-// Grey formats are always taken as full, as swscale does.
+// Grey formats always have full range, as in swscale.
 bool IsFullRange(const AVFrame& frame) {
   const AVPixFmtDescriptor* format = Format(frame);
   return frame.color_range == AVCOL_RANGE_JPEG || format->nb_components <= 2 ||
          std::strncmp(format->name, "yuvj", 4) == 0;
 }
 
-// Whether the first plane is the luma, a byte a pixel.
+// Whether the first plane is the luma with one byte a pixel.
 bool HasPlainLuma(const AVFrame& frame) {
   const AVPixFmtDescriptor* format = Format(frame);
   const AVComponentDescriptor& luma = format->comp[0];
@@ -51,8 +51,8 @@ bool HasPlainLuma(const AVFrame& frame) {
          luma.depth == 8;
 }
 
-// 16 to `high` becomes 0 to 255, as n + n (271 - high) / (high - 16) in 16 bits, so that the
-// compiler takes many pixels at a time.
+// Maps 16 ... kHigh to 0 ... 255 as n + n (271 - kHigh) / (kHigh - 16). The arithmetic fits 16
+// bits, so that the compiler can process many pixels at a time.
 template <int kHigh, int kFactor, int kRoundUp>
 void StretchLimitedRange(const std::uint8_t* limited, int num_pixels, std::uint8_t* full) {
   for (int i = 0; i < num_pixels; ++i) {
@@ -62,19 +62,20 @@ void StretchLimitedRange(const std::uint8_t* limited, int num_pixels, std::uint8
   }
 }
 
-// (y - 16) 255 / 219 rounded down, which is what swscale and OpenCV make of grey. The factor is
-// 36 / 219 of 65536, rounded up.
+// Computes (y - 16) 255 / 219 rounded down, as swscale and OpenCV do for grey. The factor is 36 /
+// 219 of 65536, rounded up.
 void StretchLuma(const std::uint8_t* luma, int num_pixels, std::uint8_t* gray) {
   StretchLimitedRange<235, 10774, 0>(luma, num_pixels, gray);
 }
 
-// 128 + (c - 128) 255 / 224, rounded: half a level more than (c - 16) 255 / 224, so that this is
-// rounded up. The factor is 31 / 224 of 65536, rounded down.
+// Computes 128 + (c - 128) 255 / 224, rounded. This is half a level more than (c - 16) 255 / 224,
+// which is therefore rounded up. The factor is 31 / 224 of 65536, rounded down.
 void StretchChroma(const std::uint8_t* limited, int num_pixels, std::uint8_t* full) {
   StretchLimitedRange<240, 9069, 1>(limited, num_pixels, full);
 }
 
-// Whether the planes are luma, Cb and Cr, a byte each, chroma of half the size both ways.
+// Whether the planes are luma, Cb and Cr with one byte a value, chroma of half the width and
+// height.
 bool HasPlainHalfSizeChroma(const AVFrame& frame) {
   return frame.format == AV_PIX_FMT_YUV420P || frame.format == AV_PIX_FMT_YUVJ420P;
 }
@@ -88,7 +89,7 @@ cv::Mat FullRangeChroma(const AVFrame& frame, int plane) {
   return full;
 }
 
-// A converter without a change of size; nothing if FFmpeg does not know the format.
+// Makes a converter that keeps the size. Null if FFmpeg cannot convert the format.
 ScalerPtr MakeScaler(const AVFrame& frame, AVPixelFormat target, int flags) {
   ScalerPtr scaler(sws_alloc_context(), sws_freeContext);
   if (scaler == nullptr) throw std::bad_alloc();
@@ -107,8 +108,7 @@ ScalerPtr MakeScaler(const AVFrame& frame, AVPixelFormat target, int flags) {
   return scaler;
 }
 
-// Rows begin at multiples of 64 bytes, so that swscale's fast loops do not need an end of their
-// own.
+// Aligns rows to 64 bytes, so that swscale's fast loops can process whole rows.
 cv::Mat MakeImage(int width, int height, int type) {
   constexpr int kAlignment = 64;
   return cv::Mat(height, (width + kAlignment - 1) / kAlignment * kAlignment, type)
@@ -129,12 +129,12 @@ cv::Mat Convert(const AVFrame& frame, AVPixelFormat target, int type, int flags)
   return Scale(scaler.get(), frame, &image) ? image : cv::Mat();
 }
 
-// What OpenCV's VideoCapture converts with; colours stay the same.
+// Converts as OpenCV's VideoCapture does, so that both yield the same colours.
 cv::Mat ConvertToColor(const AVFrame& frame) {
   return Convert(frame, AV_PIX_FMT_BGR24, CV_8UC3, SWS_BICUBIC);
 }
 
-// The pixels around one, on the grid of the coarsest chroma (4 px) and far enough for the filter.
+// A patch around the pixel, aligned to the coarsest chroma (4 px) and large enough for the filter.
 cv::Rect PatchAround(const cv::Point& pixel, const cv::Rect& bounds) {
   const cv::Rect patch(pixel.x / 8 * 8 - 8, pixel.y / 4 * 4 - 8, 24, 20);
   return patch & bounds;
@@ -182,7 +182,7 @@ std::optional<ChromaPlanes> VideoPicture::HalfSizeChroma() const {
 std::vector<cv::Vec3b> VideoPicture::ColorsAt(const std::vector<cv::Point>& pixels) const {
   std::vector<cv::Vec3b> colors(pixels.size());
   const cv::Rect bounds(0, 0, frame_->width, frame_->height);
-  // Such pixels begin at no byte of their own, so no part can be cut out.
+  // These formats share bytes between pixels, so no patch can be cut out.
   const bool is_whole = HasFlag(*Format(*frame_), AV_PIX_FMT_FLAG_BITSTREAM);
   ScalerPtr scaler(nullptr, sws_freeContext);
   cv::Mat image;

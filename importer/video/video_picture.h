@@ -1,5 +1,5 @@
-// One picture of a video as FFmpeg decoded it. Its luma plane is the grey image already, so that
-// colours are converted only where they are asked for.
+// One picture of a video as FFmpeg decoded it. Its luma plane serves as the grey image; colours are
+// converted on demand only.
 
 #pragma once
 
@@ -13,29 +13,29 @@ struct AVFrame;
 
 namespace velamap {
 
-// 8 bit, a value for two by two pixels, 128 for grey and all of 0 to 255 in use (as in JPEG).
+// 8 bit, one value for two by two pixels, 128 for grey, range 0 to 255, as in JPEG.
 struct ChromaPlanes {
   cv::Mat cb, cr;
 };
 
-// A value that shares the decoder's memory; safe to read on many threads.
+// A value that shares the decoder's memory. Many threads may read it.
 class VideoPicture {
  public:
-  // Takes a reference of its own; no pixel is copied.
+  // Takes a reference of its own and copies no pixels.
   explicit VideoPicture(const AVFrame& frame);
 
-  // 8-bit grey, 0 black and 255 white: luma of limited range (16 to 235) is stretched. To one grey
-  // level what BGR turned into grey gives, except where a colour is too saturated for BGR: there
-  // it was clipped. Empty if FFmpeg cannot convert the pixel format.
+  // 8-bit grey, 0 for black and 255 for white; luma of limited range (16 to 235) is stretched.
+  // Equal to grey computed from BGR to one grey level, except for colours that BGR clips because
+  // they are too saturated. Empty if FFmpeg cannot convert the pixel format.
   cv::Mat Gray() const;
 
-  // BGR, 8 bit, of the whole picture; empty if FFmpeg cannot convert the pixel format.
+  // The whole picture in BGR, 8 bit. Empty if FFmpeg cannot convert the pixel format.
   cv::Mat Color() const;
 
-  // The chroma that belongs to Gray(); nothing where the picture does not hold it in this way.
+  // The chroma that belongs to Gray(). Nothing if the picture stores it in another way.
   std::optional<ChromaPlanes> HalfSizeChroma() const;
 
-  // Color() of single pixels inside the picture, without converting the rest of it.
+  // Color() of single pixels, without converting the rest of the picture.
   std::vector<cv::Vec3b> ColorsAt(const std::vector<cv::Point>& pixels) const;
 
  private:

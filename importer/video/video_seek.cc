@@ -18,10 +18,10 @@ std::optional<SeekPoint> FindSeekPoint(const std::vector<VideoPacket>& packets, 
 
   const std::size_t wanted = std::min(static_cast<std::size_t>(frame_number), times.size() - 1);
   const VideoPacket* key = &packets.front();
-  std::int64_t latest = packets.front().time;  // of all packets so far
+  std::int64_t latest = packets.front().time;  // among all packets so far
   for (std::size_t i = 0; i + kMaxReorder < packets.size(); ++i) {
     const VideoPacket& packet = packets[i];
-    // What is decoded before a key frame has to be shown before it, or it would be missing.
+    // Pictures that are decoded before the key frame would be missing if they were shown after it.
     if (packet.is_key && packet.is_shown && packet.time > latest && packet.time <= times[wanted]) {
       key = &packet;
     }

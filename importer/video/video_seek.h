@@ -1,5 +1,5 @@
-// Where to begin decoding so that a frame is reached without all that lie before it, told from the
-// packets of a video alone.
+// Finds where to begin decoding so that a frame is reached without decoding all earlier frames. The
+// packets of the video suffice for this.
 
 #pragma once
 
@@ -17,34 +17,35 @@ struct VideoPacket {
 
   std::int64_t time = kNoTime;         // of presentation, in units of the stream
   bool is_key = false;                 // decoding can begin here
-  bool is_shown = true;                // false: cut away by the container's edit list
+  bool is_shown = true;                // false: removed by the container's edit list
   std::int64_t decode_time = kNoTime;  // of decoding; not later than `time`
 };
 
-// The key frame to begin at and the frame to come to.
+// The key frame at which to begin and the frame to reach.
 struct SeekPoint {
   std::int64_t key_time = 0;         // of presentation
-  std::int64_t key_decode_time = 0;  // its time of presentation where this is not known
-  bool is_start = false;             // the key frame is the first packet
+  std::int64_t key_decode_time = 0;  // the time of presentation if this is unknown
+  bool is_start = false;             // whether the key frame is the first packet
   std::int64_t time = 0;             // of presentation of the frame
-  int frame_number = 0;              // of the frame: how many frames are shown before it
-  // Pictures shown before this time that no other refers to need not be decoded.
+  int frame_number = 0;              // the number of frames that are shown before the frame
+  // Pictures that are shown before this time and that no other picture refers to can be skipped.
   std::int64_t skip_before_time = 0;
 };
 
-// No codec lets more pictures than this be decoded before one that is shown earlier (H.264, H.265).
+// H.264 and H.265 let at most this many pictures be decoded before one that is shown earlier.
 inline constexpr std::size_t kMaxReorder = 16;
 
-// How to come to frame `frame_number`, or to the last frame if there are fewer, from the last key
-// frame that allows it. `packets` begin with the video and go at least 2 kMaxReorder past that
-// frame, or to the end.
+// Finds the last key frame from which frame `frame_number`, or the last frame if there are fewer,
+// can be reached. `packets` begin with the video and reach at least 2 kMaxReorder past that frame,
+// or to the end.
 //
-// At the end of a file FFmpeg's decoder of H.264 throws away what follows a key frame in the middle
-// of a stream that it has not handed out by then. So a key frame with fewer than kMaxReorder
-// packets behind it is not taken, and as many frames before the wanted one are decoded in any case.
+// When decoding has begun at a key frame in the middle of a stream, FFmpeg's decoder of H.264
+// discards the frames that it still holds at the end of the file. A key frame with fewer than
+// kMaxReorder packets after it is therefore not used, and at least as many frames before the wanted
+// one are decoded.
 //
-// Nothing if the frame can only be counted by decoding: a packet without a time or with the time of
-// another, or pictures shown before the first key frame, which the decoder may leave out.
+// Returns nothing if frames can be counted by decoding only: if a packet has no time or that of
+// another, or pictures are shown before the first key frame, which the decoder may leave out.
 std::optional<SeekPoint> FindSeekPoint(const std::vector<VideoPacket>& packets, int frame_number);
 
 }  // namespace velamap

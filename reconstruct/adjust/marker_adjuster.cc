@@ -16,6 +16,7 @@
 #include "reconstruct/adjust/marker_sizes.h"
 #include "reconstruct/adjust/marker_uncertainty.h"
 #include "reconstruct/adjust/weak_geometry.h"
+#include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
@@ -152,8 +153,9 @@ void MarkerAdjuster::Finish() {
   if (!(summary_.error_after_px.mean <= options_.max_mean_error_px)) {
     throw DataError(fmt::format(
         "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
-        "of --BundleAdjustment.max_mean_error; does the calibration belong to these images?",
-        summary_.error_after_px.mean, options_.max_mean_error_px));
+        "of {}; does the calibration belong to these images?",
+        summary_.error_after_px.mean, options_.max_mean_error_px,
+        OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
   }
   for (const std::string& warning : FindWeakGeometry(model_, summary_.uncertainty.points)) {
     summary_.warnings.push_back(warning);

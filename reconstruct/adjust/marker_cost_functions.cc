@@ -10,6 +10,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/ids.h"
+#include "importer/camera/camera_jacobian.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/geometry/pose_step.h"
 
@@ -23,22 +24,7 @@ using RowMajor = Eigen::Matrix<double, 2, kCols, Eigen::RowMajor>;
 using JacobianMap =
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-struct Projection {
-  Eigen::Vector2d x_in_image_px;
-  Eigen::Matrix2d by_ray;
-};
-
-Projection Project(CameraModel model, const double* intrinsics, const Eigen::Vector2d& ray) {
-  using Jet = ceres::Jet<double, 2>;
-  const Eigen::Matrix<Jet, 2, 1> x =
-      ImageFromRay<Jet, double>(model, intrinsics, {Jet(ray.x(), 0), Jet(ray.y(), 1)});
-  Projection projection{{x[0].a, x[1].a}, {}};
-  projection.by_ray.row(0) = x[0].v;
-  projection.by_ray.row(1) = x[1].v;
-  return projection;
-}
-
-// Derivative of the projection by the intrinsics.
+// Derivative of the projection by the camera's parameters.
 RowMajor<kMaxNumIntrinsics> ProjectionByIntrinsics(CameraModel model, const double* intrinsics,
                                                    const Eigen::Vector2d& ray) {
   using Jet = ceres::Jet<double, kMaxNumIntrinsics>;
@@ -151,8 +137,8 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
           RobustResidual((projected + offset_px) / corner.sigma_px, loss_sigmas_, nullptr);
       continue;
     }
-    const Projection projection = Project(camera_model_, intrinsics, ray);
-    const Eigen::Vector2d error_px = projection.x_in_image_px + offset_px;
+    const RayFunction projection = ImageFromRayWithJacobian(camera_model_, intrinsics, ray);
+    const Eigen::Vector2d error_px = projection.value + offset_px;
     Eigen::Matrix2d by_whitened;
     Eigen::Map<Eigen::Vector2d>(residuals + 2 * i) =
         RobustResidual(error_px / corner.sigma_px, loss_sigmas_, &by_whitened);

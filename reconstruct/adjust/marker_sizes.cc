@@ -7,6 +7,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "reconstruct/adjust/marker_adjustment_options.h"
 #include "reconstruct/geometry/covariance_update.h"
 
 namespace velamap {
@@ -175,8 +176,9 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
   if (verdict.print_tolerance > print_tolerance) {
     verdict.warnings.push_back(fmt::format(
         "the sides of the markers scatter by {:.2f} % more than the images explain, beyond the "
-        "{:.2f} % of --MarkerAdjustment.print_tolerance; the larger is used",
-        100 * verdict.print_tolerance, 100 * print_tolerance));
+        "{:.2f} % of {}; the larger is used",
+        100 * verdict.print_tolerance, 100 * print_tolerance,
+        OptionName(&MarkerAdjustmentOptions::print_tolerance)));
   }
   const std::vector<double> normalized = Normalize(deviations, sizes, verdict.print_tolerance);
   for (std::size_t i = 0; i < sizes.size(); ++i) {

@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/model/gauge.h"
@@ -27,27 +28,13 @@ namespace fs = std::filesystem;
 // Temporary folder for COLMAP's input and output, removed on destruction.
 class ScratchFolder {
  public:
-  ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "velamap_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw InputError(fmt::format("{}: the temporary folder cannot be made: {}; set TMPDIR",
-                                   pattern, std::strerror(errno)));
-    }
-    path_ = pattern;
-    fs::create_directory(path_ / "out");
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ScratchFolder() { CreateFolders(OutputPath()); }
 
-  std::string InputPath() const { return path_ / "in"; }
-  std::string OutputPath() const { return path_ / "out"; }
+  std::string InputPath() const { return folder_.path() / "in"; }
+  std::string OutputPath() const { return folder_.path() / "out"; }
 
  private:
-  fs::path path_;
+  const TemporaryFolder folder_;
 };
 
 std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& options,
@@ -179,25 +166,7 @@ void CheckEnough(const Model& model, int num_images_before, std::size_t num_outl
       model.images.size(), num_images_before, num_outliers));
 }
 
-void CheckAtLeast(const char* option, double value, double min) {
-  if (!(value >= min) || !std::isfinite(value)) {
-    throw InputError(fmt::format("--BundleAdjustment.{}: {} is out of range; give {} or more",
-                                 option, value, min));
-  }
-}
-
 }  // namespace
-
-void BundleAdjustmentOptions::Check() const {
-  if (colmap_path.empty()) throw InputError("--colmap_path: is empty; give COLMAP's program");
-  CheckAtLeast("max_num_iterations", max_num_iterations, 1);
-  CheckAtLeast("function_tolerance", function_tolerance, 0);
-  CheckAtLeast("max_num_rounds", max_num_rounds, 1);
-  CheckAtLeast("outlier_ratio", outlier_ratio, 2);
-  CheckAtLeast("min_outlier_error", min_outlier_error_px, 0);
-  CheckAtLeast("min_track_length", min_track_length, 2);
-  CheckAtLeast("max_mean_error", max_mean_error_px, 0);
-}
 
 BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
                                          const std::string& log_path, Model* model) {
@@ -223,8 +192,9 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
   if (!(summary.error_after_px.mean <= options.max_mean_error_px)) {
     throw DataError(fmt::format(
         "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
-        "of --BundleAdjustment.max_mean_error; does the calibration belong to these images?",
-        summary.error_after_px.mean, options.max_mean_error_px));
+        "of {}; does the calibration belong to these images?",
+        summary.error_after_px.mean, options.max_mean_error_px,
+        OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
   }
   *model = std::move(adjusted);
   return summary;

@@ -6,29 +6,10 @@
 #include <vector>
 
 #include "importer/base/statistics.h"
+#include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/model/model.h"
 
 namespace velamap {
-
-struct BundleAdjustmentOptions {
-  std::string colmap_path = "colmap";
-  bool refine_focal_length = false;  // a given calibration is held fixed
-  bool refine_principal_point = false;
-  bool refine_extra_params = false;
-  int max_num_iterations = 100;
-  double function_tolerance = 1e-6;
-  // COLMAP's adjustment has no robust loss, so observations are judged between rounds: those beyond
-  // outlier_ratio robust sigmas of all residuals are left out, but never below
-  // min_outlier_error_px; one left out that has come to fit returns.
-  int max_num_rounds = 6;
-  double outlier_ratio = 6.0;
-  double min_outlier_error_px = 0.5;
-  int min_track_length = 2;
-  // A mean reprojection error above this is no result, px.
-  double max_mean_error_px = 5.0;
-
-  void Check() const;  // throws InputError that names the option
-};
 
 struct RemovedObservation {
   Point3DId point3D_id = 0;

@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
@@ -158,8 +159,7 @@ std::string DescribeFailure(int wait_status) {
 }
 
 std::ofstream OpenLog(const std::string& log_path) {
-  std::error_code ignored;
-  fs::create_directories(fs::absolute(log_path).parent_path(), ignored);
+  CreateFolders(AbsolutePath(log_path).parent_path());
   std::ofstream log(log_path, std::ios::app | std::ios::binary);
   if (!log) throw InputError(fmt::format("{}: the log cannot be written", log_path));
   return log;

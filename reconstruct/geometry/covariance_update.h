@@ -1,4 +1,4 @@
-// What changes a covariance of points as a whole.
+// Operations on the joint covariance of all points.
 
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace velamap {
 
-// The covariance once linear functions of the points have been measured too, with independent
-// errors. `gradients` is 3n x m, `sigmas` m. (Kalman's update; m more columns with sign -1.)
+// Updates the covariance by independent measurements of linear functions of the points (Kalman's
+// update). `gradients` is 3n x m, `sigmas` m. Appends m columns with sign -1.
 void AddMeasurements(const Eigen::MatrixXd& gradients, const Eigen::VectorXd& sigmas,
                      PointCovariance* covariance);
 
@@ -21,18 +21,18 @@ Eigen::MatrixXd Multiply(const PointCovariance& covariance, const Eigen::MatrixX
 // Sum of all variances, m^2.
 double Trace(const PointCovariance& covariance);
 
-// Orthonormal, 3n x 6: the infinitesimal rigid motions of the points (fewer columns where they lie
-// on a line).
+// An orthonormal basis of the infinitesimal rigid motions of the points, 3n x 6 (fewer columns
+// where they lie on a line).
 Eigen::MatrixXd RigidMotions(const std::vector<Eigen::Vector3d>& x_in_world);
 
 // The covariance after a least-squares alignment (rotation and translation) of all points with
 // their true places: P C P, where P projects out the six infinitesimal rigid motions of the points
-// `x_in_world` (Baarda's S-transformation to inner constraints). Up to 12 more columns.
+// `x_in_world` (Baarda's S-transformation to inner constraints). Appends up to 12 columns.
 void ToInnerConstraints(const std::vector<Eigen::Vector3d>& x_in_world,
                         PointCovariance* covariance);
 
-// d(scale)/d(points) for the scale of a least-squares similarity of the points to where they are:
-// x - centroid over the sum of its squares, 3n.
+// d(scale)/d(points), 3n, where scale is that of a least-squares similarity from `x_in_world` to
+// moved points, at no motion: x - centroid over the sum of its squares.
 Eigen::VectorXd ScaleGradient(const std::vector<Eigen::Vector3d>& x_in_world);
 
 }  // namespace velamap

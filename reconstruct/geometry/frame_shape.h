@@ -1,4 +1,5 @@
-// What a single frame says about the surface: its markers' points in the cam frame (thesis 3.3).
+// The shape of the surface in a single frame: the points of its markers in the cam frame
+// (thesis 3.3).
 
 #pragma once
 
@@ -32,7 +33,8 @@ struct FrameMarker {
   std::vector<MarkerPoints> x_in_cam;  // one or two solutions, better reprojection first
   std::array<Eigen::Vector2d, kNumCorners> corners_in_image_px;
   // Expected error of the distance from the camera, m: distance^2 * sigma_px / (focal * length) for
-  // corners good to a quarter of a pixel. It dwarfs the error across the line of sight.
+  // corners with a sigma of a quarter of a pixel. The error across the line of sight is far
+  // smaller.
   double depth_sigma_m = 0.0;
 };
 
@@ -45,8 +47,8 @@ struct FrameShape {
   const FrameMarker* Find(int marker_id) const;  // null where not seen
 };
 
-// Poses every marker of the image on its own, with its own length. Markers without a pose are left
-// out.
+// Estimates the pose of every marker of the image alone, with its own length. Markers without a
+// pose are left out.
 FrameShape EstimateFrameShape(const DatabaseImage& image, const Camera& camera,
                               const Layout& layout);
 

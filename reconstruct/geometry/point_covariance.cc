@@ -19,7 +19,7 @@ std::vector<int> BlockBegins(const PointCovariance& covariance) {
   return begins;
 }
 
-// The gradient as rows: 3n-vectors would cost more than the few points that take part.
+// A gradient by rows, which costs less than a 3n-vector, because few points take part.
 struct RowGradient {
   std::vector<int> begins;  // first row of each point
   std::vector<Eigen::Vector3d> values;

@@ -1,6 +1,6 @@
-// The joint covariance of all points of a metric model, in a form that grows with the points only
-// linearly: a block for every marker plus a part of low rank that couples all points through the
-// cameras, the scale and the choice of the frame.
+// The joint covariance of all points of a metric model, in memory linear in the number of points: a
+// block for every marker plus a part of low rank that couples all points through the cameras, the
+// scale and the choice of the frame.
 //
 //   cov(x) = blockdiag(blocks) + factor * diag(signs) * factor^T,   signs are +1 or -1
 //
@@ -19,7 +19,7 @@
 namespace velamap {
 
 struct PointCovariance {
-  std::vector<Point3DId> point3D_ids;   // ascending, so that a marker's corners stand together
+  std::vector<Point3DId> point3D_ids;   // ascending, so that corners of a marker are adjacent
   std::vector<Eigen::MatrixXd> blocks;  // by marker, 3c x 3c for its c points, m^2
   Eigen::MatrixXd factor;               // 3n x k, m
   Eigen::VectorXd signs;                // k
@@ -29,21 +29,21 @@ struct PointCovariance {
   int IndexOf(Point3DId point3D_id) const;
 };
 
-// A linear function of points, d/dx of something that is reported: point and gradient (per m).
+// A linear function of points: the derivative of a reported quantity by each point (per m).
 using PointGradient = std::vector<std::pair<Point3DId, Eigen::Vector3d>>;
 
-// Covariance of two linear functions, in the product of their units. Throws std::logic_error for a
-// point that is not in `covariance`.
+// Covariance of two linear functions, in the product of their units. Throws std::logic_error for
+// points that are not in `covariance`.
 double CovarianceOf(const PointCovariance& covariance, const PointGradient& a,
                     const PointGradient& b);
 
-// Never below zero, where rounding would make it so.
+// Never negative: rounding errors are cut off at zero.
 double VarianceOf(const PointCovariance& covariance, const PointGradient& gradient);
 
 // Joint 3x3 covariance of one point, m^2.
 Eigen::Matrix3d PointCovarianceOf(const PointCovariance& covariance, Point3DId point3D_id);
 
-// Leaves only these points; those that are not there are ignored.
+// The covariance of these points only; ids that it does not have are ignored.
 PointCovariance Subset(const PointCovariance& covariance, const std::vector<Point3DId>& ids);
 
 }  // namespace velamap

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <numeric>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/parallel.h"
 #include "reconstruct/global/global_registration_report.h"
 #include "reconstruct/global/global_registration_state.h"
 #include "reconstruct/global/map_adjustment.h"
@@ -22,10 +22,10 @@
 namespace velamap {
 namespace {
 
-// Frames on which starts compete.
-constexpr int kMaxContestFrames = 32;
+// Frames on which maps grow from several starts.
+constexpr int kMaxStartFrames = 32;
 
-// Twice as many frames of a video as may stay are registered, so that there is a choice.
+// Twice as many frames of a video are registered as may stay, so that the best can be chosen.
 void ChooseFrames(GlobalRegistration* global) {
   constexpr int kCandidatesPerFrame = 2;
   std::vector<int> chosen(global->images.size());
@@ -45,11 +45,11 @@ void ChooseFrames(GlobalRegistration* global) {
   global->image_idx_of_frame = std::move(chosen);
 }
 
-// Frames of the contest: evenly over a video; of photographs all, because any may be the only link.
-std::vector<int> ContestFrames(const GlobalRegistration& global) {
+// Frames evenly over a video, and all photographs, because any may be the only link.
+std::vector<int> FramesForStarts(const GlobalRegistration& global) {
   const int num_frames = static_cast<int>(global.problem.frames.size());
   const int step =
-      global.is_video ? std::max(1, (num_frames + kMaxContestFrames - 1) / kMaxContestFrames) : 1;
+      global.is_video ? std::max(1, (num_frames + kMaxStartFrames - 1) / kMaxStartFrames) : 1;
   std::vector<int> frame_idxs;
   for (int idx = 0; idx < num_frames; idx += step) frame_idxs.push_back(idx);
   return frame_idxs;
@@ -58,51 +58,56 @@ std::vector<int> ContestFrames(const GlobalRegistration& global) {
 MapSolution GrowFromStart(const GlobalRegistration& global, const std::vector<int>& frame_idxs,
                           const std::pair<int, int>& pair) {
   MapGrowthOptions growth = global.Growth();
-  growth.max_num_frames = kMaxContestFrames;
+  growth.max_num_frames = kMaxStartFrames;
+  growth.num_threads = 1;  // the starts share the threads
   MapSolution solution = StartFromPair(global.problem, pair, growth.random_seed);
   if (solution.NumRegistered() == 2) GrowMap(global.problem, frame_idxs, growth, &solution);
   return solution;
 }
 
-// Grows a map from every start, two at a time, and returns the one that explains most. Two starts
-// that come to the same end without doubt decide the contest.
-MapSolution HoldContest(const GlobalRegistration& global) {
+// Grows a map from every start and returns the one that explains most. Starts are judged in pairs:
+// two maps that explain the same without signs of a wrong shape decide, and the other starts are
+// not needed. The order in which maps are judged does not depend on the number of threads.
+MapSolution GrowBestMap(const GlobalRegistration& global) {
   constexpr double kSame = 0.01;
   const MapProblem& problem = global.problem;
-  const std::vector<int> frame_idxs = ContestFrames(global);
+  const std::vector<int> frame_idxs = FramesForStarts(global);
   const auto pairs = ChooseStartPairs(problem, frame_idxs, global.options.global.num_starts,
                                       global.options.min_num_inliers);
+  const std::size_t num_at_once =
+      2 * ((static_cast<std::size_t>(NumThreads(global.options.num_threads)) + 1) / 2);
+  std::vector<MapSolution> solutions(pairs.size());
   MapSolution best = EmptySolution(problem);
   double most_explained = 0.0;
-  for (std::size_t i = 0; i < pairs.size(); i += 2) {
-    std::future<MapSolution> second;
-    if (i + 1 < pairs.size()) {
-      second = std::async(std::launch::async,
-                          [&, i] { return GrowFromStart(global, frame_idxs, pairs[i + 1]); });
+  int num_same = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (i % num_at_once == 0) {
+      ParallelFor(std::min(num_at_once, pairs.size() - i), global.options.num_threads,
+                  [&](std::size_t k) {
+                    solutions[i + k] = GrowFromStart(global, frame_idxs, pairs[i + k]);
+                  });
     }
-    std::vector<MapSolution> solutions = {GrowFromStart(global, frame_idxs, pairs[i])};
-    if (second.valid()) solutions.push_back(second.get());
-    int num_same = 0;
-    for (std::size_t k = 0; k < solutions.size(); ++k) {
-      const double explained = ExplainedObservations(problem, solutions[k]);
-      spdlog::debug("start from {} and {}: {} frames, {:.1f} observations explained",
-                    problem.Frame(pairs[i + k].first).image->detections.image_name,
-                    problem.Frame(pairs[i + k].second).image->detections.image_name,
-                    solutions[k].NumRegistered(), explained);
-      num_same += std::abs(explained - most_explained) < kSame * most_explained;
-      if (explained <= most_explained) continue;
+    const double explained = ExplainedObservations(problem, solutions[i]);
+    spdlog::debug("start from {} and {}: {} frames, {:.1f} observations explained",
+                  problem.Frame(pairs[i].first).image->detections.image_name,
+                  problem.Frame(pairs[i].second).image->detections.image_name,
+                  solutions[i].NumRegistered(), explained);
+    num_same += std::abs(explained - most_explained) < kSame * most_explained;
+    if (explained > most_explained) {
       most_explained = explained;
-      best = std::move(solutions[k]);
+      best = std::move(solutions[i]);
     }
+    if (i % 2 == 0) continue;
     if (num_same > 0 && !IsSuspicious(EstimateNoise(problem, best))) break;
+    num_same = 0;
   }
   return best;
 }
 
-// The other relief is adjusted too, and taken if it explains more. One that explains less than half
-// after a first adjustment does not come to that: new places of markers and another adjustment add
-// less than a tenth of what the map explains.
-void TryReversedRelief(const MapProblem& problem, MapSolution* solution) {
+// Adjusts the reversed relief too and takes it if it explains more. A relief that explains less
+// than half after a first adjustment is given up: new places of markers and another adjustment add
+// less than a tenth.
+void TryReversedRelief(const MapProblem& problem, int num_threads, MapSolution* solution) {
   constexpr double kRoughly = 4.0, kHopeless = 0.5;
   MapSolution reversed = ReversedRelief(*solution);
   MarkFits(problem, kRoughly, &reversed);
@@ -110,7 +115,7 @@ void TryReversedRelief(const MapProblem& problem, MapSolution* solution) {
   const double explained = ExplainedObservations(problem, *solution);
   if (ExplainedObservations(problem, reversed) < kHopeless * explained) return;
   MarkFits(problem, 1.0, &reversed);
-  PlaceUnsettledMarkers(problem, 1.0, 1.0, &reversed);
+  PlaceUnsettledMarkers(problem, 1.0, 1.0, &reversed, num_threads);
   AdjustMap(problem, {15, 1e-3}, &reversed);
   if (ExplainedObservations(problem, reversed) > explained) {
     *solution = std::move(reversed);
@@ -118,19 +123,20 @@ void TryReversedRelief(const MapProblem& problem, MapSolution* solution) {
   }
 }
 
-// Registers all that can be, leaves out what adds little or nothing, and places markers by all
-// frames.
-void Complete(GlobalRegistration* global) {
+// Registers all frames that can be registered, leaves out those that add little, and places markers
+// by the consensus of all frames.
+void RegisterAllFrames(GlobalRegistration* global) {
   constexpr double kSettledRatio = 0.9;
   const MapProblem& problem = global->problem;
-  TryReversedRelief(problem, &global->solution);
+  TryReversedRelief(problem, global->options.num_threads, &global->solution);
   std::vector<int> all(problem.frames.size());
   std::iota(all.begin(), all.end(), 0);
   MapGrowthOptions growth = global->Growth();
-  // Of a video more frames are registered than stay; those that go need no adjustment.
+  // More frames of a video are registered than stay, and those that go need no adjustment.
   growth.adjust = !global->is_video;
   GrowMap(problem, all, growth, &global->solution);
-  PlaceUnsettledMarkers(problem, kSettledRatio, 1.0, &global->solution);
+  PlaceUnsettledMarkers(problem, kSettledRatio, 1.0, &global->solution,
+                        global->options.num_threads);
   VoteOnIds(global);
   global->noise = EstimateNoise(problem, global->solution);
   LeaveOutBlurredFrames(global);
@@ -139,7 +145,8 @@ void Complete(GlobalRegistration* global) {
   MarkFits(problem, 1.0, &global->solution);
 }
 
-void Finish(GlobalRegistration* global) {
+// Removes outliers at the tolerance of the final noise, and adjusts.
+void RemoveOutliers(GlobalRegistration* global) {
   const MapProblem& problem = global->problem;
   DropWrongSizes(global);
   global->noise = EstimateNoise(problem, global->solution);
@@ -192,22 +199,22 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
   for (const int idx : global.image_idx_of_frame) {
     chosen.push_back(global.images[static_cast<std::size_t>(idx)]);
   }
-  global.problem = MakeMapProblem(chosen, cameras, layout);
-  global.solution = HoldContest(global);
+  global.problem = MakeMapProblem(chosen, cameras, layout, options.num_threads);
+  global.solution = GrowBestMap(global);
   if (global.solution.NumRegistered() >= 2) {
-    Complete(&global);
-    Finish(&global);
+    RegisterAllFrames(&global);
+    RemoveOutliers(&global);
   }
   if (global.solution.NumRegistered() < 2) {
     throw DataError("no two images agree on the places of at least " +
                     std::to_string(options.min_num_inliers) +
-                    " markers that both see: is the camera calibration of these images, the marker "
-                    "length right, and do the pictures overlap?");
+                    " markers that both see; check that the camera calibration belongs to these "
+                    "images, that the marker length is right, and that the pictures overlap");
   }
   if (IsSuspicious(global.noise)) {
     global.notes.push_back(fmt::format(
         "the errors of the registered map ({:.2f} px) are larger than the noise of the corners "
-        "({:.2f} px) explains: the shape may be a wrong one, or the surface moved; take views from "
+        "({:.2f} px) explains: the shape may be wrong, or the surface moved; take views from "
         "more directions",
         global.noise.sigma_px, global.noise.alone_sigma_px));
   }
@@ -219,9 +226,10 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
                                  global.central_image_idx);
     central_idx = static_cast<int>(named - global.image_idx_of_frame.begin());
     if (!global.solution.cam_from_shape[static_cast<std::size_t>(central_idx)]) {
-      throw DataError("--Registration.central_frame " + options.central_frame +
-                      ": the image cannot be registered with the others; leave the option out to "
-                      "let the best one be chosen");
+      throw InputError(OptionName(&RegistrationOptions::central_frame) + " " +
+                       options.central_frame +
+                       ": the image cannot be registered with the others; leave the option out to "
+                       "let the best one be chosen");
     }
   }
   return MakeRegistration(central_idx, std::move(global));

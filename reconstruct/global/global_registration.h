@@ -1,10 +1,10 @@
 // Global registration: a map of all markers grown from several starts, without a central frame.
 //
-// Frames are chosen for what they add, registered by robust resection on all known corners, and
-// every marker is placed by the consensus of all frames that see it; both planar solutions stay
-// until views decide. Everything is adjusted together (reconstruct/global/map_adjustment.h) again
-// and again while the map grows, and the map that explains most corners best is kept. Steps in
-// reconstruct/README.md.
+// Frames are selected by their gain in precision and registered by robust resection on all known
+// corners; every marker is placed by the consensus of all frames that see it, and both planar
+// solutions are kept until the views decide. The whole map is adjusted (map_adjustment.h)
+// repeatedly while it grows, and the map that explains the corners best is kept. The steps are
+// listed in reconstruct/README.md.
 
 #pragma once
 
@@ -16,9 +16,9 @@
 
 namespace velamap {
 
-// RegisterFrames() with RegistrationMethod::kGlobal; the same contract. Throws DataError too when
-// nothing consistent is found. A result whose errors are larger than the noise of the corners
-// explains is returned with a note that says so.
+// RegisterFrames() with RegistrationMethod::kGlobal, and the same contract. Also throws DataError
+// when no consistent map is found. Adds a note to a result whose errors are larger than the noise
+// of the corners explains.
 Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
                                     const std::map<CameraId, Camera>& cameras, const Layout& layout,
                                     const RegistrationOptions& options);

@@ -8,8 +8,7 @@
 namespace velamap {
 namespace {
 
-// Moves the solution so that the central frame's camera is the origin, and to metres by the median
-// marker.
+// Transforms the solution to the camera of the central frame, and to metres by the median marker.
 void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
   MapSolution& solution = global->solution;
   const double scale = 1 / global->MedianScale();

@@ -1,4 +1,4 @@
-// The state of a global registration while it is made.
+// The state of a global registration.
 
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace velamap {
 
-// What global registration decides, with the reasons.
+// The input, and the decisions with their reasons.
 struct GlobalRegistration {
   const RegistrationOptions& options;
   std::vector<const DatabaseImage*> images;  // all with markers
@@ -29,12 +29,13 @@ struct GlobalRegistration {
   std::vector<std::string> notes;
 
   MapGrowthOptions Growth() const {
-    return {options.min_num_inliers, 0, true, static_cast<std::uint32_t>(options.random_seed)};
+    return {options.min_num_inliers, 0, true, static_cast<std::uint32_t>(options.random_seed),
+            options.num_threads};
   }
   int NumFits(int marker_idx) const;  // observations of the marker that fit
   int NumFitsInFrame(int frame_idx) const;
-  double MedianScale() const;  // over the markers that two frames at least see
-  // Take a frame or a marker out of the solution.
+  double MedianScale() const;  // over the markers that at least two frames see
+  // Remove a frame or a marker from the solution.
   void LeaveOut(int frame_idx, const std::string& reason);
   void Drop(int marker_idx, const std::string& reason);
 };

@@ -165,7 +165,7 @@ bool MapReprojectionCost::Evaluate(double const* const* parameters, double* resi
     Eigen::Vector2d::Map(residuals + 2 * i) =
         px_from_ray * (x.hnormalized() - observation_.rays[corner_idx]);
     if (jacobians == nullptr) continue;
-    const Eigen::Matrix<double, 2, 3> px_from_x = px_from_ray * RayFromPoint(x);
+    const Eigen::Matrix<double, 2, 3> px_from_x = px_from_ray * RayByPoint(x);
     if (jacobians[0] != nullptr) {
       Eigen::Map<FrameJacobian> jacobian(jacobians[0]);
       jacobian.middleRows<2>(2 * i).leftCols<4>() =

@@ -1,9 +1,10 @@
 // Adjustment of a whole map: all frames' poses and all markers' places at once.
 //
-// Residuals of an observation: (projected - seen corner) / sigma_px, 8 numbers with one Cauchy
-// loss; of a marker: log(scale) / kScaleSigma, with a Cauchy loss too, so that the scale of the
-// whole is near the median of what the markers say. Markers stay squares here: that keeps a map of
-// few views well-posed. Cloth bends them by little, which the bundle adjustment that follows finds.
+// Residuals of an observation are (projected - observed corner) / sigma_px, 8 numbers with a joint
+// Cauchy loss. The residual of a marker is log(scale) / kScaleSigma, with a Cauchy loss too, so
+// that the scale of the map is near the median of its markers. Markers are squares here, which
+// keeps a map of few views well-posed; the bundle adjustment that follows finds the small bends of
+// cloth.
 
 #pragma once
 
@@ -15,12 +16,12 @@ namespace velamap {
 
 struct MapAdjustmentOptions {
   int max_num_iterations = 10;
-  double tolerance = 1e-4;  // relative change of the cost that ends it
+  double tolerance = 1e-4;  // relative change of the cost at convergence
 };
 
-// Uses observations that fit, of registered frames and placed markers that at least two of them
-// see. A marker with two places takes part with the better one. The first registered frame stays
-// where it is.
+// Adjusts the registered frames and the placed markers that at least two of them see, on the
+// observations that fit. A marker with two places takes part with the better one. The first
+// registered frame is held.
 void AdjustMap(const MapProblem& problem, const MapAdjustmentOptions& options,
                MapSolution* solution);
 

@@ -10,16 +10,16 @@
 namespace velamap {
 namespace {
 
-// A side that differs from the others' median by more than this factor is no matter of print.
+// Errors of print do not change a side by more than this factor from the median of the others.
 constexpr double kMaxSizeRatio = 1.25;
-// An id stands at two places when the second has this part of the support of the first.
+// An id is at two places when the second has at least this part of the support of the first.
 constexpr double kRivalRatio = 0.6;
-// A frame whose corners scatter this many times as much as all is blurred.
+// A frame is blurred when its corners scatter this many times as much as all corners.
 constexpr double kBlurRatio = 3.0;
 constexpr int kMinViewsWithoutBlurred = 3;
 
-// As if its square were marker `as_marker_idx`, with `quarters` turns in the numbers of its
-// corners.
+// Whether the observation fits the place of marker `as_marker_idx`, with its corners renumbered by
+// `quarters` turns.
 bool FitsAs(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
             int quarters) {
   MapObservation observation = global.problem.Observation(observation_idx);
@@ -34,8 +34,8 @@ bool FitsAs(const GlobalRegistration& global, int observation_idx, int as_marker
                            places.front()) <= GrowthTolerance(observation);
 }
 
-// These observations of one marker see a square that is known by another id, from so many more
-// frames that here it was misread.
+// Whether these observations of one marker show another one, which so many more frames see that the
+// id was misread here.
 bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
                       const std::vector<int>& observation_idxs) {
   const auto count = static_cast<double>(observation_idxs.size());
@@ -55,9 +55,10 @@ bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
   return false;
 }
 
-// They see the marker where it stands, but number its corners from a wrong one: no second place.
-bool SeeItTurned(const GlobalRegistration& global, int marker_idx,
-                 const std::vector<int>& observation_idxs) {
+// Whether the observations see the marker at its place with wrongly numbered corners, which makes
+// no second place.
+bool SeeMarkerRotated(const GlobalRegistration& global, int marker_idx,
+                      const std::vector<int>& observation_idxs) {
   if (global.solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].empty()) return false;
   return std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
     for (int quarters = 1; quarters < kNumCorners; ++quarters) {
@@ -82,11 +83,11 @@ void VoteOnIds(GlobalRegistration* global) {
     const int num_elsewhere = static_cast<int>(elsewhere_idxs.size());
     if (num_elsewhere < kRivalRatio * num_here ||
         SeeAnotherMarker(*global, marker_idx, elsewhere_idxs) ||
-        (num_elsewhere < num_here && SeeItTurned(*global, marker_idx, elsewhere_idxs))) {
+        (num_elsewhere < num_here && SeeMarkerRotated(*global, marker_idx, elsewhere_idxs))) {
       continue;
     }
-    global->Drop(marker_idx, fmt::format("its id stands at two places, in {} and in {} frames, "
-                                         "and nothing tells which is right",
+    global->Drop(marker_idx, fmt::format("its id is at two places, in {} and in {} frames, and "
+                                         "nothing decides between them",
                                          num_here, num_elsewhere));
   }
 }
@@ -107,7 +108,7 @@ void DropWrongSizes(GlobalRegistration* global) {
 }
 
 void LeaveOutBlurredFrames(GlobalRegistration* global) {
-  constexpr double kMinFactor = 0.3;  // nothing is blurred by a part of the nominal noise
+  constexpr double kMinFactor = 0.3;  // no frame is blurred with noise far below the nominal one
   const double general_factor = std::max(global->noise.factor, kMinFactor);
   for (std::size_t idx = 0; idx < global->problem.frames.size(); ++idx) {
     const double factor = global->noise.factor_of_frame[idx];

@@ -1,5 +1,4 @@
-// What is taken out of a grown map: markers and frames that do not belong in it, each with its
-// reason.
+// Removes markers and frames that do not belong in a grown map, each with its reason.
 
 #pragma once
 
@@ -7,21 +6,22 @@
 
 namespace velamap {
 
-// Ids that stand at two places with support for both are nobody's.
+// Drops markers whose id is seen at two places with support for both.
 void VoteOnIds(GlobalRegistration* global);
 
-// Markers whose side differs from the others' by far more than print explains.
+// Drops markers whose side differs from the others by far more than their print explains.
 void DropWrongSizes(GlobalRegistration* global);
 
-// Frames whose corners scatter far more than all others' go, where their markers are seen well
-// enough without them. Needs `noise`.
+// Leaves out frames whose corners scatter far more than those of the others, where other frames see
+// their markers often enough. Needs `noise`.
 void LeaveOutBlurredFrames(GlobalRegistration* global);
 
-// Of a video, all but the max_num_frames that add most to the precision. Needs `noise`.
+// Leaves out all frames of a video but the max_num_frames that add most to the precision. Needs
+// `noise`.
 void LimitFrames(GlobalRegistration* global);
 
-// Markers and frames that too little is left of, again and again, because each costs others
-// support.
+// Drops markers that too few frames see and frames that see too few markers, until none is left:
+// each costs others support.
 void DropRest(GlobalRegistration* global);
 
 }  // namespace velamap

@@ -1,7 +1,10 @@
 #include "reconstruct/global/map_growth.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
+#include "importer/base/parallel.h"
 #include "reconstruct/global/map_adjustment.h"
 #include "reconstruct/global/map_intersection.h"
 #include "reconstruct/global/map_resection.h"
@@ -9,11 +12,12 @@
 namespace velamap {
 namespace {
 
-// Part of the known markers in a frame that has to agree with its pose.
+// Ratio of the known markers in a frame that have to agree with its pose.
 constexpr double kMinInlierRatio = 0.4;
-// Frames that see at least this part of what the best one sees of the map join in the same round.
+// Frames join in the same round when the map has at least this ratio of the views on their markers
+// that it has on those of the best frame.
 constexpr double kJoinRatio = 0.5;
-// Of so many frames the map is good enough to take all others that see it at once.
+// A map of this many frames is good enough for all frames that see it to join at once.
 constexpr int kManyFrames = 16;
 
 int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx) {
@@ -28,17 +32,17 @@ bool IsRegistered(const MapSolution& solution, int frame_idx) {
   return solution.cam_from_shape[static_cast<std::size_t>(frame_idx)].has_value();
 }
 
-// Number of views on the markers that a frame sees and the map knows; two views at most count,
-// which confirm a place.
-int Knowledge(const MapProblem& problem, const MapSolution& solution,
-              const std::vector<int>& num_fits, int frame_idx) {
-  int knowledge = 0;
+// Number of views that the map has of the markers that a frame sees; of each marker two count at
+// most, because two confirm its place.
+int NumViewsOfSeen(const MapProblem& problem, const MapSolution& solution,
+                   const std::vector<int>& num_fits, int frame_idx) {
+  int num_views = 0;
   for (const int idx : problem.Frame(frame_idx).observation_idxs) {
     const std::size_t marker_idx = static_cast<std::size_t>(problem.Observation(idx).marker_idx);
     if (solution.shape_from_marker[marker_idx].empty()) continue;
-    knowledge += num_fits[marker_idx] >= 2 ? 2 : 1;
+    num_views += num_fits[marker_idx] >= 2 ? 2 : 1;
   }
-  return knowledge;
+  return num_views;
 }
 
 int NumKnown(const MapProblem& problem, const MapSolution& solution, int frame_idx) {
@@ -52,7 +56,7 @@ int NumKnown(const MapProblem& problem, const MapSolution& solution, int frame_i
 
 struct Candidate {
   int frame_idx;
-  int knowledge;
+  int num_views;
 };
 
 // Unregistered frames that see something of the map, those that see most first.
@@ -69,29 +73,32 @@ std::vector<Candidate> FindCandidates(const MapProblem& problem, const MapSoluti
         NumKnown(problem, solution, frame_idx) < options.min_num_inliers) {
       continue;
     }
-    candidates.push_back({frame_idx, Knowledge(problem, solution, num_fits, frame_idx)});
+    candidates.push_back({frame_idx, NumViewsOfSeen(problem, solution, num_fits, frame_idx)});
   }
   std::stable_sort(
       candidates.begin(), candidates.end(),
-      [](const Candidate& a, const Candidate& b) { return a.knowledge > b.knowledge; });
+      [](const Candidate& a, const Candidate& b) { return a.num_views > b.num_views; });
   return candidates;
 }
 
-bool RegisterFrame(const MapProblem& problem, const MapGrowthOptions& options, int frame_idx,
-                   double tolerance_factor, bool accept_ambiguous, MapSolution* solution) {
+// The pose at which a frame joins the map; nothing where too few markers support one, or where two
+// poses explain the frame.
+std::optional<Rigid3> FindPose(const MapProblem& problem, const MapSolution& solution,
+                               const MapGrowthOptions& options, int frame_idx,
+                               double tolerance_factor, bool accept_ambiguous) {
   const auto hypotheses =
-      ResectFrame(problem, *solution, frame_idx, tolerance_factor, options.random_seed);
-  if (hypotheses.empty() || (!accept_ambiguous && IsAmbiguous(hypotheses))) return false;
+      ResectFrame(problem, solution, frame_idx, tolerance_factor, options.random_seed);
+  if (hypotheses.empty() || (!accept_ambiguous && IsAmbiguous(hypotheses))) return std::nullopt;
   const double num_inliers = static_cast<double>(hypotheses.front().observation_idxs.size());
   if (num_inliers < options.min_num_inliers ||
-      num_inliers < kMinInlierRatio * NumKnown(problem, *solution, frame_idx)) {
-    return false;
+      num_inliers < kMinInlierRatio * NumKnown(problem, solution, frame_idx)) {
+    return std::nullopt;
   }
-  solution->cam_from_shape[static_cast<std::size_t>(frame_idx)] = hypotheses.front().cam_from_shape;
-  return true;
+  return hypotheses.front().cam_from_shape;
 }
 
-// Registers a batch; returns the number of frames that joined.
+// Registers a batch; returns the number of frames that joined. A frame's pose depends on the places
+// of markers only, so that poses are found as many at a time as there are threads.
 int RegisterBatch(const MapProblem& problem, const std::vector<int>& frame_idxs,
                   const MapGrowthOptions& options, double tolerance_factor, bool accept_ambiguous,
                   MapSolution* solution) {
@@ -99,14 +106,26 @@ int RegisterBatch(const MapProblem& problem, const std::vector<int>& frame_idxs,
   const int num_registered = solution->NumRegistered();
   int room = num_registered < kManyFrames ? num_registered : static_cast<int>(candidates.size());
   if (options.max_num_frames > 0) room = std::min(room, options.max_num_frames - num_registered);
+  const std::size_t num_at_once = static_cast<std::size_t>(NumThreads(options.num_threads));
+  std::vector<std::optional<Rigid3>> poses(candidates.size());
   int num_joined = 0;
-  for (const Candidate& candidate : candidates) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (num_joined >= room) break;
-    if (num_joined > 0 && candidate.knowledge < kJoinRatio * candidates.front().knowledge) break;
-    num_joined += RegisterFrame(problem, options, candidate.frame_idx, tolerance_factor,
-                                accept_ambiguous, solution);
+    if (num_joined > 0 && candidates[i].num_views < kJoinRatio * candidates.front().num_views) {
+      break;
+    }
+    if (i % num_at_once == 0) {
+      ParallelFor(
+          std::min(num_at_once, candidates.size() - i), options.num_threads, [&](std::size_t k) {
+            poses[i + k] = FindPose(problem, *solution, options, candidates[i + k].frame_idx,
+                                    tolerance_factor, accept_ambiguous);
+          });
+    }
+    if (!poses[i]) continue;
+    solution->cam_from_shape[static_cast<std::size_t>(candidates[i].frame_idx)] = poses[i];
+    ++num_joined;
     // One of an ambiguous pair may settle the rest.
-    if (accept_ambiguous && num_joined > 0) break;
+    if (accept_ambiguous) break;
   }
   return num_joined;
 }
@@ -115,13 +134,13 @@ int RegisterBatch(const MapProblem& problem, const std::vector<int>& frame_idxs,
 
 void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
              const MapGrowthOptions& options, MapSolution* solution) {
-  // While few frames are in, the map is not precise.
+  // The map is not precise while it has few frames.
   constexpr int kFewFrames = 6;
   constexpr double kSettledRatio = 0.6;
   const auto tolerance_factor = [solution] {
     return solution->NumRegistered() < kFewFrames ? 2.0 : 1.0;
   };
-  PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution);
+  PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution, options.num_threads);
   while (options.max_num_frames == 0 || solution->NumRegistered() < options.max_num_frames) {
     int num_joined = 0;
     for (const bool accept_ambiguous : {false, true}) {
@@ -131,11 +150,13 @@ void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
     }
     if (num_joined == 0) break;
     MarkFits(problem, tolerance_factor(), solution);
-    PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution);
+    PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution,
+                          options.num_threads);
     if (!options.adjust) continue;
     AdjustMap(problem, {4, 1e-3}, solution);
     MarkFits(problem, tolerance_factor(), solution);
-    PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution);
+    PlaceUnsettledMarkers(problem, kSettledRatio, tolerance_factor(), solution,
+                          options.num_threads);
   }
 }
 
@@ -152,17 +173,18 @@ bool IsSettled(const MapProblem& problem, const MapSolution& solution, int marke
 }
 
 void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, double tolerance_factor,
-                           MapSolution* solution) {
-  for (std::size_t idx = 0; idx < problem.markers.size(); ++idx) {
+                           MapSolution* solution, int num_threads) {
+  std::vector<std::vector<Sim3>> places = solution->shape_from_marker;
+  ParallelFor(problem.markers.size(), num_threads, [&](std::size_t idx) {
     const int marker_idx = static_cast<int>(idx);
-    if (IsSettled(problem, *solution, marker_idx, settled_ratio)) continue;
-    auto& places = solution->shape_from_marker[idx];
-    places.clear();
+    if (IsSettled(problem, *solution, marker_idx, settled_ratio)) return;
+    places[idx].clear();
     for (const PlaceHypothesis& place :
          PlaceMarker(problem, *solution, marker_idx, tolerance_factor).places) {
-      places.push_back(place.shape_from_marker);
+      places[idx].push_back(place.shape_from_marker);
     }
-  }
+  });
+  solution->shape_from_marker = std::move(places);
   MarkFits(problem, tolerance_factor, solution);
 }
 

@@ -1,5 +1,5 @@
-// From the map of two frames to the map of all: frames and markers in turn, adjusted again and
-// again.
+// Grows the map of two frames to the map of all: registers frames and places markers in turn, with
+// adjustments in between.
 
 #pragma once
 
@@ -15,21 +15,22 @@ struct MapGrowthOptions {
   int max_num_frames = 0;   // stop at so many registered frames; 0: all
   bool adjust = true;       // after every round; a precise map can do without
   std::uint32_t random_seed = 0;
+  int num_threads = 1;  // 0: one a core; never changes the result
 };
 
-// Registers those of `frame_idxs` that can be. Frames that see most of the map come first; a small
-// map takes at most as many at a time as it already has. Ambiguous ones wait until nothing else is
-// left. Frames that failed are tried again whenever the map has grown.
+// Registers those of `frame_idxs` that can be registered. Frames that see most of the map come
+// first; a small map takes at most as many at a time as it already has. Ambiguous frames wait until
+// no others are left. Frames that failed are tried again whenever the map has grown.
 void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,
              const MapGrowthOptions& options, MapSolution* solution);
 
-// Places markers anew by the consensus of all registered frames, but those that are where at least
-// `settled_ratio` of the frames that see them have them.
+// Places all markers that are not settled (see IsSettled) by the consensus of all registered
+// frames.
 void PlaceUnsettledMarkers(const MapProblem& problem, double settled_ratio, double tolerance_factor,
-                           MapSolution* solution);
+                           MapSolution* solution, int num_threads = 1);
 
-// Whether a marker has one place, and at least `settled_ratio` of the registered frames that see
-// it, two at least, agree with that.
+// Whether a marker has one place and the registered frames that see it agree with that: at least
+// two of them, and at least the ratio `settled_ratio`.
 bool IsSettled(const MapProblem& problem, const MapSolution& solution, int marker_idx,
                double settled_ratio);
 

@@ -11,10 +11,14 @@
 namespace velamap {
 namespace {
 
-// Frames whose own solutions are tried, and that form pairs with others.
+// Frames whose planar solutions are hypotheses, and that form pairs with others.
 constexpr std::size_t kMaxViews = 8;
 constexpr std::size_t kMaxRefined = 3;
-// Rays nearer than this to parallel do not fix a depth, rad.
+// Places nearer than this to each other are one: half a side of the marker, and 0.2 rad (11
+// degrees). The two planar solutions of a marker differ by twice its tilt, and a coarser rotation
+// would merge those of a marker that is tilted by 10 degrees.
+constexpr double kSamePlaceInSides = 0.5, kSameRotation = 0.2;
+// Rays nearer than this to parallel do not determine a depth, rad.
 constexpr double kMinParallax = 0.02;
 
 struct View {
@@ -51,7 +55,7 @@ Sim3 Place(const Rigid3& shape_from_marker) {
   return {1.0, shape_from_marker.rotation, shape_from_marker.translation};
 }
 
-// The corners where the rays of two views pass each other nearest, as a square.
+// The square through the midpoints between the rays of two views.
 std::optional<Sim3> Triangulate(const MapProblem& problem, const View& a, const View& b) {
   const Rigid3 shape_from_a = Inverse(*a.cam_from_shape), shape_from_b = Inverse(*b.cam_from_shape);
   std::vector<Eigen::Vector3d> in_shape;
@@ -75,7 +79,8 @@ std::optional<Sim3> Triangulate(const MapProblem& problem, const View& a, const 
   return place;
 }
 
-// At most `max_count` of the views, spread by the golden ratio: even steps would miss what recurs.
+// At most `max_count` of the views, spread by the golden ratio, because even steps may coincide
+// with a periodic motion.
 std::vector<std::size_t> SpreadIdxs(std::size_t size, std::size_t max_count) {
   std::vector<std::size_t> idxs(std::min(size, max_count));
   if (size <= max_count) {
@@ -109,10 +114,9 @@ std::vector<Sim3> Candidates(const MapProblem& problem, const std::vector<View>&
   return candidates;
 }
 
-// Places nearer than this to each other are one: half a side and a quarter of a right angle.
 bool IsSame(const Sim3& a, const Sim3& b, double length_m) {
-  return (a.translation - b.translation).norm() < 0.5 * length_m * a.scale &&
-         a.rotation.angularDistance(b.rotation) < 0.2;
+  return (a.translation - b.translation).norm() < kSamePlaceInSides * length_m * a.scale &&
+         a.rotation.angularDistance(b.rotation) < kSameRotation;
 }
 
 std::vector<PlaceHypothesis> Distinct(std::vector<PlaceHypothesis> hypotheses, double length_m,
@@ -151,7 +155,7 @@ PlaceHypothesis Refine(const MapProblem& problem, const MapSolution& solution,
 
 std::vector<PlaceHypothesis> RankPlaces(const MapProblem& problem, const MapSolution& solution,
                                         const std::vector<View>& views, double tolerance_factor) {
-  constexpr double kCoarse = 3.0;  // candidates are coarse
+  constexpr double kCoarse = 3.0;  // before candidates are refined
   const double length_m =
       2 * problem.Marker(views.front().observation->marker_idx).corners_in_marker[1].x();
   std::vector<PlaceHypothesis> hypotheses;

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <limits>
 
+#include "importer/base/parallel.h"
+#include "importer/camera/camera_jacobian.h"
 #include "reconstruct/geometry/marker_pose.h"
 
 namespace velamap {
@@ -12,24 +13,9 @@ namespace {
 
 // Sigma of a coordinate of a corner where the detector gives none, px.
 constexpr double kDefaultSigmaPx = 0.2;
-// What the detector's sigma does not know: the lens, and squares that are bent (part of the side).
+// Errors that the detector's sigma does not cover: the lens, and bent squares (part of the side).
 constexpr double kSigmaFloorPx = 0.05;
 constexpr double kBendSigma = 0.004;
-
-// Derivative of the image position by the ray, px.
-std::optional<Eigen::Matrix2d> PxFromRay(const Camera& camera, const Eigen::Vector2d& ray) {
-  constexpr double kStep = 1e-6;
-  Eigen::Matrix2d px_from_ray;
-  for (int axis = 0; axis < 2; ++axis) {
-    Eigen::Vector3d before(ray.x(), ray.y(), 1), after = before;
-    before[axis] -= kStep;
-    after[axis] += kStep;
-    const auto px_before = ImageFromCam(camera, before), px_after = ImageFromCam(camera, after);
-    if (!px_before || !px_after) return std::nullopt;
-    px_from_ray.col(axis) = (*px_after - *px_before) / (2 * kStep);
-  }
-  return px_from_ray;
-}
 
 double SigmaPx(const MarkerDetection& detection, double side_px) {
   double sum = 0.0;
@@ -47,10 +33,9 @@ std::optional<MapObservation> Observe(const MarkerDetection& detection, const Ca
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     const auto ray = CamFromImage(camera, corners_px[i]);
     if (!ray) return std::nullopt;
-    const auto px_from_ray = PxFromRay(camera, *ray);
-    if (!px_from_ray) return std::nullopt;
     observation.rays[i] = *ray;
-    observation.px_from_ray[i] = *px_from_ray;
+    observation.px_from_ray[i] =
+        ImageFromRayWithJacobian(camera.model, camera.params.data(), *ray).by_ray;
     observation.side_px += (corners_px[(i + 1) % kNumCorners] - corners_px[i]).norm() / kNumCorners;
   }
   const auto poses = EstimateMarkerPoses(camera, corners_px, length_m);
@@ -63,17 +48,6 @@ std::optional<MapObservation> Observe(const MarkerDetection& detection, const Ca
   return observation;
 }
 
-// Calls `work(idx)` for 0 <= idx < count, the odd ones in a second thread.
-template <typename Work>
-void InParallel(std::size_t count, const Work& work) {
-  const auto every_second = [count, &work](std::size_t first) {
-    for (std::size_t idx = first; idx < count; idx += 2) work(idx);
-  };
-  std::future<void> odd = std::async(std::launch::async, every_second, 1);
-  every_second(0);
-  odd.get();
-}
-
 }  // namespace
 
 int MapSolution::NumRegistered() const {
@@ -82,7 +56,8 @@ int MapSolution::NumRegistered() const {
 }
 
 MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
-                          const std::map<CameraId, Camera>& cameras, const Layout& layout) {
+                          const std::map<CameraId, Camera>& cameras, const Layout& layout,
+                          int num_threads) {
   MapProblem problem;
   std::map<int, int> marker_idx_of;
   for (const DatabaseImage* image : images) {
@@ -96,7 +71,7 @@ MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
     problem.markers.push_back({marker_id, CornersInMarker(MarkerLength(layout, marker_id)), {}});
   }
   std::vector<std::vector<std::optional<MapObservation>>> observed(images.size());
-  InParallel(images.size(), [&](std::size_t frame_idx) {
+  ParallelFor(images.size(), num_threads, [&](std::size_t frame_idx) {
     for (const MarkerDetection& marker : images[frame_idx]->detections.markers) {
       observed[frame_idx].push_back(Observe(marker, *problem.frames[frame_idx].camera,
                                             MarkerLength(layout, marker.marker_id)));

@@ -1,5 +1,6 @@
-// The problem that global registration solves, and a solution of it: poses of frames and places of
-// markers. Corners are undistorted once; errors are in px of the image nonetheless.
+// The problem of global registration and its solution: poses of frames and places of markers.
+// Corners are undistorted once; the derivative px_from_ray converts errors of rays to px of the
+// image.
 
 #pragma once
 
@@ -25,7 +26,7 @@ struct MapObservation {
   std::array<Eigen::Matrix2d, kNumCorners> px_from_ray;  // derivative of the image position there
   double sigma_px = 0.0;                                 // of a coordinate of a corner
   double side_px = 0.0;                                  // mean length of a side in the image
-  std::vector<Rigid3> cam_from_marker;  // the marker alone: one or two, the better first
+  std::vector<Rigid3> cam_from_marker;  // from this observation alone: one or two, the better first
   double alone_error_px = 0.0;          // RMS over the corners of the better one
 };
 
@@ -53,46 +54,49 @@ struct MapProblem {
   const MapMarker& Marker(int idx) const { return markers[static_cast<std::size_t>(idx)]; }
 };
 
-// A marker is a square of its nominal side times the scale. The scale takes up what is common to
-// all its views (print, a corner estimator that sees it too small); a prior holds it near 1.
+// A marker is a square of its nominal side times the scale. The scale absorbs errors that all views
+// of a marker share (its print, a biased corner estimator); a prior holds it near 1.
 struct MapSolution {
   std::vector<std::optional<Rigid3>> cam_from_shape;  // by frame_idx; none: not registered
-  // By marker_idx: none where the marker has no place yet, two where views do not yet tell two
-  // places apart (the better first).
+  // By marker_idx: none where the marker has no place yet, two where the views do not decide
+  // between two places yet (the better first).
   std::vector<std::vector<Sim3>> shape_from_marker;
   std::vector<char> fits;  // by observation_idx: the observation agrees with frame and marker
 
   int NumRegistered() const;
 };
 
-// Poses every marker alone. `images` in the order that frame_idx shall have.
+// Estimates the pose of every marker alone. The order of `images` becomes that of frame_idx.
+// `num_threads` 0: one a core.
 MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
-                          const std::map<CameraId, Camera>& cameras, const Layout& layout);
+                          const std::map<CameraId, Camera>& cameras, const Layout& layout,
+                          int num_threads = 0);
 
 MapSolution EmptySolution(const MapProblem& problem);
 
-// RMS distance of the four corners from where the pose and the place project them, px. Infinite for
-// a corner that is not in front of the camera.
+// RMS distance of the four corners from their projections with the given pose and place, px.
+// Infinite where a corner is not in front of the camera.
 double ReprojectionError(const MapProblem& problem, const MapObservation& observation,
                          const Rigid3& cam_from_shape, const Sim3& shape_from_marker);
 
-// The smaller one where the marker has two places; infinite where frame or marker has none.
+// The same for a solution: the smaller error where the marker has two places; infinite where the
+// frame has no pose or the marker no place.
 double ReprojectionError(const MapProblem& problem, const MapSolution& solution,
                          const MapObservation& observation);
 
-// Error up to which an observation takes part while the map grows and is not precise yet, px: a
-// tenth of the marker's side, 2 px at least. A wrong id or corner is off by a side or more.
+// Largest error (px) of an inlier while the map grows and is not precise yet: a tenth of the
+// marker's side, but at least 2 px. A wrong id or corner is off by a side or more.
 double GrowthTolerance(const MapObservation& observation);
 
 // Marks the observations of registered frames and placed markers that are within
 // `factor` * GrowthTolerance.
 void MarkFits(const MapProblem& problem, double factor, MapSolution* solution);
 
-// Shape points (m) of a marker's corners.
+// The corners of a marker in the shape frame, m.
 std::array<Eigen::Vector3d, kNumCorners> CornersInShape(const MapMarker& marker,
                                                         const Sim3& shape_from_marker);
 
-// c_from_a of a rigid motion after a similarity.
+// c_from_a, of a similarity followed by a rigid motion.
 inline Sim3 operator*(const Rigid3& c_from_b, const Sim3& b_from_a) {
   return {b_from_a.scale, (c_from_b.rotation * b_from_a.rotation).normalized(),
           c_from_b * b_from_a.translation};

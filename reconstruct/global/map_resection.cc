@@ -5,23 +5,23 @@
 #include <cmath>
 #include <random>
 
-#include "importer/geometry/pose_step.h"
-#include "importer/geometry/triple_pose.h"
+#include "importer/geometry/p3p.h"
+#include "importer/geometry/ransac.h"
 #include "reconstruct/global/map_refinement.h"
 
 namespace velamap {
 namespace {
 
-// Few markers give hypotheses one by one; of many, triples of corners are far better.
+// Single markers supply hypotheses where there are few; where there are many, triples of corners
+// are far better.
 constexpr std::size_t kMaxSingles = 12;
-// By the share of markers that agree with the best pose so far; 50 are enough for a third of wrong
-// markers.
+// 50 samples are enough where a third of the markers is wrong.
 constexpr int kMinTriples = 12, kMaxTriples = 50;
-// Markers on which hypotheses are ranked before the best are refined on all.
+// Number of markers on which hypotheses are ranked; the best are refined on all.
 constexpr std::size_t kMaxRanking = 24;
 constexpr std::size_t kMaxRefined = 4;
 constexpr std::size_t kMaxHypotheses = 3;
-// Poses nearer than this are one: rotation, and translation as a part of the distance.
+// Poses nearer than this count as one: rotation in rad, translation relative to the distance.
 constexpr double kSameRotation = 0.08, kSameTranslation = 0.05;
 
 struct KnownMarker {
@@ -42,7 +42,7 @@ std::vector<KnownMarker> FindKnown(const MapProblem& problem, const MapSolution&
   return known;
 }
 
-// Scores the pose; where a marker has two places the better one counts.
+// Scores the pose. Where a marker has two places, the better one counts.
 PoseHypothesis Evaluate(const MapProblem& problem, const std::vector<KnownMarker>& known,
                         double tolerance_factor, const Rigid3& cam_from_shape,
                         std::vector<PlacedObservation>* agreeing = nullptr) {
@@ -66,7 +66,7 @@ PoseHypothesis Evaluate(const MapProblem& problem, const std::vector<KnownMarker
   return hypothesis;
 }
 
-// At most `max_count`, evenly over the list.
+// At most `max_count` markers, evenly over the list.
 std::vector<KnownMarker> Thinned(const std::vector<KnownMarker>& known, std::size_t max_count) {
   if (known.size() <= max_count) return known;
   std::vector<KnownMarker> thinned;
@@ -89,59 +89,70 @@ std::vector<Rigid3> SingleMarkerPoses(const std::vector<KnownMarker>& known) {
   return poses;
 }
 
-// Poses that see a corner of each of three markers where they are; none for a marker drawn twice.
-std::vector<Rigid3> TriplePoses(const MapProblem& problem, const std::vector<KnownMarker>& known,
-                                std::mt19937* generator) {
-  std::vector<Rigid3> poses;
-  std::array<std::size_t, 3> idxs{};
-  std::array<Eigen::Vector3d, 3> x_in_shape;
-  std::array<Eigen::Vector2d, 3> rays;
-  for (std::size_t i = 0; i < 3; ++i) {
-    idxs[i] = RandomIndex(generator, known.size());
-    const std::size_t corner = RandomIndex(generator, kNumCorners);
-    const KnownMarker& marker = known[idxs[i]];
-    x_in_shape[i] = marker.places->front() *
-                    problem.Marker(marker.observation->marker_idx).corners_in_marker[corner];
-    rays[i] = marker.observation->rays[corner];
-  }
-  if (idxs[0] == idxs[1] || idxs[1] == idxs[2] || idxs[0] == idxs[2]) return poses;
-  for (const TriplePose& pose : PosesOfTriple(x_in_shape, rays)) {
-    PoseStep step;
-    step << pose.rotation_vector, pose.translation;
-    poses.push_back(Moved({}, step));
-  }
-  return poses;
-}
+// See ransac.h. Scores hypotheses on `ranking`, which may be a part of the markers `known`.
+class FrameConsensus {
+ public:
+  using Model = Rigid3;
+  using Hypothesis = PoseHypothesis;
+  static constexpr int kSampleSize = 3;
 
-// All poses that single markers and triples give, ranked on some of the markers.
-std::vector<PoseHypothesis> DrawHypotheses(const MapProblem& problem,
-                                           const std::vector<KnownMarker>& known,
-                                           const std::vector<KnownMarker>& ranking,
-                                           double tolerance_factor, std::uint32_t random_seed) {
-  std::vector<PoseHypothesis> hypotheses;
-  std::size_t most_agreeing = 0;
-  const auto add = [&](const std::vector<Rigid3>& poses) {
-    for (const Rigid3& pose : poses) {
-      hypotheses.push_back(Evaluate(problem, ranking, tolerance_factor, pose));
-      most_agreeing = std::max(most_agreeing, hypotheses.back().observation_idxs.size());
+  FrameConsensus(const MapProblem& problem, const std::vector<KnownMarker>& known,
+                 const std::vector<KnownMarker>& ranking, double tolerance_factor)
+      : problem_(problem), known_(known), ranking_(ranking), tolerance_factor_(tolerance_factor) {}
+
+  // Poses that fit one corner of each of three markers exactly.
+  std::vector<Rigid3> Generate(std::mt19937* generator) const {
+    const auto sample = SampleCorners(known_.size(), generator);
+    if (!sample) return {};
+    std::array<Eigen::Vector3d, 3> x_in_shape;
+    std::array<Eigen::Vector2d, 3> rays;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [marker_idx, corner_idx] = (*sample)[i];
+      const KnownMarker& marker = known_[marker_idx];
+      x_in_shape[i] = marker.places->front() *
+                      problem_.Marker(marker.observation->marker_idx).corners_in_marker[corner_idx];
+      rays[i] = marker.observation->rays[corner_idx];
     }
-  };
-  add(SingleMarkerPoses(Thinned(known, kMaxSingles)));
-  // Where a marker has two places only one of them is drawn, so that the share says less.
+    return SolveP3P(x_in_shape, rays);
+  }
+
+  PoseHypothesis Score(const Rigid3& cam_from_shape) const {
+    return Evaluate(problem_, ranking_, tolerance_factor_, cam_from_shape);
+  }
+
+  double InlierRatio(const PoseHypothesis& hypothesis) const {
+    return static_cast<double>(hypothesis.observation_idxs.size()) /
+           static_cast<double>(ranking_.size());
+  }
+
+  PoseHypothesis Refine(const PoseHypothesis& hypothesis) const {
+    std::vector<PlacedObservation> agreeing;
+    Evaluate(problem_, ranking_, tolerance_factor_, hypothesis.cam_from_shape, &agreeing);
+    if (agreeing.empty()) return hypothesis;
+    return Score(RefineFramePose(problem_, agreeing, hypothesis.cam_from_shape));
+  }
+
+  bool HasSameInliers(const PoseHypothesis& a, const PoseHypothesis& b) const {
+    return a.observation_idxs == b.observation_idxs;
+  }
+
+ private:
+  const MapProblem& problem_;
+  const std::vector<KnownMarker>& known_;
+  const std::vector<KnownMarker>& ranking_;
+  const double tolerance_factor_;
+};
+
+RansacOptions SamplingOptions(const std::vector<KnownMarker>& known, std::uint32_t random_seed) {
+  RansacOptions options{kMinTriples, kMaxTriples, random_seed};
+  // Where a marker has two places, samples use one of them only, and the inlier ratio says less
+  // about the number of samples needed.
   const bool is_clear = std::all_of(known.begin(), known.end(), [](const KnownMarker& marker) {
     return marker.places->size() == 1;
   });
-  const auto is_enough = [&](int num_trials) {
-    const double agreeing_part =
-        static_cast<double>(most_agreeing) / static_cast<double>(ranking.size());
-    return num_trials >=
-           (is_clear ? NumTriples(agreeing_part, kMinTriples, kMaxTriples) : kMaxTriples);
-  };
-  std::mt19937 generator(random_seed);
-  for (int trial = 0; known.size() >= 3 && !is_enough(trial); ++trial) {
-    add(TriplePoses(problem, known, &generator));
-  }
-  return hypotheses;
+  if (!is_clear) options.min_num_samples = kMaxTriples;
+  if (known.size() < 3) options.max_num_samples = 0;
+  return options;
 }
 
 bool IsSame(const Rigid3& a, const Rigid3& b) {
@@ -149,7 +160,7 @@ bool IsSame(const Rigid3& a, const Rigid3& b) {
          (a.translation - b.translation).norm() < kSameTranslation * a.translation.norm();
 }
 
-// Keeps the best of those that are nearly the same; ascending cost.
+// Keeps the best of hypotheses that are nearly the same; by ascending cost.
 std::vector<PoseHypothesis> Distinct(std::vector<PoseHypothesis> hypotheses,
                                      std::size_t max_count) {
   std::stable_sort(
@@ -167,24 +178,6 @@ std::vector<PoseHypothesis> Distinct(std::vector<PoseHypothesis> hypotheses,
   return distinct;
 }
 
-PoseHypothesis Refine(const MapProblem& problem, const std::vector<KnownMarker>& known,
-                      double tolerance_factor, PoseHypothesis hypothesis) {
-  constexpr int kMaxRounds = 5;
-  for (int round = 0; round < kMaxRounds; ++round) {
-    std::vector<PlacedObservation> agreeing;
-    Evaluate(problem, known, tolerance_factor, hypothesis.cam_from_shape, &agreeing);
-    if (agreeing.empty()) break;
-    PoseHypothesis refined =
-        Evaluate(problem, known, tolerance_factor,
-                 RefineFramePose(problem, agreeing, hypothesis.cam_from_shape));
-    if (!(refined.cost < hypothesis.cost)) break;
-    const bool is_settled = refined.observation_idxs == hypothesis.observation_idxs;
-    hypothesis = std::move(refined);
-    if (is_settled) break;
-  }
-  return hypothesis;
-}
-
 }  // namespace
 
 std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolution& solution,
@@ -193,22 +186,24 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
   const std::vector<KnownMarker> known = FindKnown(problem, solution, frame_idx);
   // Hypotheses are coarse, so they are ranked with a wider tolerance before they are refined.
   constexpr double kCoarse = 3.0;
+  constexpr int kMaxRounds = 5;
   const std::vector<KnownMarker> ranking = Thinned(known, kMaxRanking);
+  const FrameConsensus coarse(problem, known, ranking, kCoarse * tolerance_factor);
+  const FrameConsensus fine(problem, known, known, tolerance_factor);
   std::vector<PoseHypothesis> refined;
-  for (PoseHypothesis& hypothesis :
-       Distinct(DrawHypotheses(problem, known, ranking, kCoarse * tolerance_factor, random_seed),
-                kMaxRefined)) {
-    const Rigid3 coarse =
-        Refine(problem, ranking, kCoarse * tolerance_factor, std::move(hypothesis)).cam_from_shape;
-    refined.push_back(Refine(problem, known, tolerance_factor,
-                             Evaluate(problem, known, tolerance_factor, coarse)));
+  for (PoseHypothesis& hypothesis : Distinct(Ransac(SamplingOptions(known, random_seed), coarse,
+                                                    SingleMarkerPoses(Thinned(known, kMaxSingles))),
+                                             kMaxRefined)) {
+    const Rigid3 cam_from_shape =
+        RefineHypothesis(coarse, kMaxRounds, std::move(hypothesis)).cam_from_shape;
+    refined.push_back(RefineHypothesis(fine, kMaxRounds, fine.Score(cam_from_shape)));
   }
   return Distinct(std::move(refined), kMaxHypotheses);
 }
 
 bool IsAmbiguous(const std::vector<PoseHypothesis>& hypotheses) {
-  // A hypothesis that explains as many observations, with errors within twice the best ones', is a
-  // rival; the small constant spares the comparison of rounding errors.
+  // A rival explains as many observations at up to twice the cost; the small constant avoids
+  // comparing rounding errors.
   constexpr double kRatio = 2.0, kNegligible = 1e-3;
   if (hypotheses.size() < 2) return false;
   const PoseHypothesis &best = hypotheses[0], &rival = hypotheses[1];

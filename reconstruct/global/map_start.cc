@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kFullParallax = 20 * 3.14159265358979323846 / 180;
 
-// Angle between the directions from which two frames look at a marker, rad; of the combinations of
-// planar solutions the smallest.
+// Angle between the directions from which two frames see a marker, rad; the smallest over the
+// combinations of their planar solutions.
 double Parallax(const MapObservation& a, const MapObservation& b) {
   double largest_cosine = -1.0;
   for (const Rigid3& a_from_marker : a.cam_from_marker) {
@@ -45,12 +45,11 @@ double PairScore(const MapProblem& problem, int frame_idx1, int frame_idx2, int 
   }
   if (static_cast<int>(parallaxes.size()) < min_num_shared) return 0.0;
   const double num_shared = static_cast<double>(parallaxes.size());
-  // A little for no parallax at all: better a poor start than none.
+  // A pair without parallax scores a little, because a poor start is better than none.
   return num_shared * (0.01 + std::min(1.0, Median(std::move(parallaxes)) / kFullParallax));
 }
 
-// Places and adjusts what both frames see, twice: the second time with the outliers of the first
-// out.
+// Places and adjusts the markers that both frames see, then again without the outliers.
 void SettlePair(const MapProblem& problem, const std::set<int>& marker_idxs,
                 MapSolution* solution) {
   for (const double tolerance_factor : {3.0, 1.0}) {
@@ -100,7 +99,7 @@ std::vector<std::pair<int, int>> ChooseStartPairs(const MapProblem& problem,
 
 MapSolution StartFromPair(const MapProblem& problem, const std::pair<int, int>& pair,
                           std::uint32_t random_seed) {
-  // The first frame alone knows depths badly.
+  // Depths from the first frame alone are poor.
   constexpr double kToleranceOfOneFrame = 4.0;
   const auto [first, second] = pair;
   MapSolution alone = EmptySolution(problem);

@@ -9,13 +9,13 @@
 namespace velamap {
 namespace {
 
-// Medians of chi-square with 8 and 2 degrees of freedom: the corners of a marker at a known place,
-// and what is left of them after its pose is fitted.
+// Medians of chi-square with 8 and 2 degrees of freedom: of the corners of a marker at a known
+// place, and of their residuals after a fit of its pose.
 constexpr double kMedianOf8 = 7.344, kMedianOf2 = 1.386;
-// The nominal sigma is no more than a guess; corners that turn out this much better stay in.
+// The nominal sigma is a guess; the noise of corners is not taken to be below this part of it.
 constexpr double kMinFactor = 0.3;
 
-// RMS error of four corners that corresponds to 1 sigma in the median.
+// Converts a median RMS error of four corners to 1 sigma of a coordinate.
 double SigmaFromMedian(double median_rms, double median_of_chi_square) {
   return median_rms * std::sqrt(kNumCorners / median_of_chi_square);
 }
@@ -26,7 +26,7 @@ std::string Px(double value) {
   return text.data();
 }
 
-// Distances of the single corners from where they should be, px.
+// Distances of the corners from their projections, px.
 std::array<double, kNumCorners> CornerErrors(const MapProblem& problem, const MapSolution& solution,
                                              const MapObservation& observation) {
   const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
@@ -71,7 +71,8 @@ MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
 }
 
 double FinalTolerance(const MapObservation& observation, const MapNoise& noise) {
-  // RMS over four corners of two coordinates each is 1.4 sigma; a good one is never 3.5 times that.
+  // The RMS distance of four corners is 1.4 sigma of a coordinate; 5 sigma is 3.5 times that, which
+  // no good observation reaches.
   constexpr double kSigmas = 5.0;
   const double factor = std::max(
       {noise.factor, noise.factor_of_frame[static_cast<std::size_t>(observation.frame_idx)],
@@ -88,7 +89,7 @@ void MarkFinalFits(const MapProblem& problem, const MapNoise& noise, MapSolution
 }
 
 bool IsSuspicious(const MapNoise& noise) {
-  // A right shape is within twice the corners' noise even where lens and cloth add their part.
+  // The errors of a right shape are within twice the noise of the corners, lens and cloth included.
   constexpr double kRatio = 4.0, kNegligiblePx = 0.25;
   return noise.sigma_px > kNegligiblePx && noise.sigma_px > kRatio * noise.alone_sigma_px;
 }

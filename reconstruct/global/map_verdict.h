@@ -1,4 +1,4 @@
-// Judgement of a finished map: how precise it is, what does not belong in it, and why.
+// Verdict on a finished map: its precision, and its outliers with reasons.
 
 #pragma once
 
@@ -14,25 +14,27 @@ struct MapNoise {
   // in single frames (0: not registered).
   double factor = 1.0;
   std::vector<double> factor_of_frame;  // by frame_idx
-  // The same in px, and what markers say when each is posed alone: that is the noise of corners
-  // whatever the shape is. The map's own is larger where the shape is wrong, or bends meanwhile.
+  // The same in px, for the map and for markers that are posed alone. The latter is the noise of
+  // the corners whatever the shape is; the noise of the map is larger where the shape is wrong or
+  // the surface moved.
   double sigma_px = 0.0;
   double alone_sigma_px = 0.0;
 };
 
-// From the observations that fit.
+// Estimates the noise from the observations that fit.
 MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution);
 
-// Error up to which an observation belongs to the finished map, px.
+// Largest error of an inlier of the finished map, px.
 double FinalTolerance(const MapObservation& observation, const MapNoise& noise);
 
 void MarkFinalFits(const MapProblem& problem, const MapNoise& noise, MapSolution* solution);
 
-// Whether the errors are larger than the noise of the corners explains: the sign of a wrong shape.
+// Whether the errors are larger than the noise of the corners explains, which indicates a wrong
+// shape.
 bool IsSuspicious(const MapNoise& noise);
 
-// Why an observation does not fit its marker's place: the id of another marker, corners numbered
-// from a wrong one, a single corner, or something else.
+// The reason why an observation does not fit the place of its marker: it shows another marker, its
+// corners are numbered from a wrong one, a single corner is off, or another cause.
 std::string WhyOutlier(const MapProblem& problem, const MapSolution& solution,
                        const MapNoise& noise, const MapObservation& observation);
 

@@ -9,24 +9,24 @@
 namespace velamap {
 namespace {
 
-// What a marker counts before anything is registered: 1 for corners of this sigma (px) or better.
+// Corners with this sigma (px) or a smaller one give a marker the full weight of 1.
 constexpr double kSharpSigmaPx = 0.1;
 constexpr double kFallbackWeight = 0.5;
 
-double Worth(const DatabaseImage& image) {
-  double worth = 0.0;
+double SumOfMarkerWeights(const DatabaseImage& image) {
+  double sum = 0.0;
   for (const MarkerDetection& marker : image.detections.markers) {
     double sigma_px = 0.0;
     for (const double corner_sigma_px : marker.corner_sigma_px) {
       sigma_px = std::max(sigma_px, corner_sigma_px);
     }
-    worth += (marker.is_fallback ? kFallbackWeight : 1.0) *
-             std::min(1.0, kSharpSigmaPx / std::max(sigma_px, 1e-9));
+    sum += (marker.is_fallback ? kFallbackWeight : 1.0) *
+           std::min(1.0, kSharpSigmaPx / std::max(sigma_px, 1e-9));
   }
-  return worth;
+  return sum;
 }
 
-// One view of a marker's centre: its information matrix, 1/m^2.
+// One view of the centre of a marker and its information matrix, 1/m^2.
 struct CenterView {
   std::size_t marker_idx;
   Eigen::Matrix3d information;
@@ -65,10 +65,11 @@ std::vector<int> ChooseCandidateFrames(const std::vector<const DatabaseImage*>& 
   for (std::size_t slot = 0; slot < num_slots; ++slot) {
     const std::size_t begin = slot * images.size() / num_slots;
     const std::size_t end = (slot + 1) * images.size() / num_slots;
-    const auto best = std::max_element(
-        images.begin() + static_cast<std::ptrdiff_t>(begin),
-        images.begin() + static_cast<std::ptrdiff_t>(end),
-        [](const DatabaseImage* a, const DatabaseImage* b) { return Worth(*a) < Worth(*b); });
+    const auto best = std::max_element(images.begin() + static_cast<std::ptrdiff_t>(begin),
+                                       images.begin() + static_cast<std::ptrdiff_t>(end),
+                                       [](const DatabaseImage* a, const DatabaseImage* b) {
+                                         return SumOfMarkerWeights(*a) < SumOfMarkerWeights(*b);
+                                       });
     chosen.push_back(static_cast<int>(best - images.begin()));
   }
   return chosen;
@@ -83,7 +84,7 @@ std::vector<int> ChooseViews(const MapProblem& problem, const MapSolution& solut
   }
   if (static_cast<int>(registered.size()) <= max_num_frames) return registered;
   std::vector<std::vector<CenterView>> views(problem.frames.size());
-  // A little of what all views tell together, so that determinants exist from the start.
+  // A small part of the information of all views, so that determinants are not zero at the start.
   constexpr double kPrior = 1e-3;
   std::vector<Eigen::Matrix3d> information(problem.markers.size(), Eigen::Matrix3d::Zero());
   for (const int idx : registered) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 
 namespace velamap {
 namespace {
@@ -142,9 +143,7 @@ void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::strin
   if (!out) throw InputError(path.string() + ": cannot be written");
 }
 
-bool HasUncertainty(const std::string& folder) {
-  return std::filesystem::is_regular_file(FilePath(folder));
-}
+bool HasUncertainty(const std::string& folder) { return IsRegularFile(FilePath(folder)); }
 
 AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   Reader reader(FilePath(folder));

@@ -9,6 +9,7 @@
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 
 namespace velamap {
@@ -35,26 +36,25 @@ constexpr std::array<ModelFile, 3> kTextFiles = {
 
 bool HasAny(const fs::path& path, const std::array<ModelFile, 3>& files) {
   return std::any_of(files.begin(), files.end(),
-                     [&path](const ModelFile& file) { return fs::exists(path / file.name); });
+                     [&path](const ModelFile& file) { return Exists(path / file.name); });
 }
 
 bool HasAll(const fs::path& path, const std::array<ModelFile, 3>& files) {
   return std::all_of(files.begin(), files.end(),
-                     [&path](const ModelFile& file) { return fs::exists(path / file.name); });
+                     [&path](const ModelFile& file) { return Exists(path / file.name); });
 }
 
 // Of the two formats the binary one, unless only the text files are complete.
 const std::array<ModelFile, 3>& ChooseFiles(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_directory(path, error)) {
+  if (!IsFolder(path)) {
     throw InputError(fmt::format("{}: there is no such folder with a COLMAP model", path.string()));
   }
   if (HasAll(path, kBinaryFiles)) return kBinaryFiles;
   if (HasAll(path, kTextFiles)) return kTextFiles;
   if (!HasAny(path, kBinaryFiles) && !HasAny(path, kTextFiles)) {
-    throw InputError(fmt::format(
-        "{}: holds no COLMAP model (cameras, images and points3D, .bin or .txt){}", path.string(),
-        fs::is_directory(path / "0", error) ? "; did you mean its folder 0?" : ""));
+    throw InputError(
+        fmt::format("{}: holds no COLMAP model (cameras, images and points3D, .bin or .txt){}",
+                    path.string(), IsFolder(path / "0") ? "; did you mean its folder 0?" : ""));
   }
   return HasAny(path, kBinaryFiles) ? kBinaryFiles : kTextFiles;
 }
@@ -79,7 +79,7 @@ Model ReadModel(const std::string& path) {
   for (const ModelFile& file : ChooseFiles(path)) {
     const std::string name = (fs::path(path) / file.name).string();
     std::ifstream in(name, std::ios::binary);
-    if (!in || !fs::is_regular_file(name)) {
+    if (!in || !IsRegularFile(name)) {
       throw InputError(fmt::format("{}: missing or unreadable; a COLMAP model needs it", name));
     }
     file.read(in, name, &model);

@@ -24,9 +24,8 @@ bool UseTimeOrder(const std::vector<const DatabaseImage*>& images, FrameOrder or
     return i->detections.frame_number.has_value();
   });
   if (order == FrameOrder::kTime && !all_numbered) {
-    throw InputError(
-        "--Registration.frame_order time: the database has images without frame numbers; use auto "
-        "or unordered");
+    throw InputError(OptionName(&RegistrationOptions::frame_order) +
+                     " time: the database has images without frame numbers; use auto or unordered");
   }
   return !images.empty() &&
          (order == FrameOrder::kTime || (order == FrameOrder::kAuto && all_numbered));
@@ -36,8 +35,8 @@ int FindCentralFrame(const std::vector<const DatabaseImage*>& images,
                      const RegistrationOptions& options) {
   const std::string& name_or_number = options.central_frame;
   const auto fail = [&name_or_number](const std::string& what) {
-    throw InputError("--Registration.central_frame " + name_or_number + ": " + what +
-                     "; leave the option out to let the best one be chosen");
+    throw InputError(OptionName(&RegistrationOptions::central_frame) + " " + name_or_number + ": " +
+                     what + "; leave the option out to let the best one be chosen");
   };
   for (std::size_t idx = 0; idx < images.size(); ++idx) {
     const FrameDetections& frame = images[idx]->detections;

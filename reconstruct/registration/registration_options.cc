@@ -1,37 +1,76 @@
 #include "reconstruct/registration/registration_options.h"
 
-#include "importer/base/error.h"
-
 namespace velamap {
 namespace {
 
-void Require(bool ok, const std::string& option, const std::string& expected) {
-  if (!ok) throw InputError("--Registration." + option + ": expected " + expected);
+const Choices<RegistrationMethod> kMethods = {{RegistrationMethod::kThesis, "thesis"},
+                                              {RegistrationMethod::kGlobal, "global"}};
+
+const Choices<FrameOrder> kFrameOrders = {{FrameOrder::kAuto, "auto"},
+                                          {FrameOrder::kTime, "time"},
+                                          {FrameOrder::kUnordered, "unordered"}};
+
+void Append(const OptionGroup& group, OptionGroup* all) {
+  all->options.insert(all->options.end(), group.options.begin(), group.options.end());
 }
 
 }  // namespace
 
-void ThesisRegistrationOptions::Check() const {
-  Require(num_frames >= 0, "num_frames", "0 (the central frame alone) or more");
-  Require(skip >= 1, "skip", "at least 1");
-  Require(neighborhood >= 0, "neighborhood", "0 or more");
-  Require(ransac_max_error_m >= 0, "ransac_max_error", "0 (the marker's side) or a distance in m");
-  Require(frequency_threshold >= 0 && frequency_threshold <= 1, "frequency_threshold",
-          "a fraction between 0 and 1");
-  Require(num_mean_iterations >= 0, "num_mean_iterations", "0 or more");
-  Require(mean_sigma_m > 0, "mean_sigma", "a positive distance in m");
+OptionGroup DescribeOptions(GlobalRegistrationOptions* options) {
+  return {"Global registration",
+          {{"Registration.max_num_frames", &options->max_num_frames, "frames",
+            "most frames of a video that take part (global)", AtLeast(3)},
+           {"Registration.num_starts", &options->num_starts, "count",
+            "most pairs of frames from which a map is grown (global)", AtLeast(1)}}};
 }
 
-void GlobalRegistrationOptions::Check() const {
-  Require(max_num_frames >= 3, "max_num_frames", "at least 3");
-  Require(num_starts >= 1, "num_starts", "at least 1");
+OptionGroup DescribeOptions(ThesisRegistrationOptions* options) {
+  return {"Registration of the thesis",
+          {{"Registration.num_frames", &options->num_frames, "frames",
+            "frames on each side of the central one, 0: it alone (thesis, time order)", AtLeast(0)},
+           {"Registration.skip", &options->skip, "frames",
+            "frames from one selected frame to the next (thesis, time order)", AtLeast(1)},
+           {"Registration.neighborhood", &options->neighborhood, "frames",
+            "frames on each side of a selected one that compete with it (thesis, time order)",
+            AtLeast(0)},
+           {"Registration.ransac_max_error", &options->ransac_max_error_m, "m",
+            "a marker farther than this from its place is an outlier; 0: the marker's side "
+            "(thesis)",
+            AtLeast(0)},
+           {"Registration.frequency_threshold", &options->frequency_threshold, "fraction",
+            "part of the registered frames that has to see a marker (thesis, time order)",
+            FromTo(0, 1)},
+           {"Registration.num_mean_iterations", &options->num_mean_iterations, "count",
+            "iterations of the weighted mean (thesis)", AtLeast(0)},
+           {"Registration.mean_sigma", &options->mean_sigma_m, "m",
+            "width of the mean's weights (thesis)", MoreThan(0)}}};
 }
 
-void RegistrationOptions::Check() const {
-  Require(min_num_inliers >= 2, "min_num_inliers", "at least 2");
-  Require(min_num_frames >= 2, "min_num_frames", "at least 2");
-  thesis.Check();
-  global.Check();
+OptionGroup DescribeOptions(RegistrationOptions* options) {
+  OptionGroup group = {
+      "Registration of the frames",
+      {ChoiceOption("Registration.method", &options->method, kMethods,
+                    "thesis: rigid alignment around one central frame; global: resection against a "
+                    "growing map"),
+       ChoiceOption("Registration.frame_order", &options->frame_order, kFrameOrders,
+                    "time: search around the central frame; unordered: grow from it; auto: time "
+                    "for a video"),
+       {"Registration.central_frame",
+        &options->central_frame,
+        "name|frame",
+        "image name or frame number; left out: the best one is chosen",
+        {},
+        false,
+        {"central_frame"}},
+       {"Registration.min_num_inliers", &options->min_num_inliers, "markers",
+        "fewest shared markers that have to agree", AtLeast(2)},
+       {"Registration.min_num_frames", &options->min_num_frames, "frames",
+        "fewest frames that have to see a marker", AtLeast(2)}}};
+  Append(DescribeOptions(&options->global), &group);
+  Append(DescribeOptions(&options->thesis), &group);
+  return group;
 }
+
+void RegistrationOptions::Check() const { CheckRanges(*this); }
 
 }  // namespace velamap

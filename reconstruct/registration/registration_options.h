@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "importer/base/option.h"
+
 namespace velamap {
 
 enum class RegistrationMethod {
@@ -28,8 +30,6 @@ struct ThesisRegistrationOptions {
   double frequency_threshold = 0.3;  // beta, part of the selected frames that see a marker (time)
   int num_mean_iterations = 30;
   double mean_sigma_m = 0.6;
-
-  void Check() const;  // throws InputError that names the option
 };
 
 struct GlobalRegistrationOptions {
@@ -37,8 +37,6 @@ struct GlobalRegistrationOptions {
   // photographs take part.
   int max_num_frames = 80;
   int num_starts = 4;  // pairs of frames from which a map is grown before the best map is kept
-
-  void Check() const;  // throws InputError that names the option
 };
 
 struct RegistrationOptions {
@@ -48,10 +46,15 @@ struct RegistrationOptions {
   int min_num_inliers = 2;    // fewest shared markers that agree for a frame to be registered
   int min_num_frames = 2;     // fewest frames that see a marker
   int random_seed = 0;
+  int num_threads = 0;  // 0: one a core; never changes the result
   ThesisRegistrationOptions thesis;
   GlobalRegistrationOptions global;
 
   void Check() const;  // throws InputError that names the option
 };
+
+OptionGroup DescribeOptions(ThesisRegistrationOptions* options);
+OptionGroup DescribeOptions(GlobalRegistrationOptions* options);
+OptionGroup DescribeOptions(RegistrationOptions* options);  // those of both methods, too
 
 }  // namespace velamap

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "importer/geometry/alignment.h"
-#include "importer/geometry/triple_pose.h"
+#include "importer/geometry/ransac.h"
 
 namespace velamap {
 namespace {
@@ -21,8 +21,9 @@ struct SharedMarker {
   double max_error_m;
 };
 
-struct Score {
-  double cost = std::numeric_limits<double>::max();  // MSAC: sum of min(error^2 / max^2, 1)
+struct AlignmentHypothesis {
+  Rigid3 shape_from_cam;
+  double cost = 0.0;  // MSAC: sum of min(error^2 / max^2, 1)
   std::vector<int> inlier_idxs;
 };
 
@@ -40,18 +41,49 @@ std::vector<SharedMarker> FindShared(const FrameShape& frame, const ShapePoints&
   return shared;
 }
 
-// The shared markers of a frame and the shape, compared by centres or by all points.
+// The shared markers of a frame and the shape, compared by centres or by all points (ransac.h).
 class AlignmentProblem {
  public:
-  explicit AlignmentProblem(std::vector<SharedMarker> shared) : shared_(std::move(shared)) {
+  using Model = Rigid3;
+  using Hypothesis = AlignmentHypothesis;
+  static constexpr int kSampleSize = 3;
+
+  AlignmentProblem(std::vector<SharedMarker> shared, int min_num_inliers)
+      : shared_(std::move(shared)) {
     std::vector<Eigen::Vector3d> centers;
     for (const SharedMarker& marker : shared_) centers.push_back((*marker.in_shape)[0]);
     use_centers_ = NumMarkers() >= kMinMarkersForCenters && HasSpread(centers);
+    min_num_inliers_ = std::max(min_num_inliers, use_centers_ ? 3 : 1);
   }
 
   int NumMarkers() const { return static_cast<int>(shared_.size()); }
   bool UseCenters() const { return use_centers_; }
   const SharedMarker& Marker(int idx) const { return shared_[static_cast<std::size_t>(idx)]; }
+
+  // The alignment of the centres of three random markers.
+  std::vector<Rigid3> Generate(std::mt19937* generator) const {
+    const auto draw = [&] {
+      return static_cast<int>(RandomIndex(generator, static_cast<std::size_t>(NumMarkers())));
+    };
+    const int a = draw(), b = draw(), c = draw();
+    if (a == b || b == c || a == c) return {};
+    const std::vector<Eigen::Vector3d> centers = {
+        (*Marker(a).in_shape)[0], (*Marker(b).in_shape)[0], (*Marker(c).in_shape)[0]};
+    if (!HasSpread(centers)) return {};
+    return {FromCenters({a, b, c})};
+  }
+
+  // The alignments of single markers, each with both of its pose solutions.
+  std::vector<Rigid3> FromSingleMarkers() const {
+    std::vector<Rigid3> models;
+    for (const SharedMarker& marker : shared_) {
+      for (const MarkerPoints& x_in_cam : marker.in_frame->x_in_cam) {
+        models.push_back(EstimateRigid3({x_in_cam.begin(), x_in_cam.end()},
+                                        {marker.in_shape->begin(), marker.in_shape->end()}));
+      }
+    }
+    return models;
+  }
 
   Rigid3 FromCenters(const std::vector<int>& idxs) const {
     std::vector<Eigen::Vector3d> x_in_cam, x_in_shape;
@@ -62,13 +94,7 @@ class AlignmentProblem {
     return EstimateRigid3(x_in_cam, x_in_shape);
   }
 
-  Rigid3 FromMarker(int idx, const MarkerPoints& x_in_cam) const {
-    const MarkerPoints& x_in_shape = *Marker(idx).in_shape;
-    return EstimateRigid3({x_in_cam.begin(), x_in_cam.end()},
-                          {x_in_shape.begin(), x_in_shape.end()});
-  }
-
-  Rigid3 Refine(const std::vector<int>& idxs, const Rigid3& shape_from_cam) const {
+  Rigid3 FromInliers(const std::vector<int>& idxs, const Rigid3& shape_from_cam) const {
     if (use_centers_) {
       std::vector<Eigen::Vector3d> centers;
       for (const int idx : idxs) centers.push_back((*Marker(idx).in_shape)[0]);
@@ -97,49 +123,40 @@ class AlignmentProblem {
     return error;
   }
 
-  Score Evaluate(const Rigid3& shape_from_cam) const {
-    Score score{0.0, {}};
+  AlignmentHypothesis Score(const Rigid3& shape_from_cam) const {
+    AlignmentHypothesis hypothesis{shape_from_cam, 0.0, {}};
     for (int idx = 0; idx < NumMarkers(); ++idx) {
       const double relative = Error(idx, shape_from_cam) / Marker(idx).max_error_m;
-      score.cost += std::min(relative * relative, 1.0);
-      if (relative <= 1.0) score.inlier_idxs.push_back(idx);
+      hypothesis.cost += std::min(relative * relative, 1.0);
+      if (relative <= 1.0) hypothesis.inlier_idxs.push_back(idx);
     }
-    return score;
+    return hypothesis;
+  }
+
+  double InlierRatio(const AlignmentHypothesis& hypothesis) const {
+    return static_cast<double>(hypothesis.inlier_idxs.size()) / NumMarkers();
+  }
+
+  // The hypothesis itself where the fit would leave it with too few inliers.
+  AlignmentHypothesis Refine(const AlignmentHypothesis& hypothesis) const {
+    AlignmentHypothesis refined =
+        Score(FromInliers(hypothesis.inlier_idxs, hypothesis.shape_from_cam));
+    return HasEnoughInliers(refined) ? refined : hypothesis;
+  }
+
+  bool HasSameInliers(const AlignmentHypothesis& a, const AlignmentHypothesis& b) const {
+    return a.inlier_idxs == b.inlier_idxs;
+  }
+
+  bool HasEnoughInliers(const AlignmentHypothesis& hypothesis) const {
+    return static_cast<int>(hypothesis.inlier_idxs.size()) >= min_num_inliers_;
   }
 
  private:
   std::vector<SharedMarker> shared_;
   bool use_centers_ = false;
+  int min_num_inliers_ = 1;
 };
-
-std::vector<Rigid3> CenterHypotheses(const AlignmentProblem& problem, int max_num_trials,
-                                     std::uint32_t seed) {
-  std::mt19937 generator(seed);
-  const auto draw = [&] {
-    return static_cast<int>(
-        RandomIndex(&generator, static_cast<std::size_t>(problem.NumMarkers())));
-  };
-  std::vector<Rigid3> hypotheses;
-  for (int trial = 0; trial < max_num_trials; ++trial) {
-    const int a = draw(), b = draw(), c = draw();
-    if (a == b || b == c || a == c) continue;
-    const std::vector<Eigen::Vector3d> centers = {(*problem.Marker(a).in_shape)[0],
-                                                  (*problem.Marker(b).in_shape)[0],
-                                                  (*problem.Marker(c).in_shape)[0]};
-    if (HasSpread(centers)) hypotheses.push_back(problem.FromCenters({a, b, c}));
-  }
-  return hypotheses;
-}
-
-std::vector<Rigid3> CornerHypotheses(const AlignmentProblem& problem) {
-  std::vector<Rigid3> hypotheses;
-  for (int idx = 0; idx < problem.NumMarkers(); ++idx) {
-    for (const MarkerPoints& x_in_cam : problem.Marker(idx).in_frame->x_in_cam) {
-      hypotheses.push_back(problem.FromMarker(idx, x_in_cam));
-    }
-  }
-  return hypotheses;
-}
 
 }  // namespace
 
@@ -160,46 +177,32 @@ int BestSolution(const FrameMarker& marker, const Rigid3& shape_from_cam,
 std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoints& shape,
                                          const Layout& layout,
                                          const FrameAlignmentOptions& options) {
-  const AlignmentProblem problem(FindShared(frame, shape, layout, options.ransac_max_error_m));
+  const AlignmentProblem problem(FindShared(frame, shape, layout, options.ransac_max_error_m),
+                                 options.min_num_inliers);
   if (problem.NumMarkers() < options.min_num_inliers) return std::nullopt;
-
-  const std::vector<Rigid3> hypotheses =
-      problem.UseCenters() ? CenterHypotheses(problem, options.max_num_trials, options.random_seed)
-                           : CornerHypotheses(problem);
-  Rigid3 best;
-  Score best_score;
-  for (const Rigid3& shape_from_cam : hypotheses) {
-    Score score = problem.Evaluate(shape_from_cam);
-    if (score.cost < best_score.cost) {
-      best = shape_from_cam;
-      best_score = std::move(score);
-    }
-  }
-  const std::size_t min_num_inliers =
-      static_cast<std::size_t>(std::max(options.min_num_inliers, problem.UseCenters() ? 3 : 1));
-  if (best_score.inlier_idxs.size() < min_num_inliers) return std::nullopt;
-  for (int i = 0; i < kMaxRefinements; ++i) {
-    const Rigid3 refined = problem.Refine(best_score.inlier_idxs, best);
-    Score score = problem.Evaluate(refined);
-    if (!(score.cost < best_score.cost) || score.inlier_idxs.size() < min_num_inliers) break;
-    best = refined;
-    best_score = std::move(score);
-  }
+  // The thesis draws a fixed number of samples.
+  const int num_samples = problem.UseCenters() ? options.max_num_trials : 0;
+  std::vector<AlignmentHypothesis> hypotheses =
+      Ransac({num_samples, num_samples, options.random_seed}, problem,
+             problem.UseCenters() ? std::vector<Rigid3>() : problem.FromSingleMarkers());
+  if (hypotheses.empty() || !problem.HasEnoughInliers(hypotheses.front())) return std::nullopt;
+  const AlignmentHypothesis best =
+      RefineHypothesis(problem, kMaxRefinements, std::move(hypotheses.front()));
 
   FrameAlignment alignment;
-  alignment.shape_from_cam = best;
+  alignment.shape_from_cam = best.shape_from_cam;
   double sum = 0.0;
   std::size_t next_inlier = 0;
   for (int idx = 0; idx < problem.NumMarkers(); ++idx) {
     const bool is_inlier =
-        next_inlier < best_score.inlier_idxs.size() && best_score.inlier_idxs[next_inlier] == idx;
+        next_inlier < best.inlier_idxs.size() && best.inlier_idxs[next_inlier] == idx;
     if (!is_inlier) {
       alignment.outlier_ids.push_back(problem.Marker(idx).marker_id);
       continue;
     }
     ++next_inlier;
     alignment.inlier_ids.push_back(problem.Marker(idx).marker_id);
-    const double error = problem.Error(idx, best);
+    const double error = problem.Error(idx, best.shape_from_cam);
     sum += error * error;
   }
   alignment.rms_error_m = std::sqrt(sum / static_cast<double>(alignment.inlier_ids.size()));

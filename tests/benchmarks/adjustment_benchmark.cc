@@ -1,9 +1,9 @@
-// Time of registration and adjustment together, beside COLMAP's bundle_adjuster as it is: with its
-// defaults, from the same seed, images in time order. With that order the scale runs away, and it
-// ends by its limit of 100 iterations. CPU times are those of all threads ("cpu_s": our own, or of
-// the program that was started). Arguments are frames, rows and columns of markers on the sail.
-// Then the marker-aware adjustment alone, beside COLMAP's program with velamap's order of images
-// and outlier rounds.
+// Time of registration and adjustment together, beside COLMAP's bundle_adjuster with its defaults
+// from the same seed and with images in time order. In that order the scale runs away, and COLMAP
+// stops at its limit of 100 iterations. "cpu_s" is the CPU time of all threads, of this process or
+// of the program that it started. Arguments: frames, rows and columns of markers on the sail.
+// Further benchmarks time the marker-aware adjustment alone, beside COLMAP's program with velamap's
+// order of images and outlier rounds.
 
 #include <sys/resource.h>
 

@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# Whole commands in pairs, with ratios, as tables for a README: velamap against OpenCV's and COLMAP's
-# own programs and FFmpeg's decoding, and against itself with more work.
+# Measures whole commands beside OpenCV's and COLMAP's programs and FFmpeg's decoding, and velamap beside
+# itself with more work. Each part writes a table PART.csv into the work folder and prints it.
 # usage: tests/benchmarks/compare.sh [PART...] [WORK_FOLDER]   (default: all parts, workspace/compare)
-#   detection   import of a clip; VideoCapture + detectMarkers(SUBPIX) in one loop; decoding alone
-#   adjustment  registration + adjustment; colmap bundle_adjuster on a seed in time order
+#   detection   import of a clip; VideoCapture and detectMarkers(SUBPIX) in one loop; decoding alone
+#   adjustment  registration and adjustment; colmap bundle_adjuster on a seed in time order
 #   main        automatic_reconstructor around a named central frame; decoding of those frames
 #   memory      peak memory of the import of a short and a long clip
 #   growth      import with twice the frames, and with larger ones
 #   markers     detection in one frame, registration and adjustment with 20 to 500 markers
-#   tracking    import with exhaustive search, with tracked, and with tracked and the map of an earlier
-#               reconstruction: what they find, and their search
+#   tracking    import with exhaustive search, with tracked search, and with a prior shape: what each of
+#               them finds, and the time of the search
 #   sweep       central_frame_sweeper; as many single runs
-# Times are CPU seconds, user and system, of all threads and children: another program beside them
-# changes wall times more. Decoding is measured before and after what it is compared with. Clips are
-# rendered with fixed seeds and kept in WORK_FOLDER/clips.
+# Times are CPU seconds, user and system, of all threads and children, because other programs on the
+# machine change wall times more. Decoding is measured before and after what it is compared with. Clips
+# are rendered with fixed seeds and kept in WORK_FOLDER/clips.
 # BUILD: folder of the build (build/release). WIDTHS, NUM_FRAMES, MBIT, LONG, REPEATS,
 # CENTRAL_FRAMES: sizes.
 set -euo pipefail
@@ -48,7 +48,7 @@ repeats="${REPEATS:-3}"
 central_frames="${CENTRAL_FRAMES:-11}"
 for size in "${widths[@]}" "$num_frames" "$mbit" "$long" "$repeats" "$central_frames"; do
   [[ "$size" =~ ^[1-9][0-9]*$ ]] ||
-    fail "$size: no size; WIDTHS, NUM_FRAMES, MBIT, LONG, REPEATS, CENTRAL_FRAMES take numbers from 1"
+    fail "$size is no size; WIDTHS, NUM_FRAMES, MBIT, LONG, REPEATS, CENTRAL_FRAMES take integers from 1"
 done
 
 velamap="$build/workflows/velamap"
@@ -64,8 +64,8 @@ done
 mkdir -p "$work/clips"
 work="$(realpath "$work")"
 
-# clip KIND WIDTH: the folder of a rendered clip, calm or busy. As action cameras compress: 4K to
-# MBIT Mbit/s, other sizes to as many a pixel.
+# clip KIND WIDTH: prints the folder of a rendered clip, calm or busy. It is compressed as an action
+# camera does it: 4K to MBIT Mbit/s, other sizes to as many bits per pixel.
 clip() {
   local bitrate="$((mbit * 1000 * $2 / 3840 * $2 / 3840))k" busy=0
   local folder="$work/clips/$1_$2_${num_frames}_$bitrate"
@@ -78,7 +78,7 @@ clip() {
   echo "$folder"
 }
 
-# looped FOLDER FRAMES: the clip again and again up to so many frames, not encoded anew.
+# looped FOLDER FRAMES: prints the folder of the clip repeated to that many frames, not encoded again.
 looped() {
   local folder="$1_looped_$2"
   mkdir -p "$folder"
@@ -90,23 +90,21 @@ looped() {
   echo "$folder"
 }
 
-# measure COMMAND...: runs it; sets cpu (s) and memory (MB). Its stdout goes to out.txt.
+# measure COMMAND...: runs the command and sets cpu (s) and memory (MB). Its stdout goes to out.txt.
 measure() {
   /usr/bin/time -o "$work/time.txt" -f '%U %S %M' "$@" >"$work/out.txt" 2>"$work/err.txt" ||
     fail "$*: $(tail -n 1 "$work/err.txt")"
   read -r cpu memory < <(awk '{ printf "%.2f %.0f\n", $1 + $2, $3 / 1024 }' "$work/time.txt")
 }
 
-# value KEY: of the last command's stdout.
+# value KEY: prints the value of `KEY: value` in the last command's stdout.
 value() { awk -F': ' -v key="$1" '$1 == key { print $2 }' "$work/out.txt"; }
 
 mean() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (a + b) / 2 }'; }
 
-percent() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f %%", (b > 0 ? 100 * a / b : 0) }'; }
+percent() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (b > 0 ? 100 * a / b : 0) }'; }
 
-ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (b > 0 ? a / b : 0) }'; }
-
-# run_on_clip COMMAND FOLDER [OPTION...]: one of velamap's commands.
+# run_on_clip COMMAND FOLDER [OPTION...]: measures one of velamap's commands on a clip.
 run_on_clip() {
   local command="$1" folder="$2"
   shift 2
@@ -114,19 +112,19 @@ run_on_clip() {
     --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" "$@"
 }
 
-# import FOLDER [OPTION...]: of a clip into database.db.
+# import FOLDER [OPTION...]: measures the import of a clip into database.db.
 import() {
   rm -f "$work/database.db"
   run_on_clip marker_importer "$@" --database_path "$work/database.db"
 }
 
-# reconstruct FOLDER [OPTION...]: the main job on a clip, into result/.
+# reconstruct FOLDER [OPTION...]: measures a whole reconstruction of a clip, into result/.
 reconstruct() {
   rm -rf "$work/result"
   run_on_clip automatic_reconstructor "$@" --workspace_path "$work/result"
 }
 
-# search_ms FRAMES: CPU time of the search a frame, in the last import.
+# search_ms FRAMES: prints the CPU time per frame of the search in the last import, ms.
 search_ms() {
   awk -v frames="$1" '/ detect / { for (i = 1; i < NF; i++) if ($i == "detect") seconds = $(i + 2) }
     END { printf "%.0f", 1000 * seconds / frames }' "$work/err.txt"
@@ -135,9 +133,8 @@ search_ms() {
 decode() { measure ffmpeg -v error -i "$1/clip.mp4" -an -f null -; }
 
 compare_detection() {
-  local width kind folder repeat decoding_cpu import_cpu import_markers plain_cpu plain_markers
-  echo "| clip | velamap CPU s | markers | plain loop CPU s | markers | decoding CPU s | plain / velamap | decoding / velamap |"
-  echo "|---|---|---|---|---|---|---|---|"
+  local width kind folder repeat decoding_cpu import_cpu import_markers
+  echo "kind,width_px,num_frames,velamap_cpu_s,velamap_markers,opencv_cpu_s,opencv_markers,decoding_cpu_s"
   for width in "${widths[@]}"; do
     for kind in calm busy; do
       folder="$(clip "$kind" "$width")"
@@ -150,8 +147,7 @@ compare_detection() {
         decoding_cpu="$(mean "$decoding_cpu" "$cpu")"
         measure "$plain_detection" "$folder/clip.mp4" \
           "$(sed -n 's/^dictionary: *//p' "$folder/layout.yml")"
-        plain_cpu="$cpu" plain_markers="$(value markers)"
-        echo "| $kind, $width px, $num_frames frames | $import_cpu | $import_markers | $plain_cpu | $plain_markers | $decoding_cpu | $(ratio "$plain_cpu" "$import_cpu") | $(ratio "$decoding_cpu" "$import_cpu") |"
+        echo "$kind,$width,$num_frames,$import_cpu,$import_markers,$cpu,$(value markers),$decoding_cpu"
       done
     done
   done
@@ -159,8 +155,7 @@ compare_detection() {
 
 compare_adjustment() {
   local repeat
-  echo "| frames/rows/columns of markers | velamap CPU s | colmap bundle_adjuster CPU s | velamap / colmap |"
-  echo "|---|---|---|---|"
+  echo "num_frames,num_markers,velamap_cpu_s,colmap_cpu_s"
   for ((repeat = 0; repeat < repeats; repeat++)); do
     "$velamap_benchmark" --benchmark_format=csv \
       --benchmark_filter='InTimeOrder/41/10/13|RegistrationAndAdjustment' 2>/dev/null |
@@ -169,16 +164,14 @@ compare_adjustment() {
         /^"?BM_/ {
           gsub(/"/, "", $1)
           split($1, part, "/")
-          size = part[2] "/" part[3] "/" part[4]
+          size = part[2] "," part[3] * part[4]
           if ($1 ~ /InTimeOrder/) colmap[size] = $column["cpu_s"]
           else { ours[size] = $column["cpu_s"]; order[++n] = size }
         }
         END {
           for (i = 1; i <= n; i++) {
             s = order[i]
-            if (s in colmap)
-              printf "| %s | %.2f | %.2f | %.2f |\n", s, ours[s], colmap[s], ours[s] / colmap[s]
-            else printf "| %s | %.2f | | |\n", s, ours[s]
+            printf "%s,%.2f,%s\n", s, ours[s], s in colmap ? sprintf("%.2f", colmap[s]) : ""
           }
         }'
   done
@@ -186,8 +179,8 @@ compare_adjustment() {
 
 compare_main() {
   local width repeat folder decoding_cpu main_cpu
-  echo "| clip | automatic_reconstructor CPU s | decoding CPU s | ratio | import, register, adjust, export, report CPU s |"
-  echo "|---|---|---|---|---|"
+  echo "width_px,num_frames,automatic_reconstructor_cpu_s,decoding_cpu_s,\
+import_cpu_s,register_cpu_s,adjust_cpu_s,export_cpu_s,report_cpu_s"
   for width in "${widths[@]}"; do
     folder="$(clip calm "$width")"
     for ((repeat = 0; repeat < repeats; repeat++)); do
@@ -198,46 +191,44 @@ compare_main() {
       main_cpu="$cpu"
       decode "$folder"
       decoding_cpu="$(mean "$decoding_cpu" "$cpu")"
-      echo "| calm, $width px, $num_frames frames | $main_cpu | $decoding_cpu | $(ratio "$main_cpu" "$decoding_cpu") | $(
-        awk '/"stage"/ { gsub(/[",]/, ""); stage = $2 }
-          /"cpu_s"/ && stage ~ /^(import|register|adjust|export|report)$/ {
-            sub(/,/, "", $2); printf "%s%.2f", separator, $2; separator = ", " }' "$work/result/timing.json") |"
+      awk -v row="$width,$num_frames,$main_cpu,$decoding_cpu" '
+        /"stage"/ { gsub(/[",]/, ""); stage = $2 }
+        /"cpu_s"/ && stage ~ /^(import|register|adjust|export|report)$/ {
+          sub(/,/, "", $2); row = row sprintf(",%.2f", $2) }
+        END { print row }' "$work/result/timing.json"
     done
   done
 }
 
 compare_memory() {
   local width folder frames
-  echo "| clip | peak memory MB | CPU s |"
-  echo "|---|---|---|"
+  echo "width_px,num_frames,peak_memory_mb,cpu_s"
   for width in "${widths[@]}"; do
     for frames in 100 "$long"; do
       folder="$(looped "$(clip calm "$width")" "$frames")"
       import "$folder"
-      echo "| $width px, $frames frames | $memory | $cpu |"
+      echo "$width,$frames,$memory,$cpu"
     done
   done
 }
 
 compare_growth() {
   local width folder repeat once
-  echo "| clip | CPU s | of twice the frames | ratio |"
-  echo "|---|---|---|---|"
+  echo "width_px,num_frames,cpu_s,cpu_s_of_twice_the_frames"
   for width in 1280 "${widths[@]}"; do
     folder="$(clip calm "$width")"
     for ((repeat = 0; repeat < repeats; repeat++)); do
       import "$folder"
       once="$cpu"
       import "$(looped "$folder" $((2 * num_frames)))"
-      echo "| $width px, $num_frames frames | $once | $cpu | $(ratio "$cpu" "$once") |"
+      echo "$width,$num_frames,$once,$cpu"
     done
   done
 }
 
 compare_markers() {
-  echo "| markers | detection at 4K ms | registration and adjustment of 41 frames ms |"
-  echo "|---|---|---|"
   local filter
+  echo "num_markers,detection_ms,registration_and_adjustment_ms"
   for filter in DetectManyMarkers RegistrationAndAdjustment/41/; do  # one format of CSV a run
     "$velamap_benchmark" --benchmark_format=csv --benchmark_filter="$filter" 2>/dev/null
   done |
@@ -251,30 +242,30 @@ compare_markers() {
         seen[n] = 1
       }
       END {
-        for (n in seen) printf "| %d | %s | %s |\n", n, n in detect ? sprintf("%.0f", detect[n]) : "",
-          n in adjust ? sprintf("%.0f", adjust[n]) : "" | "sort -t \"|\" -k 2 -n"
+        for (n in seen) printf "%d,%s,%s\n", n, n in detect ? sprintf("%.0f", detect[n]) : "",
+          n in adjust ? sprintf("%.0f", adjust[n]) : "" | "sort -t, -k1n"
       }'
 }
 
 compare_tracking() {
-  local width kind folder way ms row
-  echo "| clip | search | markers | found again | same corners to 0.01 px | search ms a frame |"
-  echo "|---|---|---|---|---|---|"
+  local width kind folder search ms row
+  echo "kind,width_px,num_frames,search,markers,found_again_percent,same_corners_percent,search_ms"
   for width in "${widths[@]}"; do
     for kind in calm busy; do
       folder="$(clip "$kind" "$width")"
-      row="$kind, $width px, $num_frames frames"
+      row="$kind,$width,$num_frames"
       import "$folder" --ArucoDetection.search exhaustive
-      echo "| $row | exhaustive | $(value markers) | | | $(search_ms "$num_frames") |"
+      echo "$row,exhaustive,$(value markers),,,$(search_ms "$num_frames")"
       mv "$work/database.db" "$work/exhaustive.db"
       reconstruct "$folder"
-      for way in "tracked" "tracked with map"; do
-        if [[ $way == tracked ]]; then import "$folder"; else import "$folder" --prior_shape_path "$work/result/shape"; fi
+      for search in tracked prior_shape; do
+        if [[ $search == tracked ]]; then import "$folder"; else
+          import "$folder" --prior_shape_path "$work/result/shape"
+        fi
         ms="$(search_ms "$num_frames")"
         measure "$compare_detections" "$work/exhaustive.db" "$work/database.db"
-        echo "| $row | $way | $(value other) | $(
-          percent "$(value found_again)" "$(value reference)") | $(
-          percent "$(value same_corners)" "$(value found_again)") | $ms |"
+        echo "$row,$search,$(value other),$(percent "$(value found_again)" "$(value reference)"),$(
+          percent "$(value same_corners)" "$(value found_again)"),$ms"
       done
     done
   done
@@ -287,8 +278,7 @@ compare_sweep() {
   first=$((num_frames / 2 - central_frames / 2))
   for ((frame = first; frame < first + central_frames; frame++)); do frames+=("$frame"); done
   layout=(--layout_path "$folder/layout.yml" --log_level error)
-  echo "| central frames | single runs CPU s | sweep CPU s | sweep / single runs | sweep, cold starts CPU s |"
-  echo "|---|---|---|---|---|"
+  echo "width_px,num_frames,num_central_frames,single_runs_cpu_s,sweep_with_cold_starts_cpu_s,sweep_cpu_s"
   for ((repeat = 0; repeat < repeats; repeat++)); do
     sum=0
     for frame in "${frames[@]}"; do
@@ -300,16 +290,18 @@ compare_sweep() {
       sum="$(awk -v a="$sum" -v b="$cpu" 'BEGIN { print a + b }')"
     done
     sweep=("$velamap" central_frame_sweeper --database_path "$work/database.db" "${layout[@]}"
-      --output_path "$work/sweep.csv" --central_frames "$(IFS=,; echo "${frames[*]}")")
+      --output_path "$work/sweep_result.csv" --central_frames "$(IFS=,; echo "${frames[*]}")")
     measure "${sweep[@]}" --warm_start 0
     cold="$cpu"
     measure "${sweep[@]}"
-    echo "| $central_frames | $sum | $cpu | $(ratio "$cpu" "$sum") | $cold |"
+    echo "${widths[0]},$num_frames,$central_frames,$sum,$cold,$cpu"
   done
 }
 
+# A table that breaks off leaves that of an earlier run in place.
 for part in "${parts[@]}"; do
-  echo
-  echo "## $part"
-  "compare_$part"
+  "compare_$part" >"$work/$part.part"
+  mv "$work/$part.part" "$work/$part.csv"
+  echo "$work/$part.csv"
+  column -s, -t "$work/$part.csv"
 done

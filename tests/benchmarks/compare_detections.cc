@@ -1,5 +1,5 @@
-// How two databases of the same video agree: what compare.sh prints of tracked against exhaustive
-// search.
+// Agreement of two databases of the same video; compare.sh prints it for the tracked against the
+// exhaustive search.
 // usage: compare_detections REFERENCE.db OTHER.db
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// CPU time of getting the frames of an H.264 video, on all threads together: decoding alone, with
+// CPU time, summed over all threads, of reading the frames of an H.264 video: decoding alone, with
 // the grey images that detection needs, and the same through OpenCV's VideoCapture.
 
 #include <benchmark/benchmark.h>

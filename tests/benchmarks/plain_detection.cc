@@ -1,6 +1,6 @@
-// What velamap's import is measured against: OpenCV alone, every frame in one loop on one thread of
-// ours. VideoCapture, conversion to grey, detectMarkers with CORNER_REFINE_SUBPIX and the settings
-// that find what velamap finds.
+// Baseline of velamap's import: OpenCV alone, all frames in one loop on one thread. VideoCapture,
+// conversion to grey, detectMarkers with CORNER_REFINE_SUBPIX and the settings that find what
+// velamap finds.
 //
 // usage: plain_detection VIDEO DICTIONARY
 // Prints `frames: N` and `markers: M`.

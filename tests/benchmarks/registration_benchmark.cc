@@ -1,4 +1,4 @@
-// Time of everything behind the database: registration, COLMAP's bundle adjustment, export.
+// Time of all stages after the database: registration, COLMAP's bundle adjustment, export.
 // A sail of 120 markers; the argument is the number of frames of the clip.
 
 #include <benchmark/benchmark.h>

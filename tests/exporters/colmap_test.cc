@@ -1,4 +1,4 @@
-// The metric model through the eyes of the installed COLMAP.
+// The metric model as the installed COLMAP reads it.
 
 #include <cstdlib>
 #include <cstring>
@@ -28,7 +28,7 @@ class ExportToColmap : public testing::Test {
     }
     Model model = ExampleModel();
     AddImageNoise(1.0, 11, &model);
-    // Tracks of two images, so that a mean over points is not the mean over observations.
+    // Tracks of two images make the mean over points differ from the mean over observations.
     for (int corner = 1; corner <= kNumCorners; ++corner) {
       const Point3DId id = Point3DIdFromCorner({2, corner});
       RemoveObservation(&model, id, model.points3D.at(id).track.back());
@@ -110,7 +110,7 @@ TEST_F(ExportToColmap, ConverterMakesAPlyOfAllPointsInMetres) {
     has_vertices = has_vertices || line == "element vertex 32";
   }
   EXPECT_TRUE(has_vertices);
-  // x y z as floats lead a row; distances between rows are the shape's, in whatever order.
+  // Rows start with x y z as floats. Distances between rows do not depend on their order.
   constexpr int kRowBytes = 3 * 4 + 3;
   std::vector<Eigen::Vector3f> points;
   char row[kRowBytes];

@@ -1,5 +1,5 @@
-// A locale with decimal commas and grouped thousands for the C++ streams that are made in its
-// scope, and for C where one is installed.
+// Sets a locale with decimal commas and grouped thousands for C++ streams created in its scope, and
+// for C if one is installed.
 
 #pragma once
 

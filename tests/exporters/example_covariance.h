@@ -1,4 +1,4 @@
-// Uncertainties to export, with a dense twin to hold results against.
+// Uncertainties to export, with a dense covariance for comparison.
 
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace velamap {
 
-// Of all corners of a model: points of a marker go together, and all points through three columns
-// of the factor, one of them with a negative sign. Sigmas of about `sigma_m` to twice of it.
+// A covariance of all corners of a model that correlates the points of a marker, and all points by
+// three columns of the factor, one of them negative. Sigmas are about `sigma_m` to twice of it.
 PointCovariance ExampleCovariance(const Model& model, double sigma_m, std::uint32_t seed);
 
 AdjustmentUncertainty ExampleUncertainty(const Model& model);
@@ -22,12 +22,12 @@ AdjustmentUncertainty ExampleUncertainty(const Model& model);
 // 3n x 3n.
 Eigen::MatrixXd DenseCovariance(const PointCovariance& covariance);
 
-// Draws shapes whose corners scatter as `covariance` says about those of `shape`, centres with
-// them, and gives them to `visit`.
+// Samples shapes whose corners scatter about those of `shape` with `covariance`, computes their
+// centers, and passes them to `visit`.
 void SampleShapes(const MarkerShape& shape, const PointCovariance& covariance, int num_samples,
                   const std::function<void(const MarkerShape&)>& visit);
 
-// Standard deviation of a figure over such shapes.
+// Standard deviation of a figure over such samples.
 double SampledSigma(const MarkerShape& shape, const PointCovariance& covariance,
                     const std::function<double(const MarkerShape&)>& figure);
 

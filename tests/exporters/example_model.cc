@@ -14,7 +14,7 @@ std::array<Eigen::Vector3d, kNumCorners> CornersInMarker(double length_m) {
   return {{{-h, h, 0}, {h, h, 0}, {h, -h, 0}, {-h, -h, 0}}};
 }
 
-// Outside of a cylinder of radius 2 m about the y axis, and a flat row below.
+// Markers on the outside of a cylinder with a radius of 2 m about the y axis, and a flat row below.
 Rigid3 WorldFromMarker(int marker_id) {
   if (marker_id >= 100) return {Eigen::Quaterniond::Identity(), {0.3 * (marker_id - 120), -1, 2}};
   const int row = (marker_id - 1) / 3, column = (marker_id - 1) % 3;
@@ -23,7 +23,7 @@ Rigid3 WorldFromMarker(int marker_id) {
   return {rotation, rotation * Eigen::Vector3d(0, 0, 2) + Eigen::Vector3d(0, 0.4 * row, 0)};
 }
 
-// Looks along -z of the world from `x_in_world`, up is y.
+// A camera at `x_in_world` that looks along -z of the world with y up.
 Rigid3 CamFromWorld(const Eigen::Vector3d& x_in_world, double yaw_rad) {
   const Eigen::Quaterniond rotation =
       Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitY()) *
@@ -106,7 +106,7 @@ ShapeMarker SquareMarker(int marker_id, double length_m, const Rigid3& shape_fro
 }
 
 Sim3 ExampleSim3(double scale) {
-  // A shift in proportion, or rounding would eat the digits of a small model far from the origin.
+  // The shift is proportional to the scale, because a small model far from the origin loses digits.
   const Eigen::Vector3d translation = scale * Eigen::Vector3d(3.0, -7.0, 11.0);
   return {scale, Eigen::Quaterniond(0.8, 0.3, -0.4, 0.1).normalized(), translation};
 }

@@ -25,10 +25,10 @@ void AddImageNoise(double max_px, std::uint32_t seed, Model* model);
 // A marker in the marker frame moved by `shape_from_marker`: whole, with a centre.
 ShapeMarker SquareMarker(int marker_id, double length_m, const Rigid3& shape_from_marker = {});
 
-// A turn about an odd axis, a shift, and this scale.
+// A similarity with this scale, a rotation about an arbitrary axis, and a translation.
 Sim3 ExampleSim3(double scale);
 
-// What a writer writes.
+// The text that a writer writes.
 std::string Written(const std::function<void(std::ostream&)>& write);
 
 }  // namespace velamap

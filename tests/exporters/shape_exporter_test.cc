@@ -8,8 +8,8 @@
 
 #include <gmock/gmock.h>
 
-#include "exporters/formats/ply_writer.h"
 #include "exporters/formats/shape_csv.h"
+#include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_csv.h"
 #include "importer/base/error.h"
@@ -63,7 +63,7 @@ std::string ErrorOf(const ShapeExporterOptions& options) {
   return "no error";
 }
 
-// Distances between all corners: what a change of the world frame must not touch.
+// Distances between all corners, which do not depend on the world frame.
 std::vector<double> Lengths(const MarkerShape& shape) {
   std::vector<Eigen::Vector3d> points;
   for (const ShapeMarker& marker : shape.markers) {
@@ -76,7 +76,7 @@ std::vector<double> Lengths(const MarkerShape& shape) {
   return lengths;
 }
 
-// The same model in another order that may be: the first image, the central one, stays.
+// The same model in another valid order: the central image stays the first one.
 Model Shuffled(Model model, std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto shuffle = [&](auto& values, std::size_t first = 0) {
@@ -205,7 +205,7 @@ TEST(ShapeExporter, TheModelIsMetricAndHasTrueErrorsInBothFormats) {
     EXPECT_EQ(Lengths(shape), Lengths(report.shape));
     double sum = 0.0;
     for (const auto& [id, point] : written.points3D) sum += point.mean_error_px;
-    // Every point is seen in every image, so that the mean over points is the mean over all.
+    // Every image sees every point, so that the mean over points equals the mean over observations.
     EXPECT_NEAR(sum / written.points3D.size(), report.model_metrics.error_px.mean, 1e-12);
     EXPECT_EQ(written.images.size(), 3u);
     EXPECT_EQ(written.images[0].image_id, model.images[0].image_id);
@@ -352,7 +352,7 @@ TEST(ShapeExporter, WithoutAnUncertaintyThereAreNoSigmasOfLengths) {
   for (const char* key : {"area_sigma_mm2", "side_sigma_mm", "angle_sigma_deg"}) {
     EXPECT_THAT(metrics, Not(HasSubstr(key))) << key;
   }
-  // The errors of the scale and of its parts are known from the markers and their images.
+  // Sigmas of the scale follow from the markers and their images.
   EXPECT_THAT(metrics, HasSubstr(",scale_sigma_percent,"));
   EXPECT_THAT(metrics, HasSubstr("scale_parts,0,deviation_from_others_sigma_percent,"));
 }

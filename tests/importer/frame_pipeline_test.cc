@@ -1,7 +1,11 @@
 #include "importer/frame_pipeline.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -12,7 +16,9 @@
 namespace velamap {
 namespace {
 
-// Counts how many of its frames have not come back yet.
+constexpr uid_t kUserWithoutProcesses = 64123;
+
+// Counts the frames that have been read and not yet processed.
 class FakeSource : public FrameSource {
  public:
   explicit FakeSource(int num_frames) : num_frames_(num_frames) {}
@@ -81,6 +87,32 @@ TEST(RunFramePipeline, FailuresOnAnySideEndItAndAreHandedOn) {
                                 }),
                DataError);
   EXPECT_LT(b.num_read, 100000);
+}
+
+// Runs the pipeline as a user who may have `max_num_threads` threads, and ends the process with
+// the number of frames that came out, or with 101 after an input error. For a child process.
+void RunWithFewThreads(unsigned max_num_threads) {
+  const rlimit limit{max_num_threads, max_num_threads};
+  if (setrlimit(RLIMIT_NPROC, &limit) != 0 || setuid(kUserWithoutProcesses) != 0) std::_Exit(102);
+  FakeSource source(20);
+  int num_frames = 0;
+  try {
+    RunFramePipeline(
+        &source, 64, [](int, Frame*) { return FrameResult(); },
+        [&](int, const FrameResult&) { ++num_frames; });
+  } catch (const InputError&) {
+    std::_Exit(101);
+  }
+  std::_Exit(num_frames);
+}
+
+TEST(RunFramePipeline, TakesTheThreadsThatTheSystemGives) {
+  // Only the superuser can become a user whose processes are known.
+  if (geteuid() != 0) GTEST_SKIP() << "needs the rights to change the user";
+  EXPECT_EXIT(RunWithFewThreads(6), testing::ExitedWithCode(20), "");
+  EXPECT_EXIT(RunWithFewThreads(3), testing::ExitedWithCode(20), "");
+  EXPECT_EXIT(RunWithFewThreads(2), testing::ExitedWithCode(101), "");
+  EXPECT_EXIT(RunWithFewThreads(1), testing::ExitedWithCode(101), "");
 }
 
 TEST(BoundedQueue, ClosedQueueHandsOutWhatIsLeft) {

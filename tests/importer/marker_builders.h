@@ -1,4 +1,4 @@
-// Small helpers to make detections and pictures of markers.
+// Makes detections and pictures of markers.
 
 #pragma once
 

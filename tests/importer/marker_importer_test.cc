@@ -24,8 +24,7 @@ using testing::ElementsAre;
 
 const cv::Size kSize(320, 200);
 
-// The same two or three markers move a little from picture to picture; those after `num_with` are
-// bare.
+// Draws markers that move by a pixel or two from picture to picture.
 cv::Mat Picture(int idx, const std::vector<int>& ids, const std::string& dictionary) {
   std::vector<DrawnMarker> markers;
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -102,8 +101,8 @@ TEST_F(MarkerImporterTest, FolderOfImages) {
 }
 
 TEST_F(MarkerImporterTest, FailedCornerFitsAreCountedAndMarked) {
-  // Something dark takes most of the quiet zone beside marker 1: its code is read, but that side
-  // has no light ground to fit.
+  // A dark object covers most of the quiet zone beside marker 1: its code is read, but this side
+  // has no light background for the fit.
   cv::Mat picture = Picture(0, {1, 2}, "DICT_4X4_50");
   cv::rectangle(picture, cv::Rect(0, 30, 16, 92), cv::Scalar(40, 40, 40), cv::FILLED);
   cv::imwrite(dir_ / "images/1.png", picture);
@@ -151,7 +150,7 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
   EXPECT_EQ(read(options_.database_path), bytes);
 }
 
-// 5 and 6 come and go beside the others.
+// Markers 5 and 6 are visible in some of the frames only.
 TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
   options_.image_path = dir_ / "video.avi";
   {
@@ -218,9 +217,9 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingInATrackedVideo) {
   }
 }
 
-TEST_F(MarkerImporterTest, OtherFramesTellHowASymmetricMarkerStands) {
-  // Marker 2 looks the same upside down. Marker 0 stands as it does; marker 1 stands across, so
-  // that it tells nothing in the frame without marker 0.
+TEST_F(MarkerImporterTest, OtherFramesTellTheRotationOfASymmetricMarker) {
+  // Marker 2 looks the same upside down. Marker 0 has its orientation and marker 1 is turned by 90
+  // degrees, so that the frame without marker 0 does not tell how marker 2 is oriented.
   std::ofstream(dir_ / "nine_bits.yml") << "%YAML:1.0\n---\nnmarkers: 3\nmarkersize: 3\n"
                                            "maxCorrectionBits: 0\nmarker_0: \"110100001\"\n"
                                            "marker_1: \"111000100\"\nmarker_2: \"100000001\"\n";

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "importer/base/csv.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/register_frames.h"
 #include "tests/reconstruct/registration_fixture.h"
@@ -40,7 +41,20 @@ TEST(SeedModel, RegistrationTableGivesReasonsOfOutliers) {
       {1, "a.jpg", Rigid3{}, {3, 9}, {5, 6}, {"too far", "turned"}, 0.001, ""});
   std::ostringstream csv;
   WriteRegistrationCsv(registration, csv);
-  EXPECT_THAT(csv.str(), testing::EndsWith("a.jpg,1,2,2,1,\"\",\"5: too far; 6: turned\"\n"));
+  EXPECT_THAT(csv.str(), testing::EndsWith("a.jpg,1,2,2,1,,5: too far; 6: turned\n"));
+}
+
+TEST(SeedModel, RegistrationTableReadsBackWithAnyName) {
+  Registration registration;
+  registration.frames.push_back(
+      {1, "c,am \"00\".jpg", Rigid3{}, {3}, {5}, {"a \"b\", c"}, 0.001, "no, \"none\""});
+  std::stringstream csv;
+  WriteRegistrationCsv(registration, csv);
+  const std::vector<CsvRecord> records = ReadCsv(csv, "registration.csv");
+  ASSERT_EQ(records.size(), 2u);
+  EXPECT_EQ(records[0].fields.size(), 7u);
+  EXPECT_THAT(records[1].fields, testing::ElementsAre("c,am \"00\".jpg", "1", "1", "1", "1",
+                                                      "no, \"none\"", "5: a \"b\", c"));
 }
 
 TEST(SeedModel, RegistrationTableNamesEveryImage) {

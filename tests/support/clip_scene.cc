@@ -36,8 +36,8 @@ std::vector<Eigen::Vector2d> SpacedAlongLine(const Surface& surface, double v, d
   return places;
 }
 
-// Seven horizontal lines, and a vertical one through the marker of each that is nearest to the
-// middle of the chord.
+// Seven horizontal lines, and a vertical line through the marker of each that is nearest to
+// mid-chord.
 void AddSailMarkers(const Ground& sail, double luff_m, ClipSceneBuilder* builder) {
   constexpr int kNumLines = 7;
   constexpr double kSpacing_m = 0.1485, kVerticalSpacing_m = 0.156, kMargin_m = 0.11;

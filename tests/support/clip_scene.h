@@ -35,7 +35,7 @@ struct ClipOptions {
   double angle_deg = 0.0;   // of the view from straight on
   // Motion of the board in the thesis's Figure 4.3, 'a' to 'h'; for the board only.
   char motion = 'd';
-  double sail_scale = 1.0;     // of the sail, not of its markers: fewer fit on a smaller one
+  double sail_scale = 1.0;     // size of the sail; markers keep theirs, so fewer fit on a small one
   double sail_motion_m = 0.0;  // amplitude of slow flapping, whole periods in a clip: truth = mean
   double trim_change_m = 0.0;  // largest displacement when the trim changes, halfway
   bool busy = false;           // clutter behind the scene and on the cloth
@@ -58,7 +58,7 @@ struct ClipSheet {
   double gray = 0.0;
 };
 
-// A printed square with its white margin, cut along its cells and each cell once more.
+// A printed square with its white margin, in tiles of half a cell.
 struct ClipMarker {
   int marker_id = 0;
   std::string part;

@@ -18,7 +18,7 @@ ClipVertex VertexAt(const Ground& ground, const Eigen::Vector2d& uv_before,
                     const Eigen::Vector2d& uv_after) {
   ClipVertex vertex{ground.before(uv_before), ground.after(uv_after), 0.0, 0.0};
   if (ground.flaps) {
-    // Fixed at the luff, most at the leech and high up; a wave runs aft.
+    // Zero at the luff, largest at the leech near the head; the wave runs aft.
     const double u = std::max(0.0, uv_before.x());
     vertex.flap = u * (2 - u) * (0.4 + 0.6 * uv_before.y());
     vertex.flap_phase_rad = 2.5 * u;

@@ -1,4 +1,4 @@
-// Puts a clip's scene together: sheets, stickers on them, paint between the stickers.
+// Assembles a clip's scene: sheets, stickers on them, paint between the stickers.
 
 #pragma once
 
@@ -28,8 +28,8 @@ class ClipSceneBuilder {
   // A sticker with its centre at `uv`, upright along growing v. Returns its id.
   int AddMarker(const Ground& ground, const std::string& part, const Eigen::Vector2d& uv);
 
-  // Paints the quad unless a sticker (or, if it is to stand alone, other such paint) is near;
-  // corners from the top left, clockwise.
+  // Paints the quad unless a sticker is near or, with `alone`, other lone paint; corners from the
+  // top left, clockwise.
   void AddPaint(const Ground& ground, const std::array<Eigen::Vector2d, 4>& corners_uv,
                 double gray_change, bool alone);
 

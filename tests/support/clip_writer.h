@@ -26,7 +26,7 @@ struct ClipWriterOptions {
 // InputError when an image cannot be written.
 class ClipWriter {
  public:
-  // Video: folder/clip.mp4; images: folder/images/frame_000000.png. The folder is there.
+  // Video: folder/clip.mp4; images: folder/images/frame_000000.png. The folder must exist.
   ClipWriter(const std::filesystem::path& folder, const ClipWriterOptions& options);
   ~ClipWriter();
   ClipWriter(const ClipWriter&) = delete;

@@ -25,12 +25,12 @@ Tangents TangentsAt(const Surface& surface, const Eigen::Vector2d& uv) {
   return tangents;
 }
 
-// The step in (u, v) that moves by the part of `direction` along the surface.
+// The step in (u, v) that moves by the tangential part of `direction`.
 Eigen::Vector2d StepInUv(const Tangents& tangents, const Eigen::Vector3d& direction) {
   return (tangents.transpose() * tangents).inverse() * (tangents.transpose() * direction);
 }
 
-// The direction carried from one tangent plane to another without turning about their normals.
+// Parallel transport of a direction from one tangent plane to a neighbouring one.
 Eigen::Vector3d Transport(const Tangents& from, const Tangents& to,
                           const Eigen::Vector3d& direction) {
   return Eigen::Quaterniond::FromTwoVectors(from.col(0).cross(from.col(1)),
@@ -64,7 +64,7 @@ Eigen::Vector2d WalkOnSurface(const Surface& surface, const Eigen::Vector2d& uv,
 }
 
 double SailChord(const SailShape& shape, double v) {
-  // Places just outside [0, 1] are asked for by derivatives at the border.
+  // Numeric derivatives at the border ask for places just outside [0, 1].
   const double left = std::max(0.0, 1.0 - v);
   return shape.scale * (kFoot_m * std::pow(left, 0.75) + kHead_m);
 }

@@ -12,9 +12,9 @@ namespace velamap {
 // for one who looks at the face. Twice differentiable.
 using Surface = std::function<Eigen::Vector3d(const Eigen::Vector2d& uv)>;
 
-// Where one arrives who starts at `uv` and walks straight on the surface (along a geodesic) by
-// `offset_m`: x to the right, along growing u, y upwards at a right angle to it. A sheet of cloth
-// lies like this without stretching from its centre outwards.
+// End of the geodesic that starts at `uv` and covers `offset_m`, whose x points along growing u and
+// whose y points upwards at a right angle to it. A sheet of cloth that is smoothed from its centre
+// outwards without stretching lies like this.
 Eigen::Vector2d WalkOnSurface(const Surface& surface, const Eigen::Vector2d& uv,
                               const Eigen::Vector2d& offset_m);
 

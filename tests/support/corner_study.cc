@@ -154,7 +154,8 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
   p[P::kDark] = rendering.black;
   p[P::kLight] = rendering.white;
   p[P::kSurround] = p[P::kInnerLight] = 1.0;
-  FillLightness(grid.image, grid.cells[k], p, &model);
+  FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), ImageFormation()),
+                grid.cells[k], p, &model);
   const EdgeFitOptions options;
   const double cell_px = MeanSide(truth) / model.num_cells;
   const bool by_edges = HasClearSides(truth, model.num_cells, options);

@@ -156,8 +156,8 @@ class RayLattice {
   std::vector<Eigen::Vector2d> rays_;
 };
 
-// Samples of a unit square whose x are all different and so are their y, so that an upright edge
-// is placed to within 1 / (2 n^2) px.
+// Samples of a unit square, no two with the same x or the same y, so that an upright edge is placed
+// to within 1 / (2 n^2) px.
 std::vector<Eigen::Vector2d> SamplePattern(int n) {
   std::vector<Eigen::Vector2d> offsets;
   for (int i = 0; i < n; ++i) {

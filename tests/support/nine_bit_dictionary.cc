@@ -21,7 +21,7 @@ Dictionary MakeNineBitDictionary() {
   std::vector<int> codes, symmetric_codes;
   for (int code = 0; code < kNumCodes; ++code) {
     const int quarter = turned(code), half = turned(quarter), three_quarters = turned(half);
-    if (code > std::min({quarter, half, three_quarters})) continue;  // stands already
+    if (code > std::min({quarter, half, three_quarters})) continue;  // a turned copy is listed
     if (code != half) {
       codes.push_back(code);
     } else if (code != quarter && symmetric_codes.size() < kNumSymmetric) {

@@ -1,5 +1,5 @@
-// What lens, exposure and sensor do to a picture (CV_32FC3, grey levels). Nothing moves: every
-// kernel is symmetric.
+// Effects of lens, exposure and sensor on a picture (CV_32FC3, grey levels). All kernels are
+// symmetric, so nothing moves.
 
 #pragma once
 
@@ -9,15 +9,15 @@
 
 namespace velamap {
 
-// The picture moved by `length_px` during the exposure, evenly, half of it before the moment that
-// the truth is about; the angle is from the image's x towards y.
+// The picture moves by `length_px` at constant speed during the exposure, half of it before the
+// instant of the truth; the angle counts from the image's x towards y.
 void MotionBlur(double length_px, double angle_rad, cv::Mat* image);
 
 // Gaussian.
 void LensBlur(double sigma_px, cv::Mat* image);
 
-// Gaussian, the same on all three channels: what a video keeps of a sensor's noise is its
-// brightness.
+// Gaussian, the same on all three channels, because a video keeps only the brightness of a sensor's
+// noise.
 void AddNoise(double sigma, std::uint64_t seed, cv::Mat* image);
 
 }  // namespace velamap

@@ -184,14 +184,14 @@ void DrawClutter(const ClipScene& scene, const FrameView& view, cv::Mat* image) 
   }
 }
 
-// Surfaces over what lies behind them.
+// Composites the surfaces over the background.
 void Compose(const cv::Mat& surfaces, cv::Mat* image) {
   for (int row = 0; row < image->rows; ++row) {
     const cv::Vec2f* sums = surfaces.ptr<cv::Vec2f>(row);
     cv::Vec3f* pixels = image->ptr<cv::Vec3f>(row);
     for (int column = 0; column < image->cols; ++column) {
       const float alpha = sums[column][1];
-      // A surface that folds over itself is there twice.
+      // A surface that folds over itself counts twice.
       const float gray = alpha > 1 ? sums[column][0] / alpha : sums[column][0];
       pixels[column] = cv::Vec3f::all(gray) + std::max(0.0F, 1 - alpha) * pixels[column];
     }

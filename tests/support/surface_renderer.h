@@ -13,7 +13,7 @@ namespace velamap {
 
 struct SurfaceRenderOptions {
   double blur_px = 0.7;         // sigma of the lens's blur; a pixel's own area comes on top
-  double motion_blur_px = 0.0;  // way of the picture during the exposure; it turns with the frames
+  double motion_blur_px = 0.0;  // path during the exposure; its direction changes by frame
   double noise = 2.0;           // standard deviation, grey levels
   int num_reflections = 0;      // bright patches on the scene's last sheet that wipe out markers
 

@@ -1,5 +1,5 @@
-// A scene of markers on a known surface seen by known cameras, with exact truth. Scene and noise
-// options are apart, so that the noise-free scene stays exact.
+// A scene of markers on a known surface seen by known cameras, with exact truth. Noise has options
+// of its own, so that a scene without noise is exact.
 
 #pragma once
 

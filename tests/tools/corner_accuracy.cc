@@ -77,9 +77,9 @@ int Run(int argc, char** argv) {
   auto add = description.add_options();
   add("help", "this text");
   add("noise", value(&base.noise), "standard deviation, grey levels");
-  add("markers", value(&base.min_markers), "at least so many a line of the table");
+  add("markers", value(&base.min_markers), "fewest markers of a line of the table");
   add("max_tilt", value(&base.max_tilt_deg), "largest tilt of the first lines, degrees");
-  add("seed", value(&base.seed), "of attitudes and noise");
+  add("seed", value(&base.seed), "of the markers' poses and the noise");
   try {
     po::variables_map values;
     po::store(po::parse_command_line(argc, argv, description), values);

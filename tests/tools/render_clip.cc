@@ -68,7 +68,7 @@ po::options_description Describe(Options* options) {
   add("busy", value(&clip->busy), "clutter behind the scene and on the cloth");
   add("blur_px", value(&render->blur_px), "sigma of the lens's blur, px");
   add("motion_blur_px", value(&render->motion_blur_px),
-      "way of the picture during the exposure, px");
+      "path of the picture during the exposure, px");
   add("noise", value(&render->noise), "standard deviation, grey levels");
   add("format", po::value(&options->format)->default_value("mp4"),
       "mp4 (clip.mp4), png or jpg (images/)");

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/detect/marker_alignment.h"
+#include "importer/detect/marker_location.h"
 #include "importer/detect/marker_search.h"
 #include "importer/refine/marker_detector.h"
 #include "importer/track/marker_tracking.h"

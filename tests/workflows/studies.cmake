@@ -1,5 +1,6 @@
-# The studies of thesis chapter 4, the shortest of them: two reconstructions of a small rendered
-# clip have to give a table whose figures are those of a good reconstruction.
+# studies.parameters runs the shortest study of thesis chapter 4: two reconstructions of a small rendered
+# clip have to give a table whose figures are those of a good reconstruction. studies.readmes holds the
+# measured numbers in the READMEs to the stored results of the studies.
 find_program(BASH_PROGRAM bash)
 if(BASH_PROGRAM)
   add_test(NAME studies.parameters
@@ -10,4 +11,7 @@ if(BASH_PROGRAM)
     SKIP_RETURN_CODE 77
     TIMEOUT 200
     ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>;RENDER_CLIP=$<TARGET_FILE:render_clip>")
+  add_test(NAME studies.readmes
+           COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/readmes_test.sh ${PROJECT_SOURCE_DIR})
+  set_tests_properties(studies.readmes PROPERTIES LABELS unit TIMEOUT 120)
 endif()

@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,43 +35,46 @@ struct Options {
   RegistrationOptions registration;
   AdjustmentOptions adjustment;
   ShapeExporterOptions exporter;
-  SailOptionTexts sail;
+  SurfaceFileOptions surface;
   Arguments arguments;  // as they were typed, for the report
 };
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {"automatic_reconstructor",
-          "photographs or a video of markers in, a workspace with the metric shape out",
-          "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
-          "    --workspace_path result",
-          {{"Input and output",
-            {ImagePathOption(paths),
-             CameraPathOption(paths),
-             PriorShapePathOption(paths),
+  CommandSyntax syntax = {
+      "automatic_reconstructor",
+      "photographs or a video of markers in, a workspace with the metric shape out",
+      "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
+      "    --workspace_path result",
+      {{"Input and output",
+        {ImagePathOption(paths), CameraPathOption(paths), PriorShapePathOption(paths),
+         Required(
              {"workspace_path", &paths->workspace_path, "path",
-              "folder of the result: new, empty, or of an earlier run, whose database is used on",
-              true},
-             BackendOption(&options->adjustment.backend)}},
-           MarkerGroup(&options->markers, true),
-           ArucoDetectionGroup(&options->importer.detection),
-           VideoGroup(&options->importer.video),
-           RegistrationGroup(&options->registration),
-           BundleAdjustmentGroup(&options->adjustment.colmap),
-           MarkerAdjustmentGroup(&options->adjustment.markers),
-           SailGroup(&options->exporter, &options->sail),
-           GeneralGroup(&options->general)}};
+              "folder of the result: new, empty, or of an earlier run, whose detections are kept"}),
+         BackendOption(&options->adjustment.backend)}},
+       DescribeOptions(&options->markers, true),
+       DescribeOptions(&options->importer.detection),
+       DescribeOptions(&options->importer.video),
+       DescribeOptions(&options->registration),
+       DescribeOptions(&options->adjustment.colmap),
+       DescribeOptions(&options->adjustment.markers)}};
+  for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
+    syntax.groups.push_back(group);
+  }
+  syntax.groups.push_back(DescribeOptions(&options->general));
+  return syntax;
 }
 
-// Everything that can be refused without touching the workspace.
+// Checks everything that can be checked without touching the workspace.
 void Validate(Options* options) {
-  ApplyGeneralOptions(options->general);
+  SetLogLevel(options->general.log_level);
   options->importer.detection.Check();
   options->importer.video.Check();
   options->registration.random_seed = options->general.random_seed;
+  options->registration.num_threads = options->general.num_threads;
   options->registration.Check();
   options->adjustment.Complete(options->general.num_threads);
-  CompleteSailOptions(options->sail, &options->exporter);
+  CompleteSailOptions(options->surface, &options->exporter);
   options->importer.layout = LoadLayout(options->markers, true);
   options->importer.camera = ReadCalibration(options->paths.camera_path);
   options->importer.camera_path = options->paths.camera_path;
@@ -81,10 +85,11 @@ void Validate(Options* options) {
   if (options->adjustment.UsesColmap()) CheckColmap(options->adjustment.colmap.colmap_path);
 }
 
-ImportReport Import(Options* options, Workspace* workspace, std::vector<LeftOutImage>* unreadable) {
-  options->importer.database_path = workspace->paths().Database().string();
-  options->importer.frame_output_path = workspace->paths().Images().string();
-  ImportReport report = ImportImages(options->importer);
+ImportReport Import(MarkerImporterOptions options, Workspace* workspace,
+                    std::vector<LeftOutImage>* unreadable) {
+  options.database_path = workspace->paths().Database().string();
+  options.frame_output_path = workspace->paths().Images().string();
+  ImportReport report = ImportImages(options);
   workspace->Keep();
   for (const SkippedImage& skipped : report.skipped) {
     unreadable->push_back({skipped.image_name, skipped.reason});
@@ -92,7 +97,7 @@ ImportReport Import(Options* options, Workspace* workspace, std::vector<LeftOutI
   return report;
 }
 
-// `--name value` and `--name=value` as pairs.
+// The options as they were typed, `--name value` or `--name=value`, as pairs.
 std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& arguments) {
   std::vector<std::pair<std::string, std::string>> options;
   for (const std::string& argument : arguments) {
@@ -133,8 +138,7 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
   WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
 }
 
-// From the seed to the final files. sparse/ and shape/ change places with the old ones when both
-// are whole.
+// Makes the final files from the seed. sparse/ and shape/ replace the old ones when both are whole.
 void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
                      ReconstructionSummary* summary, StageClock* clock) {
   AtomicFolder sparse(paths.Sparse());
@@ -166,21 +170,16 @@ void WriteTimes(const StageClock& clock, const WorkspacePaths& paths) {
                       [&clock](std::ostream& out) { WriteStageTimesJson(clock.Times(), out); });
 }
 
-}  // namespace
-
-void RunAutomaticReconstructor(const Arguments& arguments) {
-  Options options;
-  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  options.arguments = arguments;
-  Validate(&options);
+void Run(const Options& options) {
   Workspace workspace(options.paths.workspace_path, options.paths.image_path);
   const WorkspacePaths& paths = workspace.paths();
   AddLogFile(paths.Log().string());
-  spdlog::info("velamap {} automatic_reconstructor {}", kVersion, fmt::join(arguments, " "));
+  spdlog::info("velamap {} automatic_reconstructor {}", kVersion,
+               fmt::join(options.arguments, " "));
 
   ReconstructionSummary summary;
   StageClock clock;
-  const ImportReport import = Import(&options, &workspace, &summary.left_out);
+  const ImportReport import = Import(options.importer, &workspace, &summary.left_out);
   clock.EndImport(import.times, import.num_frames_read);
   const SeedResult seed =
       RegisterDatabase(paths.Database().string(), options.importer.layout, options.registration);
@@ -190,6 +189,18 @@ void RunAutomaticReconstructor(const Arguments& arguments) {
   AdjustAndExport(options, paths, seed, &summary, &clock);
   WriteTimes(clock, paths);
   PrintSummary(summary, paths, std::cout);
+  summary.shape.sail.ThrowSurfaceError();
+}
+
+}  // namespace
+
+Command AutomaticReconstructor() {
+  const auto options = std::make_shared<Options>();
+  return {Declare(options.get()), [options](const Arguments& arguments) {
+            options->arguments = arguments;
+            Validate(options.get());
+            Run(*options);
+          }};
 }
 
 }  // namespace velamap

@@ -1,4 +1,5 @@
 #include <iostream>
+#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -29,21 +30,21 @@ CommandSyntax Declare(Options* options) {
           "--input_path sparse/seed --output_path sparse/0",
           {{"Input and output",
             {ModelInputOption(paths),
-             {"output_path", &paths->output_path, "path", "folder of the adjusted model", true},
+             Required({"output_path", &paths->output_path, "path", "folder of the adjusted model"}),
              {"log_path", &paths->log_path, "path",
               "COLMAP's output; left out: colmap.log beside output_path"},
              BackendOption(&options->adjustment.backend),
              {"database_path", &paths->database_path, "path",
-              "database of the model's images, which knows how good each corner is (markers, "
+              "database of the model's images, which holds the sigma of each corner (markers, "
               "optional)"}}},
-           MarkerGroup(&options->markers, false),
-           BundleAdjustmentGroup(&options->adjustment.colmap),
-           MarkerAdjustmentGroup(&options->adjustment.markers),
-           GeneralGroup(&options->general)}};
+           DescribeOptions(&options->markers, false),
+           DescribeOptions(&options->adjustment.colmap),
+           DescribeOptions(&options->adjustment.markers),
+           DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {
-  ApplyGeneralOptions(options->general);
+  SetLogLevel(options->general.log_level);
   options->adjustment.Complete(options->general.num_threads);
   CheckReplaceableFolder(options->paths.output_path, ModelFileNames());
   if (options->paths.log_path.empty()) {
@@ -51,7 +52,7 @@ void Validate(Options* options) {
   }
 }
 
-// What only `markers` asks for is left empty for `colmap`.
+// COLMAP's adjustment needs no layout.
 Layout LoadAdjustmentLayout(const Options& options) {
   return options.adjustment.UsesMarkers() ? LoadLayout(options.markers, false) : Layout{};
 }
@@ -75,13 +76,7 @@ void Print(const AdjustmentResult& result, const std::string& model_path, std::o
   fmt::print(out, "model_path: {}\n", model_path);
 }
 
-}  // namespace
-
-void RunBundleAdjuster(const Arguments& arguments) {
-  Options options;
-  options.adjustment.backend = "colmap";  // needs no more than a model
-  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  Validate(&options);
+void Run(const Options& options) {
   StageClock clock;
   const Layout layout = LoadAdjustmentLayout(options);
   Model model = ReadModel(options.paths.input_path);
@@ -92,6 +87,17 @@ void RunBundleAdjuster(const Arguments& arguments) {
   clock.End("export");
   LogStageTimes(clock);
   Print(result, options.paths.output_path, std::cout);
+}
+
+}  // namespace
+
+Command BundleAdjuster() {
+  const auto options = std::make_shared<Options>();
+  options->adjustment.backend = AdjustmentBackend::kColmap;  // needs no more than a model
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(options.get());
+            Run(*options);
+          }};
 }
 
 }  // namespace velamap

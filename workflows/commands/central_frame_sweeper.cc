@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <iostream>
+#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,39 +23,53 @@ struct Options {
   CentralFrameSweepOptions sweep;
 };
 
+// The options of the registration but for the central frame, of which the sweep tries many.
+OptionGroup RegistrationGroup(RegistrationOptions* options) {
+  OptionGroup group = DescribeOptions(options);
+  const std::string central_frame = OptionName(group, &options->central_frame);
+  const auto is_central_frame = [&](const Option& option) {
+    return "--" + option.name == central_frame;
+  };
+  group.options.erase(std::remove_if(group.options.begin(), group.options.end(), is_central_frame),
+                      group.options.end());
+  return group;
+}
+
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
   CentralFrameSweepOptions* sweep = &options->sweep;
-  return {"central_frame_sweeper",
-          "registers, adjusts and judges a clip around many central frames, one row each",
-          "--database_path database.db --layout_path layout.yml \\\n"
-          "    --central_frames every:10 --output_path sweep.csv",
-          {{"Input and output",
-            {DatabasePathOption(paths, "COLMAP database that marker_importer made"),
-             {"output_path", &paths->output_path, "path", "table of all central frames, CSV", true},
-             {"central_frames", &sweep->central_frames, "all|every:N|LIST",
-              "central frames: of all images with markers, of every N-th, or names or frame "
-              "numbers with commas"},
-             {"models_path", &sweep->models_path, "path",
-              "folder for the metric model and shape.csv of each, in a folder of the image's name; "
-              "left out: none are written"},
-             {"warm_start", &sweep->warm_start, "0|1",
-              "begin each adjustment at the result around the central frame before"},
-             BackendOption(&sweep->adjustment.backend),
-             {"log_path", &paths->log_path, "path",
-              "COLMAP's output; left out: colmap.log beside output_path"}}},
-           MarkerGroup(&options->markers, false),
-           RegistrationGroup(&sweep->registration),
-           BundleAdjustmentGroup(&sweep->adjustment.colmap),
-           MarkerAdjustmentGroup(&sweep->adjustment.markers),
-           GeneralGroup(&options->general)}};
+  return {
+      "central_frame_sweeper",
+      "registers, adjusts and judges a clip around many central frames, one row each",
+      "--database_path database.db --layout_path layout.yml \\\n"
+      "    --central_frames every:10 --output_path sweep.csv",
+      {{"Input and output",
+        {DatabasePathOption(paths, "COLMAP database that marker_importer made"),
+         Required({"output_path", &paths->output_path, "path", "table of all central frames, CSV"}),
+         {"central_frames", &sweep->central_frames, "all|every:N|LIST",
+          "central frames: of all images with markers, of every N-th, or names or frame "
+          "numbers with commas"},
+         {"models_path", &sweep->models_path, "path",
+          "folder for the metric model and shape.csv of each central frame, in a folder of the "
+          "image's name; left out: none are written"},
+         {"warm_start", &sweep->warm_start, "0|1",
+          "start each adjustment at the result around the previous central frame"},
+         BackendOption(&sweep->adjustment.backend),
+         {"log_path", &paths->log_path, "path",
+          "COLMAP's output; left out: colmap.log beside output_path"}}},
+       DescribeOptions(&options->markers, false),
+       RegistrationGroup(&sweep->registration),
+       DescribeOptions(&sweep->adjustment.colmap),
+       DescribeOptions(&sweep->adjustment.markers),
+       DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {
-  ApplyGeneralOptions(options->general);
+  SetLogLevel(options->general.log_level);
   CentralFrameSweepOptions& sweep = options->sweep;
   sweep.database_path = options->paths.database_path;
   sweep.registration.random_seed = options->general.random_seed;
+  sweep.registration.num_threads = options->general.num_threads;
   sweep.registration.Check();
   sweep.adjustment.Complete(options->general.num_threads);
   sweep.log_path = options->paths.log_path.empty()
@@ -74,14 +90,7 @@ void Print(const std::vector<SweepRow>& rows, const std::string& output_path, st
   fmt::print(out, "table_path: {}\n", output_path);
 }
 
-}  // namespace
-
-void RunCentralFrameSweeper(const Arguments& arguments) {
-  Options options;
-  options.sweep.registration.method = RegistrationMethod::kThesis;
-  options.sweep.adjustment.backend = "markers";  // starts warm with profit
-  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  Validate(&options);
+void Run(const Options& options) {
   const Layout layout = LoadLayout(options.markers, false);
   StageClock clock;
   Progress progress("central frames");
@@ -97,6 +106,18 @@ void RunCentralFrameSweeper(const Arguments& arguments) {
                       [&rows](std::ostream& out) { WriteSweepCsv(rows, out); });
   LogStageTimes(clock);
   Print(rows, options.paths.output_path, std::cout);
+}
+
+}  // namespace
+
+Command CentralFrameSweeper() {
+  const auto options = std::make_shared<Options>();
+  options->sweep.registration.method = RegistrationMethod::kThesis;
+  options->sweep.adjustment.backend = AdjustmentBackend::kMarkers;  // profits from a warm start
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(options.get());
+            Run(*options);
+          }};
 }
 
 }  // namespace velamap

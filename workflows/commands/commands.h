@@ -1,37 +1,42 @@
-// The commands of the program. Each reads its options, calls the rooms' doors and prints its
-// results as `key: value` on stdout; errors leave it as exceptions (importer/base/error.h).
+// The commands of the program. Each reads files, calls the entry points of the rooms and prints its
+// results as `key: value` on stdout. Errors leave it as exceptions (importer/base/error.h).
 
 #pragma once
 
-#include <iosfwd>
+#include <functional>
+#include <set>
 #include <string>
 #include <vector>
+
+#include "workflows/options/option_parser.h"
 
 namespace velamap {
 
 using Arguments = std::vector<std::string>;
 
-void RunAutomaticReconstructor(const Arguments& arguments);
-void RunMarkerImporter(const Arguments& arguments);
-void RunFrameRegistrator(const Arguments& arguments);
-void RunBundleAdjuster(const Arguments& arguments);
-void RunCentralFrameSweeper(const Arguments& arguments);
-void RunShapeExporter(const Arguments& arguments);
-void RunShapeAnalyzer(const Arguments& arguments);
-void RunShapeComparer(const Arguments& arguments);
-void RunHelp(const Arguments& arguments);
-void RunVersion(const Arguments& arguments);
-
 struct Command {
-  const char* name;
-  void (*run)(const Arguments&);
-  const char* description;  // one line
+  CommandSyntax syntax;                                 // its options set values that `run` uses
+  std::function<void(const Arguments& arguments)> run;  // `arguments` as they were typed
 };
 
-// The registry: what is not in it does not exist.
-const std::vector<Command>& Commands();
+Command AutomaticReconstructor();
+Command MarkerImporter();
+Command FrameRegistrator();
+Command BundleAdjuster();
+Command CentralFrameSweeper();
+Command ShapeExporter();
+Command ShapeAnalyzer();
+Command ShapeComparer();
+Command Version();
 
-// Throws InputError, naming the nearest command, for an unknown one.
-const Command& FindCommand(const std::string& name);
+// The registry: all commands but help, in the order in which help lists them.
+std::vector<Command> AllCommands();
+
+// The names of the options of all commands: what a project file may hold.
+std::set<std::string> AllOptionNames();
+
+// Runs the command that the first argument names, with the others; shows help where that is asked
+// for. Throws InputError, naming the nearest command, for an unknown one.
+void RunCommandLine(const Arguments& arguments);
 
 }  // namespace velamap

@@ -1,4 +1,5 @@
 #include <iostream>
+#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -30,17 +31,18 @@ CommandSyntax Declare(Options* options) {
           "--database_path database.db --layout_path layout.yml --output_path sparse/seed",
           {{"Input and output",
             {DatabasePathOption(paths, "COLMAP database that marker_importer made"),
-             {"output_path", &paths->output_path, "path", "folder of the seed model", true},
+             Required({"output_path", &paths->output_path, "path", "folder of the seed model"}),
              {"registration_path", &paths->registration_path, "path",
               "table of all images, CSV; left out: registration.csv beside output_path"}}},
-           MarkerGroup(&options->markers, false),
-           RegistrationGroup(&options->registration),
-           GeneralGroup(&options->general)}};
+           DescribeOptions(&options->markers, false),
+           DescribeOptions(&options->registration),
+           DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {
-  ApplyGeneralOptions(options->general);
+  SetLogLevel(options->general.log_level);
   options->registration.random_seed = options->general.random_seed;
+  options->registration.num_threads = options->general.num_threads;
   options->registration.Check();
   CheckReplaceableFolder(options->paths.output_path, ModelFileNames());
   if (options->paths.registration_path.empty()) {
@@ -60,12 +62,7 @@ void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) 
   fmt::print(out, "registration_path: {}\n", paths.registration_path);
 }
 
-}  // namespace
-
-void RunFrameRegistrator(const Arguments& arguments) {
-  Options options;
-  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  Validate(&options);
+void Run(const Options& options) {
   StageClock clock;
   const SeedResult seed = RegisterDatabase(
       options.paths.database_path, LoadLayout(options.markers, false), options.registration);
@@ -76,6 +73,16 @@ void RunFrameRegistrator(const Arguments& arguments) {
   clock.End("export");
   LogStageTimes(clock);
   Print(seed, options.paths, std::cout);
+}
+
+}  // namespace
+
+Command FrameRegistrator() {
+  const auto options = std::make_shared<Options>();
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(options.get());
+            Run(*options);
+          }};
 }
 
 }  // namespace velamap

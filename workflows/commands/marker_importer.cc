@@ -1,4 +1,5 @@
 #include <iostream>
+#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -23,26 +24,26 @@ struct Options {
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
   return {"marker_importer",
-          "finds the markers in images or a video and writes them into a COLMAP database; images "
-          "that the database already holds are passed over",
+          "finds the markers in images or a video and writes them into a COLMAP database",
           "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
           "    --database_path database.db",
           {{"Input and output",
             {ImagePathOption(paths),
              CameraPathOption(paths),
              PriorShapePathOption(paths),
-             DatabasePathOption(paths, "COLMAP database, made new or added to"),
+             DatabasePathOption(
+                 paths, "COLMAP database, new or to be added to; images that it holds are skipped"),
              {"frame_output_path", &paths->frame_output_path, "path",
               "folder for the frames of a video that hold markers, as JPEG; left out: none are "
               "written"}}},
-           MarkerGroup(&options->markers, true),
-           ArucoDetectionGroup(&options->importer.detection),
-           VideoGroup(&options->importer.video),
-           GeneralGroup(&options->general)}};
+           DescribeOptions(&options->markers, true),
+           DescribeOptions(&options->importer.detection),
+           DescribeOptions(&options->importer.video),
+           DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {
-  ApplyGeneralOptions(options->general);
+  SetLogLevel(options->general.log_level);
   MarkerImporterOptions& importer = options->importer;
   importer.detection.Check();
   importer.video.Check();
@@ -76,17 +77,22 @@ void Print(const ImportReport& report, const PathOptions& paths, std::ostream& o
   fmt::print(out, "database_path: {}\n", paths.database_path);
 }
 
-}  // namespace
-
-void RunMarkerImporter(const Arguments& arguments) {
-  Options options;
-  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  Validate(&options);
+void Run(const Options& options) {
   StageClock clock;
   const ImportReport report = ImportImages(options.importer);
   clock.EndImport(report.times, report.num_frames_read);
   LogStageTimes(clock);
   Print(report, options.paths, std::cout);
+}
+
+}  // namespace
+
+Command MarkerImporter() {
+  const auto options = std::make_shared<Options>();
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(options.get());
+            Run(*options);
+          }};
 }
 
 }  // namespace velamap

@@ -1,4 +1,5 @@
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include <spdlog/spdlog.h>
@@ -28,28 +29,28 @@ struct Options {
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {
-      "shape_analyzer",
-      "judges a shape by its markers, its images and a reference",
-      "--shape_path shape --layout_path layout.yml --input_path sparse/0",
-      {{"Input and output",
-        {{"shape_path", &paths->shape_path, "path", "shape.csv, or the folder that holds it", true},
-         {"input_path", &paths->input_path, "path",
-          "folder of the COLMAP model that the shape is from; for reprojection errors"},
-         {"reference_path", &paths->reference_path, "path",
-          "shape.csv of the truth or the design; the shape is aligned with it, and distances "
-          "of adjacent markers are compared"},
-         {"part_planes", &options->part_planes, "0|1",
-          "fit a plane to every part and compare the planes"},
-         {"csv_path", &options->csv_path, "path",
-          "file for all metrics and the tables of markers and distances"},
-         {"json_path", &options->json_path, "path", "the same as JSON"}}},
-       MarkerGroup(&options->markers, false),
-       GeneralGroup(&options->general)}};
+  return {"shape_analyzer",
+          "judges a shape by its markers, its images and a reference",
+          "--shape_path shape --layout_path layout.yml --input_path sparse/0",
+          {{"Input and output",
+            {Required({"shape_path", &paths->shape_path, "path",
+                       "shape.csv, or the folder that holds it"}),
+             {"input_path", &paths->input_path, "path",
+              "folder of the COLMAP model that the shape is from; for reprojection errors"},
+             {"reference_path", &paths->reference_path, "path",
+              "shape.csv of the truth or the design; the shape is aligned with it, and distances "
+              "of adjacent markers are compared"},
+             {"part_planes", &options->part_planes, "0|1",
+              "fit a plane to every part and compare the planes"},
+             {"csv_path", &options->csv_path, "path",
+              "file for all metrics and the tables of markers and distances"},
+             {"json_path", &options->json_path, "path", "the same as JSON"}}},
+           DescribeOptions(&options->markers, false),
+           DescribeOptions(&options->general)}};
 }
 
 void Validate(const Options& options) {
-  ApplyGeneralOptions(options.general);
+  SetLogLevel(options.general.log_level);
   const PathOptions& paths = options.paths;
   if (!HasMarkerOptions(options.markers) && paths.reference_path.empty() &&
       paths.input_path.empty() && !options.part_planes) {
@@ -62,7 +63,7 @@ void Validate(const Options& options) {
   }
 }
 
-// A shape is similar to the corners of its model, or one of the two is of another run.
+// Warns unless the shape is similar to the corners of the model: else they are of different runs.
 void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathOptions& paths) {
   constexpr double kTolerance_m = 1e-6;
   const auto max_distance_m = [&] {
@@ -76,12 +77,13 @@ void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathO
   }();
   if (max_distance_m <= kTolerance_m) return;
   spdlog::warn(
-      "{} is not the shape of the model {}: corners differ by up to {:.6f} m, errors of "
-      "the two do not belong together",
+      "{} is not the shape of the model {}: corners differ by up to {:.6f} m, so the model's "
+      "errors "
+      "are not those of the shape",
       paths.shape_path, paths.input_path, max_distance_m);
 }
 
-// The model that the shape is from, and what is known of its points where they are the shape's.
+// The model of the shape, and its uncertainty if both have the same points.
 struct ModelOfShape {
   std::optional<Model> model;
   std::optional<AdjustmentUncertainty> uncertainty;
@@ -128,12 +130,7 @@ MetricsReport Analyze(const Options& options) {
   return report;
 }
 
-}  // namespace
-
-void RunShapeAnalyzer(const Arguments& arguments) {
-  Options options;
-  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  Validate(options);
+void Run(const Options& options) {
   const MetricsReport report = Analyze(options);
   if (!options.csv_path.empty()) {
     WriteFileAtomically(options.csv_path,
@@ -144,6 +141,16 @@ void RunShapeAnalyzer(const Arguments& arguments) {
                         [&report](std::ostream& out) { WriteMetricsJson(report, out); });
   }
   PrintMetrics(report, std::cout);
+}
+
+}  // namespace
+
+Command ShapeAnalyzer() {
+  const auto options = std::make_shared<Options>();
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(*options);
+            Run(*options);
+          }};
 }
 
 }  // namespace velamap

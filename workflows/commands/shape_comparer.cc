@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
@@ -39,58 +41,52 @@ struct Options {
   std::optional<double> color_limit_mm;
 };
 
-void SetStart(const std::string& name, AlignmentOptions* alignment) {
-  if (name != "auto" && name != "as_is") {
-    throw InputError(fmt::format("--align_start: '{}' is unknown; give auto or as_is", name));
-  }
-  alignment->starts_as_is = name == "as_is";
-}
-
 OptionGroup InputGroup(Options* options) {
-  const ParsedValue unit = {"", [options](const std::string& name) {
-                              options->mesh.m_per_unit = MPerUnitFromName(name, "--reference_unit");
-                            }};
+  MeshReadOptions* mesh = &options->mesh;
+  const auto set_unit = [mesh](const std::string& text, const std::string& option) {
+    mesh->m_per_unit = MPerUnitFromName(text, option);
+  };
   PathOptions* paths = &options->paths;
   return {
       "Input",
-      {{"shape_path", &paths->shape_path, "path", "shape.csv, or the folder that holds it", true},
-       {"reference_path", &paths->reference_path, "path",
-        "what it is compared with: shape.csv or its folder, or a surface as .ply, .stl, .obj, "
-        ".step or .iges",
-        true},
-       {"reference_unit", unit, "m|mm",
-        "of a .ply, .stl or .obj; left out: m for .ply, mm for .stl and .obj"},
-       {"chord_deviation", &options->mesh.chord_deviation_mm, "mm",
-        "how far triangles may be from the faces of a .step or .iges"},
+      {Required(
+           {"shape_path", &paths->shape_path, "path", "shape.csv, or the folder that holds it"}),
+       Required({"reference_path", &paths->reference_path, "path",
+                 "what the shape is compared with: shape.csv or its folder, or a surface as .ply, "
+                 ".stl, .obj, .step or .iges"}),
+       {"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
+        "unit of a .ply, .stl or .obj; left out: m for .ply, mm for .stl and .obj"},
+       {"chord_deviation", &mesh->chord_deviation_mm, "mm",
+        "how far triangles may be from the faces of a .step or .iges", MoreThan(0)},
        {"layout_path", &options->layout_path, "path",
         "layout file: names the reference part and the lines"},
        {"part", &options->part, "name", "compare the markers of this part only"},
        {"uncertainty_path", &options->uncertainty_path, "path",
-        "folder of the shape's model with its uncertainty.bin, for sigmas that know what all "
-        "markers have in common; left out: ../sparse/0 of a shape folder, else the sigmas of "
+        "folder of the shape's model with its uncertainty.bin, for sigmas with correlations "
+        "between the markers; left out: ../sparse/0 of a shape folder, else the sigmas of "
         "shape.csv"},
        {"reference_uncertainty_path", &options->reference_uncertainty_path, "path",
         "the same for the reference"}}};
 }
 
-OptionGroup AlignmentGroup(Options* options) {
-  AlignmentOptions* alignment = &options->alignment;
-  const ParsedValue method = {AlignmentMethodName(alignment->method),
-                              [alignment](const std::string& name) {
-                                alignment->method = AlignmentMethodFromName(name, "--align");
-                              }};
-  const ParsedValue ids = {"", [alignment](const std::string& text) {
-                             alignment->marker_ids = MarkerIdsFromText(text, "--align_markers");
-                           }};
-  const ParsedValue start = {"auto",
-                             [alignment](const std::string& name) { SetStart(name, alignment); }};
-  return {"Alignment (rigid, scale is never fitted)",
-          {{"align", method, "method",
-            "auto, reference_part, markers, best_fit or none; auto: the reference part where three "
-            "of its markers are in both, else best fit"},
-           {"align_markers", ids, "ids", "for --align markers, such as 120,121,122"},
-           {"align_start", start, "auto|as_is",
-            "best fit onto a surface: from several starts, or only from where the shape is"}}};
+OptionGroup AlignmentGroup(AlignmentOptions* alignment) {
+  const auto set_method = [alignment](const std::string& text, const std::string& option) {
+    alignment->method = AlignmentMethodFromName(text, option);
+  };
+  const auto set_ids = [alignment](const std::string& text, const std::string& option) {
+    alignment->marker_ids = MarkerIdsFromText(text, option);
+  };
+  return {
+      "Alignment (rigid, scale is never fitted)",
+      {{"align",
+        ParsedValue{&alignment->method, AlignmentMethodName(alignment->method), set_method},
+        "method",
+        "auto, reference_part, markers, best_fit or none; auto: the reference part where three "
+        "of its markers are in both, else best fit"},
+       {"align_markers", ParsedValue{&alignment->marker_ids, "", set_ids}, "ids",
+        "for --align markers, such as 120,121,122"},
+       ChoiceOption("align_start", &alignment->starts_as_is, {{false, "auto"}, {true, "as_is"}},
+                    "best fit onto a surface: from several starts, or from where the shape is")}};
 }
 
 CommandSyntax Declare(Options* options) {
@@ -98,27 +94,21 @@ CommandSyntax Declare(Options* options) {
           "compares a shape with another one or with the surface of a design",
           "--shape_path shape --reference_path design.step --layout_path layout.yml",
           {InputGroup(options),
-           AlignmentGroup(options),
+           AlignmentGroup(&options->alignment),
            {"Output",
             {{"output_path", &options->paths.output_path, "path",
               "PLY of the markers, coloured by their signed distance"},
              {"surface_path", &options->surface_path, "path",
               "PLY of the surface through the lines, coloured in the same way; needs a layout"},
              {"color_limit", &options->color_limit_mm, "mm",
-              "distance of the full colours; left out: the largest"},
+              "distance that gets the full colour; left out: the largest", MoreThan(0)},
              {"csv_path", &options->csv_path, "path", "file for all figures and tables"},
              {"json_path", &options->json_path, "path", "the same as JSON"}}},
-           GeneralGroup(&options->general)}};
+           DescribeOptions(&options->general)}};
 }
 
 void Validate(const Options& options) {
-  ApplyGeneralOptions(options.general);
-  if (!(options.mesh.chord_deviation_mm > 0)) {
-    throw InputError("--chord_deviation: must be positive");
-  }
-  if (options.color_limit_mm && !(*options.color_limit_mm > 0)) {
-    throw InputError("--color_limit: must be positive");
-  }
+  SetLogLevel(options.general.log_level);
   if (!options.csv_path.empty() && options.csv_path == options.json_path) {
     throw InputError("--json_path: " + options.json_path + " is the --csv_path too; give another");
   }
@@ -131,7 +121,7 @@ void Validate(const Options& options) {
   }
 }
 
-// Whether the covariance is that of the shape: its sigmas are those of shape.csv.
+// Whether the covariance belongs to the shape, by the sigmas of both.
 bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
   constexpr double kTolerance = 1e-3;
   for (const ShapeMarker& marker : shape.markers) {
@@ -148,20 +138,20 @@ bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
   return true;
 }
 
-// `option` names the one that gives `uncertainty_path`.
+// `option` gives `uncertainty_path` and stands in messages.
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option) {
-  const bool is_folder = fs::is_directory(path);
+  const bool is_folder = IsFolder(path);
   UncertainShape result;
   result.shape = ReadShapeCsv(is_folder ? (fs::path(path) / "shape.csv").string() : path);
   fs::path folder = uncertainty_path;
   if (folder.empty() && is_folder) {
-    folder = fs::absolute(fs::path(path) / "").parent_path().parent_path() / "sparse" / "0";
+    folder = AbsoluteFolder(path).parent_path() / "sparse" / "0";
   }
   if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
     throw InputError(
-        fmt::format("{}: {} holds no {}; give the folder of a model adjusted with "
-                    "--backend markers",
+        fmt::format("{}: {} holds no {}; give the folder of a model that velamap bundle_adjuster "
+                    "--backend markers has adjusted",
                     option, uncertainty_path, kUncertaintyFileName));
   }
   if (!folder.empty() && HasUncertainty(folder.string())) {
@@ -172,8 +162,9 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
       return result;
     }
     if (!uncertainty_path.empty()) {
-      throw InputError(fmt::format("{}: the uncertainty in {} is not that of {}, its sigmas differ",
-                                   option, uncertainty_path, path));
+      throw InputError(
+          fmt::format("{}: the uncertainty in {} does not belong to {}: the sigmas differ", option,
+                      uncertainty_path, path));
     }
   }
   result.covariance = CovarianceFromSigmas(result.shape);
@@ -184,7 +175,7 @@ void CheckUnit(const Options& options, const MarkerShape& shape, const MeshDista
   const std::optional<double> factor = UnitHint(shape, mesh);
   if (!factor) return;
   const std::string& path = options.paths.reference_path;
-  const std::string what = fmt::format("{}: is {:.3g} m across, which does not go with the shape",
+  const std::string what = fmt::format("{}: is {:.3g} m across, which does not match the shape",
                                        path, mesh.Diagonal_m());
   if (HasOwnUnit(path) || options.mesh.m_per_unit) {
     spdlog::warn("{}; is its unit right?", what);
@@ -209,8 +200,9 @@ Result CompareWithSurface(const Options& options, const UncertainShape& shape,
   CheckUnit(options, shape.shape, mesh);
   if (mesh.NumFlippedEdges() > 0) {
     spdlog::warn(
-        "{}: {} edges have triangles that look to opposite sides; signs there mean nothing", path,
-        mesh.NumFlippedEdges());
+        "{}: the triangles at {} edges face opposite sides, where the signs of distances are "
+        "arbitrary",
+        path, mesh.NumFlippedEdges());
   }
   Result result;
   result.deviation = CompareWithMesh(shape, mesh, layout, options.alignment, options.part);
@@ -262,16 +254,21 @@ void Write(const Options& options, const Result& result, const MetricsReport& re
         [&](std::ostream& out) { WriteComparisonSurfacePly(result.surfaces, limit_m, out); });
 }
 
-}  // namespace
-
-void RunShapeComparer(const Arguments& arguments) {
-  Options options;
-  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  Validate(options);
+void Run(const Options& options) {
   MetricsReport report;
   const Result result = Compare(options, &report);
   Write(options, result, report);
   PrintMetrics(report, std::cout);
+}
+
+}  // namespace
+
+Command ShapeComparer() {
+  const auto options = std::make_shared<Options>();
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(*options);
+            Run(*options);
+          }};
 }
 
 }  // namespace velamap

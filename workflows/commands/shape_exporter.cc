@@ -1,4 +1,5 @@
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include "importer/base/error.h"
@@ -18,12 +19,12 @@ struct Options {
   MarkerOptions markers;
   GeneralOptions general;
   ShapeExporterOptions exporter;
-  SailOptionTexts sail;
+  SurfaceFileOptions surface;
 };
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {
+  CommandSyntax syntax = {
       "shape_exporter",
       "scales a model to metres by the markers' sides and writes the shape",
       "--input_path sparse/0 --layout_path layout.yml --output_path metric --shape_path shape",
@@ -34,18 +35,21 @@ CommandSyntax Declare(Options* options) {
          {"shape_path", &paths->shape_path, "path",
           "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is written"},
          {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"}}},
-       MarkerGroup(&options->markers, false),
-       SailGroup(&options->exporter, &options->sail),
-       GeneralGroup(&options->general)}};
+       DescribeOptions(&options->markers, false)}};
+  for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
+    syntax.groups.push_back(group);
+  }
+  syntax.groups.push_back(DescribeOptions(&options->general));
+  return syntax;
 }
 
 void Validate(Options* options) {
-  ApplyGeneralOptions(options->general);
+  SetLogLevel(options->general.log_level);
   if (options->paths.output_path.empty() && options->paths.shape_path.empty()) {
     throw InputError(
         "--shape_path: missing; give --shape_path, --output_path or both to say what to write");
   }
-  CompleteSailOptions(options->sail, &options->exporter);
+  CompleteSailOptions(options->surface, &options->exporter);
   options->exporter.model_output_path = options->paths.output_path;
   options->exporter.shape_output_path = options->paths.shape_path;
 }
@@ -56,12 +60,7 @@ void Print(const ShapeExportReport& report, const PathOptions& paths, std::ostre
   if (!paths.output_path.empty()) out << "model_path: " << paths.output_path << '\n';
 }
 
-}  // namespace
-
-void RunShapeExporter(const Arguments& arguments) {
-  Options options;
-  if (!ParseOrPrintHelp(Declare(&options), arguments)) return;
-  Validate(&options);
+void Run(const Options& options) {
   StageClock clock;
   const Layout layout = LoadLayout(options.markers, false);
   const Model model = ReadModel(options.paths.input_path);
@@ -74,6 +73,17 @@ void RunShapeExporter(const Arguments& arguments) {
   clock.End("export");
   LogStageTimes(clock);
   Print(report, options.paths, std::cout);
+  report.sail.ThrowSurfaceError();
+}
+
+}  // namespace
+
+Command ShapeExporter() {
+  const auto options = std::make_shared<Options>();
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(options.get());
+            Run(*options);
+          }};
 }
 
 }  // namespace velamap

@@ -1,7 +1,6 @@
 #include "workflows/options/option_parser.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -11,6 +10,8 @@
 #include <boost/program_options.hpp>
 
 #include "importer/base/error.h"
+#include "importer/base/numbers.h"
+#include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {
@@ -19,12 +20,11 @@ namespace po = boost::program_options;
 
 constexpr const char* kProjectPath = "project_path";
 
-// A value as it was given, and where, for messages.
+// Where and how a value was given, for messages.
 struct GivenValue {
   std::string text;
-  std::string origin;  // "--name" or "file: name"
+  std::string given_as;  // "--name" or "file: name"
 };
-using GivenValues = std::map<std::string, GivenValue>;
 
 std::string DefaultText(const OptionTarget& target) {
   struct Visitor {
@@ -40,16 +40,20 @@ std::string DefaultText(const OptionTarget& target) {
   return std::visit(Visitor{}, target);
 }
 
-po::options_description Describe(const OptionGroup& group) {
+std::string HelpText(const Option& option) {
+  std::string text = option.description;
+  for (const std::string& name : option.short_names) text += "; in short --" + name;
+  return option.required ? text + " (required)" : text;
+}
+
+po::options_description DescribeForHelp(const OptionGroup& group) {
   constexpr unsigned kLineLength = 100, kMinDescriptionLength = 50;
   po::options_description description(group.title, kLineLength, kMinDescriptionLength);
   for (const Option& option : group.options) {
     auto* semantic = po::value<std::string>()->value_name(option.unit);
     const std::string text = DefaultText(option.target);
     if (!option.required && !text.empty()) semantic->default_value(text);
-    description.add_options()(
-        option.name.c_str(), semantic,
-        (option.description + (option.required ? " (required)" : "")).c_str());
+    description.add_options()(option.name.c_str(), semantic, HelpText(option).c_str());
   }
   return description;
 }
@@ -57,61 +61,90 @@ po::options_description Describe(const OptionGroup& group) {
 OptionGroup ProjectGroup(std::string* project_path) {
   return {"Project file",
           {{kProjectPath, project_path, "path",
-            "ini file with the same options; the command line "
-            "wins over it"}}};
+            "ini file with the same options; the command line wins over it"}}};
 }
 
-po::options_description DescribeAll(const CommandSyntax& syntax) {
-  po::options_description all;
-  std::string project_path;
-  for (const OptionGroup& group : syntax.groups) all.add(Describe(group));
-  all.add(Describe(ProjectGroup(&project_path)));
-  return all;
-}
+using OptionsByName = std::map<std::string, Option>;    // under each of their names
+using GivenValues = std::map<std::string, GivenValue>;  // under the first name of the option
 
-std::vector<std::string> OptionNames(const CommandSyntax& syntax) {
-  std::vector<std::string> names = {kProjectPath, "help"};
-  for (const OptionGroup& group : syntax.groups) {
-    for (const Option& option : group.options) names.push_back(option.name);
-  }
+std::vector<std::string> NamesOf(const Option& option) {
+  std::vector<std::string> names = {option.name};
+  names.insert(names.end(), option.short_names.begin(), option.short_names.end());
+  names.insert(names.end(), option.old_names.begin(), option.old_names.end());
   return names;
+}
+
+OptionsByName IndexByName(const std::vector<OptionGroup>& groups) {
+  OptionsByName options;
+  for (const OptionGroup& group : groups) {
+    for (const Option& option : group.options) {
+      for (const std::string& name : NamesOf(option)) options.emplace(name, option);
+    }
+  }
+  return options;
+}
+
+po::options_description DescribeForParsing(const OptionsByName& options) {
+  po::options_description description;
+  for (const auto& [name, option] : options) {
+    description.add_options()(name.c_str(), po::value<std::string>(), "");
+  }
+  return description;
 }
 
 std::string HelpHint(const CommandSyntax& syntax) {
   return fmt::format("see velamap {} --help", syntax.name);
 }
 
-std::string DidYouMean(const std::string& name, const std::vector<std::string>& names,
+// `dashes` stand before the names of options where the unknown one stands.
+std::string DidYouMean(const OptionsByName& options, const std::string& unknown_name,
                        const std::string& dashes) {
-  const std::string nearest = NearestName(name, names);
+  std::vector<std::string> names = {"help"};
+  for (const auto& [name, option] : options) names.push_back(option.name);
+  const std::string nearest = NearestName(unknown_name, names);
   return nearest.empty() ? "" : fmt::format("did you mean {}{}? ", dashes, nearest);
 }
 
-GivenValues ReadCommandLine(const CommandSyntax& syntax, const po::options_description& description,
+void AddGiven(const Option& option, const std::string& name, const GivenValue& given,
+              GivenValues* values) {
+  const auto [earlier, is_first] = values->emplace(option.name, given);
+  const std::string& given_before = earlier->second.given_as;
+  if (!is_first && given_before == given.given_as) {
+    throw InputError(fmt::format("{}: given twice; give it once", given.given_as));
+  }
+  if (!is_first) {
+    throw InputError(fmt::format("{} and {}: two names of one option; give one of them",
+                                 given_before, given.given_as));
+  }
+  const std::vector<std::string>& old_names = option.old_names;
+  if (std::find(old_names.begin(), old_names.end(), name) != old_names.end()) {
+    WarnOfOldName(given.given_as, option.name);
+  }
+}
+
+GivenValues ReadCommandLine(const CommandSyntax& syntax, const OptionsByName& options,
                             const std::vector<std::string>& arguments) {
   namespace style = po::command_line_style;
   GivenValues values;
   try {
+    const po::options_description description = DescribeForParsing(options);
     const auto parsed =
         po::command_line_parser(arguments)
             .options(description)
             .style(style::allow_long | style::long_allow_adjacent | style::long_allow_next)
             .allow_unregistered()
             .run();
-    for (const auto& option : parsed.options) {
-      if (option.position_key >= 0) {
+    for (const auto& given : parsed.options) {
+      if (given.position_key >= 0) {
         throw InputError(fmt::format("'{}': every value needs its option before it; {}",
-                                     option.original_tokens.front(), HelpHint(syntax)));
+                                     given.original_tokens.front(), HelpHint(syntax)));
       }
-      const std::string& name = option.string_key;
-      if (option.unregistered) {
+      const std::string& name = given.string_key;
+      if (given.unregistered) {
         throw InputError(fmt::format("--{}: unknown option; {}{}", name,
-                                     DidYouMean(name, OptionNames(syntax), "--"),
-                                     HelpHint(syntax)));
+                                     DidYouMean(options, name, "--"), HelpHint(syntax)));
       }
-      if (!values.emplace(name, GivenValue{option.value.front(), "--" + name}).second) {
-        throw InputError(fmt::format("--{}: given twice; give it once", name));
-      }
+      AddGiven(options.at(name), name, {given.value.front(), "--" + name}, &values);
     }
   } catch (const po::error& error) {
     throw InputError(fmt::format("{}; {}", error.what(), HelpHint(syntax)));
@@ -119,133 +152,109 @@ GivenValues ReadCommandLine(const CommandSyntax& syntax, const po::options_descr
   return values;
 }
 
-GivenValues ReadProjectFile(const CommandSyntax& syntax, const po::options_description& description,
-                            const std::string& path, const std::set<std::string>& other_names) {
+GivenValues ReadProjectFile(const CommandSyntax& syntax, const OptionsByName& options,
+                            const std::string& path, const std::set<std::string>& known_names) {
   std::ifstream stream(path);
   if (!stream || stream.peek() == std::ifstream::traits_type::eof()) {
     throw InputError(
-        fmt::format("--{} {}: cannot be read, or is empty; give an ini file with "
-                    "key=value lines",
+        fmt::format("--{} {}: cannot be read, or is empty; give an ini file with key=value lines",
                     kProjectPath, path));
   }
   GivenValues values;
   try {
     constexpr bool kAllowUnregistered = true;
-    for (const auto& option :
+    const po::options_description description = DescribeForParsing(options);
+    for (const auto& given :
          po::parse_config_file(stream, description, kAllowUnregistered).options) {
-      const std::string& name = option.string_key;
-      if (option.unregistered && other_names.count(name) > 0) continue;
-      if (option.unregistered || name == kProjectPath) {
+      const std::string& name = given.string_key;
+      if (given.unregistered && known_names.count(name) > 0) continue;
+      if (given.unregistered || name == kProjectPath) {
         throw InputError(fmt::format("{}: unknown key {}; {}{}", path, name,
-                                     DidYouMean(name, OptionNames(syntax), ""), HelpHint(syntax)));
+                                     DidYouMean(options, name, ""), HelpHint(syntax)));
       }
-      if (!values.emplace(name, GivenValue{option.value.front(), path + ": " + name}).second) {
-        throw InputError(fmt::format("{}: {} is given twice; give it once", path, name));
-      }
+      AddGiven(options.at(name), name, {given.value.front(), path + ": " + name}, &values);
     }
   } catch (const po::error& error) {
     throw InputError(
-        fmt::format("{}: {}; expected key=value lines, and [Section] before keys of a "
-                    "section",
+        fmt::format("{}: {}; expected key=value lines, and [Section] before the keys of a section",
                     path, error.what()));
   }
   return values;
 }
 
-template <typename Number>
-void ParseNumber(const GivenValue& given, const char* kind, Number* value) {
-  const char* const end = given.text.data() + given.text.size();
-  const auto [rest, error] = std::from_chars(given.text.data(), end, *value);
-  if (error != std::errc() || rest != end || !std::isfinite(static_cast<double>(*value))) {
-    throw InputError(
-        fmt::format("{}: '{}' is no {} in range; give one", given.origin, given.text, kind));
-  }
-}
-
 struct Setter {
   const GivenValue& given;
 
+  template <typename Number>
+  void SetNumber(const char* kind, Number* value) const {
+    if (!ParseNumber(given.text, value) || !std::isfinite(static_cast<double>(*value))) {
+      throw InputError(
+          fmt::format("{}: '{}' is not a {}; give one", given.given_as, given.text, kind));
+    }
+  }
+
   void operator()(std::string* value) const { *value = given.text; }
-  void operator()(int* value) const { ParseNumber(given, "whole number", value); }
-  void operator()(double* value) const { ParseNumber(given, "number", value); }
+  void operator()(int* value) const { SetNumber("whole number in range", value); }
+  void operator()(double* value) const { SetNumber("number in range", value); }
   void operator()(std::optional<double>* value) const {
-    ParseNumber(given, "number", &value->emplace());
+    SetNumber("number in range", &value->emplace());
   }
   void operator()(bool* value) const {
     if (given.text != "0" && given.text != "1") {
       throw InputError(fmt::format("{}: '{}' is neither 0 nor 1; give 0 (no) or 1 (yes)",
-                                   given.origin, given.text));
+                                   given.given_as, given.text));
     }
     *value = given.text == "1";
   }
-  void operator()(const ParsedValue& value) const { value.set(given.text); }
+  void operator()(const ParsedValue& value) const { value.set(given.text, given.given_as); }
 };
 
-int EditDistance(const std::string& a, const std::string& b) {
-  std::vector<int> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = row[0];
-    row[0] = static_cast<int>(i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const int substitution = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
-    }
+void SetOption(const CommandSyntax& syntax, const Option& option, const GivenValues& values) {
+  const auto given = values.find(option.name);
+  if (option.required && (given == values.end() || given->second.text.empty())) {
+    throw InputError(
+        fmt::format("--{}: missing; {} ({})", option.name, option.description, HelpHint(syntax)));
   }
-  return row[b.size()];
+  if (given == values.end()) return;
+  std::visit(Setter{given->second}, option.target);
+  CheckRange(option, given->second.given_as);
 }
 
 }  // namespace
 
+std::set<std::string> OptionNames(const CommandSyntax& syntax) {
+  std::set<std::string> names;
+  for (const auto& [name, option] : IndexByName(syntax.groups)) names.insert(name);
+  return names;
+}
+
 bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& arguments,
-                  const std::set<std::string>& other_names) {
+                  const std::set<std::string>& known_names) {
   for (const std::string& argument : arguments) {
     if (argument == "--help" || argument == "-h") return false;
   }
-  const po::options_description description = DescribeAll(syntax);
-  GivenValues values = ReadCommandLine(syntax, description, arguments);
+  std::string project_path;
+  std::vector<OptionGroup> groups = syntax.groups;
+  groups.push_back(ProjectGroup(&project_path));
+  const OptionsByName options = IndexByName(groups);
+  GivenValues values = ReadCommandLine(syntax, options, arguments);
   if (const auto project = values.find(kProjectPath); project != values.end()) {
-    // insert() keeps what the command line has given.
-    const GivenValues from_file =
-        ReadProjectFile(syntax, description, project->second.text, other_names);
-    values.insert(from_file.begin(), from_file.end());
+    GivenValues from_file = ReadProjectFile(syntax, options, project->second.text, known_names);
+    values.merge(from_file);  // keeps what the command line has given
   }
   for (const OptionGroup& group : syntax.groups) {
-    for (const Option& option : group.options) {
-      const auto it = values.find(option.name);
-      if (option.required && (it == values.end() || it->second.text.empty())) {
-        throw InputError(fmt::format("--{}: missing; {} ({})", option.name, option.description,
-                                     HelpHint(syntax)));
-      }
-      if (it != values.end()) std::visit(Setter{it->second}, option.target);
-    }
+    for (const Option& option : group.options) SetOption(syntax, option, values);
   }
   return true;
 }
 
 void PrintHelp(const CommandSyntax& syntax, std::ostream& out) {
+  po::options_description all;
+  std::string project_path;
+  for (const OptionGroup& group : syntax.groups) all.add(DescribeForHelp(group));
+  all.add(DescribeForHelp(ProjectGroup(&project_path)));
   out << "velamap " << syntax.name << ": " << syntax.description << "\n\n"
-      << DescribeAll(syntax) << "\n\nExample:\n  velamap " << syntax.name << ' ' << syntax.example
-      << '\n';
-}
-
-std::string NearestName(const std::string& text, const std::vector<std::string>& names) {
-  std::string nearest;
-  int smallest = static_cast<int>(text.size() + 1) / 2;  // beyond half of the letters it is a guess
-  for (const std::string& name : names) {
-    // A section that was left out counts as one mistake.
-    const std::size_t dot = name.find('.');
-    int distance = EditDistance(text, name);
-    if (dot != std::string::npos) {
-      distance = std::min(distance, 1 + EditDistance(text, name.substr(dot + 1)));
-    }
-    if (distance < smallest || (distance == smallest && nearest.empty())) {
-      smallest = distance;
-      nearest = name;
-    }
-  }
-  return nearest;
+      << all << "\n\nExample:\n  velamap " << syntax.name << ' ' << syntax.example << '\n';
 }
 
 }  // namespace velamap

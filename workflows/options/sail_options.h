@@ -1,26 +1,27 @@
-// Options of what is made of the shape: frame, sections, surface.
+// Options of what is made of the shape: its frame, sections and surface.
 
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
+#include "exporters/formats/mesh_triangles.h"
 #include "exporters/shape_exporter.h"
 #include "workflows/options/option_parser.h"
 
 namespace velamap {
 
-struct SailOptionTexts {
-  std::optional<double> edge_length_mm;
-  std::optional<double> chord_deviation_mm;
+// What CompleteSailOptions() turns into members of ShapeExporterOptions.
+struct SurfaceFileOptions {
+  MeshOptions mesh;  // none of its members given: as SailOptions decides
   std::string edges_path;
 };
 
-// Declares --frame, --Section.* and --Surface.*, which write into `exporter` and `texts`.
-OptionGroup SailGroup(ShapeExporterOptions* exporter, SailOptionTexts* texts);
+// --frame, --Section.* and --Surface.*, which set `exporter` and `surface`.
+std::vector<OptionGroup> SailGroups(ShapeExporterOptions* exporter, SurfaceFileOptions* surface);
 
-// Once the options are set: reads the edges' file and checks everything. Throws InputError that
-// names option or file.
-void CompleteSailOptions(const SailOptionTexts& texts, ShapeExporterOptions* exporter);
+// Once the options are set: reads the file of the edges and checks everything. Throws InputError
+// that names the option or file.
+void CompleteSailOptions(const SurfaceFileOptions& surface, ShapeExporterOptions* exporter);
 
 }  // namespace velamap

@@ -1,24 +1,20 @@
-// Options that several commands share, each declared in this one place.
+// Options that several commands share, and readers of the files that they name.
 
 #pragma once
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "importer/detect/detection_options.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
-#include "importer/video/video_options.h"
-#include "reconstruct/adjust/marker_adjustment.h"
-#include "reconstruct/colmap/bundle_adjustment.h"
-#include "reconstruct/registration/registration_options.h"
 #include "workflows/options/option_parser.h"
+#include "workflows/run/logging.h"
+#include "workflows/run/pipeline.h"
 
 namespace velamap {
 
 struct GeneralOptions {
-  std::string log_level = "info";
+  LogLevel log_level = LogLevel::kInfo;
   int random_seed = 0;
   int num_threads = 0;  // 0: one a core
 };
@@ -39,48 +35,38 @@ struct PathOptions {
   std::string log_path;
 };
 
-// What is known of the markers: a layout file, or the options that replace it.
+// What the markers are: a layout file, or the options that replace it.
 struct MarkerOptions {
   std::string layout_path;
   std::string dictionary;
   std::optional<double> marker_length_m;
 };
 
+Option Required(Option option);
+
 Option ImagePathOption(PathOptions* paths);
 Option CameraPathOption(PathOptions* paths);
 Option PriorShapePathOption(PathOptions* paths);
 Option DatabasePathOption(PathOptions* paths, const std::string& description);
 Option ModelInputOption(PathOptions* paths);
+Option BackendOption(AdjustmentBackend* backend);
 
-OptionGroup GeneralGroup(GeneralOptions* options);
-// Without detection the dictionary does not matter.
-OptionGroup MarkerGroup(MarkerOptions* options, bool with_dictionary);
-OptionGroup ArucoDetectionGroup(ArucoDetectionOptions* options);
-OptionGroup VideoGroup(VideoOptions* options);
-OptionGroup RegistrationGroup(RegistrationOptions* options);
-OptionGroup BundleAdjustmentGroup(BundleAdjustmentOptions* options);
-OptionGroup MarkerAdjustmentGroup(MarkerAdjustmentOptions* options);
-Option BackendOption(std::string* backend);
+OptionGroup DescribeOptions(GeneralOptions* options);
+// A command that detects nothing has no use for a dictionary.
+OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary);
 
-// Sets the options that the arguments give. With --help it prints the help on stdout and returns
-// false: the command has nothing more to do. Throws InputError as ParseOptions() does.
-bool ParseOrPrintHelp(const CommandSyntax& syntax, const std::vector<std::string>& arguments);
-
-// Whether anything says how large the markers are.
+// Whether any option says how large the markers are.
 bool HasMarkerOptions(const MarkerOptions& options);
 
 // Throws InputError unless a layout file alone, or a marker length (with a dictionary, where one is
-// needed) is given, and for what ReadLayout() refuses.
+// needed) is given, and where ReadLayout() does.
 Layout LoadLayout(const MarkerOptions& options, bool with_dictionary);
 
 // `path`, or the shape.csv in it if it is a folder.
 std::string ShapeFile(const std::string& path);
 
-// The whole markers of an earlier shape; none for an empty path. Throws InputError for a file that
-// is no shape.csv or has no whole marker.
+// Reads the whole markers of an earlier shape; none for an empty path. Throws InputError for a file
+// that is not a shape.csv or has no whole marker.
 PriorShape LoadPriorShape(const std::string& prior_shape_path);
-
-// Sets the log level and the bounds that more than one library relies on. Throws InputError.
-void ApplyGeneralOptions(const GeneralOptions& options);
 
 }  // namespace velamap

@@ -10,14 +10,15 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 #include <spdlog/spdlog.h>
 
 #include "exporters/formats/shape_csv.h"
 #include "exporters/scale/metric_scale.h"
 #include "exporters/scale/metric_shape.h"
 #include "importer/base/atomic_output.h"
+#include "importer/base/csv.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/warm_start.h"
 #include "reconstruct/model/reprojection.h"
@@ -140,7 +141,7 @@ class Sweep {
              const MarkerShape& shape) const {
     const fs::path folder =
         fs::path(options_.models_path) / fs::path(row.image_name).replace_extension();
-    fs::create_directories(folder);
+    CreateFolders(folder);
     WriteAdjustedModel(model, result, (folder / "sparse").string());
     WriteFileAtomically(folder / "shape.csv",
                         [&shape](std::ostream& out) { WriteShapeCsv(shape, out); });
@@ -166,7 +167,7 @@ std::vector<int> ChooseCentralFrames(const std::string& choice, const PosedImage
   if (choice == "all") return ChooseEvery(choice, "1", posed);
   if (choice.rfind(every, 0) == 0) return ChooseEvery(choice, choice.substr(every.size()), posed);
   const std::vector<int> chosen = ChooseListed(choice, posed);
-  if (chosen.empty()) ThrowBadChoice(choice, "names nothing");
+  if (chosen.empty()) ThrowBadChoice(choice, "names no frame");
   return chosen;
 }
 
@@ -174,9 +175,8 @@ std::vector<SweepRow> SweepCentralFrames(const CentralFrameSweepOptions& options
                                          const Layout& layout, StageClock* clock,
                                          const std::function<void(int done, int total)>& done) {
   if (options.registration.method != RegistrationMethod::kThesis) {
-    throw InputError(
-        "--Registration.method global: has no central frame; a sweep is the thesis's way: give "
-        "thesis");
+    throw InputError(OptionName(&RegistrationOptions::method) +
+                     " global: has no central frame to sweep; give thesis");
   }
   options.registration.Check();
   Sweep sweep(options, layout);
@@ -209,25 +209,33 @@ int BestRow(const std::vector<SweepRow>& rows) {
 }
 
 void WriteSweepCsv(const std::vector<SweepRow>& rows, std::ostream& out) {
-  out << "central_frame,image_name,num_images,num_markers,reconstruction_ratio,"
-         "reprojection_error_px_mean,central_reprojection_error_px_mean,area_error_mm2_mean,"
-         "area_error_mm2_max,area_error_percent_mean,start,wall_s,cpu_s,reason\n";
+  CsvWriter csv(out);
+  csv.WriteRecord("central_frame", "image_name", "num_images", "num_markers",
+                  "reconstruction_ratio", "reprojection_error_px_mean",
+                  "central_reprojection_error_px_mean", "area_error_mm2_mean", "area_error_mm2_max",
+                  "area_error_percent_mean", "start", "wall_s", "cpu_s", "reason");
+  const auto six_digits = [](double value) { return fmt::format("{:.6g}", value); };
   for (const SweepRow& row : rows) {
     const ShapeMetrics& shape = row.shape;
-    fmt::print(out, "{},{},", row.central_frame, row.image_name);
+    csv.AddField(row.central_frame);
+    csv.AddField(row.image_name);
     if (row.reason.empty()) {
       const auto& ratio = shape.reconstruction_ratio;
-      fmt::print(out, "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}", row.num_images,
-                 shape.num_markers, ratio ? fmt::format("{:.6g}", *ratio) : "",
-                 row.model.error_px.mean, row.model.central_error_px.mean,
-                 shape.area_error_mm2.mean, shape.area_error_mm2.max, shape.area_error_percent.mean,
-                 row.is_warm ? "warm" : "cold");
+      csv.AddField(row.num_images);
+      csv.AddField(shape.num_markers);
+      csv.AddField(ratio ? six_digits(*ratio) : "");
+      csv.AddField(six_digits(row.model.error_px.mean));
+      csv.AddField(six_digits(row.model.central_error_px.mean));
+      csv.AddField(six_digits(shape.area_error_mm2.mean));
+      csv.AddField(six_digits(shape.area_error_mm2.max));
+      csv.AddField(six_digits(shape.area_error_percent.mean));
+      csv.AddField(row.is_warm ? "warm" : "cold");
     } else {
-      out << ",,,,,,,,";
+      constexpr int kNumFigures = 9;
+      for (int i = 0; i < kNumFigures; ++i) csv.AddField("");
     }
-    std::string reason = row.reason;
-    std::replace(reason.begin(), reason.end(), '"', '\'');
-    fmt::print(out, ",{:.3f},{:.3f},\"{}\"\n", row.wall_s, row.cpu_s, reason);
+    csv.WriteRecord(fmt::format("{:.3f}", row.wall_s), fmt::format("{:.3f}", row.cpu_s),
+                    row.reason);
   }
 }
 

@@ -1,8 +1,8 @@
-// Registration, adjustment and the thesis's metrics around many central frames of one clip (thesis
-// Figure 4.24), without repeating what they share.
+// Registers, adjusts and measures one clip around many central frames (thesis Figure 4.24).
 //
-// The detections are read once and every marker is posed once. Each adjustment starts from the
-// result around the central frame before, where that holds half of the markers' corners.
+// What the central frames share is computed once: the detections are read and the markers posed
+// once. Each adjustment starts from the result around the previous central frame if that holds half
+// of the markers' corners.
 
 #pragma once
 
@@ -23,22 +23,23 @@ namespace velamap {
 
 struct CentralFrameSweepOptions {
   std::string database_path;
-  // "all", "every:N" (each N-th image, or number of a video's frames, from the first on), or a list
-  // with commas of names or numbers.
+  // "all"; "every:N" for each N-th image, or frame number of a video, from the first on; or names
+  // and numbers separated by commas.
   std::string central_frames = "all";
-  RegistrationOptions registration;  // the thesis's method; central_frame is set for each
+  RegistrationOptions registration;  // of the thesis's method; central_frame is ignored
   AdjustmentOptions adjustment;
   bool warm_start = true;
-  std::string models_path;  // folder for a metric model and shape.csv each; empty: not written
+  std::string models_path;  // folder for the metric models and shapes; empty: none are written
   std::string log_path;     // COLMAP's output
 };
 
-// One central frame. Without a result `reason` says why, and the metrics are empty.
+// The result around one central frame. If there is none, `reason` says why, and the metrics are
+// empty.
 struct SweepRow {
-  std::string central_frame;  // number in the video, or name of the image
+  std::string central_frame;  // frame number of a video, or image name
   std::string image_name;
   int num_images = 0;    // |S| after the adjustment
-  bool is_warm = false;  // the adjustment began at the neighbour's
+  bool is_warm = false;  // the adjustment started from the previous row's result
   ShapeMetrics shape;
   ModelMetrics model;
   double wall_s = 0.0;
@@ -47,17 +48,17 @@ struct SweepRow {
 };
 
 // The central frames that `choice` names, as frame_idx, ascending and each once. Throws InputError
-// for a choice that cannot be read and an image that is not there.
+// for a choice that cannot be read or that names an image that is not there.
 std::vector<int> ChooseCentralFrames(const std::string& choice, const PosedImages& posed);
 
 // Calls `done` after each row. `clock` gets the stages "read" and "sweep". Throws InputError and
-// ExternalToolError; what the data do not support is a row with a reason.
+// ExternalToolError; where the data do not support a result, the row says why.
 std::vector<SweepRow> SweepCentralFrames(const CentralFrameSweepOptions& options,
                                          const Layout& layout, StageClock* clock,
                                          const std::function<void(int done, int total)>& done);
 
-// Index of the row with the highest reconstruction ratio (without a layout: most markers), of equal
-// ones that with the smallest mean area error; -1: no row has a result.
+// Index of the row with the highest reconstruction ratio (without a layout: the most markers);
+// equal rows are compared by their mean area error. -1 if no row has a result.
 int BestRow(const std::vector<SweepRow>& rows);
 
 // One row a central frame. Columns: central_frame, image_name, num_images, num_markers,

@@ -32,7 +32,7 @@ class TerminalSink : public spdlog::sinks::base_sink<std::mutex> {
   void flush_() override {}
 };
 
-// `warning: ` and the like before the message; nothing for what is no problem.
+// Puts `warning: ` or `error: ` before the message of such a level.
 class ProblemMark : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&,
@@ -63,17 +63,17 @@ void SetUpLogging() {
   spdlog::set_default_logger(logger);
 }
 
-void SetLogLevel(const std::string& name) {
-  const spdlog::level::level_enum level = name == "error"   ? spdlog::level::err
-                                          : name == "warn"  ? spdlog::level::warn
-                                          : name == "info"  ? spdlog::level::info
-                                          : name == "debug" ? spdlog::level::debug
-                                                            : spdlog::level::off;
-  if (level == spdlog::level::off) {
-    throw InputError(
-        fmt::format("--log_level: '{}' is unknown; give error, warn, info or debug", name));
+void SetLogLevel(LogLevel level) {
+  switch (level) {
+    case LogLevel::kError:
+      return spdlog::set_level(spdlog::level::err);
+    case LogLevel::kWarn:
+      return spdlog::set_level(spdlog::level::warn);
+    case LogLevel::kInfo:
+      return spdlog::set_level(spdlog::level::info);
+    case LogLevel::kDebug:
+      return spdlog::set_level(spdlog::level::debug);
   }
-  spdlog::set_level(level);
 }
 
 void AddLogFile(const std::string& path) {

@@ -6,17 +6,18 @@
 
 namespace velamap {
 
-// Sends spdlog's messages to stderr as `[hh:mm:ss] message`; problems are marked by their level. A
-// progress bar (progress.h) makes room for them.
+// Sends spdlog's messages to stderr as `[hh:mm:ss] message`, with the level before warnings and
+// errors. A progress bar (progress.h) is removed first.
 void SetUpLogging();
 
-// error, warn, info or debug. Throws InputError for another name.
-void SetLogLevel(const std::string& name);
+enum class LogLevel { kError, kWarn, kInfo, kDebug };
 
-// From here on messages go to this file too (appended). Throws InputError if it cannot be written.
+void SetLogLevel(LogLevel level);
+
+// Appends all later messages to this file, too. Throws InputError if it cannot be written.
 void AddLogFile(const std::string& path);
 
-// One line `error: ...` on stderr, and in the log file if there is one.
+// Writes one line `error: ...` to stderr, and to the log file if there is one.
 void ReportError(const std::string& message);
 
 }  // namespace velamap

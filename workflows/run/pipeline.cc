@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/model/model_io.h"
@@ -24,7 +25,7 @@
 namespace velamap {
 namespace {
 
-// Corners are good to a few tenths of a pixel; a model that is off by more has another fault.
+// Corners are accurate to a few tenths of a pixel, so a larger error has another cause.
 constexpr double kSuspiciousErrorPx = 1.0;
 
 std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
@@ -77,7 +78,7 @@ void LogSeed(const SeedResult& seed) {
 
 void WarnOfRemovedImages(const std::vector<ImageId>& removed_images) {
   if (removed_images.empty()) return;
-  spdlog::warn("{} images lost so many observations to the outlier filter that they are left out",
+  spdlog::warn("{} images are left out because most of their observations are outliers",
                removed_images.size());
 }
 
@@ -101,14 +102,17 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
   MarkerAdjustmentSummary summary = AdjustWithMarkers(options, layout, corner_sigmas, model);
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
   spdlog::info(
-      "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, corners "
-      "{:.2f} times as noisy as their detector says and counted as {:.2f} times that for what "
-      "their "
-      "errors have in common, {:.2f} % of them off by more than 4 sigmas, scale good to {:.3f} %",
+      "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, scale "
+      "sigma "
+      "{:.3f} %",
       summary.num_iterations, summary.removed.size(), summary.error_before_px.mean,
-      summary.error_after_px.mean, std::sqrt(uncertainty.variance_factor),
-      uncertainty.correlation_factor, 100.0 * uncertainty.share_above_4_sigma,
-      100.0 * uncertainty.relative_scale_sigma);
+      summary.error_after_px.mean, 100.0 * uncertainty.relative_scale_sigma);
+  spdlog::info(
+      "corner noise {:.2f} times the detector's sigmas, times {:.2f} for correlated errors; {:.2f} "
+      "% "
+      "of the corners have residuals above 4 sigmas",
+      std::sqrt(uncertainty.variance_factor), uncertainty.correlation_factor,
+      100.0 * uncertainty.share_above_4_sigma);
   if (uncertainty.apparent_inset_sigma_px > 0) {
     spdlog::info("apparent inset of the corners {:.3f} +- {:.3f} px", uncertainty.apparent_inset_px,
                  uncertainty.apparent_inset_sigma_px);
@@ -135,7 +139,7 @@ VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions&
       number,
       {registration.thesis.num_frames, registration.thesis.skip, registration.thesis.neighborhood});
   VideoOptions narrowed = video;
-  // In steps from the first frame, so that the frames that are read stay the same.
+  // Whole steps from the first frame, so that the same frames are read.
   const int skipped = std::max(0, first - video.first_frame);
   narrowed.first_frame += skipped / video.frame_step * video.frame_step;
   narrowed.last_frame = video.last_frame < 0 ? last : std::min(video.last_frame, last);
@@ -149,16 +153,17 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
         progress.Update(done, total, message);
       });
   ClearProgressLine();
-  spdlog::info("{} images added to the {} of the database, {} markers found",
+  spdlog::info("{} images added, {} were in the database before, {} markers found",
                report.num_images_added, report.num_images_present, report.num_markers);
   if (report.num_fallbacks > 0) {
-    spdlog::info("{} of them without a fit of their edges: corners from cv::cornerSubPix",
-                 report.num_fallbacks);
+    spdlog::info(
+        "the corners of {} markers come from cv::cornerSubPix: their edges were not fitted",
+        report.num_fallbacks);
   }
   if (!options.prior_shape.empty() && report.num_frames_read > 0)
     LogPriorShapeAgreement(report.prior_shape);
   if (!report.ids_not_in_layout.empty()) {
-    spdlog::warn("markers found that the layout does not name, left out: {}",
+    spdlog::warn("markers left out because the layout does not name them: {}",
                  fmt::join(report.ids_not_in_layout, " "));
   }
   return report;
@@ -183,16 +188,10 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
 }
 
 std::string BesideFolder(const std::string& folder, const std::string& name) {
-  const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
-  const auto parent = absolute.parent_path();
-  return ((absolute.has_filename() ? parent : parent.parent_path()) / name).string();
+  return (AbsoluteFolder(folder).parent_path() / name).string();
 }
 
 void AdjustmentOptions::Complete(int num_threads) {
-  if (backend != "colmap" && backend != "markers" && backend != "both") {
-    throw InputError(
-        fmt::format("--backend: '{}' is unknown; there are: colmap, markers, both", backend));
-  }
   colmap.Check();
   markers.refine_focal_length = colmap.refine_focal_length;
   markers.refine_principal_point = colmap.refine_principal_point;
@@ -206,10 +205,10 @@ void AdjustmentOptions::Complete(int num_threads) {
 
 void CheckColmap(const std::string& colmap_path) {
   if (!ColmapHasOption(colmap_path, "bundle_adjuster", "input_path")) {
-    throw ExternalToolError(
-        fmt::format("{} bundle_adjuster -h: does not know --input_path; is it "
-                    "COLMAP? (--colmap_path)",
-                    colmap_path));
+    throw ExternalToolError(fmt::format(
+        "{0}: not COLMAP's program ({0} bundle_adjuster -h does not list --input_path); "
+        "name it with --colmap_path",
+        colmap_path));
   }
 }
 
@@ -227,8 +226,9 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
   }
   if (result.error_after_px.mean > kSuspiciousErrorPx) {
     spdlog::warn(
-        "a mean reprojection error of {:.2f} px is more than the noise of corners explains: is the "
-        "calibration of these images, and did the surface keep its shape? Do not trust the result",
+        "a mean reprojection error of {:.2f} px is more than the noise of corners explains: does "
+        "the calibration belong to these images, and did the surface keep its shape? Do not trust "
+        "the result",
         result.error_after_px.mean);
   }
   return result;

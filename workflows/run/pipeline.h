@@ -24,36 +24,40 @@ struct SeedResult {
   Registration registration;
   Model model;
   std::vector<std::string> image_names;  // of all images in the database, sorted
-  std::vector<LeftOutImage> left_out;    // those that the model does not hold
-  CornerSigmas corner_sigmas;            // as the database has them
+  std::vector<LeftOutImage> left_out;    // images that the model does not hold
+  CornerSigmas corner_sigmas;            // from the database
 };
 
-// The part of a video that the thesis's search around a named central frame can reach (3.4.1), so
-// that nothing else is decoded; all that `video` asks for where no frame number is named, or where
-// the registration is the global one.
+// The part of `video` that the thesis's search around a named central frame can reach (3.4.1), so
+// that the rest is not decoded. All of it without a named frame, for the global registration, and
+// for an unordered one.
 VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration);
 
-// ImportMarkers() with progress, and a log line on what is odd.
+// ImportMarkers() with a progress bar; logs what was found and what is odd.
 ImportReport ImportImages(const MarkerImporterOptions& options);
 
-// Registers the images of a database and makes the seed model; logs what was decided.
+// Registers the images of a database and makes the seed model; logs the decisions.
 SeedResult RegisterDatabase(const std::string& database_path, const Layout& layout,
                             const RegistrationOptions& options);
 
-// A file beside a model folder, where the single commands put tables and logs: for sparse/seed/ it
-// is sparse/NAME.
+// The path of a table or log beside a model folder: sparse/NAME for sparse/seed/.
 std::string BesideFolder(const std::string& folder, const std::string& name);
 
-// Which adjustments run, in this order, and how.
+enum class AdjustmentBackend {
+  kColmap,   // COLMAP's own program
+  kMarkers,  // ours, which knows the size of the markers
+  kBoth,     // COLMAP's, then ours
+};
+
 struct AdjustmentOptions {
-  std::string backend = "both";  // colmap, markers, or both: COLMAP's first, then ours
-  // Of both backends where a parameter makes sense for both.
+  AdjustmentBackend backend = AdjustmentBackend::kBoth;
   BundleAdjustmentOptions colmap;
   MarkerAdjustmentOptions markers;
 
-  bool UsesColmap() const { return backend != "markers"; }
-  bool UsesMarkers() const { return backend != "colmap"; }
-  // Hands the common parameters on to `markers` and throws InputError that names the wrong option.
+  bool UsesColmap() const { return backend != AdjustmentBackend::kMarkers; }
+  bool UsesMarkers() const { return backend != AdjustmentBackend::kColmap; }
+  // Copies the parameters that both adjustments have to `markers`. Throws InputError that names the
+  // option for a bad one.
   void Complete(int num_threads);
 };
 
@@ -61,20 +65,20 @@ struct AdjustmentResult {
   Statistics error_before_px;
   Statistics error_after_px;
   int num_removed = 0;                               // observations
-  std::optional<AdjustmentUncertainty> uncertainty;  // where the model is metric: after `markers`
+  std::optional<AdjustmentUncertainty> uncertainty;  // of the marker-aware adjustment
 };
 
-// Throws ExternalToolError if COLMAP's program cannot be started: better before an hour of
-// detection than after it.
+// Throws ExternalToolError if COLMAP's program cannot be started. Called first, so that nobody
+// waits for the detection in vain.
 void CheckColmap(const std::string& colmap_path);
 
-// Adjusts the model; logs the course. `layout` and `corner_sigmas` are what `markers` knows of the
-// markers; `log_path` gets COLMAP's output.
+// Adjusts the model and logs how it went. The marker-aware adjustment needs `layout` and takes
+// `corner_sigmas`; `log_path` gets COLMAP's output.
 AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& layout,
                              const CornerSigmas& corner_sigmas, const std::string& log_path,
                              Model* model);
 
-// The model, and beside it the uncertainty where there is one.
+// Writes the model, and beside it the uncertainty if there is one.
 void WriteAdjustedModel(const Model& model, const AdjustmentResult& result,
                         const std::string& path);
 

@@ -8,9 +8,9 @@
 
 namespace velamap {
 
-// Shows nothing within the first second. On a terminal (stderr) a bar is drawn over itself at most
-// ten times a second and removed at the end; elsewhere a line is logged every 10 s or every 10 %,
-// but no more than one a second. Update() may be called from any thread.
+// Shows nothing within the first second. On a terminal (stderr) a bar is redrawn at most ten times
+// a second and removed at the end. Elsewhere a line is logged every 10 s or every 10 %, but at most
+// one a second. Update() may be called from any thread.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -38,7 +38,7 @@ std::string ProgressText(const std::string& what, int done, int total, double el
 // `[#####     ] `, `width` characters between the brackets.
 std::string ProgressBar(int done, int total, int width);
 
-// Removes a bar that stands on the terminal, so that a line can be written there.
+// Removes the bar from the terminal, so that a line can be written there.
 void ClearProgressLine();
 
 }  // namespace velamap

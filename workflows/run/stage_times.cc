@@ -25,10 +25,10 @@ double CpuSeconds(int who) {
 double PeakMemoryMb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports KiB
 }
 
-// Of a part by its CPU time: parts run beside each other and wait for each other.
+// Parts run in parallel and wait for each other, so their rate is by CPU time.
 double FramesPerSecond(const StageTime& time) {
   const double seconds = time.part_of.empty() ? time.wall_s : time.cpu_s;
   return seconds > 0 ? time.num_frames / seconds : 0.0;

@@ -1,4 +1,4 @@
-// Where the time of a run goes: wall time, CPU time and peak memory by stage.
+// Wall time, CPU time and peak memory of the stages of a run.
 
 #pragma once
 
@@ -12,24 +12,24 @@ namespace velamap {
 
 struct StageTime {
   std::string name;
-  std::string part_of;  // the stage that this is a part of, and that holds its time; or empty
+  std::string part_of;  // the stage whose time includes this one's; empty for a stage of its own
   double wall_s = 0.0;
-  double cpu_s = 0.0;           // of all threads and of programs that were started, such as COLMAP
+  double cpu_s = 0.0;           // of all threads and of started programs, such as COLMAP
   int num_frames = 0;           // 0: the stage does not count frames
-  double peak_memory_mb = 0.0;  // of this program since its start, resident
+  double peak_memory_mb = 0.0;  // resident memory of this program since its start
 };
 
-// Ends with its sum, "total".
 class StageClock {
  public:
   StageClock();
 
-  // Ends the stage that began with the last call, or with the clock.
+  // Ends the stage that began with the previous call or with the construction.
   void End(const std::string& name, int num_frames = 0);
 
-  // Ends the stage "import" and adds its parts, as the importer has measured them.
+  // Ends the stage "import" and adds its parts, which the importer has measured.
   void EndImport(const ImportTimes& parts, int num_frames);
 
+  // All stages and their sum, "total".
   std::vector<StageTime> Times() const;
 
  private:
@@ -44,15 +44,15 @@ class StageClock {
   std::vector<StageTime> stages_;
 };
 
-// One line a stage, columns aligned, the first line their names; parts are set in, and their frames
-// are counted by the second of CPU time.
+// A header and one line for each stage. Parts are indented, and their frames/s are per second of
+// CPU time.
 std::vector<std::string> StageTable(const std::vector<StageTime>& times);
 
-// The table to the log.
+// Logs the table.
 void LogStageTimes(const StageClock& clock);
 
-// An array of objects: stage, part_of (where it is a part), wall_s, cpu_s, num_frames and
-// frames_per_s, of a part frames_per_cpu_s (where it counts frames), peak_memory_mb.
+// Writes an array of objects with the keys stage, part_of (of parts), wall_s, cpu_s, num_frames and
+// frames_per_s (of parts frames_per_cpu_s; both where frames are counted), and peak_memory_mb.
 void WriteStageTimesJson(const std::vector<StageTime>& times, std::ostream& out);
 
 }  // namespace velamap

@@ -91,7 +91,7 @@ std::string RangeText(const std::vector<Section>& sections, double (*value)(cons
   return fmt::format("{:.1f} to {:.1f}", low, high);
 }
 
-// Frame, and what the lines of a sail gave.
+// Prints the frame, and the sections and surfaces of a sail.
 void PrintSail(const ShapeExportReport& report, std::ostream& out) {
   fmt::print(out, "frame: {}\n", report.frame.name);
   const std::vector<Section>& sections = report.sail.sections.sections;

@@ -1,4 +1,4 @@
-// What velamap works with, for `velamap version` and the report.
+// Versions of the libraries and of COLMAP, for `velamap version` and the report.
 
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace velamap {
 
-// Pairs of name and version: the libraries that it was built with, then COLMAP as it is found now.
-// Not having COLMAP is an answer here, not a failure.
+// Pairs of name and version: the libraries that velamap was built with, then COLMAP as it is found
+// when this is called. A missing COLMAP is not an error here.
 std::vector<std::pair<std::string, std::string>> LibraryVersions(const std::string& colmap_path);
 
 }  // namespace velamap

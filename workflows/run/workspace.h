@@ -29,13 +29,14 @@ struct WorkspacePaths {
   std::filesystem::path ColmapLog() const { return root / "colmap.log"; }
 };
 
-// Holds the workspace during a run. A folder that this run made is removed again, with the parents
-// that it made, unless Keep() was called: nothing stays of a run that never got to a database.
+// Holds the workspace during a run. Unless Keep() is called, the destructor removes a folder that
+// this run made and the parents that it made, so that a run that fails before it has a database
+// leaves nothing behind.
 class Workspace {
  public:
-  // Opens an earlier workspace or makes a new one. Throws InputError: a file is there, the folder
-  // holds something that is no workspace of velamap (the input itself may lie in it), or it cannot
-  // be written.
+  // Opens an earlier workspace or makes a new one. Throws InputError if the path is a file, if the
+  // folder holds something else than a workspace of velamap and the input, or if it cannot be
+  // written.
   Workspace(const std::string& path, const std::string& image_path);
   ~Workspace();
   Workspace(const Workspace&) = delete;
@@ -50,14 +51,14 @@ class Workspace {
 };
 
 // Adds the images of the model to images/. Photographs are hard-linked from `image_path`, or copied
-// where that cannot be, sub-folders kept. Frames of a video are there since the import; a later run
-// that selects other frames finds some cleared away, and warns. Throws InputError if the folder
-// cannot be written.
+// where links are impossible; sub-folders are kept. The import has written the frames of a video
+// there; a later run that selects other frames warns of those that have been removed. Throws
+// InputError if the folder cannot be written.
 void AddModelImages(const Model& model, const std::string& image_path,
                     const std::filesystem::path& images_path);
 
-// Removes images that are in the database but not in the model, as long as nothing is lost by it:
-// frames of a video, and photographs whose original is at `image_path`.
+// Removes images that are in the database but not in the model where nothing is lost: frames of a
+// video, and photographs whose original is at `image_path`.
 void RemoveOtherImages(const Model& model, const std::vector<std::string>& database_names,
                        const std::string& image_path, const std::filesystem::path& images_path);
 

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# How far the metric result is from the truth, on rendered clips and on real photographs of known
-# boards: the thesis's way, and what velamap puts in place of its steps, one after another.
+# Measures the error of the metric result on rendered clips and on photographs of known objects, with
+# the thesis's method and with velamap's replacements for its steps, added one by one.
 # usage: workflows/studies/accuracy.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# CLIPS, WAYS: other ones than all, e.g. CLIPS="walls board" WAYS="global_both".
+# CLIPS, WAYS: a subset, e.g. CLIPS="walls board" WAYS="global_both".
 #
-#   way          corners  registration  adjustment
-#   thesis       subpix   thesis        COLMAP's
-#   edge         edge     thesis        COLMAP's
-#   global       edge     global        COLMAP's
-#   global_markers edge     global        ours
-#   global_both  edge     global        COLMAP's, then ours
+#   way             corners  registration  adjustment
+#   thesis          subpix   thesis        colmap
+#   edge            edge     thesis        colmap
+#   global          edge     global        colmap
+#   global_markers  edge     global        markers
+#   global_both     edge     global        both, which is velamap's default
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -27,11 +27,12 @@ repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 
 keys=(num_markers reconstruction_ratio scale_error_percent distance_mm_rms
   distance_sigma_mm distance_after_scaling_mm_rms distance_after_scaling_sigma_mm
-  corners_above_4_sigma_percent correlation_factor reprojection_error_px_mean)
+  corners_above_4_sigma_percent correlation_factor reprojection_error_px_mean
+  area_error_percent_mean)
 csv="$work/accuracy.csv"
-echo "clip,way,$(IFS=,; echo "${keys[*]}"),angle_deg" >"$csv"
+echo "clip,way,$(IFS=,; echo "${keys[*]}"),scale_sigma_percent,outliers_percent,angle_deg" >"$csv"
 
-# link_real NAME FOLDER IMAGES: real pictures with known geometry as a clip, detections to be made.
+# link_real NAME FOLDER IMAGES: makes a clip of real pictures with known geometry.
 link_real() {
   local folder="$clips/$1"
   mkdir -p "$folder"
@@ -40,8 +41,8 @@ link_real() {
   echo "$3" >"$folder/images.txt"
 }
 
-# What is known of the cube's prints is exact within a face only: a reference for each, face0 as the
-# clip's own.
+# The cube's geometry is exact only within a face, so that each face gets a reference of its own; the
+# clip's own reference is face0.
 link_cube() {
   local folder="$clips/cube" face
   mkdir -p "$folder/truth"
@@ -76,7 +77,7 @@ make_clip_of_study() {
   esac
 }
 
-# Where make_clip_of_study put it.
+# folder_of CLIP: the name of the folder that make_clip_of_study makes.
 folder_of() {
   case "$1" in
     walls) echo walls_1080p ;;
@@ -85,7 +86,7 @@ folder_of() {
   esac
 }
 
-# detections CLIP CORNERS: the database, imported unless it is there.
+# detections CLIP CORNERS: prints the path of the clip's database, which is made unless it is current.
 detections() {
   local folder database images more=()
   folder="$clips/$(folder_of "$1")"
@@ -93,7 +94,8 @@ detections() {
   images="$folder/clip.mp4"
   if [[ -f "$folder/images.txt" ]]; then images="$(cat "$folder/images.txt")"; fi
   if [[ "$1" == board_video ]]; then more=(--ArucoDetection.inverted 1); fi
-  if [[ ! -f "$database" ]]; then
+  if ! is_current "$database"; then
+    rm -f "$database"
     "$velamap" marker_importer --image_path "$images" --camera_path "$folder/camera.yml" \
       --layout_path "$folder/layout.yml" --database_path "$database" --log_level error \
       --ArucoDetection.corner_refinement "$2" "${more[@]}" >"$folder/$2.txt"
@@ -125,18 +127,28 @@ study() {
   fi
 }
 
-# row CLIP WAY RUN
+# adjustment_figures RUN: the scale's sigma and the share of outliers, both in percent, as the commands
+# print them first.
+adjustment_figures() {
+  awk '
+    $1 == "scale_sigma:" && sigma == "" { sigma = $2 }
+    $1 == "outliers_removed:" && outliers == "" && $4 > 0 { outliers = sprintf("%.6g", 100 * $2 / $4) }
+    END { printf "%s,%s", sigma, outliers }' "$runs/$1/log.txt"
+}
+
+# row CLIP WAY RUN [RUN_OF_THE_ADJUSTMENT]
 row() {
   local key
   {
     printf '%s,%s' "$1" "$2"
     for key in "${keys[@]}"; do printf ',%s' "$(metric "$3" "$key")"; done
+    printf ',%s' "$(adjustment_figures "${4:-$3}")"
     printf ',%s\n' "$(awk -F, '$1 == "part_pairs" && $3 == "angle_deg" { print $4; exit }' \
       "$runs/$3/analysis.csv" 2>/dev/null)"
   } >>"$csv"
 }
 
-# face_row WAY FACE: the cube's shape against the print of one face.
+# face_row WAY FACE: compares the cube's shape with the print of one face.
 face_row() {
   local run="$runs/cube_$1" face_run="$runs/cube_$1_face$2"
   mkdir -p "$face_run"
@@ -145,7 +157,7 @@ face_row() {
       --reference_path "$clips/cube/truth/face$2.csv" --csv_path "$face_run/analysis.csv" \
       --log_level error >"$face_run/log.txt"
   fi
-  row "cube_face$2" "$1" "cube_$1_face$2"
+  row "cube_face$2" "$1" "cube_$1_face$2" "cube_$1"
 }
 
 for clip in "${clips_of_study[@]}"; do

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Reconstruction ratio around every central frame (thesis Figure 4.24), and the histogram of the
-# markers' areas (Figure 4.23).
+# Measures the reconstruction ratio around many central frames (thesis Figure 4.24) and the histogram
+# of the markers' areas (Figure 4.23).
 # usage: workflows/studies/central_frames.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# One central_frame_sweeper does them all; START=1 begins each adjustment at its neighbour's result.
-# Near the clip's ends the search finds frames on one side only, and so fewer; num_images says so.
+# One central_frame_sweeper runs them all; START=1 starts each adjustment from its neighbour's result.
+# Near the clip's ends the search finds frames on one side only, and so fewer: see num_images.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -32,7 +32,7 @@ histogram="$work/central_frames_histogram.csv"
 echo "central_frame,$(sail_header)" >"$csv"
 echo "central_frame,marker_id,area_mm2" >"$areas"
 
-# areas_of FRAME SHAPE_CSV: half the cross product of the diagonals of every whole marker of its shape.
+# areas_of FRAME SHAPE_CSV: prints the area of every whole marker, half the cross product of its diagonals.
 areas_of() {
   awk -F, -v frame="$1" '
     /^[0-9]/ && $2 >= 1 { p[$1, $2, "x"] = $3; p[$1, $2, "y"] = $4; p[$1, $2, "z"] = $5; ids[$1] }
@@ -50,8 +50,8 @@ areas_of() {
     }' "$2" | sort -t, -k2n
 }
 
-# analyze FRAME: against the truth; a frame without a result, whose reason is in the sweep's table,
-# leaves its row empty.
+# analyze FRAME: compares a result with the truth. The row of a frame without a result stays empty; the
+# sweep's table says why.
 analyze() {
   local model
   model="$runs/models/frame_$(printf '%06d' "$1")"
@@ -68,7 +68,7 @@ for frame in "${frames[@]}"; do
   { printf '%s' "$frame"; sail_row "r$frame"; } >>"$csv"
 done
 
-# The best: highest ratio, and among these the smallest area error.
+# The best frame has the highest ratio and, among equals, the smallest area error.
 best="$(awk -F, '
   NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }
   $column["reconstruction_ratio"] != "" {
@@ -81,7 +81,7 @@ best="$(awk -F, '
 [[ -n "$best" ]] || fail "no central frame gave a result"
 echo "== central_frames: best central frame: $best"
 
-# Bins of 20 mm^2, named by their middle; shares of the best reconstruction and of all.
+# Bins of 20 mm^2, named by their middle, with the shares of the best reconstruction and of all.
 awk -F, -v best="$best" -v width=20 '
   NR == 1 { next }
   {

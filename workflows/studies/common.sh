@@ -1,12 +1,13 @@
 # shellcheck shell=bash
-# What the studies share: options, programs, clips that are rendered and imported once, a
-# reconstruction a parameter set, and its metrics. Sourced by them, not run.
+# What the studies share: options, programs, clips that are rendered and imported once, one
+# reconstruction for each set of parameters, and its metrics. The studies source this file.
 #
 # A work folder holds
 #   clips/NAME    rendered clip with its truth, database.db with its detections, arguments.txt
 #   runs/STUDY    every reconstruction of a study: models, shape, analysis.csv, log.txt
-#   STUDY*.csv, STUDY*.png
-# The clips are kept and used again, by other studies too, as long as their arguments are the same.
+#   STUDY*.csv, STUDY*.png   the tables and plots
+# Clips are used again, by other studies too, as long as their arguments are the same; they are imported
+# again when the program is newer than their detections.
 set -euo pipefail
 export LC_ALL=C
 
@@ -15,7 +16,8 @@ fail() {
   exit 2
 }
 
-# find_program VARIABLE NAME PATH_IN_THE_BUILD: $VARIABLE, else the release build, else the PATH.
+# find_program VARIABLE NAME PATH_IN_THE_BUILD: prints the path that $VARIABLE names, else that in the
+# release build, else that on the PATH.
 find_program() {
   local repository program
   repository="$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -25,7 +27,8 @@ find_program() {
   realpath "$program"
 }
 
-# begin_study NAME "$@": the arguments of every study, [--quick] [WORK_FOLDER].
+# begin_study NAME "$@": reads the arguments that every study takes, [--quick] [WORK_FOLDER], and sets
+# study, quick, work, clips, runs, sail and the programs.
 begin_study() {
   study="$1"
   shift
@@ -55,41 +58,46 @@ begin_study() {
   echo "== $study: into $work"
 }
 
-# The sail of all studies: 122 markers of 100 mm as in section 4.3, or a half of it for --quick.
+# The sail of all studies: 122 markers of 100 mm as in section 4.3, at half the size for --quick.
 full_sail=(--scene sail --width 1920)
 quick_sail=(--scene sail --width 1280 --sail_scale 0.5 --distance 3)
 
-# Frames of the sail's clips that have no need of more; the near one has to hold all of the search.
+# Frames of the sail's clips. The near clip has to hold the longest search.
 short_clip_frames() { if [[ $quick -eq 1 ]]; then echo 90; else echo 220; fi; }
 near_clip_frames() { if [[ $quick -eq 1 ]]; then echo 110; else echo 600; fi; }
 
-# make_clip NAME RENDER_CLIP_ARGUMENT...: renders and imports clips/NAME, unless it is there.
+# is_current FILE: whether the file was made by this velamap.
+is_current() { [[ -f "$1" && ! "$velamap" -nt "$1" ]]; }
+
+# make_clip NAME RENDER_CLIP_ARGUMENT...: renders and imports clips/NAME unless that is done.
 make_clip() {
   local folder="$clips/$1" arguments="${*:2}"
-  if [[ -f "$folder/arguments.txt" && "$(cat "$folder/arguments.txt")" == "$arguments" ]]; then
-    return
+  if [[ ! -f "$folder/arguments.txt" || "$(cat "$folder/arguments.txt")" != "$arguments" ]]; then
+    rm -rf "$folder"
+    echo "== $study: clip $1: $arguments"
+    "$render_clip" "${@:2}" --output_path "$folder" >"$work/render.log" 2>&1 ||
+      fail "render_clip failed: $(tail -n 1 "$work/render.log")"
+    rm "$work/render.log"
+    echo "$arguments" >"$folder/arguments.txt"
   fi
-  rm -rf "$folder"
-  echo "== $study: clip $1: $arguments"
-  "$render_clip" "${@:2}" --output_path "$folder" >"$work/render.log" 2>&1 ||
-    fail "render_clip failed: $(tail -n 1 "$work/render.log")"
-  rm "$work/render.log"
+  if is_current "$folder/import.txt"; then return; fi
+  rm -f "$folder/database.db"
   if ! "$velamap" marker_importer --image_path "$folder/clip.mp4" \
     --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
-    --database_path "$folder/database.db" --log_level error >"$folder/import.txt"; then
-    # A clip without a marker is one of the results of a study.
+    --database_path "$folder/database.db" --log_level error >"$folder/import.part"; then
+    # A clip without a marker is a valid outcome of a study.
     echo "== $study: clip $1 gives no detections" >&2
   fi
-  echo "$arguments" >"$folder/arguments.txt"
+  mv "$folder/import.part" "$folder/import.txt"
 }
 
 make_near_clip() { make_clip near "${sail[@]}" --num_frames "$(near_clip_frames)"; }
 
-# reconstruct CLIP RUN FRAME_REGISTRATOR_OPTION...: into runs/STUDY/RUN. TRUTH names another
-# reference than the clip's truth.csv, DATABASE other detections than its own, METHOD another
-# registration than the thesis's, BACKEND another bundle adjustment than COLMAP's, EXACT_PRINT=1 that the squares are as large as
-# the layout says, as a renderer draws them; ADJUST=0 leaves the adjustment out. No result, which the log explains, is
-# one of the results of a study: then there is no analysis.csv.
+# reconstruct CLIP RUN FRAME_REGISTRATOR_OPTION...: reconstructs a clip into runs/STUDY/RUN. A study may
+# set TRUTH (a reference other than the clip's truth.csv), DATABASE (other detections), METHOD (other
+# than thesis), BACKEND (other than colmap), EXACT_PRINT=1 (the markers are as large as the layout says,
+# as a renderer draws them), ADJUST=0 (no adjustment). Where the data give no result, the log says why
+# and there is no analysis.csv; that is a valid outcome of a study.
 reconstruct() {
   local clip="$clips/$1" run="$runs/$2"
   mkdir -p "$run"
@@ -100,7 +108,7 @@ reconstruct() {
   fi
 }
 
-# The && are for `if`, in whose condition bash does not stop at a failure.
+# The && are needed because bash ignores `set -e` within the condition of an `if`.
 reconstruct_steps() {
   local clip="$1" run="$2" model="$2/adjusted" reference="${TRUTH:-$1/truth.csv}"
   local layout=(--layout_path "$clip/layout.yml" --log_level warn)
@@ -123,21 +131,21 @@ reconstruct_steps() {
       --reference_path "$reference" --part_planes 1 --csv_path "$run/analysis.csv" "${layout[@]}"
 }
 
-# search N S M [CENTRAL_FRAME]: the options of frame_registrator.
+# search N S M [CENTRAL_FRAME]: prints the options of frame_registrator.
 search() {
   printf '%s\n' --Registration.num_frames "$1" --Registration.skip "$2" \
     --Registration.neighborhood "$3"
   if [[ $# -gt 3 ]]; then printf '%s\n' --Registration.central_frame "$4"; fi
 }
 
-# metric RUN KEY: one figure of a reconstruction, or nothing.
+# metric RUN KEY: prints one figure of a reconstruction, or nothing.
 metric() {
   local file="$runs/$1/analysis.csv"
   [[ -f "$file" ]] || return 0
   awk -F, -v key="$2" '$1 == "" && $3 == key { print $4 }' "$file"
 }
 
-# table_metric RUN TABLE NAME_KEY NAME KEY: one figure of the row whose NAME_KEY is NAME.
+# table_metric RUN TABLE NAME_KEY NAME KEY: prints one figure of the row whose NAME_KEY is NAME.
 table_metric() {
   local file="$runs/$1/analysis.csv"
   [[ -f "$file" ]] || return 0
@@ -147,14 +155,14 @@ table_metric() {
     $3 == key && row != "" && $2 == row { print $4 }' "$file"
 }
 
-# mean_metric KEY RUN...: the mean over those reconstructions that have it (section 4.3.3).
+# mean_metric KEY RUN...: prints the mean over the reconstructions that have it (section 4.3.3).
 mean_metric() {
   local key="$1" run
   for run in "${@:2}"; do metric "$run" "$key"; done |
     awk '{ sum += $1; n++ } END { if (n) printf "%.6g", sum / n }'
 }
 
-# What a row about the sail holds, and what it is called.
+# The figures in a row about the sail, and their names.
 sail_keys=(image_marker_ratio_count num_markers reconstruction_ratio
   area_error_mm2_mean area_error_mm2_std area_error_mm2_median area_error_mm2_min
   area_error_mm2_max area_error_percent_mean
@@ -168,14 +176,14 @@ sail_header() {
   echo "${keys/image_marker_ratio_count/num_images}"
 }
 
-# sail_row RUN...: the means over the reconstructions, behind commas.
+# sail_row RUN...: prints the means over the reconstructions, each after a comma.
 sail_row() {
   local key
   for key in "${sail_keys[@]}"; do printf ',%s' "$(mean_metric "$key" "$@")"; done
   printf '\n'
 }
 
-# plot PICTURE [gnuplot's script on stdin]: a PNG in the work folder; without gnuplot, none.
+# plot PICTURE [SIZE]: draws gnuplot's script on stdin as a PNG in the work folder, if there is gnuplot.
 plot() {
   local size="${2:-900,600}"
   if ! command -v gnuplot >/dev/null; then
@@ -192,7 +200,7 @@ plot() {
   echo "$work/$1"
 }
 
-# finish CSV...: says what the study wrote, with a table for the eye.
+# finish CSV...: prints what the study wrote.
 finish() {
   local csv
   for csv in "$@"; do

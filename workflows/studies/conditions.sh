@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Hard conditions against the good near clip (thesis Figures 4.27 to 4.36): change of wind, weak and
-# strong reflection, bad angle, distance; and the motion of the sail against the hull between two
-# central frames half a second apart (Figure 4.26).
+# Compares hard conditions with the good near clip (thesis Figures 4.27 to 4.36): change of wind, weak
+# and strong reflection, bad angle, distance. Measures the motion of the sail against the hull between
+# two central frames half a second apart (Figure 4.26).
 # usage: workflows/studies/conditions.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# The wind changes halfway, at the central frame; its shape is compared with the truth before and
-# with that after. The motion is measured on a flapping clip with long and short searches, and on
-# the near clip, whose sail is rigid: what it shows there is measuring error.
+# The wind changes halfway, at the central frame; the shape is compared with the truth before and after.
+# The motion is measured with long and short searches on a flapping clip and on the near clip, whose
+# sail is rigid: motion there is measuring error.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -44,7 +44,7 @@ condition bad_angle bad_angle
 condition far far
 condition flapping flapping
 
-# motion NAME CLIP N S M: every marker's move against the hull in half a second.
+# motion NAME CLIP N S M: measures every marker's motion against the hull in half a second.
 motion_csv="$work/conditions_motion.csv"
 echo "clip,marker_id,of_hull,x_m,y_m,z_m,dx_mm,dy_mm,dz_mm,move_mm" >"$motion_csv"
 motion() {
@@ -63,7 +63,7 @@ motion flapping_short flapping "${short[@]}"
 motion rigid_long near "${long[@]}"
 motion rigid_short near "${short[@]}"
 
-# By marker line: the layout counts them from the foot of the sail to its top.
+# Means by marker line, which the layout counts from the foot of the sail to its top.
 lines_csv="$work/conditions_motion_lines.csv"
 awk -F, '
   NR == FNR {

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Area error, reprojection error and reconstruction ratio, and the error against the truth, as
+# Measures area error, reprojection error, reconstruction ratio and the error against the truth as
 # functions of |S| = 2 n + 1, skip s and neighborhood m (thesis Figures 4.17 to 4.22).
 # usage: workflows/studies/parameters.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# NUM_FRAMES, SKIPS, NEIGHBORHOODS, CENTRAL_FRAMES: other values than its own, e.g. "5 10 20".
+# NUM_FRAMES, SKIPS, NEIGHBORHOODS, CENTRAL_FRAMES: other values, e.g. "5 10 20".
 # Every figure is the mean over the reconstructions around CENTRAL_FRAMES, as in section 4.3.3.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -26,7 +26,7 @@ make_near_clip
 csv="$work/parameters.csv"
 echo "parameter,value,n,s,m,$(sail_header)" >"$csv"
 
-# vary PARAMETER VALUE N S M: a row, the mean over the central frames.
+# vary PARAMETER VALUE N S M: writes a row, the mean over the central frames.
 vary() {
   local names=() frame name options
   for frame in "${central_frames[@]}"; do
@@ -48,7 +48,7 @@ for s in "${skips[@]}"; do
 done
 for m in "${neighborhoods[@]}"; do vary m "$m" "${base[0]}" "${base[1]}" "$m"; done
 
-# chart PICTURE TITLE KEY... : a panel for every parameter that was varied.
+# chart PICTURE TITLE KEY...: plots a panel for every parameter that was varied.
 chart() {
   local picture="$1" title="$2" keys=("${@:3}") parameter key curves
   {

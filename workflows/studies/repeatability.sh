@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# What the standard deviations are worth where no truth is exact enough: the photographs of an object
-# are dealt into two halves, each is reconstructed by itself, and the difference of the two shapes
-# (after an alignment with scale: the scale's error is common to both) is held against what the
-# two covariances say of it. A print that is not as its layout says does not count here.
+# Checks the standard deviations where no truth is exact enough. The photographs of an object are dealt
+# into two halves, each half is reconstructed by itself, and the difference of the two shapes is compared
+# with what the two covariances predict. The alignment includes the scale, whose error is common to
+# both. A print that differs from its layout does not count here.
 # usage: workflows/studies/repeatability.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -24,8 +24,8 @@ halve() {
   done
 }
 
-# reconstruct_half NAME HALF: from the database to the shape. The && are for `||`, in whose scope bash
-# does not stop at a failure.
+# reconstruct_half NAME HALF: makes the shape from the database. The && are needed because bash ignores
+# `set -e` before a `||`.
 reconstruct_half() {
   local run="$runs/$1_$2" inputs
   inputs=(--database_path "$runs/$1.$2.db" --layout_path "$clips/$1/layout.yml" --log_level warn)
@@ -38,7 +38,7 @@ reconstruct_half() {
       --shape_path "$run/shape" "${inputs[@]:2}"
 }
 
-# compare NAME HALF OTHER: shape and model of a half against the other one's shape.
+# compare NAME HALF OTHER: compares shape and model of a half with the other half's shape.
 compare() {
   "$velamap" shape_analyzer --shape_path "$runs/$1_$2/shape" --input_path "$runs/$1_$2/metric" \
     --reference_path "$runs/$1_$3/shape" --csv_path "$runs/$1_$2/halves.csv" --log_level error \

@@ -11,7 +11,7 @@ function setChartDefaults() {
   Chart.defaults.color = '#3b4854';
   Chart.defaults.borderColor = '#e3e8ec';
   Chart.defaults.plugins.legend.display = false;
-  // A canvas keeps its size in points when printed: fit it to the page, and back.
+  // A canvas keeps its size when printed; fit it to the page and back.
   window.addEventListener('beforeprint', () => charts.forEach(chart => chart.resize()));
   window.addEventListener('afterprint', () => charts.forEach(chart => chart.resize()));
 }
@@ -63,7 +63,7 @@ function histogramChart(id, captionId, title, unit, histogram, meaning) {
   byId(captionId).textContent = meaning + strays.join('');
 }
 
-// One bar an image; the central one stands out.
+// One bar per image; the central one is highlighted.
 function imageChart(id, captionId, title, unit, images, value, meaning) {
   addChart(id, title, {
     type: 'bar',
@@ -105,17 +105,17 @@ function scaleChart(data) {
     },
   });
   byId('caption_scale').textContent =
-      `The scale that each marker's side gives alone, from the scale of the shape (${
+      `Deviation of the scale from each marker alone from the scale of the shape (${
         significant(data.scale.m_per_unit, 6)} m per unit of the model). A marker far from zero is ` +
-      'badly printed, bent, misread, or of another size than the layout says.';
+      'badly printed, bent, misread, or has another size than in the layout.';
 }
 
 function fillCharts(data) {
   histogramChart('chart_area', 'caption_area', 'Marker area', '%',
       data.histograms.area_deviation_percent,
-      'Area of each marker from the printed one. Zero is right; a common shift is an error of scale.');
+      'Difference of each marker\'s area from the printed one. A common shift is an error of scale.');
   histogramChart('chart_error', 'caption_error', 'Reprojection error', 'px', data.histograms.error_px,
-      'Distance of each corner in the images from where shape and camera put it.');
+      'Distance of each detected corner from its projection.');
   if (data.images.some(image => image.marker_ratio !== undefined)) {
     imageChart('chart_ratio', 'caption_ratio', 'Markers seen by image', '%', data.images,
         image => 100 * image.marker_ratio, 'Of the layout\'s markers, those seen whole in the image.');
@@ -124,11 +124,11 @@ function fillCharts(data) {
         image => image.num_markers, 'Markers seen whole in the image.');
   }
   imageChart('chart_residual', 'caption_residual', 'Mean reprojection error by image', 'px', data.images,
-      image => image.error_mean_px, 'An image far above the others is blurred or wrongly placed.');
+      image => image.error_mean_px, 'An image far above the others is blurred or has a wrong pose.');
   scaleChart(data);
 }
 
-// Gives both axes one scale: the ranges grow around the middle of all points until they do.
+// Gives both axes the same scale by extending one range around its middle.
 function fitEqualScales(chart) {
   const {width, height} = chart.chartArea;
   const all = chart.data.datasets.flatMap(set => set.data);
@@ -146,7 +146,7 @@ function fitEqualScales(chart) {
   chart.update();
 }
 
-// Ends of an axis that are no round numbers get no tick.
+// Omits ticks at the ends of an axis that are no round numbers.
 const ROUND_TICKS = {ticks: {includeBounds: false}};
 
 function sectionChart(sections) {

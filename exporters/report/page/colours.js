@@ -1,7 +1,6 @@
 'use strict';
 
-// Colours that people with any colour vision tell apart: Okabe and Ito's set for parts, the course
-// of viridis for numbers.
+// Colours for all kinds of colour vision: Okabe and Ito's palette for parts, viridis for numbers.
 
 const PART_COLOURS = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#f0e442',
                       '#6b6b6b'];
@@ -16,7 +15,7 @@ function rampColour(share) {
   return new THREE.Color(RAMP[index]).lerp(new THREE.Color(RAMP[index + 1]), place - index);
 }
 
-// What markers can be coloured by; those that no marker has a number for are left out.
+// Quantities for colouring markers, without those that no marker has.
 function colourings(markers) {
   const byNumber = [
     ['area', 'area error', '%', marker => Math.abs(marker.area_deviation_percent)],
@@ -42,7 +41,7 @@ function partColouring(markers) {
 }
 
 function numberColouring(key, name, unit, value, values) {
-  // A few strays shall not make all others look alike.
+  // The scale ends at a quantile, so that outliers do not compress it.
   const max = roundUp(Math.max(quantile(values, 0.95), 1e-9));
   const colour = marker => {
     const number = value(marker);

@@ -22,7 +22,7 @@ function svgElement(name, attributes, ...children) {
   return made;
 }
 
-// A number with `digits` after the point; a dash for what is not known.
+// A number with `digits` after the point, or a dash if it is unknown.
 function fixed(value, digits) {
   return typeof value === 'number' ? value.toFixed(digits).replace(/^-(?=0\.?0*$)/, '') : '–';
 }
@@ -39,19 +39,19 @@ function checkBox(text, checked, change, ...marks) {
   return element('label', {}, box, ...marks, text);
 }
 
-// The value below which the part `share` of the numbers lies.
+// The quantile of the numbers at `share`.
 function quantile(values, share) {
   const sorted = values.slice().sort((a, b) => a - b);
   return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
 }
 
-// The least of 1, 2, 5 times a power of ten that is not below `value`.
+// The smallest of 1, 2 or 5 times a power of ten that is at least `value`.
 function roundUp(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return power * [1, 2, 5, 10].find(factor => factor * power >= value * (1 - 1e-9));
 }
 
-// What a canvas shows, on white ground, as a PNG.
+// The content of a canvas on white as a PNG.
 function pictureOf(canvas) {
   const copy = element('canvas', {width: canvas.width, height: canvas.height});
   const context = copy.getContext('2d');

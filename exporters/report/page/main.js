@@ -63,7 +63,7 @@ function connectView(view) {
   }
   byId('show_all').addEventListener('click', () => view.showAll());
   byId('save_view').addEventListener('click', () => {
-    view.render();  // a canvas of WebGL holds its picture only until the browser shows it
+    view.render();  // a WebGL canvas keeps its content only until the browser shows it
     savePicture(view.renderer.domElement, 'shape');
   });
   view.container.addEventListener('keydown', event => {
@@ -98,7 +98,7 @@ function followAddress(view) {
 function fillView(data) {
   byId('frame').textContent = `Frame: ${data.frame.name}.`;
   if (!hasWebGL() || !data.markers.some(whole)) {
-    const reason = hasWebGL() ? 'No marker is whole, so there is nothing to turn.'
+    const reason = hasWebGL() ? 'No marker is whole, so there is nothing to show.'
                               : 'This browser offers no WebGL, which the 3D view needs.';
     byId('view').prepend(element('p', {className: 'message', textContent: reason}));
     return;

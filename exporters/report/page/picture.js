@@ -9,7 +9,7 @@ const PICTURE_LAYERS = [
   {name: 'ids', colour: '#ffffff', checked: false},
 ];
 
-// Error vectors are drawn so much longer that the larger ones can be seen.
+// Factor that makes the larger error vectors visible.
 function errorFactor(picture) {
   const lengths = picture.points.map(([, , , dx, dy]) => Math.hypot(dx, dy));
   const length = lengths.length ? quantile(lengths, 0.95) : 0;
@@ -27,7 +27,7 @@ function picturePaths(picture, factor) {
   return paths;
 }
 
-// The mean of the corners seen of each marker.
+// The ids at the means of the seen corners of each marker.
 function pictureIds(picture) {
   const sums = new Map();
   for (const [pointId, x, y] of picture.points) {
@@ -77,7 +77,7 @@ function fillPicture(picture) {
   }
   byId('picture').append(svg);
   byId('picture_caption').textContent =
-      `${picture.name}: ${picture.points.length} corners where they were detected (circles) and where ` +
-      `shape and camera put them (crosses); lines are the differences, ${factor} times as long.` +
+      `${picture.name}: ${picture.points.length} detected corners (circles) and their projections ` +
+      `(crosses); lines are the differences, ${factor} times as long.` +
       (picture.problem ? ` No picture: ${picture.problem}.` : '');
 }

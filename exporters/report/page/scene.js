@@ -1,10 +1,10 @@
 'use strict';
 
-// What the 3D view shows, as objects of three.js.
+// Objects of the 3D view.
 
 const whole = marker => marker.corners.every(corner => corner !== null);
 
-// Two triangles a whole marker, 1 4 3 and 1 3 2 (front side counter-clockwise), coloured by vertex.
+// Two triangles per whole marker, 1 4 3 and 1 3 2 (counter-clockwise from the front), coloured by vertex.
 function markerMesh(markers) {
   const positions = markers.flatMap(
       ({corners: [a, b, c, d]}) => [a, d, c, a, c, b].flat());
@@ -14,7 +14,7 @@ function markerMesh(markers) {
   return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors}));
 }
 
-// The backs of the same triangles, in grey: they show no marker.
+// The backs of the same triangles, in grey.
 function markerBacks(mesh) {
   return new THREE.Mesh(mesh.geometry, new THREE.MeshBasicMaterial(
       {color: '#dfe4e8', side: THREE.BackSide}));
@@ -41,7 +41,7 @@ function markerOutlines(markers) {
   return lines(markers.flatMap(({corners: [a, b, c, d]}) => [a, b, b, c, c, d, d, a]), '#25313c');
 }
 
-// A pyramid an image, as deep as `depth`; the central one in orange.
+// One pyramid of this depth per image; the central one in orange.
 function cameraLines(images, depth) {
   const group = new THREE.Group();
   for (const isCentral of [false, true]) {
@@ -55,7 +55,7 @@ function cameraLines(images, depth) {
   return group;
 }
 
-// 1 sigma ellipsoids of the centres; `group.setFactor` makes them larger.
+// 1 sigma ellipsoids of the centres; `group.setFactor` enlarges them.
 function ellipsoids(markers) {
   const group = new THREE.Group();
   const sphere = new THREE.SphereBufferGeometry(1, 16, 10);
@@ -89,7 +89,7 @@ function surfaceMesh(surface) {
     polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2}));
 }
 
-// What can be shown and hidden: {key, name, object, isOn}.
+// Layers that can be hidden: {key, name, object, isOn}.
 function makeLayers(data, markers, size) {
   const layers = [{key: 'markers', name: 'markers', object: new THREE.Group(), isOn: true}];
   layers[0].object.add(markerOutlines(markers));

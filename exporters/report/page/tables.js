@@ -1,6 +1,7 @@
 'use strict';
 
-// Tables whose heads sort them. A column is {name, value, text?}: `value` sorts, `text` shows.
+// Tables that sort by a click on a head. A column is {name, value, text?}: `value` for sorting, `text`
+// for display.
 
 function fillTable(id, columns, rows) {
   const body = element('tbody', {});
@@ -21,7 +22,7 @@ function fillTable(id, columns, rows) {
 }
 
 function sortingHead(column, sort, heads) {
-  // No button inside: browsers leave it out where a printed table repeats its head.
+  // Browsers omit a button when a printed table repeats its head.
   const head = element('th', {scope: 'col', className: column.isText ? 'text' : '', tabIndex: 0,
                               title: 'sort', textContent: column.name});
   head.addEventListener('click', () => sort(heads()));
@@ -31,7 +32,7 @@ function sortingHead(column, sort, heads) {
   return head;
 }
 
-// What is not known goes last.
+// Unknown values come last.
 function compare(a, b) {
   if (a === undefined || b === undefined) return (a === undefined) - (b === undefined);
   return typeof a === 'string' ? a.localeCompare(b, 'en', {numeric: true}) : a - b;
@@ -100,7 +101,7 @@ function fillTables(data) {
   ], data.scale_audit);
 }
 
-// A figure with its standard deviation, where that is known.
+// A figure with its standard deviation, if known.
 function figure(name, key, sigmaKey, digits, factor) {
   return {
     name, value: row => row[key],

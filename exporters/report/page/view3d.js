@@ -1,6 +1,6 @@
 'use strict';
 
-// The turning 3D view, drawn by three.js only when something has changed.
+// The 3D view. three.js draws it only after a change.
 
 const FACTORS = [1, 2, 5].flatMap(f => [0, 1, 2, 3, 4, 5].map(power => f * 10 ** power))
     .sort((a, b) => a - b);
@@ -38,7 +38,7 @@ class View3D {
     this.corners = this.markers.flatMap(marker => marker.corners).map(x => new THREE.Vector3(...x));
     const box = new THREE.Box3().setFromPoints(this.corners);
     const size = box.getSize(new THREE.Vector3()).length();
-    // Cameras may stand far away; the ratio is what a depth buffer of 24 bits bears.
+    // Cameras can be far away; a 24-bit depth buffer allows this ratio.
     this.camera.near = size / 500;
     this.camera.far = size * 200;
     this.scene = new THREE.Scene();
@@ -55,8 +55,8 @@ class View3D {
     }
   }
 
-  // Degrees: azimuth to the right of the front view, elevation above the horizon. At a zoom of 1 all
-  // points fit.
+  // Azimuth to the right of the front view and elevation above the horizon, degrees. All points fit at
+  // a zoom of 1.
   setView(azimuth, elevation, zoom = 1, points = this.corners) {
     const box = new THREE.Box3().setFromPoints(points);
     this.controls.target.copy(box.getCenter(new THREE.Vector3()));
@@ -70,7 +70,7 @@ class View3D {
     this.place(azimuth, elevation, Math.max(...distances) / zoom);
   }
 
-  // Around the target at this distance.
+  // Places the camera around the target at this distance.
   place(azimuth, elevation, distance) {
     const a = azimuth * Math.PI / 180, e = Math.min(89.9, Math.max(-89.9, elevation)) * Math.PI / 180;
     this.camera.position.copy(this.controls.target)
@@ -81,14 +81,14 @@ class View3D {
     this.render();
   }
 
-  // The cameras too.
+  // Shows the cameras, too.
   showAll() {
     const cameras = this.images.filter(image => image.centre)
         .map(image => new THREE.Vector3(...image.centre));
     this.setView(20, 15, 1, [...this.corners, ...cameras]);
   }
 
-  // From where the view stands, degrees.
+  // Rotates the current view, degrees.
   turn(azimuth, elevation, zoom) {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const distance = offset.length();
@@ -118,7 +118,7 @@ class View3D {
     this.render();
   }
 
-  // Ids of the markers that face the viewer.
+  // Shows the ids of the markers that face the viewer.
   placeIds() {
     const {clientWidth: width, clientHeight: height} = this.container;
     this.markers.forEach((marker, i) => {
@@ -145,7 +145,7 @@ class View3D {
     return hit && this.markers[Math.floor(hit.faceIndex / 2)];
   }
 
-  // A marker's numbers beside the pointer.
+  // Shows a marker's numbers beside the pointer.
   addPointing() {
     const tip = byId('view_tip');
     const show = event => {

@@ -1,4 +1,4 @@
-// What a comparison is written as: keys and PLY.
+// Keys and PLY of a comparison.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ using ::testing::Not;
 
 UncertainShape Uncertain(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
 
-// Marker 33 stands out by 20 mm, marker 44 stands back by 10 mm.
+// Marker 33 is 20 mm in front of the surface, marker 44 is 10 mm behind it.
 ShapeDeviation Example(double sigma_m = 0.0) {
   const MarkerShape reference = BoatShape(sigma_m);
   const auto normal = [&](int id) { return MarkerNormal(*FindWholeMarker(reference, id)); };
@@ -65,7 +65,7 @@ TEST(ComparisonPly, HoldsDistanceColourAndPlace) {
       EXPECT_EQ(red, 247);
     }
   }
-  // Counter-clockwise seen from the front: the face looks where the marker does.
+  // The face is counter-clockwise seen from the front of the marker.
   const std::vector<double> face = ply.elements[1].ListColumn("vertex_indices")[0];
   const auto corner = [&](std::size_t k) {
     const auto row = static_cast<std::size_t>(face[k]);

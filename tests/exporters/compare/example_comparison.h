@@ -1,5 +1,5 @@
-// A boat to compare with: a cambered sail in lines over a hull of six markers, and meshes in closed
-// form.
+// A boat for comparisons: a cambered sail with lines over a hull of six markers, and meshes in
+// closed form.
 
 #pragma once
 
@@ -16,25 +16,25 @@ namespace velamap {
 // Sail: lines h1..h5 of six markers each, 11..16 to 51..56; hull, the reference part: 120..125.
 Layout BoatLayout();
 
-// On the sail's own surface, x aft, y to leeward, z up, m. Corners and centres have a sigma where
-// `sigma_m` is positive.
+// Markers on the surface of the sail; x aft, y to leeward, z up, m. Corners and centers have a
+// sigma if `sigma_m` is positive.
 MarkerShape BoatShape(double sigma_m = 0.0);
 
-// The surface that the sail's markers are on, cut to `margin_m` beyond the outer centres.
+// The surface of the sail's markers up to `margin_m` beyond the outer centers.
 TriangleMesh SailMesh(double margin_m = 0.3);
 
 MarkerShape Moved(const Rigid3& b_from_a, MarkerShape shape);
-// The markers of these ids by `shift_m`, the others stay.
+// Moves the markers with these ids by `shift_m`.
 MarkerShape Shifted(const std::set<int>& ids, const Eigen::Vector3d& shift_m, MarkerShape shape);
 // Ids of a part of BoatLayout().
 std::set<int> IdsOf(const std::string& part);
 
-// A turn of 70 degrees and a shift of metres.
+// A rotation by 70 degrees and a translation by metres.
 Rigid3 FarPose();
 
-// A square of side 2 half_m in the plane z = 0, looking to +z, in cells.
+// A square of side 2 half_m in the plane z = 0 with normal +z, as a grid of cells.
 TriangleMesh PlaneMesh(double half_m, int num_cells);
-// Looking outwards, centre in the origin; closed.
+// A closed sphere about the origin with outward normals.
 TriangleMesh SphereMesh(double radius_m, int num_rings);
 
 }  // namespace velamap

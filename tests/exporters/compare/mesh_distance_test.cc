@@ -18,7 +18,7 @@ Eigen::Vector3d RandomPoint(std::mt19937* random, double half_m) {
   return {x, y, z};
 }
 
-// As STL has it: every triangle with vertices of its own.
+// A mesh like STL, in which no triangles share vertices.
 TriangleMesh Unshared(const TriangleMesh& mesh) {
   TriangleMesh result;
   for (const auto& t : mesh.triangles) {
@@ -57,7 +57,7 @@ TEST(MeshDistance, ToASphereIsThatToItsCentreLessTheRadius) {
       const double sagitta_m = radius_m * (1 - std::cos(M_PI / 60)) * 1.5;
       EXPECT_NEAR(foot.distance_m, truth_m, sagitta_m);
       EXPECT_EQ(foot.beside_m, 0);  // it has no border, whether vertices are shared or not
-      // It is no triangle further away than the foot.
+      // No triangle is nearer than the foot.
       for (std::size_t k = 0; k < triangles.vertices_m.size(); k += 97) {
         EXPECT_LE(std::abs(foot.distance_m), (x - triangles.vertices_m[k]).norm() + 1e-12);
       }
@@ -65,7 +65,7 @@ TEST(MeshDistance, ToASphereIsThatToItsCentreLessTheRadius) {
   }
 }
 
-// At an edge or vertex the face's own normal would give the wrong sign for half of these.
+// At edges and vertices, the normal of one face would give the wrong sign for half of these points.
 TEST(MeshDistance, SignsAreRightAroundASharpVertex) {
   TriangleMesh spike;
   spike.vertices_m = {{0, 0, 1}, {0.1, 0, 0}, {-0.05, 0.0866, 0}, {-0.05, -0.0866, 0}};

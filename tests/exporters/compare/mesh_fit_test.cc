@@ -33,7 +33,7 @@ UncertainShape Exact(const MarkerShape& shape) { return {shape, {}}; }
 
 MarkerShape Sail() { return MarkersOnPart(BoatShape(), BoatLayout(), "sail"); }
 
-// Marker of 0.1 m on a sphere about the origin, centre `radius_m` away, looking outwards.
+// A marker of 0.1 m facing outwards, with its center at `radius_m` from the origin.
 ShapeMarker MarkerOnSphere(int id, const Eigen::Vector3d& direction, double radius_m) {
   const Eigen::Quaterniond rotation =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction);
@@ -70,7 +70,7 @@ TEST(ShapeComparisonMesh, FindsItsPlaceFromFarAway) {
   const MarkerShape far = Moved(FarPose(), Sail());
   const ShapeDeviation deviation = CompareWithMesh(Exact(far), mesh, BoatLayout(), {});
   EXPECT_EQ(deviation.alignment.method, AlignmentMethod::kBestFit);
-  // Corners of flat markers stand off a curved surface by 1 mm: that is what is left.
+  // The corners of flat markers are 1 mm off the curved surface.
   EXPECT_LT(deviation.distance_m.rms, 1e-3);
   EXPECT_EQ(deviation.distance_m.count, 30);
   for (const MarkerDeviation& marker : deviation.markers) {
@@ -103,7 +103,7 @@ TEST(ShapeComparisonMesh, AsIsStaysNearTheStart) {
   EXPECT_LT(AngularDistance(deviation.alignment.reference_from_shape, Inverse(near)), 0.01);
 }
 
-// The surface ends where the sail's lower half does: no number for the other half.
+// The surface covers the lower half of the sail only; markers on the other half have no distance.
 TEST(ShapeComparisonMesh, MarkersBesideTheSurfaceAreNotMeasured) {
   TriangleMesh half = SailMesh();
   auto& t = half.triangles;
@@ -139,8 +139,9 @@ TEST(ShapeComparisonMesh, SaysWhichMotionsTheSurfaceLeavesOpen) {
   const ShapeDeviation plane =
       CompareWithMesh(Exact(board), MeshDistance(PlaneMesh(2.0, 3)), {}, {});
   EXPECT_LT(plane.distance_m.rms, 1e-9);
-  EXPECT_THAT(plane.alignment.notes, Contains(HasSubstr("leaves 3 of 6 rigid motions open")));
-  EXPECT_THAT(plane.alignment.notes, Contains(HasSubstr("fits as well")));
+  EXPECT_THAT(plane.alignment.notes,
+              Contains(HasSubstr("does not determine 3 of 6 rigid motions")));
+  EXPECT_THAT(plane.alignment.notes, Contains(HasSubstr("fits equally well")));
   EXPECT_LT(ball.distance_m.rms, 5e-3);
 }
 

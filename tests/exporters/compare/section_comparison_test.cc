@@ -31,7 +31,7 @@ const SectionDifference& Find(const SectionComparison& comparison, const std::st
   return *it;
 }
 
-// Depths of a line's markers above its chord, times this.
+// Multiplies the depths of a line's markers above its chord.
 MarkerShape WithMoreCamber(double factor, const std::vector<int>& ids, MarkerShape shape) {
   const Eigen::Vector3d first = *FindWholeMarker(shape, ids.front())->x_in_shape_m[0];
   const Eigen::Vector3d chord = *FindWholeMarker(shape, ids.back())->x_in_shape_m[0] - first;
@@ -86,7 +86,7 @@ TEST(ComparisonSections, WhatOneLacksIsSaid) {
                 markers.end());
   const SectionComparison comparison = Compare(BoatShape(), reference);
   EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("reference: sail h1")));
-  EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("twists do not compare")));
+  EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("twists cannot be compared")));
   EXPECT_EQ(comparison.differences.size(), 4u * 5);
   EXPECT_FALSE(comparison.differences.front().sigma.has_value());
 }

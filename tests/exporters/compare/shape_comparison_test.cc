@@ -81,7 +81,7 @@ TEST(ShapeComparison, AMovedPartShowsByExactlyItsMotion) {
   EXPECT_THAT(deviation.aligned_shape.markers, ::testing::SizeIs(36));
 }
 
-// Out along the marker's own normal is positive.
+// Distances along the outward normal of the marker are positive.
 TEST(ShapeComparison, SignIsThatOfTheReferencesNormal) {
   const MarkerShape reference = BoatShape();
   const Eigen::Vector3d normal = MarkerNormal(*FindWholeMarker(reference, 33));
@@ -119,7 +119,7 @@ TEST(ShapeComparison, WithoutEnoughOfTheReferencePartItIsABestFitAndSaysSo) {
   const ShapeDeviation deviation =
       CompareWithShape(Exact(few), Exact(BoatShape()), BoatLayout(), {});
   EXPECT_EQ(deviation.alignment.method, AlignmentMethod::kBestFit);
-  EXPECT_THAT(deviation.alignment.notes, ElementsAre(HasSubstr("2 whole markers are in both")));
+  EXPECT_THAT(deviation.alignment.notes, ElementsAre(HasSubstr("2 markers whole in both")));
   EXPECT_THAT(deviation.only_in_reference, ElementsAre(120, 121, 122, 123));
   const ShapeDeviation asked = CompareWithShape(Exact(few), Exact(BoatShape()), BoatLayout(),
                                                 By(AlignmentMethod::kReferencePart));
@@ -151,8 +151,8 @@ TEST(ShapeComparison, LinesAndPartsHaveTheirOwnFigures) {
       {"--part", "jib", "hull, sail"});
 }
 
-// Sigmas of the difference are what the difference scatters by, the alignment's part included: a
-// marker of the sail is far from the hull that holds the frame.
+// Sigmas of the difference match its scatter, including that of the alignment: a marker of the sail
+// is far from the hull that defines the frame.
 TEST(ShapeComparison, SigmasAreWhatRepetitionsScatterBy) {
   const MarkerShape reference = BoatShape(0.002), shape = Moved(FarPose(), BoatShape(0.001));
   for (const AlignmentMethod method :
@@ -180,7 +180,7 @@ TEST(ShapeComparison, SigmasAreWhatRepetitionsScatterBy) {
       EXPECT_NEAR(*marker.sigma_m / sampled, 1.0, 0.05) << id << " " << static_cast<int>(method);
     }
     EXPECT_EQ(deviation.num_with_sigma, 36);
-    // The vector's sigma has no less than its part along the normal.
+    // The sigma of the vector is at least that along the normal.
     const MarkerDeviation& any = deviation.markers.front();
     EXPECT_GE(any.difference_sigma_m->norm(), *any.sigma_m);
   }
@@ -204,7 +204,7 @@ TEST(ShapeComparison, AShapeWithoutSigmasGivesNone) {
   const ShapeDeviation one_sided =
       CompareWithShape(WithSigmas(shape), WithSigmas(BoatShape(0.001)), BoatLayout(), {});
   EXPECT_EQ(one_sided.num_with_sigma, 0);
-  // One marker of those that hold the frame without a sigma leaves all without.
+  // If one marker of the alignment has no sigma, no marker has one.
   MarkerShape partly = BoatShape(0.001);
   partly.markers.back().sigma_m = {};
   const ShapeDeviation deviation =
@@ -240,7 +240,7 @@ TEST(ShapeComparison, ShapesThatHaveNothingInCommon) {
                           {"no whole marker in common"});
   ExpectThrows<InputError>(
       [&] { compare(sail, BoatShape(), By(AlignmentMethod::kMarkers, {120})); },
-      {"--align_markers", "120", "not in the shape"});
+      {"--align_markers", "120", "the shape has no marker 120"});
   ExpectThrows<InputError>([&] { compare(sail, sail, By(AlignmentMethod::kMarkers)); },
                            {"--align_markers", "missing"});
   ExpectThrows<InputError>(

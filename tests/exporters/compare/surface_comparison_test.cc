@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exporters/compare/comparison_ply.h"
 #include "exporters/formats/diverging_color.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/formats/ply_reader.h"
@@ -25,7 +26,7 @@ TEST(ComparisonSurface, AShapeIsNowhereFromItself) {
   EXPECT_LT(LargestDistance(comparison), 1e-9);
 }
 
-// All lines pushed out by 20 mm along the mean normal: the middle of the sail moves by that.
+// Moves all lines by 20 mm along the mean normal, and the middle of the sail with them.
 TEST(ComparisonSurface, APushedSailIsAsFarOffAllOver) {
   const Eigen::Vector3d push(0.0, 0.02, 0.0);
   const SurfaceComparison comparison =
@@ -34,7 +35,7 @@ TEST(ComparisonSurface, APushedSailIsAsFarOffAllOver) {
   const double sign = sail.statistics_m.mean > 0 ? 1 : -1;
   EXPECT_NEAR(sail.statistics_m.mean, sign * 0.019, 0.002);  // the sail is not all across y
   EXPECT_LE(sail.statistics_m.max, 0.0201);
-  // Pushed aft, a strip along the leech lies beside the reference.
+  // After a move aft, a strip along the leech lies beside the reference.
   const SurfaceDeviation aft =
       CompareSurfaces(Shifted(IdsOf("sail"), {0.3, 0, 0}, BoatShape()), BoatShape(), BoatLayout())
           .parts.at(0);

@@ -1,4 +1,4 @@
-// FreeCAD's own importer reads what we write, where FreeCAD is installed (Debian: freecad-python3).
+// FreeCAD's importer reads the written files, if FreeCAD is installed (Debian: freecad-python3).
 
 #include <cstdlib>
 #include <fstream>
@@ -15,7 +15,7 @@
 namespace velamap {
 namespace {
 
-// Imports the files as File > Import does, and writes area and extents of each, mm.
+// Imports the files like File > Import and writes the area and extents of each, mm.
 constexpr const char* kScript = R"(
 import FreeCAD, Import
 out = open("@FOLDER@/result.txt", "w")

@@ -1,4 +1,4 @@
-// STEP and IGES, read back by Open CASCADE's own readers.
+// STEP and IGES, read back with Open CASCADE.
 
 #include <filesystem>
 #include <fstream>
@@ -49,7 +49,7 @@ std::string ReadErrorOf(const std::filesystem::path& path) {
   return "no InputError";
 }
 
-// Extents of the surface itself, from a dense mesh.
+// Extents of the surface from a dense mesh.
 void Extents(const SplineSurface& surface, Eigen::Vector3d* min_m, Eigen::Vector3d* max_m) {
   MeshOptions options;
   options.edge_length_mm = 20;
@@ -113,7 +113,7 @@ TEST(Cad, UnitOfTheFileIsObeyed) {
   const std::string millimetre = "SI_UNIT(.MILLI.,.METRE.)";
   step.replace(step.find(millimetre), millimetre.size(), "SI_UNIT($,.METRE.)");
   WriteText(dir / "in_metres.stp", step);
-  // The same numbers, now metres; a coarse mesh, for it is 6 km high.
+  // The same numbers in metres, with a coarse mesh because the surface is 6 km high.
   EXPECT_NEAR(ReadCad(dir / "in_metres.stp", 1e5).area_m2, 1e6 * SurfaceArea(surface),
               1 * SurfaceArea(surface));
 }

@@ -54,7 +54,7 @@ TEST_F(MeshReaderTest, ReadsBackWhatVelamapWritesInTheRightUnit) {
     const TriangleMesh read = ReadMesh(dir_ / name);
     EXPECT_EQ(read.triangles.size(), mesh.triangles.size()) << name;
     EXPECT_NEAR(Area(read), Area(mesh), 1e-4) << name;
-    // Looks to the same side at the same place.
+    // The normal points to the same side at the same place.
     const auto& [a, b, c] = read.triangles.front();
     const auto& [d, e, f] = mesh.triangles.front();
     EXPECT_LT((read.vertices_m[a] - mesh.vertices_m[d]).norm(), 1e-5) << name;
@@ -92,7 +92,7 @@ TEST_F(MeshReaderTest, BadFiles) {
   ExpectRefused(Write("a.xyz", "0 0 0\n"), {"a.xyz", "expected .ply"});
   ExpectRefused(Write("a", "0 0 0\n"), {"expected .ply"});
   fs::create_directory(dir_ / "folder.stl");
-  ExpectRefused(dir_ / "folder.stl", {"folder.stl", "no regular file"});
+  ExpectRefused(dir_ / "folder.stl", {"folder.stl", "not a regular file"});
   ExpectRefused(Write("empty.ply", ""), {"empty.ply", "cannot be read as ply"});
   ExpectRefused(Write("text.stl", "this is no mesh\n"), {"text.stl"});
   ExpectRefused(Write("text.step", "this is no mesh\n"), {"text.step", "STEP"});
@@ -112,7 +112,7 @@ TEST_F(MeshReaderTest, BadFiles) {
                 {"points.ply"});
   ExpectRefused(Write("lines.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nl 1 2 3\n"), {"lines.obj"});
   ExpectRefused(Write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"),
-                {"flat.obj", "holds no triangles"});
+                {"flat.obj", "has no triangles"});
   ExpectRefused(Write("nan.obj", "v 0 0 0\nv nan 0 0\nv 2 1 0\nf 1 2 3\n"), {"nan.obj"});
   ExpectRefused(Write("range.obj", "v 0 0 0\nv 1 0 0\nv 2 1 0\nf 1 2 9\n"), {"range.obj"});
 }

@@ -1,4 +1,4 @@
-// Meshes of surfaces and their files, read back by readers of their own.
+// Meshes of surfaces and their files, read back by independent readers.
 
 #include <cmath>
 #include <cstdint>
@@ -116,23 +116,24 @@ TEST(Mesh, CoarseMeshIsTwoTriangles) {
 TEST(Mesh, AbsurdResolutionIsRefusedWithItsTriangles) {
   // 3 m by 6 m at a micrometre.
   EXPECT_THAT(RefusalOf(Sail(), EdgeLength(1e-3)),
-              ::testing::AllOf(HasSubstr("edge length of 0.001 mm would need 3."),
-                               HasSubstr("e+13 triangles, more than 5000000; take")));
-  EXPECT_THAT(RefusalOf(Sail(), ChordDeviation(1e-9)), HasSubstr("chord deviation of 1e-09 mm"));
+              ::testing::AllOf(HasSubstr("--Surface.edge_length: 0.001 mm would need 3."),
+                               HasSubstr("e+13 triangles, more than 5000000; give")));
+  EXPECT_THAT(RefusalOf(Sail(), ChordDeviation(1e-9)),
+              HasSubstr("--Surface.chord_deviation: 1e-09 mm"));
   for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     EXPECT_THAT(RefusalOf(Sail(), EdgeLength(bad)), HasSubstr("must be more than 0"));
   }
-  EXPECT_THAT(RefusalOf(Sail(), {}), HasSubstr("edge length or its chord deviation"));
+  EXPECT_THAT(RefusalOf(Sail(), {}), HasSubstr("give one of the two"));
   MeshOptions both = EdgeLength(10);
   both.chord_deviation_mm = 1;
-  EXPECT_THAT(RefusalOf(Sail(), both), HasSubstr("not both"));
+  EXPECT_THAT(RefusalOf(Sail(), both), HasSubstr("give one of the two"));
 }
 
 TEST(Mesh, TheSuggestedResolutionFits) {
   for (const bool by_edge : {true, false}) {
     const std::string refusal =
         RefusalOf(Sail(), by_edge ? EdgeLength(0.01) : ChordDeviation(1e-7));
-    const double suggested = std::stod(refusal.substr(refusal.find("; take ") + 7));
+    const double suggested = std::stod(refusal.substr(refusal.find("; give ") + 7));
     const MeshOptions options = by_edge ? EdgeLength(suggested) : ChordDeviation(suggested);
     EXPECT_LT(CountTriangles(Sail(), options), kMaxTriangles);
     EXPECT_GT(CountTriangles(Sail(), options), 0.5 * kMaxTriangles);

@@ -47,7 +47,7 @@ std::string Json(const MetricsReport& report) {
   return Written([&](std::ostream& out) { WriteMetricsJson(report, out); });
 }
 
-// What the CSV says, by table,row,key.
+// Values of the CSV by table,row,key.
 std::map<std::string, std::string> CsvFigures(const MetricsReport& report) {
   std::istringstream in(Csv(report));
   std::map<std::string, std::string> figures;

@@ -1,4 +1,4 @@
-// Reads PLY files independently of the writer, strictly: every byte has to be accounted for.
+// A strict PLY reader that is independent of the writer and accounts for every byte.
 
 #pragma once
 
@@ -18,7 +18,7 @@ struct PlyReadElement {
   std::vector<PlyReadProperty> properties;
   std::vector<std::vector<std::vector<double>>> rows;  // [row][property][entry of a list, or 0]
 
-  // Values of a scalar property; throws std::runtime_error where there is none.
+  // Values of a scalar property; throws std::runtime_error if it does not exist.
   std::vector<double> Column(const std::string& property) const;
   std::vector<std::vector<double>> ListColumn(const std::string& property) const;
 };
@@ -28,7 +28,7 @@ struct PlyFile {
   std::vector<PlyReadElement> elements;
 };
 
-// Throws std::runtime_error for anything that is not a whole PLY file.
+// Throws std::runtime_error for anything but a complete PLY file.
 PlyFile ReadPly(const std::string& bytes);
 
 }  // namespace velamap

@@ -51,7 +51,7 @@ void ExpectEqual(const MarkerShape& a, const MarkerShape& b) {
   }
 }
 
-// Markers at odd places with every kind of gap, and numbers of all magnitudes.
+// Markers at arbitrary positions with every kind of gap, and numbers of all magnitudes.
 MarkerShape RandomShape(std::uint32_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&] { return 2.0 * std::ldexp(random() >> 11, -53) - 1.0; };

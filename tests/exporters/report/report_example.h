@@ -1,4 +1,4 @@
-// Models of a synthetic sail with all that a report shows, for the tests of the report.
+// Models of a synthetic sail with everything that a report shows.
 
 #pragma once
 

@@ -24,7 +24,7 @@ Eigen::Vector3d TwistedSail(double u, double v) {
   const double chord = 3 - 2 * v;
   const double camber = (0.10 + 0.02 * v) * chord;
   const double twist = 15 * kPi / 180 * v;
-  // A quartic profile, fuller in front, with its draft at 43 % of the chord.
+  // A quartic profile with its draft at 43 % of the chord.
   const double along = chord * u;
   const double depth = camber * 4 * u * (1 - u) * (1 + 0.3 * (1 - 2 * u));
   return {std::cos(twist) * along - std::sin(twist) * depth,

@@ -1,4 +1,4 @@
-// Surfaces in closed form with markers on them, for the tests of surfaces and their files.
+// Surfaces in closed form with markers.
 
 #pragma once
 
@@ -16,7 +16,7 @@ using SurfaceTruth = std::function<Eigen::Vector3d(double u, double v)>;  // m
 // A twisted four-cornered patch, 3 m by 5 m.
 Eigen::Vector3d BilinearPatch(double u, double v);
 
-// An arc of a cylinder of radius 4 m over 40 degrees, 3 m high: the sail of a drawing board.
+// An arc of 40 degrees of a cylinder with a radius of 4 m, 3 m high.
 Eigen::Vector3d CylinderSail(double u, double v);
 
 // A sail of 6 m: chord 3 m at the foot and 1 m at the head, 10 to 12 % camber, 15 degrees of twist.
@@ -26,7 +26,7 @@ Eigen::Vector3d TwistedSail(double u, double v);
 // sigmas.
 SurfaceInput MarkersOn(const SurfaceTruth& truth, int num_lines, int num_markers);
 
-// Of the truth's points on a dense grid from the surface: the largest distance, m.
+// The largest distance of the true points of a dense grid from the surface, m.
 double LargestDistance(const SplineSurface& surface, const SurfaceTruth& truth);
 
 }  // namespace velamap

@@ -124,7 +124,10 @@ TEST(SailShape, ResolutionIsAsAskedForAndNotAbsurd) {
   const std::size_t fine = Compute(ExampleSail(), options).surfaces[0].mesh.triangles.size();
   EXPECT_GT(fine, 4 * Compute(ExampleSail()).surfaces[0].mesh.triangles.size());
   options.mesh->edge_length_mm = 1e-3;
-  ExpectThrows<InputError>([&] { Compute(ExampleSail(), options); }, {"triangles"});
+  const SailShape refused = Compute(ExampleSail(), options);
+  EXPECT_THAT(refused.surfaces, IsEmpty());
+  EXPECT_EQ(refused.sections.sections.size(), 3u);
+  ExpectThrows<InputError>([&] { refused.ThrowSurfaceError(); }, {"triangles"});
   options.mesh->chord_deviation_mm = 1.0;
   EXPECT_THROW(options.Check(), InputError);
 }
@@ -144,17 +147,19 @@ TEST(SurfaceEdges, AreReadAndRefusedWithLineAndColumn) {
   for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
            {"", "expected the header"},
            {"edge,x,y\n", "expected the header"},
-           {header + "keel,1,2,3\n", "edges.csv:2: column edge: 'keel'"},
+           {header + "keel,1,2,3\n",
+            "edges.csv:2: column edge: expected luff, leech, foot or head, found 'keel'"},
            {header + "luff,1,2\n", "edges.csv:2: 3 columns"},
-           {header + "luff,1,x,3\n", "edges.csv:2: column y: 'x'"},
+           {header + "luff,1,x,3\n",
+            "edges.csv:2: column y: expected a number in metres, found 'x'"},
            {header + "luff,1,nan,3\n", "column y"},
-           {header + "luff,1,2,3\n", "the luff has one point"}}) {
+           {header + "luff,1,2,3\n", "the luff edge has one point"}}) {
     ExpectThrows<InputError>([&, t = text] { read(t); }, {part});
   }
   ExpectThrows<InputError>([] { ReadSurfaceEdges("no/such.csv"); }, {"no/such.csv"});
 }
 
-// Two clips of one boat: other cameras, other scales, one frame.
+// Two clips of one boat with different cameras and scales have one frame.
 TEST(ShapeExporterFrame, ResultsOfDifferentWorldsAreInOneFrame) {
   Model moved = ExampleModel();
   TransformModel(ExampleSim3(7.0), &moved);

@@ -1,4 +1,4 @@
-// Sails with known sections, as marker shapes with layouts: for the frame and the section tests.
+// Sails with known sections as marker shapes with layouts.
 
 #pragma once
 
@@ -21,7 +21,7 @@ UnitProfile CircularArc(double camber);
 // Camber line of the four-digit NACA sections, at equal steps of x.
 UnitProfile NacaCamberLine(double camber, double position);
 
-// A marker of 100 mm, upright, its centre here; z is up.
+// An upright marker of 100 mm with this center; z is up.
 ShapeMarker UprightMarker(int marker_id, const std::string& part, const Eigen::Vector3d& center_m);
 
 struct SailLine {
@@ -44,11 +44,11 @@ Sail MakeSailOfLines(const std::vector<SailLine>& lines, int num_markers, int le
 // Three lines of circular arcs whose chord, camber and twist change with height.
 Sail ExampleSail(int num_markers = 12, int leeward = 1);
 
-// Moves corners, centres; sigmas stay with their axes.
+// Moves corners and centers; sigmas keep their axes.
 MarkerShape Moved(const Rigid3& new_from_shape, const MarkerShape& shape);
 Rigid3 OddMotion();
 
-// Moves corner and centre alike.
+// Moves corners and center.
 void ShiftMarker(int marker_id, const Eigen::Vector3d& shift_m, MarkerShape* shape);
 void RemoveMarker(int marker_id, MarkerShape* shape);
 void SetSigma(double sigma_m, MarkerShape* shape);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/shape_transform.h"
 #include "importer/base/error.h"
 #include "tests/exporters/sail/sail_shapes.h"
 
@@ -19,7 +20,7 @@ using testing::HasSubstr;
 
 constexpr double kDegPerRad = 180 / 3.14159265358979323846;
 
-// In the frame that the layout gives by default.
+// Sections in the default frame of the layout.
 SectionReport Sections(const Sail& sail, const SectionOptions& options = {},
                        const std::optional<FrameChoice>& choice = std::nullopt) {
   const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout, choice);
@@ -95,7 +96,7 @@ TEST(Section, StraightTwistedLinesHaveTwistAndNoDraftPosition) {
     EXPECT_NEAR(section.entry_angle_deg.value, 0, 1e-5);
     EXPECT_FALSE(section.draft_position);
   }
-  // No side is leeward on a flat sail: the sign is that of +y or -y.
+  // A flat sail has no leeward side; the sign is that of +y or -y.
   EXPECT_NEAR(std::abs(report.sections[1].twist_deg.value), 5, 1e-6);
   EXPECT_NEAR(report.sections[2].twist_deg.value / report.sections[1].twist_deg.value, -4.2, 1e-6);
 }
@@ -121,7 +122,7 @@ TEST(Section, RigidMotionChangesNoNumber) {
 TEST(Section, OrderOfMarkersInTheShapeAndOfLinesInTheLayoutDoesNotMatter) {
   Sail sail = ExampleSail();
   const SectionReport before = Sections(sail);
-  // A shape's markers are ascending by definition; the ids are what is permuted here.
+  // Permutes the ids, because the markers of a shape are sorted.
   for (ShapeMarker& marker : sail.shape.markers) marker.marker_id = 1000 - marker.marker_id;
   std::reverse(sail.shape.markers.begin(), sail.shape.markers.end());
   LayoutPart& part = sail.layout.parts[0];
@@ -131,7 +132,7 @@ TEST(Section, OrderOfMarkersInTheShapeAndOfLinesInTheLayoutDoesNotMatter) {
     }
   }
   ExpectSameNumbers(before, Sections(sail), 1e-12);
-  // With the frame by markers the layout's order of lines has no say.
+  // In a frame by markers, the order of the lines does not matter.
   const FrameChoice choice{FrameKind::kMarkers, 900, 889, 600};
   const SectionReport by_markers = Sections(sail, {}, choice);
   std::reverse(part.horizontal.begin(), part.horizontal.end());
@@ -213,7 +214,7 @@ TEST(Section, HeightsBetweenLinesOfOneShapeGiveThatShape) {
 }
 
 TEST(Section, HeightOnASlopingSailIsLevel) {
-  // Lines that rise towards the leech: the cut is horizontal all the same.
+  // The cut through lines that rise towards the leech is horizontal.
   Sail sail = ExampleSail();
   for (ShapeMarker& marker : sail.shape.markers) {
     for (auto& x : marker.x_in_shape_m) x->z() += 0.1 * x->x();
@@ -229,7 +230,7 @@ TEST(Section, HeightOnASlopingSailIsLevel) {
   }
 }
 
-// Standard deviations against what noise of that size does to the numbers.
+// Compares standard deviations with the scatter of the numbers under such noise.
 TEST(Section, SigmasAgreeWithMonteCarlo) {
   constexpr double kSigma_m = 0.003;
   constexpr int kNumRuns = 50;
@@ -279,7 +280,7 @@ TEST(Section, SigmasAgreeWithMonteCarlo) {
 }
 
 TEST(Section, JointCovarianceLetsSharedErrorsCancel) {
-  // All corners move together by 10 mm, and each marker by 1 mm on its own.
+  // A common error of all corners of 10 mm, and an individual one of each marker of 1 mm.
   Sail sail = ExampleSail(8);
   PointCovariance covariance;
   for (const ShapeMarker& marker : sail.shape.markers) {
@@ -358,14 +359,14 @@ TEST(Section, BadLinesAreLeftOutWithTheReason) {
   Sail mixed = ExampleSail();
   std::swap(mixed.layout.parts[0].horizontal[2].marker_ids[3],
             mixed.layout.parts[0].horizontal[2].marker_ids[7]);
-  EXPECT_THAT(reason(mixed), HasSubstr("marker 304 does not lie behind marker 307"));
+  EXPECT_THAT(reason(mixed), HasSubstr("marker 304 is not aft of marker 307"));
 
   Sail double_marker = ExampleSail();
   ShiftMarker(205,
               *double_marker.shape.markers[12 + 4].x_in_shape_m[0] -
                   *double_marker.shape.markers[12 + 5].x_in_shape_m[0],
               &double_marker.shape);
-  EXPECT_THAT(reason(double_marker), HasSubstr("markers 204 and 205 are in one place"));
+  EXPECT_THAT(reason(double_marker), HasSubstr("markers 204 and 205 are in the same place"));
 }
 
 TEST(Section, CrossingSectionsAreReportedAndNotInterpolatedBetween) {

@@ -82,7 +82,7 @@ TEST(Surface, BilinearPatchIsExactFromTwoLinesOn) {
 }
 
 // A cubic spline interpolates to 5/384 h^4 max|f''''| (Hall and Meyer, 1976); on an arc of radius R
-// that is |f''''| = 1/R^3. Half as much again for the ends, which have no tangents given.
+// that is |f''''| = 1/R^3. A factor of 1.5 accounts for the ends without given tangents.
 TEST(Surface, CylinderIsAsExactAsCubicSplinesAllow) {
   const double arc_m = 4 * 40 * 3.14159265358979 / 180;
   for (const int n : {6, 8, 12, 16}) {
@@ -117,7 +117,7 @@ TEST(Surface, SectionsBulgeToOneSideWithoutWiggles) {
   for (double u = 0; u <= 1; u += 0.02) {
     for (double v = 0; v <= 1; v += 0.05) {
       const SurfaceJet jet = EvaluateJet(surface, u, v);
-      // The normal looks at -y, from where the sail is hollow.
+      // The normal points to -y, the hollow side of the sail.
       EXPECT_GT(jet.x_uu.dot(jet.normal), 0) << u << ' ' << v;
     }
   }
@@ -177,7 +177,7 @@ TEST(Surface, AnUncertainMarkerPullsLess) {
   EXPECT_GT(residual(0.001).distance_m, -0.035);
 }
 
-// With markers between the lines, which an interpolating surface swings around.
+// Has markers between the lines, around which an interpolating surface oscillates.
 TEST(Surface, SigmasThatAreTooSmallDoNotMakeItSwing) {
   SurfaceInput input = MarkersOn(TwistedSail, 7, 12);
   for (int i = 0; i < 24; ++i) {
@@ -195,7 +195,7 @@ TEST(Surface, SigmasThatAreTooSmallDoNotMakeItSwing) {
   EXPECT_GT(fit.distance_m.rms, 0.001);
 }
 
-// Markers just above the lines that stand out by half a metre: a surface through all swings.
+// Markers just above the lines and half a metre off them make an interpolating surface oscillate.
 TEST(Surface, MarkersThatLieScatteredBearNone) {
   SurfaceInput input = MarkersOn(TwistedSail, 7, 12);
   for (int j = 0; j < 6; ++j) {
@@ -206,11 +206,11 @@ TEST(Surface, MarkersThatLieScatteredBearNone) {
   }
   EXPECT_THROW(FitSurface(input, Interpolating()), DataError);
   ExpectThrows<DataError>([&] { FitSurface(input, Interpolating()); },
-                          {"swing between the markers", "m2"});
+                          {"oscillate between the markers", "m2"});
 }
 
 TEST(Surface, MarkersBetweenTheLinesTakePart) {
-  // Fuller by 3 cm half way between any two of its four lines.
+  // The sail is 3 cm fuller half way between neighboring lines.
   const auto bulging = [](double u, double v) -> Eigen::Vector3d {
     constexpr double kPi = 3.14159265358979;
     const double bulge_m = 0.03 * std::sin(kPi * u) * std::pow(std::sin(3 * kPi * v), 2);
@@ -242,7 +242,8 @@ TEST(Surface, MarkerBesideTheSurfaceIsReportedAndLeftOut) {
   EXPECT_FALSE(fitted.residuals.back().is_used);
   EXPECT_NEAR(fitted.residuals.back().beyond_edge_m, 0.4, 0.01);
   EXPECT_EQ(fitted.distance_m.count, 12);
-  EXPECT_THAT(fitted.notes, ElementsAre(HasSubstr("beside the surface, without a part in it: 50")));
+  EXPECT_THAT(fitted.notes,
+              ElementsAre(HasSubstr("outside the edge of the surface, not used: 50")));
 }
 
 TEST(Surface, HolesAreBridgedAndNamed) {
@@ -252,7 +253,7 @@ TEST(Surface, HolesAreBridgedAndNamed) {
   const auto fitted = FitSurface(input, Interpolating());
   EXPECT_LT(LargestDistance(fitted.surface, TwistedSail), 0.02);
   EXPECT_LT(TruthRms(fitted.surface, TwistedSail), 0.004);
-  EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h4: hole of 1.07 m")));
+  EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h4: gap of 1.07 m")));
   EXPECT_THAT(fitted.notes, Contains(HasSubstr("between markers 29 and 33 (3 of the layout")));
   EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h6: 2 markers missing at the luff and 0")));
 }
@@ -274,10 +275,10 @@ TEST(Surface, LineWithTooFewMarkersIsLeftOutAndItsMarkersStillCount) {
 
 TEST(Surface, GoesOnBeyondItsMarkersAsItIsCurved) {
   SurfaceOptions options = Interpolating();
-  options.luff_extension_m = 0.3;
-  options.leech_extension_m = 0.2;
-  options.foot_extension_m = 0.25;
-  options.head_extension_m = 0.15;
+  options.luff_extension_mm = 300;
+  options.leech_extension_mm = 200;
+  options.foot_extension_mm = 250;
+  options.head_extension_mm = 150;
   const auto fitted = FitSurface(MarkersOn(CylinderSail, 6, 8), options);
   const double arc_m = 4 * 40 * 3.14159265358979 / 180;
   EXPECT_NEAR(SurfaceArea(fitted.surface), (arc_m + 0.5) * 3.4, 0.01);
@@ -288,6 +289,25 @@ TEST(Surface, GoesOnBeyondItsMarkersAsItIsCurved) {
     EXPECT_NEAR(std::hypot(x.x(), x.y()), 4, 5e-4) << u;
   }
   EXPECT_LT(LargestResidual(fitted), 1e-10);
+}
+
+TEST(Surface, ExtensionsAreLimitedToTheSizeOfThePart) {
+  // 18 mm wide at the foot and 36 mm high.
+  const SurfaceInput input = MarkersOn(
+      [](double u, double v) -> Eigen::Vector3d { return 0.006 * TwistedSail(u, v); }, 5, 8);
+  SurfaceOptions options;
+  options.luff_extension_mm = 5;
+  options.head_extension_mm = 10;
+  EXPECT_GT(SurfaceArea(FitSurface(input, options).surface),
+            1.2 * SurfaceArea(FitSurface(input).surface));
+  for (double SurfaceOptions::*extension_mm :
+       {&SurfaceOptions::luff_extension_mm, &SurfaceOptions::leech_extension_mm,
+        &SurfaceOptions::foot_extension_mm, &SurfaceOptions::head_extension_mm}) {
+    SurfaceOptions large;
+    large.*extension_mm = 1e4;
+    ExpectThrows<InputError>([&] { FitSurface(input, large); },
+                             {"--Surface.", "_extension: 10000 mm, expected at most"});
+  }
 }
 
 TEST(Surface, ReachesTheEdgesThatAreGiven) {
@@ -329,10 +349,10 @@ TEST(Surface, LinesThatCrossOrRunBackwardsAreRefused) {
   EXPECT_THAT(ErrorOf(crossing), HasSubstr("lines h2 and h3 cross"));
   SurfaceInput backwards = MarkersOn(BilinearPatch, 3, 5);
   std::reverse(backwards.lines[2].markers.begin(), backwards.lines[2].markers.end());
-  EXPECT_THAT(ErrorOf(backwards), HasSubstr("lines h2 and h3 run against each other"));
+  EXPECT_THAT(ErrorOf(backwards), HasSubstr("lines h2 and h3 run in opposite directions"));
   SurfaceInput doubled = MarkersOn(BilinearPatch, 3, 5);
   doubled.lines[0].markers[2]->x_in_shape_m = doubled.lines[0].markers[1]->x_in_shape_m;
-  EXPECT_THAT(ErrorOf(doubled), HasSubstr("line h1: markers 1 and 2 are in one place"));
+  EXPECT_THAT(ErrorOf(doubled), HasSubstr("line h1: markers 1 and 2 are in the same place"));
 }
 
 TEST(Surface, BadOptionsAreNamed) {
@@ -346,15 +366,15 @@ TEST(Surface, BadOptionsAreNamed) {
     }
   };
   SurfaceOptions negative, single, both, sigma;
-  negative.head_extension_m = -0.1;
-  check(negative, "extension at the head is -0.1 m");
+  negative.head_extension_mm = -100;
+  check(negative, "--Surface.head_extension: -100 is out of range");
   single.edges.luff = {{0, 0, 0}};
   check(single, "luff edge has one point");
   both.edges.foot = {{0, 0, -1}, {3, 0, -1}};
-  both.foot_extension_m = 0.5;
+  both.foot_extension_mm = 500;
   check(both, "give one of the two");
   sigma.default_sigma_m = -1;
-  check(sigma, "default sigma is -1 m");
+  check(sigma, "default sigma of the surface is -1 m");
 }
 
 TEST(Surface, ResidualsAsCsv) {

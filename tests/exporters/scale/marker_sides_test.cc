@@ -40,8 +40,8 @@ TEST(MarkerSides, AreThoseOfTheShapeInAnyFrame) {
 
 TEST(MarkerSides, SizeInTheImagesIsFocalLengthTimesSizeOverDistance) {
   const auto markers = MeasureSides(ExampleModel(), ExampleLayout());
-  // 120 lies 4 m before the cameras, off their axes, where squares look up to 10 % larger; 121 is
-  // half as large.
+  // Marker 120 is 4 m in front of the cameras, off their axes, where squares look up to 10 %
+  // larger; 121 has half its size.
   EXPECT_NEAR(*markers[6].side_px, 1.05 * 1500 * 0.1 / 4, 2.0);
   EXPECT_NEAR(*markers[7].side_px / *markers[6].side_px, 0.5, 0.02);
 }
@@ -89,7 +89,7 @@ TEST(MarkerSides, PointsThatOneImageSeesStay) {
   EXPECT_FALSE(MeasureSides(model, ExampleLayout())[0].mean_sigma.has_value());
 }
 
-// An inset of b px along both sides of a square makes it smaller by 2 b px in every image.
+// An inset of b px along both sides of a square reduces its size by 2 b px in every image.
 TEST(MarkerSides, ApparentInsetIsTakenOut) {
   constexpr double kInset_px = 0.3;
   Model model = ExampleModel();
@@ -130,8 +130,8 @@ TEST(MarkerSides, SigmasAreCalibrated) {
     mean_sigmas.push_back(*marker.mean_sigma);
     ratio_sigmas.push_back(*marker.ratio_sigma);
   }
-  // Cameras are exact here, which the redundancy does not know: sigmas are larger by the root of
-  // the camera factor, 96 over 78.
+  // The redundancy does not account for exact cameras, which makes sigmas larger by the square root
+  // of the camera factor, 96 over 78.
   const double factor = std::sqrt(96.0 / 78.0);
   EXPECT_NEAR(ComputeStatistics(mean_sigmas).rms / ComputeStatistics(means).standard_deviation,
               factor, 0.2);

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Blows a marker up about its first corner, as a misdetected one looks.
+// Enlarges a marker about its first corner, like a misdetection.
 void ResizeMarker(int marker_id, double factor, Model* model) {
   const Eigen::Vector3d x1 = model->points3D.at(Point3DIdFromCorner({marker_id, 1})).x_in_world;
   for (int corner = 1; corner <= kNumCorners; ++corner) {

@@ -17,7 +17,7 @@ struct Truth {
   double scale_error = 0.0;
 };
 
-// Markers of two printed sizes, each from near to far; their sides with 0.05 % of noise.
+// Markers of two printed sizes from near to far, with 0.05 % of noise on their sides.
 std::vector<SpreadSample> Samples(const Truth& truth, std::uint32_t seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 5e-4);
@@ -46,7 +46,7 @@ TEST(PrintSpread, PrintAndImageAreToldApart) {
     ExpectWithin3Sigma(spread.print_um, truth.print_um, 3.0);
     ExpectWithin3Sigma(spread.image_px, truth.image_px, 0.02);
     ExpectWithin3Sigma(spread.scale_error, truth.scale_error, 1e-3);
-    EXPECT_EQ(spread.note, "print and image told apart");
+    EXPECT_EQ(spread.note, "print and image separated");
   }
 }
 
@@ -94,7 +94,7 @@ TEST(PrintSpread, OneDistanceDoesNotTellThemApart) {
   EXPECT_FALSE(spread.print_um || spread.image_px || spread.scale_error);
   EXPECT_THAT(spread.note, StartsWith("not determined: the larger markers are larger in the"));
   // 12 um are 0.036 px at 3 px a mm.
-  EXPECT_THAT(spread.note, HasSubstr(" px in the image explain the sides alike"));
+  EXPECT_THAT(spread.note, HasSubstr(" px in the image explain the sides equally well"));
 }
 
 TEST(PrintSpread, IsSaidNotToBeDetermined) {
@@ -107,7 +107,7 @@ TEST(PrintSpread, IsSaidNotToBeDetermined) {
             "not determined: all markers are of one size in the print and in the images");
   EXPECT_EQ(EstimateSpread({}).note, "not determined: 0 markers are too few");
   for (SpreadSample& sample : samples) sample.side_px.reset();
-  EXPECT_THAT(EstimateSpread(samples).note, HasSubstr("images (a model) are not given"));
+  EXPECT_THAT(EstimateSpread(samples).note, HasSubstr("no images (a model) are given"));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST(RobustFit, ExcessIsWhatTheOwnSigmasDoNotExplain) {
   EXPECT_EQ(FitMeanRobustly(values, sigmas).excess_sigma, 0.0);
 }
 
-// The mean's sigma is that of the mean over repetitions.
+// The sigma of the mean matches the scatter of the mean over repetitions.
 TEST(RobustFit, SigmaIsCalibrated) {
   std::mt19937 random(4);
   int num_within = 0;

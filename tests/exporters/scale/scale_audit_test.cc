@@ -30,7 +30,7 @@ Layout RowLayout(int per_part) {
   return layout;
 }
 
-// Their sides scatter by `scatter`, as a fraction.
+// Scatters the sides by the fraction `scatter`.
 MarkerShape RowShape(const Layout& layout, double scatter, std::uint32_t seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, scatter);
@@ -109,7 +109,7 @@ TEST(ScaleAudit, MarkersOfAnotherSizeAreNamed) {
   EXPECT_NEAR(audit.marker_spread, 1e-3, 5e-4);
 }
 
-// The scatter that its image points explain does not make a marker disagree.
+// A marker does not disagree if the noise of its image points explains its deviation.
 TEST(ScaleAudit, NoiseIsNoDisagreement) {
   Model model = ExampleModel();
   const ScaleAudit exact =
@@ -209,7 +209,7 @@ TEST(ScaleAudit, TheHistogramHoldsEveryMarkerOnce) {
   }
 }
 
-// The blind spot of all figures from sides: only the tape sees that all markers shrank.
+// The blind spot of all figures from sides: only a tape measure shows that all markers shrank.
 TEST(ScaleAudit, AnErrorOfAllMarkersShowsInKnownDistancesOnly) {
   Layout layout = RowLayout(10);
   layout.distances = {{0, 0, 29, 0, 0.3 * 29, 1e-3, false},
@@ -226,8 +226,8 @@ TEST(ScaleAudit, AnErrorOfAllMarkersShowsInKnownDistancesOnly) {
   EXPECT_FALSE(AuditScale(shape, RowLayout(10)).distance_deviation.has_value());
 }
 
-// An adjustment that knows the sizes draws every marker to its printed one; the audit still sees
-// what the images say.
+// An adjustment with known sizes pulls every marker to its printed size; the audit still shows the
+// sizes in the images.
 TEST(ScaleAudit, WithAnUncertaintyTheImagesAreAsked) {
   Model model = ExampleModel();
   Layout layout = ExampleLayout();

@@ -10,7 +10,7 @@
 namespace velamap {
 namespace {
 
-// Several points, one of them twice, as functions of a shape have them.
+// Gradients with several points, one of them twice.
 std::vector<PointGradient> Gradients() {
   return {{{11, {1, 0, 0}}, {12, {0, -1, 0.5}}, {1203, {2, 2, 2}}},
           {{12, {0.3, 0, 0}}, {12, {0, 0.3, 0}}},

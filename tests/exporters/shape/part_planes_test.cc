@@ -61,7 +61,7 @@ TEST(PartPlanes, ExactBoxHasFlatFacesAtRightAngles) {
 
 TEST(PartPlanes, ResidualIsTheDistanceFromThePlane) {
   MarkerShape shape = Box();
-  // Lift opposite corners of the middle marker: the plane stays, four residuals appear.
+  // Lifting opposite corners of the middle marker keeps the plane and gives four residuals.
   for (std::size_t corner = 1; corner <= 4; ++corner) {
     *shape.markers[4].x_in_shape_m[corner] += Eigen::Vector3d(0, 0, corner % 2 ? 1e-3 : -1e-3);
   }
@@ -94,7 +94,7 @@ TEST(PartPlanes, PlaneErrorIsTheDistanceOfTheCentersWithoutSign) {
   EXPECT_EQ(FitPartPlanes(shape).at(0).corner_distance_mm.count, 12);
 }
 
-// Two markers that lean a degrees to either side of their mean.
+// Two markers tilted by a degrees to either side of their mean.
 PartPlane Leaning(double angle_deg, const Eigen::Vector3d& axis) {
   MarkerShape shape;
   for (const int sign : {-1, 1}) {
@@ -131,7 +131,7 @@ Model BoxModel(const MarkerShape& box) {
   return model;
 }
 
-// A box with crooked faces, the one at the back leaning by 3 degrees.
+// A box with uneven faces; the back one is tilted by 3 degrees.
 MarkerShape CrookedBox() {
   MarkerShape shape;
   AddFace("front", Eigen::Quaterniond::Identity(), 0.1, 0, &shape);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/shape_transform.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/sail/sail_shapes.h"
 
@@ -48,7 +49,7 @@ TEST(ShapeFrame, EveryKindCanBeChosen) {
     EXPECT_EQ(frame.kind, choice.kind);
     EXPECT_TRUE(frame.reasons.empty());
     EXPECT_THAT(FrameText(frame), HasSubstr(frame.name + ": "));
-    // A quaternion made of a mirroring would have another length.
+    // A quaternion from a reflection would not have unit length.
     EXPECT_NEAR(frame.frame_from_shape.rotation.norm(), 1, 1e-12);
   }
 }
@@ -108,7 +109,7 @@ TEST(ShapeFrame, ByTheHullDoesNotMoveWithTheSail) {
   // Along the strip, upright, origin at its middle.
   ExpectNear(InFrame(before, sail, 13), {0.75, 0, 0});
   EXPECT_GT(InFrame(before, sail, 300).z(), 4);
-  // The sail is sheeted out and twisted; the hull's frame is what it was.
+  // Sheeting out and twisting the sail does not change the hull's frame.
   const Rigid3 sheeted{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ())),
                        {0, 0, 0.1}};
   for (ShapeMarker& marker : sail.shape.markers) {
@@ -153,7 +154,7 @@ TEST(ShapeFrame, DeckMarkersHaveTheirNormalUp) {
 }
 
 TEST(ShapeFrame, StripAroundACurvedSideIsAlignedByItsMarkersFacing) {
-  // About as thick as it is wide: the plane would turn with the noise.
+  // The part is about as thick as it is wide, so that noise would rotate its plane.
   Sail sail = SailWithHull();
   for (const int id : {11, 12}) ShiftMarker(id, {0, -0.1, 0}, &sail.shape);
   const ShapeFrame before = ChooseFrame(sail.shape, sail.layout);
@@ -202,7 +203,7 @@ TEST(ShapeFrame, ContradictionsAreReasons) {
 
   const ShapeFrame on_one_line =
       ChooseFrame(sail.shape, sail.layout, FrameChoice{FrameKind::kMarkers, 100, 200, 300});
-  EXPECT_THAT(on_one_line.reasons[0], HasSubstr("stand on one line"));
+  EXPECT_THAT(on_one_line.reasons[0], HasSubstr("lie on one line"));
 }
 
 TEST(ShapeFrame, WithoutLayoutItIsTheCamera) {
@@ -228,7 +229,7 @@ TEST(ShapeFrame, MovedModelAndShapeAgreeAndReprojectAlike) {
   }
 }
 
-// One marker of which the corners' errors are shared and not round.
+// One marker whose corners share their errors, which differ between the axes.
 PointCovariance MarkerCovariance(int marker_id, const Eigen::Matrix3d& own,
                                  const Eigen::Vector3d& shared) {
   PointCovariance covariance;
@@ -268,7 +269,7 @@ TEST(ShapeFrame, SigmasTurnWithTheFullCovariance) {
   SetSigma(0.002, &round);
   MoveShape(motion, nullptr, &round);
   ExpectNear(*round.markers[0].sigma_m[2], Eigen::Vector3d::Constant(0.002));
-  // A shift changes no sigma.
+  // A translation does not change sigmas.
   MoveShape({Eigen::Quaterniond::Identity(), {1, 1, 1}}, nullptr, &shape);
   EXPECT_TRUE(shape.markers[0].sigma_m[2]);
 }

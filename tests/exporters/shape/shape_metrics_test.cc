@@ -93,7 +93,7 @@ TEST(ShapeMetrics, WithoutAListOfMarkersThereIsNoRatio) {
   EXPECT_THAT(metrics.missing_marker_ids, IsEmpty());
 }
 
-// The blind spot that README.md states: a scale from sides that look too short hides itself.
+// The blind spot in README.md: sides that look too short give a wrong scale that no metric shows.
 TEST(ShapeMetrics, DoNotSeeMarkersThatAllShrinkBeforeScaling) {
   Model model = ExampleModel();
   for (const ShapeMarker& marker : ExampleShape().markers) {
@@ -186,7 +186,7 @@ TEST(CompareShapes, TooFewCommonCornersAreSaid) {
     CompareShapes(shape, reference);
     FAIL() << "no error";
   } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("2 marker corners in common, an alignment needs 3"));
+    EXPECT_THAT(error.what(), HasSubstr("2 marker corners in common; an alignment needs 3"));
   }
 }
 

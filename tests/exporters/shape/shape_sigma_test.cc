@@ -17,7 +17,7 @@
 namespace velamap {
 namespace {
 
-// Corners moved by up to 3 mm, so that no angle is right and no marker flat.
+// Moves corners by up to 3 mm, so that no angle is right and no marker flat.
 MarkerShape CrookedShape() {
   Model model = ExampleModel();
   std::mt19937 random(9);
@@ -27,7 +27,7 @@ MarkerShape CrookedShape() {
   return ShapeFromModel(model, ExampleLayout());
 }
 
-// The gradient against central differences of the function itself.
+// Compares the gradient with central differences of the function.
 void ExpectGradient(const MarkerShape& shape, const PointGradient& gradient,
                     const std::function<double(const MarkerShape&)>& function) {
   constexpr double kStep_m = 1e-6;
@@ -95,7 +95,7 @@ TEST(ShapeSigma, AnEvenMoveOfAllPointsIsNoUncertaintyOfLengths) {
   EXPECT_LT(*SigmaOf(&covariance, AreaGradient(shape.markers[0])), 1e-9);
 }
 
-// The covariance of the same points in a frame that is turned.
+// The covariance of the same points in a rotated frame.
 PointCovariance Turned(const Eigen::Matrix3d& rotation, PointCovariance covariance) {
   const auto turn_rows = [&](Eigen::MatrixXd* matrix) {
     for (Eigen::Index row = 0; row < matrix->rows(); row += 3) {
@@ -134,7 +134,7 @@ TEST(ShapeSigma, AFrameChangesNoSigmaOfALengthOrAnArea) {
   }
 }
 
-// A common scale that is known to 1 % makes lengths known to 1 %, areas to 2 %.
+// A common scale with a sigma of 1 % gives lengths a sigma of 1 % and areas 2 %.
 TEST(ShapeSigma, AnUncertainScaleIsInEveryLength) {
   const Model model = ExampleModel();
   PointCovariance covariance = ExampleCovariance(model, 1e-3, 1);
@@ -211,7 +211,7 @@ TEST(ShapeSigma, OfAComparisonIsTheRootOfTheMeanVariance) {
   EXPECT_NEAR(*CompareShapes(shape, reference).distance_sigma_m, std::sqrt(7.0) * 1e-3, 1e-12);
 }
 
-// Of the compared points alone, after their own alignment: the mean square over drawn shapes.
+// Mean square over sampled shapes of the compared points after their own alignment.
 TEST(ShapeSigma, OfAComparisonIsThatAfterItsOwnAlignments) {
   const MarkerShape shape = CrookedShape();
   const PointCovariance covariance = ExampleCovariance(ExampleModel(), 2e-4, 11);

@@ -44,7 +44,7 @@ TEST(StageTimer, ThreadsAreApart) {
   std::thread thread([&of_thread] {
     const StageTimer timer(ImportStage::kDatabase);
     std::this_thread::sleep_for(kWhile);
-    of_thread = TakeStageTimes();  // what has passed so far, of a timer that still runs
+    of_thread = TakeStageTimes();  // includes the time so far of the running timer
   });
   thread.join();
   EXPECT_GE(of_thread[ImportStage::kDatabase].wall_s, 0.02);

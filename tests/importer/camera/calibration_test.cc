@@ -138,7 +138,7 @@ TEST(ScaleToImageSize, AcceptsRoundedAndRefusesOtherSizes) {
   const Camera camera{CameraModel::kSimplePinhole, 1920, 1080, {1400, 960, 540}};
   EXPECT_NO_THROW(ScaleToImageSize(camera, 854, 480, "c.yml"));  // 853.33 rounded
   ExpectThrows<InputError>([&] { ScaleToImageSize(camera, 640, 480, "c.yml"); },
-                           {"c.yml", "1920x1080", "640x480", "no pure scale"});
+                           {"c.yml", "1920x1080", "640x480", "the aspect ratio differs"});
   ExpectThrows<InputError>([&] { ScaleToImageSize(camera, 1080, 1920, "c.yml"); },
                            {"c.yml", "turned by 90 degrees"});
 }

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 
+#include "importer/camera/camera_jacobian.h"
+
 namespace velamap {
 namespace {
 
@@ -48,6 +50,41 @@ TEST(Camera, ImageFromCamAndCamFromImageAreInverse) {
           << CameraModelName(camera.model);
     }
   }
+}
+
+TEST(Camera, JacobiansAgreeWithCentralDifferences) {
+  constexpr double kStep = 1e-6;
+  for (const Camera& camera : AllModels()) {
+    const int num_before_distortion = HasOneFocalLength(camera.model) ? 3 : 4;
+    for (const Eigen::Vector3d& x_in_cam : PointsInCam()) {
+      const Eigen::Vector2d ray = x_in_cam.hnormalized();
+      const RayFunction image = ImageFromRayWithJacobian(camera.model, camera.params.data(), ray);
+      const RayFunction distorted =
+          DistortRayWithJacobian(camera.model, camera.params.data() + num_before_distortion, ray);
+      EXPECT_LT((image.value - *ImageFromCam(camera, ray.homogeneous())).norm(), 1e-9);
+      for (int axis = 0; axis < 2; ++axis) {
+        const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
+        const auto after = ImageFromCam(camera, (ray + step).homogeneous());
+        const auto before = ImageFromCam(camera, (ray - step).homogeneous());
+        const Eigen::Vector2d difference = (*after - *before) / (2 * kStep);
+        EXPECT_LT((image.by_ray.col(axis) - difference).norm(), 1e-5 * difference.norm())
+            << CameraModelName(camera.model);
+        const Eigen::Vector2d focal(camera.params[0],
+                                    camera.params[HasOneFocalLength(camera.model) ? 0 : 1]);
+        EXPECT_LT((focal.cwiseProduct(distorted.by_ray.col(axis)) - difference).norm(),
+                  1e-5 * difference.norm())
+            << CameraModelName(camera.model);
+      }
+    }
+  }
+}
+
+TEST(Camera, JacobianOfTheFisheyeOnItsAxis) {
+  const Camera camera = AllModels()[5];
+  const RayFunction image =
+      ImageFromRayWithJacobian(camera.model, camera.params.data(), Eigen::Vector2d::Zero());
+  EXPECT_TRUE(image.by_ray.isApprox(
+      Eigen::Vector2d(camera.params[0], camera.params[1]).asDiagonal().toDenseMatrix(), 1e-12));
 }
 
 TEST(Camera, AgreesWithOpenCvAfterTheHalfPixelShift) {

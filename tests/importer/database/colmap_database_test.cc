@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
@@ -131,9 +132,12 @@ TEST(ColmapDatabase, IsWhatSqliteAndColmapExpect) {
             4);
 }
 
-// What the velamap before wrote: no columns for sigmas and fallbacks.
+// What earlier versions of velamap wrote: no columns for sigmas and fallbacks, and the detector in
+// every row.
 void MakeOlder(const std::string& path) {
   SQLite::Database sqlite(path, SQLite::OPEN_READWRITE);
+  sqlite.exec("ALTER TABLE marker_detections ADD COLUMN detector TEXT NOT NULL DEFAULT 'how'");
+  sqlite.exec("DROP TABLE marker_detector");
   sqlite.exec("ALTER TABLE marker_detections DROP COLUMN corner_sigmas");
   sqlite.exec("ALTER TABLE marker_detections DROP COLUMN is_fallback");
 }
@@ -150,6 +154,7 @@ TEST(ColmapDatabase, OlderDetectionsAreReadAndAddedTo) {
   unknown.corner_sigma_px = {};
   {
     const ColmapDatabase database(path, Mode::kReadOnly);
+    EXPECT_EQ(database.ReadDetector(), "how");
     ExpectEqual(database.ReadImages().at(0).detections.markers.at(0), unknown);
     EXPECT_FALSE(database.ReadImages().at(0).detections.markers.at(1).is_fallback);
   }
@@ -157,11 +162,42 @@ TEST(ColmapDatabase, OlderDetectionsAreReadAndAddedTo) {
     ColmapDatabase database(path, Mode::kReadWriteCreate);
     database.AddImage(1, SomeDetections("b.jpg"), "how");
   }
+  EXPECT_EQ(ColmapDatabase(path, Mode::kReadOnly).ReadDetector(), "how");
   const std::vector<DatabaseImage> images = ColmapDatabase(path, Mode::kReadOnly).ReadImages();
   ASSERT_EQ(images.size(), 2u);
   ExpectEqual(images[0].detections.markers.at(0), unknown);
   ExpectEqual(images[1].detections.markers.at(0), SomeDetections("b.jpg").markers[0]);
   ExpectEqual(images[1].detections.markers.at(1), SomeDetections("b.jpg").markers[1]);
+}
+
+// A video of a hundred frames with fifty markers: SQLite takes a third, and no text is repeated.
+TEST(ColmapDatabase, TakesLittleMoreThanItsNumbers) {
+  const TempDir dir;
+  const std::string path = dir / "database.db";
+  constexpr int kNumImages = 100, kNumMarkers = 50;
+  const std::string detector(168, 'd');
+  FrameDetections detections;
+  for (int id = 0; id < kNumMarkers; ++id) detections.markers.push_back(SquareMarker(id, 9, 9));
+  FeatureMatches matches;
+  for (std::uint32_t i = 0; i < 4 * kNumMarkers; ++i) matches.emplace_back(i, i);
+  std::uintmax_t num_bytes = 0;
+  {
+    ColmapDatabase database(path, Mode::kReadWriteCreate);
+    ColmapDatabase::Transaction transaction(&database);
+    const CameraId camera_id = database.AddCamera(kCamera);
+    for (int i = 0; i < kNumImages; ++i) {
+      detections.image_name = std::to_string(i);
+      database.AddImage(camera_id, detections, detector);
+      num_bytes += kNumMarkers * (4 * (8 + 128) + 64 + 12);
+    }
+    for (ImageId i = 1; i < kNumImages; ++i) {
+      database.WriteMatches(i, i + 1, matches);
+      num_bytes += 2 * 8 * matches.size();
+    }
+    transaction.Commit();
+  }
+  EXPECT_LT(static_cast<double>(fs::file_size(path)), 1.4 * static_cast<double>(num_bytes));
+  EXPECT_EQ(SQLite::Database(path).execAndGet("PRAGMA integrity_check").getString(), "ok");
 }
 
 TEST(ColmapDatabase, UnknownSigmasAreNull) {
@@ -290,12 +326,92 @@ TEST(ColmapDatabase, DoesNotAddToLayoutsOfLaterColmap) {
   fs::copy_file(later, frames);
   SQLite::Database(later, SQLite::OPEN_READWRITE).exec("ALTER TABLE images DROP COLUMN prior_qw");
   ExpectThrows<InputError>([&] { ColmapDatabase(later, Mode::kReadWriteCreate); },
-                           {later, "COLMAP 3.10 or later", "new --database_path"});
+                           {later, "COLMAP 3.10 or later", "choose a new file"});
   SQLite::Database(frames, SQLite::OPEN_READWRITE).exec("CREATE TABLE frames(frame_id INTEGER)");
   EXPECT_NO_THROW(ColmapDatabase(frames, Mode::kReadWriteCreate));
   SQLite::Database(frames, SQLite::OPEN_READWRITE).exec("INSERT INTO frames VALUES(1)");
   ExpectThrows<InputError>([&] { ColmapDatabase(frames, Mode::kReadWriteCreate); },
                            {frames, "COLMAP 3.12 or later"});
+}
+
+// Names and bytes of all files in the folder.
+std::map<std::string, std::string> Contents(const fs::path& folder) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    std::ifstream stream(entry.path(), std::ios::binary);
+    contents[entry.path().filename()] = std::string(std::istreambuf_iterator<char>(stream), {});
+  }
+  return contents;
+}
+
+// A database of COLMAP with an image that velamap has not imported.
+void WriteForeignDatabase(const std::string& path) {
+  { ColmapDatabase database(path, Mode::kReadWriteCreate); }
+  SQLite::Database sqlite(path, SQLite::OPEN_READWRITE);
+  sqlite.exec("DROP TABLE marker_detections");
+  sqlite.exec("DROP TABLE marker_detector");
+  sqlite.exec("INSERT INTO cameras VALUES(1, 1, 640, 480, NULL, 1)");
+  sqlite.exec("INSERT INTO images(name, camera_id) VALUES('theirs.jpg', 1)");
+}
+
+void ExpectRefusedAndUnchanged(const TempDir& dir) {
+  const std::string path = dir / "database.db";
+  const auto before = Contents(dir.path());
+  ExpectThrows<InputError>([&] { ColmapDatabase(path, Mode::kReadWriteCreate); },
+                           {path, "has not imported, such as theirs.jpg", "new --database_path"});
+  EXPECT_TRUE(Contents(dir.path()) == before);
+}
+
+TEST(ColmapDatabase, ForeignDatabaseIsRefusedAndStaysAsItIs) {
+  const TempDir dir;
+  WriteForeignDatabase(dir / "database.db");
+  ExpectRefusedAndUnchanged(dir);
+  {
+    SQLite::Database sqlite(dir / "database.db", SQLite::OPEN_READWRITE);
+    EXPECT_EQ(sqlite.execAndGet("PRAGMA journal_mode=WAL").getString(), "wal");
+  }
+  ExpectRefusedAndUnchanged(dir);
+}
+
+TEST(ColmapDatabase, ForeignDatabaseOfAnInterruptedProgramStaysAsItIs) {
+  const TempDir work, log, journal;
+  const std::string path = work / "database.db";
+  // The image is in the write-ahead log only.
+  { ColmapDatabase database(path, Mode::kReadWriteCreate); }
+  {
+    SQLite::Database sqlite(path, SQLite::OPEN_READWRITE);
+    sqlite.exec("DROP TABLE marker_detections");
+    sqlite.exec("DROP TABLE marker_detector");
+    sqlite.execAndGet("PRAGMA journal_mode=WAL");
+    sqlite.exec("INSERT INTO cameras VALUES(1, 1, 640, 480, NULL, 1)");
+    sqlite.exec("INSERT INTO images(name, camera_id) VALUES('theirs.jpg', 1)");
+    for (const std::string file : {"database.db", "database.db-wal"}) {
+      fs::copy_file(work / file, log / file);
+    }
+  }
+  ExpectRefusedAndUnchanged(log);
+  {
+    const ColmapDatabase database(log / "database.db", Mode::kReadOnly);
+    EXPECT_EQ(database.ReadImageIdsByName().count("theirs.jpg"), 1u);
+  }
+  // The image was being deleted; the journal brings it back.
+  {
+    SQLite::Database sqlite(path, SQLite::OPEN_READWRITE);
+    sqlite.execAndGet("PRAGMA journal_mode=DELETE");
+    sqlite.exec("PRAGMA cache_size = 1");
+    sqlite.exec("PRAGMA cache_spill = 1");
+    sqlite.exec("BEGIN IMMEDIATE; DELETE FROM images; DELETE FROM cameras");
+    sqlite.exec("CREATE TABLE filler(x)");
+    sqlite.exec(
+        "INSERT INTO filler WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n"
+        " WHERE i < 200) SELECT randomblob(10000) FROM n");
+    for (const std::string file : {"database.db", "database.db-journal"}) {
+      fs::copy_file(work / file, journal / file);
+    }
+    sqlite.exec("ROLLBACK");
+  }
+  ASSERT_GT(fs::file_size(journal / "database.db-journal"), 0u);
+  ExpectRefusedAndUnchanged(journal);
 }
 
 TEST(ColmapDatabase, WithoutDetectionsOfVelamapThereIsNothingToRead) {

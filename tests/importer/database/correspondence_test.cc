@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -72,25 +73,73 @@ TEST(MatchByMarkerId, PairsTheFourCornersOfSharedMarkers) {
   EXPECT_TRUE(MatchByMarkerId(a, FrameDetections{}).empty());
 }
 
-TEST(PairsToMatch, AllPairsOfFewImages) {
-  EXPECT_TRUE(PairsToMatch(0).empty());
-  EXPECT_TRUE(PairsToMatch(1).empty());
-  EXPECT_EQ(PairsToMatch(3), (std::vector<std::pair<int, int>>{{0, 1}, {0, 2}, {1, 2}}));
-  EXPECT_EQ(PairsToMatch(200).size(), 200u * 199 / 2);
+using Pairs = std::vector<std::pair<int, int>>;
+
+// Images that show the given markers.
+std::vector<FrameDetections> ImagesOf(const std::vector<std::vector<int>>& marker_ids) {
+  std::vector<FrameDetections> images;
+  for (const std::vector<int>& ids : marker_ids) {
+    FrameDetections& image = images.emplace_back();
+    for (const int id : ids) image.markers.push_back(SquareMarker(id, 0, 0));
+  }
+  return images;
+}
+
+TEST(PairsToMatch, AllPairsOfFewImagesThatShareAMarker) {
+  EXPECT_TRUE(PairsToMatch({}).empty());
+  EXPECT_TRUE(PairsToMatch(ImagesOf({{1}})).empty());
+  EXPECT_EQ(PairsToMatch(ImagesOf({{1, 2}, {2, 3}, {}, {1, 3}})), (Pairs{{0, 1}, {0, 3}, {1, 3}}));
+  const std::vector<FrameDetections> images(kMaxNumExhaustive, ImagesOf({{1}})[0]);
+  EXPECT_EQ(PairsToMatch(images).size(), kMaxNumExhaustive * (kMaxNumExhaustive - 1u) / 2);
 }
 
 TEST(PairsToMatch, NeighborsAndPowersOfTwoOfMany) {
   const int num_images = 1500;
   std::set<int> distances;
   std::set<std::pair<int, int>> pairs;
-  for (const auto& [first, second] : PairsToMatch(num_images)) {
+  for (const auto& [first, second] :
+       PairsToMatch(std::vector<FrameDetections>(num_images, ImagesOf({{1}})[0]))) {
     EXPECT_LT(first, second);
     EXPECT_LT(second, num_images);
     EXPECT_TRUE(pairs.insert({first, second}).second);
     distances.insert(second - first);
   }
-  EXPECT_EQ(distances, (std::set<int>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 16, 32, 64, 128, 256, 512}));
+  EXPECT_EQ(distances, (std::set<int>{1, 2, 3, 4, 8, 16, 32, 64, 128, 256, 512}));
   for (const int distance : distances) EXPECT_EQ(pairs.count({0, distance}), 1u);
+}
+
+// The images that show a marker form one group under the pairs, however rarely they show it.
+TEST(PairsToMatch, TracksOfAllMarkersAreConnected) {
+  constexpr int kNumImages = 300, kNumMarkers = 60;
+  std::mt19937 random(1);
+  std::vector<std::vector<int>> marker_ids(kNumImages);
+  std::vector<std::vector<int>> images_of(kNumMarkers);
+  for (int idx = 0; idx < kNumImages; ++idx) {
+    for (int id = 0; id < kNumMarkers; ++id) {
+      if (static_cast<int>(random() % 100) > id) continue;  // from one image in 100 to half of them
+      marker_ids[static_cast<std::size_t>(idx)].push_back(id);
+      images_of[static_cast<std::size_t>(id)].push_back(idx);
+    }
+  }
+  const Pairs pairs = PairsToMatch(ImagesOf(marker_ids));
+  EXPECT_LT(pairs.size(), kNumImages * (kNumImages - 1u) / 4);
+  for (const std::vector<int>& images : images_of) {
+    std::set<int> reached(images.begin(), images.empty() ? images.end() : images.begin() + 1);
+    for (bool has_grown = true; has_grown;) {
+      has_grown = false;
+      for (const auto& [first, second] : pairs) {
+        if (std::count(images.begin(), images.end(), first) == 0 ||
+            std::count(images.begin(), images.end(), second) == 0 ||
+            reached.count(first) == reached.count(second)) {
+          continue;
+        }
+        has_grown = true;
+        reached.insert(first);
+        reached.insert(second);
+      }
+    }
+    EXPECT_EQ(reached.size(), images.size());
+  }
 }
 
 }  // namespace

@@ -10,23 +10,6 @@
 namespace velamap {
 namespace {
 
-TEST(CornerRefinement, NamesRoundTrip) {
-  for (const CornerRefinement refinement :
-       {CornerRefinement::kNone, CornerRefinement::kSubpix, CornerRefinement::kEdge}) {
-    EXPECT_EQ(CornerRefinementFromName(CornerRefinementName(refinement)), refinement);
-  }
-  ExpectThrows<InputError>([] { CornerRefinementFromName("magic"); },
-                           {"corner_refinement", "'magic'", "none, subpix or edge"});
-}
-
-TEST(SearchMode, NamesRoundTrip) {
-  for (const SearchMode mode : {SearchMode::kExhaustive, SearchMode::kTracked}) {
-    EXPECT_EQ(SearchModeFromName(SearchModeName(mode)), mode);
-  }
-  ExpectThrows<InputError>([] { SearchModeFromName("fast"); },
-                           {"ArucoDetection.search", "'fast'", "tracked or exhaustive"});
-}
-
 TEST(ArucoDetectionOptions, CheckNamesTheOption) {
   EXPECT_NO_THROW(ArucoDetectionOptions().Check());
   for (const double rate : {0.0, -1.0, 5.0, std::nan("")}) {

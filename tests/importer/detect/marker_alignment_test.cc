@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "importer/detect/marker_location.h"
 #include "importer/refine/corner_refinement.h"
 #include "tests/importer/refine/marker_grid.h"
 

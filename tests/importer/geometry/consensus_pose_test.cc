@@ -7,17 +7,14 @@
 namespace velamap {
 namespace {
 
-Eigen::Isometry3d TruePose(double distance_m) {
-  Eigen::Isometry3d cam_from_space = Eigen::Isometry3d::Identity();
-  cam_from_space.linear() = (Eigen::AngleAxisd(M_PI - 0.3, Eigen::Vector3d::UnitX()) *
-                             Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()))
-                                .matrix();
-  cam_from_space.translation() << 0.1, -0.2, distance_m;
-  return cam_from_space;
+Rigid3 TruePose(double distance_m) {
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(M_PI - 0.3, Eigen::Vector3d::UnitX()) *
+                             Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ())),
+          {0.1, -0.2, distance_m}};
 }
 
 // `size` by `size` squares of 100 mm, 300 mm apart, on a bent sheet, as the camera sees them.
-std::vector<MarkerRays> SeenSheet(int size, const Eigen::Isometry3d& cam_from_space) {
+std::vector<MarkerRays> SeenSheet(int size, const Rigid3& cam_from_space) {
   std::vector<MarkerRays> markers;
   for (int i = 0; i < size * size; ++i) {
     const double x = 0.3 * (i % size), y = 0.3 * (i / size), h = 0.05;
@@ -52,7 +49,8 @@ TEST(FindConsensusPose, NoiseFreeCornersGiveTheTruePose) {
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->agreeing_idxs.size(), 25u);
   EXPECT_LT(MaxError(markers, *pose), 1e-9);
-  EXPECT_TRUE(pose->cam_from_space.isApprox(TruePose(4.0), 1e-9));
+  EXPECT_LT(AngularDistance(pose->cam_from_space, TruePose(4.0)), 1e-9);
+  EXPECT_LT((pose->cam_from_space.translation - TruePose(4.0).translation).norm(), 1e-9);
 }
 
 // A lens of 200 mm and a few markers: all rays within a hundredth of a radian.

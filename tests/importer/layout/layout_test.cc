@@ -80,7 +80,7 @@ TEST(ReadLayout, DictionaryFileIsRelativeToTheLayout) {
   std::ofstream(dir / "own") << "x";
   EXPECT_EQ(ReadLayout(WriteLayout(dir, "dictionary: own\nmarker_length: 0.1\n")).dictionary,
             (dir / "own").string());
-  // A file that is not there is still named with its folder.
+  // A missing file is named with its folder, too.
   EXPECT_EQ(ReadLayout(WriteLayout(dir, "dictionary: no.yml\nmarker_length: 0.1\n")).dictionary,
             (dir / "no.yml").string());
 }
@@ -98,7 +98,7 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
   expect("marker_length: 0.1\n", 1, "key 'dictionary' is missing");
   expect("dictionary: DICT_4X4_50\n", 1, "key 'marker_length' is missing");
   expect(head + "marker_size: 3\n", 3, "unknown key; known here: border_bits dictionary");
-  expect(head + "marker_length: 0.2\n", 3, "marker_length: stands twice");
+  expect(head + "marker_length: 0.2\n", 3, "marker_length: is given twice");
   expect("dictionary: D\nmarker_length: 100mm\n", 2, "a length in metres");
   for (const char* length : {"0", "-0.1", "0.00001", "100", "nan", "inf"}) {
     expect(std::string("dictionary: D\nmarker_length: ") + length + "\n", 2, "marker_length");
@@ -115,7 +115,7 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
   expect(head + "parts:\n  sail:\n    markers: 7\n", 5, "a list is expected");
   expect(head + "parts:\n  sail:\n    rigid: perhaps\n", 5, "true or false");
   expect(head + "parts:\n  sail:\n    horizontal:\n      - {name: h, markers: [1, 2, 1]}\n", 6,
-         "parts.sail.horizontal[0].markers[2]: marker 1 stands twice");
+         "parts.sail.horizontal[0].markers[2]: marker 1 is named twice");
   expect(head + "parts:\n  sail:\n    horizontal:\n      - {markers: [1, 2]}\n", 6, "needs a name");
   expect(head + "parts:\n  sail:\n    vertical:\n      - {name: v}\n", 6, "needs markers");
   expect(head +
@@ -129,7 +129,7 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
 
 TEST(ReadLayout, NamesFileLineAndKeyOfAWrongDistance) {
   const TempDir dir;
-  // `entry` stands on line 4, after parts with marker 12 and 45.
+  // Line 4 is `entry`, after parts with markers 12 and 45.
   const auto expect = [&](const std::string& entry, const std::string& part) {
     const std::string path =
         WriteLayout(dir, "dictionary: DICT_4X4_50\nmarker_length: 0.1\ndistances:\n  - " + entry +
@@ -143,7 +143,7 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAWrongDistance) {
   expect("{from: 12, length: 1, sigma: 0.01}", "key 'to' is missing");
   expect("{from: 12, to: 45, length: 1, sigma: 0.01, tape: 3}", "unknown key");
   expect("{from: 12, to: 45, length: 1, sigma: 0.01, use: maybe}", ".use: 'maybe'");
-  expect("{from: 12, to: 45, length: 1, sigma: 2}", "no less than the length");
+  expect("{from: 12, to: 45, length: 1, sigma: 2}", "not below the length");
   expect("7", "a map");
   for (const char* length : {"0", "-1", "nan", "inf"}) {
     expect(std::string("{from: 12, to: 45, sigma: 0.01, length: ") + length + "}",

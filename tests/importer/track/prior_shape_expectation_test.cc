@@ -45,13 +45,10 @@ PriorShape SheetShape() {
   return prior;
 }
 
-Eigen::Isometry3d CameraPose() {
-  Eigen::Isometry3d cam_from_shape = Eigen::Isometry3d::Identity();
-  cam_from_shape.linear() = (Eigen::AngleAxisd(M_PI - 0.1, Eigen::Vector3d::UnitX()) *
-                             Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()))
-                                .matrix();
-  cam_from_shape.translation() << 0.1, -0.05, 4.0;
-  return cam_from_shape;
+Rigid3 CameraPose() {
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(M_PI - 0.1, Eigen::Vector3d::UnitX()) *
+                             Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY())),
+          {0.1, -0.05, 4.0}};
 }
 
 MarkerQuad Seen(const PriorShape& prior, int marker_id) {
@@ -213,7 +210,7 @@ TEST(PlaceInPriorShape, DegenerateShapesGiveNothing) {
 
 TEST(ExpectByPriorShape, TheMiddleOfThePictureIsInView) {
   const PriorShape prior = SheetShape();
-  const Eigen::Isometry3d shape_from_cam = CameraPose().inverse();
+  const Rigid3 shape_from_cam = Inverse(CameraPose());
   PriorShape with_middle = prior;
   const double h = 0.05;
   with_middle[950] = {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -207,6 +208,15 @@ TEST(VideoFile, StepRangeAndKnownFrames) {
   EXPECT_EQ(FrameNumbers(frames), (std::vector<int>{3, 7, 15}));
   EXPECT_NEAR(cv::mean(ColorImage(frames[2]))[0], 150, 3);
   EXPECT_NEAR(frames[2].time_s.value(), 15 / 25.0, 1e-9);
+}
+
+TEST(VideoFile, OptionsMayBeAsLargeAsAnInt) {
+  const TempDir dir;
+  WriteVideo(dir / "v.avi", 20);
+  constexpr int kMax = std::numeric_limits<int>::max();
+  const auto source = OpenFrameSource(dir / "v.avi", {3, kMax, kMax}, {"frame_000011.jpg"});
+  EXPECT_EQ(source->NumFrames(), 1);
+  EXPECT_EQ(FrameNumbers(ReadAll(source.get())), (std::vector<int>{3}));
 }
 
 TEST(VideoFile, FirstFrameBehindTheEndIsAnError) {

@@ -1,5 +1,5 @@
-// Clips of many kinds, made by the ffmpeg program, against OpenCV's VideoCapture and against
-// reading from the start.
+// Compares the decoder with OpenCV's VideoCapture, and skipping with reading from the start, on
+// clips of many kinds that the ffmpeg program makes.
 
 #include "importer/video/video_decoder.h"
 
@@ -22,7 +22,7 @@ constexpr double kFramesPerSecond = 25.0;
 struct Clip {
   const char* file_name;
   const char* encoding;         // options of ffmpeg
-  bool can_count;               // its frames without decoding
+  bool can_count;               // whether frames can be counted without decoding
   double max_difference = 1.0;  // of grey levels, from OpenCV's
 };
 
@@ -32,7 +32,7 @@ std::string ClipName(const testing::TestParamInfo<Clip>& info) {
   return name;
 }
 
-// Grey, so that no colour is too saturated for BGR, and another picture in each frame.
+// Frames are grey, so that no colour is too saturated for BGR, and differ from each other.
 void MakeClip(const std::string& path, const std::string& encoding) {
   const std::string command = fmt::format(
       "ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=176x100:rate={} -frames:v {} "
@@ -78,8 +78,8 @@ TEST_P(VideoDecoderTest, YieldsTheFramesThatOpenCvYields) {
     EXPECT_EQ(frames[i].number, static_cast<int>(i));
     ASSERT_EQ(frames[i].gray.size(), gray.size());
     EXPECT_LE(cv::norm(frames[i].gray, gray, cv::NORM_INF), GetParam().max_difference) << i;
-    // OpenCV knows no time of the frames that the decoder hands out at the end of the file, and
-    // takes times of decoding for those of presentation where there are no others.
+    // OpenCV has no times for the frames that the decoder returns at the end of the file, and uses
+    // times of decoding where times of presentation are missing.
     const double time_ms = capture.get(cv::CAP_PROP_POS_MSEC);
     if (path_.find("unknown") != std::string::npos) {
       EXPECT_NEAR(frames[i].time_s, static_cast<double>(i) / kFramesPerSecond, 1e-6);
@@ -136,7 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(VideoDecoder, CutAndTurnedByTheContainer) {
   const TempDir dir;
   ASSERT_NO_FATAL_FAILURE(MakeClip(dir / "whole.mp4", "-c:v libx264 -g 12 -bf 3"));
-  // From the middle of a group of pictures, which the file keeps; and to be shown upright.
+  // The clip begins in the middle of a group of pictures, which the file keeps, and its metadata
+  // rotate it.
   const std::string command = fmt::format(
       "ffmpeg -loglevel error -y -ss 0.7 -i '{}' -c copy '{}' && "
       "ffmpeg -loglevel error -y -i '{}' -c copy -metadata:s:v rotate=90 '{}'",

@@ -7,8 +7,8 @@
 namespace velamap {
 namespace {
 
-// I0 P3 B1 B2 | I4 P7 B5 B6 | I8 P11 B9 B10: groups of four in the order of decoding, and enough
-// behind them. A frame's number is its time, so that it can be checked.
+// I0 P3 B1 B2 | I4 P7 B5 B6 | I8 P11 B9 B10: groups of four in the order of decoding, followed by
+// more packets than any codec reorders. The time of a frame is its number.
 std::vector<VideoPacket> ClosedGroups(int num_groups) {
   std::vector<VideoPacket> packets;
   for (int i = 0; i < num_groups; ++i) {

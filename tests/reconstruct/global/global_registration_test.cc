@@ -12,7 +12,8 @@
 #include "importer/base/error.h"
 #include "importer/geometry/alignment.h"
 #include "reconstruct/register_frames.h"
-#include "tests/reconstruct/registration_fixture.h"
+#include "tests/reconstruct/global/scene_map.h"
+#include "tests/support/test_seed.h"
 
 namespace velamap {
 namespace {
@@ -68,54 +69,17 @@ double ReconstructionRatio(const Registration& registration, const SyntheticScen
   return static_cast<double>(num_reconstructed) / num_visible;
 }
 
-void SortMarkers(FrameDetections* frame) {
-  std::sort(frame->markers.begin(), frame->markers.end(),
-            [](const auto& a, const auto& b) { return a.marker_id < b.marker_id; });
+SyntheticScene SceneWithNoise(SceneKind kind, std::uint32_t seed) {
+  SyntheticScene scene = MakeScene(kind, 30, kind == SceneKind::kSail);
+  AddNoise({0.2, 0.0, 0.0, 0, seed}, &scene);
+  return scene;
 }
 
-// Gives `rate` of the detections the ids of one another, frame by frame.
-void ExchangeIds(double rate, std::uint32_t seed, SyntheticScene* scene) {
-  std::mt19937 generator(seed);
-  for (FrameDetections& frame : scene->frames) {
-    std::vector<std::size_t> idxs(frame.markers.size());
-    std::iota(idxs.begin(), idxs.end(), 0);
-    std::shuffle(idxs.begin(), idxs.end(), generator);
-    const std::size_t count = static_cast<std::size_t>(rate * static_cast<double>(idxs.size()));
-    if (count < 2) continue;
-    const int first_id = frame.markers[idxs[0]].marker_id;
-    for (std::size_t i = 0; i + 1 < count; ++i) {
-      frame.markers[idxs[i]].marker_id = frame.markers[idxs[i + 1]].marker_id;
-    }
-    frame.markers[idxs[count - 1]].marker_id = first_id;
-    SortMarkers(&frame);
-  }
-}
-
-// Numbers the corners of `rate` of the detections from a wrong one.
-void TurnCorners(double rate, std::uint32_t seed, SyntheticScene* scene) {
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  for (FrameDetections& frame : scene->frames) {
-    for (MarkerDetection& marker : frame.markers) {
-      if (unit(generator) >= rate) continue;
-      auto& corners = marker.corners_in_image_px;
-      std::rotate(corners.begin(), corners.begin() + 1 + static_cast<int>(3 * unit(generator)),
-                  corners.end());
-    }
-  }
-}
-
-// Blurs every tenth frame: corners are off by some px, and their sigma does not say so.
-void BlurFrames(double sigma_px, std::uint32_t seed, SyntheticScene* scene) {
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> normal(0.0, sigma_px);
-  for (std::size_t i = 5; i < scene->frames.size(); i += 10) {
-    for (MarkerDetection& marker : scene->frames[i].markers) {
-      for (Eigen::Vector2d& corner : marker.corners_in_image_px) {
-        corner += Eigen::Vector2d(normal(generator), normal(generator));
-      }
-    }
-  }
+// Wrong ids, turned corners and blurred frames.
+void Spoil(std::uint32_t seed, SyntheticScene* scene) {
+  ExchangeIds(0.2, seed, scene);
+  TurnCorners(0.1, seed + 1, scene);
+  BlurFrames(3.0, seed + 2, scene);
 }
 
 std::vector<std::string> OutlierReasons(const Registration& registration) {
@@ -158,12 +122,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NoiseFreeGlobalRegistration,
                                          Case{SceneKind::kCube, false}));
 
 TEST(GlobalRegistration, SpoiltDetectionsCostLittle) {
-  SyntheticScene clean = MakeScene(SceneKind::kSail, 30, true);
-  AddNoise({0.2, 0.0, 0.0, 0, 3}, &clean);
+  const SyntheticScene clean = SceneWithNoise(SceneKind::kSail, TestSeed());
   SyntheticScene spoilt = clean;
-  ExchangeIds(0.2, 4, &spoilt);
-  TurnCorners(0.1, 5, &spoilt);
-  BlurFrames(3.0, 6, &spoilt);
+  Spoil(TestSeed() + 1, &spoilt);
   const Registration registration = Register(spoilt);
   EXPECT_GE(ReconstructionRatio(registration, spoilt), 0.98);
   EXPECT_TRUE(registration.notes.empty());
@@ -183,43 +144,38 @@ TEST(GlobalRegistration, SpoiltDetectionsCostLittle) {
 }
 
 // Few frames see a marker of a cube: an id that is read three times at the place of one neighbour,
-// which is better known by its own id, or three times turned the same way, keeps its place.
-class SpoiltCube : public testing::TestWithParam<std::uint32_t> {};
-
-TEST_P(SpoiltCube, KeepsAllMarkers) {
-  SyntheticScene spoilt = MakeScene(SceneKind::kCube, 30, false);
-  const std::uint32_t seed = 10 * GetParam();
-  AddNoise({0.2, 0.0, 0.0, 0, seed + 3}, &spoilt);
-  ExchangeIds(0.2, seed + 4, &spoilt);
-  TurnCorners(0.1, seed + 5, &spoilt);
-  BlurFrames(3.0, seed + 6, &spoilt);
-  const Registration registration = Register(spoilt);
-  EXPECT_EQ(registration.shape.size(), spoilt.x_in_world.size());
-  EXPECT_LT(RmsError(registration, spoilt), 0.0006);
+// or three times turned the same way, may lose its marker by chance. That happens to one of 54
+// markers in about one draw of 60, so one draw of 8 may be incomplete, by one marker.
+TEST(GlobalRegistration, SpoiltCubeKeepsItsMarkers) {
+  std::mt19937 seeds(TestSeed());
+  int num_complete = 0;
+  for (int draw = 0; draw < 8; ++draw) {
+    SyntheticScene scene = SceneWithNoise(SceneKind::kCube, seeds());
+    Spoil(seeds(), &scene);
+    const Registration registration = Register(scene);
+    EXPECT_GE(registration.shape.size() + 1, scene.x_in_world.size()) << draw;
+    EXPECT_LT(RmsError(registration, scene), 0.0006) << draw;
+    num_complete += registration.shape.size() == scene.x_in_world.size();
+  }
+  EXPECT_GE(num_complete, 7);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, SpoiltCube, testing::Values(0u, 2u, 5u));
-
-class SpoiltScene : public testing::TestWithParam<std::tuple<SceneKind, std::uint32_t>> {};
+class SpoiltScene : public testing::TestWithParam<std::tuple<SceneKind, int>> {};
 
 TEST_P(SpoiltScene, KeepsNearlyAllMarkers) {
-  const auto [kind, number] = GetParam();
-  const std::uint32_t seed = 10 * number;
-  SyntheticScene scene = MakeScene(kind, 30, kind == SceneKind::kSail);
-  AddNoise({0.2, 0.0, 0.0, 0, seed + 3}, &scene);
+  std::mt19937 seeds(TestSeed());
+  SyntheticScene scene = SceneWithNoise(std::get<0>(GetParam()), seeds());
   const double clean_error = RmsError(Register(scene), scene);
-  ExchangeIds(0.2, seed + 4, &scene);
-  TurnCorners(0.1, seed + 5, &scene);
-  BlurFrames(3.0, seed + 6, &scene);
+  Spoil(seeds(), &scene);
   const Registration registration = Register(scene);
   EXPECT_GE(ReconstructionRatio(registration, scene), 0.98);
   EXPECT_LT(RmsError(registration, scene), 2 * clean_error);
 }
 
-INSTANTIATE_TEST_SUITE_P(KindsAndSeeds, SpoiltScene,
+INSTANTIATE_TEST_SUITE_P(KindsAndDraws, SpoiltScene,
                          testing::Combine(testing::Values(SceneKind::kSail, SceneKind::kPlane,
                                                           SceneKind::kCube),
-                                          testing::Range(1u, 5u)));
+                                          testing::Range(1, 5)));
 
 TEST(GlobalRegistration, RecurringFalseSquareIsOutvoted) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 20, false);
@@ -299,6 +255,29 @@ TEST(GlobalRegistration, OrderAndIdsOfImagesChangeNothing) {
   }
 }
 
+TEST(GlobalRegistration, TheNumberOfThreadsDecidesNothing) {
+  SyntheticScene scene = MakeScene(SceneKind::kCube, 16, false);
+  AddNoise({0.3, 0.05, 0.01, 200, 4}, &scene);
+  RegistrationOptions options;
+  options.num_threads = 1;
+  const Registration expected = Register(scene, options);
+  for (const int num_threads : {2, 5}) {
+    options.num_threads = num_threads;
+    const Registration registration = Register(scene, options);
+    EXPECT_EQ(registration.shape, expected.shape) << num_threads;
+    EXPECT_EQ(registration.notes, expected.notes) << num_threads;
+    ASSERT_EQ(registration.frames.size(), expected.frames.size()) << num_threads;
+    for (std::size_t i = 0; i < expected.frames.size(); ++i) {
+      const auto &pose = registration.frames[i].cam_from_shape,
+                 &expected_pose = expected.frames[i].cam_from_shape;
+      ASSERT_EQ(pose.has_value(), expected_pose.has_value()) << num_threads;
+      if (!pose) continue;
+      EXPECT_EQ(pose->rotation.coeffs(), expected_pose->rotation.coeffs()) << num_threads;
+      EXPECT_EQ(pose->translation, expected_pose->translation) << num_threads;
+    }
+  }
+}
+
 TEST(GlobalRegistration, SeedDecidesNothingThatMatters) {
   SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);
   AddNoise({0.2, 0.0, 0.03, 200, 3}, &scene);
@@ -323,28 +302,33 @@ TEST(GlobalRegistration, ReachesAllFacesOfTheCubeWithNoise) {
 }
 
 // The trap: nearly flat, far away through a long lens, small markers, poor corners.
-class ShallowSail : public testing::TestWithParam<std::uint32_t> {};
-
-TEST_P(ShallowSail, IsNeverTheWrongShapeWithoutANote) {
+SyntheticScene ShallowSail(std::uint32_t seed) {
   SyntheticSceneOptions options;
   options.num_frames = 16;
   options.num_columns = 5;
   options.num_rows = 4;
   options.spacing_m = 0.5;
   options.marker_length_m = 0.06;
-  options.seed = GetParam();
+  options.seed = seed;
   options.video = false;
   options.camera = {CameraModel::kPinhole, 1920, 1080, {1300, 1300, 960, 540}};
   SyntheticScene scene = MakeSyntheticScene(options);
-  AddNoise({0.4, 0.0, 0.05, 100, GetParam()}, &scene);
-  const Registration registration = Register(scene);
-  if (registration.notes.empty()) {
-    EXPECT_LT(RmsError(registration, scene), 0.04);
-  }
-  EXPECT_GE(ReconstructionRatio(registration, scene), 0.98);
+  AddNoise({0.4, 0.0, 0.05, 100, seed}, &scene);
+  return scene;
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, ShallowSail, testing::Range(1u, 7u));
+// A wrong shape is off by centimetres; the largest error of 60 draws is 2.7 mm. The right shape has
+// no note.
+TEST(GlobalRegistration, ShallowSailIsTheRightShapeWithoutANote) {
+  std::mt19937 seeds(TestSeed());
+  for (int draw = 0; draw < 8; ++draw) {
+    const SyntheticScene scene = ShallowSail(seeds());
+    const Registration registration = Register(scene);
+    EXPECT_LT(RmsError(registration, scene), 0.006) << draw;
+    EXPECT_TRUE(registration.notes.empty()) << draw;
+    EXPECT_GE(ReconstructionRatio(registration, scene), 0.98) << draw;
+  }
+}
 
 TEST(GlobalRegistration, SurfaceThatMovesGetsANote) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 16, false);

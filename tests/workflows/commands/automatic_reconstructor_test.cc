@@ -98,7 +98,7 @@ TEST_F(AutomaticReconstructorTest, SecondRunReusesTheDatabaseAndGivesTheSameByte
   const std::string first = read_all();
   const ProgramRun second = Run();
   ASSERT_EQ(second.exit_code, 0) << second.err;
-  EXPECT_THAT(second.err, HasSubstr("0 images added to the 16"));
+  EXPECT_THAT(second.err, HasSubstr("0 images added, 16 were in the database before"));
   EXPECT_EQ(read_all(), first);
 }
 

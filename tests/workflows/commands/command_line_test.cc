@@ -14,12 +14,19 @@ using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 const std::vector<std::string> kCommands = {
-    "automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
-    "central_frame_sweeper",   "shape_exporter",  "shape_analyzer",    "version"};
+    "automatic_reconstructor", "marker_importer", "frame_registrator",
+    "bundle_adjuster",         "shape_exporter",  "central_frame_sweeper",
+    "shape_analyzer",          "shape_comparer",  "version"};
 
 TEST(CommandLineTest, HelpListsAllCommands) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{}, {"help"}, {"--help"}, {"-h"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                    {"help"},
+                                                    {"--help"},
+                                                    {"-h"},
+                                                    {"help", "help"},
+                                                    {"help", "--help"},
+                                                    {"help", "-h"},
+                                                    {"--help", "help"}}) {
     const ProgramRun run = RunVelamap(arguments);
     EXPECT_EQ(run.exit_code, 0);
     EXPECT_THAT(run.err, IsEmpty());
@@ -35,6 +42,12 @@ TEST(CommandLineTest, EveryCommandExplainsItself) {
     EXPECT_THAT(run.out, HasSubstr("Example:\n  velamap " + command + " --"));
     EXPECT_EQ(RunVelamap({"help", command}).out, run.out);
   }
+}
+
+TEST(CommandLineTest, HelpOfAnUnknownCommandNamesTheNearest) {
+  const ProgramRun run = RunVelamap({"help", "bundle_adjustr"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("did you mean bundle_adjuster?"));
 }
 
 TEST(CommandLineTest, HelpShowsDefaultsWithUnits) {
@@ -79,17 +92,45 @@ TEST(CommandLineTest, ProjectFileServesAllCommands) {
   const std::string file = (temp_dir / "project.ini").string();
   WriteTextFile(file,
                 "database_path=/nowhere/database.db\nimage_path=/nowhere\nlayout_path=/nowhere\n"
+                "workspace_path=/nowhere\noutput_path=/nowhere\nshape_path=/nowhere\n"
+                "log_path=/nowhere\ninput_path=/nowhere\ncentral_frame=3\n"
                 "[Video]\nframe_step=2\n[Registration]\nmin_num_inliers=1\n");
   const ProgramRun run = RunVelamap(
       {"frame_registrator", "--project_path", file, "--output_path", (temp_dir / "seed").string()});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("--Registration.min_num_inliers"));
+  EXPECT_THAT(run.err, HasSubstr(file + ": Registration.min_num_inliers: 1 is out of range"));
 
   WriteTextFile(file, "[Registration]\nmin_inliers=3\n");
   const ProgramRun unknown = RunVelamap({"frame_registrator", "--project_path", file});
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr(file + ": unknown key Registration.min_inliers"));
+  EXPECT_THAT(unknown.err, HasSubstr(file + ": unknown key Registration.min_inliers; did you mean "
+                                            "Registration.min_num_inliers?"));
   EXPECT_EQ(NumErrorLines(unknown.err), 1);
+}
+
+TEST(CommandLineTest, OldNamesAreUnderstoodWithAWarning) {
+  const ProgramRun prior = RunVelamap({"marker_importer", "--image_path", "/n", "--camera_path",
+                                       "/n", "--database_path", "/n", "--map_path", "/n"});
+  EXPECT_EQ(prior.exit_code, 2);
+  EXPECT_THAT(prior.err, HasSubstr("--map_path: an old name; write prior_shape_path"));
+  const ProgramRun backend = RunVelamap(
+      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "ceres"});
+  EXPECT_EQ(backend.exit_code, 2);
+  EXPECT_THAT(backend.err, HasSubstr("--backend ceres: an old name; write markers"));
+  EXPECT_THAT(backend.err, HasSubstr("--layout_path: missing"));  // which markers needs
+  for (const ProgramRun& run : {prior, backend}) EXPECT_EQ(NumErrorLines(run.err), 1);
+}
+
+TEST(CommandLineTest, TwoNamesOfOneOptionAreAnError) {
+  const ProgramRun central = RunVelamap(
+      {"frame_registrator", "--central_frame", "3", "--Registration.central_frame", "3"});
+  EXPECT_EQ(central.exit_code, 2);
+  EXPECT_THAT(central.err,
+              HasSubstr("--central_frame and --Registration.central_frame: two names"));
+  const ProgramRun prior =
+      RunVelamap({"marker_importer", "--prior_shape_path", "a", "--map_path", "a"});
+  EXPECT_EQ(prior.exit_code, 2);
+  EXPECT_THAT(prior.err, HasSubstr("--prior_shape_path and --map_path: two names"));
 }
 
 TEST(CommandLineTest, UnknownNamesListWhatThereIs) {
@@ -109,8 +150,7 @@ TEST(CommandLineTest, UnknownNamesListWhatThereIs) {
   const ProgramRun backend = RunVelamap(
       {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "g2o"});
   EXPECT_EQ(backend.exit_code, 2);
-  EXPECT_THAT(backend.err,
-              HasSubstr("--backend: 'g2o' is unknown; there are: colmap, markers, both"));
+  EXPECT_THAT(backend.err, HasSubstr("--backend: 'g2o' is unknown; give colmap, markers or both"));
   const ProgramRun length = RunVelamap(
       {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "markers"});
   EXPECT_EQ(length.exit_code, 2);

@@ -109,7 +109,7 @@ TEST_F(ShapeComparerTest, NamedMarkers) {
   EXPECT_THAT(run.out, HasSubstr("alignment_by: markers 11 16 53, 12 corners of 3 markers\n"));
   ExpectError(Compare("b/shape", {"--align_markers", "11"}), 2, "--align markers");
   ExpectError(Compare("b/shape", {"--align", "markers", "--align_markers", "11,x"}), 2,
-              "no list of marker ids");
+              "expected a list of marker ids");
   ExpectError(Compare("b/shape", {"--align", "hull"}), 2, "--align: 'hull' is unknown");
 }
 

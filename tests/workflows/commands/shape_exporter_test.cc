@@ -123,17 +123,31 @@ TEST_F(ShapeExporterCommandTest, SurfaceGoesOnToGivenEdges) {
     return std::stod(run.out.substr(start + 15));
   };
   const double alone = area({});
-  EXPECT_GT(area({"--Surface.foot_extension", "0.1"}), 1.02 * alone);
+  EXPECT_GT(area({"--Surface.foot_extension", "100"}), 1.02 * alone);
   WriteTextFile(dir_ / "edges.csv", "edge,x,y,z\nfoot,0,0,-0.2\nfoot,0.5,0,-0.2\nfoot,1,0,-0.2\n");
   EXPECT_GT(area({"--Surface.edges_path", path("edges.csv")}), 1.02 * alone);
+}
+
+// The limits of these options follow from the shape, which is written all the same.
+TEST_F(ShapeExporterCommandTest, ShapeIsWrittenWhateverBecomesOfTheSurface) {
+  const auto expect_error = [&](const std::vector<std::string>& more, const std::string& part) {
+    const ProgramRun run = Export(more);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(part));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_THAT(ListFolder(path("shape")), IsSupersetOf({"shape.csv", "sections.csv"}));
+    std::filesystem::remove_all(path("shape"));
+  };
+  expect_error({"--Surface.edge_length", "0.001"}, "triangles");
+  expect_error({"--Surface.luff_extension", "1e6", "--Surface.head_extension", "1e6"},
+               "--Surface.luff_extension: 1e+06 mm, expected at most");
 }
 
 TEST_F(ShapeExporterCommandTest, BadOptionsWriteNothing) {
   ExpectRefused({"--frame", "keel"}, "--frame");
   ExpectRefused({"--Section.heights", "1,x"}, "--Section.heights: '1,x'");
-  ExpectRefused({"--Section.min_markers", "2"}, "at least 4 markers");
+  ExpectRefused({"--Section.min_markers", "2"}, "--Section.min_markers: 2 is out of range");
   ExpectRefused({"--Surface.edge_length", "0"}, "edge");
-  ExpectRefused({"--Surface.edge_length", "0.001"}, "triangles");
   ExpectRefused({"--Surface.edge_length", "10", "--Surface.chord_deviation", "1"}, "chord");
   ExpectRefused({"--Surface.luff_extension", "-1"}, "luff");
   ExpectRefused({"--Surface.edges_path", path("no.csv")}, "no.csv");

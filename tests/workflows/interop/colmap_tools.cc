@@ -49,10 +49,10 @@ void WriteSceneDatabase(const SyntheticScene& scene, const std::string& database
   for (const FrameDetections& frame : scene.frames) {
     image_ids.push_back(database.AddImage(camera_id, frame, "test"));
   }
-  for (const auto& [i, j] : PairsToMatch(static_cast<int>(scene.frames.size()))) {
+  for (const auto& [i, j] : PairsToMatch(scene.frames)) {
     const std::size_t first = static_cast<std::size_t>(i), second = static_cast<std::size_t>(j);
     const FeatureMatches matches = MatchByMarkerId(scene.frames[first], scene.frames[second]);
-    if (!matches.empty()) database.WriteMatches(image_ids[first], image_ids[second], matches);
+    database.WriteMatches(image_ids[first], image_ids[second], matches);
   }
   transaction.Commit();
 }

@@ -121,20 +121,21 @@ TEST_P(ColmapMatchesTest, ExhaustiveMatcherFindsWhatTheMarkerIdsSay) {
   Match();
   const auto images = ReadImages(database());
   int num_matches = 0, num_verified = 0, num_pairs_without = 0;
-  for (const auto& [i, j] : PairsToMatch(static_cast<int>(images.size()))) {
-    const DatabaseImage& first = images[static_cast<std::size_t>(i)];
-    const DatabaseImage& second = images[static_cast<std::size_t>(j)];
-    const FeatureMatches expected = MatchByMarkerId(first.detections, second.detections);
-    const MatchSet expected_set(expected.begin(), expected.end());
-    EXPECT_EQ(QueryMatches(database(), "matches", first.image_id, second.image_id), expected_set)
-        << first.detections.image_name << " and " << second.detections.image_name;
-    const MatchSet verified =
-        QueryMatches(database(), "two_view_geometries", first.image_id, second.image_id);
-    EXPECT_TRUE(
-        std::includes(expected_set.begin(), expected_set.end(), verified.begin(), verified.end()));
-    num_matches += static_cast<int>(expected.size());
-    num_verified += static_cast<int>(verified.size());
-    num_pairs_without += expected.empty();
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    for (std::size_t j = i + 1; j < images.size(); ++j) {
+      const DatabaseImage &first = images[i], &second = images[j];
+      const FeatureMatches expected = MatchByMarkerId(first.detections, second.detections);
+      const MatchSet expected_set(expected.begin(), expected.end());
+      EXPECT_EQ(QueryMatches(database(), "matches", first.image_id, second.image_id), expected_set)
+          << first.detections.image_name << " and " << second.detections.image_name;
+      const MatchSet verified =
+          QueryMatches(database(), "two_view_geometries", first.image_id, second.image_id);
+      EXPECT_TRUE(std::includes(expected_set.begin(), expected_set.end(), verified.begin(),
+                                verified.end()));
+      num_matches += static_cast<int>(expected.size());
+      num_verified += static_cast<int>(verified.size());
+      num_pairs_without += expected.empty();
+    }
   }
   EXPECT_GT(num_matches, 1000);
   EXPECT_GT(num_verified, 0.9 * num_matches);
@@ -168,6 +169,28 @@ TEST_F(ColmapTracksTest, MapperFindsTheTracksOfTheMarkers) {
   RecordProperty("num_corners", num_corners);
   RecordProperty("num_corners_seen_twice", NumCorners(images, 2));
   RecordProperty("num_points", static_cast<int>(model.points3D.size()));
+}
+
+// Beyond kMaxNumExhaustive images the database holds the matches of a few pairs of each image only.
+TEST_F(ColmapTracksTest, MapperFindsAllTracksInThePairsOfALongClip) {
+  SyntheticSceneOptions options;
+  options.num_frames = kMaxNumExhaustive + 10;
+  options.num_rows = 4;
+  options.num_columns = 4;
+  SyntheticScene scene = MakeSyntheticScene(options);
+  AddNoise({0.1, 0.0, 0.0, 0.0, 1}, &scene);
+  WriteSceneDatabase(scene, database());
+  fs::create_directory(dir_ / "mapped");
+  fs::create_directory(dir_ / "images");
+  std::vector<std::string> arguments = {"mapper",       "--database_path", database(),
+                                        "--image_path", path("images"),    "--output_path",
+                                        path("mapped")};
+  AddMarkerOptions(&arguments);
+  RunCommand(arguments);
+  const Model model = ReadModel(path("mapped/0"));
+  const auto images = ReadImages(database());
+  EXPECT_EQ(model.images.size(), images.size());
+  EXPECT_EQ(ExpectTracksOfOneCornerEach(model, images), NumCorners(images, 2));
 }
 
 TEST_F(ColmapTracksTest, PointTriangulatorKeepsTheSeed) {

@@ -8,11 +8,15 @@
 #include "importer/base/error.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {
 
 using ::testing::HasSubstr;
+
+enum class Gait { kWalk, kTrot };
 
 struct Values {
   std::string text = "default";
@@ -21,26 +25,33 @@ struct Values {
   std::optional<double> maybe_m;
   bool yes = false;
   std::string path;
+  Gait gait = Gait::kTrot;
 };
 
 CommandSyntax MakeSyntax(Values* values) {
+  Option path = {"path", &values->path, "path", "where to"};
+  path.required = true;
+  path.short_names = {"p"};
+  path.old_names = {"goal"};
   return {
       "walker",
       "walks",
       "--path x",
-      {{"First",
-        {{"path", &values->path, "path", "where to", true}, {"text", &values->text, "", "words"}}},
+      {{"First", {path, {"text", &values->text, "", "words"}}},
        {"Second",
-        {{"Walk.count", &values->count, "steps", "how many"},
-         {"Walk.length", &values->length_m, "m", "how long"},
-         {"Walk.maybe", &values->maybe_m, "m", "perhaps"},
-         {"Walk.yes", &values->yes, "0|1", "whether"}}}}};
+        {{"Walk.count", &values->count, "steps", "how many", AtLeast(0)},
+         {"Walk.max_num_steps", &values->count, "steps", "at most", AtLeast(0)},
+         {"Walk.length", &values->length_m, "m", "how long", MoreThan(0)},
+         {"Walk.maybe", &values->maybe_m, "m", "perhaps", FromTo(-1, 1)},
+         {"Walk.yes", &values->yes, "0|1", "whether"},
+         ChoiceOption("Walk.gait", &values->gait, {{Gait::kWalk, "walk"}, {Gait::kTrot, "trot"}},
+                      "how", {{Gait::kWalk, "stroll"}})}}}};
 }
 
 std::string ErrorOf(const std::vector<std::string>& arguments) {
   Values values;
   try {
-    ParseOptions(MakeSyntax(&values), arguments, {"Other.option"});
+    ParseOptions(MakeSyntax(&values), arguments, AllOptionNames());
   } catch (const InputError& error) {
     return error.what();
   }
@@ -60,14 +71,39 @@ TEST(OptionParserTest, LeavesDefaultsAlone) {
 TEST(OptionParserTest, ReadsAllKindsOfValues) {
   Values values;
   ASSERT_TRUE(ParseOptions(MakeSyntax(&values),
-                           {"--path=a b", "--Walk.count", "-1", "--Walk.length", "1e-3",
-                            "--Walk.maybe", "0", "--Walk.yes", "1"},
+                           {"--path=a b", "--Walk.count", "3", "--Walk.length", "1e-3",
+                            "--Walk.maybe", "-1", "--Walk.yes", "1", "--Walk.gait", "walk"},
                            {}));
   EXPECT_EQ(values.path, "a b");
-  EXPECT_EQ(values.count, -1);
+  EXPECT_EQ(values.count, 3);
   EXPECT_EQ(values.length_m, 1e-3);
-  EXPECT_EQ(values.maybe_m, 0.0);
+  EXPECT_EQ(values.maybe_m, -1.0);
   EXPECT_TRUE(values.yes);
+  EXPECT_EQ(values.gait, Gait::kWalk);
+}
+
+TEST(OptionParserTest, RefusesValuesBeyondTheRange) {
+  const auto error_of = [](const std::string& name, const std::string& value) {
+    return ErrorOf({"--path", "p", name, value});
+  };
+  EXPECT_EQ(error_of("--Walk.count", "-1"),
+            "--Walk.count: -1 is out of range; give 0 or more (steps)");
+  EXPECT_EQ(error_of("--Walk.length", "0"),
+            "--Walk.length: 0 is out of range; give more than 0 (m)");
+  EXPECT_EQ(error_of("--Walk.maybe", "1.5"), "--Walk.maybe: 1.5 is out of range; give -1 to 1 (m)");
+  EXPECT_EQ(error_of("--Walk.gait", "run"), "--Walk.gait: 'run' is unknown; give walk or trot");
+}
+
+TEST(OptionParserTest, UnderstandsShortAndOldNamesButOneAtATime) {
+  for (const char* name : {"--path", "--p", "--goal"}) {
+    Values values;
+    ASSERT_TRUE(ParseOptions(MakeSyntax(&values), {name, "x", "--Walk.gait", "stroll"}, {}));
+    EXPECT_EQ(values.path, "x");
+    EXPECT_EQ(values.gait, Gait::kWalk);
+  }
+  EXPECT_EQ(ErrorOf({"--p", "x", "--path", "x"}),
+            "--p and --path: two names of one option; give one of them");
+  EXPECT_THAT(ErrorOf({"--goal", "x", "--p", "y"}), HasSubstr("--goal and --p"));
 }
 
 TEST(OptionParserTest, UnknownOptionNamesNearestAndHelp) {
@@ -75,6 +111,11 @@ TEST(OptionParserTest, UnknownOptionNamesNearestAndHelp) {
   EXPECT_THAT(error, HasSubstr("--Walk.cuont"));
   EXPECT_THAT(error, HasSubstr("did you mean --Walk.count?"));
   EXPECT_THAT(error, HasSubstr("velamap walker --help"));
+}
+
+TEST(OptionParserTest, SuggestsTheNameThatLacksAWord) {
+  EXPECT_THAT(ErrorOf({"--path", "p", "--Walk.max_steps", "3"}),
+              HasSubstr("did you mean --Walk.max_num_steps?"));
 }
 
 TEST(OptionParserTest, SectionMayBeForgottenInSuggestions) {
@@ -129,11 +170,28 @@ TEST(OptionParserTest, ProjectFileErrorsNameFileAndKey) {
   EXPECT_THAT(ErrorOf(arguments), HasSubstr(file));
 }
 
+TEST(OptionParserTest, ProjectFileMayGiveAnOptionOnceOnly) {
+  const TempDir temp_dir;
+  const std::string file = (temp_dir / "project.ini").string();
+  WriteTextFile(file, "path=a\ngoal=b\n");
+  EXPECT_THAT(ErrorOf({"--project_path", file}), HasSubstr("two names of one option"));
+  Values values;
+  WriteTextFile(file, "goal=from file\n");
+  ASSERT_TRUE(ParseOptions(MakeSyntax(&values), {"--p", "typed", "--project_path", file}, {}));
+  EXPECT_EQ(values.path, "typed");
+}
+
 TEST(OptionParserTest, ProjectFileMayHoldOptionsOfOtherCommands) {
   const TempDir temp_dir;
   const std::string file = (temp_dir / "project.ini").string();
-  WriteTextFile(file, "[Other]\noption=3\n");
-  EXPECT_EQ(ErrorOf({"--path", "p", "--project_path", file}), "");
+  for (const std::string& name : AllOptionNames()) {
+    if (name == "path") continue;
+    const std::size_t dot = name.find('.');
+    WriteTextFile(file, dot == std::string::npos
+                            ? name + "=3\n"
+                            : "[" + name.substr(0, dot) + "]\n" + name.substr(dot + 1) + "=3\n");
+    EXPECT_EQ(ErrorOf({"--path", "p", "--project_path", file}), "") << name;
+  }
 }
 
 TEST(OptionParserTest, HelpShowsDefaultsUnitsAndExample) {
@@ -143,12 +201,16 @@ TEST(OptionParserTest, HelpShowsDefaultsUnitsAndExample) {
   std::ostringstream out;
   PrintHelp(syntax, out);
   EXPECT_THAT(out.str(), HasSubstr("--Walk.length m (=0.25)"));
+  EXPECT_THAT(out.str(), HasSubstr("--Walk.gait walk|trot (=trot)"));
   EXPECT_THAT(out.str(), HasSubstr("--path path"));
+  EXPECT_THAT(out.str(), HasSubstr("in short --p"));
   EXPECT_THAT(out.str(), HasSubstr("velamap walker --path x"));
 }
 
 TEST(NearestNameTest, SuggestsOnlyWhatIsNear) {
-  const std::vector<std::string> names = {"marker_importer", "help"};
+  const std::vector<std::string> names = {"marker_importer", "help", "Registration.num_frames",
+                                          "Registration.max_num_frames"};
+  EXPECT_EQ(NearestName("Registration.max_frames", names), "Registration.max_num_frames");
   EXPECT_EQ(NearestName("marker_imprter", names), "marker_importer");
   EXPECT_EQ(NearestName("hepl", names), "help");
   EXPECT_EQ(NearestName("zzzzzz", names), "");

@@ -8,6 +8,7 @@
 
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape_exporter.h"
+#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/model/model_io.h"
@@ -39,7 +40,7 @@ class CentralFrameSweepTest : public testing::Test {
     options_.registration.thesis.num_frames = 6;
     options_.registration.thesis.skip = 4;
     options_.registration.thesis.neighborhood = 1;
-    options_.adjustment.backend = "markers";
+    options_.adjustment.backend = AdjustmentBackend::kMarkers;
     options_.adjustment.Complete(1);
   }
 
@@ -133,13 +134,15 @@ TEST(CentralFrameSweep, BestRowAndTable) {
   rows[2].reason = "says \"no\"";
   rows[3].shape.reconstruction_ratio = 0.8;
   EXPECT_EQ(BestRow(rows), 1);
-  rows[2].central_frame = "7";
-  std::ostringstream out;
-  WriteSweepCsv({rows[2]}, out);
-  const std::string header = out.str().substr(0, out.str().find('\n'));
-  const std::string row = out.str().substr(header.size() + 1);
-  EXPECT_EQ(std::count(row.begin(), row.end(), ','), std::count(header.begin(), header.end(), ','));
-  EXPECT_THAT(row, HasSubstr("7,,,,,,,,,,,0.000,0.000,\"says 'no'\"\n"));
+  rows[2].central_frame = rows[2].image_name = "c,am \"00\".jpg";
+  std::stringstream out;
+  WriteSweepCsv({rows[1], rows[2]}, out);
+  const std::vector<CsvRecord> records = ReadCsv(out, "sweep.csv");
+  ASSERT_EQ(records.size(), 3u);
+  for (const CsvRecord& record : records) EXPECT_EQ(record.fields.size(), 14u);
+  EXPECT_EQ(records[2].fields[0], "c,am \"00\".jpg");
+  EXPECT_EQ(records[2].fields[1], "c,am \"00\".jpg");
+  EXPECT_EQ(records[2].fields[13], "says \"no\"");
 }
 
 }  // namespace

@@ -54,11 +54,11 @@ TEST(NarrowToReachTest, WithoutAFrameNumberNothingChanges) {
   EXPECT_EQ(NarrowToReach({}, global).last_frame, -1);
 }
 
-TEST(RegistrationGroupTest, CentralFrameHasAShortName) {
+TEST(RegistrationOptions, CentralFrameHasAShortName) {
   for (const char* name : {"--central_frame", "--Registration.central_frame"}) {
     RegistrationOptions options;
     ASSERT_TRUE(
-        ParseOptions({"walker", "walks", "", {RegistrationGroup(&options)}}, {name, "12"}, {}));
+        ParseOptions({"walker", "walks", "", {DescribeOptions(&options)}}, {name, "12"}, {}));
     EXPECT_EQ(options.central_frame, "12");
   }
 }

@@ -1,4 +1,4 @@
-// OpenCV's poses as ours. Private to this room: it shows OpenCV.
+// OpenCV's poses as ours.
 
 #pragma once
 
@@ -14,7 +14,7 @@ inline Rigid3 RigidFromOpenCV(const cv::Mat& rotation_vector, const cv::Mat& tra
     step[i] = rotation_vector.at<double>(i);
     step[3 + i] = translation.at<double>(i);
   }
-  return Moved({}, step);
+  return PlusPose({}, step);
 }
 
 }  // namespace velamap

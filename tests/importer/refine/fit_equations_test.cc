@@ -1,10 +1,11 @@
-#include "importer/refine/least_squares.h"
+#include "importer/refine/fit_equations.h"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "importer/geometry/least_squares.h"
 #include "importer/refine/normal_lanes.h"
 
 namespace velamap {
@@ -43,9 +44,13 @@ TEST(NormalAt, AgreesWithTheStandardLibrary) {
 using Vector = FitEquations<10>::Vector;
 
 struct Decay {
+  using Parameters = Vector;
+  using Equations = FitEquations<10>;
+  using Step = Vector;
+
   Vector mean = Vector::Zero(), weight = Vector::Constant(1e6);
   Eigen::ArrayXd t, y;
-  int num_evaluations = 0;
+  mutable int num_evaluations = 0;
 
   explicit Decay(int count) {
     weight.head<2>().setConstant(1e-9);
@@ -53,7 +58,7 @@ struct Decay {
     y = 3 * (-0.7 * t).exp();
   }
 
-  void operator()(const Vector& p, bool with_hessian, FitEquations<10>* equations) {
+  void Evaluate(const Vector& p, bool with_hessian, FitEquations<10>* equations) const {
     ++num_evaluations;
     equations->Clear(with_hessian);
     for (Eigen::Index begin = 0; begin < t.size(); begin += kLanes) {
@@ -69,6 +74,12 @@ struct Decay {
     }
     equations->Finish(p - mean, weight);
   }
+  Vector Plus(const Vector& p, const Vector& step) const { return p + step; }
+  double StepSize(const Vector& step, const FitEquations<10>&) const {
+    return step.head<2>().cwiseAbs().maxCoeff();
+  }
+  Vector LimitStep(const Vector&, const Vector& step) const { return step; }
+  void Predict(const Vector& step, FitEquations<10>* equations) const { equations->Predict(step); }
 };
 
 TEST(FitEquations, AreTheSumsOverAllObservations) {
@@ -114,33 +125,28 @@ TEST(FitEquations, AreTheSumsOverAllObservations) {
   EXPECT_NEAR(equations.squared_residuals(), (residuals + jacobians * step).squaredNorm(), 1e-2);
 }
 
-TEST(MinimizeSquares, FindsTheMinimumWithFewHessians) {
-  Decay decay(41);
+TEST(FitEquations, MinimizeSquaresFindsTheMinimumWithFewEvaluations) {
+  const Decay decay(41);
   Vector parameters = Vector::Zero();
   parameters[0] = 1.0;
   FitEquations<10> equations;
   LeastSquaresOptions options;
-  options.max_iterations = 20;
-  options.tolerance_px = 1e-4;
-  EXPECT_TRUE(MinimizeSquares(
-      options,
-      [&](const Vector& p, bool with_hessian, FitEquations<10>* e) { decay(p, with_hessian, e); },
-      [](const Vector& step) { return step.head<2>().cwiseAbs().maxCoeff(); }, [](Vector*) {},
-      &parameters, &equations));
+  options.initial_damping = 1e-3;
+  options.min_step = 1e-4;
+  options.min_step_for_new_hessian = 0.02;
+  EXPECT_EQ(MinimizeSquares(options, decay, &parameters, &equations), Convergence::kConverged);
   EXPECT_NEAR(parameters[0], 3.0, 1e-4);
   EXPECT_NEAR(parameters[1], -0.7, 1e-4);
   EXPECT_LT(equations.Rms(), 1e-4);
   EXPECT_LT(decay.num_evaluations, 15);
 }
 
-TEST(MinimizeSquares, RefusesTooFewObservations) {
-  Decay decay(10);
-  Vector parameters = Vector::Zero();
-  FitEquations<10> equations;
-  EXPECT_FALSE(MinimizeSquares(
-      LeastSquaresOptions{},
-      [&](const Vector& p, bool with_hessian, FitEquations<10>* e) { decay(p, with_hessian, e); },
-      [](const Vector& step) { return step.norm(); }, [](Vector*) {}, &parameters, &equations));
+TEST(LimitParameter, ShortensOnlyStepsThatLeaveTheLimits) {
+  for (const auto& [step, limited] : {std::pair(0.1, 0.1), {0.6, 0.5}, {-2.0, -0.5}}) {
+    double shortened = step;
+    LimitParameter(1.0, 2.0, 1.5, &shortened);
+    EXPECT_EQ(shortened, limited);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,235 @@
+#include "exporters/compare/closest_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "exporters/shape/principal_axes.h"
+#include "importer/base/statistics.h"
+#include "importer/geometry/least_squares.h"
+
+namespace velamap {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+constexpr std::size_t kMaxCoarsePoints = 150;
+constexpr int kCoarseIterations = 25;
+constexpr std::size_t kNumFineStarts = 4;
+constexpr double kTrim = 0.8;         // share of the points by which poses are compared
+constexpr double kTukey = 4.685;      // 95 % efficiency for normal noise (Huber, 1981)
+constexpr double kFloor = 1e-9;       // of the diagonal: distances below this are zero
+constexpr double kConverged = 1e-11;  // of the diagonal, a step
+constexpr double kMaxTurn_rad = 0.5;  // of one step
+
+Points Thinned(const Points& points, std::size_t max_num) {
+  if (points.size() <= max_num) return points;
+  Points thinned;
+  for (std::size_t i = 0; i < max_num; ++i) {
+    thinned.push_back(points[i * points.size() / max_num]);
+  }
+  return thinned;
+}
+
+// Root mean square of the smallest kTrim of the distances.
+double TrimmedRms(const std::vector<PointResidual>& residuals) {
+  std::vector<double> distances_m;
+  for (const PointResidual& r : residuals) distances_m.push_back(std::abs(r.distance_m));
+  std::sort(distances_m.begin(), distances_m.end());
+  distances_m.resize(std::max<std::size_t>(
+      1, static_cast<std::size_t>(kTrim * static_cast<double>(distances_m.size()))));
+  return Rms(distances_m);
+}
+
+// The pose of points on a surface with fixed weights, as a problem of MinimizeSquares(). A step
+// rotates the points about their center, in units of angle times radius, and translates them.
+struct SurfaceProblem : LeastSquaresProblem<6> {
+  using Parameters = Rigid3;
+  struct Equations : GaussNewtonEquations<6> {
+    std::vector<PointResidual> residuals;
+  };
+
+  const Points& points;
+  const MeshDistance& mesh;
+  const Rigid3 start;
+  const std::vector<PointResidual>& residuals_at_start;
+  const std::vector<double>& weights;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius_m = 0.0;
+
+  SurfaceProblem(const Points& all, const MeshDistance& surface, const Rigid3& pose,
+                 const std::vector<PointResidual>& residuals,
+                 const std::vector<double>& all_weights)
+      : points(all),
+        mesh(surface),
+        start(pose),
+        residuals_at_start(residuals),
+        weights(all_weights) {
+    for (const PointResidual& r : residuals) center += r.x_m / static_cast<double>(weights.size());
+    for (const PointResidual& r : residuals) radius_m = std::max(radius_m, (r.x_m - center).norm());
+  }
+
+  void Evaluate(const Rigid3& pose, bool, Equations* equations) const {
+    *equations = {};
+    const bool is_start =
+        pose.rotation.coeffs() == start.rotation.coeffs() && pose.translation == start.translation;
+    equations->residuals = is_start ? residuals_at_start : ComputeResiduals(points, pose, mesh);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const PointResidual& r = equations->residuals[i];
+      Eigen::Matrix<double, 1, 6> row;
+      row << (r.x_m - center).cross(r.direction).transpose() / radius_m, r.direction.transpose();
+      const double root = std::sqrt(weights[i]);
+      equations->Add<1>(root * row, Eigen::Matrix<double, 1, 1>(root * r.distance_m));
+    }
+    // Keeps motions that the surface does not determine at zero and hardly changes the others.
+    equations->AddToDiagonal(1e-9 * equations->hessian().trace());
+  }
+
+  Rigid3 Plus(const Rigid3& pose, const Step& step) const {
+    const Eigen::Vector3d turn = step.head<3>() / radius_m;
+    const double angle = std::min(turn.norm(), kMaxTurn_rad);
+    const Eigen::Quaterniond rotation(turn.norm() > 0 ? Eigen::AngleAxisd(angle, turn.normalized())
+                                                      : Eigen::AngleAxisd::Identity());
+    return Rigid3{rotation, center - rotation * center + step.tail<3>()} * pose;
+  }
+};
+
+double LargestMotion_m(const std::vector<PointResidual>& before,
+                       const std::vector<PointResidual>& after) {
+  double largest_m = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    largest_m = std::max(largest_m, (after[i].x_m - before[i].x_m).norm());
+  }
+  return largest_m;
+}
+
+// Alternates between weights and one step of least squares.
+SurfacePose Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start,
+                    bool is_fine, int num_iterations) {
+  LeastSquaresOptions one_step;
+  one_step.initial_damping = 1e-12;
+  one_step.min_relative_decrease = 1.0;
+  SurfacePose best{start, 0.0, false};
+  Rigid3 pose = start;
+  std::vector<PointResidual> residuals = ComputeResiduals(points, pose, mesh);
+  for (int i = 0;; ++i) {
+    const double trimmed_rms_m = TrimmedRms(residuals);
+    // The robust fit follows its weights; the coarse one can overshoot and keeps the best pose.
+    if (i == 0 || is_fine || trimmed_rms_m < best.trimmed_rms_m) {
+      best.pose = pose;
+      best.trimmed_rms_m = trimmed_rms_m;
+    }
+    if (i == num_iterations || best.has_converged) return best;
+    const bool is_robust = is_fine && EnoughOverSurface(residuals);
+    const std::vector<double> weights = is_robust ? TukeyWeights(residuals, ZeroDistance_m(mesh))
+                                                  : std::vector<double>(residuals.size(), 1.0);
+    SurfaceProblem::Equations equations;
+    MinimizeSquares(one_step, SurfaceProblem(points, mesh, pose, residuals, weights), &pose,
+                    &equations);
+    best.has_converged =
+        LargestMotion_m(residuals, equations.residuals) < kConverged * mesh.Diagonal_m();
+    residuals = std::move(equations.residuals);
+  }
+}
+
+// The directions as a rotation.
+Eigen::Matrix3d RightHanded(Eigen::Matrix3d directions) {
+  if (directions.determinant() < 0) directions.col(0) *= -1;
+  return directions;
+}
+
+// The 24 rotations of a cube onto itself.
+std::vector<Eigen::Matrix3d> CubeRotations() {
+  std::vector<Eigen::Matrix3d> rotations;
+  std::array<int, 3> order = {0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
+      for (int i = 0; i < 3; ++i) {
+        rotation(order[static_cast<std::size_t>(i)], i) = (signs >> i) % 2 == 0 ? 1.0 : -1.0;
+      }
+      if (rotation.determinant() > 0) rotations.push_back(rotation);
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return rotations;
+}
+
+std::vector<Rigid3> Starts(const Points& points, const MeshDistance& mesh, bool starts_as_is) {
+  std::vector<Rigid3> starts = {Rigid3()};
+  if (starts_as_is) return starts;
+  const PrincipalAxes of_points = ComputePrincipalAxes(points);
+  const PrincipalAxes of_mesh = AxesOfScatter(mesh.Moments().mean_m, mesh.Moments().covariance_m2);
+  const Eigen::Matrix3d points_from_axes = RightHanded(of_points.directions);
+  const Eigen::Matrix3d mesh_from_axes = RightHanded(of_mesh.directions);
+  for (const Eigen::Matrix3d& turn : CubeRotations()) {
+    const Eigen::Quaterniond rotation(
+        Eigen::Matrix3d(mesh_from_axes * turn * points_from_axes.transpose()));
+    starts.push_back({rotation, of_mesh.mean - rotation * of_points.mean});
+  }
+  return starts;
+}
+
+}  // namespace
+
+double ZeroDistance_m(const MeshDistance& mesh) { return kFloor * mesh.Diagonal_m(); }
+
+std::vector<PointResidual> ComputeResiduals(const Points& points, const Rigid3& pose,
+                                            const MeshDistance& mesh) {
+  std::vector<PointResidual> residuals;
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d x = pose * point;
+    const MeshFoot foot = mesh.Project(x);
+    PointResidual residual{x, foot.normal, foot.distance_m, foot.IsOverSurface(mesh.Diagonal_m())};
+    if (!residual.is_over_surface) {
+      residual.distance_m = (x - foot.x_m).norm();
+      residual.direction = (x - foot.x_m) / residual.distance_m;
+    }
+    residuals.push_back(residual);
+  }
+  return residuals;
+}
+
+bool EnoughOverSurface(const std::vector<PointResidual>& residuals) {
+  const auto num = std::count_if(residuals.begin(), residuals.end(),
+                                 [](const PointResidual& r) { return r.is_over_surface; });
+  return num >= static_cast<long>(kMinPointsOverSurface);
+}
+
+std::vector<double> TukeyWeights(const std::vector<PointResidual>& residuals, double zero_m) {
+  std::vector<double> distances_m;
+  for (const PointResidual& r : residuals) {
+    if (r.is_over_surface) distances_m.push_back(std::abs(r.distance_m));
+  }
+  const double cut_m = kTukey * std::max(kMadToSigma * Median(distances_m), zero_m);
+  std::vector<double> weights;
+  for (const PointResidual& r : residuals) {
+    const double ratio = r.distance_m / cut_m;
+    const double rest = std::max(0.0, 1 - ratio * ratio);
+    weights.push_back(r.is_over_surface ? rest * rest : 0.0);
+  }
+  return weights;
+}
+
+std::vector<SurfacePose> FitToSurface(const Points& points, const MeshDistance& mesh,
+                                      bool starts_as_is) {
+  const auto better = [](const SurfacePose& a, const SurfacePose& b) {
+    return a.trimmed_rms_m < b.trimmed_rms_m;
+  };
+  std::vector<SurfacePose> coarse;
+  const Points thinned = Thinned(points, kMaxCoarsePoints);
+  for (const Rigid3& start : Starts(points, mesh, starts_as_is)) {
+    coarse.push_back(Iterate(thinned, mesh, start, false, kCoarseIterations));
+  }
+  std::stable_sort(coarse.begin(), coarse.end(), better);
+  std::vector<SurfacePose> fits;
+  for (std::size_t i = 0; i < std::min(coarse.size(), kNumFineStarts); ++i) {
+    fits.push_back(Iterate(points, mesh, coarse[i].pose, true, kMaxFitIterations));
+  }
+  std::stable_sort(fits.begin(), fits.end(), better);
+  return fits;
+}
+
+}  // namespace velamap

@@ -1,0 +1,31 @@
+// The marker shape as PLY, for MeshLab, CloudCompare and Blender. Positions in m.
+//
+// `frame` describes the frame of the shape in a comment of the header; empty for none. If every
+// written point has a sigma, the vertices have the float property sigma too: the root of the mean
+// variance along x, y and z, m.
+
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include "exporters/formats/ply_writer.h"
+#include "exporters/shape/marker_shape.h"
+#include "reconstruct/model/model.h"
+
+namespace velamap {
+
+// Writes every corner and center as a vertex: double x y z, float nx ny nz (the normal of the
+// marker, zero if it is not whole), uchar red green blue (of the model's points; a center gets the
+// mean of its corners), int marker_id, int corner.
+void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyFormat format,
+                    std::ostream& out, const std::string& frame = "");
+
+// Writes every whole marker as a quadrilateral that is counter-clockwise seen from the front, so
+// that its normal is the outward one: four vertices with double x y z, float nx ny nz, uchar red
+// green blue (one color per part), int marker_id, int corner, and faces with vertex_indices and int
+// marker_id.
+void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out,
+                     const std::string& frame = "");
+
+}  // namespace velamap

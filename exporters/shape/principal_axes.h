@@ -1,0 +1,23 @@
+// Principal axes of a set of points; the axis of least spread is the normal of its least-squares
+// plane.
+
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace velamap {
+
+struct PrincipalAxes {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();   // columns by ascending spread
+  Eigen::Vector3d sums_of_squares = Eigen::Vector3d::Zero();  // along each direction
+};
+
+PrincipalAxes AxesOfScatter(const Eigen::Vector3d& mean, const Eigen::Matrix3d& scatter);
+
+// Needs a point.
+PrincipalAxes ComputePrincipalAxes(const std::vector<Eigen::Vector3d>& points);
+
+}  // namespace velamap

@@ -1,0 +1,67 @@
+// The file system: paths, folders and files. A failure is an InputError that names the path, such
+// as "a/b: cannot be read: File name too long". Only this file and atomic_output call
+// std::filesystem, whose own exceptions would end the program as a broken invariant.
+
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace velamap {
+
+// Links are followed. False if nothing is there; throws if that cannot be determined, because of
+// missing permissions or a path that is too long.
+bool Exists(const std::filesystem::path& path);
+bool IsFolder(const std::filesystem::path& path);
+bool IsRegularFile(const std::filesystem::path& path);
+
+std::uintmax_t FileSize(const std::filesystem::path& path);
+
+// Without "." and "..".
+std::filesystem::path AbsolutePath(const std::filesystem::path& path);
+
+// Absolute, links resolved as far as the path exists.
+std::filesystem::path CanonicalPath(const std::filesystem::path& path);
+
+// AbsolutePath() without the trailing slash, so that its parent is the folder that holds it.
+std::filesystem::path AbsoluteFolder(const std::filesystem::path& path);
+
+// Everything in the folder, sorted by name.
+std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
+
+// Regular files in the folder and below, in no particular order. Links are followed; files and
+// folders whose name starts with a dot are left out.
+std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folder);
+
+// Creates the folder and its missing parents; nothing happens if it is there.
+void CreateFolders(const std::filesystem::path& path);
+
+// Links `to` to the file `from`, which takes no space, or copies the file where the file system has
+// no hard links. The copy is there as a whole or not at all. Creates the missing parents of `to`.
+void LinkOrCopyFile(const std::filesystem::path& from, const std::filesystem::path& to);
+
+// Copies a file; `to` is replaced.
+void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to);
+
+// Removes a file, or a folder with everything in it. What cannot be removed stays.
+void RemoveAll(const std::filesystem::path& path) noexcept;
+
+// Removes a file or an empty folder; a folder that holds something stays.
+void RemoveFileOrEmptyFolder(const std::filesystem::path& path) noexcept;
+
+// A fresh folder in TMPDIR, or in /tmp, that is removed with everything in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder() { RemoveAll(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace velamap

@@ -1,0 +1,134 @@
+// The options of the program. Each one is stated once: its name, the member that it sets, its unit,
+// its range and its meaning. A struct of options that the command line can set has beside it
+//
+//   OptionGroup DescribeOptions(XOptions* options);
+//
+// from which the parser, --help, the range checks of XOptions::Check() and the names in messages
+// are made.
+
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace velamap {
+
+// A value that has a conversion of its own, such as one of a few names.
+struct ParsedValue {
+  const void* member = nullptr;  // what `set` sets
+  std::string default_text;
+  // Throws InputError that begins with `option`, which says where the text was given.
+  std::function<void(const std::string& text, const std::string& option)> set;
+};
+
+// What an option sets. The value that is there when the option is declared is the default; a bool
+// is written 0 or 1, an optional has none.
+using OptionTarget =
+    std::variant<std::string*, int*, double*, std::optional<double>*, bool*, ParsedValue>;
+
+// The finite numbers that an option accepts.
+struct OptionRange {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool excludes_min = false;
+};
+
+inline OptionRange AtLeast(double min) { return {min}; }
+inline OptionRange MoreThan(double min) {
+  return {min, std::numeric_limits<double>::infinity(), true};
+}
+inline OptionRange FromTo(double min, double max) { return {min, max}; }
+
+struct Option {
+  std::string name;  // without dashes, such as Video.first_frame
+  OptionTarget target;
+  std::string unit;  // unit or kind of the value, which --help shows: m, px, path, 0|1 ...
+  std::string description;
+  OptionRange range = {};  // of numbers
+  bool required = false;
+  std::vector<std::string> short_names = {};
+  std::vector<std::string> old_names = {};  // still understood, with a warning
+};
+
+struct OptionGroup {
+  std::string title;
+  std::vector<Option> options;
+};
+
+// The number that an option holds; nothing for other kinds and for an optional without a value.
+std::optional<double> NumberOf(const OptionTarget& target);
+
+// Throws InputError for a number beyond the option's range. The message begins with `given_as`,
+// such as --Video.first_frame.
+void CheckRange(const Option& option, const std::string& given_as);
+
+// "--Video.first_frame" for the option that sets `member`, which has to be one of the group's.
+std::string OptionName(const OptionGroup& group, const void* member);
+
+// Throws InputError for the first of the options that is beyond its range. `options` is a copy,
+// because a description holds places that may be written to.
+template <typename Options>
+void CheckRanges(Options options) {
+  for (const Option& option : DescribeOptions(&options).options) {
+    CheckRange(option, "--" + option.name);
+  }
+}
+
+// "--Video.first_frame" for &VideoOptions::first_frame.
+template <typename Options, typename Member>
+std::string OptionName(Member Options::*member) {
+  Options options;
+  return OptionName(DescribeOptions(&options), &(options.*member));
+}
+
+// Logs that `given` is an old name, still understood, of `name`.
+void WarnOfOldName(const std::string& given, const std::string& name);
+
+// Index of the name that is `text`. Throws InputError that begins with `option` and lists the
+// names.
+std::size_t FindChoice(const std::string& text, const std::vector<std::string>& names,
+                       const std::string& option);
+
+// "a, b or c".
+std::string JoinChoices(const std::vector<std::string>& names);
+
+// The values of an option that takes one of a few names, in the order in which --help lists them.
+template <typename Value>
+using Choices = std::vector<std::pair<Value, std::string>>;
+
+template <typename Value>
+std::string ChoiceName(const Choices<Value>& choices, Value value) {
+  return std::find_if(choices.begin(), choices.end(),
+                      [value](const auto& choice) { return choice.first == value; })
+      ->second;
+}
+
+// `old_names` of values are still understood, with a warning.
+template <typename Value>
+Option ChoiceOption(const std::string& name, Value* value, const Choices<Value>& choices,
+                    const std::string& description, const Choices<Value>& old_names = {}) {
+  std::vector<std::string> names;
+  std::string unit;
+  for (const auto& [choice, choice_name] : choices) {
+    names.push_back(choice_name);
+    unit += (unit.empty() ? "" : "|") + choice_name;
+  }
+  const auto set = [=](const std::string& text, const std::string& option) {
+    for (const auto& [choice, old_name] : old_names) {
+      if (text != old_name) continue;
+      WarnOfOldName(option + " " + text, ChoiceName(choices, choice));
+      *value = choice;
+      return;
+    }
+    *value = choices[FindChoice(text, names, option)].first;
+  };
+  return {name, ParsedValue{value, ChoiceName(choices, *value), set}, unit, description};
+}
+
+}  // namespace velamap

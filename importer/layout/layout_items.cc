@@ -1,0 +1,183 @@
+#include "importer/layout/layout_items.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "importer/base/ids.h"
+#include "importer/base/numbers.h"
+
+namespace velamap {
+namespace {
+
+double ReadPositiveMetres(const YamlItem& item) {
+  const double length_m = ReadMetres(item);
+  if (!std::isfinite(length_m) || length_m <= 0) {
+    item.Fail(fmt::format("{} m is no length; a positive number of metres is expected", length_m));
+  }
+  return length_m;
+}
+
+// A layout without parts accepts every id.
+void CheckMarkersAreNamed(const std::vector<int>& marker_ids, const Layout& layout,
+                          const YamlItem& item) {
+  if (!layout.HasMarkers()) return;
+  const std::vector<int> named_ids = MarkerIds(layout);
+  for (const int id : marker_ids) {
+    if (std::binary_search(named_ids.begin(), named_ids.end(), id)) continue;
+    item.Fail(fmt::format("marker {} is in no part; name it there or correct its id", id));
+  }
+}
+
+// "12" is the centre of marker 12, "12.1" its corner 1.
+void ReadMarkerPoint(const YamlItem& item, int* marker_id, int* corner) {
+  const std::string text = item.Text();
+  const std::size_t dot = text.find('.');
+  *corner = 0;
+  const bool is_corner =
+      dot == std::string::npos || (ParseNumber(text.substr(dot + 1), corner) && *corner >= 1 &&
+                                   *corner <= kNumCorners && text.size() == dot + 2);
+  if (!is_corner || !ParseMarkerId(text.substr(0, dot), marker_id)) {
+    item.Fail(
+        fmt::format("'{}' is no point of a marker; expected is the id for its centre, or id.corner "
+                    "(1 to 4) for a corner, such as 12 or 12.1",
+                    text));
+  }
+}
+
+// Whether the length takes part in the adjustment.
+bool ReadUse(const YamlItem& item) {
+  if (item.Text() != "check" && item.Text() != "scale") {
+    item.Fail(
+        fmt::format("'{}': check (compared with the result) or scale (takes part in the "
+                    "adjustment) is expected",
+                    item.Text()));
+  }
+  return item.Text() == "scale";
+}
+
+KnownDistance ReadDistance(const YamlItem& item) {
+  KnownDistance distance;
+  std::set<std::string> missing = {"from", "to", "length", "sigma"};
+  ReadMap(item, {{"from",
+                  [&](const YamlItem& v) {
+                    ReadMarkerPoint(v, &distance.marker_id1, &distance.corner1);
+                    missing.erase("from");
+                  }},
+                 {"to",
+                  [&](const YamlItem& v) {
+                    ReadMarkerPoint(v, &distance.marker_id2, &distance.corner2);
+                    missing.erase("to");
+                  }},
+                 {"length",
+                  [&](const YamlItem& v) {
+                    distance.length_m = ReadPositiveMetres(v);
+                    missing.erase("length");
+                  }},
+                 {"sigma",
+                  [&](const YamlItem& v) {
+                    distance.sigma_m = ReadPositiveMetres(v);
+                    missing.erase("sigma");
+                  }},
+                 {"use", [&](const YamlItem& v) { distance.is_scale_bar = ReadUse(v); }}});
+  if (!missing.empty()) {
+    item.Fail(
+        fmt::format("key '{}' is missing; expected is such as {{from: 12, to: 45, length: "
+                    "2.315, sigma: 0.002}} (m)",
+                    *missing.begin()));
+  }
+  if (distance.marker_id1 == distance.marker_id2 && distance.corner1 == distance.corner2) {
+    item.Fail("from and to are the same point");
+  }
+  if (distance.sigma_m >= distance.length_m) {
+    item.Fail(fmt::format("the sigma of {} m is not below the length of {} m; both are in metres",
+                          distance.sigma_m, distance.length_m));
+  }
+  return distance;
+}
+
+FrameChoice ReadFrameMarkers(const YamlItem& map) {
+  FrameChoice frame;
+  frame.kind = FrameKind::kMarkers;
+  ReadMap(map, {{"origin", [&](const YamlItem& v) { frame.origin_id = ReadMarkerId(v); }},
+                {"axis", [&](const YamlItem& v) { frame.axis_id = ReadMarkerId(v); }},
+                {"plane", [&](const YamlItem& v) { frame.plane_id = ReadMarkerId(v); }}});
+  for (const auto& [id, key] :
+       {std::pair(frame.origin_id, "origin"), std::pair(frame.axis_id, "axis"),
+        std::pair(frame.plane_id, "plane")}) {
+    if (id < 0) {
+      map.Fail(
+          fmt::format("key '{}' is missing; expected is such as {{origin: 12, axis: 15, "
+                      "plane: 40}} (marker ids)",
+                      key));
+    }
+  }
+  if (std::set<int>{frame.origin_id, frame.axis_id, frame.plane_id}.size() < 3) {
+    map.Fail("origin, axis and plane have to be three different markers");
+  }
+  return frame;
+}
+
+}  // namespace
+
+bool ParseMarkerId(const std::string& text, int* id) {
+  return ParseNumber(text, id) && *id >= 0 && *id <= kMaxMarkerId;
+}
+
+int ReadMarkerId(const YamlItem& item) {
+  int id = -1;
+  if (!ParseMarkerId(item.Text(), &id)) {
+    item.Fail(fmt::format("'{}' is no marker id; whole numbers from 0 to {} are expected",
+                          item.Text(), kMaxMarkerId));
+  }
+  return id;
+}
+
+double ReadMetres(const YamlItem& item) {
+  double length_m = 0.0;
+  if (!ParseNumber(item.Text(), &length_m)) {
+    item.Fail(
+        fmt::format("'{}' is no number; a length in metres is expected, such as 0.1", item.Text()));
+  }
+  return length_m;
+}
+
+std::vector<KnownDistance> ReadDistances(const YamlItem& list, const Layout& layout) {
+  std::vector<KnownDistance> distances;
+  ForEachElement(list, [&](const YamlItem& item) {
+    distances.push_back(ReadDistance(item));
+    CheckMarkersAreNamed({distances.back().marker_id1, distances.back().marker_id2}, layout, item);
+  });
+  if (distances.empty()) list.Fail("no distance is given; leave the key out");
+  return distances;
+}
+
+FrameChoice ReadFrame(const YamlItem& item, const Layout& layout) {
+  if (item.node.IsMap()) {
+    const FrameChoice frame = ReadFrameMarkers(item);
+    CheckMarkersAreNamed({frame.origin_id, frame.axis_id, frame.plane_id}, layout, item);
+    return frame;
+  }
+  FrameChoice frame;
+  if (!ParseFrameKeyword(item.Text(), &frame.kind)) {
+    item.Fail(
+        fmt::format("'{}' is no frame; reference_part, lines, camera, or three markers such "
+                    "as {{origin: 12, axis: 15, plane: 40}} are expected",
+                    item.Text()));
+  }
+  if (frame.kind == FrameKind::kReferencePart && !layout.reference_part) {
+    item.Fail("the frame of the reference part needs the key 'reference_part'");
+  }
+  const bool has_lines =
+      std::any_of(layout.parts.begin(), layout.parts.end(),
+                  [](const LayoutPart& part) { return !part.horizontal.empty(); });
+  if (frame.kind == FrameKind::kLines && !has_lines) {
+    item.Fail("the frame by lines needs a part with horizontal lines");
+  }
+  return frame;
+}
+
+}  // namespace velamap

@@ -1,0 +1,26 @@
+// The values of a layout file's keys. All functions throw InputError that names file, line and key.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "importer/layout/frame_choice.h"
+#include "importer/layout/layout.h"
+#include "importer/layout/yaml_item.h"
+
+namespace velamap {
+
+// Returns whether the text is a marker id.
+bool ParseMarkerId(const std::string& text, int* id);
+
+int ReadMarkerId(const YamlItem& item);
+double ReadMetres(const YamlItem& item);
+
+// The list of measured distances. `layout` has its parts.
+std::vector<KnownDistance> ReadDistances(const YamlItem& list, const Layout& layout);
+
+// The frame of the result. `layout` has its parts and its reference part.
+FrameChoice ReadFrame(const YamlItem& item, const Layout& layout);
+
+}  // namespace velamap

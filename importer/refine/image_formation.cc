@@ -1,0 +1,115 @@
+#include "importer/refine/image_formation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+namespace velamap {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kWhite = 255.0;
+constexpr int kKernelReachPx = 5;
+
+double GrayOfLight(const ImageFormationParameters& parameters, double light) {
+  if (parameters.is_inverted) {
+    ImageFormationParameters upright = parameters;
+    upright.is_inverted = false;
+    return kWhite - GrayOfLight(upright, kWhite - light);
+  }
+  const double v = std::pow(std::max(light, 0.0) / kWhite, 1 / parameters.gamma);
+  return kWhite * (v - parameters.s_amplitude * std::sin(2 * kPi * v));
+}
+
+// With f the values before and g those after the sharpening, g = (1 + a) f - a G f is solved for
+// f by the iteration f <- (g + a G f) / (1 + a), which contracts by a / (1 + a).
+cv::Mat MakeUnsharpeningKernel(const ImageFormationParameters& parameters) {
+  constexpr int kIterations = 60;
+  const double a = parameters.sharpening;
+  if (a == 0) return {};
+  const int reach = 4 * kKernelReachPx, size = 2 * reach + 1;
+  cv::Mat unit(size, size, CV_32F, cv::Scalar(0));
+  unit.at<float>(reach, reach) = 1;
+  cv::Mat kernel = unit.clone(), blurred;
+  for (int i = 0; i < kIterations; ++i) {
+    cv::GaussianBlur(kernel, blurred, {0, 0}, parameters.sharpening_radius_px);
+    kernel = (unit + a * blurred) / (1 + a);
+  }
+  const int width = 2 * kKernelReachPx + 1;
+  cv::Mat middle =
+      kernel(cv::Rect(reach - kKernelReachPx, reach - kKernelReachPx, width, width)).clone();
+  middle /= cv::sum(middle)[0];
+  return middle;
+}
+
+}  // namespace
+
+ToneCurve::ToneCurve(const ImageFormationParameters& parameters)
+    : is_linear_(parameters.gamma == 1.0 && parameters.s_amplitude == 0.0) {
+  for (int i = 0; i <= kSteps; ++i) {
+    const double root = static_cast<double>(i) * kMaxRoot / kSteps;
+    gray_of_root_[static_cast<std::size_t>(i)] =
+        static_cast<float>(GrayOfLight(parameters, std::min(root * root, kWhite)));
+  }
+  // Beyond white the curve keeps its last slope.
+  const int white = static_cast<int>(std::sqrt(kWhite) / kMaxRoot * kSteps);
+  const auto gray = [this](int i) -> float& { return gray_of_root_[static_cast<std::size_t>(i)]; };
+  const float step = gray(white) - gray(white - 1);
+  for (int i = white + 1; i <= kSteps; ++i) gray(i) = gray(i - 1) + step;
+}
+
+double ToneCurve::Encode(double light) const {
+  Floats slope;
+  return static_cast<double>(Encode(AllLanes(light), &slope)[0]);
+}
+
+double ToneCurve::Decode(double gray) const {
+  if (is_linear_) return gray;
+  const auto high = std::upper_bound(gray_of_root_.begin() + 1, gray_of_root_.end() - 1,
+                                     static_cast<float>(gray));
+  const double low = *(high - 1), step = std::max(*high - low, 1e-6);
+  const double idx = static_cast<double>(high - 1 - gray_of_root_.begin()) + (gray - low) / step;
+  const double root = std::max(0.0, idx * kMaxRoot / kSteps);
+  return root * root;
+}
+
+ImageFormation::ImageFormation(const ImageFormationParameters& parameters)
+    : parameters_(parameters),
+      tone_(parameters),
+      unsharpening_(MakeUnsharpeningKernel(parameters)) {}
+
+GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation) {
+  const cv::Rect image(0, 0, gray.cols, gray.rows);
+  const cv::Rect inside = box & image;
+  GrayPatch patch;
+  patch.origin_px = inside.tl();
+  if (formation.unsharpening().empty()) {
+    gray(inside).convertTo(patch.values, CV_32F);
+    return patch;
+  }
+  const cv::Point reach(kKernelReachPx, kKernelReachPx);
+  const cv::Rect wide = cv::Rect(inside.tl() - reach, inside.br() + reach) & image;
+  cv::Mat values, filtered;
+  gray(wide).convertTo(values, CV_32F);
+  cv::filter2D(values, filtered, CV_32F, formation.unsharpening(), {-1, -1}, 0,
+               cv::BORDER_REPLICATE);
+  patch.values = filtered(inside - wide.tl()).clone();
+  return patch;
+}
+
+double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {
+  const cv::Mat& values = patch.values;
+  // Written so that a NaN becomes a place inside.
+  const auto clamped = [](double x, double max) { return x > 0 ? std::min(x, max) : 0.0; };
+  const double x = clamped(x_px.x() - patch.origin_px.x, values.cols - 1.001);
+  const double y = clamped(x_px.y() - patch.origin_px.y, values.rows - 1.001);
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const double fx = x - column, fy = y - row;
+  const float* upper = values.ptr<float>(row) + column;
+  const float* lower = values.ptr<float>(row + 1) + column;
+  return (1 - fy) * ((1 - fx) * upper[0] + fx * upper[1]) +
+         fy * ((1 - fx) * lower[0] + fx * lower[1]);
+}
+
+}  // namespace velamap

@@ -1,0 +1,103 @@
+// How light from a printed marker becomes grey values, beyond the blur that each fit finds itself.
+//
+//   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
+//   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
+//   sharpening sharpened = gray + sharpening (gray - G gray),  G a Gaussian of sharpening_radius_px
+//
+// A camera blurs linear light and encodes it afterwards, which moves the middle of an encoded edge
+// by up to 0.8 blur sigmas towards the dark side. The power covers sRGB and Rec. 709 to a few
+// per cent; the sine is the S-shaped contrast that many cameras add. Light and grey values run from
+// 0 to 255.
+
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/refine/float_lanes.h"
+
+namespace velamap {
+
+// The defaults are a camera whose grey values are proportional to light, and a perfect print.
+struct ImageFormationParameters {
+  double gamma = 1.0;
+  double s_amplitude = 0.0;
+  double sharpening = 0.0;
+  double sharpening_radius_px = 1.0;
+  double ink_spread_sides = 0.0;
+  bool is_inverted = false;  // the images hold 255 less the recorded grey values
+};
+
+// A tone curve as a table over the square root of light, where all curves are smooth.
+class ToneCurve {
+ public:
+  explicit ToneCurve(const ImageFormationParameters& parameters);
+
+  bool IsLinear() const { return is_linear_; }
+
+  // Grey values of a group of lights, and their slope. The curve continues as a line beyond the
+  // ends of the table.
+  Floats Encode(Floats light, Floats* slope) const {
+    if (is_linear_) {
+      *slope = AllLanes(1.0);
+      return light;
+    }
+    constexpr float kScale = static_cast<float>(kSteps) / kMaxRoot;
+    const Floats root = Sqrt(Max(light, AllLanes(kMinLight)));
+    const Floats place = Min(root * kScale, AllLanes(kSteps - 1));
+    const Ints index = __builtin_convertvector(place, Ints);
+    const Floats rest = root * kScale - __builtin_convertvector(index, Floats);
+    Floats low, step;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto i = static_cast<std::size_t>(index[lane]);
+      low[lane] = gray_of_root_[i];
+      step[lane] = gray_of_root_[i + 1] - gray_of_root_[i];
+    }
+    *slope = step * (0.5f * kScale) / root;
+    return low + rest * step + (light - root * root) * *slope;
+  }
+
+  double Encode(double light) const;
+  double Decode(double gray) const;  // the inverse
+
+ private:
+  static constexpr int kSteps = 512;
+  static constexpr float kMaxRoot = 20.0f;  // the root of the largest light, 400
+  static constexpr double kMinLight = 0.05;
+
+  bool is_linear_;
+  std::array<float, kSteps + 1> gray_of_root_;
+};
+
+// The parameters, ready for many markers.
+class ImageFormation {
+ public:
+  explicit ImageFormation(const ImageFormationParameters& parameters = {});
+
+  const ImageFormationParameters& parameters() const { return parameters_; }
+  const ToneCurve& tone() const { return tone_; }
+  // Kernel that undoes the sharpening; empty for none.
+  const cv::Mat& unsharpening() const { return unsharpening_; }
+
+ private:
+  ImageFormationParameters parameters_;
+  ToneCurve tone_;
+  cv::Mat unsharpening_;
+};
+
+// A part of an image in grey values without the sharpening.
+struct GrayPatch {
+  cv::Mat values;       // CV_32F
+  cv::Point origin_px;  // of its first pixel in the image
+};
+
+// Cuts the part of the 8-bit image within `box`, which may reach beyond the image.
+GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation);
+
+// Bilinear value at a place in OpenCV's pixel frame of the image; places outside the patch take the
+// nearest value inside.
+double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px);
+
+}  // namespace velamap

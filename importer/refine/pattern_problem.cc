@@ -1,0 +1,301 @@
+#include "importer/refine/pattern_problem.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "importer/geometry/least_squares.h"
+#include "importer/geometry/unit_square_map.h"
+#include "importer/refine/pattern_picture.h"
+
+namespace velamap {
+namespace {
+
+using P = PatternParameters;
+
+constexpr double kMinContrast = 12.0;    // grey levels
+constexpr double kMaxRelativeRms = 0.2;  // of the residuals, relative to the contrast
+constexpr double kPixelNoise = 3.0;      // grey levels; sets the weight of the priors
+constexpr double kMinBlurPx = 0.3, kMaxBlurPx = 4.0;
+// Usual for cloth; the label of a can has ten times as much.
+constexpr double kBendOfDiagonal = 0.003;
+constexpr double kMinMargin = 0.1, kMaxMargin = 1.5, kMarginSigma = 0.5;  // cells
+constexpr int kFirstPixels = 200, kPixels = 1000;
+
+// Pixels of a marker and around it, in groups.
+struct Pixels {
+  struct Group {
+    Floats x, y;  // relative to center_px of the model
+    Floats gray;
+  };
+  std::vector<Group> groups;
+  int count = 0;  // the last group may be incomplete
+};
+
+// Completes the last group with copies of its first pixel.
+inline void FillUp(Pixels* pixels) {
+  for (int lane = pixels->count % kLanes; lane > 0 && lane < kLanes; ++lane) {
+    Pixels::Group& last = pixels->groups.back();
+    last.x[lane] = last.x[0];
+    last.y[lane] = last.y[0];
+    last.gray[lane] = last.gray[0];
+  }
+}
+
+// Every k-th pixel that the model covers with these parameters, where k leaves about `max_pixels`.
+VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const PatternProblem& problem,
+                                           const P::Vector& parameters, int max_pixels) {
+  const PatternPicture picture(problem.model, parameters);
+  const cv::Rect& box = problem.box;
+  const Eigen::Vector2d& center = problem.model.center_px;
+  const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
+  const int stride = static_cast<int>(std::ceil(area_px / max_pixels));
+  Pixels pixels;
+  pixels.groups.reserve(
+      static_cast<std::size_t>(box.height * (box.width / stride + 1) / kLanes + 1));
+  for (int row = box.y; row < box.y + box.height; ++row) {
+    const float* values = problem.patch.values.ptr<float>(row - problem.patch.origin_px.y);
+    const Floats y = AllLanes(row - center.y());
+    // Odd rows are shifted, so that all columns are used. The choice of pixels does not depend on
+    // where the box begins.
+    const int shift = row * ((stride + 1) / 2) % stride;
+    const int first = box.x + (shift + stride - box.x % stride) % stride;
+    for (int begin = first; begin < box.x + box.width; begin += kLanes * stride) {
+      const Floats x =
+          static_cast<float>(begin - center.x()) + static_cast<float>(stride) * LaneIndex();
+      const Ints covered = picture.Covers(x, y);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int column = begin + lane * stride;
+        if (!covered[lane] || column >= box.x + box.width) continue;
+        const int place = pixels.count++ % kLanes;
+        if (place == 0) pixels.groups.emplace_back();
+        Pixels::Group& group = pixels.groups.back();
+        group.x[place] = x[lane];
+        group.y[place] = y[lane];
+        group.gray[place] = values[column - problem.patch.origin_px.x];
+      }
+    }
+  }
+  FillUp(&pixels);
+  return pixels;
+}
+
+VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const Pixels& pixels,
+                                  const P::Vector& parameters, bool with_hessian,
+                                  PatternEquations* equations) {
+  const PatternPicture picture(problem.model, parameters);
+  equations->Clear(with_hessian);
+  PatternPixels modelled;
+  int left = pixels.count;
+  for (const Pixels::Group& group : pixels.groups) {
+    picture.At(group.x, group.y, &modelled);
+    equations->Add(&modelled.jacobian, modelled.gray - group.gray, left);
+    left -= kLanes;
+  }
+  equations->Finish(parameters - problem.mean, problem.weight);
+}
+
+double LightAt(const PatternProblem& problem, const UnitSquareMap& map, double u, double v) {
+  return problem.model.tone->Decode(InterpolatePatch(problem.patch, map.ToImage(u, v)));
+}
+
+// Widths of the quiet zone in cells, ordered as in PatternParameters: the place on the way outwards
+// from a side where the light is halfway between `light`, the light cells of the marker, and what
+// lies beyond. 1 where both are alike.
+Eigen::Vector4d FindMargins(const PatternProblem& problem, const UnitSquareMap& map, double dark,
+                            double light) {
+  constexpr int kPlaces = 9, kSteps = 18;
+  constexpr double kStep = 0.1;   // cells
+  constexpr double kAlike = 0.1;  // difference relative to the contrast
+  const int n = problem.model.num_cells;
+  Eigen::Vector4d margins = Eigen::Vector4d::Ones();
+  for (int side = 0; side < 4; ++side) {
+    std::array<double, kSteps> profile{};
+    for (std::size_t k = 0; k < kSteps; ++k) {
+      const double outwards = -(static_cast<double>(k) + 1) * kStep / n;
+      const double across = side % 2 == 0 ? outwards : 1 - outwards;
+      for (int i = 0; i < kPlaces; ++i) {
+        const double along = (i + 0.5) / kPlaces;
+        profile[k] += (side < 2 ? LightAt(problem, map, across, along)
+                                : LightAt(problem, map, along, across)) /
+                      kPlaces;
+      }
+    }
+    const double beyond = (profile[kSteps - 1] + profile[kSteps - 2] + profile[kSteps - 3]) / 3;
+    if (std::abs(beyond - light) < kAlike * (light - dark)) continue;
+    const double middle = 0.5 * (beyond + light);
+    std::size_t k = kSteps - 1;
+    while (k > 0 && (profile[k] > middle) == (beyond > middle)) --k;
+    margins[side] = std::clamp((static_cast<double>(k) + 1.5) * kStep, kMinMargin, kMaxMargin);
+  }
+  return margins;
+}
+
+// Mean light of the marker's dark and light cells. Without light cells, that of the quiet zone
+// close to the marker.
+struct CellLights {
+  double dark = 0.0, light = 0.0;
+};
+
+CellLights ReadCellLights(const PatternProblem& problem, const UnitSquareMap& map) {
+  constexpr double kBesideMarker = 0.3;  // cells
+  const int n = problem.model.num_cells;
+  double sum[2] = {0, 0};
+  int count[2] = {0, 0};
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const int is_light = problem.cells.at<std::uint8_t>(j, i) != 0;
+      sum[is_light] += LightAt(problem, map, (i + 0.5) / n, (j + 0.5) / n);
+      ++count[is_light];
+    }
+  }
+  if (count[1] == 0) {
+    for (int i = 0; i < n; ++i) {
+      sum[1] += LightAt(problem, map, (i + 0.5) / n, -kBesideMarker / n);
+      ++count[1];
+    }
+  }
+  return {sum[0] / count[0], sum[1] / count[1]};
+}
+
+// Sets the initial parameters and the priors. False for too little contrast.
+bool Start(const QuadCorners& corners_px, PatternProblem* problem, PatternMinimum* minimum) {
+  const UnitSquareMap map(corners_px);
+  const CellLights lights = ReadCellLights(*problem, map);
+  const ToneCurve& tone = *problem->model.tone;
+  if (!(tone.Encode(lights.light) - tone.Encode(lights.dark) > kMinContrast / 2)) return false;
+  P::Vector& p = minimum->parameters;
+  p.setZero();
+  for (int i = 0; i < kNumCorners; ++i) {
+    p.segment<2>(2 * i) = corners_px[static_cast<std::size_t>(i)];
+  }
+  p[P::kBlurU] = p[P::kBlurV] = p[P::kSurround] = p[P::kInnerLight] = 1.0;
+  p[P::kDark] = lights.dark;
+  p[P::kLight] = lights.light;
+  p.segment<4>(P::kMargin).setOnes();
+  problem->mean = p;
+  p.segment<4>(P::kMargin) = FindMargins(*problem, map, lights.dark, lights.light);
+  // The light of the marker's cells and of the quiet zone differs little once the tone curve is
+  // known. A looser prior lets a narrow, dim quiet zone pass for a wide one.
+  constexpr double kInnerLightSigma = 0.02;
+  P::Vector sigma;
+  sigma << P::Vector::Constant(1e3).head<8>(), 0.7, 0.7, 1e3, 1e3, 0.15, 0.15, 0.3,
+      kInnerLightSigma, Eigen::Vector4d::Constant(kBendOfDiagonal * problem->model.diagonal_px),
+      Eigen::Vector4d::Constant(kMarginSigma);
+  problem->weight = (kPixelNoise * sigma.cwiseInverse()).cwiseAbs2();
+  return true;
+}
+
+// The fit to some pixels as a problem of MinimizeSquares().
+struct PixelFit {
+  using Parameters = P::Vector;
+  using Equations = PatternEquations;
+  using Step = P::Vector;
+
+  const PatternProblem& problem;
+  const Pixels& pixels;
+
+  void Evaluate(const P::Vector& parameters, bool with_hessian, Equations* equations) const {
+    SumUp(problem, pixels, parameters, with_hessian, equations);
+  }
+  P::Vector Plus(const P::Vector& parameters, const P::Vector& step) const {
+    return parameters + step;
+  }
+  // How far a corner moves, px.
+  double StepSize(const P::Vector& step, const Equations&) const {
+    return step.head<8>().cwiseAbs().maxCoeff();
+  }
+  P::Vector LimitStep(const P::Vector& parameters, P::Vector step) const {
+    for (const int index : {P::kBlurU, P::kBlurV}) {
+      LimitParameter(kMinBlurPx, kMaxBlurPx, parameters[index], &step[index]);
+    }
+    for (int index = P::kMargin; index < P::kMargin + 4; ++index) {
+      LimitParameter(kMinMargin, kMaxMargin, parameters[index], &step[index]);
+    }
+    return step;
+  }
+  void Predict(const P::Vector& step, Equations* equations) const { equations->Predict(step); }
+};
+
+// Fits about `max_pixels` pixels until a step moves no corner further than `tolerance_px`. False
+// for too few pixels or a singular system.
+bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px,
+              PatternMinimum* minimum) {
+  const Pixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
+  if (pixels.count <= P::kCount) return false;
+  LeastSquaresOptions options;
+  options.max_iterations = 10;
+  options.initial_damping = 1e-3;
+  options.min_step = tolerance_px;
+  options.min_step_for_new_hessian = 0.1;
+  return MinimizeSquares(options, PixelFit{problem, pixels}, &minimum->parameters,
+                         &minimum->equations) != Convergence::kFailed;
+}
+
+// The pixels that the quiet zone of one cell can reach; nothing where it leaves the image.
+std::optional<cv::Rect> CoveredBox(const UnitSquareMap& map, int num_cells, const cv::Mat& gray) {
+  const double reach = 1.0 / num_cells;
+  Eigen::Vector2d low = map.ToImage(-reach, -reach), high = low;
+  for (const auto& [u, v] : {std::pair(1 + reach, -reach), std::pair(1 + reach, 1 + reach),
+                             std::pair(-reach, 1 + reach)}) {
+    low = low.cwiseMin(map.ToImage(u, v));
+    high = high.cwiseMax(map.ToImage(u, v));
+  }
+  if (!low.allFinite() || !high.allFinite() || low.minCoeff() < 0 || high.x() > gray.cols - 1 ||
+      high.y() > gray.rows - 1) {
+    return std::nullopt;
+  }
+  return cv::Rect(cv::Point(static_cast<int>(low.x()), static_cast<int>(low.y())),
+                  cv::Point(static_cast<int>(high.x()) + 1, static_cast<int>(high.y()) + 1));
+}
+
+}  // namespace
+
+std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
+                                                 const cv::Mat& cells,
+                                                 const ImageFormation& formation,
+                                                 PatternMinimum* minimum) {
+  PatternProblem problem;
+  problem.cells = cells;
+  problem.model.num_cells = cells.rows;
+  if (problem.model.num_cells + 2 * kRing > kMaxRingedCells) return std::nullopt;
+  const UnitSquareMap map(corners_px);
+  const auto box = CoveredBox(map, cells.rows, gray);
+  if (!box) return std::nullopt;
+  problem.box = *box;
+  // The surroundings are read up to two cells away.
+  const cv::Point beyond(box->width / 4 + 3, box->height / 4 + 3);
+  problem.patch = CutPatch(gray, cv::Rect(box->tl() - beyond, box->br() + beyond), formation);
+  problem.model.tone = &formation.tone();
+  problem.model.ink_spread_cells = formation.parameters().ink_spread_sides * cells.rows;
+  problem.model.center_px = map.ToImage(0.5, 0.5);
+  problem.model.diagonal_px =
+      0.5 * ((corners_px[2] - corners_px[0]).norm() + (corners_px[3] - corners_px[1]).norm());
+  if (!Start(corners_px, &problem, minimum)) return std::nullopt;
+  return problem;
+}
+
+bool RefinePatternFit(double tolerance_px, PatternProblem* problem, PatternMinimum* minimum) {
+  FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
+  return Minimize(*problem, kPixels, tolerance_px, minimum);
+}
+
+// A wide blur needs another pass, because levels, blur and surroundings then depend on each other.
+bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
+  constexpr double kWideBlur = 0.3;  // cells
+  constexpr double kTolerancePx = 0.02;
+  FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
+  if (!Minimize(*problem, kFirstPixels, 5 * kTolerancePx, minimum)) return false;
+  if (!RefinePatternFit(kTolerancePx, problem, minimum)) return false;
+  const double blur_cells =
+      FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
+  if (blur_cells > kWideBlur && !Minimize(*problem, kPixels, kTolerancePx, minimum)) return false;
+  const ToneCurve& tone = *problem->model.tone;
+  const double contrast =
+      tone.Encode(minimum->parameters[P::kLight]) - tone.Encode(minimum->parameters[P::kDark]);
+  return contrast > kMinContrast && minimum->equations.Rms() < kMaxRelativeRms * contrast;
+}
+
+}  // namespace velamap

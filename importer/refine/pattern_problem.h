@@ -1,0 +1,51 @@
+// The fit of a whole marker's pixels as a least-squares problem: pattern_fit.h gives the model.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/geometry/quad.h"
+#include "importer/refine/fit_equations.h"
+#include "importer/refine/image_formation.h"
+#include "importer/refine/pattern_model.h"
+
+namespace velamap {
+
+using PatternEquations = FitEquations<PatternParameters::kCount>;
+
+// The pixels around a marker, its model, and the priors of the parameters. Refers to the cells and
+// the tone curve that it was made with.
+struct PatternProblem {
+  cv::Mat cells;
+  GrayPatch patch;
+  cv::Rect box;  // of the pixels that the model may cover, in the image
+  PatternModel model;
+  PatternParameters::Vector mean, weight;  // priors
+};
+
+// The best parameters so far, and the normal equations there.
+struct PatternMinimum {
+  PatternParameters::Vector parameters;
+  PatternEquations equations;
+};
+
+// `cells` and corners as in FitPattern(). Nothing where the marker leaves the image, has too many
+// cells or too little contrast. `formation` must outlive the problem. Sets the initial parameters.
+std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const QuadCorners& corners_px,
+                                                 const cv::Mat& cells,
+                                                 const ImageFormation& formation,
+                                                 PatternMinimum* minimum);
+
+// Reads the surroundings of the quiet zone again and fits all parameters to about 1000 pixels,
+// until a step moves no corner further than `tolerance_px`. False for a singular system.
+bool RefinePatternFit(double tolerance_px, PatternProblem* problem, PatternMinimum* minimum);
+
+// From the initial parameters: a coarse fit to some pixels, then fine fits to more pixels. False if
+// the image does not show such a marker.
+bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum);
+
+}  // namespace velamap

@@ -1,0 +1,61 @@
+// Tracks of markers: where a marker should be in the next frame, which detection continues which
+// track, and the tracks after a frame.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "importer/detect/marker_quad.h"
+#include "importer/track/local_motion.h"
+
+namespace velamap {
+
+// Corners in OpenCV's pixel frame, px.
+struct MarkerTrack {
+  int marker_id = 0;
+  QuadCorners corners_px;  // in the last frame: found there, or shifted with the markers around
+  std::optional<Eigen::Vector2d> velocity_px{};  // a frame; if found in the last two searches
+  int num_lost = 0;                              // frames since it was found
+  int num_found = 1;                             // frames in which it was found
+  double hit_rate = 0.5;                         // running mean of the frames in which it was found
+};
+
+// Where a marker of the last frame should be in this one, and how far from there it is searched.
+struct TrackPrediction {
+  QuadCorners corners_px;
+  double margin_px = 0.0;
+};
+
+// Predicts by the velocity; a marker without one moves like those around it. `velocities` are those
+// of all markers, each over one frame.
+TrackPrediction PredictByVelocity(const MarkerTrack& track,
+                                  const std::vector<PointMotion>& velocities, int num_frames);
+
+// Predicts by the motion of the markers around it since the last frame.
+TrackPrediction PredictByOthers(const MarkerTrack& track, const std::vector<PointMotion>& motions);
+
+// For each track the index of the quad that continues it, or -1: of the same id, the nearest first.
+std::vector<int> Associate(const std::vector<MarkerTrack>& tracks,
+                           const std::vector<MarkerQuad>& quads, const cv::Size& image_size);
+
+// How the markers of the last frame have moved since.
+std::vector<PointMotion> MotionsOf(const std::vector<MarkerTrack>& tracks,
+                                   const std::vector<MarkerQuad>& quads,
+                                   const std::vector<int>& quad_of_track);
+
+// The tracks after a frame with `quads`: those that go on, shifted where they are lost, and new
+// ones.
+std::vector<MarkerTrack> UpdateTracks(const std::vector<MarkerTrack>& tracks,
+                                      const std::vector<MarkerQuad>& quads,
+                                      const std::vector<int>& quad_of_track,
+                                      const std::vector<PointMotion>& motions,
+                                      const cv::Size& image_size, int num_frames);
+
+// The longest side of the boxes around the markers of the last frame, px.
+double LargestMarker(const std::vector<MarkerTrack>& tracks);
+
+}  // namespace velamap

@@ -1,0 +1,49 @@
+#include "reconstruct/adjust/marker_adjustment_options.h"
+
+#include "reconstruct/colmap/bundle_adjustment_options.h"
+
+namespace velamap {
+
+OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
+  return {"Marker-aware adjustment (--backend markers or both)",
+          {{"MarkerAdjustment.corner_sigma", &options->corner_sigma_px, "px",
+            "1 sigma of a corner's coordinate where the detector gives none", FromTo(1e-4, 100)},
+           {"MarkerAdjustment.corner_sigma_floor", &options->corner_sigma_floor_px, "px",
+            "added to every corner's own sigma, by squares", FromTo(0, 100)},
+           {"MarkerAdjustment.loss", &options->loss_sigmas, "sigmas",
+            "errors beyond this lose weight", FromTo(1, 1000)},
+           {"MarkerAdjustment.outlier", &options->outlier_sigmas, "sigmas",
+            "corners beyond this are left out", FromTo(2, 1000)},
+           {"MarkerAdjustment.print_tolerance", &options->print_tolerance, "fraction",
+            "1 sigma of each printed side", FromTo(1e-6, 0.5)},
+           {"MarkerAdjustment.common_print_tolerance", &options->common_print_tolerance, "fraction",
+            "1 sigma of the print as a whole; widens the scale's sigma", FromTo(0, 0.5)},
+           {"MarkerAdjustment.cloth_flatness", &options->cloth_flatness, "fraction",
+            "1 sigma of a corner's distance from its marker's plane, relative to the side; 0: "
+            "unknown",
+            FromTo(0, 1)},
+           {"MarkerAdjustment.rigid_flatness", &options->rigid_flatness, "fraction",
+            "the same on parts that the layout calls rigid", FromTo(0, 1)},
+           {"MarkerAdjustment.inset_sigma", &options->inset_sigma_px, "px",
+            "1 sigma of an error that all corners share, seen too far inside; widens the scale's "
+            "sigma",
+            FromTo(0, 10)},
+           {"MarkerAdjustment.estimate_inset", &options->estimate_inset, "0|1",
+            "estimate that error from the images"},
+           {"MarkerAdjustment.intrinsics_sigma", &options->intrinsics_sigma, "fraction",
+            "1 sigma of the calibration, where an option BundleAdjustment.refine_* frees it",
+            FromTo(1e-9, 10)},
+           {"MarkerAdjustment.rolling_shutter", &options->rolling_shutter_s, "s",
+            "time from the first row of a frame to the last; 0: not modelled", FromTo(0, 1)}}};
+}
+
+void MarkerAdjustmentOptions::Check() const {
+  CheckRanges(*this);
+  BundleAdjustmentOptions shared;
+  shared.max_num_iterations = max_num_iterations;
+  shared.min_track_length = min_track_length;
+  shared.max_mean_error_px = max_mean_error_px;
+  shared.Check();
+}
+
+}  // namespace velamap

@@ -1,0 +1,60 @@
+// Options of the marker-aware bundle adjustment, marker_adjustment.h.
+
+#pragma once
+
+#include "importer/base/option.h"
+
+namespace velamap {
+
+struct MarkerAdjustmentOptions {
+  // 1 sigma of a corner's coordinate where the detector gives none, px.
+  double corner_sigma_px = 0.1;
+  // Added to every corner's own sigma (root of the sum of squares), px: lens residue and blurred
+  // print, which neither the noise nor the fit of the corner shows.
+  double corner_sigma_floor_px = 0.02;
+  // Cauchy loss: residuals beyond this many sigmas lose weight.
+  double loss_sigmas = 3.0;
+  // Corners beyond this many (calibrated) sigmas are left out in the end.
+  double outlier_sigmas = 4.0;
+  // 1 sigma of every printed side against marker_length, independent between sides, as a fraction;
+  // sqrt(2) times that for the difference of a marker's diagonals. It grows where the sizes of the
+  // markers scatter more.
+  double print_tolerance = 1e-3;
+  // 1 sigma of an error that all sides share (printer, shrinking paper), as a fraction. The images
+  // do not contain it, so nearly all of it is added to the scale's sigma.
+  double common_print_tolerance = 1e-3;
+  // 1 sigma of a corner's distance from the plane of its marker, as a fraction of the side: on
+  // cloth, which bends, and on parts that the layout calls rigid. 0: unknown.
+  double cloth_flatness = 0.01;
+  double rigid_flatness = 1e-3;
+  // 1 sigma of an error that all corners share, px: each is seen too far inside (or outside) its
+  // marker by so much along both sides. It widens the scale's sigma according to the size of the
+  // markers in the images. 0: no such error.
+  double inset_sigma_px = 0.01;
+  // The error is a parameter with this prior, told from the scale by markers that are seen small
+  // and large, oblique and straight. Whatever else depends on these is taken for an inset, too: on
+  // a rendered sail 0.031 +- 0.006 px are found where the truth is 0.013 px, and the scale gets
+  // worse.
+  bool estimate_inset = false;
+  // What is refined has the calibration as its prior.
+  bool refine_focal_length = false;
+  bool refine_principal_point = false;
+  bool refine_extra_params = false;
+  // Of a focal length as a fraction; of the principal point as a fraction of the focal length; of
+  // the other parameters absolute.
+  double intrinsics_sigma = 0.01;
+  // The rows of a frame are read one after another over this time while the camera moves. 0: not
+  // modelled.
+  double rolling_shutter_s = 0.0;
+  int max_num_iterations = 100;
+  int min_track_length = 2;
+  double max_mean_error_px = 5.0;
+  int num_threads = 0;  // 0: one a core; never changes the result
+
+  void Check() const;  // throws InputError that names the option
+};
+
+// All but the members that BundleAdjustmentOptions has, too: their options set both.
+OptionGroup DescribeOptions(MarkerAdjustmentOptions* options);
+
+}  // namespace velamap

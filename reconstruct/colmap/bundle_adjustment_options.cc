@@ -1,0 +1,44 @@
+#include "reconstruct/colmap/bundle_adjustment_options.h"
+
+#include "importer/base/error.h"
+
+namespace velamap {
+
+Option ColmapPathOption(BundleAdjustmentOptions* options) {
+  return {"colmap_path", &options->colmap_path, "path", "COLMAP's program"};
+}
+
+OptionGroup DescribeOptions(BundleAdjustmentOptions* options) {
+  return {"Bundle adjustment",
+          {ColmapPathOption(options),
+           {"BundleAdjustment.refine_focal_length", &options->refine_focal_length, "0|1",
+            "adjust the focal length of the calibration"},
+           {"BundleAdjustment.refine_principal_point", &options->refine_principal_point, "0|1",
+            "adjust the principal point"},
+           {"BundleAdjustment.refine_extra_params", &options->refine_extra_params, "0|1",
+            "adjust the distortion"},
+           {"BundleAdjustment.max_num_iterations", &options->max_num_iterations, "count",
+            "most iterations of a round", AtLeast(1)},
+           {"BundleAdjustment.function_tolerance", &options->function_tolerance, "fraction",
+            "a smaller relative change of the cost ends a round", AtLeast(0)},
+           {"BundleAdjustment.max_num_rounds", &options->max_num_rounds, "count",
+            "most rounds of adjustment and removal of outliers", AtLeast(1)},
+           {"BundleAdjustment.outlier_ratio", &options->outlier_ratio, "sigmas",
+            "an error beyond so many robust sigmas is an outlier", AtLeast(2)},
+           {"BundleAdjustment.min_outlier_error", &options->min_outlier_error_px, "px",
+            "a smaller error is no outlier", AtLeast(0)},
+           {"BundleAdjustment.min_track_length", &options->min_track_length, "images",
+            "fewest images that have to see a corner", AtLeast(2)},
+           {"BundleAdjustment.max_mean_error", &options->max_mean_error_px, "px",
+            "a larger mean reprojection error is no result", AtLeast(0)}}};
+}
+
+void BundleAdjustmentOptions::Check() const {
+  if (colmap_path.empty()) {
+    throw InputError(OptionName(&BundleAdjustmentOptions::colmap_path) +
+                     ": is empty; give COLMAP's program");
+  }
+  CheckRanges(*this);
+}
+
+}  // namespace velamap

@@ -1,0 +1,33 @@
+// Options of the bundle adjustment, bundle_adjustment.h.
+
+#pragma once
+
+#include <string>
+
+#include "importer/base/option.h"
+
+namespace velamap {
+
+struct BundleAdjustmentOptions {
+  std::string colmap_path = "colmap";
+  bool refine_focal_length = false;  // a given calibration is held fixed
+  bool refine_principal_point = false;
+  bool refine_extra_params = false;
+  int max_num_iterations = 100;
+  double function_tolerance = 1e-6;
+  // COLMAP's adjustment has no robust loss, so observations are judged between rounds: those beyond
+  // outlier_ratio robust sigmas of all residuals are left out, but never below
+  // min_outlier_error_px; one that was left out and fits again returns.
+  int max_num_rounds = 6;
+  double outlier_ratio = 6.0;
+  double min_outlier_error_px = 0.5;
+  int min_track_length = 2;
+  double max_mean_error_px = 5.0;  // a model with a larger mean reprojection error is no result
+
+  void Check() const;  // throws InputError that names the option
+};
+
+Option ColmapPathOption(BundleAdjustmentOptions* options);
+OptionGroup DescribeOptions(BundleAdjustmentOptions* options);
+
+}  // namespace velamap

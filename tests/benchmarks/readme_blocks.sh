@@ -1,0 +1,172 @@
+# shellcheck shell=bash
+# The blocks of measured numbers that the benchmarks make, as those of workflows/studies/readme_blocks.sh.
+# shellcheck disable=SC2016  # awk programs stand in single quotes
+
+# What the awk programs below share: collect(row) takes the line into the row of the table that repeated
+# runs have in common; order[1..num_rows] are the rows.
+repeats_library='
+  function collect(row,    name) {
+    if (!(row in seen)) { seen[row]; order[++num_rows] = row }
+    for (name in column) note(row SUBSEP name, $column[name])
+  }
+  function check(name) { if (!(name in column)) exit 3 }
+  function seconds(row, name) { check(name); return span(least[row, name], most[row, name], 3) }
+  function ratio(row, a, b, format) {
+    check(a); check(b)
+    return least[row, b] > 0 ? num(least[row, a] / least[row, b], format) : "-" }
+  function clip_title() { return cell("kind") ", " cell("width_px") " px, " cell("num_frames") " frames" }'
+
+block_import_speed() {
+  echo "| clip | velamap: CPU s, markers | OpenCV's loop: CPU s, markers | decoding alone: CPU s |"
+  echo "|---|---|---|---|"
+  table detection.csv "$repeats_library"'
+    { collect(clip_title()) }
+    END {
+      for (i = 1; i <= num_rows; i++) {
+        row = order[i]
+        printf "| %s | %s, %d | %s, %d | %s |\n", row, num(least[row, "velamap_cpu_s"], 3),
+          least[row, "velamap_markers"], num(least[row, "opencv_cpu_s"], 3), least[row, "opencv_markers"],
+          num(least[row, "decoding_cpu_s"], 3)
+      }
+    }'
+}
+
+block_detection() {
+  echo "Made by $(made_by detection.csv); least and most of the runs, ratios of the least:"
+  echo
+  echo "| clip | velamap, CPU s | markers | OpenCV's loop, CPU s | markers | decoding, CPU s | OpenCV / velamap | decoding / velamap |"
+  echo "|---|---|---|---|---|---|---|---|"
+  table detection.csv "$repeats_library"'
+    { collect(clip_title()) }
+    END {
+      for (i = 1; i <= num_rows; i++) {
+        row = order[i]
+        printf "| %s | %s | %d | %s | %d | %s | %s | %s |\n", row, seconds(row, "velamap_cpu_s"),
+          least[row, "velamap_markers"], seconds(row, "opencv_cpu_s"), least[row, "opencv_markers"],
+          seconds(row, "decoding_cpu_s"), ratio(row, "opencv_cpu_s", "velamap_cpu_s", 2),
+          ratio(row, "decoding_cpu_s", "velamap_cpu_s", 2)
+      }
+    }'
+}
+
+block_adjustment() {
+  echo "Made by $(made_by adjustment.csv); least and most of the runs, ratios of the least:"
+  echo
+  echo "| frames | markers | registration and adjustment, CPU s | COLMAP's adjustment, CPU s | velamap / COLMAP |"
+  echo "|---|---|---|---|---|"
+  table adjustment.csv "$repeats_library"'
+    { collect(cell("num_frames") " | " cell("num_markers")) }
+    END {
+      for (i = 1; i <= num_rows; i++) {
+        row = order[i]
+        printf "| %s | %s | %s | %s |\n", row, seconds(row, "velamap_cpu_s"), seconds(row, "colmap_cpu_s"),
+          ratio(row, "velamap_cpu_s", "colmap_cpu_s", 2)
+      }
+    }'
+}
+
+block_main() {
+  echo "Made by $(made_by main.csv); least and most of the runs, the ratio of the least:"
+  echo
+  echo "| clip | automatic_reconstructor, CPU s | decoding, CPU s | ratio | import | register | adjust | export | report |"
+  echo "|---|---|---|---|---|---|---|---|---|"
+  table main.csv "$repeats_library"'
+    { collect(cell("width_px") " px, " cell("num_frames") " frames") }
+    END {
+      for (i = 1; i <= num_rows; i++) {
+        row = order[i]
+        printf "| %s | %s | %s | %s |", row, seconds(row, "automatic_reconstructor_cpu_s"),
+          seconds(row, "decoding_cpu_s"), ratio(row, "automatic_reconstructor_cpu_s", "decoding_cpu_s", 3)
+        m = split("import register adjust export report", stages, " ")
+        for (k = 1; k <= m; k++) printf " %s |", num(least[row, stages[k] "_cpu_s"], 2)
+        print ""
+      }
+    }'
+}
+
+block_memory() {
+  echo "Made by $(made_by memory.csv):"
+  echo
+  echo "| clip | peak memory, MB |"
+  echo "|---|---|"
+  table memory.csv '
+    { printf "| %s px, %s frames | %s |\n", cell("width_px"), cell("num_frames"), cell("peak_memory_mb") }'
+}
+
+block_growth() {
+  echo "Made by $(made_by growth.csv); least and most of the runs, the ratio of the least:"
+  echo
+  echo "| clip | CPU s | CPU s with twice the frames | ratio |"
+  echo "|---|---|---|---|"
+  table growth.csv "$repeats_library"'
+    { collect(cell("width_px") " px, " cell("num_frames") " frames") }
+    END {
+      for (i = 1; i <= num_rows; i++)
+        printf "| %s | %s | %s | %s |\n", order[i], seconds(order[i], "cpu_s"),
+          seconds(order[i], "cpu_s_of_twice_the_frames"),
+          ratio(order[i], "cpu_s_of_twice_the_frames", "cpu_s", 3)
+    }'
+}
+
+block_markers() {
+  echo "Made by $(made_by markers.csv):"
+  echo
+  echo "| markers | detection in one 4K frame, ms | registration and adjustment of 41 frames, ms |"
+  echo "|---|---|---|"
+  table markers.csv '
+    { printf "| %s | %s | %s |\n", cell("num_markers"), cell("detection_ms"),
+        cell("registration_and_adjustment_ms") }'
+}
+
+block_tracking() {
+  echo "Made by $(made_by tracking.csv):"
+  echo
+  echo "| clip | search | markers | found again | same corners to 0.01 px | search, ms a frame |"
+  echo "|---|---|---|---|---|---|"
+  table tracking.csv "$repeats_library"'
+    function percent(x) { return x == "" ? "" : sprintf("%.2f %%", x) }
+    { search = cell("search"); sub(/prior_shape/, "tracked, with prior shape", search)
+      printf "| %s | %s | %s | %s | %s | %s |\n", search == "exhaustive" ? clip_title() : "", search,
+        cell("markers"), percent(cell("found_again_percent")), percent(cell("same_corners_percent")),
+        cell("search_ms") }'
+}
+
+block_sweep() {
+  echo "Made by $(made_by sweep.csv); least and most of the runs:"
+  echo
+  echo "| clip | central frames | single runs, CPU s | sweep with cold starts, CPU s | sweep, CPU s |"
+  echo "|---|---|---|---|---|"
+  table sweep.csv "$repeats_library"'
+    { collect(cell("width_px") " px, " cell("num_frames") " frames | " cell("num_central_frames")) }
+    END {
+      for (i = 1; i <= num_rows; i++)
+        printf "| %s | %s | %s | %s |\n", order[i], seconds(order[i], "single_runs_cpu_s"),
+          seconds(order[i], "sweep_with_cold_starts_cpu_s"), seconds(order[i], "sweep_cpu_s")
+    }'
+}
+
+# corner_table HEADING CONDITION EXPRESSION: the rows of corner_accuracy.csv for which the awk condition
+# holds, with the awk expression in the second column.
+corner_table() {
+  echo "| side px | $1 | side bias px | std px | bound px | error / sigma | SUBPIX: side bias px | std px |"
+  echo "|---|---|---|---|---|---|---|---|"
+  table corner_accuracy.csv '
+    function trial() {
+      if (cell("noise") != 2) return "noise " cell("noise")
+      if (cell("jpeg_quality") != "-") return "JPEG quality " cell("jpeg_quality")
+      if (cell("bend_deg") != 0) return "bent by " cell("bend_deg") " degrees"
+      if (cell("tilt_deg") != "0-50") return "tilt " cell("tilt_deg") " degrees"
+      return ""
+    }
+    '"$2"' {
+      printf "| %s | %s | %+.4f ± %.4f | %.4f | %.4f | %.2f | %+.3f | %.3f |\n", cell("side_px"), '"$3"',
+        cell("side_bias_px"), cell("side_bias_sigma_px"), cell("std_px"), cell("bound_px"),
+        cell("error_over_sigma"), cell("subpix_side_bias_px"), cell("subpix_std_px")
+    }'
+}
+
+block_corner_accuracy() {
+  corner_table "blur px" 'trial() == "" && cell("side_px") ~ /^(12|16|25|35|80|200)$/' 'sprintf("%.1f", cell("blur_px"))'
+}
+
+block_corner_trials() { corner_table "trial" 'trial() != ""' 'trial()'; }

@@ -1,0 +1,100 @@
+#include "importer/base/files.h"
+
+#include <fstream>
+#include <functional>
+
+#include <gmock/gmock.h>
+
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "importer/base/text_file.h"
+#include "tests/support/error_matchers.h"
+#include "tests/support/temp_dir.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+void Touch(const fs::path& path) { std::ofstream(path) << "x"; }
+
+TEST(Files, TooLongNamesAreInputErrors) {
+  const TempDir dir;
+  const std::string path = dir / std::string(300, 'n');
+  const std::vector<std::function<void()>> calls = {
+      [&] { Exists(path); },
+      [&] { IsFolder(path); },
+      [&] { IsRegularFile(path); },
+      [&] { FileSize(path); },
+      [&] { CanonicalPath(path); },
+      [&] { FolderEntries(path); },
+      [&] { FilesBelow(path); },
+      [&] { CreateFolders(path); },
+      [&] { LinkOrCopyFile(path, dir / "to"); },
+      [&] { AtomicFolder folder(path); },
+      [&] { CheckReplaceableFolder(path, {}); },
+      [&] { WriteFileAtomically(path, [](std::ostream&) {}); },
+      [&] { WriteFile(path, [](std::ostream&) {}); },
+      [&] { ReadTextFile(path, "layout file"); }};
+  for (const std::function<void()>& call : calls) {
+    ExpectThrows<InputError>(call, {path, "File name too long"});
+  }
+  RemoveAll(path);
+  EXPECT_TRUE(fs::is_empty(dir.path()));
+}
+
+TEST(Files, WhatIsNotThereIsNoError) {
+  const TempDir dir;
+  Touch(dir / "file");
+  for (const fs::path& path : {fs::path(), dir / "none", dir / "file/below"}) {
+    EXPECT_FALSE(Exists(path)) << path;
+    EXPECT_FALSE(IsFolder(path)) << path;
+    EXPECT_FALSE(IsRegularFile(path)) << path;
+  }
+  EXPECT_TRUE(IsFolder(dir.path()));
+  EXPECT_TRUE(IsRegularFile(dir / "file"));
+  EXPECT_EQ(FileSize(dir / "file"), 1u);
+  ExpectThrows<InputError>([&] { FileSize(dir / "none"); }, {dir / "none", "No such file"});
+  ExpectThrows<InputError>([&] { CreateFolders(dir / "file"); }, {dir / "file"});
+}
+
+TEST(Files, FoldersAreAbsoluteAndWithoutTrailingSlash) {
+  EXPECT_EQ(AbsoluteFolder("/a/./b/../c/"), "/a/c");
+  EXPECT_EQ(AbsoluteFolder("/a/c"), "/a/c");
+  EXPECT_EQ(AbsoluteFolder("c"), fs::current_path() / "c");
+  EXPECT_THROW(AbsoluteFolder(""), InputError);
+}
+
+TEST(Files, ListingsFollowLinksAndLeaveHiddenFilesOut) {
+  const TempDir dir;
+  fs::create_directories(dir / "photos/.thumbnails");
+  fs::create_directories(dir / "elsewhere");
+  Touch(dir / "elsewhere/c");
+  Touch(dir / "photos/b");
+  Touch(dir / "photos/.hidden");
+  Touch(dir / "photos/.thumbnails/b");
+  fs::create_symlink(dir / "elsewhere", dir / "photos/a");
+  fs::create_symlink(dir / "nowhere", dir / "photos/dangling");
+  EXPECT_THAT(FilesBelow(dir / "photos"),
+              UnorderedElementsAre(dir / "photos/a/c", dir / "photos/b"));
+  EXPECT_THAT(FolderEntries(dir / "photos"),
+              ElementsAre(dir / "photos/.hidden", dir / "photos/.thumbnails", dir / "photos/a",
+                          dir / "photos/b", dir / "photos/dangling"));
+}
+
+TEST(Files, LinkedFilesShareTheirSpace) {
+  const TempDir dir;
+  Touch(dir / "from");
+  LinkOrCopyFile(dir / "from", dir / "a/b/to");
+  EXPECT_TRUE(fs::equivalent(dir / "from", dir / "a/b/to"));
+  // A link is impossible where a file is already.
+  Touch(dir / "other");
+  LinkOrCopyFile(dir / "from", dir / "other");
+  EXPECT_EQ(ReadTextFile(dir / "other", "copy"), "x");
+  EXPECT_EQ(FolderEntries(dir.path()).size(), 3u);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,107 @@
+#include "importer/geometry/ransac.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace velamap {
+namespace {
+
+// A number that is the model, its hypothesis and nearly the data: knows what it was asked.
+struct NumberHypothesis {
+  double value = 0.0;
+  double cost = 0.0;
+};
+
+struct FakeEstimator {
+  using Model = double;
+  using Hypothesis = NumberHypothesis;
+  static constexpr int kSampleSize = 3;
+
+  double inlier_ratio = 0.0;
+  mutable int num_samples = 0;
+  mutable int num_refinements = 0;
+
+  // Every fourth sample is degenerate; the others give two models.
+  std::vector<double> Generate(std::mt19937* generator) const {
+    if (num_samples++ % 4 == 3) return {};
+    const double value = static_cast<double>(RandomIndex(generator, 1000));
+    return {value, value + 0.5};
+  }
+  NumberHypothesis Score(double value) const { return {value, std::abs(value - 300)}; }
+  double InlierRatio(const NumberHypothesis&) const { return inlier_ratio; }
+  // Halves the distance to 300, and overshoots once within 1.
+  NumberHypothesis Refine(const NumberHypothesis& hypothesis) const {
+    ++num_refinements;
+    const double off = hypothesis.value - 300;
+    return Score(300 + (std::abs(off) > 1 ? 0.5 * off : -2 * off));
+  }
+  bool HasSameInliers(const NumberHypothesis& a, const NumberHypothesis& b) const {
+    return a.value == b.value;
+  }
+};
+
+TEST(Ransac, DrawsAsManySamplesAsTheInlierRatioNeeds) {
+  const std::pair<double, int> expected[] = {
+      {1.0, 12}, {0.9, 16}, {0.5, 156}, {0.2, 160}, {0, 160}};
+  for (const auto& [inlier_ratio, num_samples] : expected) {
+    const FakeEstimator estimator{inlier_ratio};
+    const auto hypotheses = Ransac({12, 160, 0}, estimator);
+    EXPECT_EQ(estimator.num_samples, num_samples) << inlier_ratio;
+    EXPECT_EQ(hypotheses.size(), 2u * static_cast<std::size_t>(num_samples - num_samples / 4));
+  }
+}
+
+TEST(Ransac, MissesWithAProbabilityBelowOneInABillion) {
+  for (const double inlier_ratio : {0.6, 0.8, 0.95}) {
+    const int num_samples = NumSamples(inlier_ratio, 3, {1, 100000, 0});
+    const double miss = 1 - std::pow(inlier_ratio, 3);
+    EXPECT_LE(std::pow(miss, num_samples), 1e-9);
+    EXPECT_GT(std::pow(miss, num_samples - 2), 1e-9);
+  }
+}
+
+TEST(Ransac, HypothesesComeBestFirstWithTheInitialOnes) {
+  const FakeEstimator estimator{1.0};
+  const auto hypotheses = Ransac({12, 160, 7}, estimator, {300.25, 1e6});
+  EXPECT_EQ(hypotheses.front().value, 300.25);
+  EXPECT_EQ(hypotheses.back().value, 1e6);
+  for (std::size_t i = 1; i < hypotheses.size(); ++i) {
+    EXPECT_LE(hypotheses[i - 1].cost, hypotheses[i].cost);
+  }
+}
+
+TEST(Ransac, SeedsDifferAndTheSameSeedRepeats) {
+  const auto best = [](std::uint32_t seed) {
+    return Ransac({12, 160, seed}, FakeEstimator{1.0}).front().value;
+  };
+  EXPECT_EQ(best(1), best(1));
+  EXPECT_NE(best(1), best(2));
+}
+
+TEST(Ransac, WithoutSamplesTheInitialOnesAreAll) {
+  const FakeEstimator estimator{1.0};
+  EXPECT_EQ(Ransac({12, 0, 0}, estimator, {1.0, 2.0}).size(), 2u);
+  EXPECT_TRUE(Ransac({0, 0, 0}, estimator).empty());
+  EXPECT_EQ(estimator.num_samples, 0);
+}
+
+TEST(RefineHypothesis, GoesOnWhileTheCostFalls) {
+  const FakeEstimator estimator;
+  EXPECT_EQ(RefineHypothesis(estimator, 2, estimator.Score(308)).value, 302);
+  EXPECT_EQ(estimator.num_refinements, 2);
+  // 308, 304, 302, 301; the next one costs more.
+  EXPECT_EQ(RefineHypothesis(estimator, 100, estimator.Score(308)).value, 301);
+  EXPECT_EQ(estimator.num_refinements, 2 + 4);
+}
+
+TEST(RandomIndex, CoversTheRangeEvenly) {
+  std::mt19937 generator(1);
+  std::vector<int> counts(7, 0);
+  for (int i = 0; i < 7000; ++i) ++counts[RandomIndex(&generator, counts.size())];
+  for (const int count : counts) EXPECT_NEAR(count, 1000, 150);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,17 @@
+# The default registration: its parts, then the whole.
+velamap_test(NAME reconstruct_global_test LABEL unit
+  SOURCES
+    global/global_registration_test.cc
+    global/map_adjustment_test.cc
+    global/map_cleanup_test.cc
+    global/map_growth_test.cc
+    global/map_intersection_test.cc
+    global/map_refinement_jacobian_test.cc
+    global/map_refinement_test.cc
+    global/map_resection_test.cc
+    global/map_start_test.cc
+    global/map_verdict_test.cc
+    global/marker_rivals_test.cc
+    global/scene_map.cc
+  LIBRARIES Ceres::ceres
+)

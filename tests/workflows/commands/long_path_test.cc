@@ -1,0 +1,147 @@
+// Every option that takes a path, with a name that is longer than the file system allows.
+
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/aruco.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "importer/database/colmap_database.h"
+#include "reconstruct/model/model_io.h"
+#include "tests/importer/marker_builders.h"
+#include "tests/support/synthetic_scene.h"
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/commands/true_model.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+using Options = std::map<std::string, std::string>;
+
+// A cameras.txt of COLMAP for the clip.
+constexpr char kCamera[] = "1 PINHOLE 320 200 300 300 160 100\n";
+
+class LongPathTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  // What each command needs to succeed, or to fail for want of markers after all paths were used.
+  Options OptionsOf(const std::string& command) {
+    const std::string out = path("out");
+    if (command == "automatic_reconstructor" || command == "marker_importer") {
+      WriteClip();
+      Options options = {{"image_path", path("clip.avi")},
+                         {"camera_path", path("cameras.txt")},
+                         {"dictionary", "DICT_4X4_50"},
+                         {"marker_length", "0.1"}};
+      options[command == "marker_importer" ? "database_path" : "workspace_path"] = out;
+      return options;
+    }
+    if (command == "shape_analyzer") {
+      return {{"shape_path", path("shape")}, {"input_path", path("model")}};
+    }
+    if (command == "shape_comparer") {
+      return {{"shape_path", path("shape")}, {"reference_path", path("shape")}};
+    }
+    Options options = {{"marker_length", "0.1"}};
+    options[command == "shape_exporter" ? "shape_path" : "output_path"] = out;
+    if (command == "shape_exporter" || command == "bundle_adjuster") {
+      options["input_path"] = path("model");
+    } else {
+      options["database_path"] = path("database.db");
+    }
+    return options;
+  }
+
+  void SetUp() override {
+    SyntheticSceneOptions options;
+    options.num_rows = 3;
+    options.num_columns = 4;
+    options.num_frames = 8;
+    options.video = false;
+    const SyntheticScene scene = MakeSyntheticScene(options);
+    WriteModel(TrueModel(scene), path("model"), ModelFormat::kBinary);
+    {
+      ColmapDatabase database(path("database.db"), ColmapDatabase::Mode::kReadWriteCreate);
+      const CameraId camera_id = database.AddCamera(scene.camera);
+      for (const FrameDetections& frame : scene.frames) database.AddImage(camera_id, frame, "test");
+    }
+    const ProgramRun run = RunVelamap({"shape_exporter", "--input_path", path("model"),
+                                       "--marker_length", "0.1", "--shape_path", path("shape")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+
+  void WriteClip() {
+    WriteTextFile(dir_ / "cameras.txt", kCamera);
+    const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
+    cv::VideoWriter writer(path("clip.avi"), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
+                           cv::Size(320, 200));
+    for (int i = 0; i < 3; ++i) {
+      writer << DrawMarkers(dictionary, cv::Size(320, 200),
+                            {{1, 20 + i, 40, 72}, {2, 120, 40, 72}});
+    }
+  }
+
+  // The options whose value is a path, or may be one, by the help.
+  static std::vector<std::string> PathOptions(const std::string& command) {
+    const std::regex option("  --(\\S+) (name\\|)?path\\b.*");
+    std::istringstream help(RunVelamap({command, "--help"}).out);
+    std::vector<std::string> names;
+    std::smatch match;
+    for (std::string line; std::getline(help, line);) {
+      if (std::regex_match(line, match, option)) names.push_back(match[1]);
+    }
+    return names;
+  }
+
+  std::string path(const std::string& name) const { return (dir_ / name).string(); }
+
+  TempDir dir_;
+};
+
+TEST_P(LongPathTest, IsAnInputError) {
+  const std::string long_name(300, 'n');
+  const std::vector<std::string> names = PathOptions(GetParam());
+  EXPECT_GE(names.size(), 4u);
+  for (const std::string& name : names) {
+    Options options = OptionsOf(GetParam());
+    options[name] = path(long_name);
+    // Each way of adjustment reads paths of its own. Without COLMAP its options end with exit
+    // code 3.
+    const bool is_of_colmap = name == "colmap_path" || name == "log_path";
+    if (GetParam() == "bundle_adjuster" || GetParam() == "central_frame_sweeper") {
+      options["backend"] = is_of_colmap ? "colmap" : "markers";
+    }
+    // A layout names dictionary and length itself.
+    if (name == "layout_path") {
+      options.erase("dictionary");
+      options.erase("marker_length");
+    }
+    std::vector<std::string> arguments = {GetParam()};
+    for (const auto& [key, value] : options) arguments.insert(arguments.end(), {"--" + key, value});
+    const ProgramRun run = RunVelamap(arguments);
+    EXPECT_TRUE(run.exit_code == 2 || (is_of_colmap && run.exit_code == 3))
+        << name << ": exit code " << run.exit_code << ": " << run.err;
+    EXPECT_EQ(NumErrorLines(run.err), 1) << name << ": " << run.err;
+    if (!is_of_colmap) {
+      EXPECT_THAT(run.err, HasSubstr(long_name)) << name;
+    }
+    fs::remove_all(dir_ / "out");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, LongPathTest,
+                         ::testing::Values("automatic_reconstructor", "marker_importer",
+                                           "frame_registrator", "bundle_adjuster",
+                                           "central_frame_sweeper", "shape_exporter",
+                                           "shape_analyzer", "shape_comparer"),
+                         [](const ::testing::TestParamInfo<std::string>& test) {
+                           return test.param;
+                         });
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,161 @@
+// No message may advise an option that the command at hand does not have.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/workflows/run_velamap.h"
+#include "workflows/commands/commands.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Names = std::set<std::string>;
+
+// The commands that run the code of a folder or file; of several entries the longest counts.
+const std::map<std::string, Names> kCommandsOfPath = {
+    {"importer/", {"automatic_reconstructor", "marker_importer"}},
+    {"importer/base/",
+     {"automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
+      "central_frame_sweeper", "shape_exporter", "shape_analyzer", "shape_comparer"}},
+    {"importer/layout/",
+     {"automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
+      "central_frame_sweeper", "shape_exporter", "shape_analyzer"}},
+    {"importer/layout/layout_reader.cc", {"automatic_reconstructor", "shape_comparer"}},
+    {"importer/database/",
+     {"automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
+      "central_frame_sweeper"}},
+    {"reconstruct/", {"automatic_reconstructor", "frame_registrator", "central_frame_sweeper"}},
+    // The sweep names central frames that can be found, and is the thesis's.
+    {"reconstruct/registration/frame_order.cc", {"automatic_reconstructor", "frame_registrator"}},
+    {"reconstruct/registration/registration_options.cc",
+     {"automatic_reconstructor", "frame_registrator"}},
+    {"reconstruct/global/", {"automatic_reconstructor", "frame_registrator"}},
+    {"reconstruct/model/",
+     {"automatic_reconstructor", "frame_registrator", "central_frame_sweeper", "bundle_adjuster",
+      "shape_exporter", "shape_analyzer", "shape_comparer"}},
+    {"reconstruct/colmap/",
+     {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
+    {"reconstruct/colmap/colmap_runner.cc",
+     {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper", "version"}},
+    {"reconstruct/adjust/",
+     {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
+    {"exporters/", {"automatic_reconstructor", "shape_exporter"}},
+    {"exporters/compare/", {"shape_comparer"}},
+    {"exporters/formats/mesh_reader.cc", {"shape_comparer"}},
+    {"workflows/run/pipeline.cc", {"automatic_reconstructor"}},
+    {"workflows/run/workspace.cc", {"automatic_reconstructor"}},
+    {"workflows/run/central_frame_sweep.cc", {"central_frame_sweeper"}},
+    {"workflows/options/", {"automatic_reconstructor"}},
+    {"workflows/options/sail_options.cc", {"automatic_reconstructor", "shape_exporter"}},
+};
+
+// Arguments of COLMAP's own programs.
+const std::map<std::string, Names> kOptionsOfColmap = {
+    {"reconstruct/colmap/bundle_adjustment.cc", {"input_path", "output_path"}},
+    {"workflows/run/pipeline.cc", {"input_path"}},
+    {"workflows/run/summary.cc", {"database_path", "image_path", "import_path"}},
+};
+
+// Where --name and --option stand for any option.
+const std::set<std::string> kFilesOfAnyOption = {"workflows/options/option_parser.cc",
+                                                 "workflows/commands/commands.cc"};
+
+std::map<std::string, Names> OptionsOfCommands() {
+  std::map<std::string, Names> options;
+  for (const Command& command : AllCommands()) {
+    Names names = OptionNames(command.syntax);
+    names.insert({"help", "version", "project_path"});
+    options.emplace(command.syntax.name, names);
+  }
+  return options;
+}
+
+Names CommandsOf(const std::string& path, const std::map<std::string, Names>& options) {
+  const std::string folder = "workflows/commands/";
+  if (path.rfind(folder, 0) == 0) {
+    const std::string command = fs::path(path).stem();
+    if (options.count(command) > 0) return {command};
+  }
+  std::string longest;
+  for (const auto& [prefix, commands] : kCommandsOfPath) {
+    if (path.rfind(prefix, 0) == 0 && prefix.size() > longest.size()) longest = prefix;
+  }
+  return longest.empty() ? Names{} : kCommandsOfPath.at(longest);
+}
+
+// What stands in the quotes of a line of code, one after another.
+std::string QuotedText(const std::string& line) {
+  static const std::regex quoted(R"re("((?:[^"\\]|\\.)*)")re");
+  std::string text;
+  if (std::regex_search(line, std::regex(R"(^\s*(//|#include))"))) return text;
+  for (std::sregex_iterator it(line.begin(), line.end(), quoted), end; it != end; ++it) {
+    text += (*it)[1].str() + "\n";
+  }
+  return text;
+}
+
+// Names of options in a text: after two dashes, or Section.name.
+Names OptionsIn(const std::string& text) {
+  static const std::regex name(
+      R"((?:--)([A-Za-z]+(?:[._][a-z_]+)*)|\b((?:ArucoDetection|Video|Registration|)"
+      R"(BundleAdjustment|MarkerAdjustment|Section|Surface)\.[a-z]+(?:_[a-z]+)*)\b(?!\*))");
+  Names names;
+  for (std::sregex_iterator it(text.begin(), text.end(), name), end; it != end; ++it) {
+    names.insert((*it)[1].matched ? (*it)[1].str() : (*it)[2].str());
+  }
+  return names;
+}
+
+// `velamap COMMAND --option` in a text advises another command.
+void TakeAdvisedCommand(const std::string& text, Names* commands) {
+  static const std::regex advice("velamap ([a-z_]+) --");
+  std::smatch match;
+  if (std::regex_search(text, match, advice)) *commands = {match[1].str()};
+}
+
+TEST(OptionMessages, NameNoOptionThatTheCommandDoesNotHave) {
+  const std::map<std::string, Names> options = OptionsOfCommands();
+  int num_names = 0;
+  for (const char* room : {"importer", "reconstruct", "exporters", "workflows"}) {
+    const fs::path root = fs::path(VELAMAP_SOURCE_DIR);
+    for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
+      const fs::path& extension = entry.path().extension();
+      if (extension != ".cc" && extension != ".h") continue;
+      const std::string path = fs::relative(entry.path(), root);
+      if (kFilesOfAnyOption.count(path) > 0) continue;
+      std::ifstream stream(entry.path());
+      std::string before;
+      for (std::string line; std::getline(stream, line);) {
+        const std::string text = QuotedText(line);
+        Names commands = CommandsOf(path, options);
+        TakeAdvisedCommand(before + text, &commands);
+        before = text.empty() ? "" : text.substr(0, text.size() - 1);
+        for (const std::string& name : OptionsIn(text)) {
+          const auto colmap = kOptionsOfColmap.find(path);
+          if (colmap != kOptionsOfColmap.end() && colmap->second.count(name) > 0) continue;
+          ++num_names;
+          EXPECT_TRUE(
+              std::any_of(options.begin(), options.end(),
+                          [&](const auto& command) { return command.second.count(name) > 0; }))
+              << path << ": no command has " << name;
+          for (const std::string& command : commands) {
+            EXPECT_EQ(options.at(command).count(name), 1u)
+                << path << ": " << command << " has no " << name;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(num_names, 100);  // the search finds what it is for
+}
+
+}  // namespace
+}  // namespace velamap

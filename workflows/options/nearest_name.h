@@ -1,0 +1,14 @@
+// What a mistyped name was probably meant to be.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace velamap {
+
+// The known name that is nearest to `text`; "" if none is near. A whole word too many or missing,
+// such as the section before the dot, counts as two letters at most.
+std::string NearestName(const std::string& text, const std::vector<std::string>& names);
+
+}  // namespace velamap

@@ -1,0 +1,279 @@
+# shellcheck shell=bash
+# The blocks of measured numbers that the studies make: block_NAME prints the text between
+# <!-- numbers: NAME --> and <!-- end -->. Sourced by update_readmes.sh after readme_tables.sh.
+# shellcheck disable=SC2016  # awk programs stand in single quotes
+
+# --- sample_project ---
+
+block_sample_output() {
+  echo '```'
+  data sample_project.txt
+  echo '```'
+}
+
+# sample OBJECT KEY FORMAT: a metric of a whole object.
+sample() { value sample_project.csv value "$3" object="$1" table= key="$2"; }
+
+# sample_span TABLE KEY FORMAT: least and most of the cube's rows.
+sample_span() {
+  table sample_project.csv '
+    $1 == "cube" && $2 == "'"$1"'" && $4 == "'"$2"'" { note("x", $5) }
+    END { printf "%s", span(least["x"], most["x"], "'"$3"'") }'
+}
+
+# cube_pairs: sets the angles of neighbouring faces and the distances of opposite ones.
+cube_pairs() {
+  table sample_project.csv '
+    $1 == "cube" && $2 == "part_pairs" && $4 == "angle_deg" {
+      if ($5 < 135) note("angle", $5); else note("tilt", 180 - $5)
+      off = $5 < 135 ? ($5 > 90 ? $5 - 90 : 90 - $5) : 0
+      note("off", off)
+    }
+    $1 == "cube" && $2 == "part_pairs" && $4 == "distance_mm" { note("distance", $5) }
+    END {
+      if ("'"$1"'" == "distances") printf "%s", span(least["distance"], most["distance"], 4)
+      if ("'"$1"'" == "angles") printf "%s", span(least["angle"], most["angle"], 3)
+      if ("'"$1"'" == "off") printf "%s", num(most["off"], 2)
+      if ("'"$1"'" == "tilt") printf "%s", num(most["tilt"], 2)
+    }'
+}
+
+# summary KEY: a line of the sample run's summary.
+summary() { data sample_project.txt | sed -n "s/^$1: //p"; }
+
+images_used() {
+  data sample_project.csv | awk -F, -v object="$1" '$1 == object && $4 == "images_used" { printf "%s", $5 }'
+}
+
+block_cube() {
+  cat <<ROWS
+| figure | result | what is known |
+|---|---|---|
+| images used | $(images_used cube) | |
+| markers reconstructed | $(sample cube num_markers d) of $(sample cube num_layout_markers d) | most of the missing ones are seen in one image only |
+| mean reprojection error | $(sample cube reprojection_error_px_mean 2) px | |
+| mean distance of a face's corners from their plane | $(sample_span parts corner_plane_error_mm_mean 2) mm | 0.03 mm |
+| angle between neighbouring faces | $(cube_pairs angles) degrees | 90 within 0.6 |
+| distance between opposite faces | $(cube_pairs distances) mm, parallel within $(cube_pairs tilt) degrees | 40.0 to 40.3 mm |
+ROWS
+}
+
+block_stylus() {
+  cat <<ROWS
+| figure | result | what is known |
+|---|---|---|
+| images used | $(images_used stylus) | |
+| markers reconstructed | $(sample stylus num_markers d) of $(sample stylus num_layout_markers d) | |
+| mean reprojection error | $(sample stylus reprojection_error_px_mean 2) px | |
+| RMS distance from the design | $(sample stylus distance_mm_rms 2) mm; $(sample stylus distance_after_scaling_mm_rms 2) mm after an alignment with scale | labels glued to 0.5 mm |
+| scale error | $(sample stylus scale_error_percent +2) % | |
+| mean error of the marker sides | $(sample stylus side_error_mm_mean 2) mm | |
+ROWS
+}
+
+# --- accuracy.sh ---
+
+# One line per data set of accuracy.sh: the rows of the cube's faces count as one.
+accuracy_library='
+  BEGIN {
+    n = split("walls board sail_1080p sail_4k cube stylus board_video aprilgrid", clips, " ")
+    title["walls"] = "rendered walls of 3 m, 1080p, 120 frames"
+    title["board"] = "rendered board of 0.4 m, 720p, 120 frames"
+    title["sail_1080p"] = "rendered sail of 3 x 6 m, 1080p, 400 frames"
+    title["sail_4k"] = "rendered sail of 3 x 6 m, 4K, 400 frames"
+    title["cube"] = "photographs of a 40 mm cube, each face"
+    title["stylus"] = "photographs of a stylus"
+    title["board_video"] = "video of a hand-held board"
+    title["aprilgrid"] = "photographs of an AprilGrid"
+  }
+  { clip = cell("clip"); sub(/_face[0-9]$/, "", clip); key = clip "," cell("way")
+    known[key]
+    for (name in column) if (name != "clip" && name != "way") note(key "," name, $column[name]) }
+  function of(clip, way, name, format,    k) {
+    if (!((clip "," way) in known) || (name != "ratio" && !(name in column))) exit 3
+    k = clip "," way "," name
+    return (k in least) ? span(least[k], most[k], format) : "-"
+  }'
+
+block_accuracy_summary() {
+  cat <<ROWS
+| data | command | velamap | the thesis's method |
+|---|---|---|---|
+| 24 photographs of a 40 mm cube with 2.4 mm markers | \`workflows/sample.sh\` | opposite faces $(cube_pairs distances) mm apart (known: 40.0 to 40.3), neighbours at 90 degrees within $(cube_pairs off) | |
+ROWS
+  table accuracy.csv "$accuracy_library"'
+    function result(clip, way) {
+      return of(clip, way, "distance_mm_rms", 2) " mm RMS, scale " of(clip, way, "scale_error_percent", "+2") \
+        " %, " of(clip, way, "num_markers", "d") " markers"
+    }
+    END {
+      title["stylus"] = "16 photographs of a stylus with 8 markers of 12.6 mm"
+      title["board_video"] = "57 frames of a hand-held board, 10 markers of 40 mm"
+      title["sail_4k"] = "rendered 4K clip of a 3 x 6 m sail, 122 markers of 100 mm, exact truth"
+      title["sail_1080p"] = "the same at 1080p, markers of 16 px"
+      m = split("stylus board_video sail_4k sail_1080p", shown, " ")
+      for (i = 1; i <= m; i++)
+        printf "| %s | `workflows/studies/accuracy.sh` | %s | %s |\n", title[shown[i]],
+          result(shown[i], "global_both"), result(shown[i], "thesis")
+    }'
+}
+
+block_accuracy() {
+  echo "| data | thesis | edge | global | both | to reach |"
+  echo "|---|---|---|---|---|---|"
+  table accuracy.csv "$accuracy_library"'
+    function result(clip, way,    text) {
+      text = of(clip, way, "scale_error_percent", "+2") " % / " of(clip, way, "distance_mm_rms", 2) " / " \
+        of(clip, way, "distance_after_scaling_mm_rms", 2)
+      if (clip ~ /^sail/) text = text ", " of(clip, way, "num_markers", "d") " markers"
+      return text
+    }
+    END {
+      goal["walls"] = "0.05 % / 0.6"; goal["board"] = "0.03 % / 0.04"; goal["sail_1080p"] = "0.3 % / 5"
+      goal["sail_4k"] = "0.1 % / 2"; goal["cube"] = "0.5 %"; goal["aprilgrid"] = "0.1 %"
+      for (i = 1; i <= n; i++)
+        printf "| %s | %s | %s | %s | %s | %s |\n", title[clips[i]], result(clips[i], "thesis"),
+          result(clips[i], "edge"), result(clips[i], "global"), result(clips[i], "global_both"),
+          clips[i] in goal ? goal[clips[i]] : "-"
+    }'
+}
+
+block_sigmas() {
+  echo "| data | scale error, its sigma | shape: RMS, predicted | RMS / predicted | correlation factor | corners left out; above 4 sigma left in |"
+  echo "|---|---|---|---|---|---|"
+  table accuracy.csv "$accuracy_library"'
+    cell("way") == "global_both" && cell("distance_after_scaling_sigma_mm") > 0 {
+      note(key ",ratio", cell("distance_after_scaling_mm_rms") / cell("distance_after_scaling_sigma_mm")) }
+    END {
+      way = "global_both"
+      for (i = 1; i <= n; i++) {
+        clip = clips[i]
+        printf "| %s | %s, %s %% | %s, %s mm | %s | %s | %s %%; %s %% |\n", title[clip],
+          of(clip, way, "scale_error_percent", "+2"), of(clip, way, "scale_sigma_percent", 2),
+          of(clip, way, "distance_after_scaling_mm_rms", 2),
+          of(clip, way, "distance_after_scaling_sigma_mm", 2), of(clip, way, "ratio", 2),
+          of(clip, way, "correlation_factor", 3), of(clip, way, "outliers_percent", 2),
+          of(clip, way, "corners_above_4_sigma_percent", 1)
+      }
+    }'
+}
+
+block_blind_spot() {
+  echo "| rendered data, SUBPIX corners | scale error | RMS with the scale fitted | mean area error | mean reprojection error |"
+  echo "|---|---|---|---|---|"
+  table accuracy.csv "$accuracy_library"'
+    END {
+      for (i = 1; i <= 4; i++) {
+        clip = clips[i]; way = "thesis"
+        printf "| %s | %s %% | %s mm | %s %% | %s px |\n", title[clip],
+          of(clip, way, "scale_error_percent", "+2"), of(clip, way, "distance_after_scaling_mm_rms", 2),
+          of(clip, way, "area_error_percent_mean", 2), of(clip, way, "reprojection_error_px_mean", 2)
+      }
+    }'
+}
+
+block_repeatability() {
+  echo "| object | difference of the two shapes, mm | predicted, mm | difference / predicted |"
+  echo "|---|---|---|---|"
+  table repeatability.csv '
+    { printf "| %s | %s | %s | %s |\n", cell("object"), num(cell("difference_mm"), 2),
+        num(cell("predicted_mm"), 2), num(cell("ratio"), 2) }'
+}
+
+# --- the studies of thesis chapter 4 ---
+
+# by PARAMETER COLUMN FORMAT: the values of parameters.sh as one of n, s, m varies.
+by() { value parameters.csv "$2" "$3" parameter="$1"; }
+
+# under CONDITION COLUMN FORMAT, and the four figures that most rows show.
+under() { value conditions.csv "$2" "$3" condition="$1"; }
+condition() {
+  echo "ratio $(under "$1" reconstruction_ratio 3%) %, area error $(under "$1" area_error_mm2_mean 2) /" \
+    "$(under "$1" area_error_mm2_max d) mm², central reprojection error" \
+    "$(under "$1" central_reprojection_error_px_mean 2) px"
+}
+condition_truth() {
+  echo "RMS $(under "$1" distance_mm_rms 2) mm, scale $(under "$1" scale_error_percent +2) %"
+}
+
+block_thesis_sail() {
+  local base=(parameter=n n=20 s=10 m=5)
+  cat <<ROWS
+| what | thesis | ours | truth of ours | command |
+|---|---|---|---|---|
+| area error, n 20, s 10, m 5, mean / max | about 250 / 1000 mm² | $(value parameters.csv area_error_mm2_mean 2 "${base[@]}") / $(value parameters.csv area_error_mm2_max d "${base[@]}") mm² | scale $(value parameters.csv scale_error_percent +2 "${base[@]}") %, RMS $(value parameters.csv distance_mm_rms 2 "${base[@]}") mm, shape $(value parameters.csv distance_after_scaling_mm_rms 2 "${base[@]}") mm | \`parameters.sh\` |
+| area error against the number of frames | falls to 41 frames, then level | $(by n area_error_mm2_mean 2) mm² for $(by n value d) frames | RMS $(by n distance_mm_rms 2) mm, shape $(by n distance_after_scaling_mm_rms 2) mm | \`parameters.sh\` |
+| reprojection error against the number of frames | rises slightly, max about 2 px | $(by n central_reprojection_error_px_mean 2) px in the mean | | \`parameters.sh\` |
+| ratio against the number of frames | 56.9 % (11) to 40.1 % (101 frames) | $(by n reconstruction_ratio 3%) % | | \`parameters.sh\` |
+| area error against s | poor for small s | $(by s area_error_mm2_mean 2) mm² for s $(by s value d) | RMS $(by s distance_mm_rms 2) mm | \`parameters.sh\` |
+| ratio against s | falls | $(by s reconstruction_ratio 3%) % | | \`parameters.sh\` |
+| area error against m | 5 chosen | $(by m area_error_mm2_mean 2) mm² for m $(by m value d), ratio $(by m reconstruction_ratio 3%) % | RMS $(by m distance_mm_rms 2) mm | \`parameters.sh\` |
+| areas of the markers | most near the printed one | $(table central_frames_histogram.csv 'cell("area_mm2") > 9900 && cell("area_mm2") < 10100 { sum += cell("share_of_all_percent") } END { printf "%s", num(sum, 2) }') % within 1 % of the printed area | | \`central_frames.sh\` |
+| ratio by central frame | about 70 %, less when farther | $(table central_frames.csv '{ note("x", cell("reconstruction_ratio")) } END { printf "%s", span(least["x"], most["x"], "3%") }') % | | \`central_frames.sh\` |
+| rigid sail, near | | $(condition near) | $(condition_truth near) | \`conditions.sh\` |
+| change of wind, 200 mm halfway | larger errors, ratio 85 % | $(condition wind_against_before) | RMS $(under wind_against_before distance_mm_rms 2) mm to the shape before, $(under wind_against_after distance_mm_rms 2) mm to that after | \`conditions.sh\` |
+| weak reflection | fewer markers, as good | $(condition weak_reflection) | $(condition_truth weak_reflection) | \`conditions.sh\` |
+| strong reflection | fewer markers, as good | $(condition strong_reflection) | $(condition_truth strong_reflection) | \`conditions.sh\` |
+| bad angle, 60 degrees | few markers, right | $(condition bad_angle) | $(condition_truth bad_angle) over the $(under bad_angle num_markers d) markers | \`conditions.sh\` |
+| too far, 12 m | ratio 0 or below 10 % | $(if [[ "$(under far num_markers d)" == - ]]; then echo "no result"; else condition far; fi) | | \`conditions.sh\` |
+| flapping of 30 mm | | $(condition flapping) | $(condition_truth flapping) to the mean shape | \`conditions.sh\` |
+| motion against the hull in 0.5 s, lines from foot to top | mainly at the top | $(motion flapping_long_mm) mm; on the rigid sail, which does not move, $(motion rigid_long_mm) mm | | \`conditions.sh\` |
+| the same with a short search, n 5, s 2 | | $(motion flapping_short_mm) mm; on the rigid sail $(motion rigid_short_mm) mm | no point moves by more than 60 mm | \`conditions.sh\` |
+ROWS
+}
+
+# motion COLUMN: by line, those without a marker left out.
+motion() {
+  table conditions_motion_lines.csv '
+    cell("line") != "hull" && cell("'"$1"'") != "" {
+      printf "%s%s", separator, num(cell("'"$1"'"), 2); separator = ", " }'
+}
+
+block_rigid_objects() {
+  echo "| object | thesis | plane error | distance error | scale | RMS | markers |"
+  echo "|---|---|---|---|---|---|---|"
+  table rigid_objects.csv '
+    BEGIN {
+      n = split("glass_3m glass_5m glass_7m glass_5m_narrow glass_7m_narrow walls", objects, " ")
+      title["glass_3m"] = "glass, 3 m, wide lens"; title["glass_5m"] = "glass, 5 m, wide lens"
+      title["glass_7m"] = "glass, 7 m, wide lens"; title["glass_5m_narrow"] = "glass, 5 m, 68 degrees"
+      title["glass_7m_narrow"] = "glass, 7 m, 68 degrees"; title["walls"] = "walls"
+    }
+    cell("step") == "adjusted" {
+      for (name in column) of[cell("object"), name] = $column[name]
+    }
+    END {
+      for (i = 1; i <= n; i++) {
+        o = objects[i]
+        printf "| %s | %s | ", title[o], o == "walls" ? "plane < 0.5 mm, angle < 0.5 degrees off" : "plane < 0.5 mm, distance < 1 mm"
+        if (of[o, "num_markers"] == "") { print "no result | | | | |"; continue }
+        printf "%s / %s mm | %s / %s mm | %s %% | %s mm%s | %s |\n",
+          num(of[o, "plane_error_mm_mean"], 2), num(of[o, "plane_error_mm_max"], 2),
+          num(of[o, "distance_error_mm_mean"], 2), num(of[o, "distance_error_mm_max"], 2),
+          num(of[o, "scale_error_percent"], "+2"), num(of[o, "rms_to_truth_mm"], 2),
+          of[o, "angle_deg"] != "" ? "; angle " num(of[o, "angle_deg"], 6) " degrees" : "",
+          num(of[o, "num_markers"], "d")
+      }
+    }'
+}
+
+block_board_motions() {
+  echo "| motion | distance, mm | plane, mm | normal, degrees | tangent, degrees | scale, % | RMS to the truth, mm |"
+  echo "|---|---|---|---|---|---|---|"
+  table board_motions.csv '
+    {
+      order[++num_rows] = cell("motion")
+      for (name in column) of[cell("motion"), cell("step"), name] = $column[name]
+    }
+    function both(motion, name, format) {
+      return num(of[motion, "detection", name], format) ", " num(of[motion, "adjusted", name], format)
+    }
+    END {
+      for (i = 1; i <= num_rows; i += 2) {
+        m = order[i]
+        printf "| %s | %s | %s | %s | %s | %s | %s |\n", m, both(m, "distance_error_mm", 2),
+          both(m, "plane_error_mm", 2), both(m, "normal_error_deg", 2), both(m, "tangent_error_deg", 2),
+          both(m, "scale_error_percent", "+2"), both(m, "rms_to_truth_mm", 2)
+      }
+    }'
+}

@@ -1,0 +1,69 @@
+# shellcheck shell=bash
+# How the blocks of the READMEs read the stored results. Sourced by update_readmes.sh, which sets
+# `temporary`, a folder, and `place`, the README and line of the block that is being made, and whose
+# stored() says where a result is kept.
+
+# problem TEXT: blocks are made in subshells, from which only a file can tell of a problem.
+# shellcheck disable=SC2154
+problem() { echo "$*" >>"$temporary/problems"; }
+
+# data RESULT: its rows without the line that names the command.
+# shellcheck disable=SC2154
+data() {
+  if [[ ! -f "$(stored "$1")" ]]; then
+    problem "$place: $(stored "$1") is missing; workflows/studies/update_readmes.sh $1 makes it"
+    return
+  fi
+  sed 1d "$(stored "$1")"
+}
+
+# made_by RESULT: the command that made it, as code.
+made_by() { sed -n '1s/^# \(.*\)/`\1`/p' "$(stored "$1")" 2>/dev/null || true; }
+
+# What the awk programs below share. num(x, format): x with as many significant digits as the format
+# says, but no more than four decimals; "+2" shows the sign, "3%" gives percent of a fraction, "d" an
+# integer; an unknown value is a dash. span(low, high, format): "0.1 to 0.3".
+# shellcheck disable=SC2016
+awk_library='
+  function num(x, format,    digits, magnitude, exponent, decimals) {
+    if (x == "") return "-"
+    if (format == "d") return sprintf("%.0f", x)
+    if (format ~ /%$/) x *= 100
+    digits = format; gsub(/[+%]/, "", digits)
+    magnitude = sprintf("%." (digits - 1) "e", x < 0 ? -x : x)
+    exponent = magnitude; sub(/.*e/, "", exponent)
+    decimals = digits - 1 - exponent
+    if (decimals < 0) decimals = 0
+    if (decimals > 4) decimals = 4
+    return sprintf("%" (format ~ /^[+]/ ? "+" : "") "." decimals "f", x)
+  }
+  function span(low, high, format,    a, b) {
+    a = num(low, format); b = num(high, format)
+    return a == b ? a : a " to " b
+  }
+  function note(n, x) {  # least and most of x by name n
+    if (x == "") return
+    if (!(n in least) || x + 0 < least[n]) least[n] = x + 0
+    if (!(n in most) || x + 0 > most[n]) most[n] = x + 0
+  }
+  FNR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }'
+
+# table RESULT AWK_PROGRAM: runs the program over the rows; cell("name") is a cell of the row.
+table() {
+  # shellcheck disable=SC2016
+  data "$1" | awk -F, "$awk_library"' function cell(name) {
+    if (!(name in column)) { print "no column " name > "/dev/stderr"; exit 3 } return $column[name] }
+    '"$2" || problem "$place: $1 has no such rows or columns"
+}
+
+# value RESULT COLUMN FORMAT KEY=VALUE...: cells of the rows in which these columns hold these values,
+# with commas between them.
+value() {
+  # shellcheck disable=SC2016
+  table "$1" '
+    { for (k in wanted) if (cell(k) != wanted[k]) next
+      row = row separator num(cell("'"$2"'"), "'"$3"'"); separator = ", " }
+    BEGIN { n = split("'"${*:4}"'", pairs, " ")
+            for (i = 1; i <= n; i++) { split(pairs[i], pair, "="); wanted[pair[1]] = pair[2] } }
+    END { if (row == "") exit 3; printf "%s", row }'
+}
