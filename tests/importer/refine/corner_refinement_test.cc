@@ -202,7 +202,11 @@ TEST(PatternPicture, DerivativesAgreeWithDifferences) {
   P::Vector parameters = P::Vector::Zero();
   parameters.head<8>() << 290, 190, 310, 190, 310, 210, 290, 210;
   parameters.segment<8>(P::kBlurU) << 0.8, 0.9, 40, 200, 0.05, -0.03, 0.9, 0.95;
-  FillLightness(grid.image, grid.cells[0], parameters, &model);
+  parameters.segment<4>(P::kMargin) << 0.7, 0.9, 1.1, 0.8;
+  const ImageFormation formation({2.2, 0.03, 0.0, 1.0, 0.0, false});
+  model.tone = &formation.tone();
+  FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), formation), grid.cells[0],
+                parameters, &model);
   const Floats x = {-10.6f, -3.2f, 4.7f, 10.3f, 9.8f, -9.1f, 0.3f, 2.6f};
   const Floats y = {0.4f, -9.8f, 5.1f, 10.9f, -10.7f, 9.7f, -0.2f, 7.4f};
   ASSERT_EQ(Sum(__builtin_convertvector(PatternPicture(model, parameters).Covers(x, y), Floats)),
@@ -232,14 +236,15 @@ TEST(ComputeShares, StayInsideThePatternAndAddUpToOne) {
   Shares shares;
   for (const double blur : {0.1, 0.5, 3.0, 100.0}) {
     ComputeShares(Floats{-0.7f, 1.3f, 6.6f, 1e9f, -1e9f, 0.0f, 3.5f, 6.0f}, AllLanes(blur),
-                  kNumCells, &shares);
+                  kNumCells, 0.4f, 1.2f, &shares);
     Floats sum{};
     for (int i = 0; i < shares.count; ++i) sum += shares.value[static_cast<std::size_t>(i)];
     for (int lane = 0; lane < kLanes; ++lane) EXPECT_NEAR(sum[lane], 1.0f, 1e-5f);
   }
   for (const float blur : {0.5f, infinity, nan}) {
     ComputeShares(Floats{nan, infinity, -infinity, 0.0f, 2.0f, nan, nan, infinity},
-                  Floats{0.3f, blur, blur, 0.3f, blur, blur, 0.3f, 0.3f}, kNumCells, &shares);
+                  Floats{0.3f, blur, blur, 0.3f, blur, blur, 0.3f, 0.3f}, kNumCells, 1.0f, 1.0f,
+                  &shares);
     for (int lane = 0; lane < kLanes; ++lane) {
       EXPECT_GE(shares.first[lane], 0);
       EXPECT_LE(shares.first[lane] + shares.count, kNumCells + 2 * kRing);
