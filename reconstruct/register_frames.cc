@@ -13,7 +13,8 @@ Registration RegisterFrames(const std::vector<DatabaseImage>& images,
   if (options.method == RegistrationMethod::kGlobal) {
     return RegisterFramesGlobally(images, cameras, layout, options);
   }
-  return RegisterAroundCentralFrame(PoseImages(images, cameras, layout), layout, options);
+  return RegisterAroundCentralFrame(PoseImages(images, cameras, layout, options.num_threads),
+                                    layout, options);
 }
 
 }  // namespace velamap

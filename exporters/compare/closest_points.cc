@@ -44,78 +44,42 @@ double TrimmedRms(const std::vector<PointResidual>& residuals) {
   return Rms(distances_m);
 }
 
-// The pose of points on a surface with fixed weights, as a problem of MinimizeSquares(). A step
-// rotates the points about their center, in units of angle times radius, and translates them.
-struct SurfaceProblem : LeastSquaresProblem<6> {
-  using Parameters = Rigid3;
-  struct Equations : GaussNewtonEquations<6> {
-    std::vector<PointResidual> residuals;
-  };
-
-  const Points& points;
-  const MeshDistance& mesh;
-  const Rigid3 start;
-  const std::vector<PointResidual>& residuals_at_start;
-  const std::vector<double>& weights;
+// One Gauss-Newton step; returns how far it moves the points at most. Nearest points and weights
+// change with every step, so that MinimizeSquares() has no cost by which to judge it: with damping,
+// fits from far away ended in worse poses.
+double Step(const std::vector<PointResidual>& residuals, const std::vector<double>& weights,
+            Rigid3* pose) {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const PointResidual& r : residuals) center += r.x_m / static_cast<double>(residuals.size());
   double radius_m = 0.0;
-
-  SurfaceProblem(const Points& all, const MeshDistance& surface, const Rigid3& pose,
-                 const std::vector<PointResidual>& residuals,
-                 const std::vector<double>& all_weights)
-      : points(all),
-        mesh(surface),
-        start(pose),
-        residuals_at_start(residuals),
-        weights(all_weights) {
-    for (const PointResidual& r : residuals) center += r.x_m / static_cast<double>(weights.size());
-    for (const PointResidual& r : residuals) radius_m = std::max(radius_m, (r.x_m - center).norm());
+  for (const PointResidual& r : residuals) radius_m = std::max(radius_m, (r.x_m - center).norm());
+  GaussNewtonEquations<6> equations;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const PointResidual& r = residuals[i];
+    Eigen::Matrix<double, 1, 6> row;
+    row << (r.x_m - center).cross(r.direction).transpose() / radius_m, r.direction.transpose();
+    const double root = std::sqrt(weights[i]);
+    equations.Add<1>(root * row, Eigen::Matrix<double, 1, 1>(root * r.distance_m));
   }
-
-  void Evaluate(const Rigid3& pose, bool, Equations* equations) const {
-    *equations = {};
-    const bool is_start =
-        pose.rotation.coeffs() == start.rotation.coeffs() && pose.translation == start.translation;
-    equations->residuals = is_start ? residuals_at_start : ComputeResiduals(points, pose, mesh);
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      const PointResidual& r = equations->residuals[i];
-      Eigen::Matrix<double, 1, 6> row;
-      row << (r.x_m - center).cross(r.direction).transpose() / radius_m, r.direction.transpose();
-      const double root = std::sqrt(weights[i]);
-      equations->Add<1>(root * row, Eigen::Matrix<double, 1, 1>(root * r.distance_m));
-    }
-    // Keeps motions that the surface does not determine at zero and hardly changes the others.
-    equations->AddToDiagonal(1e-9 * equations->hessian().trace());
-  }
-
-  Rigid3 Plus(const Rigid3& pose, const Step& step) const {
-    const Eigen::Vector3d turn = step.head<3>() / radius_m;
-    const double angle = std::min(turn.norm(), kMaxTurn_rad);
-    const Eigen::Quaterniond rotation(turn.norm() > 0 ? Eigen::AngleAxisd(angle, turn.normalized())
-                                                      : Eigen::AngleAxisd::Identity());
-    return Rigid3{rotation, center - rotation * center + step.tail<3>()} * pose;
-  }
-};
-
-double LargestMotion_m(const std::vector<PointResidual>& before,
-                       const std::vector<PointResidual>& after) {
-  double largest_m = 0.0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    largest_m = std::max(largest_m, (after[i].x_m - before[i].x_m).norm());
-  }
-  return largest_m;
+  // Keeps motions that the surface does not determine at zero and hardly changes the others.
+  equations.AddToDiagonal(1e-9 * equations.hessian().trace());
+  const auto motion = SolveDamped(equations, 0.0);
+  if (!motion) return 0.0;
+  const Eigen::Vector3d turn = motion->head<3>() / radius_m;
+  const double angle = std::min(turn.norm(), kMaxTurn_rad);
+  const Eigen::Quaterniond rotation(turn.norm() > 0 ? Eigen::AngleAxisd(angle, turn.normalized())
+                                                    : Eigen::AngleAxisd::Identity());
+  *pose = Rigid3{rotation, center - rotation * center + motion->tail<3>()} * *pose;
+  return angle * radius_m + motion->tail<3>().norm();
 }
 
 // Alternates between weights and one step of least squares.
 SurfacePose Iterate(const Points& points, const MeshDistance& mesh, const Rigid3& start,
                     bool is_fine, int num_iterations) {
-  LeastSquaresOptions one_step;
-  one_step.initial_damping = 1e-12;
-  one_step.min_relative_decrease = 1.0;
   SurfacePose best{start, 0.0, false};
   Rigid3 pose = start;
-  std::vector<PointResidual> residuals = ComputeResiduals(points, pose, mesh);
   for (int i = 0;; ++i) {
+    const std::vector<PointResidual> residuals = ComputeResiduals(points, pose, mesh);
     const double trimmed_rms_m = TrimmedRms(residuals);
     // The robust fit follows its weights; the coarse one can overshoot and keeps the best pose.
     if (i == 0 || is_fine || trimmed_rms_m < best.trimmed_rms_m) {
@@ -126,12 +90,7 @@ SurfacePose Iterate(const Points& points, const MeshDistance& mesh, const Rigid3
     const bool is_robust = is_fine && EnoughOverSurface(residuals);
     const std::vector<double> weights = is_robust ? TukeyWeights(residuals, ZeroDistance_m(mesh))
                                                   : std::vector<double>(residuals.size(), 1.0);
-    SurfaceProblem::Equations equations;
-    MinimizeSquares(one_step, SurfaceProblem(points, mesh, pose, residuals, weights), &pose,
-                    &equations);
-    best.has_converged =
-        LargestMotion_m(residuals, equations.residuals) < kConverged * mesh.Diagonal_m();
-    residuals = std::move(equations.residuals);
+    best.has_converged = Step(residuals, weights, &pose) < kConverged * mesh.Diagonal_m();
   }
 }
 

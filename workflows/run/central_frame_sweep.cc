@@ -82,7 +82,7 @@ class Sweep {
     const ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadOnly);
     images_ = database.ReadImages();
     cameras_ = database.ReadCameras();
-    posed_ = PoseImages(images_, cameras_, layout);
+    posed_ = PoseImages(images_, cameras_, layout, options.registration.num_threads);
     corner_sigmas_ = CornerSigmasOf(images_);
   }
 

@@ -121,7 +121,7 @@ TEST(Mesh, AbsurdResolutionIsRefusedWithItsTriangles) {
   EXPECT_THAT(RefusalOf(Sail(), ChordDeviation(1e-9)),
               HasSubstr("--Surface.chord_deviation: 1e-09 mm"));
   for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    EXPECT_THAT(RefusalOf(Sail(), EdgeLength(bad)), HasSubstr("must be more than 0"));
+    EXPECT_THAT(RefusalOf(Sail(), EdgeLength(bad)), HasSubstr("is out of range; give more than 0"));
   }
   EXPECT_THAT(RefusalOf(Sail(), {}), HasSubstr("give one of the two"));
   MeshOptions both = EdgeLength(10);

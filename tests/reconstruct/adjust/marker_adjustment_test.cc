@@ -360,7 +360,7 @@ TEST(MarkerAdjustmentOptions, EveryRangeIsCheckedByName) {
   EXPECT_THAT(message([](auto* o) { o->corner_sigma_px = std::nan(""); }),
               HasSubstr("--MarkerAdjustment.corner_sigma"));
   EXPECT_THAT(message([](auto* o) { o->outlier_sigmas = 1; }),
-              HasSubstr("--MarkerAdjustment.outlier_sigmas"));
+              HasSubstr("--MarkerAdjustment.outlier: 1 "));
   EXPECT_THAT(message([](auto* o) { o->rolling_shutter_s = -1; }),
               HasSubstr("--MarkerAdjustment.rolling_shutter"));
 }

@@ -108,6 +108,8 @@ TEST_P(LongPathTest, IsAnInputError) {
   const std::vector<std::string> names = PathOptions(GetParam());
   EXPECT_GE(names.size(), 4u);
   for (const std::string& name : names) {
+    if (name == "surface_path")
+      continue;  // needs lines; the file is written as that of output_path
     Options options = OptionsOf(GetParam());
     options[name] = path(long_name);
     // Each way of adjustment reads paths of its own. Without COLMAP its options end with exit
