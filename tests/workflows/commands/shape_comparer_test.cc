@@ -149,7 +149,7 @@ TEST_F(ShapeComparerTest, JointUncertaintyIsUsedWhereItBelongs) {
   WriteUncertainty(uncertainty, path("b/sparse/0"));
   EXPECT_THAT(Compare("b/shape").err, Not(HasSubstr("joint uncertainty")));
   ExpectError(Compare("b/shape", {"--reference_uncertainty_path", path("b/sparse/0")}), 2,
-              "its sigmas differ");
+              "the sigmas differ");
   ExpectError(Compare("b/shape", {"--uncertainty_path", path("a")}), 2, "uncertainty.bin");
 }
 
