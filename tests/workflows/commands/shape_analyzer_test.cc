@@ -88,7 +88,7 @@ TEST_F(ShapeAnalyzerCommandTest, OutputThatCannotBeWritten) {
   for (const char* option : {"--csv_path", "--json_path"}) {
     ExpectError(RunVelamap({"shape_analyzer", "--shape_path", path("shape"), "--part_planes", "1",
                             option, path("shape/shape.csv/a")}),
-                2, "shape.csv/a");
+                2, "shape/shape.csv: cannot be written: Not a directory");
   }
   ExpectError(RunVelamap({"shape_analyzer", "--shape_path", path("shape"), "--part_planes", "1",
                           "--csv_path", path("a"), "--json_path", path("a")}),
