@@ -1,7 +1,6 @@
 #include "importer/formation_sampling.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -16,24 +15,35 @@
 namespace velamap {
 namespace {
 
-constexpr std::size_t kMaxSamples = 32, kMinSamples = 4;
-constexpr int kSamplesPerFrame = 4;
-constexpr int kMaxFrames = 16;
-constexpr int kVideoStride = 5;  // frames
+constexpr int kMaxSamples = 32, kMinSamples = 4;
+constexpr int kVideoFrames = 8, kVideoStride = 5;
 constexpr double kMinSidePx = 12.0;
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
-// Prefers markers of a good size that have few samples yet.
-void SortByPreference(const std::map<int, int>& num_samples_of, std::vector<MarkerQuad>* quads) {
-  const auto preference = [&](const MarkerQuad& quad) {
+// At most `max_num` markers of the layout, spread over the better half by size.
+std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, int max_num,
+                                      std::vector<MarkerQuad> quads) {
+  quads.erase(std::remove_if(quads.begin(), quads.end(),
+                             [&](const MarkerQuad& quad) {
+                               return QuadMeanSide(quad.corners_px) < kMinSidePx ||
+                                      (!detector.part_of_id.empty() &&
+                                       detector.part_of_id.count(quad.marker_id) == 0);
+                             }),
+              quads.end());
+  const auto preference = [](const MarkerQuad& quad) {
     const double side_px = QuadMeanSide(quad.corners_px);
-    const auto found = num_samples_of.find(quad.marker_id);
-    const int num_samples = found == num_samples_of.end() ? 0 : found->second;
-    return std::min(side_px / kBestSidePx, kBestSidePx / side_px) / (1 + num_samples);
+    return std::min(side_px / kBestSidePx, kBestSidePx / side_px);
   };
-  std::stable_sort(quads->begin(), quads->end(), [&](const MarkerQuad& a, const MarkerQuad& b) {
+  std::stable_sort(quads.begin(), quads.end(), [&](const MarkerQuad& a, const MarkerQuad& b) {
     return preference(a) > preference(b);
   });
+  const auto size = static_cast<int>(quads.size());
+  const int num = std::min(max_num, size), num_good = std::max(num, size / 2);
+  std::vector<MarkerQuad> chosen;
+  for (int i = 0; i < num; ++i) {
+    chosen.push_back(quads[static_cast<std::size_t>(i * num_good / num)]);
+  }
+  return chosen;
 }
 
 // The marker with its surroundings; nothing where its sides cannot be seen.
@@ -58,48 +68,43 @@ std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv
   return sample;
 }
 
-void AddSamples(const FrameDetector& detector, const cv::Mat& gray,
-                std::map<int, int>* num_samples_of, std::vector<FormationSample>* samples) {
-  std::vector<MarkerQuad> quads = SearchInFrame(detector, gray);
-  SortByPreference(*num_samples_of, &quads);
-  int num_added = 0;
-  for (const MarkerQuad& quad : quads) {
-    if (num_added == kSamplesPerFrame) break;
-    const bool is_known =
-        detector.part_of_id.empty() || detector.part_of_id.count(quad.marker_id) > 0;
-    if (!is_known || QuadMeanSide(quad.corners_px) < kMinSidePx) continue;
-    auto sample = CutSample(detector, gray, quad);
-    if (!sample) continue;
-    samples->push_back(std::move(*sample));
-    ++(*num_samples_of)[quad.marker_id];
-    ++num_added;
-  }
-}
-
 }  // namespace
 
+// The choice of samples depends on the pictures only: photographs may have any names and order.
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
                                             const FrameDetector& detector) {
   const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video, {}, num_threads);
+  const int num_images = std::max(1, source->NumFrames());
   const int stride =
-      source->IsVideo() ? kVideoStride : std::max(1, source->NumFrames() / kMaxFrames);
+      source->IsVideo() ? kVideoStride : (num_images + kMaxSamples - 1) / kMaxSamples;
+  const int max_num_frames = source->IsVideo() ? kVideoFrames : kMaxSamples;
+  const int num_per_frame =
+      std::max(1, kMaxSamples / (source->IsVideo() ? kVideoFrames : num_images));
   std::vector<FormationSample> samples;
-  std::map<int, int> num_samples_of;
-  int num_searched = 0;
-  for (int idx = 0; num_searched < kMaxFrames && samples.size() < kMaxSamples; ++idx) {
+  for (int idx = 0, num_searched = 0; num_searched < max_num_frames; ++idx) {
     std::optional<Frame> frame = source->Next();
     if (!frame) break;
     std::string reason;
     if (idx % stride != 0 || !source->Load(&*frame, &reason)) continue;
     ++num_searched;
-    AddSamples(detector, frame->gray, &num_samples_of, &samples);
+    for (const MarkerQuad& quad :
+         ChooseMarkers(detector, num_per_frame, SearchInFrame(detector, frame->gray))) {
+      auto sample = CutSample(detector, frame->gray, quad);
+      if (sample) samples.push_back(std::move(*sample));
+    }
   }
+  // Sums in single precision depend on their order, which the names of photographs decide.
+  const auto key = [](const FormationSample& sample) {
+    return std::make_pair(cv::sum(sample.gray)[0], sample.corners_px[0].sum());
+  };
+  std::sort(samples.begin(), samples.end(),
+            [&](const FormationSample& a, const FormationSample& b) { return key(a) < key(b); });
   FormationEstimate estimate;
-  if (samples.size() >= kMinSamples) {
+  if (static_cast<int>(samples.size()) >= kMinSamples) {
     estimate = EstimateFormation(samples, detector.options.inverted);
   }
-  if (estimate.num_samples < static_cast<int>(kMinSamples)) return {};
+  if (estimate.num_samples < kMinSamples) return {};
   const ImageFormationParameters& found = estimate.parameters;
   spdlog::info(
       "camera and print, from {} markers: gamma {:.2f}, S-curve {:+.3f}, sharpening {:.2f} over "

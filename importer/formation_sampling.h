@@ -10,9 +10,9 @@
 
 namespace velamap {
 
-// Estimates the image formation from markers of up to 16 frames: of photographs spread over the
-// folder, of a video every fifth frame from its beginning, which may be read for this a second
-// time. The parameters are the defaults where fewer than four markers can be fitted.
+// Estimates the image formation from about 32 markers: of up to 32 photographs of the folder, or of
+// every fifth frame from the beginning of a video, which is read again for the import. The
+// parameters are the defaults if fewer than four markers can be fitted.
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
                                             const FrameDetector& detector);

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 
 #include <Eigen/Core>
 
@@ -35,6 +37,25 @@ class PatternPicture {
     const Place place = ToSquare(x, y);
     const auto margin = static_cast<float>(kMarginInCells / model_.num_cells);
     return (Min(place.u, place.v) > -margin) & (Max(place.u, place.v) < 1.0f + margin);
+  }
+
+  // Whether a place is within `reach_px` of an edge between a dark and a light cell, or of the end
+  // of the quiet zone; -1 for yes.
+  Ints IsNearEdge(Floats x, Floats y, float reach_px) const {
+    const Place place = ToSquare(x, y);
+    const auto n = static_cast<float>(model_.num_cells);
+    const Floats cells_u = n * Sqrt(place.u_by_x * place.u_by_x + place.u_by_y * place.u_by_y);
+    const Floats cells_v = n * Sqrt(place.v_by_x * place.v_by_x + place.v_by_y * place.v_by_y);
+    Ints is_near{};
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const float u = n * place.u[lane], v = n * place.v[lane];
+      const float reach_u = reach_px * cells_u[lane], reach_v = reach_px * cells_v[lane];
+      const bool level = IsLight(u, v);
+      const bool changes = IsLight(u - reach_u, v) != level || IsLight(u + reach_u, v) != level ||
+                           IsLight(u, v - reach_v) != level || IsLight(u, v + reach_v) != level;
+      is_near[lane] = -static_cast<int>(changes || EndsQuietZone(u, v, reach_u, reach_v));
+    }
+    return is_near;
   }
 
   void At(Floats x, Floats y, PatternPixels* pixels) const {
@@ -119,6 +140,20 @@ class PatternPicture {
                          pattern->by_v * pattern->by_v * by_vv) /
                         squared_slope;
     pattern->value += spread * (0.5f * spread * bend - Sqrt(squared_slope));
+  }
+
+  // Of the cell at a place in cells, or of the quiet zone.
+  bool IsLight(float u, float v) const {
+    const auto n = static_cast<float>(model_.num_cells);
+    if (!(u >= 0 && v >= 0 && u < n && v < n)) return true;
+    return model_.inner[static_cast<std::size_t>(v) + kRing] >> (static_cast<int>(u) + kRing) & 1;
+  }
+
+  bool EndsQuietZone(float u, float v, float reach_u, float reach_v) const {
+    const auto n = static_cast<double>(model_.num_cells);
+    const auto margin = parameters_.segment<4>(P::kMargin);
+    return std::abs(u + margin[0]) < reach_u || std::abs(u - n - margin[1]) < reach_u ||
+           std::abs(v + margin[2]) < reach_v || std::abs(v - n - margin[3]) < reach_v;
   }
 
   // Zero at both ends of a side, one in its middle.

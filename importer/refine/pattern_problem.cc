@@ -21,7 +21,7 @@ constexpr double kPixelNoise = 3.0;      // grey levels; sets the weight of the 
 constexpr double kMinBlurPx = 0.3, kMaxBlurPx = 4.0;
 // Usual for cloth; the label of a can has ten times as much.
 constexpr double kBendOfDiagonal = 0.003;
-constexpr double kMinMargin = 0.1, kMaxMargin = 1.5, kMarginSigma = 0.5;  // cells
+constexpr double kMinMargin = 0.1, kMaxMargin = 1.5, kMarginSigma = 0.25;  // cells
 constexpr int kFirstPixels = 200, kPixels = 1000;
 
 // Pixels of a marker and around it, in groups.
@@ -44,42 +44,67 @@ inline void FillUp(Pixels* pixels) {
   }
 }
 
-// Every k-th pixel that the model covers with these parameters, where k leaves about `max_pixels`.
-VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const PatternProblem& problem,
-                                           const P::Vector& parameters, int max_pixels) {
-  const PatternPicture picture(problem.model, parameters);
+// Calls take(lane, column, group) for every pixel of the box that the model covers, in rows;
+// `group` are the places of kLanes pixels.
+template <typename Take>
+inline void ForEachCoveredPixel(const PatternProblem& problem, const PatternPicture& picture,
+                                const Take& take) {
   const cv::Rect& box = problem.box;
   const Eigen::Vector2d& center = problem.model.center_px;
-  const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
-  const int stride = static_cast<int>(std::ceil(area_px / max_pixels));
-  Pixels pixels;
-  pixels.groups.reserve(
-      static_cast<std::size_t>(box.height * (box.width / stride + 1) / kLanes + 1));
   for (int row = box.y; row < box.y + box.height; ++row) {
     const float* values = problem.patch.values.ptr<float>(row - problem.patch.origin_px.y);
     const Floats y = AllLanes(row - center.y());
-    // Odd rows are shifted, so that all columns are used. The choice of pixels does not depend on
-    // where the box begins.
-    const int shift = row * ((stride + 1) / 2) % stride;
-    const int first = box.x + (shift + stride - box.x % stride) % stride;
-    for (int begin = first; begin < box.x + box.width; begin += kLanes * stride) {
-      const Floats x =
-          static_cast<float>(begin - center.x()) + static_cast<float>(stride) * LaneIndex();
+    for (int begin = box.x; begin < box.x + box.width; begin += kLanes) {
+      const Floats x = static_cast<float>(begin - center.x()) + LaneIndex();
       const Ints covered = picture.Covers(x, y);
       for (int lane = 0; lane < kLanes; ++lane) {
-        const int column = begin + lane * stride;
+        const int column = begin + lane;
         if (!covered[lane] || column >= box.x + box.width) continue;
-        const int place = pixels.count++ % kLanes;
-        if (place == 0) pixels.groups.emplace_back();
-        Pixels::Group& group = pixels.groups.back();
-        group.x[place] = x[lane];
-        group.y[place] = y[lane];
-        group.gray[place] = values[column - problem.patch.origin_px.x];
+        take(Pixels::Group{x, y, AllLanes(values[column - problem.patch.origin_px.x])}, lane);
       }
     }
   }
-  FillUp(&pixels);
-  return pixels;
+}
+
+// About `max_pixels` of the pixels that the model covers with these parameters. If there are more,
+// every k-th one of those near an edge, which tell where the corners are, and a few others, which
+// tell the levels.
+VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const PatternProblem& problem,
+                                           const P::Vector& parameters, int max_pixels) {
+  constexpr int kPartOfOthers = 5;  // one in so many pixels
+  const PatternPicture picture(problem.model, parameters);
+  const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
+  const bool takes_all = area_px <= max_pixels;
+  const auto reach_px = static_cast<float>(1 + 2 * parameters.segment<2>(P::kBlurU).maxCoeff());
+  Pixels near, others;
+  const auto add = [](const Pixels::Group& group, int lane, Pixels* pixels) {
+    const int place = pixels->count++ % kLanes;
+    if (place == 0) pixels->groups.emplace_back();
+    Pixels::Group& last = pixels->groups.back();
+    last.x[place] = group.x[lane];
+    last.y[place] = group.y[lane];
+    last.gray[place] = group.gray[lane];
+  };
+  Ints is_near{};
+  ForEachCoveredPixel(problem, picture, [&](const Pixels::Group& group, int lane) {
+    if (!takes_all) is_near = picture.IsNearEdge(group.x, group.y, reach_px);
+    add(group, lane, takes_all || is_near[lane] ? &near : &others);
+  });
+  if (takes_all) {
+    FillUp(&near);
+    return near;
+  }
+  Pixels chosen;
+  const auto take_every = [&](double step, const Pixels& pixels) {
+    for (double i = 0.5 * step; i < pixels.count; i += std::max(1.0, step)) {
+      const int idx = static_cast<int>(i);
+      add(pixels.groups[static_cast<std::size_t>(idx / kLanes)], idx % kLanes, &chosen);
+    }
+  };
+  take_every(static_cast<double>(near.count) / max_pixels, near);
+  take_every(kPartOfOthers * static_cast<double>(others.count) / max_pixels, others);
+  FillUp(&chosen);
+  return chosen;
 }
 
 VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const Pixels& pixels,
@@ -133,16 +158,16 @@ Eigen::Vector4d FindMargins(const PatternProblem& problem, const UnitSquareMap& 
   return margins;
 }
 
-// Mean light of the marker's dark and light cells. Without light cells, that of the quiet zone
-// close to the marker.
+// Mean light of the marker's dark and light cells, or of the quiet zone close to the marker where
+// that is brighter: blur darkens cells, and what is beyond a narrow quiet zone darkens that.
 struct CellLights {
   double dark = 0.0, light = 0.0;
 };
 
 CellLights ReadCellLights(const PatternProblem& problem, const UnitSquareMap& map) {
-  constexpr double kBesideMarker = 0.3;  // cells
+  constexpr double kBesideMarker = 0.5;  // cells
   const int n = problem.model.num_cells;
-  double sum[2] = {0, 0};
+  double sum[2] = {0, 0}, beside = 0;
   int count[2] = {0, 0};
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < n; ++i) {
@@ -150,14 +175,12 @@ CellLights ReadCellLights(const PatternProblem& problem, const UnitSquareMap& ma
       sum[is_light] += LightAt(problem, map, (i + 0.5) / n, (j + 0.5) / n);
       ++count[is_light];
     }
+    const double along = (j + 0.5) / n, out = kBesideMarker / n;
+    beside += LightAt(problem, map, along, -out) + LightAt(problem, map, along, 1 + out) +
+              LightAt(problem, map, -out, along) + LightAt(problem, map, 1 + out, along);
   }
-  if (count[1] == 0) {
-    for (int i = 0; i < n; ++i) {
-      sum[1] += LightAt(problem, map, (i + 0.5) / n, -kBesideMarker / n);
-      ++count[1];
-    }
-  }
-  return {sum[0] / count[0], sum[1] / count[1]};
+  beside /= 4 * n;
+  return {sum[0] / count[0], count[1] > 0 ? std::max(beside, sum[1] / count[1]) : beside};
 }
 
 // Sets the initial parameters and the priors. False for too little contrast.
@@ -176,14 +199,19 @@ bool Start(const QuadCorners& corners_px, PatternProblem* problem, PatternMinimu
   p[P::kLight] = lights.light;
   p.segment<4>(P::kMargin).setOnes();
   problem->mean = p;
-  p.segment<4>(P::kMargin) = FindMargins(*problem, map, lights.dark, lights.light);
+  // Smaller cells blur into each other, so that no margin can be told.
+  constexpr double kMinCellPx = 2.5, kHeld = 0.02;
+  const bool shows_margins = QuadMeanSide(corners_px) >= kMinCellPx * problem->model.num_cells;
+  if (shows_margins) {
+    p.segment<4>(P::kMargin) = FindMargins(*problem, map, lights.dark, lights.light);
+  }
   // The light of the marker's cells and of the quiet zone differs little once the tone curve is
   // known. A looser prior lets a narrow, dim quiet zone pass for a wide one.
   constexpr double kInnerLightSigma = 0.02;
   P::Vector sigma;
   sigma << P::Vector::Constant(1e3).head<8>(), 0.7, 0.7, 1e3, 1e3, 0.15, 0.15, 0.3,
       kInnerLightSigma, Eigen::Vector4d::Constant(kBendOfDiagonal * problem->model.diagonal_px),
-      Eigen::Vector4d::Constant(kMarginSigma);
+      Eigen::Vector4d::Constant(shows_margins ? kMarginSigma : kHeld);
   problem->weight = (kPixelNoise * sigma.cwiseInverse()).cwiseAbs2();
   return true;
 }
@@ -226,7 +254,7 @@ bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px
   const Pixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
   if (pixels.count <= P::kCount) return false;
   LeastSquaresOptions options;
-  options.max_iterations = 10;
+  options.max_iterations = 20;
   options.initial_damping = 1e-3;
   options.min_step = tolerance_px;
   options.min_step_for_new_hessian = 0.1;
@@ -284,14 +312,14 @@ bool RefinePatternFit(double tolerance_px, PatternProblem* problem, PatternMinim
 
 // A wide blur needs another pass, because levels, blur and surroundings then depend on each other.
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
+  constexpr double kCoarsePx = 0.1, kFinePx = 0.005;
   constexpr double kWideBlur = 0.3;  // cells
-  constexpr double kTolerancePx = 0.02;
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
-  if (!Minimize(*problem, kFirstPixels, 5 * kTolerancePx, minimum)) return false;
-  if (!RefinePatternFit(kTolerancePx, problem, minimum)) return false;
+  if (!Minimize(*problem, kFirstPixels, kCoarsePx, minimum)) return false;
+  if (!RefinePatternFit(kFinePx, problem, minimum)) return false;
   const double blur_cells =
       FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
-  if (blur_cells > kWideBlur && !Minimize(*problem, kPixels, kTolerancePx, minimum)) return false;
+  if (blur_cells > kWideBlur && !Minimize(*problem, kPixels, kFinePx, minimum)) return false;
   const ToneCurve& tone = *problem->model.tone;
   const double contrast =
       tone.Encode(minimum->parameters[P::kLight]) - tone.Encode(minimum->parameters[P::kDark]);

@@ -101,10 +101,17 @@ TEST_F(MarkerImporterTest, FolderOfImages) {
 }
 
 TEST_F(MarkerImporterTest, FailedCornerFitsAreCountedAndMarked) {
-  // A dark object covers most of the quiet zone beside marker 1: its code is read, but this side
-  // has no light background for the fit.
+  // Litter covers all but three pixels of the quiet zone of marker 1: its code is read, but neither
+  // the marker as a whole nor its sides look as they should.
   cv::Mat picture = Picture(0, {1, 2}, "DICT_4X4_50");
-  cv::rectangle(picture, cv::Rect(0, 30, 16, 92), cv::Scalar(40, 40, 40), cv::FILLED);
+  const cv::Rect outside(2, 22, 108, 108), inside(17, 37, 78, 78);
+  const cv::Mat marker = picture(inside).clone();
+  cv::Mat litter(outside.size(), CV_8U);
+  cv::RNG(1).fill(litter, cv::RNG::UNIFORM, 0, 2);
+  litter *= 255;
+  cv::cvtColor(litter, litter, cv::COLOR_GRAY2BGR);
+  litter.copyTo(picture(outside));
+  marker.copyTo(picture(inside));
   cv::imwrite(dir_ / "images/1.png", picture);
   const ImportReport report = ImportMarkers(options_);
   ASSERT_EQ(report.num_markers, 2);

@@ -154,8 +154,11 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
   p[P::kDark] = rendering.black;
   p[P::kLight] = rendering.white;
   p[P::kSurround] = p[P::kInnerLight] = 1.0;
-  FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), ImageFormation()),
-                grid.cells[k], p, &model);
+  p.segment<4>(P::kMargin).setOnes();
+  const ImageFormation linear;
+  model.tone = &linear.tone();
+  FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), linear), grid.cells[k], p,
+                &model);
   const EdgeFitOptions options;
   const double cell_px = MeanSide(truth) / model.num_cells;
   const bool by_edges = HasClearSides(truth, model.num_cells, options);

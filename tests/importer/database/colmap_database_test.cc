@@ -358,7 +358,7 @@ void ExpectRefusedAndUnchanged(const TempDir& dir) {
   const std::string path = dir / "database.db";
   const auto before = Contents(dir.path());
   ExpectThrows<InputError>([&] { ColmapDatabase(path, Mode::kReadWriteCreate); },
-                           {path, "has not imported, such as theirs.jpg", "new --database_path"});
+                           {path, "has not imported, such as theirs.jpg", "write to a new place"});
   EXPECT_TRUE(Contents(dir.path()) == before);
 }
 

@@ -223,7 +223,7 @@ TEST(VideoFile, FirstFrameBehindTheEndIsAnError) {
   const TempDir dir;
   WriteVideo(dir / "v.avi", 5);
   const auto source = OpenFrameSource(dir / "v.avi", {5, -1, 1});
-  ExpectThrows<InputError>([&] { source->Next(); }, {"v.avi", "5 frames", "--Video.first_frame"});
+  ExpectThrows<InputError>([&] { source->Next(); }, {"v.avi", "5 frames", "frame 5"});
 }
 
 TEST(VideoFile, BrokenOffVideoIsUsedAsFarAsItGoes) {
