@@ -104,7 +104,9 @@ std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation&
 
 // From the fit with another image formation. `before` is that one's tone curve.
 void Refit(const ImageFormation& formation, const ToneCurve& before, FittedSample* sample) {
-  constexpr double kTolerancePx = 0.003;  // so that derivatives by differences are smooth
+  // All pixels of most samples and a small tolerance, so that differences give derivatives.
+  constexpr int kMaxPixels = 4000;
+  constexpr double kTolerancePx = 0.003;
   PatternProblem& problem = sample->problem;
   problem.patch = CutPatch(sample->gray, sample->patch_box, formation);
   problem.model.tone = &formation.tone();
@@ -114,7 +116,7 @@ void Refit(const ImageFormation& formation, const ToneCurve& before, FittedSampl
     double& light = sample->minimum.parameters[index];
     light = formation.tone().Decode(before.Encode(light));
   }
-  sample->residuals = RefinePatternFit(kTolerancePx, &problem, &sample->minimum)
+  sample->residuals = RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum)
                           ? ResidualsOf(*sample, formation)
                           : std::vector<float>();
 }

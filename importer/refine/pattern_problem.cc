@@ -305,9 +305,10 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
   return problem;
 }
 
-bool RefinePatternFit(double tolerance_px, PatternProblem* problem, PatternMinimum* minimum) {
+bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* problem,
+                      PatternMinimum* minimum) {
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
-  return Minimize(*problem, kPixels, tolerance_px, minimum);
+  return Minimize(*problem, max_pixels, tolerance_px, minimum);
 }
 
 // A wide blur needs another pass, because levels, blur and surroundings then depend on each other.
@@ -316,7 +317,7 @@ bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
   constexpr double kWideBlur = 0.3;  // cells
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
   if (!Minimize(*problem, kFirstPixels, kCoarsePx, minimum)) return false;
-  if (!RefinePatternFit(kFinePx, problem, minimum)) return false;
+  if (!RefinePatternFit(kPixels, kFinePx, problem, minimum)) return false;
   const double blur_cells =
       FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
   if (blur_cells > kWideBlur && !Minimize(*problem, kPixels, kFinePx, minimum)) return false;

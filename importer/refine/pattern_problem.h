@@ -40,9 +40,10 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
                                                  const ImageFormation& formation,
                                                  PatternMinimum* minimum);
 
-// Reads the surroundings of the quiet zone again and fits all parameters to about 1000 pixels,
-// until a step moves no corner further than `tolerance_px`. False for a singular system.
-bool RefinePatternFit(double tolerance_px, PatternProblem* problem, PatternMinimum* minimum);
+// Reads the surroundings of the quiet zone again and fits all parameters to about `max_pixels`
+// pixels, until a step moves no corner further than `tolerance_px`. False for a singular system.
+bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* problem,
+                      PatternMinimum* minimum);
 
 // From the initial parameters: a coarse fit to some pixels, then fine fits to more pixels. False if
 // the image does not show such a marker.

@@ -222,6 +222,22 @@ void ApplyLight(double gradient, cv::Mat* image) {
   }
 }
 
+// From light to grey values, as importer/refine/image_formation.h has it but computed anew.
+void ApplyCamera(const ImageFormationParameters& camera, cv::Mat* image) {
+  constexpr double kPi = 3.14159265358979323846;
+  if (camera.gamma != 1 || camera.s_amplitude != 0) {
+    image->forEach<float>([&camera](float& value, const int*) {
+      const double v = std::pow(std::max(0.0, value / 255.0), 1 / camera.gamma);
+      value = static_cast<float>(255 * (v - camera.s_amplitude * std::sin(2 * kPi * v)));
+    });
+  }
+  if (camera.sharpening != 0) {
+    cv::Mat blurred;
+    cv::GaussianBlur(*image, blurred, {0, 0}, camera.sharpening_radius_px);
+    *image = (1 + camera.sharpening) * *image - camera.sharpening * blurred;
+  }
+}
+
 }  // namespace
 
 cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>& markers,
@@ -247,6 +263,7 @@ cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>
     const int reach = static_cast<int>(std::ceil(4 * options.blur_sigma_px));
     cv::GaussianBlur(image, image, {2 * reach + 1, 2 * reach + 1}, options.blur_sigma_px);
   }
+  ApplyCamera(options.camera, &image);
   if (options.noise_sigma > 0) {
     cv::Mat noise(image.size(), CV_32FC1);
     random.fill(noise, cv::RNG::NORMAL, 0.0, options.noise_sigma);

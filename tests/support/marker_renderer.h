@@ -13,6 +13,7 @@
 
 #include "importer/camera/camera.h"
 #include "importer/layout/dictionary.h"
+#include "importer/refine/image_formation.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace velamap {
@@ -28,15 +29,16 @@ struct RenderOptions {
   double black = 40.0;  // grey levels
   double white = 200.0;
   double background = 120.0;
-  double background_texture = 0.0;  // standard deviation of smooth random patches, grey levels
-  double quiet_zone_cells = 1.0;    // white ring around the black square
-  double surround_cells = 0.0;      // black ring around that, as on a chequered board
-  double light_gradient = 0.0;      // relative change of the light across the picture's diagonal
-  double blur_sigma_px = 0.7;       // of the lens; a pixel's own area comes on top
-  double noise_sigma = 0.0;         // grey levels
-  int supersampling = 8;            // samples along each side of a pixel
-  bool color = false;               // BGR with three equal channels instead of grey
-  std::uint32_t seed = 1;           // of texture and noise
+  double background_texture = 0.0;    // standard deviation of smooth random patches, grey levels
+  double quiet_zone_cells = 1.0;      // white ring around the black square
+  double surround_cells = 0.0;        // black ring around that, as on a chequered board
+  double light_gradient = 0.0;        // relative change of the light across the picture's diagonal
+  double blur_sigma_px = 0.7;         // of the lens; a pixel's own area comes on top
+  ImageFormationParameters camera{};  // tone curve and sharpening; without the spread of the ink
+  double noise_sigma = 0.0;           // grey levels
+  int supersampling = 8;              // samples along each side of a pixel
+  bool color = false;                 // BGR with three equal channels instead of grey
+  std::uint32_t seed = 1;             // of texture and noise
 };
 
 // An 8-bit picture of the camera's size. Markers that turn their back or reach behind the camera

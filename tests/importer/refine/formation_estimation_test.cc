@@ -1,0 +1,139 @@
+#include "importer/refine/formation_estimation.h"
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "importer/refine/corner_refinement.h"
+#include "tests/importer/refine/marker_grid.h"
+#include "tests/support/test_seed.h"
+
+namespace velamap {
+namespace {
+
+// A grid of markers seen by a camera and printed with margins that are drawn at random over what
+// cameras and scissors do.
+MarkerGridOptions DrawScene(std::mt19937* random) {
+  const auto draw = [random](double min, double max) {
+    return std::uniform_real_distribution<double>(min, max)(*random);
+  };
+  MarkerGridOptions options;
+  options.dictionary = "DICT_4X4_50";
+  options.side_px = draw(18, 60);
+  options.camera = {CameraModel::kPinhole, 1400, 1000, {2000, 2000, 700, 500}};
+  RenderOptions& rendering = options.rendering;
+  rendering.black = draw(8, 25);
+  rendering.white = draw(140, 215);
+  rendering.background = draw(15, 150);
+  rendering.quiet_zone_cells = draw(0.7, 1.4);
+  rendering.blur_sigma_px = draw(0.5, 0.9);
+  rendering.noise_sigma = 1.0;
+  rendering.camera.gamma = draw(1.0, 2.6);
+  rendering.camera.s_amplitude = draw(0.0, 0.06);
+  rendering.camera.sharpening = draw(0.0, 0.7);
+  rendering.camera.sharpening_radius_px = draw(0.8, 1.3);
+  return options;
+}
+
+std::vector<FormationSample> Samples(const MarkerGrid& grid) {
+  constexpr std::size_t kNumSamples = 16;
+  std::vector<FormationSample> samples;
+  for (std::size_t k = 0; k < std::min(kNumSamples, grid.starts.size()); ++k) {
+    samples.push_back({grid.image, grid.starts[k], grid.cells[k]});
+  }
+  return samples;
+}
+
+// Mean error of the side in px.
+double SideBias(const MarkerGrid& grid, const ImageFormation& formation) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t k = 0; k < grid.truth.size(); ++k) {
+    const auto refined = RefineCorners(grid.image, grid.starts[k], grid.cells[k], formation);
+    if (!refined) continue;
+    sum += QuadMeanSide(refined->corners_px) - QuadMeanSide(grid.truth[k]);
+    ++count;
+  }
+  EXPECT_GE(count, static_cast<int>(grid.truth.size()) * 9 / 10);
+  return sum / count;
+}
+
+class FormationEstimationTest : public testing::TestWithParam<int> {};
+
+TEST_P(FormationEstimationTest, MakesSidesUnbiasedForRandomCamerasAndMargins) {
+  std::mt19937 random(TestSeed());
+  const MarkerGridOptions scene = DrawScene(&random);
+  const MarkerGrid grid = MakeMarkerGrid(scene);
+  const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+  ASSERT_GE(estimate.num_samples, 12);
+  const ImageFormationParameters& camera = scene.rendering.camera;
+  const std::string drawn = "side " + std::to_string(scene.side_px) + " px, gamma " +
+                            std::to_string(camera.gamma) + ", found " +
+                            std::to_string(estimate.parameters.gamma) + ", S " +
+                            std::to_string(camera.s_amplitude) + ", margin " +
+                            std::to_string(scene.rendering.quiet_zone_cells) + " cells";
+  const double bias_px = SideBias(grid, ImageFormation(estimate.parameters));
+  EXPECT_LT(std::abs(bias_px), scene.side_px > 25 ? 0.03 : 0.05) << drawn;
+  const double linear_bias_px = SideBias(grid, ImageFormation());
+  if (camera.gamma > 1.8 && scene.side_px > 25) {
+    EXPECT_LT(linear_bias_px, -0.1) << drawn;
+  }
+  RecordProperty("bias_px", std::to_string(bias_px));
+  RecordProperty("linear_bias_px", std::to_string(linear_bias_px));
+}
+
+INSTANTIATE_TEST_SUITE_P(Draws, FormationEstimationTest, testing::Range(0, 6));
+
+TEST(FormationEstimation, LinearCameraIsFoundLinear) {
+  std::mt19937 random(TestSeed());
+  MarkerGridOptions scene = DrawScene(&random);
+  scene.side_px = 30;
+  scene.rendering.camera = {};
+  scene.rendering.noise_sigma = 1.0;
+  const MarkerGrid grid = MakeMarkerGrid(scene);
+  const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+  EXPECT_NEAR(estimate.parameters.gamma, 1.0, 0.35);
+  EXPECT_LT(std::abs(SideBias(grid, ImageFormation(estimate.parameters))), 0.03);
+}
+
+TEST(FormationEstimation, NothingIsKnownWithoutSamples) {
+  EXPECT_EQ(EstimateFormation({}, false).num_samples, 0);
+}
+
+TEST(ToneCurve, DecodesWhatItEncodes) {
+  for (const bool is_inverted : {false, true}) {
+    for (const double gamma : {0.8, 1.0, 1.8, 2.4}) {
+      for (const double s_amplitude : {0.0, 0.06}) {
+        const ToneCurve tone({gamma, s_amplitude, 0, 1, 0, is_inverted});
+        for (double light = 5; light < 250; light += 7) {
+          EXPECT_NEAR(tone.Decode(tone.Encode(light)), light, 0.2) << gamma << " " << s_amplitude;
+        }
+      }
+    }
+  }
+}
+
+TEST(CutPatch, UndoesTheSharpening) {
+  cv::Mat plain(60, 60, CV_32F, cv::Scalar(60));
+  cv::rectangle(plain, {20, 18, 21, 17}, cv::Scalar(150), cv::FILLED);
+  cv::GaussianBlur(plain, plain, {0, 0}, 0.8);
+  cv::Mat blurred, sharpened;
+  cv::GaussianBlur(plain, blurred, {0, 0}, 1.2);
+  sharpened = 1.5 * plain - 0.5 * blurred;
+  cv::Mat gray;
+  sharpened.convertTo(gray, CV_8U);
+  const ImageFormation formation({1.0, 0.0, 0.5, 1.2, 0.0, false});
+  const GrayPatch patch = CutPatch(gray, {10, 10, 40, 40}, formation);
+  for (int y = 0; y < patch.values.rows; ++y) {
+    for (int x = 0; x < patch.values.cols; ++x) {
+      EXPECT_NEAR(patch.values.at<float>(y, x), plain.at<float>(y + 10, x + 10), 1.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace velamap
