@@ -120,20 +120,6 @@ double MaxAllowedShiftPx(double cell_px, const EdgeFitOptions& options) {
 
 }  // namespace
 
-bool HasClearSides(const QuadCorners& quad, int num_cells, const EdgeFitOptions& options) {
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    const Eigen::Vector2d next = quad[(i + 1) % kNumCorners] - quad[i];
-    const Eigen::Vector2d last = quad[(i + kNumCorners - 1) % kNumCorners] - quad[i];
-    const double area = std::abs(Cross(next, last));
-    const bool is_slanted = area < options.min_sine_of_corner * next.norm() * last.norm();
-    const double narrowest_cell_px = area / std::max(next.norm(), last.norm()) / num_cells;
-    if (narrowest_cell_px < (is_slanted ? options.min_slanted_cell_px : options.min_edge_cell_px)) {
-      return false;
-    }
-  }
-  return true;
-}
-
 std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
                                                    const QuadCorners& corners_px, int num_cells,
                                                    const EdgeFitOptions& options) {

@@ -1,11 +1,10 @@
-// Sub-pixel corners of a dark square on light ground as intersections of fitted edges.
+// Sub-pixel corners of a marker by fits of blurred edges.
 //
 // cv::cornerSubPix pulls the corners of a marker inwards by 0.1 to 0.4 px, which becomes a scale
-// error of 0.4 to 6 % when the scale comes from the marker's side. Here each side is modelled as a
-// step edge blurred by a Gaussian (edge_fit.h), whose place, bend, blur and grey levels are fitted
-// by least squares to the pixels within a band around the side. Neighbouring sides intersect in the
-// corners. A marker with small cells is fitted as a whole (pattern_fit.h), because the blur of one
-// edge reaches the next.
+// error of 0.4 to 6 % when the scale comes from the marker's side. A marker is fitted as a whole
+// (pattern_fit.h). Where that fails, each side is modelled as a step edge blurred by a Gaussian
+// (edge_fit.h), whose place, bend, blur and grey levels are fitted by least squares to the pixels
+// within a band around the side, and neighbouring sides intersect in the corners.
 
 #pragma once
 
@@ -28,18 +27,7 @@ struct EdgeFitOptions {
   double max_band_px = 6.0;
   // A corner that the fit moves further than this many cells (but at least 2 px) is a failure.
   double max_shift_in_cells = 0.8;
-  // Markers with cells narrower than this anywhere are fitted as a whole (pattern_fit.h).
-  double min_edge_cell_px = 5.0;
-  // The same for slanted markers: near an acute corner the band of each side contains the blur of
-  // the other, which pulled corners of markers tilted by 60 to 70 degrees inwards by up to 0.2 px.
-  double min_slanted_cell_px = 7.0;
-  double min_sine_of_corner = 0.9;
 };
-
-// Whether every side is far enough from the next edges, and perpendicular enough to its neighbours,
-// to be fitted alone. Corners in px; `num_cells` along a side, with the border.
-bool HasClearSides(const QuadCorners& corners_px, int num_cells,
-                   const EdgeFitOptions& options = {});
 
 // Returns the corners with their uncertainty. `corners_px` and the result are in OpenCV's pixel
 // frame (first pixel's centre at (0,0)), in order around the square; `num_cells` is the number of
@@ -49,8 +37,8 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
                                                    const QuadCorners& corners_px, int num_cells,
                                                    const EdgeFitOptions& options = {});
 
-// The same for a marker whose cells are known (as in pattern_fit.h), by the method that suits its
-// size.
+// Fits a marker whose cells are known (as in pattern_fit.h) as a whole, or its sides where that
+// fails.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
                                             const cv::Mat& cells,
                                             const ImageFormation& formation = ImageFormation(),

@@ -1,4 +1,4 @@
-// Least-squares fit of one side of a marker: the inner step of corner_refinement.h.
+// Least-squares fit of one side of a marker: what corner_refinement.h falls back on.
 //
 // Around the side, with s in [-1, 1] along it and d the distance outwards from the sampled line,
 //

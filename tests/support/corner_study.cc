@@ -129,12 +129,6 @@ QuadPx Subpix(const cv::Mat& gray, const QuadPx& start, int num_cells) {
   return refined;
 }
 
-double DistanceFromSegment(const Eigen::Vector2d& x, const Eigen::Vector2d& a,
-                           const Eigen::Vector2d& b) {
-  const double along = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (x - a - along * (b - a)).norm();
-}
-
 // Mean variance of a coordinate by the Cramer-Rao bound.
 double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& parameters) {
   using P = PatternParameters;
@@ -159,11 +153,6 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
   model.tone = &linear.tone();
   FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), linear), grid.cells[k], p,
                 &model);
-  const EdgeFitOptions options;
-  const double cell_px = MeanSide(truth) / model.num_cells;
-  const bool by_edges = HasClearSides(truth, model.num_cells, options);
-  const double band_px =
-      std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
   P::Matrix information = P::Matrix::Zero();
   const PatternPicture picture(model, p);
   PatternPixels pixels;
@@ -175,12 +164,6 @@ double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& pa
       const Floats from_center_x = AllLanes(x.x() - model.center_px.x());
       const Floats from_center_y = AllLanes(x.y() - model.center_px.y());
       if (!picture.Covers(from_center_x, from_center_y)[0]) continue;
-      double distance_px = band_px + 1;
-      for (std::size_t i = 0; i < kNumCorners; ++i) {
-        distance_px =
-            std::min(distance_px, DistanceFromSegment(x, truth[i], truth[(i + 1) % kNumCorners]));
-      }
-      if (by_edges && distance_px > band_px) continue;
       picture.At(from_center_x, from_center_y, &pixels);
       P::Vector jacobian;
       for (int i = 0; i < P::kCount; ++i)

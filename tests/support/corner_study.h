@@ -26,9 +26,8 @@ struct CornerAccuracy {
   double side_bias_sigma_px = 0.0;  // of that mean
   double std_px = 0.0;
   double subpix_side_bias_px = 0.0, subpix_std_px = 0.0;
-  // Cramer-Rao bound: the least standard deviation of an unbiased estimate from the same pixels
-  // (all of the marker's, or those around its outline where only the outline is fitted). It assumes
-  // white noise, a known shape of the blur and a flat marker.
+  // Cramer-Rao bound: the least standard deviation of an unbiased estimate from all pixels of the
+  // marker. It assumes white noise, a known shape of the blur and a flat marker.
   double bound_px = 0.0;
   double error_over_sigma = 0.0;  // root mean square; 1 when the sigmas are right
 };
