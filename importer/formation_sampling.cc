@@ -1,6 +1,7 @@
 #include "importer/formation_sampling.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -9,13 +10,14 @@
 #include <spdlog/spdlog.h>
 #include <opencv2/core.hpp>
 
+#include "importer/base/parallel.h"
 #include "importer/detect/marker_alignment.h"
 #include "importer/video/frame_source.h"
 
 namespace velamap {
 namespace {
 
-constexpr int kMaxSamples = 32, kMinSamples = 4;
+constexpr int kMaxSamples = 32, kMinSamples = 2;
 constexpr int kVideoFrames = 8, kVideoStride = 5;
 constexpr double kMinSidePx = 12.0;
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
@@ -68,6 +70,16 @@ std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv
   return sample;
 }
 
+std::vector<FormationSample> CutSamples(const FrameDetector& detector, const cv::Mat& gray,
+                                        int max_num) {
+  std::vector<FormationSample> samples;
+  for (const MarkerQuad& quad : ChooseMarkers(detector, max_num, SearchInFrame(detector, gray))) {
+    auto sample = CutSample(detector, gray, quad);
+    if (sample) samples.push_back(std::move(*sample));
+  }
+  return samples;
+}
+
 }  // namespace
 
 // The choice of samples depends on the pictures only: photographs may have any names and order.
@@ -81,18 +93,23 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   const int max_num_frames = source->IsVideo() ? kVideoFrames : kMaxSamples;
   const int num_per_frame =
       std::max(1, kMaxSamples / (source->IsVideo() ? kVideoFrames : num_images));
-  std::vector<FormationSample> samples;
-  for (int idx = 0, num_searched = 0; num_searched < max_num_frames; ++idx) {
+  std::vector<Frame> frames;  // without pixels
+  for (int idx = 0; static_cast<int>(frames.size()) < max_num_frames; ++idx) {
     std::optional<Frame> frame = source->Next();
     if (!frame) break;
+    if (idx % stride == 0) frames.push_back(std::move(*frame));
+  }
+  std::vector<std::vector<FormationSample>> samples_of(frames.size());
+  ParallelFor(frames.size(), num_threads, [&](std::size_t i) {
+    Frame frame = std::move(frames[i]);
     std::string reason;
-    if (idx % stride != 0 || !source->Load(&*frame, &reason)) continue;
-    ++num_searched;
-    for (const MarkerQuad& quad :
-         ChooseMarkers(detector, num_per_frame, SearchInFrame(detector, frame->gray))) {
-      auto sample = CutSample(detector, frame->gray, quad);
-      if (sample) samples.push_back(std::move(*sample));
+    if (source->Load(&frame, &reason)) {
+      samples_of[i] = CutSamples(detector, frame.gray, num_per_frame);
     }
+  });
+  std::vector<FormationSample> samples;
+  for (std::vector<FormationSample>& some : samples_of) {
+    std::move(some.begin(), some.end(), std::back_inserter(samples));
   }
   // Sums in single precision depend on their order, which the names of photographs decide.
   const auto key = [](const FormationSample& sample) {
@@ -102,7 +119,7 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
             [&](const FormationSample& a, const FormationSample& b) { return key(a) < key(b); });
   FormationEstimate estimate;
   if (static_cast<int>(samples.size()) >= kMinSamples) {
-    estimate = EstimateFormation(samples, detector.options.inverted);
+    estimate = EstimateFormation(samples, detector.options.inverted, num_threads);
   }
   if (estimate.num_samples < kMinSamples) return {};
   const ImageFormationParameters& found = estimate.parameters;

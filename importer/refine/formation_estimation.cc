@@ -9,6 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "importer/base/parallel.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/refine/pattern_picture.h"
@@ -128,14 +129,14 @@ struct State {
   std::vector<FittedSample> samples;
 };
 
-State MovedTo(const Vector& parameters, const State& state) {
+State MovedTo(const Vector& parameters, const State& state, int num_threads) {
   State moved{parameters,
               std::make_shared<const ImageFormation>(
                   ParametersOf(parameters, state.formation->parameters().is_inverted)),
               state.samples};
-  for (FittedSample& sample : moved.samples) {
-    Refit(*moved.formation, state.formation->tone(), &sample);
-  }
+  ParallelFor(moved.samples.size(), num_threads, [&](std::size_t i) {
+    Refit(*moved.formation, state.formation->tone(), &moved.samples[i]);
+  });
   return moved;
 }
 
@@ -155,7 +156,8 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
  public:
   using Parameters = State;
 
-  explicit FormationProblem(double noise) : noise_(noise), loss_{9 * noise * noise} {}
+  FormationProblem(double noise, int num_threads)
+      : noise_(noise), num_threads_(num_threads), loss_{9 * noise * noise} {}
 
   void Evaluate(const State& state, bool, Equations* equations) const {
     *equations = Equations();
@@ -163,7 +165,7 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
     for (int k = 0; k < kCount; ++k) {
       Vector parameters = state.parameters;
       parameters[k] += kStep[k];
-      moved.push_back(MovedTo(parameters, state));
+      moved.push_back(MovedTo(parameters, state, num_threads_));
     }
     for (std::size_t i = 0; i < state.samples.size(); ++i) {
       const std::vector<float>& residuals = state.samples[i].residuals;
@@ -187,39 +189,43 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
   }
 
   State Plus(const State& state, const Step& step) const {
-    return MovedTo((state.parameters + step).cwiseMax(kMin).cwiseMin(kMax), state);
+    return MovedTo((state.parameters + step).cwiseMax(kMin).cwiseMin(kMax), state, num_threads_);
   }
 
  private:
   double noise_;
+  int num_threads_;
   CauchyLoss loss_;
 };
 
-State FitAll(const std::vector<FormationSample>& samples, double gamma, bool is_inverted) {
+State FitAll(const std::vector<FormationSample>& samples, double gamma, bool is_inverted,
+             int num_threads) {
   State state;
   state.parameters = kMean;
   state.parameters[0] = std::log(gamma);
   state.formation =
       std::make_shared<const ImageFormation>(ParametersOf(state.parameters, is_inverted));
-  for (const FormationSample& sample : samples) {
-    auto fitted = FitSample(sample, *state.formation);
-    if (fitted) state.samples.push_back(std::move(*fitted));
-  }
-  for (FittedSample& sample : state.samples) {
-    Refit(*state.formation, state.formation->tone(), &sample);
+  std::vector<std::optional<FittedSample>> fitted(samples.size());
+  ParallelFor(samples.size(), num_threads, [&](std::size_t i) {
+    fitted[i] = FitSample(samples[i], *state.formation);
+    if (fitted[i]) Refit(*state.formation, state.formation->tone(), &*fitted[i]);
+  });
+  for (std::optional<FittedSample>& sample : fitted) {
+    if (sample) state.samples.push_back(std::move(*sample));
   }
   return state;
 }
 
 }  // namespace
 
-FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted) {
+FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
+                                    int num_threads) {
   constexpr double kGammas[] = {1.0, 1.5, 2.2};
   constexpr int kNumRounds = 2;  // each with the noise of the one before
   State best;
   double least_noise = std::numeric_limits<double>::infinity();
   for (const double gamma : kGammas) {
-    State state = FitAll(samples, gamma, is_inverted);
+    State state = FitAll(samples, gamma, is_inverted, num_threads);
     const double noise = NoiseOf(state);
     if (noise < least_noise) {
       least_noise = noise;
@@ -234,7 +240,7 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   options.min_relative_decrease = 2e-4;
   for (int round = 0; round < kNumRounds; ++round) {
     GaussNewtonEquations<kCount> equations;
-    MinimizeSquares(options, FormationProblem(NoiseOf(best)), &best, &equations);
+    MinimizeSquares(options, FormationProblem(NoiseOf(best), num_threads), &best, &equations);
   }
   return {best.formation->parameters(), static_cast<int>(best.samples.size()), NoiseOf(best)};
 }
