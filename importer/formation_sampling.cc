@@ -18,7 +18,6 @@ namespace velamap {
 namespace {
 
 constexpr int kMaxSamples = 32, kMinSamples = 2;
-constexpr int kVideoFrames = 8, kVideoStride = 5;
 constexpr double kMinSidePx = 12.0;
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
@@ -80,24 +79,15 @@ std::vector<FormationSample> CutSamples(const FrameDetector& detector, const cv:
   return samples;
 }
 
-}  // namespace
-
-// The choice of samples depends on the pictures only: photographs may have any names and order.
-FormationEstimate EstimateFormationOfSource(const std::string& image_path,
-                                            const VideoOptions& video, int num_threads,
-                                            const FrameDetector& detector) {
-  const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video, {}, num_threads);
-  const int num_images = std::max(1, source->NumFrames());
-  const int stride =
-      source->IsVideo() ? kVideoStride : (num_images + kMaxSamples - 1) / kMaxSamples;
-  const int max_num_frames = source->IsVideo() ? kVideoFrames : kMaxSamples;
-  const int num_per_frame =
-      std::max(1, kMaxSamples / (source->IsVideo() ? kVideoFrames : num_images));
+// Reads `num_frames` frames, every `stride`-th, and cuts samples from them. False at the end.
+bool SampleFrames(const FrameDetector& detector, int num_frames, int stride, int num_per_frame,
+                  int num_threads, FrameSource* source, std::vector<FormationSample>* samples) {
   std::vector<Frame> frames;  // without pixels
-  for (int idx = 0; static_cast<int>(frames.size()) < max_num_frames; ++idx) {
+  bool has_more = true;
+  for (int idx = 0; static_cast<int>(frames.size()) < num_frames && has_more; ++idx) {
     std::optional<Frame> frame = source->Next();
-    if (!frame) break;
-    if (idx % stride == 0) frames.push_back(std::move(*frame));
+    has_more = frame.has_value();
+    if (has_more && idx % stride == 0) frames.push_back(std::move(*frame));
   }
   std::vector<std::vector<FormationSample>> samples_of(frames.size());
   ParallelFor(frames.size(), num_threads, [&](std::size_t i) {
@@ -107,10 +97,44 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
       samples_of[i] = CutSamples(detector, frame.gray, num_per_frame);
     }
   });
-  std::vector<FormationSample> samples;
   for (std::vector<FormationSample>& some : samples_of) {
-    std::move(some.begin(), some.end(), std::back_inserter(samples));
+    std::move(some.begin(), some.end(), std::back_inserter(*samples));
   }
+  return has_more;
+}
+
+// From the beginning of a video; further on, and farther apart, while too few markers are found.
+std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_threads,
+                                         FrameSource* source) {
+  constexpr int kNumFrames = 8, kStride = 5, kMaxStride = 160;
+  std::vector<FormationSample> samples;
+  for (int stride = kStride; stride <= kMaxStride; stride *= 2) {
+    const bool has_more = SampleFrames(detector, kNumFrames, stride, kMaxSamples / kNumFrames,
+                                       num_threads, source, &samples);
+    if (!has_more || static_cast<int>(samples.size()) >= kMaxSamples / 2) break;
+  }
+  return samples;
+}
+
+// The choice depends on the contents of the photographs only, which may have any names and order.
+std::vector<FormationSample> SamplePhotographs(const FrameDetector& detector, int num_threads,
+                                               FrameSource* source) {
+  const int num_images = std::max(1, source->NumFrames());
+  std::vector<FormationSample> samples;
+  SampleFrames(detector, kMaxSamples, (num_images + kMaxSamples - 1) / kMaxSamples,
+               std::max(1, kMaxSamples / num_images), num_threads, source, &samples);
+  return samples;
+}
+
+}  // namespace
+
+FormationEstimate EstimateFormationOfSource(const std::string& image_path,
+                                            const VideoOptions& video, int num_threads,
+                                            const FrameDetector& detector) {
+  const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video, {}, num_threads);
+  std::vector<FormationSample> samples =
+      source->IsVideo() ? SampleVideo(detector, num_threads, source.get())
+                        : SamplePhotographs(detector, num_threads, source.get());
   // Sums in single precision depend on their order, which the names of photographs decide.
   const auto key = [](const FormationSample& sample) {
     return std::make_pair(cv::sum(sample.gray)[0], sample.corners_px[0].sum());
