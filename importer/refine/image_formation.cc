@@ -13,11 +13,6 @@ constexpr double kWhite = 255.0;
 constexpr int kKernelReachPx = 5;
 
 double GrayOfLight(const ImageFormationParameters& parameters, double light) {
-  if (parameters.is_inverted) {
-    ImageFormationParameters upright = parameters;
-    upright.is_inverted = false;
-    return kWhite - GrayOfLight(upright, kWhite - light);
-  }
   const double v = std::pow(std::max(light, 0.0) / kWhite, 1 / parameters.gamma);
   return kWhite * (v - parameters.s_amplitude * std::sin(2 * kPi * v));
 }
@@ -46,7 +41,10 @@ cv::Mat MakeUnsharpeningKernel(const ImageFormationParameters& parameters) {
 }  // namespace
 
 ToneCurve::ToneCurve(const ImageFormationParameters& parameters)
-    : is_linear_(parameters.gamma == 1.0 && parameters.s_amplitude == 0.0) {
+    : is_linear_(parameters.gamma == 1.0 && parameters.s_amplitude == 0.0 &&
+                 !parameters.is_inverted),
+      sign_(parameters.is_inverted ? -1.0f : 1.0f),
+      offset_(parameters.is_inverted ? static_cast<float>(kWhite) : 0.0f) {
   for (int i = 0; i <= kSteps; ++i) {
     const double root = static_cast<double>(i) * kMaxRoot / kSteps;
     gray_of_root_[static_cast<std::size_t>(i)] =
@@ -66,10 +64,12 @@ double ToneCurve::Encode(double light) const {
 
 double ToneCurve::Decode(double gray) const {
   if (is_linear_) return gray;
+  const double recorded = (gray - offset_) * sign_;
   const auto high = std::upper_bound(gray_of_root_.begin() + 1, gray_of_root_.end() - 1,
-                                     static_cast<float>(gray));
+                                     static_cast<float>(recorded));
   const double low = *(high - 1), step = std::max(*high - low, 1e-6);
-  const double idx = static_cast<double>(high - 1 - gray_of_root_.begin()) + (gray - low) / step;
+  const double idx =
+      static_cast<double>(high - 1 - gray_of_root_.begin()) + (recorded - low) / step;
   const double root = std::max(0.0, idx * kMaxRoot / kSteps);
   return root * root;
 }

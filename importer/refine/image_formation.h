@@ -27,7 +27,9 @@ struct ImageFormationParameters {
   double sharpening = 0.0;
   double sharpening_radius_px = 1.0;
   double ink_spread_sides = 0.0;
-  bool is_inverted = false;  // the images hold 255 less the recorded grey values
+  // The images hold 255 less the recorded grey values, so that inverted prints look upright. Light
+  // stays what the camera received: bright cells then have less of it than dark ones.
+  bool is_inverted = false;
 };
 
 // A tone curve as a table over the square root of light, where all curves are smooth.
@@ -55,8 +57,9 @@ class ToneCurve {
       low[lane] = gray_of_root_[i];
       step[lane] = gray_of_root_[i + 1] - gray_of_root_[i];
     }
-    *slope = step * (0.5f * kScale) / root;
-    return low + rest * step + (light - root * root) * *slope;
+    const Floats by_light = step * (0.5f * kScale) / root;
+    *slope = sign_ * by_light;
+    return offset_ + sign_ * (low + rest * step + (light - root * root) * by_light);
   }
 
   double Encode(double light) const;
@@ -68,7 +71,8 @@ class ToneCurve {
   static constexpr double kMinLight = 0.05;
 
   bool is_linear_;
-  std::array<float, kSteps + 1> gray_of_root_;
+  float sign_, offset_;                         // of inverted images -1 and 255, else 1 and 0
+  std::array<float, kSteps + 1> gray_of_root_;  // as recorded
 };
 
 // The parameters, ready for many markers.

@@ -149,7 +149,7 @@ Eigen::Vector4d FindMargins(const PatternProblem& problem, const UnitSquareMap& 
       }
     }
     const double beyond = (profile[kSteps - 1] + profile[kSteps - 2] + profile[kSteps - 3]) / 3;
-    if (std::abs(beyond - light) < kAlike * (light - dark)) continue;
+    if (std::abs(beyond - light) < kAlike * std::abs(light - dark)) continue;
     const double middle = 0.5 * (beyond + light);
     std::size_t k = kSteps - 1;
     while (k > 0 && (profile[k] > middle) == (beyond > middle)) --k;
@@ -180,7 +180,9 @@ CellLights ReadCellLights(const PatternProblem& problem, const UnitSquareMap& ma
               LightAt(problem, map, -out, along) + LightAt(problem, map, 1 + out, along);
   }
   beside /= 4 * n;
-  return {sum[0] / count[0], count[1] > 0 ? std::max(beside, sum[1] / count[1]) : beside};
+  const double light = count[1] > 0 ? sum[1] / count[1] : beside;
+  const ToneCurve& tone = *problem.model.tone;
+  return {sum[0] / count[0], tone.Encode(beside) > tone.Encode(light) ? beside : light};
 }
 
 // Sets the initial parameters and the priors. False for too little contrast.
