@@ -110,7 +110,9 @@ TEST(RefineCorners, DoNotDependOnWhereTheQuadCameFrom) {
       const auto from_start = RefineCorners(grid.image, grid.starts[k], grid.cells[k]);
       if (!from_truth || !from_start) continue;
       ++num_compared;
-      num_same += MaxDistance(from_truth->corners_px, from_start->corners_px) < 0.02;
+      // Of a large marker only some pixels are used, which ones depends on the start.
+      num_same += MaxDistance(from_truth->corners_px, from_start->corners_px) <
+                  (side_px > 50 ? 0.05 : 0.01);
     }
     EXPECT_GE(num_compared, 0.95 * static_cast<double>(grid.truth.size())) << side_px << " px";
     EXPECT_GE(num_same, 0.95 * static_cast<double>(num_compared)) << side_px << " px";
