@@ -1,5 +1,5 @@
-// The writing side of an import: images in batches, and a new database that is removed if the import
-// fails.
+// The writing side of an import: images in batches, and a new database that is removed if the
+// import fails.
 
 #pragma once
 

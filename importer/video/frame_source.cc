@@ -184,10 +184,10 @@ class VideoFile : public FrameSource {
   void End() {
     ended_ = true;
     if (num_read_ <= options_.first_frame) {
-      throw InputError(fmt::format(
-          "{}: the video has {} frames, none at or after frame {}, the first that is "
-          "wanted",
-          path_, num_read_, options_.first_frame));
+      throw InputError(
+          fmt::format("{}: the video has {} frames, none at or after frame {}, the first that is "
+                      "wanted",
+                      path_, num_read_, options_.first_frame));
     }
     // A container that derives the count from its duration is off by a frame or so.
     const int tolerance = std::max(2, num_container_frames_ / 100);

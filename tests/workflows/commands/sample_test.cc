@@ -106,8 +106,8 @@ TEST(CubeTest, ReachesTheGoals) {
   ExpectFacesOfACube(planes);
 }
 
-// The order decides which of two equally good pairs of photographs the map starts from, and so which
-// of the markers at the edge of what can be seen are kept.
+// The order decides which of two equally good pairs of photographs the map starts from, and so
+// which of the markers at the edge of what can be seen are kept.
 TEST(CubeTest, NamesAndOrderOfThePhotographsHardlyChangeTheShape) {
   const TempDir dir;
   std::vector<std::string> names = ListFolder(kCube / "images");
