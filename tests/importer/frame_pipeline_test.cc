@@ -93,7 +93,9 @@ TEST(RunFramePipeline, FailuresOnAnySideEndItAndAreHandedOn) {
 // the number of frames that came out, or with 101 after an input error. For a child process.
 void RunWithFewThreads(unsigned max_num_threads) {
   const rlimit limit{max_num_threads, max_num_threads};
-  if (setrlimit(RLIMIT_NPROC, &limit) != 0 || setuid(kUserWithoutProcesses) != 0) std::_Exit(102);
+  // A user for each process, because the threads of one that has just ended may still count.
+  const uid_t user = kUserWithoutProcesses + static_cast<uid_t>(getpid()) % 100000;
+  if (setrlimit(RLIMIT_NPROC, &limit) != 0 || setuid(user) != 0) std::_Exit(102);
   FakeSource source(20);
   int num_frames = 0;
   try {
