@@ -65,16 +65,16 @@ TEST(ShapeComparison, AShapeMovedRigidlyDoesNotDiffer) {
 
 TEST(ShapeComparison, AMovedPartShowsByExactlyItsMotion) {
   const Eigen::Vector3d shift_m(0.01, 0.03, -0.02);
-  const MarkerShape trimmed = Shifted(IdsOf("sail"), shift_m, BoatShape());
+  const MarkerShape boat = BoatShape(), trimmed = Shifted(IdsOf("sail"), shift_m, boat);
   const ShapeDeviation deviation =
-      CompareWithShape(Exact(Moved(FarPose(), trimmed)), Exact(BoatShape()), BoatLayout(), {});
+      CompareWithShape(Exact(Moved(FarPose(), trimmed)), Exact(boat), BoatLayout(), {});
   EXPECT_EQ(deviation.alignment.method, AlignmentMethod::kReferencePart);
   EXPECT_THAT(deviation.alignment.description, HasSubstr("part hull, 24 corners of 6 markers"));
   for (const MarkerDeviation& marker : deviation.markers) {
     const Eigen::Vector3d truth_m =
         marker.part == "sail" ? shift_m : Eigen::Vector3d(Eigen::Vector3d::Zero());
     EXPECT_LT((*marker.difference_m - truth_m).norm(), 1e-12) << marker.marker_id;
-    const ShapeMarker& reference = *FindWholeMarker(BoatShape(), marker.marker_id);
+    const ShapeMarker& reference = *FindWholeMarker(boat, marker.marker_id);
     EXPECT_NEAR(marker.distance_m, MarkerNormal(reference).dot(truth_m), 1e-12);
     EXPECT_TRUE(marker.normal.isApprox(MarkerNormal(reference), 1e-12));
   }
