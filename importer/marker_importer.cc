@@ -19,7 +19,7 @@
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
 #include "importer/dictionary_hint.h"
-#include "importer/formation_sampling.h"
+#include "importer/formation/formation_sampling.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
 #include "importer/import_checks.h"

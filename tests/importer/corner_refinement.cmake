@@ -4,7 +4,7 @@ velamap_test(
   SOURCES
     refine/corner_refinement_test.cc
     refine/edge_sampling_test.cc
-    refine/formation_estimation_test.cc
+    formation/formation_estimation_test.cc
     refine/fit_equations_test.cc
     detect/marker_alignment_test.cc
     refine/marker_grid.cc

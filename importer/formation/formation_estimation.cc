@@ -1,4 +1,4 @@
-#include "importer/refine/formation_estimation.h"
+#include "importer/formation/formation_estimation.h"
 
 #include <algorithm>
 #include <cmath>

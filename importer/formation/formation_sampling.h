@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "importer/refine/formation_estimation.h"
+#include "importer/formation/formation_estimation.h"
 #include "importer/track/frame_detector.h"
 #include "importer/video/video_options.h"
 

@@ -1,4 +1,4 @@
-#include "importer/formation_sampling.h"
+#include "importer/formation/formation_sampling.h"
 
 #include <algorithm>
 #include <iterator>
