@@ -227,6 +227,17 @@ class ImportRun {
   std::set<int> ids_not_in_layout_;
 };
 
+// The estimate that the database holds, so that later frames are treated as the first ones were;
+// else a new one, which is added to the database.
+FormationEstimate FormationOf(const MarkerImporterOptions& options, const FrameDetector& detector,
+                              ColmapDatabase* database) {
+  if (const auto known = database->ReadFormation()) return *known;
+  const FormationEstimate estimate =
+      EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector);
+  database->WriteFormation(estimate);
+  return estimate;
+}
+
 // Imports all frames that the database does not hold. Decoder and pictures are freed at the end,
 // because the steps that follow need memory in proportion to the number of frames.
 ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetector& detector,
@@ -277,9 +288,7 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
   if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
-    detector.formation = ImageFormation(
-        EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector)
-            .parameters);
+    detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }
   ImportReport report =
       ImportFrames(options, detector, known_names, num_threads, progress, &database);

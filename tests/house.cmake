@@ -18,11 +18,11 @@ house_folder(importer/detect PUBLIC
   corner_colors detection detection_options duplicates interpolate marker_alignment
   marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
 house_folder(importer/refine PUBLIC
-  image_formation marker_detector pattern_picture pattern_problem)
+  formation_estimate image_formation marker_detector pattern_picture pattern_problem)
 house_folder(importer/track PUBLIC
   frame_detector marker_tracking)
 house_folder(importer/formation PUBLIC
-  formation_estimation formation_sampling)
+  formation_sampling)
 house_folder(importer/database PUBLIC
   colmap_database correspondence database_writer)
 house_folder(importer PUBLIC

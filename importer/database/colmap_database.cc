@@ -10,6 +10,7 @@
 #include "importer/base/files.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/correspondence.h"
+#include "importer/database/image_formation_table.h"
 #include "importer/database/marker_detections_table.h"
 #include "importer/database/sqlite_blob.h"
 #include "importer/database/sqlite_errors.h"
@@ -270,6 +271,14 @@ std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
 
 std::optional<std::string> ColmapDatabase::ReadDetector() const {
   return Guarded(path_, [&] { return ReadDetectorOfDetections(database_.get()); });
+}
+
+void ColmapDatabase::WriteFormation(const FormationEstimate& estimate) {
+  Guarded(path_, [&] { WriteImageFormation(estimate, database_.get()); });
+}
+
+std::optional<FormationEstimate> ColmapDatabase::ReadFormation() const {
+  return Guarded(path_, [&] { return ReadImageFormation(database_.get()); });
 }
 
 }  // namespace velamap

@@ -1,9 +1,9 @@
 // The COLMAP database. Only the files of this folder know its tables.
 //
 // The layout is COLMAP 3.8's (six tables, images with seven nullable prior columns), which every
-// COLMAP from 3.5 to 4.x opens. Two more tables, marker_detections and marker_detector, hold what
-// COLMAP has no place for; COLMAP ignores and keeps them. The layout of an existing file is
-// recognised by its columns.
+// COLMAP from 3.5 to 4.x opens. Three more tables, marker_detections, marker_detector and
+// image_formation, hold what COLMAP has no place for; COLMAP ignores and keeps them. The layout of
+// an existing file is recognised by its columns.
 
 #pragma once
 
@@ -17,6 +17,7 @@
 #include "importer/base/ids.h"
 #include "importer/camera/camera.h"
 #include "importer/detect/detection.h"
+#include "importer/refine/formation_estimate.h"
 
 namespace SQLite {
 class Database;
@@ -86,6 +87,10 @@ class ColmapDatabase {
   // Returns how the detections were made (dictionary, refinement, polarity), so that an import can
   // refuse to mix two ways; nothing if there are no detections.
   std::optional<std::string> ReadDetector() const;
+
+  // What camera and print do to edges, which is estimated once for all images of a database.
+  void WriteFormation(const FormationEstimate& estimate);
+  std::optional<FormationEstimate> ReadFormation() const;
 
  private:
   void OpenForWriting(int busy_timeout_ms);

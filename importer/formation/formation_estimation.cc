@@ -7,18 +7,12 @@
 #include <optional>
 #include <utility>
 
-#include <opencv2/imgproc.hpp>
-
 #include "importer/base/parallel.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
-#include "importer/refine/pattern_picture.h"
-#include "importer/refine/pattern_problem.h"
 
 namespace velamap {
 namespace {
-
-using P = PatternParameters;
 
 constexpr int kCount = 5;  // log gamma, S, sharpening, log radius, ink spread
 using Vector = Eigen::Matrix<double, kCount, 1>;
@@ -34,108 +28,23 @@ ImageFormationParameters ParametersOf(const Vector& p, bool is_inverted) {
   return {std::exp(p[0]), p[1], p[2], std::exp(p[3]), p[4], is_inverted};
 }
 
-// A sample with its fit.
-struct FittedSample {
-  cv::Mat gray;
-  cv::Rect patch_box;
-  PatternProblem problem;
-  PatternMinimum minimum;
-  std::vector<cv::Point> places;  // of all pixels that count, in the problem's box
-  std::vector<float> residuals;   // at these places; empty: the fit failed
-};
-
-std::optional<FittedSample> FitSample(const FormationSample& sample,
-                                      const ImageFormation& formation) {
-  FittedSample fitted;
-  fitted.gray = sample.gray;
-  auto problem =
-      MakePatternProblem(sample.gray, sample.corners_px, sample.cells, formation, &fitted.minimum);
-  if (!problem || !FitPatternInPasses(&*problem, &fitted.minimum)) return std::nullopt;
-  fitted.problem = std::move(*problem);
-  fitted.patch_box = cv::Rect(fitted.problem.patch.origin_px, fitted.problem.patch.values.size());
-  const PatternPicture picture(fitted.problem.model, fitted.minimum.parameters);
-  const Eigen::Vector2d& center = fitted.problem.model.center_px;
-  for (int y = 0; y < fitted.problem.box.height; ++y) {
-    for (int x = 0; x < fitted.problem.box.width; ++x) {
-      if (picture.Covers(AllLanes(fitted.problem.box.x + x - center.x()),
-                         AllLanes(fitted.problem.box.y + y - center.y()))[0]) {
-        fitted.places.emplace_back(x, y);
-      }
-    }
-  }
-  return fitted;
-}
-
-// Modelled less recorded grey values. The patch is without the sharpening, which is applied to the
-// difference again: it would otherwise depend on the sharpening how large the noise looks.
-std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation& formation) {
-  const PatternProblem& problem = sample.problem;
-  const PatternPicture picture(problem.model, sample.minimum.parameters);
-  const cv::Point patch_from_box = problem.box.tl() - problem.patch.origin_px;
-  const Eigen::Vector2d box_from_center =
-      Eigen::Vector2d(problem.box.x, problem.box.y) - problem.model.center_px;
-  cv::Mat difference = cv::Mat::zeros(problem.box.size(), CV_32F);
-  PatternPixels modelled;
-  for (std::size_t begin = 0; begin < sample.places.size(); begin += kLanes) {
-    const std::size_t end = std::min(begin + kLanes, sample.places.size());
-    Floats x{}, y{};
-    for (std::size_t i = begin; i < end; ++i) {
-      x[i - begin] = static_cast<float>(sample.places[i].x + box_from_center.x());
-      y[i - begin] = static_cast<float>(sample.places[i].y + box_from_center.y());
-    }
-    picture.At(x, y, &modelled);
-    for (std::size_t i = begin; i < end; ++i) {
-      difference.at<float>(sample.places[i]) =
-          modelled.gray[i - begin] -
-          problem.patch.values.at<float>(sample.places[i] + patch_from_box);
-    }
-  }
-  const ImageFormationParameters& parameters = formation.parameters();
-  if (parameters.sharpening != 0) {
-    cv::Mat blurred;
-    cv::GaussianBlur(difference, blurred, {0, 0}, parameters.sharpening_radius_px,
-                     parameters.sharpening_radius_px, cv::BORDER_CONSTANT);
-    difference = (1 + parameters.sharpening) * difference - parameters.sharpening * blurred;
-  }
-  std::vector<float> residuals;
-  residuals.reserve(sample.places.size());
-  for (const cv::Point& place : sample.places) residuals.push_back(difference.at<float>(place));
-  return residuals;
-}
-
-// From the fit with another image formation. `before` is that one's tone curve.
-void Refit(const ImageFormation& formation, const ToneCurve& before, FittedSample* sample) {
-  // All pixels of most samples and a small tolerance, so that differences give derivatives.
-  constexpr int kMaxPixels = 4000;
-  constexpr double kTolerancePx = 0.003;
-  PatternProblem& problem = sample->problem;
-  problem.patch = CutPatch(sample->gray, sample->patch_box, formation);
-  problem.model.tone = &formation.tone();
-  problem.model.ink_spread_cells =
-      formation.parameters().ink_spread_sides * problem.model.num_cells;
-  for (const int index : {P::kDark, P::kLight}) {
-    double& light = sample->minimum.parameters[index];
-    light = formation.tone().Decode(before.Encode(light));
-  }
-  sample->residuals = RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum)
-                          ? ResidualsOf(*sample, formation)
-                          : std::vector<float>();
-}
-
 // The parameters that all samples share, and the samples fitted with them.
 struct State {
   Vector parameters;
   std::shared_ptr<const ImageFormation> formation;
   std::vector<FittedSample> samples;
+  // The states after a step of each parameter alone, for derivatives by differences; null until
+  // they are asked for.
+  mutable std::shared_ptr<const std::vector<State>> moved;
 };
 
 State MovedTo(const Vector& parameters, const State& state, int num_threads) {
   State moved{parameters,
               std::make_shared<const ImageFormation>(
                   ParametersOf(parameters, state.formation->parameters().is_inverted)),
-              state.samples};
+              state.samples, nullptr};
   ParallelFor(moved.samples.size(), num_threads, [&](std::size_t i) {
-    Refit(*moved.formation, state.formation->tone(), &moved.samples[i]);
+    RefitSample(*moved.formation, state.formation->tone(), &moved.samples[i]);
   });
   return moved;
 }
@@ -150,6 +59,42 @@ double NoiseOf(const State& state) {
                         : std::max(kMinNoise, RobustSigma(values));
 }
 
+const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
+  if (!state.moved) {
+    std::vector<State> moved;
+    for (int k = 0; k < kCount; ++k) {
+      Vector parameters = state.parameters;
+      parameters[k] += kStep[k];
+      moved.push_back(MovedTo(parameters, state, num_threads));
+    }
+    state.moved = std::make_shared<const std::vector<State>>(std::move(moved));
+  }
+  return *state.moved;
+}
+
+using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
+
+// Derivatives of the residuals of the i-th sample; zero where a fit failed.
+Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::size_t i) {
+  const auto residuals_of = [i](const State& one) {
+    const std::vector<float>& residuals = one.samples[i].residuals;
+    return Eigen::Map<const Eigen::VectorXf>(residuals.data(),
+                                             static_cast<Eigen::Index>(residuals.size()))
+        .cast<double>();
+  };
+  const auto count = static_cast<Eigen::Index>(state.samples[i].places.size());
+  Jacobian jacobian = Jacobian::Zero(count, kCount);
+  const bool all_fitted = residuals_of(state).size() == count &&
+                          std::all_of(moved.begin(), moved.end(), [&](const State& one) {
+                            return residuals_of(one).size() == count;
+                          });
+  for (int k = 0; all_fitted && k < kCount; ++k) {
+    jacobian.col(k) =
+        (residuals_of(moved[static_cast<std::size_t>(k)]) - residuals_of(state)) / kStep[k];
+  }
+  return jacobian;
+}
+
 // The estimation as a problem of MinimizeSquares(). A sample whose fit fails counts as residuals
 // of 6 sigmas.
 class FormationProblem : public LeastSquaresProblem<kCount> {
@@ -159,43 +104,86 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
   FormationProblem(double noise, int num_threads)
       : noise_(noise), num_threads_(num_threads), loss_{9 * noise * noise} {}
 
+  // Derivatives take six fits of every sample, so that there are none where the cost is higher
+  // than before: such a step is not taken.
   void Evaluate(const State& state, bool, Equations* equations) const {
-    *equations = Equations();
-    std::vector<State> moved;
-    for (int k = 0; k < kCount; ++k) {
-      Vector parameters = state.parameters;
-      parameters[k] += kStep[k];
-      moved.push_back(MovedTo(parameters, state, num_threads_));
-    }
-    for (std::size_t i = 0; i < state.samples.size(); ++i) {
-      const std::vector<float>& residuals = state.samples[i].residuals;
-      const std::size_t count = state.samples[i].places.size();
-      const bool has_derivatives = std::all_of(moved.begin(), moved.end(), [&](const State& one) {
-        return one.samples[i].residuals.size() == count && residuals.size() == count;
-      });
-      for (std::size_t j = 0; j < count; ++j) {
-        const double residual = residuals.empty() ? 6 * noise_ : residuals[j];
-        Eigen::Matrix<double, 1, kCount> jacobian = Eigen::Matrix<double, 1, kCount>::Zero();
-        for (int k = 0; has_derivatives && k < kCount; ++k) {
-          jacobian[k] =
-              (moved[static_cast<std::size_t>(k)].samples[i].residuals[j] - residual) / kStep[k];
-        }
-        equations->Add<1>(jacobian, Eigen::Matrix<double, 1, 1>(residual), loss_);
-      }
-    }
-    const Vector weight = noise_ * kSigma.cwiseInverse();
-    const Eigen::Matrix<double, kCount, kCount> by_prior = weight.asDiagonal();
-    equations->Add<kCount>(by_prior, weight.cwiseProduct(state.parameters - kMean));
+    *equations = SumUp(state, nullptr);
+    if (equations->cost() > least_cost_) return;
+    least_cost_ = equations->cost();
+    *equations = SumUp(state, &MovedBySteps(state, num_threads_));
   }
 
   State Plus(const State& state, const Step& step) const {
     return MovedTo((state.parameters + step).cwiseMax(kMin).cwiseMin(kMax), state, num_threads_);
   }
 
+  // FormationEstimate::inset_sigma_px at the minimum, whose `hessian` is given. The residuals of a
+  // sample have errors in common (what no parameter describes), so that the scatter of the samples'
+  // gradients tells the covariance (Huber 1967, White 1980), but few samples may agree by chance:
+  // it is no smaller than for independent residuals.
+  double InsetSigma(const State& state, const Equations::Matrix& hessian) const {
+    const std::vector<State>& moved = MovedBySteps(state, num_threads_);
+    Equations::Matrix scatter = Equations::Matrix::Zero();
+    Vector inset_by = Vector::Zero();
+    int num_fitted = 0;
+    for (std::size_t i = 0; i < state.samples.size(); ++i) {
+      const std::vector<float>& residuals = state.samples[i].residuals;
+      const Jacobian jacobian = JacobianOf(state, moved, i);
+      if (jacobian.isZero(0)) continue;
+      ++num_fitted;
+      Vector gradient = Vector::Zero();
+      for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
+        const double residual = residuals[static_cast<std::size_t>(j)];
+        gradient += loss_.Weight(residual * residual) * residual * jacobian.row(j).transpose();
+      }
+      scatter += gradient * gradient.transpose();
+      for (int k = 0; k < kCount; ++k) {
+        const auto& one = moved[static_cast<std::size_t>(k)].samples[i].minimum;
+        inset_by[k] += 0.5 *
+                       (QuadMeanSide(CornersOf(one.parameters)) -
+                        QuadMeanSide(CornersOf(state.samples[i].minimum.parameters))) /
+                       kStep[k];
+      }
+    }
+    if (num_fitted == 0) return 0.0;
+    inset_by /= num_fitted;
+    scatter *= static_cast<double>(num_fitted) / std::max(1, num_fitted - kCount);
+    scatter += PriorWeight()
+                   .cwiseAbs2()
+                   .cwiseProduct(PriorWeight().cwiseAbs2())
+                   .cwiseProduct(kSigma.cwiseAbs2())
+                   .asDiagonal();
+    const Vector by_inset = hessian.ldlt().solve(inset_by);
+    return std::sqrt(
+        std::max(by_inset.dot(scatter * by_inset), noise_ * noise_ * inset_by.dot(by_inset)));
+  }
+
  private:
+  // Without derivatives if `moved` is null.
+  Equations SumUp(const State& state, const std::vector<State>* moved) const {
+    Equations equations;
+    for (std::size_t i = 0; i < state.samples.size(); ++i) {
+      const std::vector<float>& residuals = state.samples[i].residuals;
+      const auto count = static_cast<Eigen::Index>(state.samples[i].places.size());
+      const Jacobian jacobian =
+          moved != nullptr ? JacobianOf(state, *moved, i) : Jacobian(Jacobian::Zero(count, kCount));
+      for (Eigen::Index j = 0; j < count; ++j) {
+        const double residual =
+            residuals.empty() ? 6 * noise_ : residuals[static_cast<std::size_t>(j)];
+        equations.Add<1>(jacobian.row(j), Eigen::Matrix<double, 1, 1>(residual), loss_);
+      }
+    }
+    const Eigen::Matrix<double, kCount, kCount> by_prior = PriorWeight().asDiagonal();
+    equations.Add<kCount>(by_prior, PriorWeight().cwiseProduct(state.parameters - kMean));
+    return equations;
+  }
+
+  Vector PriorWeight() const { return noise_ * kSigma.cwiseInverse(); }
+
   double noise_;
   int num_threads_;
   CauchyLoss loss_;
+  mutable double least_cost_ = std::numeric_limits<double>::infinity();
 };
 
 State FitAll(const std::vector<FormationSample>& samples, double gamma, bool is_inverted,
@@ -208,7 +196,7 @@ State FitAll(const std::vector<FormationSample>& samples, double gamma, bool is_
   std::vector<std::optional<FittedSample>> fitted(samples.size());
   ParallelFor(samples.size(), num_threads, [&](std::size_t i) {
     fitted[i] = FitSample(samples[i], *state.formation);
-    if (fitted[i]) Refit(*state.formation, state.formation->tone(), &*fitted[i]);
+    if (fitted[i]) RefitSample(*state.formation, state.formation->tone(), &*fitted[i]);
   });
   for (std::optional<FittedSample>& sample : fitted) {
     if (sample) state.samples.push_back(std::move(*sample));
@@ -238,11 +226,17 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   options.initial_damping = 1e-3;
   options.max_damping = 1e2;
   options.min_relative_decrease = 2e-4;
+  FormationEstimate estimate;
   for (int round = 0; round < kNumRounds; ++round) {
+    const FormationProblem problem(NoiseOf(best), num_threads);
     GaussNewtonEquations<kCount> equations;
-    MinimizeSquares(options, FormationProblem(NoiseOf(best), num_threads), &best, &equations);
+    MinimizeSquares(options, problem, &best, &equations);
+    estimate.inset_sigma_px = problem.InsetSigma(best, equations.hessian());
   }
-  return {best.formation->parameters(), static_cast<int>(best.samples.size()), NoiseOf(best)};
+  estimate.parameters = best.formation->parameters();
+  estimate.num_samples = static_cast<int>(best.samples.size());
+  estimate.noise_gray = NoiseOf(best);
+  return estimate;
 }
 
 }  // namespace velamap

@@ -5,6 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "importer/detect/interpolate.h"
+
 namespace velamap {
 namespace {
 
@@ -99,17 +101,8 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
 }
 
 double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {
-  const cv::Mat& values = patch.values;
-  // Written so that a NaN becomes a place inside.
-  const auto clamped = [](double x, double max) { return x > 0 ? std::min(x, max) : 0.0; };
-  const double x = clamped(x_px.x() - patch.origin_px.x, values.cols - 1.001);
-  const double y = clamped(x_px.y() - patch.origin_px.y, values.rows - 1.001);
-  const int column = static_cast<int>(x), row = static_cast<int>(y);
-  const double fx = x - column, fy = y - row;
-  const float* upper = values.ptr<float>(row) + column;
-  const float* lower = values.ptr<float>(row + 1) + column;
-  return (1 - fy) * ((1 - fx) * upper[0] + fx * upper[1]) +
-         fy * ((1 - fx) * lower[0] + fx * lower[1]);
+  return InterpolateGray<float>(patch.values,
+                                x_px - Eigen::Vector2d(patch.origin_px.x, patch.origin_px.y));
 }
 
 }  // namespace velamap

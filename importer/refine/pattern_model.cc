@@ -9,16 +9,6 @@ namespace {
 
 using P = PatternParameters;
 
-// Sigma of the blur across columns and across rows, in cells at the centre of the marker.
-Eigen::Vector2d BlurInCells(const P::Vector& parameters, const QuadCorners& quad, int num_cells) {
-  const Eigen::Vector2d along_u = 0.5 * (quad[1] - quad[0] + quad[2] - quad[3]);
-  const Eigen::Vector2d along_v = 0.5 * (quad[3] - quad[0] + quad[2] - quad[1]);
-  const double area = std::abs(along_u.x() * along_v.y() - along_u.y() * along_v.x());
-  return num_cells / area *
-         Eigen::Vector2d(parameters[P::kBlurU] * along_v.norm(),
-                         parameters[P::kBlurV] * along_u.norm());
-}
-
 // The part of a blurred place within the rows (or columns) of the black square, and the part within
 // these and the quiet zone.
 struct Within {
@@ -66,12 +56,21 @@ QuadCorners CornersOf(const P::Vector& parameters) {
   return quad;
 }
 
-double FillLightness(const GrayPatch& patch, const cv::Mat& cells, const P::Vector& parameters,
-                     PatternModel* model) {
+Eigen::Vector2d BlurInCells(const P::Vector& parameters, int num_cells) {
   const QuadCorners quad = CornersOf(parameters);
-  const UnitSquareMap map(quad);
+  const Eigen::Vector2d along_u = 0.5 * (quad[1] - quad[0] + quad[2] - quad[3]);
+  const Eigen::Vector2d along_v = 0.5 * (quad[3] - quad[0] + quad[2] - quad[1]);
+  const double area = std::abs(along_u.x() * along_v.y() - along_u.y() * along_v.x());
+  return num_cells / area *
+         Eigen::Vector2d(parameters[P::kBlurU] * along_v.norm(),
+                         parameters[P::kBlurV] * along_u.norm());
+}
+
+void FillLightness(const GrayPatch& patch, const cv::Mat& cells, const P::Vector& parameters,
+                   PatternModel* model) {
+  const UnitSquareMap map(CornersOf(parameters));
   const int n = model->num_cells;
-  const Eigen::Vector2d blur_cells = BlurInCells(parameters, quad, n);
+  const Eigen::Vector2d blur_cells = BlurInCells(parameters, n);
   const auto margin = parameters.segment<4>(P::kMargin);
   const RingReading across_u(blur_cells.x(), margin[0], margin[1]);
   const RingReading across_v(blur_cells.y(), margin[2], margin[3]);
@@ -96,7 +95,6 @@ double FillLightness(const GrayPatch& patch, const cv::Mat& cells, const P::Vect
       model->surround(j + kRing, i + kRing) = surround;
     }
   }
-  return blur_cells.maxCoeff();
 }
 
 }  // namespace velamap

@@ -37,6 +37,9 @@ struct PatternParameters {
 
 QuadCorners CornersOf(const PatternParameters::Vector& parameters);
 
+// Sigma of the blur across columns and across rows, in cells at the centre of the marker.
+Eigen::Vector2d BlurInCells(const PatternParameters::Vector& parameters, int num_cells);
+
 // The constants of a fit.
 struct PatternModel {
   int num_cells = 0;      // along a side, with the border
@@ -51,8 +54,8 @@ struct PatternModel {
 // Fills in the lightness of the cells: those of the marker are known (zero for black), the
 // surroundings of the quiet zone are read from the image. The quiet zone and the black border blur
 // into the places where it is read; their part is subtracted, by the corners, blurs and grey levels
-// of `parameters`. Returns the larger blur, in cells.
-double FillLightness(const GrayPatch& patch, const cv::Mat& cells,
-                     const PatternParameters::Vector& parameters, PatternModel* model);
+// of `parameters`.
+void FillLightness(const GrayPatch& patch, const cv::Mat& cells,
+                   const PatternParameters::Vector& parameters, PatternModel* model);
 
 }  // namespace velamap

@@ -44,24 +44,24 @@ inline void FillUp(Pixels* pixels) {
   }
 }
 
-// Calls take(lane, column, group) for every pixel of the box that the model covers, in rows;
-// `group` are the places of kLanes pixels.
+// Calls take(group, covered) for every group of pixels of the box, in rows; `covered` is -1 for the
+// pixels that the model covers.
 template <typename Take>
-inline void ForEachCoveredPixel(const PatternProblem& problem, const PatternPicture& picture,
-                                const Take& take) {
+inline void ForEachGroup(const PatternProblem& problem, const PatternPicture& picture,
+                         const Take& take) {
   const cv::Rect& box = problem.box;
   const Eigen::Vector2d& center = problem.model.center_px;
   for (int row = box.y; row < box.y + box.height; ++row) {
     const float* values = problem.patch.values.ptr<float>(row - problem.patch.origin_px.y);
     const Floats y = AllLanes(row - center.y());
     for (int begin = box.x; begin < box.x + box.width; begin += kLanes) {
-      const Floats x = static_cast<float>(begin - center.x()) + LaneIndex();
-      const Ints covered = picture.Covers(x, y);
+      Pixels::Group group{static_cast<float>(begin - center.x()) + LaneIndex(), y, {}};
+      Ints covered = picture.Covers(group.x, group.y);
       for (int lane = 0; lane < kLanes; ++lane) {
-        const int column = begin + lane;
-        if (!covered[lane] || column >= box.x + box.width) continue;
-        take(Pixels::Group{x, y, AllLanes(values[column - problem.patch.origin_px.x])}, lane);
+        if (begin + lane >= box.x + box.width) covered[lane] = 0;
+        if (covered[lane]) group.gray[lane] = values[begin + lane - problem.patch.origin_px.x];
       }
+      take(group, covered);
     }
   }
 }
@@ -85,10 +85,12 @@ VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const PatternProblem& problem,
     last.y[place] = group.y[lane];
     last.gray[place] = group.gray[lane];
   };
-  Ints is_near{};
-  ForEachCoveredPixel(problem, picture, [&](const Pixels::Group& group, int lane) {
-    if (!takes_all) is_near = picture.IsNearEdge(group.x, group.y, reach_px);
-    add(group, lane, takes_all || is_near[lane] ? &near : &others);
+  ForEachGroup(problem, picture, [&](const Pixels::Group& group, Ints covered) {
+    if (MinLane(covered) == 0) return;
+    const Ints is_near = takes_all ? covered : picture.IsNearEdge(group.x, group.y, reach_px);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (covered[lane]) add(group, lane, is_near[lane] ? &near : &others);
+    }
   });
   if (takes_all) {
     FillUp(&near);
@@ -320,9 +322,10 @@ bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
   if (!Minimize(*problem, kFirstPixels, kCoarsePx, minimum)) return false;
   if (!RefinePatternFit(kPixels, kFinePx, problem, minimum)) return false;
-  const double blur_cells =
-      FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
-  if (blur_cells > kWideBlur && !Minimize(*problem, kPixels, kFinePx, minimum)) return false;
+  if (BlurInCells(minimum->parameters, problem->model.num_cells).maxCoeff() > kWideBlur &&
+      !RefinePatternFit(kPixels, kFinePx, problem, minimum)) {
+    return false;
+  }
   const ToneCurve& tone = *problem->model.tone;
   const double contrast =
       tone.Encode(minimum->parameters[P::kLight]) - tone.Encode(minimum->parameters[P::kDark]);

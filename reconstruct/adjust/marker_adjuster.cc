@@ -55,7 +55,9 @@ MarkerAdjuster::MarkerAdjuster(const MarkerAdjustmentOptions& options, const Lay
       corner_sigmas_(corner_sigmas),
       calibration_(model.cameras),
       num_images_before_(model.images.size()),
-      model_(std::move(model)) {}
+      model_(std::move(model)) {
+  options_.inset_sigma_px = std::hypot(options.inset_sigma_px, corner_sigmas.common_inset_px);
+}
 
 void MarkerAdjuster::PrepareSeed() {
   summary_.error_before_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(model_));

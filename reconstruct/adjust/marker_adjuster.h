@@ -71,7 +71,7 @@ class MarkerAdjuster {
   // Sets the variance factor and the share of large residuals.
   std::unique_ptr<const Linearization> CalibrateCorners();
 
-  const MarkerAdjustmentOptions& options_;
+  MarkerAdjustmentOptions options_;
   const Layout& layout_;
   const CornerSigmas& corner_sigmas_;
   const std::map<CameraId, Camera> calibration_;

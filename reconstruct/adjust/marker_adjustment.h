@@ -16,9 +16,16 @@
 
 namespace velamap {
 
-// 1 sigma of a corner's coordinate, px, by point2D_idx. 0 or a missing image: unknown.
-using CornerSigmas = std::map<ImageId, std::vector<double>>;
-CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images);
+// What the images tell of the corners' errors, px.
+struct CornerSigmas {
+  // 1 sigma of a corner's coordinate, by point2D_idx. 0 or a missing image: unknown.
+  std::map<ImageId, std::vector<double>> of_image;
+  double common_inset_px = 0.0;  // FormationEstimate::inset_sigma_px
+};
+
+// `formation` is that of the database, if it has one.
+CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images,
+                            const std::optional<FormationEstimate>& formation = std::nullopt);
 
 struct MarkerAdjustmentSummary {
   int num_iterations = 0;

@@ -29,7 +29,8 @@ struct MarkerAdjustmentOptions {
   double rigid_flatness = 1e-3;
   // 1 sigma of an error that all corners share, px: each is seen too far inside (or outside) its
   // marker by so much along both sides. It widens the scale's sigma according to the size of the
-  // markers in the images. 0: no such error.
+  // markers in the images. What the estimated image formation leaves open is added (root of the sum
+  // of squares). 0: nothing beyond that.
   double inset_sigma_px = 0.01;
   // The error is a parameter with this prior, told from the scale by markers that are seen small
   // and large, oblique and straight. Whatever else depends on these is taken for an inset, too: on

@@ -84,8 +84,8 @@ class ProblemBuilder {
     std::vector<const std::vector<double>*> sigmas;
     for (const ImageBlock& image : state_.images) {
       image_idxs[image.image_id] = sigmas.size();
-      const auto of_image = corner_sigmas.find(image.image_id);
-      sigmas.push_back(of_image == corner_sigmas.end() ? nullptr : &of_image->second);
+      const auto of_image = corner_sigmas.of_image.find(image.image_id);
+      sigmas.push_back(of_image == corner_sigmas.of_image.end() ? nullptr : &of_image->second);
     }
     std::vector<std::vector<SeenCorner>> views(state_.images.size());  // of one marker, by image
     for (MarkerBlock& marker : state_.markers) {

@@ -60,7 +60,7 @@ Layout LoadAdjustmentLayout(const Options& options) {
 CornerSigmas LoadCornerSigmas(const Options& options) {
   if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) return {};
   const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
-  return CornerSigmasOf(database.ReadImages());
+  return CornerSigmasOf(database.ReadImages(), database.ReadFormation());
 }
 
 void Print(const AdjustmentResult& result, const std::string& model_path, std::ostream& out) {

@@ -83,7 +83,7 @@ class Sweep {
     images_ = database.ReadImages();
     cameras_ = database.ReadCameras();
     posed_ = PoseImages(images_, cameras_, layout, options.registration.num_threads);
-    corner_sigmas_ = CornerSigmasOf(images_);
+    corner_sigmas_ = CornerSigmasOf(images_, database.ReadFormation());
   }
 
   const PosedImages& posed() const { return posed_; }

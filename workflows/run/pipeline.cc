@@ -182,7 +182,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   seed.registration = RegisterFrames(images, cameras, layout, options);
   seed.model = MakeSeedModel(seed.registration, images, cameras);
   seed.left_out = FindLeftOut(seed);
-  seed.corner_sigmas = CornerSigmasOf(images);
+  seed.corner_sigmas = CornerSigmasOf(images, database.ReadFormation());
   LogSeed(seed);
   return seed;
 }

@@ -150,8 +150,8 @@ TEST_F(MarkerAdjustment, WorseCornersCountLess) {
   CornerSigmas sigmas;
   for (std::size_t i = 0; i < noisy.frames.size(); ++i) {
     if (i % 2 == 1) noisy.frames[i] = noisier.frames[i];
-    sigmas[static_cast<ImageId>(i + 1)].assign(4 * noisy.frames[i].markers.size(),
-                                               i % 2 == 1 ? 1.0 : 0.05);
+    sigmas.of_image[static_cast<ImageId>(i + 1)].assign(4 * noisy.frames[i].markers.size(),
+                                                        i % 2 == 1 ? 1.0 : 0.05);
   }
   Model informed = MakeSceneModel(noisy), uninformed = informed;
   MarkerAdjustmentOptions options;
@@ -371,9 +371,12 @@ TEST(CornerSigmasOf, FollowsTheKeypointsAndDoubtsFallbacks) {
   image.detections.markers.resize(2);
   image.detections.markers[0].corner_sigma_px = {0.1, 0.2, 0.3, 0.4};
   image.detections.markers[1].is_fallback = true;
-  const CornerSigmas sigmas = CornerSigmasOf({image});
+  FormationEstimate formation;
+  formation.inset_sigma_px = 0.02;
+  const CornerSigmas sigmas = CornerSigmasOf({image}, formation);
+  EXPECT_EQ(sigmas.common_inset_px, 0.02);
   const double fallback = 5 * MarkerAdjustmentOptions{}.corner_sigma_px;
-  EXPECT_THAT(sigmas.at(3),
+  EXPECT_THAT(sigmas.of_image.at(3),
               ElementsAre(0.1, 0.2, 0.3, 0.4, fallback, fallback, fallback, fallback));
 }
 

@@ -1,0 +1,24 @@
+// The table image_formation that velamap adds to COLMAP's: its one row is what camera and print do
+// to edges. importer/README.md describes its columns.
+//
+// Errors of SQLite arrive as SQLite::Exception; ColmapDatabase turns them into input errors.
+
+#pragma once
+
+#include <optional>
+
+#include "importer/refine/formation_estimate.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace velamap {
+
+// Creates the table if it is missing and replaces its row.
+void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* database);
+
+// Nothing in the database of an earlier velamap, or of an import without an estimate.
+std::optional<FormationEstimate> ReadImageFormation(SQLite::Database* database);
+
+}  // namespace velamap

@@ -1,0 +1,40 @@
+// A marker and its surroundings as a sample of the image formation, fitted with given parameters.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "importer/geometry/quad.h"
+#include "importer/refine/image_formation.h"
+#include "importer/refine/pattern_problem.h"
+
+namespace velamap {
+
+struct FormationSample {
+  cv::Mat gray;            // 8 bit: the marker with half a side around it, dark cells dark
+  QuadCorners corners_px;  // OpenCV's pixel frame of `gray`, to a pixel
+  cv::Mat cells;           // as in FitPattern()
+};
+
+// A sample with its fit. Refers to the image formation that it was fitted with.
+struct FittedSample {
+  cv::Mat gray;
+  cv::Rect patch_box;
+  PatternProblem problem;
+  PatternMinimum minimum;
+  std::vector<cv::Point> places;  // of all pixels that count, in the problem's box
+  std::vector<float> residuals;   // at these places; empty: the fit failed
+};
+
+// Nothing where the fit fails. No residuals yet: RefitSample() computes them.
+std::optional<FittedSample> FitSample(const FormationSample& sample,
+                                      const ImageFormation& formation);
+
+// Fits a sample anew, from the fit with the tone curve `before`. All pixels of most samples count
+// and the tolerance is small, so that differences of residuals give derivatives.
+void RefitSample(const ImageFormation& formation, const ToneCurve& before, FittedSample* sample);
+
+}  // namespace velamap

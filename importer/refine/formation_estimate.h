@@ -1,0 +1,37 @@
+// How light from a printed marker becomes grey values, beyond the blur that each fit finds itself.
+//
+//   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
+//   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
+//   sharpening sharpened = gray + sharpening (gray - G gray),  G a Gaussian of sharpening_radius_px
+//
+// A camera blurs linear light and encodes it afterwards, which moves the middle of an encoded edge
+// by up to 0.8 blur sigmas towards the dark side. The power covers sRGB and Rec. 709 to a few
+// per cent; the sine is the S-shaped contrast that many cameras add. Light and grey values run from
+// 0 to 255.
+
+#pragma once
+
+namespace velamap {
+
+// The defaults are a camera whose grey values are proportional to light, and a perfect print.
+struct ImageFormationParameters {
+  double gamma = 1.0;
+  double s_amplitude = 0.0;
+  double sharpening = 0.0;
+  double sharpening_radius_px = 1.0;
+  double ink_spread_sides = 0.0;
+  // The images hold 255 less the recorded grey values, so that inverted prints look upright. Light
+  // stays what the camera received: bright cells then have less of it than dark ones.
+  bool is_inverted = false;
+};
+
+struct FormationEstimate {
+  ImageFormationParameters parameters;
+  int num_samples = 0;      // that could be fitted; 0: nothing is known
+  double noise_gray = 0.0;  // robust standard deviation of the residuals, grey levels
+  // 1 sigma of the error that the uncertainty of the parameters causes in all corners alike: each
+  // is found so far inside (or outside) of its marker along both sides, px.
+  double inset_sigma_px = 0.0;
+};
+
+}  // namespace velamap
