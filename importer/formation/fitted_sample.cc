@@ -81,6 +81,7 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
   problem.model.tone = &formation.tone();
   problem.model.ink_spread_cells =
       formation.parameters().ink_spread_sides * problem.model.num_cells;
+  SetQuietZonePrior(formation.parameters(), &problem);
   for (const int index : {P::kDark, P::kLight}) {
     double& light = sample->minimum.parameters[index];
     light = formation.tone().Decode(before.Encode(light));

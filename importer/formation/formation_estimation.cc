@@ -24,8 +24,17 @@ const Vector kMin = (Vector() << std::log(0.8), -0.05, -0.3, std::log(0.5), -0.0
 const Vector kMax = (Vector() << std::log(3.2), 0.13, 2.0, std::log(2.5), 0.02).finished();
 const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004).finished();
 
-ImageFormationParameters ParametersOf(const Vector& p, bool is_inverted) {
-  return {std::exp(p[0]), p[1], p[2], std::exp(p[3]), p[4], is_inverted};
+// 1 sigma of the width of a quiet zone about the mean of all, cells, while that is being found.
+constexpr double kQuietZoneSigma = 0.25;
+
+// `formation` with the parameters of the problem.
+ImageFormationParameters With(const Vector& p, ImageFormationParameters formation) {
+  formation.gamma = std::exp(p[0]);
+  formation.s_amplitude = p[1];
+  formation.sharpening = p[2];
+  formation.sharpening_radius_px = std::exp(p[3]);
+  formation.ink_spread_sides = p[4];
+  return formation;
 }
 
 // The parameters that all samples share, and the samples fitted with them.
@@ -38,15 +47,45 @@ struct State {
   mutable std::shared_ptr<const std::vector<State>> moved;
 };
 
-State MovedTo(const Vector& parameters, const State& state, int num_threads) {
-  State moved{parameters,
-              std::make_shared<const ImageFormation>(
-                  ParametersOf(parameters, state.formation->parameters().is_inverted)),
-              state.samples, nullptr};
+// The same samples fitted with another image formation; `parameters` are those of it.
+State FittedWith(const ImageFormationParameters& formation, const Vector& parameters,
+                 const State& state, int num_threads) {
+  State moved{parameters, std::make_shared<const ImageFormation>(formation), state.samples,
+              nullptr};
   ParallelFor(moved.samples.size(), num_threads, [&](std::size_t i) {
     RefitSample(*moved.formation, state.formation->tone(), &moved.samples[i]);
   });
   return moved;
+}
+
+State MovedTo(const Vector& parameters, const State& state, int num_threads) {
+  return FittedWith(With(parameters, state.formation->parameters()), parameters, state,
+                    num_threads);
+}
+
+// Widths of the quiet zones of all samples, cells.
+std::vector<double> QuietZones(const State& state) {
+  std::vector<double> widths;
+  for (const FittedSample& sample : state.samples) {
+    const auto& margins = sample.minimum.parameters.segment<4>(PatternParameters::kMargin);
+    widths.insert(widths.end(), margins.begin(), margins.end());
+  }
+  return widths;
+}
+
+// All samples together tell how wide the quiet zone is where each is too small to do so alone: the
+// prior moves to the median until that stands still.
+State WithPooledQuietZone(State state, int num_threads) {
+  constexpr int kMaxIterations = 5;
+  constexpr double kTolerance = 0.01;  // cells
+  for (int i = 0; i < kMaxIterations; ++i) {
+    ImageFormationParameters formation = state.formation->parameters();
+    const double before = formation.quiet_zone_cells;
+    formation.quiet_zone_cells = Median(QuietZones(state));
+    if (std::abs(formation.quiet_zone_cells - before) < kTolerance) break;
+    state = FittedWith(formation, state.parameters, state, num_threads);
+  }
+  return state;
 }
 
 double NoiseOf(const State& state) {
@@ -191,8 +230,10 @@ State FitAll(const std::vector<FormationSample>& samples, double gamma, bool is_
   State state;
   state.parameters = kMean;
   state.parameters[0] = std::log(gamma);
-  state.formation =
-      std::make_shared<const ImageFormation>(ParametersOf(state.parameters, is_inverted));
+  ImageFormationParameters formation;
+  formation.is_inverted = is_inverted;
+  formation.quiet_zone_sigma_cells = kQuietZoneSigma;
+  state.formation = std::make_shared<const ImageFormation>(With(state.parameters, formation));
   std::vector<std::optional<FittedSample>> fitted(samples.size());
   ParallelFor(samples.size(), num_threads, [&](std::size_t i) {
     fitted[i] = FitSample(samples[i], *state.formation);
@@ -209,7 +250,8 @@ State FitAll(const std::vector<FormationSample>& samples, double gamma, bool is_
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads) {
   constexpr double kGammas[] = {1.0, 1.5, 2.2};
-  constexpr int kNumRounds = 2;  // each with the noise of the one before
+  constexpr int kNumRounds = 2;               // each with the noise of the one before
+  constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
   State best;
   double least_noise = std::numeric_limits<double>::infinity();
   for (const double gamma : kGammas) {
@@ -228,12 +270,15 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   options.min_relative_decrease = 2e-4;
   FormationEstimate estimate;
   for (int round = 0; round < kNumRounds; ++round) {
+    best = WithPooledQuietZone(std::move(best), num_threads);
     const FormationProblem problem(NoiseOf(best), num_threads);
     GaussNewtonEquations<kCount> equations;
     MinimizeSquares(options, problem, &best, &equations);
     estimate.inset_sigma_px = problem.InsetSigma(best, equations.hessian());
   }
   estimate.parameters = best.formation->parameters();
+  estimate.parameters.quiet_zone_sigma_cells =
+      std::clamp(RobustSigma(QuietZones(best)), kMinQuietZoneSigma, kQuietZoneSigma);
   estimate.num_samples = static_cast<int>(best.samples.size());
   estimate.noise_gray = NoiseOf(best);
   return estimate;

@@ -23,6 +23,10 @@ struct ImageFormationParameters {
   // The images hold 255 less the recorded grey values, so that inverted prints look upright. Light
   // stays what the camera received: bright cells then have less of it than dark ones.
   bool is_inverted = false;
+  // The quiet zone around the black squares of all markers: mean width and 1 sigma of a side, as
+  // the prior of each fit. A sigma of 0: unknown.
+  double quiet_zone_cells = 1.0;
+  double quiet_zone_sigma_cells = 0.0;
 };
 
 struct FormationEstimate {

@@ -21,7 +21,7 @@ constexpr double kPixelNoise = 3.0;      // grey levels; sets the weight of the 
 constexpr double kMinBlurPx = 0.3, kMaxBlurPx = 4.0;
 // Usual for cloth; the label of a can has ten times as much.
 constexpr double kBendOfDiagonal = 0.003;
-constexpr double kMinMargin = 0.1, kMaxMargin = 1.5, kMarginSigma = 0.25;  // cells
+constexpr double kMinMargin = 0.1, kMaxMargin = 1.5;  // cells
 constexpr int kFirstPixels = 200, kPixels = 1000;
 
 // Pixels of a marker and around it, in groups.
@@ -188,7 +188,8 @@ CellLights ReadCellLights(const PatternProblem& problem, const UnitSquareMap& ma
 }
 
 // Sets the initial parameters and the priors. False for too little contrast.
-bool Start(const QuadCorners& corners_px, PatternProblem* problem, PatternMinimum* minimum) {
+bool Start(const QuadCorners& corners_px, const ImageFormationParameters& formation,
+           PatternProblem* problem, PatternMinimum* minimum) {
   const UnitSquareMap map(corners_px);
   const CellLights lights = ReadCellLights(*problem, map);
   const ToneCurve& tone = *problem->model.tone;
@@ -201,22 +202,26 @@ bool Start(const QuadCorners& corners_px, PatternProblem* problem, PatternMinimu
   p[P::kBlurU] = p[P::kBlurV] = p[P::kSurround] = p[P::kInnerLight] = 1.0;
   p[P::kDark] = lights.dark;
   p[P::kLight] = lights.light;
-  p.segment<4>(P::kMargin).setOnes();
   problem->mean = p;
-  // Smaller cells blur into each other, so that no margin can be told.
-  constexpr double kMinCellPx = 2.5, kHeld = 0.02;
+  // Smaller cells blur into each other, so that one marker does not tell its margins.
+  constexpr double kMinCellPx = 2.5;
+  constexpr double kUnknownSigma = 0.25, kHeldSigma = 0.02;
   const bool shows_margins = QuadMeanSide(corners_px) >= kMinCellPx * problem->model.num_cells;
-  if (shows_margins) {
-    p.segment<4>(P::kMargin) = FindMargins(*problem, map, lights.dark, lights.light);
-  }
   // The light of the marker's cells and of the quiet zone differs little once the tone curve is
   // known. A looser prior lets a narrow, dim quiet zone pass for a wide one.
   constexpr double kInnerLightSigma = 0.02;
   P::Vector sigma;
   sigma << P::Vector::Constant(1e3).head<8>(), 0.7, 0.7, 1e3, 1e3, 0.15, 0.15, 0.3,
       kInnerLightSigma, Eigen::Vector4d::Constant(kBendOfDiagonal * problem->model.diagonal_px),
-      Eigen::Vector4d::Constant(shows_margins ? kMarginSigma : kHeld);
+      Eigen::Vector4d::Ones();
   problem->weight = (kPixelNoise * sigma.cwiseInverse()).cwiseAbs2();
+  ImageFormationParameters quiet_zone = formation;
+  if (formation.quiet_zone_sigma_cells == 0) {
+    quiet_zone.quiet_zone_sigma_cells = shows_margins ? kUnknownSigma : kHeldSigma;
+  }
+  SetQuietZonePrior(quiet_zone, problem);
+  p.segment<4>(P::kMargin) = shows_margins ? FindMargins(*problem, map, lights.dark, lights.light)
+                                           : problem->mean.segment<4>(P::kMargin);
   return true;
 }
 
@@ -305,8 +310,14 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
   problem.model.center_px = map.ToImage(0.5, 0.5);
   problem.model.diagonal_px =
       0.5 * ((corners_px[2] - corners_px[0]).norm() + (corners_px[3] - corners_px[1]).norm());
-  if (!Start(corners_px, &problem, minimum)) return std::nullopt;
+  if (!Start(corners_px, formation.parameters(), &problem, minimum)) return std::nullopt;
   return problem;
+}
+
+void SetQuietZonePrior(const ImageFormationParameters& formation, PatternProblem* problem) {
+  const double weight = kPixelNoise / formation.quiet_zone_sigma_cells;
+  problem->mean.segment<4>(P::kMargin).setConstant(formation.quiet_zone_cells);
+  problem->weight.segment<4>(P::kMargin).setConstant(weight * weight);
 }
 
 bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* problem,

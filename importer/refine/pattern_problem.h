@@ -40,6 +40,9 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
                                                  const ImageFormation& formation,
                                                  PatternMinimum* minimum);
 
+// The prior of the widths of the quiet zone, where that is known of all markers.
+void SetQuietZonePrior(const ImageFormationParameters& formation, PatternProblem* problem);
+
 // Reads the surroundings of the quiet zone again and fits all parameters to about `max_pixels`
 // pixels, until a step moves no corner further than `tolerance_px`. False for a singular system.
 bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* problem,
