@@ -15,6 +15,7 @@
 #include "reconstruct/adjust/error_correlation.h"
 #include "reconstruct/adjust/marker_sizes.h"
 #include "reconstruct/adjust/marker_uncertainty.h"
+#include "reconstruct/adjust/scale_bars.h"
 #include "reconstruct/adjust/weak_geometry.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
@@ -93,9 +94,12 @@ void MarkerAdjuster::AdjustLoosely() {
 void MarkerAdjuster::RejectContradictingSizes() {
   const auto linearization = Linearize();
   const MarkerSizeVerdict verdict =
-      JudgeMarkerSizes(linearization->state, linearization->covariance, options_.print_tolerance);
+      JudgeMarkerSizes(linearization->state, linearization->covariance, options_.print_tolerance,
+                       PrintScaleSigma(options_, weights_));
   weights_.print_tolerance = verdict.print_tolerance;
   weights_.markers_without_size = verdict.contradicting;
+  weights_.part_scale_sigma = verdict.part_scale_sigma;
+  part_disagreement_ = verdict.part_disagreement;
   summary_.warnings.insert(summary_.warnings.end(), verdict.warnings.begin(),
                            verdict.warnings.end());
 }
@@ -117,17 +121,28 @@ void MarkerAdjuster::AdjustTightly() {
 
 bool MarkerAdjuster::AddScaleBars() {
   const std::vector<ScaleBar> bars = FindScaleBars(state_, layout_);
-  if (bars.empty()) return false;
-  const auto linearization = Linearize();
-  const MarkerState& state = linearization->state;
-  const PointCovariance points = PointsOf(state, linearization->covariance);
-  for (const ScaleBar& bar : bars) {
-    const std::string contradiction = FindContradiction(bar, state, points);
-    if (contradiction.empty()) {
-      weights_.scale_bars.push_back(bar);
-    } else {
-      summary_.warnings.push_back(contradiction);
-    }
+  ScaleBarVerdict verdict;
+  if (!bars.empty()) {
+    const auto linearization = Linearize();
+    const Eigen::MatrixXd covariance_m2 = BarCovariance(
+        bars, linearization->state, linearization->problem, linearization->covariance);
+    verdict = JudgeScaleBars(bars, linearization->state, covariance_m2,
+                             PrintScaleSigma(options_, weights_));
+  }
+  if (!part_disagreement_.empty()) {
+    summary_.warnings.push_back(part_disagreement_ +
+                                (verdict.used.empty()
+                                     ? ": measure a distance on one of them (distances, use: scale)"
+                                     : ": the measured distances decide"));
+  }
+  summary_.warnings.insert(summary_.warnings.end(), verdict.warnings.begin(),
+                           verdict.warnings.end());
+  weights_.scale_bars = std::move(verdict.used);
+  if (verdict.print_scale_sigma > 0) {
+    weights_.print_scale_by_bars = verdict.print_scale_sigma;
+    TransformModel({verdict.scale, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()},
+                   &model_);
+    state_.print_scale = verdict.scale - 1.0;
   }
   return !weights_.scale_bars.empty();
 }
@@ -203,6 +218,7 @@ MarkerState MarkerAdjuster::MakeState(const Model& model) const {
   MarkerState state = MakeMarkerState(model, layout_);
   state.inset_px = state_.inset_px;
   state.print_scale = state_.print_scale;
+  for (auto& [part, scale] : state.part_scales) scale = state_.part_scales.at(part);
   std::map<ImageId, std::array<double, 6>> velocities;
   for (const ImageBlock& image : state_.images) velocities[image.image_id] = image.velocity;
   for (ImageBlock& image : state.images) image.velocity = velocities.at(image.image_id);

@@ -29,15 +29,17 @@ class MarkerAdjuster {
   // calibrates the corners' sigmas by the residuals.
   void AdjustLoosely();
 
-  // Drops the size of markers that contradict the others, and raises the print tolerance where the
-  // sizes scatter more than it explains.
+  // Drops the size of markers that contradict the others, raises the print tolerance where the
+  // sizes scatter more than it explains, and lets each part have a scale of its own where parts
+  // disagree.
   void RejectContradictingSizes();
 
   // Minimizes with the sizes. Removes corners beyond outlier_sigmas and restores those that have
   // come to fit, until nothing changes.
   void AdjustTightly();
 
-  // Adds the scale bars that agree with the markers; returns false where there are none.
+  // Adds the scale bars that agree with each other; where they contradict the markers, frees the
+  // scale of the print as far as that needs. Returns false where there are none.
   bool AddScaleBars();
 
   // Minimizes to a small fraction of a sigma, then finds the correlation of errors, the covariance,
@@ -79,6 +81,7 @@ class MarkerAdjuster {
   Model model_;
   MarkerState state_;  // the last solution, with inset, print scale and velocities
   MarkerWeights weights_;
+  std::string part_disagreement_;  // begin of a warning; empty where parts agree
   MarkerAdjustmentSummary summary_;
 };
 

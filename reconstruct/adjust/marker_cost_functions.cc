@@ -190,29 +190,35 @@ MarkerPriorError::MarkerPriorError(const MarkerPrior& prior, const std::vector<i
   has_flatness_ = is_whole && prior.flatness_sigma_m > 0;
   set_num_residuals(static_cast<int>(sides_.size()) + (has_diagonals_ ? 1 : 0) +
                     (has_flatness_ ? 1 : 0));
-  *mutable_parameter_block_sizes() = {3 * static_cast<int>(corners.size()), 1};
+  *mutable_parameter_block_sizes() = {3 * static_cast<int>(corners.size()), 1, 1};
 }
 
 bool MarkerPriorError::Evaluate(double const* const* parameters, double* residuals,
                                 double** jacobians) const {
   const int num_sides = static_cast<int>(sides_.size());
   double* by_marker = jacobians == nullptr ? nullptr : jacobians[0];
-  double* by_scale = jacobians == nullptr ? nullptr : jacobians[1];
+  const std::array<double*, 2> by_scales = {jacobians == nullptr ? nullptr : jacobians[1],
+                                            jacobians == nullptr ? nullptr : jacobians[2]};
+  const double scale = 1.0 + parameters[1][0] + parameters[2][0];
   JacobianMap marker_map(by_marker, by_marker == nullptr ? 0 : num_residuals(),
                          parameter_block_sizes()[0]);
   marker_map.setZero();
-  if (by_scale != nullptr) std::fill(by_scale, by_scale + num_residuals(), 0.0);
+  for (double* by_scale : by_scales) {
+    if (by_scale != nullptr) std::fill(by_scale, by_scale + num_residuals(), 0.0);
+  }
   for (int i = 0; i < num_sides; ++i) {
     const auto [a, b] = sides_[i];
     const Eigen::Vector3d side = Corner(parameters[0], b) - Corner(parameters[0], a);
     const double length_m = side.norm();
-    residuals[i] = (length_m - (1.0 + parameters[1][0]) * prior_.length_m) / prior_.side_sigma_m;
+    residuals[i] = (length_m - scale * prior_.length_m) / prior_.side_sigma_m;
     if (by_marker != nullptr) {
       const Eigen::RowVector3d direction = side.transpose() / (length_m * prior_.side_sigma_m);
       marker_map.block<1, 3>(i, 3 * a) = -direction;
       marker_map.block<1, 3>(i, 3 * b) = direction;
     }
-    if (by_scale != nullptr) by_scale[i] = -prior_.length_m / prior_.side_sigma_m;
+    for (double* by_scale : by_scales) {
+      if (by_scale != nullptr) by_scale[i] = -prior_.length_m / prior_.side_sigma_m;
+    }
   }
   if (has_diagonals_) {
     residuals[num_sides] =

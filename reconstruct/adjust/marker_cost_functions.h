@@ -8,6 +8,7 @@
 //   intrinsics  3..12    parameters of one camera, in COLMAP's order
 //   velocity    6        velocity of the cam frame in one image: linear (m/s), angular (rad/s)
 //   print scale 1        scale of all printed sides, less 1
+//   part scale  1        the same of the sides on one part of the layout, in addition
 
 #pragma once
 
@@ -68,10 +69,10 @@ struct MarkerPrior {
 };
 
 // Residuals of a marker against its prior: sides between neighbouring corners less
-// (1 + print scale) * length; for a marker with four corners also the difference of the diagonals,
-// and the distance of the corners from their plane, which is in front and behind in turns. Without
-// the diagonals a square could become a rhombus, which a single view cannot tell from a tilted
-// square. `corners` are 1..4, ascending. Blocks: marker, print scale.
+// (1 + print scale + part scale) * length; for a marker with four corners also the difference of
+// the diagonals, and the distance of the corners from their plane, which is in front and behind in
+// turns. Without the diagonals a square could become a rhombus, which a single view cannot tell
+// from a tilted square. `corners` are 1..4, ascending. Blocks: marker, print scale, part scale.
 class MarkerPriorError : public ceres::CostFunction {
  public:
   MarkerPriorError(const MarkerPrior& prior, const std::vector<int>& corners);

@@ -76,7 +76,10 @@ class ProblemBuilder {
       AddGlobal(intrinsics.data(), size, refines, manifold);
     }
     AddGlobal(&state_.inset_px, 1, EstimatesInset());
-    AddGlobal(&state_.print_scale, 1, PrintScaleSigma() > 0 && !weights_.holds_print_scale);
+    AddGlobal(&state_.print_scale, 1, print_scale_sigma_ > 0 && !weights_.holds_print_scale);
+    for (auto& [part, scale] : state_.part_scales) {
+      AddGlobal(&scale, 1, weights_.part_scale_sigma > 0);
+    }
   }
 
   void AddCorners(const CornerSigmas& corner_sigmas) {
@@ -113,13 +116,19 @@ class ProblemBuilder {
                               std::sqrt(2.0) * side_sigma_m, flatness * marker.length_m};
       auto error = std::make_unique<MarkerPriorError>(prior, marker.corners);
       if (error->num_residuals() == 0) continue;
-      AddPrior(std::move(error), {marker.x_in_world.data(), &state_.print_scale});
+      AddPrior(std::move(error), {marker.x_in_world.data(), &state_.print_scale,
+                                  &state_.part_scales.at(marker.part)});
     }
     if (EstimatesInset()) {
       AddPrior(MakePrior({0.0}, {options_.inset_sigma_px}), {&state_.inset_px});
     }
-    if (PrintScaleSigma() > 0) {
-      AddPrior(MakePrior({0.0}, {PrintScaleSigma()}), {&state_.print_scale});
+    if (print_scale_sigma_ > 0) {
+      AddPrior(MakePrior({0.0}, {print_scale_sigma_}), {&state_.print_scale});
+    }
+    for (auto& [part, scale] : state_.part_scales) {
+      if (weights_.part_scale_sigma > 0) {
+        AddPrior(MakePrior({0.0}, {weights_.part_scale_sigma}), {&scale});
+      }
     }
     if (options_.rolling_shutter_s > 0) {
       constexpr double v = kLinearVelocitySigma, w = kAngularVelocitySigma;
@@ -213,10 +222,6 @@ class ProblemBuilder {
 
   bool EstimatesInset() const { return options_.estimate_inset && options_.inset_sigma_px > 0; }
 
-  double PrintScaleSigma() const {
-    return std::hypot(options_.common_print_tolerance, weights_.inset_as_scale);
-  }
-
   std::vector<int> HeldIntrinsics(CameraModel model) const {
     const int num_focal = NumFocalLengths(model);
     std::vector<int> held;
@@ -244,10 +249,16 @@ class ProblemBuilder {
   const Model& model_;
   const MarkerWeights& weights_;
   MarkerState& state_;
+  const double print_scale_sigma_ = PrintScaleSigma(options_, weights_);
   MarkerProblem result_;
 };
 
 }  // namespace
+
+double PrintScaleSigma(const MarkerAdjustmentOptions& options, const MarkerWeights& weights) {
+  return std::max(std::hypot(options.common_print_tolerance, weights.inset_as_scale),
+                  weights.print_scale_by_bars);
+}
 
 MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Model& model,
                                 const CornerSigmas& corner_sigmas,

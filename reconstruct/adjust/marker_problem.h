@@ -13,15 +13,9 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/adjust/marker_cost_functions.h"
 #include "reconstruct/adjust/marker_state.h"
+#include "reconstruct/adjust/scale_bars.h"
 
 namespace velamap {
-
-// A known distance, with the weights of corners that ScaleBarError takes.
-struct ScaleBar {
-  KnownDistance distance;
-  std::vector<int> marker_idxs;  // one or two
-  std::vector<std::vector<double>> corner_weights;
-};
 
 // Weights that change from one minimization to the next.
 struct MarkerWeights {
@@ -30,6 +24,11 @@ struct MarkerWeights {
   double print_tolerance = 0.0;
   // 1 sigma of the scale error, as a fraction, by an inset that is not estimated.
   double inset_as_scale = 0.0;
+  // 1 sigma of the scale of the print, as a fraction, that explains why scale bars contradict the
+  // markers; 0: they do not.
+  double print_scale_by_bars = 0.0;
+  // 1 sigma of the scale of each part's prints around that of all; 0: parts agree.
+  double part_scale_sigma = 0.0;
   // Without scale bars only its prior determines the scale of the print. It is then constant while
   // the cost is minimized, because it would slow down the last digits, and a parameter for the
   // covariance.
@@ -38,10 +37,13 @@ struct MarkerWeights {
   std::vector<ScaleBar> scale_bars;
 };
 
+// 1 sigma of the scale of the print as a whole, as a fraction.
+double PrintScaleSigma(const MarkerAdjustmentOptions& options, const MarkerWeights& weights);
+
 struct MarkerProblem {
   std::unique_ptr<ceres::Problem> ceres = std::make_unique<ceres::Problem>();
   // Parameters that vary, in the order of their columns: markers, then the global ones (poses,
-  // velocities, intrinsics, inset, print scale).
+  // velocities, intrinsics, inset, print scale, scales of parts).
   std::vector<double*> marker_blocks;
   std::vector<double*> global_blocks;
   // One marker of each pair that a scale bar couples: the Schur complement must not eliminate both.

@@ -2,22 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <numeric>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "reconstruct/adjust/marker_adjustment_options.h"
-#include "reconstruct/geometry/covariance_update.h"
 
 namespace velamap {
 namespace {
 
 constexpr double kMaxSigmas = 4.0;
+// Of fewer markers, one bad print passes for the size of the part.
+constexpr std::size_t kMinMarkersOfPart = 3;
 
 // The mean side of a marker divided by the printed length, and its uncertainty.
 struct MarkerSize {
   int marker_id = 0;
+  std::string part;
   int num_sides = 0;
   double ratio = 0.0;
   double block_variance = 0.0;  // part of the ratio's variance that other markers do not share
@@ -33,6 +38,7 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
     if (sides.empty()) continue;
     MarkerSize size;
     size.marker_id = marker.marker_id;
+    size.part = marker.part;
     size.num_sides = static_cast<int>(sides.size());
     const double weight = 1.0 / (size.num_sides * marker.length_m);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.NumCoordinates());
@@ -49,28 +55,62 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
   return sizes;
 }
 
-// Deviations of the ratios from their median, and the variance of each that image noise causes.
-// Errors that all markers share (the scale) cancel.
+// Deviations of the ratios from the median of other markers, and the variance of each that image
+// noise causes. Errors that all these markers share (the scale) cancel.
 struct Deviations {
-  double median = 1.0;
   std::vector<double> values;
   std::vector<double> variances;
 };
 
-Deviations FindDeviations(const std::vector<MarkerSize>& sizes) {
+using MarkerIdxs = std::vector<std::size_t>;  // into the sizes
+
+Eigen::VectorXd MeanByFactor(const std::vector<MarkerSize>& sizes, const MarkerIdxs& idxs) {
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(sizes.front().by_factor.size());
+  for (const std::size_t i : idxs) mean += sizes[i].by_factor / static_cast<double>(idxs.size());
+  return mean;
+}
+
+void Compare(const std::vector<MarkerSize>& sizes, const MarkerIdxs& idxs, const MarkerIdxs& others,
+             double more_variance, Deviations* deviations) {
   std::vector<double> ratios;
-  Eigen::VectorXd mean_by_factor = Eigen::VectorXd::Zero(sizes.front().by_factor.size());
-  const double count = static_cast<double>(sizes.size());
-  for (const MarkerSize& size : sizes) {
-    ratios.push_back(size.ratio);
-    mean_by_factor += size.by_factor / count;
+  for (const std::size_t i : others) ratios.push_back(sizes[i].ratio);
+  const double median = Median(std::move(ratios));
+  const Eigen::VectorXd mean_by_factor = MeanByFactor(sizes, others);
+  for (const std::size_t i : idxs) {
+    deviations->values[i] = sizes[i].ratio / median - 1.0;
+    deviations->variances[i] = sizes[i].block_variance +
+                               (sizes[i].by_factor - mean_by_factor).squaredNorm() + more_variance;
   }
-  Deviations deviations;
-  deviations.median = Median(ratios);
-  for (const MarkerSize& size : sizes) {
-    deviations.values.push_back(size.ratio / deviations.median - 1.0);
-    deviations.variances.push_back(size.block_variance +
-                                   (size.by_factor - mean_by_factor).squaredNorm());
+}
+
+MarkerIdxs AllOf(const std::vector<MarkerSize>& sizes) {
+  MarkerIdxs idxs(sizes.size());
+  std::iota(idxs.begin(), idxs.end(), 0);
+  return idxs;
+}
+
+Deviations FindDeviations(const std::vector<MarkerSize>& sizes) {
+  Deviations deviations{std::vector<double>(sizes.size()), std::vector<double>(sizes.size())};
+  Compare(sizes, AllOf(sizes), AllOf(sizes), 0.0, &deviations);
+  return deviations;
+}
+
+std::map<std::string, MarkerIdxs> GroupByPart(const std::vector<MarkerSize>& sizes) {
+  std::map<std::string, MarkerIdxs> parts;
+  for (std::size_t i = 0; i < sizes.size(); ++i) parts[sizes[i].part].push_back(i);
+  return parts;
+}
+
+// Deviations of each marker from its own part. Parts of few markers, whose median says little, are
+// compared with all; `part_scale_sigma` is what parts differ by.
+Deviations FindDeviationsInParts(const std::vector<MarkerSize>& sizes, double part_scale_sigma) {
+  Deviations deviations{std::vector<double>(sizes.size()), std::vector<double>(sizes.size())};
+  for (const auto& [part, idxs] : GroupByPart(sizes)) {
+    if (idxs.size() >= kMinMarkersOfPart) {
+      Compare(sizes, idxs, idxs, 0.0, &deviations);
+    } else {
+      Compare(sizes, idxs, AllOf(sizes), std::pow(part_scale_sigma, 2), &deviations);
+    }
   }
   return deviations;
 }
@@ -105,46 +145,97 @@ double FitTolerance(const Deviations& deviations, const std::vector<MarkerSize>&
   return high;
 }
 
-std::string PointName(int marker_id, int corner) {
-  return corner == 0 ? fmt::format("the centre of marker {}", marker_id)
-                     : fmt::format("corner {} of marker {}", corner, marker_id);
-}
+// The mean ratio of a part's markers without those that contradict it.
+struct PartSize {
+  std::string part;
+  std::size_t num_markers = 0;
+  double ratio = 0.0;
+  double own_variance = 0.0;  // part of the variance that other parts do not share
+  Eigen::VectorXd by_factor;
+};
 
-// Vector from the first point of the bar to the second.
-Eigen::Vector3d BarVector(const ScaleBar& bar, const MarkerState& state) {
-  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
-  for (std::size_t block = 0; block < bar.marker_idxs.size(); ++block) {
-    const MarkerBlock& marker = state.markers[bar.marker_idxs[block]];
-    for (std::size_t slot = 0; slot < marker.corners.size(); ++slot) {
-      vector += bar.corner_weights[block][slot] * CornerPosition(marker, static_cast<int>(slot));
+// The part with the most markers comes first.
+std::vector<PartSize> MeasureParts(const std::vector<MarkerSize>& sizes, double print_tolerance) {
+  const Deviations deviations = FindDeviationsInParts(sizes, 0.0);
+  const double tolerance = FitTolerance(deviations, sizes, print_tolerance);
+  const std::vector<double> normalized = Normalize(deviations, sizes, tolerance);
+  std::vector<PartSize> parts;
+  for (const auto& [part, all] : GroupByPart(sizes)) {
+    if (all.size() < kMinMarkersOfPart) continue;
+    MarkerIdxs idxs;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(idxs),
+                 [&](std::size_t i) { return std::abs(normalized[i]) <= kMaxSigmas; });
+    PartSize size{part, idxs.size(), 0.0, 0.0, MeanByFactor(sizes, idxs)};
+    const double count = static_cast<double>(idxs.size());
+    for (const std::size_t i : idxs) {
+      size.ratio += sizes[i].ratio / count;
+      const double variance = sizes[i].block_variance + tolerance * tolerance / sizes[i].num_sides;
+      size.own_variance += variance / (count * count);
     }
+    parts.push_back(std::move(size));
   }
-  return vector;
+  std::stable_sort(parts.begin(), parts.end(), [](const PartSize& a, const PartSize& b) {
+    return a.num_markers > b.num_markers;
+  });
+  return parts;
 }
 
-// Adds one end of a bar. Returns false where corners of it are missing.
-bool AddEnd(const MarkerState& state, int marker_id, int corner, double sign, ScaleBar* bar) {
-  const auto marker =
-      std::find_if(state.markers.begin(), state.markers.end(),
-                   [marker_id](const MarkerBlock& other) { return other.marker_id == marker_id; });
-  if (marker == state.markers.end()) return false;
-  if (corner == 0 && marker->corners.size() != kNumCorners) return false;
-  std::vector<double> weights(marker->corners.size(), 0.0);
-  if (corner == 0) {
-    std::fill(weights.begin(), weights.end(), sign / kNumCorners);
-  } else {
-    const auto it = std::find(marker->corners.begin(), marker->corners.end(), corner);
-    if (it == marker->corners.end()) return false;
-    weights[it - marker->corners.begin()] = sign;
+// A part against the mean of the others, as a fraction.
+struct PartDifference {
+  double value = 0.0;
+  double sigma = 0.0;
+  double Sigmas() const { return std::abs(value) / sigma; }
+};
+
+PartDifference CompareWithOthers(const std::vector<PartSize>& parts, std::size_t idx) {
+  const double num_others = static_cast<double>(parts.size()) - 1.0;
+  double ratio = 0.0, variance = parts[idx].own_variance;
+  Eigen::VectorXd by_factor = parts[idx].by_factor;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i == idx) continue;
+    ratio += parts[i].ratio / num_others;
+    variance += parts[i].own_variance / (num_others * num_others);
+    by_factor -= parts[i].by_factor / num_others;
   }
-  const int marker_idx = static_cast<int>(marker - state.markers.begin());
-  if (!bar->marker_idxs.empty() && bar->marker_idxs.front() == marker_idx) {
-    for (std::size_t i = 0; i < weights.size(); ++i) bar->corner_weights.front()[i] += weights[i];
-    return true;
+  return {parts[idx].ratio / ratio - 1.0, std::sqrt(variance + by_factor.squaredNorm())};
+}
+
+std::string DisagreementText(const std::vector<PartSize>& parts, std::size_t idx,
+                             const PartDifference& difference) {
+  const std::string others = parts.size() == 2 ? parts[1 - idx].part : "the other parts";
+  return fmt::format(
+      "{} and {} disagree by {:.2f} +- {:.2f} % (against marker_length the markers of {} are the "
+      "{})",
+      parts[idx].part, others, 100 * std::abs(difference.value), 100 * difference.sigma,
+      parts[idx].part, difference.value > 0 ? "larger" : "smaller");
+}
+
+// Sets the members on parts where one differs from the others by more than chance, and by enough to
+// matter beside `print_scale_sigma`.
+void JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
+                double print_scale_sigma, MarkerSizeVerdict* verdict) {
+  const std::vector<PartSize> parts = MeasureParts(sizes, print_tolerance);
+  if (parts.size() < 2) return;
+  const double count = static_cast<double>(parts.size());
+  std::vector<PartDifference> differences;
+  double scatter = 0.0, noise = 0.0;  // of the parts' scales, squared
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    differences.push_back(CompareWithOthers(parts, i));
+    // A part differs from the mean of all by less than from the mean of the others.
+    const double from_mean = differences[i].value * (count - 1) / count;
+    scatter += from_mean * from_mean / (count - 1);
+    noise += std::pow(differences[i].sigma, 2) * (count - 1) / (count * count);
   }
-  bar->marker_idxs.push_back(marker_idx);
-  bar->corner_weights.push_back(std::move(weights));
-  return true;
+  auto worst = differences.begin();  // of two, both are equally far from the other
+  if (parts.size() > 2) {
+    worst = std::max_element(
+        differences.begin(), differences.end(),
+        [](const PartDifference& a, const PartDifference& b) { return a.Sigmas() < b.Sigmas(); });
+  }
+  if (worst->Sigmas() <= kMaxSigmas || std::abs(worst->value) <= print_scale_sigma) return;
+  verdict->part_scale_sigma = std::sqrt(std::max(scatter - noise, 0.0));
+  verdict->part_disagreement =
+      DisagreementText(parts, static_cast<std::size_t>(worst - differences.begin()), *worst);
 }
 
 }  // namespace
@@ -166,12 +257,15 @@ double MedianScale(const MarkerState& state) {
 }
 
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
-                                   double print_tolerance) {
+                                   double print_tolerance, double print_scale_sigma) {
   const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance);
   MarkerSizeVerdict verdict;
   verdict.print_tolerance = print_tolerance;
   if (sizes.size() < 3) return verdict;  // of two, neither can be told to be the wrong one
-  const Deviations deviations = FindDeviations(sizes);
+  JudgeParts(sizes, print_tolerance, print_scale_sigma, &verdict);
+  const Deviations deviations = verdict.part_scale_sigma > 0
+                                    ? FindDeviationsInParts(sizes, verdict.part_scale_sigma)
+                                    : FindDeviations(sizes);
   verdict.print_tolerance = FitTolerance(deviations, sizes, print_tolerance);
   if (verdict.print_tolerance > print_tolerance) {
     verdict.warnings.push_back(fmt::format(
@@ -185,61 +279,13 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
     if (std::abs(normalized[i]) <= kMaxSigmas) continue;
     verdict.contradicting.insert(sizes[i].marker_id);
     verdict.warnings.push_back(fmt::format(
-        "marker {} is {:.2f} % {} than the layout says, compared with the other markers ({:.0f} "
-        "sigmas): its size is not used; check its marker_length and its print",
+        "marker {} is {:.2f} % {} than the layout says, compared with the other markers{} "
+        "({:.0f} sigmas): its size is not used; check its marker_length and its print",
         sizes[i].marker_id, 100 * std::abs(deviations.values[i]),
-        deviations.values[i] > 0 ? "larger" : "smaller", std::abs(normalized[i])));
+        deviations.values[i] > 0 ? "larger" : "smaller",
+        verdict.part_scale_sigma > 0 ? " of its part" : "", std::abs(normalized[i])));
   }
   return verdict;
-}
-
-std::vector<ScaleBar> FindScaleBars(const MarkerState& state, const Layout& layout) {
-  std::vector<ScaleBar> bars;
-  for (const KnownDistance& distance : layout.distances) {
-    if (!distance.is_scale_bar) continue;
-    ScaleBar bar;
-    bar.distance = distance;
-    if (AddEnd(state, distance.marker_id1, distance.corner1, -1.0, &bar) &&
-        AddEnd(state, distance.marker_id2, distance.corner2, 1.0, &bar)) {
-      bars.push_back(std::move(bar));
-    }
-  }
-  return bars;
-}
-
-Eigen::VectorXd BarGradient(const ScaleBar& bar, const MarkerState& state) {
-  const Eigen::Vector3d direction = BarVector(bar, state).normalized();
-  std::vector<Eigen::Index> begins = {0};
-  for (const MarkerBlock& marker : state.markers) {
-    begins.push_back(begins.back() + marker.NumCoordinates());
-  }
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(begins.back());
-  for (std::size_t block = 0; block < bar.marker_idxs.size(); ++block) {
-    const std::vector<double>& weights = bar.corner_weights[block];
-    for (std::size_t slot = 0; slot < weights.size(); ++slot) {
-      gradient.segment<3>(begins[bar.marker_idxs[block]] + 3 * static_cast<Eigen::Index>(slot)) =
-          weights[slot] * direction;
-    }
-  }
-  return gradient;
-}
-
-std::string FindContradiction(const ScaleBar& bar, const MarkerState& state,
-                              const PointCovariance& points) {
-  const KnownDistance& distance = bar.distance;
-  const double length_m = BarVector(bar, state).norm();
-  const Eigen::VectorXd gradient = BarGradient(bar, state);
-  const double variance = std::max(0.0, gradient.dot(Multiply(points, gradient).col(0)));
-  const double sigmas = std::abs(length_m - distance.length_m) /
-                        std::sqrt(variance + distance.sigma_m * distance.sigma_m);
-  if (sigmas <= kMaxSigmas) return "";
-  return fmt::format(
-      "the distance from {} to {} is {:.5g} m in the layout, but {:.5g} +- {:.2g} m measured by "
-      "the "
-      "markers ({:.0f} sigmas): it is not used; check it and marker_length",
-      PointName(distance.marker_id1, distance.corner1),
-      PointName(distance.marker_id2, distance.corner2), distance.length_m, length_m,
-      std::sqrt(variance), sigmas);
 }
 
 }  // namespace velamap

@@ -1,5 +1,5 @@
-// The sizes of the reconstructed markers: the initial scale, markers whose size contradicts the
-// others, scale bars that contradict the markers.
+// The sizes of the reconstructed markers: the initial scale, and markers and parts whose size
+// contradicts the others.
 
 #pragma once
 
@@ -20,6 +20,9 @@ double MedianScale(const MarkerState& state);
 struct MarkerSizeVerdict {
   std::set<int> contradicting;   // marker ids
   double print_tolerance = 0.0;  // the given one, or a larger one where the markers scatter more
+  // 1 sigma of the scales of the parts' prints around their mean, as a fraction; 0: parts agree.
+  double part_scale_sigma = 0.0;
+  std::string part_disagreement;  // "sail and hull disagree by ..."; empty: parts agree
   std::vector<std::string> warnings;
 };
 
@@ -27,17 +30,12 @@ struct MarkerSizeVerdict {
 // solution in which the sizes had hardly any weight. A marker contradicts the others if it deviates
 // by more than four sigmas of image noise and print tolerance together. If ten or more markers
 // scatter 1.3 times as far as these sigmas explain, the print tolerance is raised.
+//
+// Where the mean of a part (of three markers or more) differs from that of the other parts by more
+// than four sigmas of these means and by more than `print_scale_sigma`, 1 sigma of the scale of the
+// print, its markers are no bad prints: parts disagree, and each marker is compared with its own
+// part. Smaller differences change the scale's sigma by less than an eighth.
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
-                                   double print_tolerance);
-
-// The scale bars of the layout whose corners are in the state.
-std::vector<ScaleBar> FindScaleBars(const MarkerState& state, const Layout& layout);
-
-// Derivative of the bar's length by the coordinates of all points, 3n.
-Eigen::VectorXd BarGradient(const ScaleBar& bar, const MarkerState& state);
-
-// A warning where bar and markers differ by more than four sigmas of both together; else empty.
-std::string FindContradiction(const ScaleBar& bar, const MarkerState& state,
-                              const PointCovariance& points);
+                                   double print_tolerance, double print_scale_sigma);
 
 }  // namespace velamap

@@ -32,6 +32,8 @@ MarkerState MakeMarkerState(const Model& model, const Layout& layout) {
     if (state.markers.empty() || state.markers.back().marker_id != id.marker_id) {
       MarkerBlock marker;
       marker.marker_id = id.marker_id;
+      marker.part = PartOfMarker(layout, id.marker_id);
+      state.part_scales[marker.part] = 0.0;
       marker.length_m = MarkerLength(layout, id.marker_id);
       marker.is_rigid = rigid.count(id.marker_id) > 0;
       state.markers.push_back(std::move(marker));

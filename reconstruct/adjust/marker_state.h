@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,6 +16,7 @@ namespace velamap {
 
 struct MarkerBlock {
   int marker_id = 0;
+  std::string part;          // of the layout
   std::vector<int> corners;  // the corners, 1..4, that are in the model, ascending
   std::array<double, 3 * kNumCorners> x_in_world{};  // x y z of each of them, m
   double length_m = 0.0;                             // side by the layout
@@ -37,6 +39,8 @@ struct MarkerState {
   std::map<CameraId, std::vector<double>> intrinsics;
   double inset_px = 0.0;
   double print_scale = 0.0;
+  // Scale of the prints of each part, less 1, in addition to print_scale.
+  std::map<std::string, double> part_scales;
 };
 
 Eigen::Map<const Eigen::Vector3d> CornerPosition(const MarkerBlock& marker, int slot);

@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "reconstruct/adjust/marker_sizes.h"
+#include "reconstruct/adjust/scale_bars.h"
 #include "reconstruct/geometry/covariance_update.h"
 
 namespace velamap {
@@ -37,6 +37,15 @@ double GlobalSigma(const MarkerCovariance& covariance, int column, const PointCo
   return std::sqrt(std::max(0.0, variance));
 }
 
+Eigen::MatrixXd BarGradients(const std::vector<ScaleBar>& bars, const MarkerState& state,
+                             Eigen::Index num_rows) {
+  Eigen::MatrixXd gradients(num_rows, static_cast<Eigen::Index>(bars.size()));
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    gradients.col(static_cast<Eigen::Index>(i)) = BarGradient(bars[i], state);
+  }
+  return gradients;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3d> Positions(const MarkerState& state) {
@@ -62,6 +71,19 @@ PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covar
   return points;
 }
 
+Eigen::MatrixXd BarCovariance(const std::vector<ScaleBar>& bars, const MarkerState& state,
+                              const MarkerProblem& problem, const MarkerCovariance& covariance) {
+  const PointCovariance points = PointsOf(state, covariance);
+  const Eigen::MatrixXd gradients = BarGradients(bars, state, points.factor.rows());
+  Eigen::MatrixXd result = gradients.transpose() * Multiply(points, gradients);
+  const int column = GlobalColumn(problem, &state.print_scale);
+  if (column < 0) return result;
+  Eigen::VectorXd unit = Eigen::VectorXd::Unit(covariance.root.rows(), column);
+  covariance.root.triangularView<Eigen::Lower>().solveInPlace(unit);
+  const Eigen::VectorXd with_scale = gradients.transpose() * (points.factor * unit);
+  return result - with_scale * with_scale.transpose() / unit.squaredNorm();
+}
+
 double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& covariance) {
   // All leverages add up to the number of parameters. The part of the priors is not determined by
   // corners.
@@ -83,10 +105,10 @@ AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeig
   PointCovariance& points = uncertainty.points;
   points = PointsOf(state, covariance);
   const auto num_bars = static_cast<Eigen::Index>(weights.scale_bars.size());
-  Eigen::MatrixXd bar_gradients(points.factor.rows(), num_bars);
+  const Eigen::MatrixXd bar_gradients =
+      BarGradients(weights.scale_bars, state, points.factor.rows());
   Eigen::VectorXd bar_sigmas(num_bars);
   for (Eigen::Index i = 0; i < num_bars; ++i) {
-    bar_gradients.col(i) = BarGradient(weights.scale_bars[i], state);
     bar_sigmas[i] = weights.scale_bars[i].distance.sigma_m;
   }
   const int inset_column = GlobalColumn(problem, &state.inset_px);

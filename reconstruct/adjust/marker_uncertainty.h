@@ -18,6 +18,12 @@ std::vector<Eigen::Vector3d> Positions(const MarkerState& state);
 // Covariance of all corners in the frame of the first image's camera.
 PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covariance);
 
+// Covariance of the bars' lengths in the state, m^2, where the scale of the print is known: noise
+// of the corners, tolerance of single prints, scales of parts. `covariance` does not contain the
+// bars.
+Eigen::MatrixXd BarCovariance(const std::vector<ScaleBar>& bars, const MarkerState& state,
+                              const MarkerProblem& problem, const MarkerCovariance& covariance);
+
 // Number of the corners' residuals less the number of parameters that they determine.
 double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& covariance);
 

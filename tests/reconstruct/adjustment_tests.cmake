@@ -5,7 +5,9 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     geometry/covariance_update_test.cc
     adjust/marker_adjustment_test.cc
     adjust/marker_cost_functions_test.cc
+    adjust/marker_sizes_test.cc
     adjust/marker_uncertainty_test.cc
+    adjust/scale_bars_test.cc
     scene_model.cc
     solve/schur_complement_test.cc
     colmap/warm_start_test.cc

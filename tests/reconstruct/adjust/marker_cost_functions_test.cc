@@ -154,16 +154,18 @@ TEST(RobustResidual, JacobianHoldsWhereTheSeriesTakesOver) {
 TEST(MarkerPriorError, JacobiansAreThoseOfTheResiduals) {
   const auto marker = ViewParameters(CameraModel::kPinhole)[0];
   const MarkerPrior prior{0.1, 1e-3, 3e-3, 2e-3};
-  CheckGradients(MarkerPriorError(prior, {1, 2, 3, 4}), {marker, {0.01}}, {nullptr, nullptr});
+  CheckGradients(MarkerPriorError(prior, {1, 2, 3, 4}), {marker, {0.01}, {-0.02}},
+                 {nullptr, nullptr, nullptr});
   const std::vector<double> three(marker.begin(), marker.begin() + 9);
-  CheckGradients(MarkerPriorError(prior, {1, 3, 4}), {three, {0.01}}, {nullptr, nullptr});
+  CheckGradients(MarkerPriorError(prior, {1, 3, 4}), {three, {0.01}, {-0.02}},
+                 {nullptr, nullptr, nullptr});
 }
 
 TEST(MarkerPriorError, KnowsSidesAndFlatness) {
   const double h = 0.004;
   const std::vector<double> marker = {0, 0, h, 0.1, 0, -h, 0.1, 0.1, h, 0, 0.1, -h};
-  const double print_scale = 0.02;
-  const double* blocks[] = {marker.data(), &print_scale};
+  const double print_scale = 0.03, part_scale = -0.01;
+  const double* blocks[] = {marker.data(), &print_scale, &part_scale};
   const MarkerPriorError error({0.1, 1e-3, 3e-3, 2e-3}, {1, 2, 3, 4});
   ASSERT_EQ(error.num_residuals(), 6);
   double residuals[6];
@@ -180,7 +182,7 @@ TEST(MarkerPriorError, RhombusIsNoSquare) {
   const double x = 0.1 * std::sin(0.02), y = 0.1 * std::cos(0.02);
   const std::vector<double> marker = {0, 0, 0, 0.1, 0, 0, 0.1 + x, y, 0, x, y, 0};
   const double print_scale = 0;
-  const double* blocks[] = {marker.data(), &print_scale};
+  const double* blocks[] = {marker.data(), &print_scale, &print_scale};
   const MarkerPriorError error({0.1, 1e-3, 3e-3, 2e-3}, {1, 2, 3, 4});
   double residuals[6];
   ASSERT_TRUE(error.Evaluate(blocks, residuals, nullptr));

@@ -11,7 +11,7 @@
 
 #include "importer/geometry/alignment.h"
 #include "reconstruct/adjust/error_correlation.h"
-#include "reconstruct/adjust/marker_sizes.h"
+#include "reconstruct/adjust/scale_bars.h"
 #include "tests/reconstruct/scene_model.h"
 
 namespace velamap {

@@ -1,0 +1,135 @@
+#include "reconstruct/adjust/marker_sizes.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "importer/geometry/alignment.h"
+#include "tests/reconstruct/scene_model.h"
+
+namespace velamap {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+// A sail of 24 markers and a hull of 6.
+SyntheticScene TwoParts() {
+  SyntheticSceneOptions options;
+  options.num_rows = 5;
+  options.num_columns = 6;
+  options.num_frames = 9;
+  SyntheticScene scene = MakeSyntheticScene(options);
+  LayoutPart sail, hull;
+  sail.name = "sail";
+  hull.name = "hull";
+  for (int id = 0; id < 24; ++id) sail.marker_ids.push_back(id);
+  for (int id = 24; id < 30; ++id) hull.marker_ids.push_back(id);
+  scene.layout.parts = {sail, hull};
+  return scene;
+}
+
+class PartSizes : public testing::Test {
+ protected:
+  // Prints the markers of a part with this factor.
+  void Print(std::size_t part_idx, double factor) {
+    for (const int id : scene_.layout.parts[part_idx].marker_ids) ResizeMarker(id, factor, &scene_);
+  }
+
+  MarkerAdjustmentSummary Adjust(std::uint32_t seed = 1) {
+    SyntheticScene noisy = scene_;
+    AddNoise({0.05, 0, 0, 200, seed}, &noisy);
+    model_ = MakeSceneModel(noisy);
+    return AdjustWithMarkers({}, noisy.layout, {}, &model_);
+  }
+
+  double ScaleError() const {
+    std::vector<Eigen::Vector3d> x_in_world, x_in_truth;
+    for (const auto& [point3D_id, point] : model_.points3D) {
+      const CornerId id = CornerFromPoint3DId(point3D_id);
+      x_in_world.push_back(point.x_in_world);
+      x_in_truth.push_back(scene_.x_in_world.at(id.marker_id)[id.corner]);
+    }
+    return EstimateSim3(x_in_truth, x_in_world).scale - 1.0;
+  }
+
+  SyntheticScene scene_ = TwoParts();
+  Model model_;
+};
+
+TEST_F(PartSizes, PartsThatAgreeAreNotMentioned) {
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_THAT(Adjust(seed).warnings, IsEmpty()) << seed;
+  }
+}
+
+TEST_F(PartSizes, ThatDisagreeAreReportedInOneLine) {
+  const double sigma_before = Adjust().uncertainty.relative_scale_sigma;
+  Print(1, 1.005);
+  const auto summary = Adjust();
+  ASSERT_THAT(summary.warnings, SizeIs(1));
+  EXPECT_THAT(summary.warnings[0], AllOf(HasSubstr("sail and hull disagree by 0."),
+                                         HasSubstr("the markers of sail are the smaller"),
+                                         HasSubstr("measure a distance on one of them")));
+  // One of them is right, so that the mean of both is half the difference off.
+  const double sigma = summary.uncertainty.relative_scale_sigma;
+  EXPECT_NEAR(sigma, std::hypot(sigma_before, 0.0025), 5e-4);
+  EXPECT_NEAR(ScaleError(), -0.0025, 5e-4);
+}
+
+TEST_F(PartSizes, ThatDisagreeAreDecidedByADistance) {
+  Print(0, 1.005);
+  const double length_m = (scene_.x_in_world.at(0)[0] - scene_.x_in_world.at(29)[0]).norm();
+  scene_.layout.distances = {{0, 0, 29, 0, length_m, 1e-4, true}};
+  const auto summary = Adjust();
+  ASSERT_THAT(summary.warnings, SizeIs(1));
+  EXPECT_THAT(summary.warnings[0],
+              AllOf(HasSubstr("disagree"), HasSubstr("the measured distances decide")));
+  EXPECT_LT(std::abs(ScaleError()), 3 * summary.uncertainty.relative_scale_sigma);
+  EXPECT_LT(summary.uncertainty.relative_scale_sigma, 5e-4);
+}
+
+TEST_F(PartSizes, ATrulyBadMarkerOfThemIsStillNamed) {
+  Print(1, 1.005);
+  ResizeMarker(26, 1.03, &scene_);
+  ResizeMarker(3, 0.97, &scene_);
+  const auto warnings = Adjust().warnings;
+  EXPECT_THAT(warnings, SizeIs(3));
+  EXPECT_THAT(warnings, Contains(AllOf(HasSubstr("marker 26 is"), HasSubstr("larger"),
+                                       HasSubstr("of its part"))));
+  EXPECT_THAT(warnings, Contains(AllOf(HasSubstr("marker 3 is"), HasSubstr("smaller"))));
+  EXPECT_THAT(warnings, Contains(HasSubstr("sail and hull disagree")));
+}
+
+// Two markers cannot tell whether they are bad prints or another part.
+TEST_F(PartSizes, OfTwoMarkersAreNoneOfTheirOwn) {
+  auto& sail = scene_.layout.parts[0].marker_ids;
+  auto& hull = scene_.layout.parts[1].marker_ids;
+  sail.insert(sail.end(), hull.begin() + 2, hull.end());
+  hull.resize(2);
+  Print(1, 1.03);
+  const auto warnings = Adjust().warnings;
+  EXPECT_THAT(warnings, SizeIs(2));
+  EXPECT_THAT(warnings, Not(Contains(HasSubstr("disagree"))));
+}
+
+TEST_F(PartSizes, OfThreeThatDisagreeTheOddOneIsNamed) {
+  LayoutPart boom;
+  boom.name = "boom";
+  auto& sail = scene_.layout.parts[0].marker_ids;
+  boom.marker_ids.assign(sail.end() - 6, sail.end());
+  sail.resize(18);
+  scene_.layout.parts.push_back(boom);
+  Print(2, 0.99);
+  const auto summary = Adjust();
+  ASSERT_THAT(summary.warnings, SizeIs(1));
+  EXPECT_THAT(summary.warnings[0], HasSubstr("boom and the other parts disagree by 1."));
+  EXPECT_GT(summary.uncertainty.relative_scale_sigma, 0.003);
+}
+
+}  // namespace
+}  // namespace velamap
