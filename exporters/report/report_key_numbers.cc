@@ -1,10 +1,13 @@
 #include "exporters/report/report_key_numbers.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/scale/scale_audit_report.h"
 #include "exporters/shape/units.h"
 #include "importer/base/statistics.h"
 
@@ -68,17 +71,78 @@ KeyNumber AreaNumber(const ShapeMetrics& metrics) {
           LowIsGood(percent.mean, kGoodAreaError_percent, kBadAreaError_percent)};
 }
 
-KeyNumber ScaleNumber(const ScaleEstimate& scale) {
+// Whether parts differ by more than the scale's sigma says and no distance decides between them.
+bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
+  const auto decides = [](const CheckedDistance& checked) { return checked.known.is_scale_bar; };
+  if (!audit.parts_disagree ||
+      std::any_of(audit.distances.begin(), audit.distances.end(), decides)) {
+    return false;
+  }
+  return std::any_of(audit.parts.begin(), audit.parts.end(), [&scale](const GroupScale& part) {
+    return std::abs(part.deviation) > scale.relative_sigma.value_or(0.0);
+  });
+}
+
+KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit) {
   const double spread_percent = 100 * scale.relative_spread;
   std::string value = fmt::format("{:.2f} % spread", spread_percent);
   if (scale.relative_sigma) {
     value = fmt::format("\u00b1{:.3f} %, {}", 100 * *scale.relative_sigma, value);
   }
-  return {"Scale", value,
-          fmt::format("standard deviations of the metric scale and of the scales from each of {} "
-                      "markers alone; good up to {:g} % spread",
-                      scale.num_markers, kGoodScaleSpread_percent),
-          LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent)};
+  KeyNumber number{
+      "Scale", value,
+      fmt::format("standard deviations of the metric scale and of the scales from each of {} "
+                  "markers alone; good up to {:g} % spread",
+                  scale.num_markers, kGoodScaleSpread_percent),
+      LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent)};
+  if (audit == nullptr) return number;
+  if (!FailedChecks(*audit).empty()) {
+    number.meaning += "; measured distances contradict it";
+    number.status = ReportStatus::kBad;
+  } else if (PartsLeaveScaleOpen(scale, *audit) && number.status == ReportStatus::kGood) {
+    number.meaning += "; parts disagree: measure a distance on one of them";
+    number.status = ReportStatus::kCheck;
+  }
+  return number;
+}
+
+// Distances measured by hand. Those that the adjustment used prove nothing, unless it left them
+// out.
+std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit) {
+  if (audit.distances.empty()) return std::nullopt;
+  const CheckedDistance* worst = nullptr;
+  int num_found = 0;
+  for (const CheckedDistance& checked : audit.distances) {
+    if (!checked.distance_m) continue;
+    ++num_found;
+    const bool is_worse =
+        worst == nullptr ||
+        std::make_pair(checked.FailsAsCheck(), std::abs(checked.DifferenceInSigmas())) >
+            std::make_pair(worst->FailsAsCheck(), std::abs(worst->DifferenceInSigmas()));
+    if (is_worse) worst = &checked;
+  }
+  const auto num_failed = static_cast<int>(FailedChecks(audit).size());
+  const int num_checks = NumChecks(audit), num_all = static_cast<int>(audit.distances.size());
+  KeyNumber number{"Measured distances",
+                   num_failed > 0 ? fmt::format("{} of {} checks failed", num_failed, num_checks)
+                                  : fmt::format("{} of {}", num_found, num_all),
+                   fmt::format("{} of {} distances are in the shape, {} of them as checks of it; "
+                               "good within {:g} sigmas of distance and shape together",
+                               num_found, num_all, num_checks, kMaxCheckSigmas),
+                   ReportStatus::kNone};
+  if (worst == nullptr) {
+    number.status = ReportStatus::kCheck;
+    return number;
+  }
+  number.value += ", worst " + ShortText(*worst);
+  if (num_failed > 0) {
+    number.status = ReportStatus::kBad;
+  } else if (num_found < num_all || std::abs(worst->DifferenceInSigmas()) > kMaxCheckSigmas) {
+    number.status = ReportStatus::kCheck;
+  } else if (num_checks > 0) {
+    number.status = ReportStatus::kGood;
+  }
+  return number;
 }
 
 KeyNumber SizeNumber(const MarkerShape& shape) {
@@ -119,7 +183,10 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
     numbers.push_back(ErrorNumber(input.model_metrics.error_px));
   }
   if (input.metrics.area_error_percent.count > 0) numbers.push_back(AreaNumber(input.metrics));
-  numbers.push_back(ScaleNumber(input.scale));
+  numbers.push_back(ScaleNumber(input.scale, input.audit));
+  if (input.audit != nullptr) {
+    if (const auto distances = DistancesNumber(*input.audit)) numbers.push_back(*distances);
+  }
   if (const auto precision = PrecisionNumber(input.shape)) numbers.push_back(*precision);
   numbers.push_back(SizeNumber(input.shape));
   return numbers;

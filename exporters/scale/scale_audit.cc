@@ -15,6 +15,9 @@
 namespace velamap {
 namespace {
 
+// The mean of fewer markers says little about their part.
+constexpr int kMinMarkersOfPart = 3;
+
 std::vector<MarkerSidesMeasured> MeasureForShape(const MarkerShape& shape, const Layout& layout,
                                                  const Model* model,
                                                  const AdjustmentUncertainty* uncertainty) {
@@ -143,10 +146,41 @@ std::map<Key, GroupScale> CompareGroups(const ScaleAudit& audit,
 }
 
 void CompareParts(ScaleAudit* audit) {
+  audit->parts.clear();
   const auto part_of = [](const MarkerScale& marker) { return marker.part; };
   for (auto& [part, scale] : CompareGroups<std::string>(*audit, part_of)) {
     audit->parts.push_back(scale);
     audit->parts.back().part = part;
+  }
+}
+
+// Whether one of the parts is off by more than its sigma explains.
+bool PartsDisagree(const std::vector<GroupScale>& parts) {
+  return std::any_of(parts.begin(), parts.end(), [](const GroupScale& part) {
+    return part.sigma && part.num_markers >= kMinMarkersOfPart &&
+           std::abs(part.deviation) > kMaxRobustSigmas * *part.sigma;
+  });
+}
+
+// Sets the spread of the markers around the means of their parts, and how far each is off. Parts of
+// few markers are compared with all.
+void CompareMarkersWithTheirParts(ScaleAudit* audit) {
+  std::map<std::string, std::vector<const MarkerScale*>> of_part;
+  for (const MarkerScale& marker : audit->markers) of_part[marker.part].push_back(&marker);
+  std::map<std::string, double> means;
+  for (const auto& [part, markers] : of_part) {
+    const bool has_mean = markers.size() >= kMinMarkersOfPart;
+    means[part] = has_mean ? MeanScale(markers, 0.0).mean : std::log1p(audit->deviation);
+  }
+  std::vector<double> values, sigmas;
+  for (const MarkerScale& marker : audit->markers) {
+    values.push_back(std::log1p(marker.deviation) - means.at(marker.part));
+    sigmas.push_back(marker.sigma.value_or(0.0));
+  }
+  const RobustMean mean = FitMeanRobustly(values, sigmas);
+  audit->marker_spread = mean.excess_sigma;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    audit->markers[i].sigmas_off = mean.sigmas_off[i];
   }
 }
 
@@ -203,6 +237,11 @@ ScaleAudit AuditScale(const MarkerShape& shape, const Layout& layout, const Mode
   audit.histogram = MakeDeviationHistogram(audit.markers);
   CompareWidthAndHeight(measured, &audit);
   CompareParts(&audit);
+  audit.parts_disagree = PartsDisagree(audit.parts);
+  if (audit.parts_disagree) {
+    CompareMarkersWithTheirParts(&audit);
+    CompareParts(&audit);  // with the spread that is left
+  }
   CompareSizes(&audit);
   return audit;
 }

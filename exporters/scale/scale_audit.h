@@ -27,7 +27,8 @@ struct MarkerScale {
   double deviation = 0.0;
   std::optional<double> sigma;    // of the deviation, from the noise of the image points
   std::optional<double> side_px;  // size in the images
-  // Difference from the mean over sqrt(sigma^2 + marker_spread^2).
+  // Difference from the mean over sqrt(sigma^2 + marker_spread^2); from the mean of its part where
+  // parts disagree.
   double sigmas_off = 0.0;
   // Whether sigmas_off exceeds 3: badly printed, bent, or of another size.
   bool Disagrees() const;
@@ -52,14 +53,18 @@ struct ScaleAudit {
   // Mean over the markers that agree, and its sigma from their noise and scatter.
   double deviation = 0.0;
   std::optional<double> deviation_sigma;
-  // Robust standard deviation of the scales of the markers in addition to the noise of their image
-  // points (without a model, all of it): print, bends, and errors of the cameras.
+  // Robust standard deviation of the scales of the markers (where parts disagree: around the mean
+  // of their part) in addition to the noise of their image points (without a model, all of it):
+  // print, bends, and errors of the cameras.
   double marker_spread = 0.0;
   std::vector<HistogramBin> histogram;
   // Mean horizontal over mean vertical side: 1 for a square print.
   std::optional<double> x_over_y;
   std::optional<double> x_over_y_sigma;
   std::vector<GroupScale> parts;  // by name; empty for fewer than two parts
+  // Whether a part differs from the others by more than 3 sigmas: no marker of it is a bad print
+  // for that reason.
+  bool parts_disagree = false;
   std::vector<GroupScale> sizes;  // ascending; empty for fewer than two sizes
   PrintSpread spread;
   std::vector<CheckedDistance> distances;

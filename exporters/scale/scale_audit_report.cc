@@ -56,10 +56,6 @@ std::string PointName(int marker_id, int corner) {
   return corner == 0 ? fmt::format("{}", marker_id) : fmt::format("{}.{}", marker_id, corner);
 }
 
-double DifferenceInSigmas(const CheckedDistance& checked) {
-  return (*checked.distance_m - checked.known.length_m) / checked.DifferenceSigma();
-}
-
 Metrics DistanceRow(const CheckedDistance& checked) {
   const KnownDistance& known = checked.known;
   Metrics row = {{"from", PointName(known.marker_id1, known.corner1)},
@@ -72,7 +68,7 @@ Metrics DistanceRow(const CheckedDistance& checked) {
   if (checked.sigma_m) row.push_back({"distance_sigma_mm", *checked.sigma_m * kMmPerM});
   row.push_back({"difference_mm", (*checked.distance_m - known.length_m) * kMmPerM});
   row.push_back({"difference_sigma_mm", checked.DifferenceSigma() * kMmPerM});
-  row.push_back({"difference_in_sigmas", DifferenceInSigmas(checked)});
+  row.push_back({"difference_in_sigmas", checked.DifferenceInSigmas()});
   return row;
 }
 
@@ -125,9 +121,10 @@ void PrintParts(const ScaleAudit& audit, std::ostream& out) {
       std::max_element(audit.parts.begin(), audit.parts.end(),
                        [&](const GroupScale& a, const GroupScale& b) { return size(a) < size(b); });
   if (worst == audit.parts.end()) return;
-  out << fmt::format("scale_of_part_against_others: {} {} (largest of {} parts)\n",
+  out << fmt::format("scale_of_part_against_others: {} {} (largest of {} parts{})\n",
                      worst->part.empty() ? "without a part" : worst->part,
-                     PercentText(worst->deviation, worst->sigma), audit.parts.size());
+                     PercentText(worst->deviation, worst->sigma), audit.parts.size(),
+                     audit.parts_disagree ? ", which disagree" : "");
 }
 
 void PrintDistances(const ScaleAudit& audit, std::ostream& out) {
@@ -137,7 +134,7 @@ void PrintDistances(const ScaleAudit& audit, std::ostream& out) {
     if (!checked.distance_m) continue;
     ++num_found;
     if (worst == nullptr ||
-        std::abs(DifferenceInSigmas(checked)) > std::abs(DifferenceInSigmas(*worst))) {
+        std::abs(checked.DifferenceInSigmas()) > std::abs(worst->DifferenceInSigmas())) {
       worst = &checked;
     }
   }
@@ -147,17 +144,64 @@ void PrintDistances(const ScaleAudit& audit, std::ostream& out) {
     out << ", checks off by "
         << PercentText(*audit.distance_deviation, audit.distance_deviation_sigma);
   }
-  if (worst != nullptr) {
-    const KnownDistance& known = worst->known;
-    out << fmt::format(", worst {}-{} {:+.2f} mm ({:+.1f} sigmas)",
-                       PointName(known.marker_id1, known.corner1),
-                       PointName(known.marker_id2, known.corner2),
-                       (*worst->distance_m - known.length_m) * kMmPerM, DifferenceInSigmas(*worst));
-  }
+  if (worst != nullptr) out << ", worst " << ShortText(*worst);
   out << '\n';
 }
 
+// A line only where checks fail.
+void PrintVerdict(const ScaleAudit& audit, std::ostream& out) {
+  constexpr std::size_t kMaxDistances = 5;
+  const std::vector<const CheckedDistance*> failed = FailedChecks(audit);
+  if (failed.empty()) return;
+  out << fmt::format("verdict: bad; {} of {} measured distances contradicts the shape",
+                     failed.size(), NumChecks(audit));
+  for (std::size_t i = 0; i < std::min(failed.size(), kMaxDistances); ++i) {
+    out << (i == 0 ? ": " : ", ") << ShortText(*failed[i]);
+  }
+  out << (failed.size() > kMaxDistances ? ", ...\n" : "\n");
+}
+
 }  // namespace
+
+std::string ShortText(const CheckedDistance& checked) {
+  const KnownDistance& known = checked.known;
+  return fmt::format(
+      "{}-{} {:+.2f} mm ({:+.1f} sigmas)", PointName(known.marker_id1, known.corner1),
+      PointName(known.marker_id2, known.corner2), (*checked.distance_m - known.length_m) * kMmPerM,
+      checked.DifferenceInSigmas());
+}
+
+std::vector<const CheckedDistance*> FailedChecks(const ScaleAudit& audit) {
+  std::vector<const CheckedDistance*> failed;
+  for (const CheckedDistance& checked : audit.distances) {
+    if (checked.FailsAsCheck()) failed.push_back(&checked);
+  }
+  return failed;
+}
+
+int NumChecks(const ScaleAudit& audit) {
+  return static_cast<int>(std::count_if(audit.distances.begin(), audit.distances.end(),
+                                        [](const CheckedDistance& checked) {
+                                          return checked.distance_m && !checked.known.is_scale_bar;
+                                        }));
+}
+
+std::vector<std::string> ScaleWarnings(const ScaleAudit& audit) {
+  std::vector<std::string> warnings;
+  for (const CheckedDistance* checked : FailedChecks(audit)) {
+    const KnownDistance& known = checked->known;
+    warnings.push_back(fmt::format(
+        "the distance from {} to {} was measured as {:.5g} +- {:.2g} m, but is {:.5g}{} m in the "
+        "shape: off by {:+.1f} mm, {:.1f} sigmas of both; find out which is wrong before using the "
+        "shape",
+        PointName(known.marker_id1, known.corner1), PointName(known.marker_id2, known.corner2),
+        known.length_m, known.sigma_m, *checked->distance_m,
+        checked->sigma_m ? fmt::format(" +- {:.2g}", *checked->sigma_m) : "",
+        (*checked->distance_m - known.length_m) * kMmPerM,
+        std::abs(checked->DifferenceInSigmas())));
+  }
+  return warnings;
+}
 
 void AddMetrics(const ScaleAudit& audit, MetricsReport* report) {
   AddFigures(audit, &report->metrics);
@@ -196,6 +240,7 @@ void PrintScaleAudit(const ScaleEstimate& scale, const ScaleAudit& audit, std::o
   if (!audit.markers.empty()) PrintDisagreeingMarkers(audit, out);
   PrintParts(audit, out);
   PrintDistances(audit, out);
+  PrintVerdict(audit, out);
 }
 
 }  // namespace velamap

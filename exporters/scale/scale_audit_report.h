@@ -3,6 +3,8 @@
 #pragma once
 
 #include <iosfwd>
+#include <string>
+#include <vector>
 
 #include "exporters/formats/metrics_report.h"
 #include "exporters/scale/metric_scale.h"
@@ -14,8 +16,21 @@ namespace velamap {
 // scale_parts, scale_sizes and known_distances.
 void AddMetrics(const ScaleAudit& audit, MetricsReport* report);
 
-// Prints at most four lines `key: value` for a summary: the sigma of the scale, the markers that
-// disagree, the part that differs most from the others, and the known distances.
+// The distances that the shape fails, CheckedDistance::FailsAsCheck().
+std::vector<const CheckedDistance*> FailedChecks(const ScaleAudit& audit);
+
+// Number of distances that check the shape and are in it.
+int NumChecks(const ScaleAudit& audit);
+
+// `12-45.3 +15.10 mm (+5.2 sigmas)` for a distance that is in the shape.
+std::string ShortText(const CheckedDistance& checked);
+
+// A warning for each distance that the shape fails: its name, its value, how far it is off.
+std::vector<std::string> ScaleWarnings(const ScaleAudit& audit);
+
+// Prints at most five lines `key: value` for a summary: the sigma of the scale, the markers that
+// disagree, the part that differs most from the others, the known distances, and `verdict: bad`
+// where the shape fails some of these.
 void PrintScaleAudit(const ScaleEstimate& scale, const ScaleAudit& audit, std::ostream& out);
 
 }  // namespace velamap

@@ -10,6 +10,14 @@ double CheckedDistance::DifferenceSigma() const {
   return std::hypot(known.sigma_m, sigma_m.value_or(0.0));
 }
 
+double CheckedDistance::DifferenceInSigmas() const {
+  return (distance_m.value() - known.length_m) / DifferenceSigma();
+}
+
+bool CheckedDistance::FailsAsCheck() const {
+  return distance_m && !known.is_scale_bar && std::abs(DifferenceInSigmas()) > kMaxCheckSigmas;
+}
+
 std::vector<CheckedDistance> CheckDistances(const MarkerShape& shape, const Layout& layout,
                                             const PointCovariance* covariance) {
   std::vector<CheckedDistance> checked;

@@ -18,7 +18,13 @@ struct CheckedDistance {
 
   // Sigma of the difference: that of the tape and, if known, that of the result.
   double DifferenceSigma() const;
+  // Difference (result - tape) over its sigma; the distance must be in the shape.
+  double DifferenceInSigmas() const;
+  // Whether it is a check in the shape that is off by more than three sigmas.
+  bool FailsAsCheck() const;
 };
+
+constexpr double kMaxCheckSigmas = 3.0;
 
 // One entry per distance of the layout, in its order.
 std::vector<CheckedDistance> CheckDistances(const MarkerShape& shape, const Layout& layout,

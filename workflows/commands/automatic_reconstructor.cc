@@ -154,6 +154,7 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   exporter.shape_output_path = paths.Shape().string();
   summary->shape =
       ExportShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
+  LogScaleWarnings(summary->shape.audit);
   sparse.Commit();
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });

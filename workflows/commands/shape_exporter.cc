@@ -55,6 +55,7 @@ void Validate(Options* options) {
 }
 
 void Print(const ShapeExportReport& report, const PathOptions& paths, std::ostream& out) {
+  LogScaleWarnings(report.audit);
   PrintShapeSummary(report, out);
   if (!paths.shape_path.empty()) out << "shape_path: " << paths.shape_path << '\n';
   if (!paths.output_path.empty()) out << "model_path: " << paths.output_path << '\n';

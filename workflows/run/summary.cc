@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <spdlog/spdlog.h>
 #include <Eigen/Eigenvalues>
 
 #include "exporters/scale/scale_audit_report.h"
@@ -164,6 +165,10 @@ std::string ShellQuote(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
+}
+
+void LogScaleWarnings(const ScaleAudit& audit) {
+  for (const std::string& warning : ScaleWarnings(audit)) spdlog::warn(warning);
 }
 
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {

@@ -29,6 +29,9 @@ Eigen::Vector3d BoundingBox(const MarkerShape& shape);
 // Quotes a path for a shell where that is needed.
 std::string ShellQuote(const std::string& text);
 
+// Logs what contradicts the scale of the shape.
+void LogScaleWarnings(const ScaleAudit& audit);
+
 // Prints what shape_exporter and automatic_reconstructor share: markers, their errors, scale, size.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);
 

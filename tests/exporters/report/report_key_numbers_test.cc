@@ -55,6 +55,52 @@ TEST_F(ReportKeyNumbers, AreOnlyThereWhereKnown) {
   EXPECT_EQ(Find("Markers").status, ReportStatus::kNone);
 }
 
+TEST_F(ReportKeyNumbers, AMeasuredDistanceThatFailsIsRed) {
+  ScaleAudit audit;
+  const auto find = [&](const std::string& name) {
+    ReportInput input = example_.Input();
+    input.audit = &audit;
+    for (const KeyNumber& number : MakeKeyNumbers(input)) {
+      if (number.name == name) return number;
+    }
+    return KeyNumber{};
+  };
+  EXPECT_EQ(find("Measured distances").name, "");
+  audit.distances = {{{1, 0, 2, 0, 2.0, 1e-3, false}, 2.002, 1e-3},
+                     {{1, 0, 3, 0, 3.0, 1e-3, true}, 3.001, 1e-3}};
+  EXPECT_EQ(find("Measured distances").status, ReportStatus::kGood);
+  EXPECT_EQ(find("Scale").status, ReportStatus::kGood);
+  audit.distances[1].distance_m = 3.3;  // left out by the adjustment
+  EXPECT_EQ(find("Measured distances").status, ReportStatus::kCheck);
+  audit.distances[0].distance_m = 2.008;
+  EXPECT_EQ(find("Measured distances").status, ReportStatus::kBad);
+  EXPECT_THAT(find("Measured distances").value,
+              HasSubstr("1 of 1 checks failed, worst 1-2 +8.00 mm (+5.7 sigmas)"));
+  EXPECT_EQ(find("Scale").status, ReportStatus::kBad);
+  EXPECT_THAT(find("Scale").meaning, HasSubstr("measured distances contradict it"));
+  audit.distances.resize(1);
+  audit.distances[0].distance_m.reset();
+  EXPECT_EQ(find("Measured distances").status, ReportStatus::kCheck);
+}
+
+TEST_F(ReportKeyNumbers, PartsThatDisagreeLeaveTheScaleOpen) {
+  ScaleAudit audit;
+  audit.parts = {{"hull", 0.0, 5, 0.005, 5e-4}, {"sail", 0.0, 20, -0.005, 5e-4}};
+  audit.parts_disagree = true;
+  example_.scale.relative_sigma = 0.0026;
+  ReportInput input = example_.Input();
+  input.audit = &audit;
+  const auto scale = [&input] {
+    const auto numbers = MakeKeyNumbers(input);
+    return *std::find_if(numbers.begin(), numbers.end(),
+                         [](const auto& number) { return number.name == "Scale"; });
+  };
+  EXPECT_EQ(scale().status, ReportStatus::kCheck);
+  EXPECT_THAT(scale().meaning, HasSubstr("parts disagree: measure a distance on one of them"));
+  audit.distances = {{{1, 0, 3, 0, 3.0, 1e-3, true}, 3.001, 1e-3}};
+  EXPECT_EQ(scale().status, ReportStatus::kGood);
+}
+
 TEST_F(ReportKeyNumbers, ImagesCountThoseLeftOut) {
   ReportInput input = example_.Input();
   input.images_left_out = {{"a.jpg", "blurred"}};

@@ -30,7 +30,7 @@ ScaleAudit FullAudit() {
   audit.spread.print_um = UncertainValue{12.0, 2.0};
   audit.spread.scale_error = UncertainValue{0.001, 0.0005};
   audit.spread.note = "print only";
-  audit.distances = {{{4, 0, 9, 2, 2.0, 1e-3, false}, 2.003, std::nullopt},
+  audit.distances = {{{4, 0, 9, 2, 2.0, 1e-3, false}, 2.0029, std::nullopt},
                      {{4, 0, 8, 0, 2.0, 1e-3, true}, std::nullopt, std::nullopt}};
   audit.distance_deviation = 0.0015;
   audit.distance_deviation_sigma = 0.0005;
@@ -76,8 +76,8 @@ TEST(ScaleAuditReport, HasATableOfEveryKind) {
   EXPECT_EQ(distance["to"], "9.2");
   EXPECT_EQ(distance["use"], "check");
   EXPECT_EQ(distance["measured_mm"], 2000.0);
-  EXPECT_NEAR(distance["difference_mm"].get<double>(), 3.0, 1e-9);
-  EXPECT_NEAR(distance["difference_in_sigmas"].get<double>(), 3.0, 1e-9);
+  EXPECT_NEAR(distance["difference_mm"].get<double>(), 2.9, 1e-9);
+  EXPECT_NEAR(distance["difference_in_sigmas"].get<double>(), 2.9, 1e-9);
   EXPECT_FALSE(distance.contains("distance_sigma_mm"));
   EXPECT_EQ(report["known_distances"][1]["use"], "scale");
   EXPECT_FALSE(report["known_distances"][1].contains("distance_mm"));
@@ -97,7 +97,28 @@ TEST(ScaleAuditReport, TheShortFormHasAtMostFourLines) {
   EXPECT_THAT(text, HasSubstr("scale_disagreeing_markers: 1 of 2: 9 by +100.00 %\n"));
   EXPECT_THAT(text, HasSubstr("scale_of_part_against_others: hull +0.400 +- 0.100 %"));
   EXPECT_THAT(text, HasSubstr("known_distances: 1 of 2 reconstructed, checks off by +0.150 +- "
-                              "0.050 %, worst 4-9.2 +3.00 mm (+3.0 sigmas)\n"));
+                              "0.050 %, worst 4-9.2 +2.90 mm (+2.9 sigmas)\n"));
+}
+
+TEST(ScaleAuditReport, ACheckBeyondThreeSigmasMakesTheVerdictBad) {
+  ScaleAudit audit = FullAudit();
+  EXPECT_TRUE(ScaleWarnings(audit).empty());
+  EXPECT_THAT(ShortForm({}, audit), Not(HasSubstr("verdict")));
+  audit.distances[0].distance_m = 2.0152;
+  EXPECT_THAT(ShortForm({}, audit),
+              HasSubstr("verdict: bad; 1 of 1 measured distances contradicts the shape: 4-9.2 "
+                        "+15.20 mm (+15.2 sigmas)\n"));
+  ASSERT_EQ(ScaleWarnings(audit).size(), 1u);
+  EXPECT_THAT(ScaleWarnings(audit)[0],
+              HasSubstr("from 4 to 9.2 was measured as 2 +- 0.001 m, but is 2.0152 m in the shape: "
+                        "off by +15.2 mm, 15.2 sigmas"));
+  // The sigma of the shape counts, too.
+  audit.distances[0].sigma_m = 0.008;
+  EXPECT_TRUE(ScaleWarnings(audit).empty());
+  // What took part in the adjustment is no check of it.
+  audit.distances[0].sigma_m.reset();
+  audit.distances[0].known.is_scale_bar = true;
+  EXPECT_TRUE(ScaleWarnings(audit).empty());
 }
 
 TEST(ScaleAuditReport, TheShortFormNamesNoMoreMarkersThanFitALine) {

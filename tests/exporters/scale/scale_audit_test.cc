@@ -145,6 +145,21 @@ TEST(ScaleAudit, AScaleErrorOfOnePartShowsWithoutThatPart) {
   EXPECT_LT(std::abs(audit.parts[0].deviation), 0.007);
 }
 
+TEST(ScaleAudit, MarkersOfPartsThatDisagreeAreComparedWithTheirPart) {
+  const Layout layout = RowLayout(12);
+  MarkerShape shape = RowShape(layout, 1e-3);
+  EXPECT_FALSE(AuditScale(shape, layout).parts_disagree);
+  for (ShapeMarker& marker : shape.markers) {
+    if (marker.part == "b") Resize(1 / 1.01, &marker);
+  }
+  Resize(1.02, &shape.markers[14]);
+  const ScaleAudit audit = AuditScale(shape, layout);
+  EXPECT_TRUE(audit.parts_disagree);
+  EXPECT_THAT(Disagreeing(audit), ElementsAre(14));
+  EXPECT_LT(audit.marker_spread, 2e-3);
+  EXPECT_LT(*audit.parts[1].sigma, 1e-3);
+}
+
 TEST(ScaleAudit, PartsThatAgreeLieWithinTheirSigmas) {
   const Layout layout = RowLayout(12);
   int num_within = 0, num_parts = 0;
