@@ -35,8 +35,8 @@ struct MarkerAdjustmentSummary {
   std::vector<ImageId> removed_images;
   AdjustmentUncertainty uncertainty;
   // Messages about weak geometry (all views from one place, a flat board seen head-on, pure
-  // rotation), scale bars that contradict the markers, and markers whose size contradicts the
-  // others.
+  // rotation), scale bars that contradict each other or the markers, parts that disagree, and
+  // markers whose size contradicts the others.
   std::vector<std::string> warnings;
 };
 

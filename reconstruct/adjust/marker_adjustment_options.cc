@@ -17,7 +17,10 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
            {"MarkerAdjustment.print_tolerance", &options->print_tolerance, "fraction",
             "1 sigma of each printed side", FromTo(1e-6, 0.5)},
            {"MarkerAdjustment.common_print_tolerance", &options->common_print_tolerance, "fraction",
-            "1 sigma of the print as a whole; widens the scale's sigma", FromTo(0, 0.5)},
+            "1 sigma of the print as a whole; widens the scale's sigma; distances with use: scale "
+            "overrule "
+            "it",
+            FromTo(0, 0.5)},
            {"MarkerAdjustment.cloth_flatness", &options->cloth_flatness, "fraction",
             "1 sigma of a corner's distance from its marker's plane, relative to the side; 0: "
             "unknown",

@@ -21,7 +21,8 @@ struct MarkerAdjustmentOptions {
   // markers scatter more.
   double print_tolerance = 1e-3;
   // 1 sigma of an error that all sides share (printer, shrinking paper), as a fraction. The images
-  // do not contain it, so nearly all of it is added to the scale's sigma.
+  // do not contain it, so nearly all of it is added to the scale's sigma. Measured distances that
+  // contradict it widen it.
   double common_print_tolerance = 1e-3;
   // 1 sigma of a corner's distance from the plane of its marker, as a fraction of the side: on
   // cloth, which bends, and on parts that the layout calls rigid. 0: unknown.

@@ -9,6 +9,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "reconstruct/geometry/covariance_update.h"
 
 namespace velamap {
 namespace {
@@ -41,6 +42,18 @@ Ellipsoid MedianEllipsoid(const PointCovariance& points) {
   }
   return {Median(std::move(longest_m)), Median(std::move(shortest_m)),
           Median(std::move(elongations))};
+}
+
+// The covariance where the common scale is known: an unknown one makes every ellipsoid longer in
+// the direction of the middle, which says nothing about lines of sight.
+PointCovariance WithoutScale(const Model& model, const PointCovariance& points) {
+  std::vector<Eigen::Vector3d> x_in_world;
+  for (const Point3DId point3D_id : points.point3D_ids) {
+    x_in_world.push_back(model.points3D.at(point3D_id).x_in_world);
+  }
+  PointCovariance result = points;
+  AddMeasurements(ScaleGradient(x_in_world), Eigen::VectorXd::Zero(1), &result);
+  return result;
 }
 
 // Geometry of the cameras and points.
@@ -135,7 +148,7 @@ std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovaria
   // Points that are more uncertain than this fraction of the object's extent are no shape.
   constexpr double kMaxRelativeSigma = 0.2;
   if (points.IsEmpty()) return {};
-  const Ellipsoid ellipsoid = MedianEllipsoid(points);
+  const Ellipsoid ellipsoid = MedianEllipsoid(WithoutScale(model, points));
   if (ellipsoid.elongation < kMaxElongation) return {};
   const Views views = DescribeViews(model);
   if (views.parallax_rad > kMaxWeakParallax) return {};

@@ -41,9 +41,10 @@ SyntheticScene SeenFrom(SceneKind kind, const std::vector<Eigen::Vector3d>& plac
   return scene;
 }
 
-std::vector<std::string> WarningsOf(const SyntheticScene& scene) {
+std::vector<std::string> WarningsOf(const SyntheticScene& scene,
+                                    const MarkerAdjustmentOptions& options = {}) {
   Model model = MakeSceneModel(scene);
-  return AdjustWithMarkers({}, scene.layout, {}, &model).warnings;
+  return AdjustWithMarkers(options, scene.layout, {}, &model).warnings;
 }
 
 TEST(WeakGeometry, ViewsFromAllSidesAreFine) {
@@ -72,6 +73,15 @@ TEST(WeakGeometry, LittleParallaxIsNamed) {
                                   {{0, -2, 0}, {0.06, -2, 0}, {0, -2, 0.06}, {0.03, -2, 0.03}},
                                   std::vector<Eigen::Vector3d>(4, {0, 0, 0}))),
               ElementsAre(HasSubstr("hardly any parallax")));
+}
+
+TEST(WeakGeometry, AnUncertainScaleIsNoLackOfParallax) {
+  MarkerAdjustmentOptions options;
+  options.common_print_tolerance = 0.05;
+  const auto scene =
+      SeenFrom(SceneKind::kSail, {{-0.25, -2, 0}, {0.25, -2, 0}, {0, -2, 0.25}, {0, -2, -0.25}},
+               std::vector<Eigen::Vector3d>(4, {0, 0, 0}));
+  EXPECT_THAT(WarningsOf(scene, options), IsEmpty());
 }
 
 }  // namespace
