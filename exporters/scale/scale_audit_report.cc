@@ -153,8 +153,8 @@ void PrintVerdict(const ScaleAudit& audit, std::ostream& out) {
   constexpr std::size_t kMaxDistances = 5;
   const std::vector<const CheckedDistance*> failed = FailedChecks(audit);
   if (failed.empty()) return;
-  out << fmt::format("verdict: bad; {} of {} measured distances contradicts the shape",
-                     failed.size(), NumChecks(audit));
+  out << fmt::format("verdict: bad; {} of {} measured distances failed", failed.size(),
+                     NumChecks(audit));
   for (std::size_t i = 0; i < std::min(failed.size(), kMaxDistances); ++i) {
     out << (i == 0 ? ": " : ", ") << ShortText(*failed[i]);
   }
@@ -191,7 +191,8 @@ std::vector<std::string> ScaleWarnings(const ScaleAudit& audit) {
   for (const CheckedDistance* checked : FailedChecks(audit)) {
     const KnownDistance& known = checked->known;
     warnings.push_back(fmt::format(
-        "the distance from {} to {} was measured as {:.5g} +- {:.2g} m, but is {:.5g}{} m in the "
+        "the distance from marker {} to marker {} was measured as {:.5g} +- {:.2g} m, but is "
+        "{:.5g}{} m in the "
         "shape: off by {:+.1f} mm, {:.1f} sigmas of both; find out which is wrong before using the "
         "shape",
         PointName(known.marker_id1, known.corner1), PointName(known.marker_id2, known.corner2),

@@ -1,7 +1,6 @@
 #include "reconstruct/adjust/marker_state.h"
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -14,12 +13,11 @@ Eigen::Map<const Eigen::Vector3d> CornerPosition(const MarkerBlock& marker, int 
 }
 
 MarkerState MakeMarkerState(const Model& model, const Layout& layout) {
-  std::set<int> rigid;
+  std::map<int, const LayoutPart*> part_of;
   for (const LayoutPart& part : layout.parts) {
-    if (!part.rigid) continue;
     Layout only_this;
     only_this.parts = {part};
-    for (const int marker_id : MarkerIds(only_this)) rigid.insert(marker_id);
+    for (const int marker_id : MarkerIds(only_this)) part_of.emplace(marker_id, &part);
   }
   MarkerState state;
   for (const auto& [point3D_id, point] : model.points3D) {
@@ -32,10 +30,12 @@ MarkerState MakeMarkerState(const Model& model, const Layout& layout) {
     if (state.markers.empty() || state.markers.back().marker_id != id.marker_id) {
       MarkerBlock marker;
       marker.marker_id = id.marker_id;
-      marker.part = PartOfMarker(layout, id.marker_id);
+      if (const auto part = part_of.find(id.marker_id); part != part_of.end()) {
+        marker.part = part->second->name;
+        marker.is_rigid = part->second->rigid;
+      }
       state.part_scales[marker.part] = 0.0;
       marker.length_m = MarkerLength(layout, id.marker_id);
-      marker.is_rigid = rigid.count(id.marker_id) > 0;
       state.markers.push_back(std::move(marker));
     }
     MarkerBlock& marker = state.markers.back();

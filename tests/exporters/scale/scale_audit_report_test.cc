@@ -106,12 +106,14 @@ TEST(ScaleAuditReport, ACheckBeyondThreeSigmasMakesTheVerdictBad) {
   EXPECT_THAT(ShortForm({}, audit), Not(HasSubstr("verdict")));
   audit.distances[0].distance_m = 2.0152;
   EXPECT_THAT(ShortForm({}, audit),
-              HasSubstr("verdict: bad; 1 of 1 measured distances contradicts the shape: 4-9.2 "
+              HasSubstr("verdict: bad; 1 of 1 measured distances failed: 4-9.2 "
                         "+15.20 mm (+15.2 sigmas)\n"));
   ASSERT_EQ(ScaleWarnings(audit).size(), 1u);
-  EXPECT_THAT(ScaleWarnings(audit)[0],
-              HasSubstr("from 4 to 9.2 was measured as 2 +- 0.001 m, but is 2.0152 m in the shape: "
-                        "off by +15.2 mm, 15.2 sigmas"));
+  EXPECT_THAT(
+      ScaleWarnings(audit)[0],
+      HasSubstr(
+          "from marker 4 to marker 9.2 was measured as 2 +- 0.001 m, but is 2.0152 m in the shape: "
+          "off by +15.2 mm, 15.2 sigmas"));
   // The sigma of the shape counts, too.
   audit.distances[0].sigma_m = 0.008;
   EXPECT_TRUE(ScaleWarnings(audit).empty());
