@@ -1,6 +1,8 @@
 #include "importer/database/image_formation_table.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <SQLiteCpp/VariadicBind.h>
+#include <fmt/format.h>
 
 namespace velamap {
 namespace {
@@ -11,6 +13,7 @@ CREATE TABLE IF NOT EXISTS image_formation (
     s_amplitude REAL NOT NULL,
     sharpening REAL NOT NULL,
     sharpening_radius_px REAL NOT NULL,
+    sharpens_light INTEGER NOT NULL,
     ink_spread_sides REAL NOT NULL,
     is_inverted INTEGER NOT NULL,
     quiet_zone_cells REAL NOT NULL,
@@ -20,52 +23,46 @@ CREATE TABLE IF NOT EXISTS image_formation (
     inset_sigma_px REAL NOT NULL);
 )";
 
+constexpr char kColumns[] =
+    "gamma, s_amplitude, sharpening, sharpening_radius_px, sharpens_light, ink_spread_sides,"
+    " is_inverted, quiet_zone_cells, quiet_zone_sigma_cells, num_samples, noise_gray,"
+    " inset_sigma_px";
+
 }  // namespace
 
 void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* database) {
   database->exec(kSchema);
   database->exec("DELETE FROM image_formation");
   SQLite::Statement insert(
-      *database,
-      "INSERT INTO image_formation(gamma, s_amplitude, sharpening, sharpening_radius_px,"
-      " ink_spread_sides, is_inverted, quiet_zone_cells, quiet_zone_sigma_cells, num_samples,"
-      " noise_gray, inset_sigma_px) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      *database, fmt::format("INSERT INTO image_formation({}) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
+                             " ?, ?)",
+                             kColumns));
   const ImageFormationParameters& found = estimate.parameters;
-  insert.bind(1, found.gamma);
-  insert.bind(2, found.s_amplitude);
-  insert.bind(3, found.sharpening);
-  insert.bind(4, found.sharpening_radius_px);
-  insert.bind(5, found.ink_spread_sides);
-  insert.bind(6, found.is_inverted ? 1 : 0);
-  insert.bind(7, found.quiet_zone_cells);
-  insert.bind(8, found.quiet_zone_sigma_cells);
-  insert.bind(9, estimate.num_samples);
-  insert.bind(10, estimate.noise_gray);
-  insert.bind(11, estimate.inset_sigma_px);
+  SQLite::bind(insert, found.gamma, found.s_amplitude, found.sharpening, found.sharpening_radius_px,
+               found.sharpens_light ? 1 : 0, found.ink_spread_sides, found.is_inverted ? 1 : 0,
+               found.quiet_zone_cells, found.quiet_zone_sigma_cells, estimate.num_samples,
+               estimate.noise_gray, estimate.inset_sigma_px);
   insert.exec();
 }
 
 std::optional<FormationEstimate> ReadImageFormation(SQLite::Database* database) {
   if (!database->tableExists("image_formation")) return std::nullopt;
-  SQLite::Statement query(
-      *database,
-      "SELECT gamma, s_amplitude, sharpening, sharpening_radius_px, ink_spread_sides, is_inverted,"
-      " quiet_zone_cells, quiet_zone_sigma_cells, num_samples, noise_gray, inset_sigma_px FROM "
-      "image_formation");
+  SQLite::Statement query(*database, fmt::format("SELECT {} FROM image_formation", kColumns));
   if (!query.executeStep()) return std::nullopt;
   FormationEstimate estimate;
   ImageFormationParameters& found = estimate.parameters;
-  found.gamma = query.getColumn(0).getDouble();
-  found.s_amplitude = query.getColumn(1).getDouble();
-  found.sharpening = query.getColumn(2).getDouble();
-  found.sharpening_radius_px = query.getColumn(3).getDouble();
-  found.ink_spread_sides = query.getColumn(4).getDouble();
-  found.is_inverted = query.getColumn(5).getInt() != 0;
-  found.quiet_zone_cells = query.getColumn(6).getDouble();
-  found.quiet_zone_sigma_cells = query.getColumn(7).getDouble();
-  estimate.num_samples = query.getColumn(8).getInt();
-  estimate.noise_gray = query.getColumn(9).getDouble();
-  estimate.inset_sigma_px = query.getColumn(10).getDouble();
+  found.gamma = query.getColumn("gamma").getDouble();
+  found.s_amplitude = query.getColumn("s_amplitude").getDouble();
+  found.sharpening = query.getColumn("sharpening").getDouble();
+  found.sharpening_radius_px = query.getColumn("sharpening_radius_px").getDouble();
+  found.sharpens_light = query.getColumn("sharpens_light").getInt() != 0;
+  found.ink_spread_sides = query.getColumn("ink_spread_sides").getDouble();
+  found.is_inverted = query.getColumn("is_inverted").getInt() != 0;
+  found.quiet_zone_cells = query.getColumn("quiet_zone_cells").getDouble();
+  found.quiet_zone_sigma_cells = query.getColumn("quiet_zone_sigma_cells").getDouble();
+  estimate.num_samples = query.getColumn("num_samples").getInt();
+  estimate.noise_gray = query.getColumn("noise_gray").getDouble();
+  estimate.inset_sigma_px = query.getColumn("inset_sigma_px").getDouble();
   return estimate;
 }
 

@@ -38,10 +38,24 @@ std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation&
   }
   const ImageFormationParameters& parameters = formation.parameters();
   if (parameters.sharpening != 0) {
+    cv::Mat slope(problem.box.size(), CV_32F, cv::Scalar(1));
+    if (parameters.sharpens_light) {
+      for (int y = 0; y < slope.rows; ++y) {
+        for (int x = 0; x < slope.cols; ++x) {
+          Floats one;
+          formation.tone().Encode(AllLanes(formation.tone().Decode(problem.patch.values.at<float>(
+                                      cv::Point(x, y) + patch_from_box))),
+                                  &one);
+          slope.at<float>(y, x) = one[0];
+        }
+      }
+    }
     cv::Mat blurred;
+    cv::divide(difference, slope, difference);
     cv::GaussianBlur(difference, blurred, {0, 0}, parameters.sharpening_radius_px,
                      parameters.sharpening_radius_px, cv::BORDER_CONSTANT);
     difference = (1 + parameters.sharpening) * difference - parameters.sharpening * blurred;
+    cv::multiply(difference, slope, difference);
   }
   std::vector<float> residuals;
   residuals.reserve(sample.places.size());

@@ -134,6 +134,21 @@ Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::si
   return jacobian;
 }
 
+// How much farther inside along both sides one state has the corners than another, mean of the
+// samples that both could fit, px.
+double MeanInset(const State& one, const State& other) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < one.samples.size(); ++i) {
+    const FittedSample &a = one.samples[i], &b = other.samples[i];
+    if (a.residuals.empty() || b.residuals.empty()) continue;
+    sum += 0.5 * (QuadMeanSide(CornersOf(b.minimum.parameters)) -
+                  QuadMeanSide(CornersOf(a.minimum.parameters)));
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
 // The estimation as a problem of MinimizeSquares(). A sample whose fit fails counts as residuals
 // of 6 sigmas.
 class FormationProblem : public LeastSquaresProblem<kCount> {
@@ -156,14 +171,15 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
     return MovedTo((state.parameters + step).cwiseMax(kMin).cwiseMin(kMax), state, num_threads_);
   }
 
-  // FormationEstimate::inset_sigma_px at the minimum, whose `hessian` is given. The residuals of a
-  // sample have errors in common (what no parameter describes), so that the scatter of the samples'
-  // gradients tells the covariance (Huber 1967, White 1980), but few samples may agree by chance:
-  // it is no smaller than for independent residuals.
-  double InsetSigma(const State& state, const Equations::Matrix& hessian) const {
+  double Cost(const State& state) const { return SumUp(state, nullptr).cost(); }
+
+  // The part of FormationEstimate::inset_sigma_px that the parameters cause, at their minimum. The
+  // residuals of a sample have errors in common (what no parameter describes), so that the scatter
+  // of the samples' gradients tells the covariance (Huber 1967, White 1980), but few samples may
+  // agree by chance: it is no smaller than for independent residuals.
+  double InsetSigma(const State& state) const {
     const std::vector<State>& moved = MovedBySteps(state, num_threads_);
     Equations::Matrix scatter = Equations::Matrix::Zero();
-    Vector inset_by = Vector::Zero();
     int num_fitted = 0;
     for (std::size_t i = 0; i < state.samples.size(); ++i) {
       const std::vector<float>& residuals = state.samples[i].residuals;
@@ -176,23 +192,16 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
         gradient += loss_.Weight(residual * residual) * residual * jacobian.row(j).transpose();
       }
       scatter += gradient * gradient.transpose();
-      for (int k = 0; k < kCount; ++k) {
-        const auto& one = moved[static_cast<std::size_t>(k)].samples[i].minimum;
-        inset_by[k] += 0.5 *
-                       (QuadMeanSide(CornersOf(one.parameters)) -
-                        QuadMeanSide(CornersOf(state.samples[i].minimum.parameters))) /
-                       kStep[k];
-      }
     }
     if (num_fitted == 0) return 0.0;
-    inset_by /= num_fitted;
     scatter *= static_cast<double>(num_fitted) / std::max(1, num_fitted - kCount);
-    scatter += PriorWeight()
-                   .cwiseAbs2()
-                   .cwiseProduct(PriorWeight().cwiseAbs2())
-                   .cwiseProduct(kSigma.cwiseAbs2())
-                   .asDiagonal();
-    const Vector by_inset = hessian.ldlt().solve(inset_by);
+    const Vector by_prior = PriorWeight().cwiseAbs2().cwiseProduct(kSigma);
+    scatter.diagonal() += by_prior.cwiseAbs2();
+    Vector inset_by;
+    for (int k = 0; k < kCount; ++k) {
+      inset_by[k] = MeanInset(state, moved[static_cast<std::size_t>(k)]) / kStep[k];
+    }
+    const Vector by_inset = SumUp(state, &moved).hessian().ldlt().solve(inset_by);
     return std::sqrt(
         std::max(by_inset.dot(scatter * by_inset), noise_ * noise_ * inset_by.dot(by_inset)));
   }
@@ -245,13 +254,9 @@ State FitAll(const std::vector<FormationSample>& samples, double gamma, bool is_
   return state;
 }
 
-}  // namespace
-
-FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
-                                    int num_threads) {
+// The samples fitted with the gamma that leaves the least noise; none if no fit succeeds.
+State BestStart(const std::vector<FormationSample>& samples, bool is_inverted, int num_threads) {
   constexpr double kGammas[] = {1.0, 1.5, 2.2};
-  constexpr int kNumRounds = 2;               // each with the noise of the one before
-  constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
   State best;
   double least_noise = std::numeric_limits<double>::infinity();
   for (const double gamma : kGammas) {
@@ -262,25 +267,50 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
       best = std::move(state);
     }
   }
-  if (!std::isfinite(least_noise)) return {};
+  return best;
+}
+
+State Minimized(State state, bool sharpens_light, int num_threads) {
+  constexpr int kNumRounds = 2;  // each with the noise of the one before
   LeastSquaresOptions options;
   options.max_iterations = 6;
   options.initial_damping = 1e-3;
   options.max_damping = 1e2;
   options.min_relative_decrease = 2e-4;
-  FormationEstimate estimate;
+  ImageFormationParameters formation = state.formation->parameters();
+  formation.sharpens_light = sharpens_light;
+  state = FittedWith(formation, state.parameters, state, num_threads);
   for (int round = 0; round < kNumRounds; ++round) {
-    best = WithPooledQuietZone(std::move(best), num_threads);
-    const FormationProblem problem(NoiseOf(best), num_threads);
+    state = WithPooledQuietZone(std::move(state), num_threads);
     GaussNewtonEquations<kCount> equations;
-    MinimizeSquares(options, problem, &best, &equations);
-    estimate.inset_sigma_px = problem.InsetSigma(best, equations.hessian());
+    MinimizeSquares(options, FormationProblem(NoiseOf(state), num_threads), &state, &equations);
   }
+  return state;
+}
+
+}  // namespace
+
+FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
+                                    int num_threads) {
+  constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
+  const State start = BestStart(samples, is_inverted, num_threads);
+  if (start.samples.empty()) return {};
+  const State by_gray = Minimized(start, false, num_threads);
+  const State by_light = Minimized(start, true, num_threads);
+  const double noise = std::min(NoiseOf(by_gray), NoiseOf(by_light));
+  const FormationProblem problem(noise, num_threads);
+  const bool light_wins = problem.Cost(by_light) < problem.Cost(by_gray);
+  const State& best = light_wins ? by_light : by_gray;
+  FormationEstimate estimate;
   estimate.parameters = best.formation->parameters();
   estimate.parameters.quiet_zone_sigma_cells =
       std::clamp(RobustSigma(QuietZones(best)), kMinQuietZoneSigma, kQuietZoneSigma);
   estimate.num_samples = static_cast<int>(best.samples.size());
   estimate.noise_gray = NoiseOf(best);
+  // No camera is quite as either of the two descriptions says, and they may differ by more than
+  // the noise leaves open.
+  estimate.inset_sigma_px =
+      std::hypot(problem.InsetSigma(best), 0.5 * MeanInset(by_gray, by_light));
   return estimate;
 }
 

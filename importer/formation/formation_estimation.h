@@ -13,8 +13,9 @@ namespace velamap {
 
 // Levenberg-Marquardt over gamma, S, sharpening, its radius and the ink's spread, with a Cauchy
 // loss and weak priors around a usual camera; the samples are fitted again after each step. Starts
-// from several gammas. `is_inverted`: the samples hold 255 less the recorded grey values. The
-// number of threads (0: one a core) does not change the result.
+// from several gammas, and sharpens grey values or light, whichever explains the samples better.
+// `is_inverted`: the samples hold 255 less the recorded grey values. The number of threads (0: one
+// a core) does not change the result.
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads = 1);
 

@@ -2,7 +2,9 @@
 //
 //   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
-//   sharpening sharpened = gray + sharpening (gray - G gray),  G a Gaussian of sharpening_radius_px
+//   sharpening sharpened = gray + sharpening (gray - G gray),  G a Gaussian of
+//   sharpening_radius_px;
+//              or the same of light, before the tone curve
 //
 // A camera blurs linear light and encodes it afterwards, which moves the middle of an encoded edge
 // by up to 0.8 blur sigmas towards the dark side. The power covers sRGB and Rec. 709 to a few
@@ -19,6 +21,9 @@ struct ImageFormationParameters {
   double s_amplitude = 0.0;
   double sharpening = 0.0;
   double sharpening_radius_px = 1.0;
+  // Of light, before the tone curve, which makes dark halos strong and bright ones weak. Of the
+  // cameras of the real photographs in tests and samples, most are explained better by this.
+  bool sharpens_light = false;
   double ink_spread_sides = 0.0;
   // The images hold 255 less the recorded grey values, so that inverted prints look upright. Light
   // stays what the camera received: bright cells then have less of it than dark ones.

@@ -79,7 +79,12 @@ double ToneCurve::Decode(double gray) const {
 ImageFormation::ImageFormation(const ImageFormationParameters& parameters)
     : parameters_(parameters),
       tone_(parameters),
-      unsharpening_(MakeUnsharpeningKernel(parameters)) {}
+      light_of_gray_(1, 256, CV_32F),
+      unsharpening_(MakeUnsharpeningKernel(parameters)) {
+  for (int gray = 0; gray < 256; ++gray) {
+    light_of_gray_.at<float>(gray) = static_cast<float>(tone_.Decode(gray));
+  }
+}
 
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation) {
   const cv::Rect image(0, 0, gray.cols, gray.rows);
@@ -93,10 +98,19 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
   const cv::Point reach(kKernelReachPx, kKernelReachPx);
   const cv::Rect wide = cv::Rect(inside.tl() - reach, inside.br() + reach) & image;
   cv::Mat values, filtered;
-  gray(wide).convertTo(values, CV_32F);
+  if (formation.parameters().sharpens_light) {
+    cv::LUT(gray(wide), formation.light_of_gray(), values);
+  } else {
+    gray(wide).convertTo(values, CV_32F);
+  }
   cv::filter2D(values, filtered, CV_32F, formation.unsharpening(), {-1, -1}, 0,
                cv::BORDER_REPLICATE);
   patch.values = filtered(inside - wide.tl()).clone();
+  if (formation.parameters().sharpens_light) {
+    for (float& value : cv::Mat_<float>(patch.values)) {
+      value = static_cast<float>(formation.tone().Encode(value));
+    }
+  }
   return patch;
 }
 

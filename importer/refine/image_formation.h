@@ -62,13 +62,15 @@ class ImageFormation {
 
   const ImageFormationParameters& parameters() const { return parameters_; }
   const ToneCurve& tone() const { return tone_; }
+  // Light of the 256 grey values, CV_32F.
+  const cv::Mat& light_of_gray() const { return light_of_gray_; }
   // Kernel that undoes the sharpening; empty for none.
   const cv::Mat& unsharpening() const { return unsharpening_; }
 
  private:
   ImageFormationParameters parameters_;
   ToneCurve tone_;
-  cv::Mat unsharpening_;
+  cv::Mat light_of_gray_, unsharpening_;
 };
 
 // A part of an image in grey values without the sharpening.
