@@ -9,6 +9,7 @@
 #include "importer/base/error.h"
 #include "tests/support/clip_camera.h"
 #include "tests/support/clip_scene_builder.h"
+#include "tests/support/option_range.h"
 
 namespace velamap {
 namespace {
@@ -196,30 +197,26 @@ ClipScene MakeWallsScene(const ClipOptions& options) {
   return std::move(builder.scene());
 }
 
-void CheckRange(const char* option, double value, double min, double max) {
-  if (!(value >= min && value <= max)) {
-    throw InputError(
-        fmt::format("--{}: {} is out of range; give {} to {}", option, value, min, max));
-  }
-}
-
 void CheckOptions(const ClipOptions& options) {
-  CheckRange("dictionary_bits", options.dictionary_bits, 3, 4);
-  CheckRange("width", options.width_px, 320, 7680);
+  CheckOptionRange("dictionary_bits", options.dictionary_bits, 3, 4);
+  CheckOptionRange("width", options.width_px, 320, 7680);
   if (options.width_px % 32 != 0) {
     throw InputError(
         fmt::format("--width: {} is no multiple of 32, which 16:9 and the video need; "
                     "give 1280, 1920 or 3840",
                     options.width_px));
   }
-  CheckRange("num_frames", options.num_frames, 1, 100000);
-  CheckRange("fps", options.fps, 0.1, 1000);
-  CheckRange("distance", options.distance_m, 0.1, 100);
-  CheckRange("angle_deg", options.angle_deg, -80, 80);
-  CheckRange("motion", options.motion, 'a', 'h');
-  CheckRange("sail_scale", options.sail_scale, 0.4, 1);
-  CheckRange("sail_motion_m", options.sail_motion_m, 0, 1);
-  CheckRange("trim_change_m", options.trim_change_m, 0, 1);
+  CheckOptionRange("num_frames", options.num_frames, 1, 100000);
+  CheckOptionRange("fps", options.fps, 0.1, 1000);
+  CheckOptionRange("distance", options.distance_m, 0.1, 100);
+  CheckOptionRange("angle_deg", options.angle_deg, -80, 80);
+  CheckOptionRange("motion", options.motion, 'a', 'h');
+  CheckOptionRange("sail_scale", options.sail_scale, 0.4, 1);
+  CheckOptionRange("sail_motion_m", options.sail_motion_m, 0, 1);
+  CheckOptionRange("trim_change_m", options.trim_change_m, 0, 1);
+  CheckOptionRange("margin_sides", options.margin_sides, 0.02, 0.5);
+  CheckOptionRange("ink_spread_mm", options.ink_spread_mm, -0.5, 0.5);
+  CheckOptionRange("background_level", options.background_level, 0, 1);
 }
 
 // 0 before the change of trim, 1 after it; it takes a tenth of the clip.

@@ -38,7 +38,11 @@ struct ClipOptions {
   double sail_scale = 1.0;     // size of the sail; markers keep theirs, so fewer fit on a small one
   double sail_motion_m = 0.0;  // amplitude of slow flapping, whole periods in a clip: truth = mean
   double trim_change_m = 0.0;  // largest displacement when the trim changes, halfway
-  bool busy = false;           // clutter behind the scene and on the cloth
+  double margin_sides = 0.15;  // white paper around a marker, part of its side
+  double ink_spread_mm =
+      0.0;  // dark cells reach that far beyond their outlines; negative: less far
+  double background_level = 0.0;  // reflectance of what the markers stick to; 0: each scene's own
+  bool busy = false;              // clutter behind the scene and on the cloth
   std::uint32_t seed = 1;
 };
 
@@ -55,15 +59,17 @@ struct ClipSheet {
   int num_columns = 0;
   int num_rows = 0;
   std::vector<ClipVertex> vertices;
-  double gray = 0.0;
+  double gray = 0.0;  // light in full sun, 255 at white
 };
 
-// A printed square with its white margin, in tiles of half a cell.
+// A printed square with its white margin, in tiles of half a cell and of the seams that ink that
+// spreads adds along the outlines of cells. The corners are those of the square as it was meant.
 struct ClipMarker {
   int marker_id = 0;
   std::string part;
   double ground_gray = 0.0;  // of the surface it sticks to
   ClipSheet sheet;           // num_columns == num_rows; gray unused
+  cv::Mat inked;             // 1 where a tile of the sheet is inked; CV_8UC1
   cv::Mat cells;             // 1 white, 0 black; with border; CV_8UC1
   std::array<ClipVertex, kNumCorners> corners;
 };

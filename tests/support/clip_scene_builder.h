@@ -16,7 +16,7 @@ namespace velamap {
 struct Ground {
   Surface before, after;
   bool flaps = false;
-  double gray = 200.0;
+  double gray = 200.0;  // unless the options set background_level
 };
 
 class ClipSceneBuilder {
@@ -25,7 +25,8 @@ class ClipSceneBuilder {
 
   void AddSheet(const Ground& ground, int num_columns, int num_rows);
 
-  // A sticker with its centre at `uv`, upright along growing v. Returns its id.
+  // A sticker with its centre at `uv`, upright along growing v. Returns its id. Throws InputError
+  // where its margin reaches that of another.
   int AddMarker(const Ground& ground, const std::string& part, const Eigen::Vector2d& uv);
 
   // Paints the quad unless a sticker is near or, with `alone`, other lone paint; corners from the
@@ -36,6 +37,10 @@ class ClipSceneBuilder {
   ClipScene& scene() { return scene_; }
 
  private:
+  double GroundGray(const Ground& ground) const;
+  double StickerSize() const;  // m, with its margins
+  void CheckRoom(const Eigen::Vector3d& center_m) const;
+
   ClipScene scene_;
   std::vector<Eigen::Vector3d> centers_m_;                      // of the stickers
   std::vector<std::pair<Eigen::Vector3d, double>> lone_paint_;  // middle and reach, m

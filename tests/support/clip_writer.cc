@@ -16,9 +16,10 @@ namespace velamap {
 namespace {
 
 [[noreturn]] void ThrowFfmpegFailure(const std::filesystem::path& path) {
-  throw ExternalToolError(fmt::format(
-      "ffmpeg: failed to write {}; is ffmpeg installed, with libx264, and the disk not full?",
-      path.string()));
+  throw ExternalToolError(
+      fmt::format("ffmpeg: failed to write {}; is ffmpeg installed, with libx264 and libx265, and "
+                  "the disk not full?",
+                  path.string()));
 }
 
 }  // namespace
@@ -41,19 +42,41 @@ ClipWriter::~ClipWriter() {
   if (child_pid_ > 0) waitpid(child_pid_, nullptr, 0);
 }
 
-void ClipWriter::StartFfmpeg(const cv::Size& size) {
-  std::vector<std::string> arguments = {
-      "ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "bgr24", "-s",
-      fmt::format("{}x{}", size.width, size.height), "-r", fmt::format("{}", options_.fps), "-i",
-      "-", "-threads", "1", "-c:v", "libx264", "-preset", options_.preset, "-pix_fmt", "yuv420p",
-      // No date and no program version in the file: same frames, same bytes.
-      "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"};
-  if (options_.bitrate.empty()) {
-    arguments.insert(arguments.end(), {"-crf", fmt::format("{}", options_.crf)});
+std::vector<std::string> ClipWriter::FfmpegArguments(const cv::Size& size) const {
+  std::vector<std::string> arguments = {"ffmpeg",    "-y",
+                                        "-loglevel", "error",
+                                        "-f",        "rawvideo",
+                                        "-pix_fmt",  "bgr24",
+                                        "-s",        fmt::format("{}x{}", size.width, size.height),
+                                        "-r",        fmt::format("{}", options_.fps),
+                                        "-i",        "-",
+                                        "-threads",  "1"};
+  const auto add = [&](const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+  };
+  if (options_.codec == ClipCodec::kH264) {
+    add({"-c:v", "libx264"});
   } else {
-    arguments.insert(arguments.end(), {"-b:v", options_.bitrate});
+    // hvc1 as cameras write it; one thread and no list of settings in the stream, for the same
+    // bytes.
+    add({"-c:v", "libx265", "-tag:v", "hvc1", "-x265-params",
+         "log-level=error:pools=none:frame-threads=1:info=0"});
   }
-  arguments.push_back(path_.string());
+  add({"-preset", options_.preset, "-pix_fmt", "yuv420p"});
+  if (options_.full_range) add({"-vf", "scale=out_range=full", "-color_range", "pc"});
+  // No date and no program version in the file: same frames, same bytes.
+  add({"-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"});
+  if (options_.bitrate.empty()) {
+    add({"-crf", fmt::format("{}", options_.crf)});
+  } else {
+    add({"-b:v", options_.bitrate});
+  }
+  add({path_.string()});
+  return arguments;
+}
+
+void ClipWriter::StartFfmpeg(const cv::Size& size) {
+  std::vector<std::string> arguments = FfmpegArguments(size);
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);

@@ -1,23 +1,28 @@
-// Where the frames of a clip go: an H.264 video, encoded by the ffmpeg program, or image files.
+// Where the frames of a clip go: an H.264 or H.265 video, encoded by the ffmpeg program, or image
+// files.
 
 #pragma once
 
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
 namespace velamap {
 
 enum class ClipFormat { kMp4, kPng, kJpg };
+enum class ClipCodec { kH264, kH265 };
 
 struct ClipWriterOptions {
   ClipFormat format = ClipFormat::kMp4;
   double fps = 30.0;
-  int crf = 18;                     // constant quality of the video, 0 (lossless) to 51
+  ClipCodec codec = ClipCodec::kH264;
+  bool full_range = false;          // luma of the video from 0 to 255 instead of 16 to 235
+  int crf = 18;                     // constant quality of the video, 0 (H.264: lossless) to 51
   std::string bitrate{};            // instead of crf, as ffmpeg takes it: 30M
-  std::string preset = "veryfast";  // of x264
+  std::string preset = "veryfast";  // of x264 or x265
 
   void Check() const;  // throws InputError
 };
@@ -39,6 +44,7 @@ class ClipWriter {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  std::vector<std::string> FfmpegArguments(const cv::Size& size) const;
   void StartFfmpeg(const cv::Size& size);
 
   ClipWriterOptions options_;

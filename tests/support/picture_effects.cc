@@ -1,5 +1,6 @@
 #include "tests/support/picture_effects.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
@@ -42,16 +43,21 @@ void LensBlur(double sigma_px, cv::Mat* image) {
   cv::GaussianBlur(*image, *image, {size, size}, sigma_px, 0, cv::BORDER_REPLICATE);
 }
 
-void AddNoise(double sigma, std::uint64_t seed, cv::Mat* image) {
-  if (sigma <= 0) return;
+void AddNoise(double sigma, double shot_sigma, std::uint64_t seed, cv::Mat* image) {
+  if (sigma <= 0 && shot_sigma <= 0) return;
   cv::RNG random(seed);
   cv::Mat noise(image->size(), CV_32FC1);
-  random.fill(noise, cv::RNG::NORMAL, 0.0, sigma);
+  // Without shot noise drawn as ever, so that the bytes stay.
+  random.fill(noise, cv::RNG::NORMAL, 0.0, shot_sigma > 0 ? 1.0 : sigma);
+  const auto reading = static_cast<float>(sigma * sigma);
+  const auto shot = static_cast<float>(shot_sigma * shot_sigma / 255);
   for (int row = 0; row < image->rows; ++row) {
     cv::Vec3f* pixels = image->ptr<cv::Vec3f>(row);
     const float* values = noise.ptr<float>(row);
     for (int column = 0; column < image->cols; ++column) {
-      pixels[column] += cv::Vec3f::all(values[column]);
+      const float scale =
+          shot > 0 ? std::sqrt(reading + shot * std::max(0.0F, pixels[column][1])) : 1.0F;
+      pixels[column] += cv::Vec3f::all(scale * values[column]);
     }
   }
 }

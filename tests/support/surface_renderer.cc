@@ -4,18 +4,17 @@
 #include <cmath>
 #include <random>
 
-#include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
-#include "importer/base/error.h"
 #include "tests/support/coverage_image.h"
+#include "tests/support/option_range.h"
 #include "tests/support/picture_effects.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kInk = 38.0, kSticker = 218.0;  // grey levels in full light
+constexpr double kFullLight = 255.0;
 
 // One frame's view of the scene.
 class FrameView {
@@ -95,18 +94,17 @@ void ForEachPatch(const FrameView& view, const ClipSheet& sheet, const Draw& dra
   }
 }
 
-void DrawMarker(const FrameView& view, const ClipMarker& marker, CoverageImage* image) {
-  // A ring of white margin of as many patches as a cell has.
-  const int steps = marker.sheet.num_columns / (marker.cells.cols + 2);
+void DrawMarker(const FrameView& view, const ClipMarker& marker,
+                const SurfaceRenderOptions& options, CoverageImage* image) {
+  const double ink = kFullLight * options.ink_level, paper = kFullLight * options.paper_level;
   ForEachPatch(view, marker.sheet, [&](int column, int row, const Patch& patch) {
-    const int x = column / steps - 1, y = row / steps - 1;
-    const bool margin = x < 0 || y < 0 || x >= marker.cells.cols || y >= marker.cells.rows;
-    const bool white = margin || marker.cells.at<std::uint8_t>(y, x) != 0;
-    image->Add(patch.quad, patch.shade * ((white ? kSticker : kInk) - marker.ground_gray), 0.0);
+    const bool inked = marker.inked.at<std::uint8_t>(row, column) != 0;
+    image->Add(patch.quad, patch.shade * ((inked ? ink : paper) - marker.ground_gray), 0.0);
   });
 }
 
-cv::Mat DrawSurfaces(const ClipScene& scene, const FrameView& view) {
+cv::Mat DrawSurfaces(const ClipScene& scene, const FrameView& view,
+                     const SurfaceRenderOptions& options) {
   CoverageImage image(scene.camera.width_px, scene.camera.height_px);
   for (const ClipSheet& sheet : scene.sheets) {
     ForEachPatch(view, sheet, [&](int, int, const Patch& patch) {
@@ -119,7 +117,7 @@ cv::Mat DrawSurfaces(const ClipScene& scene, const FrameView& view) {
     const auto patch = MakePatch({&corners[0], &corners[1], &corners[2], &corners[3]});
     if (patch) image.Add(patch->quad, patch->shade * paint.gray_change, 0.0);
   }
-  for (const ClipMarker& marker : scene.markers) DrawMarker(view, marker, &image);
+  for (const ClipMarker& marker : scene.markers) DrawMarker(view, marker, options, &image);
   return image.Resolve();
 }
 
@@ -242,30 +240,33 @@ void AddReflections(const ClipScene& scene, const FrameView& view, int num_refle
 }  // namespace
 
 void SurfaceRenderOptions::Check() const {
-  const auto check = [](const char* option, double value, double max) {
-    if (!(value >= 0 && value <= max)) {
-      throw InputError(fmt::format("--{}: {} is out of range; give 0 to {}", option, value, max));
-    }
-  };
-  check("blur_px", blur_px, 20);
-  check("motion_blur_px", motion_blur_px, 100);
-  check("noise", noise, 100);
-  check("reflection", num_reflections, 20);
+  CheckOptionRange("blur_px", blur_px, 0, 20);
+  CheckOptionRange("motion_blur_px", motion_blur_px, 0, 100);
+  CheckOptionRange("noise", noise, 0, 100);
+  CheckOptionRange("shot_noise", shot_noise, 0, 100);
+  CheckOptionRange("reflection", num_reflections, 0, 20);
+  CheckOptionRange("glare", glare, 0, 0.5);
+  CheckOptionRange("ink_level", ink_level, 0.01, 0.5);
+  CheckOptionRange("paper_level", paper_level, 0.5, 1);
+  response.Check();
 }
 
 cv::Mat RenderClipFrame(const ClipScene& scene, const SurfaceRenderOptions& options,
                         int frame_idx) {
   const FrameView view(scene, frame_idx);
-  const cv::Mat surfaces = DrawSurfaces(scene, view);
+  const cv::Mat surfaces = DrawSurfaces(scene, view, options);
   cv::Mat image = DrawSky(scene, view);
   if (scene.options.busy) DrawClutter(scene, view, &image);
   Compose(surfaces, &image);
   AddReflections(scene, view, options.num_reflections, surfaces, &image);
+  if (options.glare > 0) image += cv::Scalar::all(kFullLight * options.glare);
   constexpr double kGoldenAngle_rad = 2.399963;
   MotionBlur(options.motion_blur_px, kGoldenAngle_rad * frame_idx, &image);
   LensBlur(options.blur_px, &image);
   const auto seed = static_cast<std::uint64_t>(scene.options.seed) << 32;
-  AddNoise(options.noise, seed + static_cast<std::uint64_t>(frame_idx) + 1, &image);
+  AddNoise(options.noise, options.shot_noise, seed + static_cast<std::uint64_t>(frame_idx) + 1,
+           &image);
+  ApplyResponse(options.response, &image);
   image.convertTo(image, CV_8U);
   return image;
 }

@@ -60,6 +60,33 @@ TEST(RenderClipTest, BadOptionsAreNamed) {
   const ProgramRun run = RenderClip({"--output_path", (dir / "clip").string(), "--scene", "kite"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("--scene: 'kite' is unknown"));
+  const std::vector<std::pair<std::vector<std::string>, std::string>> faults = {
+      {{"--camera", "film"}, "--camera: 'film' is unknown; give one of action plain"},
+      {{"--gamma", "2"}, "--gamma: has no effect here; give --tone_curve gamma"},
+      {{"--camera", "action", "--s_curve", "0.5"}, "--s_curve: 0.5 is out of range"},
+      {{"--margin_sides", "0.4"}, "--margin_sides: 0.4 makes stickers overlap"},
+  };
+  for (const auto& [arguments, message] : faults) {
+    std::vector<std::string> all = {"--output_path", (dir / "clip").string()};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const ProgramRun fault = RenderClip(all);
+    EXPECT_EQ(fault.exit_code, 2);
+    EXPECT_THAT(fault.err, HasSubstr(message));
+  }
+}
+
+// --camera chooses defaults; what is given beside it counts.
+TEST(RenderClipTest, CameraChoosesDefaults) {
+  TempDir dir;
+  const std::string folder = (dir / "clip").string();
+  const ProgramRun run =
+      RenderClip({"--glare", "0.07", "--camera", "action", "--output_path", folder, "--width",
+                  "640", "--num_frames", "1", "--format", "png"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string options = ReadFileBytes(folder + "/scene.ini");
+  EXPECT_THAT(options, HasSubstr("\nglare=0.07\n"));
+  EXPECT_THAT(options, HasSubstr("\nsharpening=0.5\n"));
+  EXPECT_THAT(options, HasSubstr("\ntone_curve=s_curve\n"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/base/error.h"
 #include "importer/refine/marker_detector.h"
 
 namespace velamap {
@@ -135,6 +136,143 @@ TEST(SurfaceRendererTest, ReflectionsWipeOutMarkers) {
     return DetectMarkers(gray, scene.dictionary, 1, {}).size();
   };
   EXPECT_LT(count(3) + 8, count(0));
+}
+
+// Green of a picture without blur and noise, in which grey values are light.
+cv::Mat LightOfBoard(const ClipOptions& options, double ink_level, double paper_level) {
+  SurfaceRenderOptions render = Noiseless();
+  render.blur_px = 0;
+  render.ink_level = ink_level;
+  render.paper_level = paper_level;
+  cv::Mat green;
+  cv::extractChannel(RenderClipFrame(MakeClipScene(options), render, 0), green, 1);
+  return green;
+}
+
+// What a level changes in the picture is the area of what has it; in units of no importance.
+double InkedArea(const ClipOptions& options) {
+  return cv::sum(LightOfBoard(options, 0.45, 0.9))[0] -
+         cv::sum(LightOfBoard(options, 0.05, 0.9))[0];
+}
+
+double PaperArea(const ClipOptions& options) {
+  return cv::sum(LightOfBoard(options, 0.1, 0.95))[0] -
+         cv::sum(LightOfBoard(options, 0.1, 0.55))[0];
+}
+
+// Dark cells of all markers, grown by a number of twentieths of a cell on a fine grid.
+double DarkCells(const ClipScene& scene, int twentieths) {
+  double area = 0;
+  for (const ClipMarker& marker : scene.markers) {
+    cv::Mat dark = marker.cells == 0;
+    cv::resize(dark, dark, {}, 20, 20, cv::INTER_NEAREST);
+    cv::copyMakeBorder(dark, dark, 20, 20, 20, 20, cv::BORDER_CONSTANT, 0);
+    const int size = 2 * std::abs(twentieths) + 1;
+    const cv::Mat square = cv::Mat::ones(size, size, CV_8UC1);
+    if (twentieths > 0) cv::dilate(dark, dark, square);
+    if (twentieths < 0) cv::erode(dark, dark, square);
+    area += cv::countNonZero(dark) / 400.0;
+  }
+  return area;
+}
+
+// From a flat marker's centre, along its first side, m.
+double OutermostInk(const ClipMarker& marker) {
+  const ClipVertex &left = marker.corners[0], &right = marker.corners[1];
+  const Eigen::Vector3d along = (right.x_before_m - left.x_before_m).normalized();
+  const Eigen::Vector3d centre =
+      0.5 * (marker.corners[0].x_before_m + marker.corners[2].x_before_m);
+  const int stride = marker.sheet.num_columns + 1;
+  double reach_m = 0;
+  for (int row = 0; row < marker.inked.rows; ++row) {
+    for (int column = 0; column < marker.inked.cols; ++column) {
+      if (marker.inked.at<std::uint8_t>(row, column) == 0) continue;
+      const auto index = static_cast<std::size_t>(row * stride + column + 1);
+      reach_m = std::max(reach_m, (marker.sheet.vertices[index].x_before_m - centre).dot(along));
+    }
+  }
+  return reach_m;
+}
+
+TEST(SurfaceRendererTest, InkSpreadsByItsAmountAndLeavesTheTruth) {
+  ClipOptions options = BoardOptions();
+  const ClipScene plain = MakeClipScene(options);
+  const double plain_area = InkedArea(options);
+  for (const int twentieths : {-1, 1}) {
+    options.ink_spread_mm = twentieths / 20.0 * 40 / 6;
+    const ClipScene spread = MakeClipScene(options);
+    EXPECT_NEAR(OutermostInk(spread.markers[3]), 0.02 + 1e-3 * options.ink_spread_mm, 1e-9);
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      EXPECT_EQ(spread.markers[3].corners[i].x_before_m, plain.markers[3].corners[i].x_before_m);
+    }
+    const double expected = DarkCells(plain, twentieths) / DarkCells(plain, 0);
+    EXPECT_GT(std::abs(expected - 1), 0.05);
+    EXPECT_NEAR(InkedArea(options) / plain_area, expected, 0.003);
+  }
+}
+
+TEST(SurfaceRendererTest, MarginsHaveTheirWidth) {
+  ClipOptions options = BoardOptions();
+  const ClipScene scene = MakeClipScene(options);
+  const double dark_sides2 = DarkCells(scene, 0) / 36 / static_cast<double>(scene.markers.size());
+  for (const double margin : {0.05, 0.3}) {
+    options.margin_sides = margin;
+    const double expected = ((1 + 2 * margin) * (1 + 2 * margin) - dark_sides2) / dark_sides2;
+    EXPECT_NEAR(PaperArea(options) / InkedArea(options), expected, 0.01);
+  }
+  options.margin_sides = 0.4;
+  EXPECT_THROW(MakeClipScene(options), InputError);  // stickers overlap
+}
+
+TEST(SurfaceRendererTest, BackgroundIsOnlyBehindThePaper) {
+  ClipOptions options = BoardOptions();
+  const cv::Mat light = LightOfBoard(options, 0.1, 0.8);
+  options.background_level = 0.2;
+  const cv::Mat other = LightOfBoard(options, 0.1, 0.8);
+  const ClipScene scene = MakeClipScene(options);
+  for (const ClipMarker& marker : scene.markers) {
+    const auto corners = ProjectCorners(scene, marker, 0);
+    ASSERT_TRUE(corners);
+    const Eigen::Vector2d middle = 0.5 * ((*corners)[0] + (*corners)[2]);
+    const Eigen::Vector2d along = (*corners)[1] - (*corners)[0];
+    const auto gray = [&](const cv::Mat& image, double sides) {
+      const Eigen::Vector2d x = middle + sides * along;
+      return static_cast<double>(
+          image.at<std::uint8_t>(static_cast<int>(x.y()), static_cast<int>(x.x())));
+    };
+    EXPECT_EQ(gray(other, -0.45), gray(light, -0.45));  // ink of the border
+    EXPECT_EQ(gray(other, -0.58), gray(light, -0.58));  // paper
+    EXPECT_NEAR(gray(other, -0.58) / gray(other, -0.72), 0.8 / 0.2, 0.08);
+  }
+}
+
+// Blur and motion blur mix light, so that a picture through the tone curve is the curve of the
+// linear picture, pixel by pixel, and not a blurred picture of encoded values.
+TEST(SurfaceRendererTest, ToneCurveComesAfterAllBlur) {
+  const ClipScene scene = MakeClipScene(BoardOptions());
+  SurfaceRenderOptions render = Noiseless();
+  render.motion_blur_px = 2;
+  const cv::Mat linear = RenderClipFrame(scene, render, 7);
+  render.response.tone_curve = ToneCurveKind::kSrgb;
+  const cv::Mat encoded = RenderClipFrame(scene, render, 7);
+  for (int row = 0; row < linear.rows; ++row) {
+    for (int column = 0; column < linear.cols; ++column) {
+      const int light = linear.at<cv::Vec3b>(row, column)[1];
+      const int gray = encoded.at<cv::Vec3b>(row, column)[1];
+      ASSERT_GE(gray, EncodeLight(render.response, light - 0.51) - 0.6);
+      ASSERT_LE(gray, EncodeLight(render.response, light + 0.51) + 0.6);
+    }
+  }
+}
+
+TEST(SurfaceRendererTest, GlareIsTheSameLightEverywhere) {
+  const ClipScene scene = MakeClipScene(BoardOptions());
+  SurfaceRenderOptions render = Noiseless();
+  const cv::Mat clear = RenderClipFrame(scene, render, 7);
+  render.glare = 10.0 / 255;
+  cv::Mat difference;
+  cv::absdiff(RenderClipFrame(scene, render, 7), clear + cv::Scalar::all(10), difference);
+  EXPECT_LE(cv::norm(difference, cv::NORM_INF), 1);
 }
 
 }  // namespace
