@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# Measures the error of the metric result, and what its stated sigma is worth, over random cameras,
+# prints and scenes: each draw renders a short clip, runs the whole job with its defaults and compares
+# the shape with the truth.
+# usage: workflows/studies/camera_draws.sh [--quick] [--num_draws N] [--seed S] [WORK_FOLDER]
+#        (default: 200 draws, 6 for --quick, seed 1, workspace/studies)
+# Writes camera_draws.csv, one row a draw with its conditions, and camera_draws_summary.csv, one row a
+# class. Rows of the same draws that camera_draws.csv holds are kept, so that a study that was stopped
+# goes on; remove the file to measure another velamap. Clips are removed after their draw.
+# KEEP="12 31": draws that are run again and whose clips and results stay in runs/camera_draws.
+set -euo pipefail
+# shellcheck source-path=SCRIPTDIR source=common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+num_draws="" seed=1 rest=()
+while [[ $# -gt 0 ]]; do
+  case "$1" in
+    --num_draws | --seed)
+      [[ "${2:-}" =~ ^[0-9]{1,6}$ && "$2" -gt 0 ]] || fail "$1: expected a number from 1 on"
+      if [[ "$1" == --seed ]]; then seed="$2"; else num_draws="$2"; fi
+      shift
+      ;;
+    *) rest+=("$1") ;;
+  esac
+  shift
+done
+begin_study camera_draws "${rest[@]}"
+folder="$(dirname "${BASH_SOURCE[0]}")"
+if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 6 : 200)); fi
+csv="$work/camera_draws.csv"
+
+mapfile -t draws < <(awk -f "$folder/draw_cameras.awk" -v seed="$seed" -v num_draws="$num_draws" \
+  -v quick="$quick")
+IFS=, read -ra names <<<"${draws[0]}"
+results=(exit_code side_px num_images num_markers scale_error_percent scale_sigma_percent
+  error_over_sigma distance_mm_rms distance_after_scaling_mm_rms verdict num_warnings
+  found_gamma found_s_curve found_sharpening found_radius_px found_ink_percent found_residual seconds)
+
+# log_value RUN KEY: prints what stands after `KEY: ` in a summary, up to the first space or comma.
+log_value() { awk -v key="$2:" '$1 == key { sub(",.*", "", $2); print $2; exit }' "$runs/$1/log.txt"; }
+
+# formation RUN: prints what the importer found out about camera and print, six figures.
+formation() {
+  awk '/camera and print, from/ {
+      for (i = 1; i < NF; i++) {
+        if ($i == "gamma") gamma = $(i + 1)
+        if ($i == "S-curve") s_curve = $(i + 1)
+        if ($i == "sharpening") { amount = $(i + 1); radius = $(i + 3) }
+        if ($i == "spread") ink = $(i + 1)
+        if ($i == "residuals") residual = $(i + 1)
+      }
+      gsub(",", "", gamma); gsub(",", "", s_curve)
+    }
+    END { print gamma "," s_curve "," amount "," radius "," ink "," residual }' "$runs/$1/log.txt"
+}
+
+# run_draw NAME RENDER_CLIP_OPTION...: renders, reconstructs and analyses into runs/NAME.
+run_draw() {
+  local run="$runs/$1" clip="$runs/$1/clip" code=0
+  mkdir -p "$run"
+  "$render_clip" "${@:2}" --num_threads 1 --output_path "$clip" >"$run/render.txt" 2>&1 ||
+    fail "render_clip failed: $(tail -n 1 "$run/render.txt")"
+  # The print is exact: no tolerance is to hide what the edges do.
+  "$velamap" automatic_reconstructor --image_path "$clip/clip.mp4" --num_threads 1 \
+    --camera_path "$clip/camera.yml" --layout_path "$clip/layout.yml" \
+    --workspace_path "$run/workspace" --MarkerAdjustment.common_print_tolerance 0 \
+    >"$run/log.txt" 2>&1 || code=$?
+  echo "$code" >"$run/exit_code.txt"
+  if [[ -f "$run/workspace/shape/shape.csv" ]]; then
+    "$velamap" shape_analyzer --shape_path "$run/workspace/shape" --log_level error \
+      --input_path "$run/workspace/sparse/0" --layout_path "$clip/layout.yml" \
+      --reference_path "$clip/truth.csv" --csv_path "$run/analysis.csv" >"$run/analysis.txt" 2>&1 ||
+      true  # nothing to compare is an outcome too
+  fi
+}
+
+# result_row NAME SECONDS: prints the results of a draw.
+result_row() {
+  local error sigma
+  error="$(metric "$1" scale_error_percent)"
+  sigma="$(awk -F, '$1 == "" && $3 == "scale_sigma_percent" { print $4 }' \
+    "$runs/$1/workspace/shape/metrics.csv" 2>/dev/null || true)"
+  printf '%s' "$(cat "$runs/$1/exit_code.txt"),$(awk '$1 == "side_px:" { print $2 }' "$runs/$1/render.txt")"
+  printf ',%s' "$(log_value "$1" images_used)" "$(metric "$1" num_markers)" "$error" "$sigma" \
+    "$(awk -v e="$error" -v s="$sigma" 'BEGIN { if (e != "" && s > 0) printf "%.3f", e / s }')" \
+    "$(metric "$1" distance_mm_rms)" "$(metric "$1" distance_after_scaling_mm_rms)" \
+    "$(log_value "$1" verdict)" "$(grep -c 'warning: ' "$runs/$1/log.txt" || true)" \
+    "$(formation "$1")" "$2"
+  printf '\n'
+}
+
+header="${draws[0]},$(IFS=,; echo "${results[*]}")"
+known="$work/camera_draws.known"
+: >"$known"
+if [[ -f "$csv" && "$(head -n 1 "$csv")" == "$header" ]]; then cp "$csv" "$known"; fi
+echo "$header" >"$csv"
+for conditions in "${draws[@]:1}"; do
+  IFS=, read -ra values <<<"$conditions"
+  name="draw_${values[0]}"
+  keep=0
+  if [[ " ${KEEP:-} " == *" ${values[0]} "* ]]; then keep=1; fi
+  if [[ $keep -eq 0 ]] && grep -F -m 1 -- "$conditions," "$known" >>"$csv"; then continue; fi
+  options=()
+  for ((i = 3; i < ${#names[@]}; i++)); do
+    if [[ -n "${values[i]:-}" ]]; then options+=("--${names[i]}" "${values[i]}"); fi
+  done
+  start=$SECONDS
+  run_draw "$name" "${options[@]}"
+  echo "$conditions,$(result_row "$name" $((SECONDS - start)))" >>"$csv"
+  if [[ $keep -eq 0 ]]; then rm -rf "${runs:?}/$name"; fi
+done
+rm "$known"
+awk -f "$folder/summarize_draws.awk" "$csv" >"$work/camera_draws_summary.csv"
+finish "$work/camera_draws_summary.csv"
