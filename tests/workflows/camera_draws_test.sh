@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs two draws of camera_draws.sh, then a third: its table has to hold good results with the stated
 # sigmas, and the first rows have to be kept.
-# usage: camera_draws_test.sh FOLDER_OF_THE_STUDIES   (VELAMAP, RENDER_CLIP: the programs)
+# usage: camera_draws_test.sh FOLDER_OF_THE_STUDIES   (VELAMAP, RENDER_CLIP, CLIP_CORNERS: the programs)
 set -euo pipefail
 
 for program in colmap ffmpeg; do
@@ -23,7 +23,8 @@ awk -F, '
     bad = bad || NF != num_columns || $column["exit_code"] != 0 || $column["side_px"] < 10 ||
       $column["scale_error_percent"] == "" || $column["scale_error_percent"] ^ 2 > 1 ||
       $column["scale_sigma_percent"] <= 0 || $column["error_over_sigma"] == "" ||
-      $column["found_gamma"] == "" || $column["distance_mm_rms"] > 10
+      $column["side_bias_px"] == "" || $column["side_bias_px"] ^ 2 > 0.1 ||
+      $column["num_false"] != 0 || $column["found_gamma"] == "" || $column["distance_mm_rms"] > 10
   }
   END { if (rows != 3 || bad) { print "unexpected figures"; exit 1 } }' "$work/camera_draws.csv"
 grep -q '^all,all,3,3,' "$work/camera_draws_summary.csv"

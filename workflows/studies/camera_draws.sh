@@ -4,7 +4,8 @@
 # the shape with the truth.
 # usage: workflows/studies/camera_draws.sh [--quick] [--num_draws N] [--seed S] [WORK_FOLDER]
 #        (default: 200 draws, 6 for --quick, seed 1, workspace/studies)
-# Writes camera_draws.csv, one row a draw with its conditions, and camera_draws_summary.csv, one row a
+# Writes camera_draws.csv, one row a draw with its conditions, what the corners that were found are off
+# (clip_corners) and what the shape is off, and camera_draws_summary.csv, one row a
 # class. Rows of the same draws that camera_draws.csv holds are kept, so that a study that was stopped
 # goes on; remove the file to measure another velamap. Clips are removed after their draw.
 # KEEP="12 31": draws that are run again and whose clips and results stay in runs/camera_draws.
@@ -25,6 +26,7 @@ while [[ $# -gt 0 ]]; do
   shift
 done
 begin_study camera_draws "${rest[@]}"
+clip_corners="$(find_program CLIP_CORNERS clip_corners tests/tools/clip_corners)"
 folder="$(dirname "${BASH_SOURCE[0]}")"
 if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 6 : 200)); fi
 csv="$work/camera_draws.csv"
@@ -32,7 +34,8 @@ csv="$work/camera_draws.csv"
 mapfile -t draws < <(awk -f "$folder/draw_cameras.awk" -v seed="$seed" -v num_draws="$num_draws" \
   -v quick="$quick")
 IFS=, read -ra names <<<"${draws[0]}"
-results=(exit_code side_px num_images num_markers scale_error_percent scale_sigma_percent
+results=(exit_code side_px side_bias_px side_bias_percent corner_error_px corner_error_over_sigma
+  num_detections num_false num_images num_markers scale_error_percent scale_sigma_percent
   error_over_sigma distance_mm_rms distance_after_scaling_mm_rms verdict num_warnings
   found_gamma found_s_curve found_sharpening found_radius_px found_ink_percent found_residual seconds)
 
@@ -66,6 +69,8 @@ run_draw() {
     --workspace_path "$run/workspace" --MarkerAdjustment.common_print_tolerance 0 \
     >"$run/log.txt" 2>&1 || code=$?
   echo "$code" >"$run/exit_code.txt"
+  "$clip_corners" --clip_path "$clip" --database_path "$run/workspace/database.db" \
+    >"$run/corners.txt" 2>&1 || true  # a clip without a marker is an outcome too
   if [[ -f "$run/workspace/shape/shape.csv" ]]; then
     "$velamap" shape_analyzer --shape_path "$run/workspace/shape" --log_level error \
       --input_path "$run/workspace/sparse/0" --layout_path "$clip/layout.yml" \
@@ -74,13 +79,20 @@ run_draw() {
   fi
 }
 
+# corner_value RUN KEY: prints a figure about the corners against their truth.
+corner_value() { awk -v key="$2:" '$1 == key { print $2 }' "$runs/$1/corners.txt"; }
+
 # result_row NAME SECONDS: prints the results of a draw.
 result_row() {
-  local error sigma
+  local error sigma key
   error="$(metric "$1" scale_error_percent)"
   sigma="$(awk -F, '$1 == "" && $3 == "scale_sigma_percent" { print $4 }' \
     "$runs/$1/workspace/shape/metrics.csv" 2>/dev/null || true)"
   printf '%s' "$(cat "$runs/$1/exit_code.txt"),$(awk '$1 == "side_px:" { print $2 }' "$runs/$1/render.txt")"
+  for key in side_bias_px side_bias_percent corner_error_px corner_error_over_sigma num_markers \
+    num_false; do
+    printf ',%s' "$(corner_value "$1" "$key")"
+  done
   printf ',%s' "$(log_value "$1" images_used)" "$(metric "$1" num_markers)" "$error" "$sigma" \
     "$(awk -v e="$error" -v s="$sigma" 'BEGIN { if (e != "" && s > 0) printf "%.3f", e / s }')" \
     "$(metric "$1" distance_mm_rms)" "$(metric "$1" distance_after_scaling_mm_rms)" \

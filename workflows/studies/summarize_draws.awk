@@ -6,13 +6,18 @@ NR == 1 {
   for (i = 1; i <= NF; i++) column[$i] = i
   print "class,curve,num_draws,num_results,scale_error_percent_mean,scale_error_percent_rms," \
     "scale_error_percent_max,scale_sigma_percent_mean,error_over_sigma_rms,within_2_sigma_percent," \
-    "distance_mm_rms,distance_after_scaling_mm_rms"
+    "distance_mm_rms,distance_after_scaling_mm_rms,side_bias_px_mean,side_bias_px_rms"
   next
 }
 function value(name) { return $column[name] }
 function add(group,    error) {
   if (!(group in num_draws)) groups[++num_groups] = group
   num_draws[group]++
+  if (value("side_bias_px") != "") {
+    num_biases[group]++
+    biases[group] += value("side_bias_px")
+    squared_biases[group] += value("side_bias_px") ^ 2
+  }
   # A shape without a stated sigma counts as none.
   if (value("error_over_sigma") == "") return
   error = value("scale_error_percent")
@@ -32,10 +37,13 @@ END {
     group = groups[i]
     n = num_results[group]
     printf "%s,%d,%d", group, num_draws[group], n
-    if (n == 0) print ",,,,,,,,"
+    if (n == 0) printf ",,,,,,,,"
     else
-      printf ",%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%.3f,%.3f\n", sum[group] / n, sqrt(squares[group] / n),
+      printf ",%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%.3f,%.3f", sum[group] / n, sqrt(squares[group] / n),
         largest[group], sigmas[group] / n, sqrt(ratios[group] / n), 100 * within[group] / n,
         sqrt(distances[group] / n), sqrt(shapes[group] / n)
+    n = num_biases[group]
+    if (n == 0) print ",,"
+    else printf ",%.4f,%.4f\n", biases[group] / n, sqrt(squared_biases[group] / n)
   }
 }
