@@ -35,6 +35,8 @@ house_folder(reconstruct/solve PUBLIC
   schur_complement)
 house_folder(reconstruct/registration PUBLIC
   frame_order registration registration_options)
+house_folder(reconstruct/evidence PUBLIC
+  layout_evidence)
 house_folder(reconstruct/thesis PUBLIC
   frame_selection posed_images thesis_registration)
 house_folder(reconstruct/global PUBLIC

@@ -145,8 +145,9 @@ void RegisterAllFrames(GlobalRegistration* global) {
   MarkFits(problem, 1.0, &global->solution);
 }
 
-// Removes outliers at the tolerance of the final noise, and adjusts.
-void RemoveOutliers(GlobalRegistration* global) {
+// Removes outliers at the tolerance of the final noise, and adjusts. What the layout contradicts
+// goes before the last adjustment, so that no figure of the result rests on it.
+void RemoveOutliers(const Layout& layout, GlobalRegistration* global) {
   const MapProblem& problem = global->problem;
   DropWrongSizes(global);
   global->noise = EstimateNoise(problem, global->solution);
@@ -157,6 +158,7 @@ void RemoveOutliers(GlobalRegistration* global) {
     AdjustMap(problem, {50, tolerance}, &global->solution);
     global->noise = EstimateNoise(problem, global->solution);
     MarkFinalFits(problem, global->noise, &global->solution);
+    DropContradictions(layout, global);
     DropRest(global);
   }
 }
@@ -203,7 +205,7 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
   global.solution = GrowBestMap(global);
   if (global.solution.NumRegistered() >= 2) {
     RegisterAllFrames(&global);
-    RemoveOutliers(&global);
+    RemoveOutliers(layout, &global);
   }
   if (global.solution.NumRegistered() < 2) {
     throw DataError("no two images agree on the places of at least " +

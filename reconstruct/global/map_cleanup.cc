@@ -1,10 +1,14 @@
 #include "reconstruct/global/map_cleanup.h"
 
 #include <algorithm>
+#include <map>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "reconstruct/evidence/layout_evidence.h"
 #include "reconstruct/global/map_intersection.h"
+#include "reconstruct/global/map_verdict.h"
 #include "reconstruct/global/view_selection.h"
 
 namespace velamap {
@@ -68,6 +72,30 @@ bool SeeMarkerRotated(const GlobalRegistration& global, int marker_idx,
   });
 }
 
+// The markers whose places explain all observations that fit this one, each perhaps with its
+// corners numbered from another one, as a misread code has them.
+std::vector<int> RivalsOf(const GlobalRegistration& global, int marker_idx) {
+  std::vector<int> rival_ids;
+  for (int other_idx = 0; other_idx < static_cast<int>(global.problem.markers.size());
+       ++other_idx) {
+    if (other_idx == marker_idx ||
+        global.solution.shape_from_marker[static_cast<std::size_t>(other_idx)].empty()) {
+      continue;
+    }
+    const auto& observation_idxs = global.problem.Marker(marker_idx).observation_idxs;
+    if (std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
+          return !global.solution.fits[static_cast<std::size_t>(observation_idx)] ||
+                 FitsAs(global, observation_idx, other_idx, 0) ||
+                 FitsAs(global, observation_idx, other_idx, 1) ||
+                 FitsAs(global, observation_idx, other_idx, 2) ||
+                 FitsAs(global, observation_idx, other_idx, 3);
+        })) {
+      rival_ids.push_back(global.problem.Marker(other_idx).marker_id);
+    }
+  }
+  return rival_ids;
+}
+
 }  // namespace
 
 void VoteOnIds(GlobalRegistration* global) {
@@ -104,6 +132,29 @@ void DropWrongSizes(GlobalRegistration* global) {
         fmt::format("its side comes out {:.2f} times as long as marker_length says: a wrong "
                     "length in the layout, or a false square with its id",
                     ratio));
+  }
+}
+
+void DropContradictions(const Layout& layout, GlobalRegistration* global) {
+  const double m_per_unit = 1 / global->MedianScale();
+  std::vector<PlacedMarker> markers;
+  std::map<int, int> marker_idx_of;
+  for (std::size_t idx = 0; idx < global->problem.markers.size(); ++idx) {
+    const int marker_idx = static_cast<int>(idx);
+    if (global->solution.shape_from_marker[idx].empty() || global->NumFits(marker_idx) == 0) {
+      continue;
+    }
+    PlacedMarker marker = SupportOf(global->problem, global->solution, global->noise, marker_idx);
+    marker.center_in_shape_m *= m_per_unit;
+    marker.sigma_m *= m_per_unit;
+    marker.rival_ids = RivalsOf(*global, marker_idx);
+    marker_idx_of[marker.marker_id] = marker_idx;
+    markers.push_back(std::move(marker));
+  }
+  for (const Contradiction& contradiction : FindContradictions(layout, markers)) {
+    const int marker_idx = marker_idx_of.at(contradiction.marker_id);
+    global->Drop(marker_idx, contradiction.reason);
+    global->dropped_markers.at(marker_idx).is_false = true;
   }
 }
 

@@ -12,6 +12,9 @@ void VoteOnIds(GlobalRegistration* global);
 // Drops markers whose side differs from the others by far more than their print explains.
 void DropWrongSizes(GlobalRegistration* global);
 
+// Drops markers that the layout contradicts (layout_evidence.h). Needs `noise`.
+void DropContradictions(const Layout& layout, GlobalRegistration* global);
+
 // Leaves out frames whose corners scatter far more than those of the others, where other frames see
 // their markers often enough. Needs `noise`.
 void LeaveOutBlurredFrames(GlobalRegistration* global);

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/quad.h"
 
 namespace velamap {
 namespace {
@@ -40,6 +44,63 @@ std::array<double, kNumCorners> CornerErrors(const MapProblem& problem, const Ma
             .norm();
   }
   return errors_px;
+}
+
+// A marker as a frame should show it: the width across its shorter direction, px. Nothing where it
+// is turned away or not whole in the image with a margin of half its width, which finding it takes.
+std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_shape,
+                                 const std::array<Eigen::Vector3d, kNumCorners>& corners) {
+  const Eigen::Vector3d normal = (corners[0] - corners[1]).cross(corners[2] - corners[1]);
+  const Eigen::Vector3d center_in_shape =
+      (corners[0] + corners[1] + corners[2] + corners[3]) / kNumCorners;
+  if ((cam_from_shape * center_in_shape).dot(cam_from_shape.rotation * normal) >= 0) {
+    return std::nullopt;
+  }
+  QuadCorners quad;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const auto image_px = ImageFromCam(*frame.camera, cam_from_shape * corners[i]);
+    if (!image_px) return std::nullopt;
+    quad[i] = *image_px;
+  }
+  const double diagonal_px = std::max((quad[2] - quad[0]).norm(), (quad[3] - quad[1]).norm());
+  const double width_px = QuadArea(quad) / diagonal_px;
+  const Eigen::Array2d size_px(frame.camera->width_px, frame.camera->height_px);
+  for (const Eigen::Vector2d& corner : quad) {
+    if ((corner.array() < 0.5 * width_px).any() ||
+        (corner.array() > size_px - 0.5 * width_px).any()) {
+      return std::nullopt;
+    }
+  }
+  return width_px;
+}
+
+// 1 sigma of the centre in its least certain direction, with the frames where they are. What the
+// marker's own size says of its distance is added once, because all frames share its error.
+double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
+                   int marker_idx) {
+  constexpr double kSizeSigma = 0.02;  // of the prior in the map
+  const MapMarker& marker = problem.Marker(marker_idx);
+  const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
+  const double factor = std::max(noise.factor, kMinFactor);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), by_size = information;
+  for (const int idx : marker.observation_idxs) {
+    if (!solution.fits[static_cast<std::size_t>(idx)]) continue;
+    const MapObservation& observation = problem.Observation(idx);
+    const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+    const Eigen::Vector3d x = pose * place.translation;
+    const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+    Eigen::Matrix<double, 2, 3> ray_from_x;
+    ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
+    const double sigma_px = factor * observation.sigma_px;
+    const Eigen::Matrix<double, 2, 3> jacobian =
+        observation.px_from_ray[0] * ray_from_x * rotation / sigma_px;
+    information += jacobian.transpose() * jacobian;
+    const Eigen::Vector3d toward = rotation.transpose() * x.normalized();
+    const double along_sigma = x.norm() * (kSizeSigma + sigma_px / observation.side_px);
+    by_size = toward * toward.transpose() / (along_sigma * along_sigma);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information + by_size);
+  return 1 / std::sqrt(solver.eigenvalues()[0]);
 }
 
 }  // namespace
@@ -133,6 +194,39 @@ std::string WhyOutlier(const MapProblem& problem, const MapSolution& solution,
   }
   if (num_off > 0 && num_off < kNumCorners) return corners;
   return Px(ReprojectionError(problem, solution, observation)) + " from its place";
+}
+
+PlacedMarker SupportOf(const MapProblem& problem, const MapSolution& solution,
+                       const MapNoise& noise, int marker_idx) {
+  const MapMarker& marker = problem.Marker(marker_idx);
+  const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
+  const auto corners = CornersInShape(marker, place);
+  PlacedMarker placed;
+  placed.marker_id = marker.marker_id;
+  placed.center_in_shape_m = place.translation;
+  placed.sigma_m = CenterSigma(problem, solution, noise, marker_idx);
+  std::vector<char> sees(problem.frames.size(), 0);
+  for (const int idx : marker.observation_idxs) {
+    if (!solution.fits[static_cast<std::size_t>(idx)]) continue;
+    sees[static_cast<std::size_t>(problem.Observation(idx).frame_idx)] = 1;
+    ++placed.num_seen;
+  }
+  std::vector<std::optional<double>> width_px_of(problem.frames.size());
+  std::vector<double> seen_widths_px;
+  for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
+    const auto& pose = solution.cam_from_shape[idx];
+    if (!pose) continue;
+    width_px_of[idx] = ShownWidth(problem.frames[idx], *pose, corners);
+    if (sees[idx] && width_px_of[idx]) seen_widths_px.push_back(*width_px_of[idx]);
+  }
+  if (seen_widths_px.empty()) return placed;
+  const double usual_px = Median(std::move(seen_widths_px));
+  for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
+    if (!width_px_of[idx] || *width_px_of[idx] < usual_px) continue;
+    ++placed.num_should_see;
+    placed.num_seen_of_these += sees[idx];
+  }
+  return placed;
 }
 
 }  // namespace velamap

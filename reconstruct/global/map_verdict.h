@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "reconstruct/evidence/layout_evidence.h"
 #include "reconstruct/global/map_problem.h"
 
 namespace velamap {
@@ -37,5 +38,10 @@ bool IsSuspicious(const MapNoise& noise);
 // corners are numbered from a wrong one, a single corner is off, or another cause.
 std::string WhyOutlier(const MapProblem& problem, const MapSolution& solution,
                        const MapNoise& noise, const MapObservation& observation);
+
+// The evidence for a placed marker: where it is, how well that is known from the observations that
+// fit, and how many of the registered frames that should show it do. Lengths in units of the map.
+PlacedMarker SupportOf(const MapProblem& problem, const MapSolution& solution,
+                       const MapNoise& noise, int marker_idx);
 
 }  // namespace velamap

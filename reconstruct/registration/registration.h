@@ -28,6 +28,8 @@ struct DroppedMarker {
   int marker_id = 0;
   int num_frames = 0;
   std::string reason;
+  // It had a place that the images agree on, and what is known of the object contradicts it.
+  bool is_false = false;
 };
 
 // The shape frame is the cam frame of the central image. Metres follow from the nominal marker

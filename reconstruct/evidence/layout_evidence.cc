@@ -1,0 +1,333 @@
+#include "reconstruct/evidence/layout_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "importer/base/statistics.h"
+#include "reconstruct/evidence/line_evidence.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kNumSigmas = 2.0;
+
+using MarkersById = std::map<int, const PlacedMarker*>;  // that are still believed
+
+struct Evidence {
+  MarkersById markers;
+  std::map<int, std::string> reasons;  // of those that are not believed, by marker id
+
+  void Drop(int marker_id, std::string reason) {
+    reasons.emplace(marker_id, std::move(reason));
+    markers.erase(marker_id);
+  }
+};
+
+std::string SeenText(const PlacedMarker& marker) {
+  return marker.num_should_see > marker.num_seen_of_these
+             ? fmt::format("; seen in {} of {} images that should show it",
+                           marker.num_seen_of_these, marker.num_should_see)
+             : fmt::format("; seen in {} images", marker.num_seen);
+}
+
+double SeenRatio(const PlacedMarker& marker) {
+  return marker.num_should_see > 0
+             ? static_cast<double>(marker.num_seen_of_these) / marker.num_should_see
+             : 1.0;
+}
+
+// Pairs of markers that claim one place, the one that fewer images see second.
+std::vector<std::pair<const PlacedMarker*, const PlacedMarker*>> RivalPairs(
+    const MarkersById& markers) {
+  std::set<std::pair<int, int>> pairs;
+  for (const auto& [id, marker] : markers) {
+    for (const int rival_id : marker->rival_ids) {
+      if (markers.count(rival_id) > 0)
+        pairs.emplace(std::min(id, rival_id), std::max(id, rival_id));
+    }
+  }
+  std::vector<std::pair<const PlacedMarker*, const PlacedMarker*>> rivals;
+  for (const auto& [a_id, b_id] : pairs) {
+    const PlacedMarker *a = markers.at(a_id), *b = markers.at(b_id);
+    if (a->num_seen < b->num_seen) std::swap(a, b);
+    rivals.emplace_back(a, b);
+  }
+  return rivals;
+}
+
+std::string MisreadText(const PlacedMarker& marker, const PlacedMarker& rival) {
+  return fmt::format(
+      "stands where marker {} stands: a misread id; {} images see it there and {} "
+      "see marker {}",
+      rival.marker_id, marker.num_seen, rival.num_seen, rival.marker_id);
+}
+
+void DropMisreadIds(Evidence* evidence) {
+  constexpr double kFew = 0.5;
+  for (const auto& [often, seldom] : RivalPairs(evidence->markers)) {
+    if (seldom->num_seen >= kFew * often->num_seen) continue;
+    evidence->Drop(seldom->marker_id, MisreadText(*seldom, *often));
+  }
+}
+
+// One line with the markers on it that are believed.
+struct JudgedLine {
+  const MarkerLine* line = nullptr;
+  std::vector<const PlacedMarker*> markers;
+  std::vector<LinePoint> points;
+};
+
+std::vector<JudgedLine> LinesOf(const LayoutPart& part, const MarkersById& markers) {
+  std::vector<JudgedLine> lines;
+  for (const std::vector<MarkerLine>* direction : {&part.horizontal, &part.vertical}) {
+    for (const MarkerLine& line : *direction) {
+      JudgedLine judged{&line, {}, {}};
+      for (std::size_t place = 0; place < line.marker_ids.size(); ++place) {
+        const auto marker = markers.find(line.marker_ids[place]);
+        if (marker == markers.end()) continue;
+        judged.markers.push_back(marker->second);
+        judged.points.push_back({static_cast<int>(place), marker->second->center_in_shape_m,
+                                 marker->second->sigma_m, Trust::kWellSeen});
+      }
+      if (judged.points.size() >= 2) lines.push_back(std::move(judged));
+    }
+  }
+  return lines;
+}
+
+// How often the neighbours of a marker are seen: medians over the next two on each side, on all
+// lines; without a line, over all markers.
+struct UsuallySeen {
+  double ratio = 0.0;  // of the images that should show them
+  double num_images = 0.0;
+};
+
+UsuallySeen NeighborsSeen(const std::vector<JudgedLine>& lines, const MarkersById& markers,
+                          int marker_id) {
+  constexpr std::size_t kNumOnEachSide = 2;
+  std::vector<double> ratios, nums_seen;
+  const auto add = [&](const PlacedMarker& marker) {
+    ratios.push_back(SeenRatio(marker));
+    nums_seen.push_back(marker.num_seen);
+  };
+  for (const JudgedLine& line : lines) {
+    for (std::size_t i = 0; i < line.markers.size(); ++i) {
+      if (line.markers[i]->marker_id != marker_id) continue;
+      const std::size_t begin = i < kNumOnEachSide ? 0 : i - kNumOnEachSide;
+      for (std::size_t j = begin; j < std::min(line.markers.size(), i + kNumOnEachSide + 1); ++j) {
+        if (j != i) add(*line.markers[j]);
+      }
+    }
+  }
+  if (ratios.empty()) {
+    for (const auto& [id, marker] : markers) add(*marker);
+  }
+  return {Median(std::move(ratios)), Median(std::move(nums_seen))};
+}
+
+// Numbers of images below ten decide nothing.
+Trust TrustOf(const PlacedMarker& marker, const UsuallySeen& neighbors) {
+  constexpr double kSeldom = 0.2, kOftenMissed = 0.5, kMinImages = 10;
+  double part_of_usual = 1.0;
+  if (marker.num_should_see >= kMinImages) part_of_usual = SeenRatio(marker) / neighbors.ratio;
+  if (neighbors.num_images >= kMinImages) {
+    part_of_usual = std::min(part_of_usual, marker.num_seen / neighbors.num_images);
+  }
+  if (part_of_usual < kSeldom) return Trust::kSeldomSeen;
+  return part_of_usual < kOftenMissed ? Trust::kOftenMissed : Trust::kWellSeen;
+}
+
+// The step that the long lines of a part have in common; nothing without a long line.
+std::optional<double> StepOfPart(const std::vector<JudgedLine>& lines) {
+  std::vector<double> steps_m;
+  for (const JudgedLine& line : lines) {
+    if (line.points.size() >= kMinPointsForStep) steps_m.push_back(EstimateStep(line.points));
+  }
+  if (steps_m.empty()) return std::nullopt;
+  return Median(std::move(steps_m));
+}
+
+// Short lines take the step of the part, if their own is not longer for sure.
+double StepOfLine(const JudgedLine& line, const std::optional<double>& step_of_part_m) {
+  if (line.points.size() >= kMinPointsForStep || !step_of_part_m) return EstimateStep(line.points);
+  return std::max(*step_of_part_m, SmallestStep(line.points));
+}
+
+// Whether a line has one of the two next markers on each side where the cloth can have it.
+bool IsConfirmed(const std::vector<JudgedLine>& lines, const PlacedMarker& marker,
+                 const PlacedMarker& rival) {
+  constexpr std::size_t kNumOnEachSide = 2;
+  const std::optional<double> step_of_part_m = StepOfPart(lines);
+  for (const JudgedLine& line : lines) {
+    const auto on_line = std::find(line.markers.begin(), line.markers.end(), &marker);
+    if (on_line == line.markers.end()) continue;
+    const auto idx = static_cast<std::size_t>(on_line - line.markers.begin());
+    const double step_m = StepOfLine(line, step_of_part_m);
+    const std::size_t begin = idx < kNumOnEachSide ? 0 : idx - kNumOnEachSide;
+    for (std::size_t j = begin; j < std::min(line.points.size(), idx + kNumOnEachSide + 1); ++j) {
+      if (j == idx || line.markers[j] == &rival) continue;
+      if (AreAsFarAsTheLineSays(line.points[std::min(j, idx)], line.points[std::max(j, idx)],
+                                step_m)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Decides between rivals that are seen about as often.
+void DecideBetweenRivals(const Layout& layout, Evidence* evidence) {
+  for (const auto& [often, seldom] : RivalPairs(evidence->markers)) {
+    bool often_is_confirmed = false, seldom_is_confirmed = false;
+    for (const LayoutPart& part : layout.parts) {
+      const std::vector<JudgedLine> lines = LinesOf(part, evidence->markers);
+      often_is_confirmed |= IsConfirmed(lines, *often, *seldom);
+      seldom_is_confirmed |= IsConfirmed(lines, *seldom, *often);
+    }
+    for (const auto& [marker, rival] : {std::pair(often, seldom), std::pair(seldom, often)}) {
+      const bool is_confirmed = marker == often ? often_is_confirmed : seldom_is_confirmed;
+      if (is_confirmed && often_is_confirmed != seldom_is_confirmed) continue;
+      evidence->Drop(marker->marker_id,
+                     MisreadText(*marker, *rival) + (often_is_confirmed == seldom_is_confirmed
+                                                         ? ", and nothing decides between them"
+                                                         : ", where the layout has it"));
+    }
+  }
+}
+
+// Names the nearest markers that belong on the line.
+std::string WhyStray(const JudgedLine& line, const std::vector<std::size_t>& stray_idxs,
+                     std::size_t idx, double step_m) {
+  const auto is_stray = [&](std::size_t i) {
+    return std::binary_search(stray_idxs.begin(), stray_idxs.end(), i);
+  };
+  std::size_t before = idx, after = idx + 1;
+  while (before > 0 && is_stray(before - 1)) --before;
+  while (after < line.points.size() && is_stray(after)) ++after;
+  std::string neighbors;
+  const auto add = [&](std::size_t other) {
+    neighbors +=
+        fmt::format("{}{:.2f} m from marker {}", neighbors.empty() ? "" : " and ",
+                    (line.points[other].x_in_shape_m - line.points[idx].x_in_shape_m).norm(),
+                    line.markers[other]->marker_id);
+  };
+  if (before > 0) add(before - 1);
+  if (after < line.points.size()) add(after);
+  return fmt::format(
+             "contradicts the layout: on line {} it is {}, where neighbours are up to {:.2f} "
+             "m apart",
+             line.line->name, neighbors, step_m) +
+         SeenText(*line.markers[idx]);
+}
+
+// What the lines say of a marker: one that holds it acquits it.
+struct Judgement {
+  int num_lines = 0, num_against = 0;
+  std::string reason;  // of the first line against it
+};
+
+// Returns the markers that lines can judge.
+std::map<int, Judgement> JudgeByLines(const LayoutPart& part, const MarkersById& markers) {
+  std::vector<JudgedLine> lines = LinesOf(part, markers);
+  std::map<int, Judgement> judgements;
+  const std::optional<double> step_of_part_m = StepOfPart(lines);
+  for (JudgedLine& line : lines) {
+    if (line.points.size() < kMinPointsOnLine) continue;
+    for (std::size_t i = 0; i < line.points.size(); ++i) {
+      const PlacedMarker& marker = *line.markers[i];
+      line.points[i].trust = TrustOf(marker, NeighborsSeen(lines, markers, marker.marker_id));
+      ++judgements[marker.marker_id].num_lines;
+    }
+    const double step_m = StepOfLine(line, step_of_part_m);
+    const std::vector<std::size_t> stray_idxs = FindStrayPoints(line.points, step_m);
+    for (const std::size_t idx : stray_idxs) {
+      Judgement& judgement = judgements[line.markers[idx]->marker_id];
+      if (judgement.num_against++ == 0) {
+        judgement.reason = WhyStray(line, stray_idxs, idx, step_m);
+      }
+    }
+  }
+  return judgements;
+}
+
+bool DropStrayMarkers(const LayoutPart& part, Evidence* evidence) {
+  bool changed = false;
+  for (auto& [marker_id, judgement] : JudgeByLines(part, evidence->markers)) {
+    if (judgement.num_against == 0 || judgement.num_against < judgement.num_lines) continue;
+    evidence->Drop(marker_id, std::move(judgement.reason));
+    changed = true;
+  }
+  return changed;
+}
+
+// Drops markers that no line judges, far from the well-seen markers of their part.
+void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgement>& judged,
+                    Evidence* evidence) {
+  constexpr std::size_t kMinForExtent = 4;
+  std::vector<const PlacedMarker*> well_seen, seldom_seen;
+  const UsuallySeen usual = NeighborsSeen({}, evidence->markers, -1);
+  for (const auto& [id, marker] : evidence->markers) {
+    if (!ids_of_part.empty() && ids_of_part.count(id) == 0) continue;
+    const Trust trust = TrustOf(*marker, usual);
+    if (trust != Trust::kSeldomSeen) well_seen.push_back(marker);
+    if (trust == Trust::kSeldomSeen && judged.count(id) == 0) seldom_seen.push_back(marker);
+  }
+  if (well_seen.size() < kMinForExtent) return;
+  double extent_m = 0.0;
+  for (const PlacedMarker* a : well_seen) {
+    for (const PlacedMarker* b : well_seen) {
+      extent_m = std::max(extent_m, (a->center_in_shape_m - b->center_in_shape_m).norm());
+    }
+  }
+  for (const PlacedMarker* marker : seldom_seen) {
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const PlacedMarker* other : well_seen) {
+      nearest_m =
+          std::min(nearest_m, (other->center_in_shape_m - marker->center_in_shape_m).norm());
+    }
+    if (nearest_m <= extent_m + kNumSigmas * marker->sigma_m) continue;
+    evidence->Drop(marker->marker_id,
+                   fmt::format("stands {:.2f} m from all other markers, which are within {:.2f} m",
+                               nearest_m, extent_m) +
+                       SeenText(*marker));
+  }
+}
+
+std::set<int> IdsOf(const LayoutPart& part) {
+  Layout alone;
+  alone.parts.push_back(part);
+  const std::vector<int> ids = MarkerIds(alone);
+  return {ids.begin(), ids.end()};
+}
+
+}  // namespace
+
+std::vector<Contradiction> FindContradictions(const Layout& layout,
+                                              const std::vector<PlacedMarker>& markers) {
+  Evidence evidence;
+  for (const PlacedMarker& marker : markers) evidence.markers.emplace(marker.marker_id, &marker);
+  if (evidence.markers.empty()) return {};
+  DropMisreadIds(&evidence);
+  DecideBetweenRivals(layout, &evidence);
+  for (const LayoutPart& part : layout.parts) {
+    while (DropStrayMarkers(part, &evidence)) {
+    }
+  }
+  if (!layout.HasMarkers() && !evidence.markers.empty()) DropFarMarkers({}, {}, &evidence);
+  for (const LayoutPart& part : layout.parts) {
+    if (evidence.markers.empty()) break;
+    DropFarMarkers(IdsOf(part), JudgeByLines(part, evidence.markers), &evidence);
+  }
+  std::vector<Contradiction> contradictions;
+  for (const auto& [id, reason] : evidence.reasons) contradictions.push_back({id, reason});
+  return contradictions;
+}
+
+}  // namespace velamap

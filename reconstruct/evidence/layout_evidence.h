@@ -1,0 +1,51 @@
+// Markers that the layout contradicts. A false quad with a legal code, found at one place in a few
+// images, fits these images as well as a true marker does: only what is known of the object tells
+// it. Markers do not overlap, neighbours on a line are as far apart as the other markers on it, and
+// a marker is seen in most images that should show it.
+//
+// Each test depends on ratios only: lengths are compared with distances of neighbours or with the
+// extent of a part, and numbers of images with those of the neighbours.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/layout/layout.h"
+
+namespace velamap {
+
+// A marker with a place, and the images that support it.
+struct PlacedMarker {
+  int marker_id = 0;
+  Eigen::Vector3d center_in_shape_m = Eigen::Vector3d::Zero();
+  double sigma_m = 0.0;  // of the centre in its least certain direction
+  int num_seen = 0;      // images that see it at this place
+  // Images that should see it: it is inside, faces the camera and is as large in the image as it
+  // usually is where it is seen. `num_seen_of_these` of them do.
+  int num_should_see = 0;
+  int num_seen_of_these = 0;
+  // Markers whose places explain all images that see this one, ascending: one of the two ids may be
+  // misread there.
+  std::vector<int> rival_ids;
+};
+
+struct Contradiction {
+  int marker_id = 0;
+  std::string reason;
+};
+
+// `markers` by ascending id, each once. The result is by ascending id.
+//
+// - Of two rivals for one place, the one that fewer than half as many images see is a misread id.
+//   Otherwise the one stays that a line confirms. If nothing decides, neither is believed.
+// - On every line, line_evidence.h finds the markers that cannot be on it. A marker on two lines is
+//   believed if one of them holds it.
+// - A marker that no line can judge is not believed if hardly any image that should see it does,
+//   and the distance from its part is more than the extent of that part.
+std::vector<Contradiction> FindContradictions(const Layout& layout,
+                                              const std::vector<PlacedMarker>& markers);
+
+}  // namespace velamap
