@@ -32,9 +32,9 @@ struct Evidence {
 
 std::string SeenText(const PlacedMarker& marker) {
   return marker.num_should_see > marker.num_seen_of_these
-             ? fmt::format("; seen in {} of {} images that should show it",
+             ? fmt::format(", seen in {} of {} images that should show it",
                            marker.num_seen_of_these, marker.num_should_see)
-             : fmt::format("; seen in {} images", marker.num_seen);
+             : fmt::format(", seen in {} images", marker.num_seen);
 }
 
 double SeenRatio(const PlacedMarker& marker) {
@@ -64,9 +64,9 @@ std::vector<std::pair<const PlacedMarker*, const PlacedMarker*>> RivalPairs(
 
 std::string MisreadText(const PlacedMarker& marker, const PlacedMarker& rival) {
   return fmt::format(
-      "stands where marker {} stands: a misread id; {} images see it there and {} "
-      "see marker {}",
-      rival.marker_id, marker.num_seen, rival.num_seen, rival.marker_id);
+      "a misread id: it stands where marker {} stands, seen there in {} images and "
+      "marker {} in {}",
+      rival.marker_id, marker.num_seen, rival.marker_id, rival.num_seen);
 }
 
 void DropMisreadIds(Evidence* evidence) {
@@ -132,15 +132,16 @@ UsuallySeen NeighborsSeen(const std::vector<JudgedLine>& lines, const MarkersByI
   return {Median(std::move(ratios)), Median(std::move(nums_seen))};
 }
 
-// Numbers of images below ten decide nothing.
+// Numbers of images below ten decide nothing. A marker that few images can show is missed by no
+// fault of its own, unless its neighbours are in many times as many.
 Trust TrustOf(const PlacedMarker& marker, const UsuallySeen& neighbors) {
   constexpr double kSeldom = 0.2, kOftenMissed = 0.5, kMinImages = 10;
-  double part_of_usual = 1.0;
-  if (marker.num_should_see >= kMinImages) part_of_usual = SeenRatio(marker) / neighbors.ratio;
-  if (neighbors.num_images >= kMinImages) {
-    part_of_usual = std::min(part_of_usual, marker.num_seen / neighbors.num_images);
+  const bool is_known = marker.num_should_see >= kMinImages;
+  const double part_of_usual = is_known ? SeenRatio(marker) / neighbors.ratio : 1.0;
+  if (part_of_usual < kSeldom ||
+      (neighbors.num_images >= kMinImages && marker.num_seen < kSeldom * neighbors.num_images)) {
+    return Trust::kSeldomSeen;
   }
-  if (part_of_usual < kSeldom) return Trust::kSeldomSeen;
   return part_of_usual < kOftenMissed ? Trust::kOftenMissed : Trust::kWellSeen;
 }
 
@@ -160,11 +161,14 @@ double StepOfLine(const JudgedLine& line, const std::optional<double>& step_of_p
   return std::max(*step_of_part_m, SmallestStep(line.points));
 }
 
-// Whether a line has one of the two next markers on each side where the cloth can have it.
-bool IsConfirmed(const std::vector<JudgedLine>& lines, const PlacedMarker& marker,
-                 const PlacedMarker& rival) {
+// How near on its lines a marker is to one that is where the cloth can have it, in places: the
+// smallest such gap to the next two markers on each side. The nearer, the less is it by chance.
+// Infinite where no line confirms the marker.
+double ConfirmedWithin(const std::vector<JudgedLine>& lines, const PlacedMarker& marker,
+                       const PlacedMarker& rival) {
   constexpr std::size_t kNumOnEachSide = 2;
   const std::optional<double> step_of_part_m = StepOfPart(lines);
+  double smallest_gap = std::numeric_limits<double>::infinity();
   for (const JudgedLine& line : lines) {
     const auto on_line = std::find(line.markers.begin(), line.markers.end(), &marker);
     if (on_line == line.markers.end()) continue;
@@ -173,32 +177,38 @@ bool IsConfirmed(const std::vector<JudgedLine>& lines, const PlacedMarker& marke
     const std::size_t begin = idx < kNumOnEachSide ? 0 : idx - kNumOnEachSide;
     for (std::size_t j = begin; j < std::min(line.points.size(), idx + kNumOnEachSide + 1); ++j) {
       if (j == idx || line.markers[j] == &rival) continue;
-      if (AreAsFarAsTheLineSays(line.points[std::min(j, idx)], line.points[std::max(j, idx)],
-                                step_m)) {
-        return true;
-      }
+      const LinePoint &first = line.points[std::min(j, idx)], &last = line.points[std::max(j, idx)];
+      if (!AreAsFarAsTheLineSays(first, last, step_m)) continue;
+      smallest_gap =
+          std::min(smallest_gap, static_cast<double>(last.place_on_line - first.place_on_line));
     }
   }
-  return false;
+  return smallest_gap;
 }
 
 // Decides between rivals that are seen about as often.
 void DecideBetweenRivals(const Layout& layout, Evidence* evidence) {
+  constexpr double kMuchNearer = 0.5;
   for (const auto& [often, seldom] : RivalPairs(evidence->markers)) {
-    bool often_is_confirmed = false, seldom_is_confirmed = false;
+    if (evidence->markers.count(often->marker_id) == 0 ||
+        evidence->markers.count(seldom->marker_id) == 0) {
+      continue;
+    }
+    double often_within = std::numeric_limits<double>::infinity(), seldom_within = often_within;
     for (const LayoutPart& part : layout.parts) {
       const std::vector<JudgedLine> lines = LinesOf(part, evidence->markers);
-      often_is_confirmed |= IsConfirmed(lines, *often, *seldom);
-      seldom_is_confirmed |= IsConfirmed(lines, *seldom, *often);
+      often_within = std::min(often_within, ConfirmedWithin(lines, *often, *seldom));
+      seldom_within = std::min(seldom_within, ConfirmedWithin(lines, *seldom, *often));
     }
-    for (const auto& [marker, rival] : {std::pair(often, seldom), std::pair(seldom, often)}) {
-      const bool is_confirmed = marker == often ? often_is_confirmed : seldom_is_confirmed;
-      if (is_confirmed && often_is_confirmed != seldom_is_confirmed) continue;
-      evidence->Drop(marker->marker_id,
-                     MisreadText(*marker, *rival) + (often_is_confirmed == seldom_is_confirmed
-                                                         ? ", and nothing decides between them"
-                                                         : ", where the layout has it"));
-    }
+    const bool often_belongs =
+        std::isfinite(often_within) && often_within <= kMuchNearer * seldom_within;
+    const bool seldom_belongs =
+        std::isfinite(seldom_within) && seldom_within <= kMuchNearer * often_within;
+    const std::string decision = often_belongs || seldom_belongs
+                                     ? ", where the layout has it"
+                                     : ", and nothing decides between them";
+    if (!often_belongs) evidence->Drop(often->marker_id, MisreadText(*often, *seldom) + decision);
+    if (!seldom_belongs) evidence->Drop(seldom->marker_id, MisreadText(*seldom, *often) + decision);
   }
 }
 
@@ -271,6 +281,7 @@ bool DropStrayMarkers(const LayoutPart& part, Evidence* evidence) {
 void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgement>& judged,
                     Evidence* evidence) {
   constexpr std::size_t kMinForExtent = 4;
+  constexpr double kGross = 2.0;
   std::vector<const PlacedMarker*> well_seen, seldom_seen;
   const UsuallySeen usual = NeighborsSeen({}, evidence->markers, -1);
   for (const auto& [id, marker] : evidence->markers) {
@@ -292,11 +303,11 @@ void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgem
       nearest_m =
           std::min(nearest_m, (other->center_in_shape_m - marker->center_in_shape_m).norm());
     }
-    if (nearest_m <= extent_m + kNumSigmas * marker->sigma_m) continue;
-    evidence->Drop(marker->marker_id,
-                   fmt::format("stands {:.2f} m from all other markers, which are within {:.2f} m",
-                               nearest_m, extent_m) +
-                       SeenText(*marker));
+    if (nearest_m <= kGross * extent_m + kNumSigmas * marker->sigma_m) continue;
+    evidence->Drop(marker->marker_id, fmt::format("stands {:.2f} m from all other markers of its "
+                                                  "part, which are within {:.2f} m of each other",
+                                                  nearest_m, extent_m) +
+                                          SeenText(*marker));
   }
 }
 

@@ -44,7 +44,7 @@ struct Contradiction {
 // - On every line, line_evidence.h finds the markers that cannot be on it. A marker on two lines is
 //   believed if one of them holds it.
 // - A marker that no line can judge is not believed if hardly any image that should see it does,
-//   and the distance from its part is more than the extent of that part.
+//   and it is farther from its part than twice the extent of that part.
 std::vector<Contradiction> FindContradictions(const Layout& layout,
                                               const std::vector<PlacedMarker>& markers);
 

@@ -136,25 +136,35 @@ double EstimateStep(const std::vector<LinePoint>& points) {
 
 double SmallestStep(const std::vector<LinePoint>& points) { return NearSteps(points).front(); }
 
-bool AreAsFarAsTheLineSays(const LinePoint& a, const LinePoint& b, double step_m) {
-  constexpr double kUneven = 1.5;
-  return StepBetween(a, b) <= kUneven * step_m;
+bool AreAsFarAsTheLineSays(const LinePoint& a, const LinePoint& b, double step_m,
+                           double num_uneven_steps) {
+  return Distance(a, b) <= (Gap(a, b) + num_uneven_steps) * step_m;
 }
 
 std::vector<std::size_t> FindStrayPoints(const std::vector<LinePoint>& points, double step_m) {
+  // Two false markers are hardly ever near each other, so two that are may be less even.
+  constexpr double kUnevenInPiece = 3.0;
   if (points.size() < kMinPointsOnLine || !(step_m > 0)) return {};
-  std::vector<char> is_stray(points.size(), 1);
-  for (const std::size_t idx : CheapestWay(points, step_m)) is_stray[idx] = 0;
-  std::vector<char> is_torn_piece(points.size(), 0);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    if (!is_stray[i - 1] || !is_stray[i]) continue;
-    if (StepBetween(points[i - 1], points[i]) > PriceOf(Trust::kWellSeen).between * step_m)
-      continue;
-    is_torn_piece[i - 1] = is_torn_piece[i] = 1;
-  }
+  const std::vector<std::size_t> way = CheapestWay(points, step_m);
+  const auto is_on_way = [&way](std::size_t idx) {
+    return std::binary_search(way.begin(), way.end(), idx);
+  };
+  // Whether the points of the line that are on the way before and behind it hold the point, or one
+  // beside it that is off the way too.
+  const auto is_confirmed = [&](std::size_t idx) {
+    const LinePoint& point = points[idx];
+    const auto after = std::lower_bound(way.begin(), way.end(), idx);
+    return (after != way.end() && AreAsFarAsTheLineSays(point, points[*after], step_m)) ||
+           (after != way.begin() &&
+            AreAsFarAsTheLineSays(points[*std::prev(after)], point, step_m)) ||
+           (idx > 0 && !is_on_way(idx - 1) &&
+            AreAsFarAsTheLineSays(points[idx - 1], point, step_m, kUnevenInPiece)) ||
+           (idx + 1 < points.size() && !is_on_way(idx + 1) &&
+            AreAsFarAsTheLineSays(point, points[idx + 1], step_m, kUnevenInPiece));
+  };
   std::vector<std::size_t> stray_idxs;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_stray[i] && !is_torn_piece[i]) stray_idxs.push_back(i);
+    if (!is_on_way(i) && !is_confirmed(i)) stray_idxs.push_back(i);
   }
   if (2 * stray_idxs.size() >= points.size()) return {};
   return stray_idxs;

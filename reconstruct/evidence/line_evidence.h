@@ -40,12 +40,14 @@ double EstimateStep(const std::vector<LinePoint>& points);
 // lower bound of the step where there are too few markers for an estimate. At least two points.
 double SmallestStep(const std::vector<LinePoint>& points);
 
-// Whether two points, in the order of the line, are no farther apart than its places are.
-bool AreAsFarAsTheLineSays(const LinePoint& a, const LinePoint& b, double step_m);
+// Whether two points, in the order of the line, are no farther apart than its places are, one of
+// which may be wider by `num_uneven_steps`.
+bool AreAsFarAsTheLineSays(const LinePoint& a, const LinePoint& b, double step_m,
+                           double num_uneven_steps = 0.5);
 
 // The indices of the points that do not belong on the line, ascending. None if they were half of
-// the points or more: the line is then listed wrongly, or not known well enough. Points that stand
-// next to each other are a torn piece of the line, and stay.
+// the points or more: the line is then listed wrongly, or not known well enough. A point stays that
+// its neighbours confirm: where the line is torn, both of its pieces are true.
 std::vector<std::size_t> FindStrayPoints(const std::vector<LinePoint>& points, double step_m);
 
 }  // namespace velamap

@@ -55,8 +55,14 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
     const MapObservation& observation = global.problem.Observation(idx);
     const auto& places =
         global.solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)];
-    if (places.empty()) continue;
     const int marker_id = global.problem.Marker(observation.marker_idx).marker_id;
+    if (places.empty()) {
+      const auto dropped = global.dropped_markers.find(observation.marker_idx);
+      if (dropped == global.dropped_markers.end()) continue;
+      frame->outlier_ids.push_back(marker_id);
+      frame->outlier_reasons.push_back("left out of all images: " + dropped->second.reason);
+      continue;
+    }
     if (!global.solution.fits[static_cast<std::size_t>(idx)]) {
       frame->outlier_ids.push_back(marker_id);
       frame->outlier_reasons.push_back(

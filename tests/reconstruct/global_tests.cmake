@@ -1,3 +1,10 @@
+# What the layout contradicts.
+velamap_test(NAME reconstruct_evidence_test LABEL unit
+  SOURCES
+    evidence/layout_evidence_test.cc
+    evidence/random_sail.cc
+)
+
 # The default registration: its parts, then the whole.
 velamap_test(NAME reconstruct_global_test LABEL unit
   SOURCES

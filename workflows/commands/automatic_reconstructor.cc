@@ -186,6 +186,7 @@ void Run(const Options& options) {
       RegisterDatabase(paths.Database().string(), options.importer.layout, options.registration);
   clock.End("register", static_cast<int>(seed.image_names.size()));
   summary.num_images_total = static_cast<int>(seed.image_names.size() + summary.left_out.size());
+  summary.dropped_markers = seed.registration.dropped_markers;
   summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
   AdjustAndExport(options, paths, seed, &summary, &clock);
   WriteTimes(clock, paths);

@@ -54,6 +54,7 @@ void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) 
   fmt::print(out, "images_registered: {} of {}\n", seed.model.images.size(),
              seed.image_names.size());
   fmt::print(out, "images_left_out: {}\n", LeftOutText(seed.left_out));
+  fmt::print(out, "markers_left_out: {}\n", MarkersLeftOutText(seed.registration.dropped_markers));
   fmt::print(out, "central_image: {}\n", seed.registration.central_image_name);
   fmt::print(out, "markers: {}\n", seed.registration.shape.size());
   fmt::print(out, "reprojection_error_px: {}\n",

@@ -72,7 +72,11 @@ void LogSeed(const SeedResult& seed) {
                seed.image_names.size(), registration.shape.size());
   if (!seed.left_out.empty()) spdlog::info("images left out: {}", LeftOutText(seed.left_out));
   for (const DroppedMarker& marker : registration.dropped_markers) {
-    spdlog::debug("marker {} left out: {}", marker.marker_id, marker.reason);
+    if (marker.is_false) {
+      spdlog::warn("marker {} left out: {}", marker.marker_id, marker.reason);
+    } else {
+      spdlog::debug("marker {} left out: {}", marker.marker_id, marker.reason);
+    }
   }
 }
 

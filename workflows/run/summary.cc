@@ -127,6 +127,14 @@ std::string LeftOutText(const std::vector<LeftOutImage>& left_out) {
   return text;
 }
 
+std::string MarkersLeftOutText(const std::vector<DroppedMarker>& markers) {
+  std::vector<LeftOutImage> named;
+  for (const DroppedMarker& marker : markers) {
+    named.push_back({std::to_string(marker.marker_id), marker.reason});
+  }
+  return LeftOutText(named);
+}
+
 std::string ErrorText(const Statistics& statistics) {
   return fmt::format("mean {:.3f}, std {:.3f}, median {:.3f}, min {:.3f}, max {:.3f}",
                      statistics.mean, statistics.standard_deviation, statistics.median,
@@ -198,6 +206,7 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
                   std::ostream& out) {
   fmt::print(out, "images_used: {} of {}\n", summary.num_images, summary.num_images_total);
   fmt::print(out, "images_left_out: {}\n", LeftOutText(summary.left_out));
+  fmt::print(out, "markers_left_out: {}\n", MarkersLeftOutText(summary.dropped_markers));
   PrintShapeSummary(summary.shape, out);
   fmt::print(out, "outliers_removed: {} of {} observations\n", summary.adjustment.num_removed,
              summary.adjustment.error_before_px.count);

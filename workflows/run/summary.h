@@ -18,6 +18,9 @@ namespace velamap {
 // that differ only in their numbers are counted together.
 std::string LeftOutText(const std::vector<LeftOutImage>& left_out);
 
+// The same for markers.
+std::string MarkersLeftOutText(const std::vector<DroppedMarker>& markers);
+
 // `mean 0.120, std 0.050, median 0.100, min 0.010, max 0.600`.
 std::string ErrorText(const Statistics& statistics);
 
@@ -39,6 +42,7 @@ struct ReconstructionSummary {
   int num_images = 0;  // images used
   int num_images_total = 0;
   std::vector<LeftOutImage> left_out;
+  std::vector<DroppedMarker> dropped_markers;
   AdjustmentResult adjustment;
   ShapeExportReport shape;
 };
