@@ -130,9 +130,9 @@ void AddPartSections(const PartContext& context, const std::optional<Boom>& boom
   for (const MissingLine& line : context.curves.missing) {
     report->missing.push_back({context.part.name, line.name, line.reason});
   }
-  if (lines.empty()) return;
-  const std::vector<std::string> crossings = FindCrossings(lines, context.axes.up);
+  const std::vector<std::string>& crossings = context.curves.crossings;
   report->notes.insert(report->notes.end(), crossings.begin(), crossings.end());
+  if (lines.empty()) return;
 
   std::vector<Section> sections;
   std::vector<NumbersWithGradient> numbers;
@@ -145,9 +145,7 @@ void AddPartSections(const PartContext& context, const std::optional<Boom>& boom
   const std::set<double> heights_m(options.heights_m.begin(), options.heights_m.end());
   for (const double height_m : heights_m) {
     const std::string name = fmt::format("z={:.6g}", height_m);
-    const HeightCut cut = crossings.empty()
-                              ? CutAtHeight(SampleLines(lines), context.axes.up, height_m)
-                              : HeightCut{std::nullopt, crossings.front()};
+    const HeightCut cut = CutAtHeight(SampleLines(lines), context.axes.up, height_m);
     if (!cut.curve) {
       report->missing.push_back({context.part.name, name, cut.reason});
       continue;

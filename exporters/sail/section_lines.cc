@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -42,14 +43,6 @@ std::string WhyNoCurve(const CenterSet& centers, const std::vector<int>& indices
   return "";
 }
 
-Eigen::Vector3d ChordOf(const LineCurve& line) {
-  return EvaluateCurve(line.fit.curve, 1.0) - EvaluateCurve(line.fit.curve, 0.0);
-}
-
-double MiddleHeight(const LineCurve& line, const Eigen::Vector3d& up) {
-  return up.dot(EvaluateCurve(line.fit.curve, 0.0) + EvaluateCurve(line.fit.curve, 1.0)) / 2;
-}
-
 // Removes lines that run opposite to the majority, or to the lowest line in a tie.
 void DropReversed(const Eigen::Vector3d& up, PartCurves* curves) {
   if (curves->lines.empty()) return;
@@ -70,12 +63,6 @@ void DropReversed(const Eigen::Vector3d& up, PartCurves* curves) {
     }
   }
   curves->lines = std::move(kept);
-}
-
-// Curve parameters at which lines are compared and connected.
-Eigen::ArrayXd Fractions() {
-  constexpr int kNumFractions = 25;
-  return Eigen::ArrayXd::LinSpaced(kNumFractions, 0.0, 1.0);
 }
 
 // The parameter at which a curve, which starts below the height and ends above it, reaches it.
@@ -126,6 +113,19 @@ void SmoothTogether(bool with_sigma, const CenterSet& centers, std::vector<LineC
 
 }  // namespace
 
+Eigen::ArrayXd CutFractions() {
+  constexpr int kNumFractions = 25;
+  return Eigen::ArrayXd::LinSpaced(kNumFractions, 0.0, 1.0);
+}
+
+Eigen::Vector3d ChordOf(const LineCurve& line) {
+  return EvaluateCurve(line.fit.curve, 1.0) - EvaluateCurve(line.fit.curve, 0.0);
+}
+
+double MiddleHeight(const LineCurve& line, const Eigen::Vector3d& up) {
+  return up.dot(EvaluateCurve(line.fit.curve, 0.0) + EvaluateCurve(line.fit.curve, 1.0)) / 2;
+}
+
 std::optional<int> CenterSet::IndexOf(int marker_id) const {
   const auto it = std::lower_bound(marker_ids.begin(), marker_ids.end(), marker_id);
   if (it == marker_ids.end() || *it != marker_id) return std::nullopt;
@@ -157,6 +157,7 @@ PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const 
   for (const MarkerLine& line : part.horizontal) {
     LineCurve curve;
     curve.name = line.name;
+    curve.place_in_layout = static_cast<int>(&line - part.horizontal.data());
     for (const int marker_id : line.marker_ids) {
       if (const auto index = centers.IndexOf(marker_id)) curve.indices.push_back(*index);
     }
@@ -179,28 +180,12 @@ PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const 
                      return MiddleHeight(a, up) < MiddleHeight(b, up);
                    });
   DropReversed(up, &curves);
+  LeaveOutCrossing(up, &curves);
   return curves;
 }
 
-std::vector<std::string> FindCrossings(const std::vector<LineCurve>& lines,
-                                       const Eigen::Vector3d& up) {
-  std::vector<Eigen::Matrix3Xd> samples;
-  for (const LineCurve& line : lines) samples.push_back(SampleForCut(line.fit.curve));
-  std::vector<std::string> crossings;
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    Eigen::Index place = 0;
-    const double gap_m = (up.transpose() * (samples[i] - samples[i - 1])).minCoeff(&place);
-    if (gap_m > 0) continue;
-    crossings.push_back(fmt::format(
-        "sections {} and {} cross: at {:.0f} % of their length {} is {:.1f} mm below {}",
-        lines[i - 1].name, lines[i].name, 100 * Fractions()[place], lines[i].name, -kMmPerM * gap_m,
-        lines[i - 1].name));
-  }
-  return crossings;
-}
-
 Eigen::Matrix3Xd SampleForCut(const SpaceCurve& line) {
-  const Eigen::ArrayXd fractions = Fractions();
+  const Eigen::ArrayXd fractions = CutFractions();
   Eigen::Matrix3Xd points(3, fractions.size());
   for (Eigen::Index j = 0; j < fractions.size(); ++j) {
     points.col(j) = EvaluateCurve(line, fractions[j]);

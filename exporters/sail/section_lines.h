@@ -30,6 +30,7 @@ struct CenterSet {
 
 struct LineCurve {
   std::string name;
+  int place_in_layout = 0;   // among the part's horizontal lines
   std::vector<int> indices;  // into the CenterSet, from luff to leech
   double smoothing = 0.0;
   CurveFit fit;
@@ -46,16 +47,27 @@ struct MissingLine {
 struct PartCurves {
   std::vector<LineCurve> lines;  // from the lowest up
   std::vector<MissingLine> missing;
+  std::vector<std::string> crossings;  // notes, one for each pair of lines that cross
 };
 
 // Fits the lines of the part. Leaves out lines with too few markers, with markers in the same place
-// or out of order along the chord, and lines that run opposite to the others.
+// or out of order along the chord, lines that run opposite to the others, and lines that cross.
 PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const Eigen::Vector3d& up,
                         int min_markers);
 
-// Messages about neighboring lines that cross.
-std::vector<std::string> FindCrossings(const std::vector<LineCurve>& lines,
-                                       const Eigen::Vector3d& up);
+// Leaves out lines that cross: those with the most crossings first, until none is left. Of a pair
+// that crosses no other line, nothing says which one is wrong, and both are left out.
+//
+// Two lines cross if one is above the other in one place and below it in another, compared at equal
+// fractions of their lengths and as seen from the side, or if they stand in another order than the
+// layout lists them, foot to head.
+void LeaveOutCrossing(const Eigen::Vector3d& up, PartCurves* curves);
+
+Eigen::Vector3d ChordOf(const LineCurve& line);
+double MiddleHeight(const LineCurve& line, const Eigen::Vector3d& up);  // of its chord
+
+// Curve parameters at which lines are compared and connected.
+Eigen::ArrayXd CutFractions();
 
 // The cut at `height_m` along up through sampled lines, from the lowest up. If the lines do not
 // cover the whole cut, `reason` says so.
@@ -66,7 +78,7 @@ struct HeightCut {
 HeightCut CutAtHeight(const std::vector<Eigen::Matrix3Xd>& line_points, const Eigen::Vector3d& up,
                       double height_m);
 
-// Points at equal fractions of the line, for CutAtHeight.
+// Points at CutFractions() of the line, for CutAtHeight.
 Eigen::Matrix3Xd SampleForCut(const SpaceCurve& line);
 
 }  // namespace velamap

@@ -155,6 +155,7 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   summary->shape =
       ExportShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
   LogScaleWarnings(summary->shape.audit);
+  WarnOfMissingSections(summary->shape.sail.sections);
   sparse.Commit();
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });

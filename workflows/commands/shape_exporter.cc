@@ -8,6 +8,7 @@
 #include "workflows/commands/commands.h"
 #include "workflows/options/sail_options.h"
 #include "workflows/options/shared_options.h"
+#include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
 
@@ -71,6 +72,7 @@ void Run(const Options& options) {
   }
   const ShapeExportReport report =
       ExportShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
+  WarnOfMissingSections(report.sail.sections);
   clock.End("export");
   LogStageTimes(clock);
   Print(report, options.paths, std::cout);

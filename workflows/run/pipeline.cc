@@ -238,6 +238,12 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
   return result;
 }
 
+void WarnOfMissingSections(const SectionReport& sections) {
+  for (const MissingSection& missing : sections.missing) {
+    spdlog::warn("no section {} of {}: {}", missing.name, missing.part, missing.reason);
+  }
+}
+
 void WriteAdjustedModel(const Model& model, const AdjustmentResult& result,
                         const std::string& path) {
   WriteModel(model, path, ModelFormat::kBinaryAndText, [&result](const std::string& folder) {

@@ -78,6 +78,9 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
                              const CornerSigmas& corner_sigmas, const std::string& log_path,
                              Model* model);
 
+// Warns of lines and heights that have no section, with the reason.
+void WarnOfMissingSections(const SectionReport& sections);
+
 // Writes the model, and beside it the uncertainty if there is one.
 void WriteAdjustedModel(const Model& model, const AdjustmentResult& result,
                         const std::string& path);

@@ -369,15 +369,46 @@ TEST(Section, BadLinesAreLeftOutWithTheReason) {
   EXPECT_THAT(reason(double_marker), HasSubstr("markers 204 and 205 are in the same place"));
 }
 
-TEST(Section, CrossingSectionsAreReportedAndNotInterpolatedBetween) {
+std::vector<std::string> NamesOf(const std::vector<Section>& sections) {
+  std::vector<std::string> names;
+  for (const Section& section : sections) names.push_back(section.name);
+  return names;
+}
+
+TEST(Section, NeitherOfTwoSectionsThatCrossIsPrinted) {
   Sail sail = ExampleSail();
   for (int j = 6; j < 12; ++j) ShiftMarker(200 + j, {0, 0, -0.45 * (j - 5)}, &sail.shape);
   const SectionReport report = Sections(sail, {{1.0}});
-  EXPECT_EQ(report.sections.size(), 3u);
+  EXPECT_THAT(NamesOf(report.sections), testing::ElementsAre("h3"));
   ASSERT_EQ(report.notes.size(), 1u);
   EXPECT_THAT(report.notes[0], HasSubstr("sections h1 and h2 cross: at 100 % of their length"));
-  ASSERT_EQ(report.missing.size(), 1u);
-  EXPECT_THAT(report.missing[0].reason, HasSubstr("cross"));
+  EXPECT_THAT(report.notes[0], HasSubstr("h1 and h2 left out"));
+  ASSERT_EQ(report.missing.size(), 3u);
+  EXPECT_THAT(report.missing[0].reason, HasSubstr("h1 and h2 cross"));
+  EXPECT_THAT(report.missing[1].reason, HasSubstr("h1 and h2 cross"));
+  EXPECT_THAT(report.missing[2].reason, HasSubstr("fewer than two lines"));
+}
+
+TEST(Section, OnlyTheSectionThatCrossesTheOthersIsLeftOut) {
+  Sail sail = ExampleSail();
+  for (int j = 0; j < 12; ++j) ShiftMarker(200 + j, {0, 0, 0.9 * (j - 5)}, &sail.shape);
+  const SectionReport report = Sections(sail, {{1.0}});
+  EXPECT_THAT(NamesOf(report.sections), testing::ElementsAre("h1", "z=1", "h3"));
+  ASSERT_EQ(report.notes.size(), 2u);
+  EXPECT_THAT(report.notes[0], HasSubstr("h2 left out"));
+  EXPECT_THAT(report.notes[1], HasSubstr("h2 left out"));
+}
+
+TEST(Section, SectionInTheOrderOfNoLayoutIsLeftOut) {
+  Sail sail = ExampleSail();
+  auto& lines = sail.layout.parts[0].horizontal;
+  std::reverse(lines.begin(), lines.end());  // head to foot
+  EXPECT_EQ(Sections(sail).sections.size(), 3u);
+  std::swap(lines[0], lines[1]);
+  const SectionReport report = Sections(sail);
+  EXPECT_THAT(NamesOf(report.sections), testing::ElementsAre("h1"));
+  ASSERT_EQ(report.notes.size(), 1u);
+  EXPECT_THAT(report.notes[0], HasSubstr("h2 and h3 are in the wrong order"));
 }
 
 TEST(Section, LayoutWithoutLinesIsSaidOnce) {
