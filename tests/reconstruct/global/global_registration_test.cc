@@ -227,6 +227,32 @@ TEST(GlobalRegistration, MarkerOfAnotherSizeIsLeftOutAndSaysSo) {
   EXPECT_LT(MaxError(registration, scene), 1e-6);
 }
 
+TEST(GlobalRegistration, FalseMarkerOfThreeFramesIsLeftOutBecauseOfItsLine) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 21, true);
+  AddNoise({0.1, 0.0, 0.0, 0, TestSeed()}, &scene);
+  ASSERT_EQ(PlantFalseMarker(14, {0.7, -0.5, 0.3}, 3, &scene), 3);
+  const Registration registration = Register(scene);
+  ASSERT_EQ(registration.dropped_markers.size(), 1u);
+  const DroppedMarker& dropped = registration.dropped_markers[0];
+  EXPECT_EQ(dropped.marker_id, 14);
+  EXPECT_TRUE(dropped.is_false);
+  EXPECT_EQ(dropped.num_frames, 3);
+  EXPECT_THAT(dropped.reason, HasSubstr("on line h3"));
+  EXPECT_THAT(dropped.reason, HasSubstr("marker 13 and"));
+  EXPECT_EQ(registration.shape.size(), scene.x_in_world.size() - 1);
+  EXPECT_EQ(registration.shape.count(14), 0u);
+  // The table names it in the frames that it was seen in.
+  const auto num_frames =
+      std::count_if(registration.frames.begin(), registration.frames.end(), [](const auto& frame) {
+        return std::count(frame.outlier_ids.begin(), frame.outlier_ids.end(), 14) > 0;
+      });
+  EXPECT_EQ(num_frames, 3);
+
+  // Without the lines nothing says that it does not belong to the object.
+  scene.layout.parts.clear();
+  EXPECT_EQ(Register(scene).shape.count(14), 1u);
+}
+
 TEST(GlobalRegistration, ScaleIsThatOfTheMedianMarker) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 12, false);
   for (const int marker_id : {3, 9, 17, 24}) {

@@ -1,6 +1,7 @@
 #include "reconstruct/global/map_cleanup.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numeric>
 
@@ -76,6 +77,7 @@ TEST(Cleanup, TakesNothingOutOfAGoodMap) {
   GrownMap grown(SailWithNoise(15, false, TestSeed()));
   VoteOnIds(&grown.global);
   DropWrongSizes(&grown.global);
+  DropContradictions(grown.map.scene.layout, &grown.global);
   LeaveOutBlurredFrames(&grown.global);
   LimitFrames(&grown.global);
   DropRest(&grown.global);
@@ -259,6 +261,56 @@ TEST(LimitFrames, ChoosesTheSameFramesInAnyShapeFrame) {
     LimitFrames(&map->global);
   }
   EXPECT_EQ(grown.LeftOutFrames(), moved.LeftOutFrames());
+}
+
+TEST(DropContradictions, DoesNotDependOnTheFrameAndTheScaleOfTheMap) {
+  SyntheticScene scene = SailWithNoise(20, true, TestSeed());
+  ASSERT_EQ(PlantFalseMarker(14, {0.7, -0.5, 0.3}, 3, &scene), 3);
+  const Layout layout = scene.layout;
+  for (const double scale : {1.0, 0.01, 30.0}) {
+    GrownMap grown{SyntheticScene(scene)};
+    auto& place =
+        grown.global.solution.shape_from_marker[static_cast<std::size_t>(grown.map.MarkerIdx(14))];
+    place.front().translation += Eigen::Vector3d(0.7, -0.5, 0.3);
+    grown.global.solution = Transformed(ArbitrarySimilarity(scale), grown.global.solution);
+    grown.Update();
+    DropContradictions(layout, &grown.global);
+    EXPECT_THAT(grown.DroppedIds(), ElementsAre(14));
+    EXPECT_TRUE(grown.global.dropped_markers.begin()->second.is_false);
+  }
+}
+
+TEST(DropContradictions, MisreadIdAtThePlaceOfAnotherMarkerGoes) {
+  SyntheticScene scene = SailWithNoise(20, true, TestSeed());
+  // Marker 7 is hidden, and in every fifth frame 21 is read as 7 with its corners turned.
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    FrameDetections& frame = scene.frames[i];
+    const auto erase = [&frame](const MarkerDetection* marker) {
+      if (marker != nullptr)
+        frame.markers.erase(frame.markers.begin() + (marker - frame.markers.data()));
+    };
+    erase(FindDetection(7, &frame));
+    MarkerDetection* marker = FindDetection(21, &frame);
+    if (i % 5 != 0 || marker == nullptr) continue;
+    marker->marker_id = 7;
+    std::rotate(marker->corners_in_image_px.begin(), marker->corners_in_image_px.begin() + 1,
+                marker->corners_in_image_px.end());
+    SortMarkers(&frame);
+  }
+  GrownMap grown(std::move(scene));
+  const std::size_t idx_7 = static_cast<std::size_t>(grown.map.MarkerIdx(7));
+  const Sim3 place =
+      grown.global.solution.shape_from_marker[static_cast<std::size_t>(grown.map.MarkerIdx(21))]
+          .front();
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(-std::acos(0.0), Eigen::Vector3d::UnitZ()));
+  grown.global.solution.shape_from_marker[idx_7] = {
+      {place.scale, place.rotation * quarter, place.translation}};
+  grown.Update();
+  ASSERT_GE(grown.global.NumFits(static_cast<int>(idx_7)), 3);
+  DropContradictions(Layout(), &grown.global);
+  EXPECT_THAT(grown.DroppedIds(), ElementsAre(7));
+  EXPECT_THAT(grown.global.dropped_markers.begin()->second.reason,
+              HasSubstr("a misread id: it stands where marker 21 stands"));
 }
 
 TEST(DropRest, GoesOnUntilAllThatIsLeftHasEnough) {

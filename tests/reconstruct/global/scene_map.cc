@@ -108,6 +108,28 @@ void TurnCorners(double rate, std::uint32_t seed, SyntheticScene* scene) {
   }
 }
 
+int PlantFalseMarker(int marker_id, const Eigen::Vector3d& shift_m, int num_frames,
+                     SyntheticScene* scene) {
+  int num_planted = 0;
+  for (std::size_t i = 0; i < scene->frames.size(); ++i) {
+    FrameDetections& frame = scene->frames[i];
+    MarkerDetection* detection = FindDetection(marker_id, &frame);
+    if (detection == nullptr) continue;
+    bool is_seen = num_planted < num_frames;
+    for (std::size_t corner = 0; corner < kNumCorners && is_seen; ++corner) {
+      const auto image_px =
+          ImageFromCam(scene->camera, scene->cam_from_world[i] *
+                                          (scene->x_in_world.at(marker_id)[corner + 1] + shift_m));
+      is_seen = image_px && (image_px->array() > 0).all() &&
+                image_px->x() < scene->camera.width_px && image_px->y() < scene->camera.height_px;
+      if (is_seen) detection->corners_in_image_px[corner] = *image_px;
+    }
+    num_planted += is_seen;
+    if (!is_seen) frame.markers.erase(frame.markers.begin() + (detection - frame.markers.data()));
+  }
+  return num_planted;
+}
+
 void BlurFrames(double sigma_px, std::uint32_t seed, SyntheticScene* scene) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> normal(0.0, sigma_px);

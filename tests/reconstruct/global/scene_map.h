@@ -48,6 +48,10 @@ void SortMarkers(FrameDetections* frame);
 void ExchangeIds(double rate, std::uint32_t seed, SyntheticScene* scene);
 // Numbers the corners of `rate` of the detections from a wrong one.
 void TurnCorners(double rate, std::uint32_t seed, SyntheticScene* scene);
+// Hides a marker, and shows the first `num_frames` frames that can see it a false square with its
+// id at another place, moved by `shift_m` in the world frame. Returns the number of frames that do.
+int PlantFalseMarker(int marker_id, const Eigen::Vector3d& shift_m, int num_frames,
+                     SyntheticScene* scene);
 // Blurs every tenth frame from the sixth on: the corners' sigma does not say so.
 void BlurFrames(double sigma_px, std::uint32_t seed, SyntheticScene* scene);
 
