@@ -210,5 +210,65 @@ TEST_F(WhyOutlierTest, AnythingElse) {
             "16 px from its place");
 }
 
+// The marker in the middle of the sail.
+constexpr int kMiddleId = 14;
+
+TEST(SupportOf, MarkerIsSeenWhereItShouldBe) {
+  const SceneMap map = NoisySail(0.2, TestSeed());
+  const MapSolution truth = map.TrueSolution();
+  const MapNoise noise = EstimateNoise(map.problem, truth);
+  for (std::size_t idx = 0; idx < map.problem.markers.size(); ++idx) {
+    const int marker_idx = static_cast<int>(idx);
+    const PlacedMarker placed = SupportOf(map.problem, truth, noise, marker_idx);
+    EXPECT_EQ(placed.marker_id, map.problem.Marker(marker_idx).marker_id);
+    EXPECT_EQ(placed.num_seen, map.problem.Marker(marker_idx).observation_idxs.size());
+    EXPECT_GT(placed.num_should_see, 0);
+    // The scene leaves nothing out, but what it turns away and what is near the border.
+    EXPECT_EQ(placed.num_seen_of_these, placed.num_should_see);
+  }
+}
+
+TEST(SupportOf, ImagesThatMissItAreCounted) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 20, false);
+  int num_missing = 0;
+  for (std::size_t i = 3; i < scene.frames.size(); ++i) {
+    auto& markers = scene.frames[i].markers;
+    const auto size = markers.size();
+    markers.erase(std::remove_if(markers.begin(), markers.end(),
+                                 [](const auto& m) { return m.marker_id == kMiddleId; }),
+                  markers.end());
+    num_missing += size != markers.size();
+  }
+  ASSERT_GT(num_missing, 10);
+  const SceneMap map(std::move(scene));
+  const MapSolution truth = map.TrueSolution();
+  const PlacedMarker placed =
+      SupportOf(map.problem, truth, EstimateNoise(map.problem, truth), map.MarkerIdx(kMiddleId));
+  EXPECT_LE(placed.num_seen, 3);
+  EXPECT_GT(placed.num_should_see, placed.num_seen_of_these + num_missing / 4);
+}
+
+TEST(SupportOf, SigmaIsThatOfTheCentreAndScalesWithTheMap) {
+  const SceneMap map = NoisySail(0.4, TestSeed());
+  const MapSolution truth = map.TrueSolution();
+  const MapNoise noise = EstimateNoise(map.problem, truth);
+  const int marker_idx = map.MarkerIdx(kMiddleId);
+  const PlacedMarker placed = SupportOf(map.problem, truth, noise, marker_idx);
+  EXPECT_GT(placed.sigma_m, 1e-5);
+  EXPECT_LT(placed.sigma_m, 0.01);  // 15 views of 0.4 px
+  const double scale = 7.0;
+  const MapSolution moved = Transformed(ArbitrarySimilarity(scale), truth);
+  const PlacedMarker scaled = SupportOf(map.problem, moved, noise, marker_idx);
+  EXPECT_NEAR(scaled.sigma_m / placed.sigma_m, scale, 1e-6 * scale);
+  EXPECT_EQ(scaled.num_should_see, placed.num_should_see);
+  // Fewer views know it less.
+  MapSolution fewer = truth;
+  const auto& observation_idxs = map.problem.Marker(marker_idx).observation_idxs;
+  for (std::size_t i = 2; i < observation_idxs.size(); ++i) {
+    fewer.fits[static_cast<std::size_t>(observation_idxs[i])] = 0;
+  }
+  EXPECT_GT(SupportOf(map.problem, fewer, noise, marker_idx).sigma_m, placed.sigma_m);
+}
+
 }  // namespace
 }  // namespace velamap
