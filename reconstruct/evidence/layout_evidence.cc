@@ -11,24 +11,12 @@
 #include <fmt/format.h>
 
 #include "importer/base/statistics.h"
+#include "reconstruct/evidence/judged_line.h"
 #include "reconstruct/evidence/line_evidence.h"
+#include "reconstruct/evidence/rival_evidence.h"
 
 namespace velamap {
 namespace {
-
-constexpr double kNumSigmas = 2.0;
-
-using MarkersById = std::map<int, const PlacedMarker*>;  // that are still believed
-
-struct Evidence {
-  MarkersById markers;
-  std::map<int, std::string> reasons;  // of those that are not believed, by marker id
-
-  void Drop(int marker_id, std::string reason) {
-    reasons.emplace(marker_id, std::move(reason));
-    markers.erase(marker_id);
-  }
-};
 
 std::string SeenText(const PlacedMarker& marker) {
   return marker.num_should_see > marker.num_seen_of_these
@@ -41,65 +29,6 @@ double SeenRatio(const PlacedMarker& marker) {
   return marker.num_should_see > 0
              ? static_cast<double>(marker.num_seen_of_these) / marker.num_should_see
              : 1.0;
-}
-
-// Pairs of markers that claim one place, the one that fewer images see second.
-std::vector<std::pair<const PlacedMarker*, const PlacedMarker*>> RivalPairs(
-    const MarkersById& markers) {
-  std::set<std::pair<int, int>> pairs;
-  for (const auto& [id, marker] : markers) {
-    for (const int rival_id : marker->rival_ids) {
-      if (markers.count(rival_id) > 0)
-        pairs.emplace(std::min(id, rival_id), std::max(id, rival_id));
-    }
-  }
-  std::vector<std::pair<const PlacedMarker*, const PlacedMarker*>> rivals;
-  for (const auto& [a_id, b_id] : pairs) {
-    const PlacedMarker *a = markers.at(a_id), *b = markers.at(b_id);
-    if (a->num_seen < b->num_seen) std::swap(a, b);
-    rivals.emplace_back(a, b);
-  }
-  return rivals;
-}
-
-std::string MisreadText(const PlacedMarker& marker, const PlacedMarker& rival) {
-  return fmt::format(
-      "a misread id: it stands where marker {} stands, seen there in {} images and "
-      "marker {} in {}",
-      rival.marker_id, marker.num_seen, rival.marker_id, rival.num_seen);
-}
-
-void DropMisreadIds(Evidence* evidence) {
-  constexpr double kFew = 0.5;
-  for (const auto& [often, seldom] : RivalPairs(evidence->markers)) {
-    if (seldom->num_seen >= kFew * often->num_seen) continue;
-    evidence->Drop(seldom->marker_id, MisreadText(*seldom, *often));
-  }
-}
-
-// One line with the markers on it that are believed.
-struct JudgedLine {
-  const MarkerLine* line = nullptr;
-  std::vector<const PlacedMarker*> markers;
-  std::vector<LinePoint> points;
-};
-
-std::vector<JudgedLine> LinesOf(const LayoutPart& part, const MarkersById& markers) {
-  std::vector<JudgedLine> lines;
-  for (const std::vector<MarkerLine>* direction : {&part.horizontal, &part.vertical}) {
-    for (const MarkerLine& line : *direction) {
-      JudgedLine judged{&line, {}, {}};
-      for (std::size_t place = 0; place < line.marker_ids.size(); ++place) {
-        const auto marker = markers.find(line.marker_ids[place]);
-        if (marker == markers.end()) continue;
-        judged.markers.push_back(marker->second);
-        judged.points.push_back({static_cast<int>(place), marker->second->center_in_shape_m,
-                                 marker->second->sigma_m, Trust::kWellSeen});
-      }
-      if (judged.points.size() >= 2) lines.push_back(std::move(judged));
-    }
-  }
-  return lines;
 }
 
 // How often the neighbours of a marker are seen: medians over the next two on each side, on all
@@ -143,73 +72,6 @@ Trust TrustOf(const PlacedMarker& marker, const UsuallySeen& neighbors) {
     return Trust::kSeldomSeen;
   }
   return part_of_usual < kOftenMissed ? Trust::kOftenMissed : Trust::kWellSeen;
-}
-
-// The step that the long lines of a part have in common; nothing without a long line.
-std::optional<double> StepOfPart(const std::vector<JudgedLine>& lines) {
-  std::vector<double> steps_m;
-  for (const JudgedLine& line : lines) {
-    if (line.points.size() >= kMinPointsForStep) steps_m.push_back(EstimateStep(line.points));
-  }
-  if (steps_m.empty()) return std::nullopt;
-  return Median(std::move(steps_m));
-}
-
-// Short lines take the step of the part, if their own is not longer for sure.
-double StepOfLine(const JudgedLine& line, const std::optional<double>& step_of_part_m) {
-  if (line.points.size() >= kMinPointsForStep || !step_of_part_m) return EstimateStep(line.points);
-  return std::max(*step_of_part_m, SmallestStep(line.points));
-}
-
-// How near on its lines a marker is to one that is where the cloth can have it, in places: the
-// smallest such gap to the next two markers on each side. The nearer, the less is it by chance.
-// Infinite where no line confirms the marker.
-double ConfirmedWithin(const std::vector<JudgedLine>& lines, const PlacedMarker& marker,
-                       const PlacedMarker& rival) {
-  constexpr std::size_t kNumOnEachSide = 2;
-  const std::optional<double> step_of_part_m = StepOfPart(lines);
-  double smallest_gap = std::numeric_limits<double>::infinity();
-  for (const JudgedLine& line : lines) {
-    const auto on_line = std::find(line.markers.begin(), line.markers.end(), &marker);
-    if (on_line == line.markers.end()) continue;
-    const auto idx = static_cast<std::size_t>(on_line - line.markers.begin());
-    const double step_m = StepOfLine(line, step_of_part_m);
-    const std::size_t begin = idx < kNumOnEachSide ? 0 : idx - kNumOnEachSide;
-    for (std::size_t j = begin; j < std::min(line.points.size(), idx + kNumOnEachSide + 1); ++j) {
-      if (j == idx || line.markers[j] == &rival) continue;
-      const LinePoint &first = line.points[std::min(j, idx)], &last = line.points[std::max(j, idx)];
-      if (!AreAsFarAsTheLineSays(first, last, step_m)) continue;
-      smallest_gap =
-          std::min(smallest_gap, static_cast<double>(last.place_on_line - first.place_on_line));
-    }
-  }
-  return smallest_gap;
-}
-
-// Decides between rivals that are seen about as often.
-void DecideBetweenRivals(const Layout& layout, Evidence* evidence) {
-  constexpr double kMuchNearer = 0.5;
-  for (const auto& [often, seldom] : RivalPairs(evidence->markers)) {
-    if (evidence->markers.count(often->marker_id) == 0 ||
-        evidence->markers.count(seldom->marker_id) == 0) {
-      continue;
-    }
-    double often_within = std::numeric_limits<double>::infinity(), seldom_within = often_within;
-    for (const LayoutPart& part : layout.parts) {
-      const std::vector<JudgedLine> lines = LinesOf(part, evidence->markers);
-      often_within = std::min(often_within, ConfirmedWithin(lines, *often, *seldom));
-      seldom_within = std::min(seldom_within, ConfirmedWithin(lines, *seldom, *often));
-    }
-    const bool often_belongs =
-        std::isfinite(often_within) && often_within <= kMuchNearer * seldom_within;
-    const bool seldom_belongs =
-        std::isfinite(seldom_within) && seldom_within <= kMuchNearer * often_within;
-    const std::string decision = often_belongs || seldom_belongs
-                                     ? ", where the layout has it"
-                                     : ", and nothing decides between them";
-    if (!often_belongs) evidence->Drop(often->marker_id, MisreadText(*often, *seldom) + decision);
-    if (!seldom_belongs) evidence->Drop(seldom->marker_id, MisreadText(*seldom, *often) + decision);
-  }
 }
 
 // Names the nearest markers that belong on the line.
@@ -281,7 +143,7 @@ bool DropStrayMarkers(const LayoutPart& part, Evidence* evidence) {
 void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgement>& judged,
                     Evidence* evidence) {
   constexpr std::size_t kMinForExtent = 4;
-  constexpr double kGross = 2.0;
+  constexpr double kGross = 2.0, kNumSigmas = 2.0;
   std::vector<const PlacedMarker*> well_seen, seldom_seen;
   const UsuallySeen usual = NeighborsSeen({}, evidence->markers, -1);
   for (const auto& [id, marker] : evidence->markers) {
@@ -325,7 +187,6 @@ std::vector<Contradiction> FindContradictions(const Layout& layout,
   Evidence evidence;
   for (const PlacedMarker& marker : markers) evidence.markers.emplace(marker.marker_id, &marker);
   if (evidence.markers.empty()) return {};
-  DropMisreadIds(&evidence);
   DecideBetweenRivals(layout, &evidence);
   for (const LayoutPart& part : layout.parts) {
     while (DropStrayMarkers(part, &evidence)) {

@@ -39,8 +39,9 @@ struct Contradiction {
 
 // `markers` by ascending id, each once. The result is by ascending id.
 //
-// - Of two rivals for one place, the one that fewer than half as many images see is a misread id.
-//   Otherwise the one stays that a line confirms. If nothing decides, neither is believed.
+// - Of two rivals for one place, the one stays that undisputed markers of its lines confirm, or
+// else
+//   the one that more than twice as many images see. If neither decides, neither is believed.
 // - On every line, line_evidence.h finds the markers that cannot be on it. A marker on two lines is
 //   believed if one of them holds it.
 // - A marker that no line can judge is not believed if hardly any image that should see it does,

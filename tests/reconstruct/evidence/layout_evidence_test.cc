@@ -153,23 +153,35 @@ TEST(LayoutEvidence, LineListedInAnotherOrderIsNotBelieved) {
   EXPECT_THAT(FalseIds(sail), IsEmpty());
 }
 
-TEST(LayoutEvidence, RarerOfTwoRivalsIsAMisreadId) {
+TEST(LayoutEvidence, WithoutALineTheRarerOfTwoRivalsIsAMisreadId) {
   RandomSail sail = EvenSail();
-  sail.Find(33)->center_in_shape_m = sail.Find(11)->center_in_shape_m;
   sail.Find(33)->rival_ids = {11};
   SetSeen(15, sail.Find(33));
-  EXPECT_THAT(FalseIds(sail), ElementsAre(33));
+  EXPECT_THAT(IdsOf(FindContradictions({}, sail.markers)), ElementsAre(33));
+  SetSeen(5, sail.Find(11));
+  EXPECT_THAT(IdsOf(FindContradictions({}, sail.markers)), ElementsAre(11));
 }
 
-TEST(LayoutEvidence, LayoutDecidesBetweenRivalsThatAreSeenAsOften) {
-  for (const int num_seen : {30, 40, 50}) {
+TEST(LayoutEvidence, LayoutDecidesBetweenRivalsHoweverOftenTheyAreSeen) {
+  for (const int num_seen : {2, 10, 40, 50}) {
     RandomSail sail = EvenSail();
     sail.Find(37)->center_in_shape_m = sail.Find(10)->center_in_shape_m;
     sail.Find(37)->rival_ids = {10};
     sail.Find(10)->rival_ids = {37};
-    SetSeen(num_seen, sail.Find(37));
+    SetSeen(num_seen, sail.Find(10));
     EXPECT_THAT(FalseIds(sail), ElementsAre(37)) << num_seen;
   }
+}
+
+TEST(LayoutEvidence, NeighboursOnALineThatIsMisreadAsAWholeDoNotConfirmEachOther) {
+  RandomSail sail = EvenSail();
+  sail.layout.parts[0].vertical.clear();
+  for (int k = 0; k < 3; ++k) {
+    PlacedMarker* marker = sail.Find(30 + k);
+    marker->center_in_shape_m = sail.Find(14 + k)->center_in_shape_m;
+    marker->rival_ids = {14 + k};
+  }
+  EXPECT_THAT(FalseIds(sail), ElementsAre(30, 31, 32));
 }
 
 TEST(LayoutEvidence, RivalsWithoutALineAreBothDoubted) {

@@ -1,0 +1,45 @@
+// The lines of a layout with the markers on them that are believed so far. Private to the evidence.
+
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "importer/layout/layout.h"
+#include "reconstruct/evidence/layout_evidence.h"
+#include "reconstruct/evidence/line_evidence.h"
+
+namespace velamap {
+
+using MarkersById = std::map<int, const PlacedMarker*>;  // that are still believed
+
+struct Evidence {
+  MarkersById markers;
+  std::map<int, std::string> reasons;  // of those that are not believed, by marker id
+
+  void Drop(int marker_id, std::string reason) {
+    reasons.emplace(marker_id, std::move(reason));
+    markers.erase(marker_id);
+  }
+};
+
+// One line with the markers on it that are believed.
+struct JudgedLine {
+  const MarkerLine* line = nullptr;
+  std::vector<const PlacedMarker*> markers;
+  std::vector<LinePoint> points;
+};
+
+// The lines of the part that hold two markers or more.
+std::vector<JudgedLine> LinesOf(const LayoutPart& part, const MarkersById& markers);
+
+// The step that the long lines of a part have in common; nothing without a long line.
+std::optional<double> StepOfPart(const std::vector<JudgedLine>& lines);
+
+// Short lines take the step of the part, if their own is not longer for sure.
+double StepOfLine(const JudgedLine& line, const std::optional<double>& step_of_part_m);
+
+}  // namespace velamap
