@@ -41,44 +41,77 @@ std::string MisreadText(const PlacedMarker& marker, const PlacedMarker& rival) {
       rival.marker_id, marker.num_seen, rival.marker_id, rival.num_seen);
 }
 
-// How near on its lines a marker is to one that is where the cloth can have it, in places: the
-// smallest such gap to the next two undisputed markers on each side. The nearer, the less is it by
-// chance. Infinite where no line confirms the marker.
-double ConfirmedWithin(const std::vector<JudgedLine>& lines, const std::set<int>& disputed_ids,
-                       const PlacedMarker& marker) {
-  constexpr int kNumOnEachSide = 2;
-  const std::optional<double> step_of_part_m = StepOfPart(lines);
+// What the next two undisputed markers on each side say of a marker, on all of its lines.
+struct LineVotes {
+  int num_asked = 0;
+  int num_for = 0;
+  // To the nearest one that is for it, in places: the nearer, the less is it by chance.
   double smallest_gap = std::numeric_limits<double>::infinity();
-  for (const JudgedLine& line : lines) {
-    const auto on_line = std::find(line.markers.begin(), line.markers.end(), &marker);
-    if (on_line == line.markers.end()) continue;
-    const auto idx = static_cast<int>(on_line - line.markers.begin());
-    const LinePoint& point = line.points[static_cast<std::size_t>(idx)];
-    const double step_m = StepOfLine(line, step_of_part_m);
-    for (const int direction : {-1, 1}) {
-      int num_asked = 0;
-      for (int i = idx + direction;
-           i >= 0 && i < static_cast<int>(line.points.size()) && num_asked < kNumOnEachSide;
-           i += direction) {
-        const auto other_idx = static_cast<std::size_t>(i);
-        if (disputed_ids.count(line.markers[other_idx]->marker_id) > 0) continue;
-        ++num_asked;
-        const LinePoint& other = line.points[other_idx];
-        const bool holds = direction < 0 ? AreAsFarAsTheLineSays(other, point, step_m)
-                                         : AreAsFarAsTheLineSays(point, other, step_m);
-        const double gap = std::abs(other.place_on_line - point.place_on_line);
-        if (holds) smallest_gap = std::min(smallest_gap, gap);
-      }
+
+  bool HasMajority() const { return 2 * num_for > num_asked; }
+};
+
+// Whether two markers of a line may be where they are: no farther apart than the cloth allows, and
+// not so near that the line would be folded, which a line that is misread in part looks like.
+bool FitOnLine(const LinePoint& a, const LinePoint& b, double step_m) {
+  constexpr double kFolded = 0.5;
+  const bool a_is_first = a.place_on_line < b.place_on_line;
+  return AreAsFarAsTheLineSays(a_is_first ? a : b, a_is_first ? b : a, step_m) &&
+         (a.x_in_shape_m - b.x_in_shape_m).norm() >
+             kFolded * step_m * std::abs(a.place_on_line - b.place_on_line);
+}
+
+void AddVotes(const JudgedLine& line, double step_m, const std::set<int>& disputed_ids,
+              const PlacedMarker& marker, LineVotes* votes) {
+  constexpr int kNumOnEachSide = 2;
+  const auto on_line = std::find(line.markers.begin(), line.markers.end(), &marker);
+  if (on_line == line.markers.end()) return;
+  const auto idx = static_cast<int>(on_line - line.markers.begin());
+  const LinePoint& point = line.points[static_cast<std::size_t>(idx)];
+  for (const int direction : {-1, 1}) {
+    int num_asked = 0;
+    for (int i = idx + direction;
+         i >= 0 && i < static_cast<int>(line.points.size()) && num_asked < kNumOnEachSide;
+         i += direction) {
+      const auto other_idx = static_cast<std::size_t>(i);
+      if (disputed_ids.count(line.markers[other_idx]->marker_id) > 0) continue;
+      ++num_asked;
+      ++votes->num_asked;
+      const LinePoint& other = line.points[other_idx];
+      if (!FitOnLine(point, other, step_m)) continue;
+      ++votes->num_for;
+      const double gap = std::abs(other.place_on_line - point.place_on_line);
+      votes->smallest_gap = std::min(votes->smallest_gap, gap);
     }
   }
-  return smallest_gap;
+}
+
+LineVotes VotesFor(const std::vector<std::vector<JudgedLine>>& lines_of_part,
+                   const std::set<int>& disputed_ids, const PlacedMarker& marker) {
+  LineVotes votes;
+  for (const std::vector<JudgedLine>& lines : lines_of_part) {
+    const std::optional<double> step_of_part_m = StepOfPart(lines);
+    for (const JudgedLine& line : lines) {
+      AddVotes(line, StepOfLine(line, step_of_part_m), disputed_ids, marker, &votes);
+    }
+  }
+  return votes;
+}
+
+// Whether the layout has one marker in the place that both claim, and not the other: most votes are
+// for the one only, or those for the other come from more than twice as far. A marker that no line
+// can judge is not contradicted by any.
+bool BelongsRatherThan(const LineVotes& votes, const LineVotes& of_rival) {
+  constexpr double kMuchNearer = 0.5;
+  if (votes.num_for == 0 || of_rival.num_asked == 0) return false;
+  if (votes.HasMajority() != of_rival.HasMajority()) return votes.HasMajority();
+  return votes.smallest_gap <= kMuchNearer * of_rival.smallest_gap;
 }
 
 // Leaves out the rivals that the layout does not confirm where it confirms the other one. Disputed
 // markers confirm nobody: a line may be misread as a whole. Returns whether there are any.
 bool DropRivalsByLayout(const Layout& layout, const std::vector<RivalPair>& pairs,
                         Evidence* evidence) {
-  constexpr double kMuchNearer = 0.5;
   std::set<int> disputed_ids;
   for (const auto& [a, b] : pairs) disputed_ids.insert({a->marker_id, b->marker_id});
   std::vector<std::vector<JudgedLine>> lines_of_part;
@@ -87,15 +120,10 @@ bool DropRivalsByLayout(const Layout& layout, const std::vector<RivalPair>& pair
   }
   bool changed = false;
   for (const auto& [often, seldom] : pairs) {
-    double often_within = std::numeric_limits<double>::infinity(), seldom_within = often_within;
-    for (const auto& lines : lines_of_part) {
-      often_within = std::min(often_within, ConfirmedWithin(lines, disputed_ids, *often));
-      seldom_within = std::min(seldom_within, ConfirmedWithin(lines, disputed_ids, *seldom));
-    }
-    if (!std::isfinite(std::min(often_within, seldom_within))) continue;
-    const bool often_belongs = often_within <= kMuchNearer * seldom_within;
-    const bool seldom_belongs = seldom_within <= kMuchNearer * often_within;
-    if (!often_belongs && !seldom_belongs) continue;
+    const LineVotes for_often = VotesFor(lines_of_part, disputed_ids, *often);
+    const LineVotes for_seldom = VotesFor(lines_of_part, disputed_ids, *seldom);
+    const bool often_belongs = BelongsRatherThan(for_often, for_seldom);
+    if (!often_belongs && !BelongsRatherThan(for_seldom, for_often)) continue;
     const PlacedMarker &stays = often_belongs ? *often : *seldom,
                        &goes = often_belongs ? *seldom : *often;
     evidence->Drop(goes.marker_id, MisreadText(goes, stays) + ", where the layout has it");

@@ -184,6 +184,17 @@ TEST(LayoutEvidence, NeighboursOnALineThatIsMisreadAsAWholeDoNotConfirmEachOther
   EXPECT_THAT(FalseIds(sail), ElementsAre(30, 31, 32));
 }
 
+TEST(LayoutEvidence, MarkerOnNoLineIsNotContradictedByALine) {
+  RandomSail sail = EvenSail();
+  PlacedMarker on_hull = *sail.Find(36);
+  on_hull.marker_id = 50;
+  on_hull.rival_ids = {36};
+  sail.layout.parts.push_back({"hull", true, {}, {}, {50}});
+  sail.markers.push_back(on_hull);
+  SetSeen(2, sail.Find(36));
+  EXPECT_THAT(FalseIds(sail), ElementsAre(36));
+}
+
 TEST(LayoutEvidence, RivalsWithoutALineAreBothDoubted) {
   RandomSail sail = EvenSail();
   Layout layout;

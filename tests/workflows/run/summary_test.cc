@@ -13,6 +13,15 @@ TEST(LeftOutTextTest, CountsReasonsThatDifferInNumbersTogether) {
             "3; 2: shares 1 of 3 markers (a.jpg, c.jpg); 1: no marker found (b.jpg)");
 }
 
+TEST(LeftOutTextTest, MarkersAreCountedByReasonToo) {
+  EXPECT_EQ(MarkersLeftOutText({}), "none");
+  EXPECT_EQ(MarkersLeftOutText({{7, 3, "on line h1 it is 3.50 m from marker 6", true},
+                                {12, 4, "on line h2 it is 2.10 m from marker 11", true},
+                                {90, 1, "seen in 1 registered frames", false}}),
+            "3; 2: on line h1 it is 3.50 m from marker 6 (7, 12); 1: seen in 1 registered frames "
+            "(90)");
+}
+
 TEST(LeftOutTextTest, ShowsTheFirstNamesOnly) {
   EXPECT_EQ(LeftOutText({{"a", "r"}, {"b", "r"}, {"c", "r"}, {"d", "r"}}),
             "4; 4: r (a, b, c, ...)");
