@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "importer/base/parallel.h"
@@ -42,6 +43,7 @@ struct State {
   Vector parameters;
   std::shared_ptr<const ImageFormation> formation;
   std::vector<FittedSample> samples;
+  std::set<std::size_t> sample_idxs;  // of the samples that could be fitted, in the same order
   // The states after a step of each parameter alone, for derivatives by differences; null until
   // they are asked for.
   mutable std::shared_ptr<const std::vector<State>> moved;
@@ -51,7 +53,7 @@ struct State {
 State FittedWith(const ImageFormationParameters& formation, const Vector& parameters,
                  const State& state, int num_threads) {
   State moved{parameters, std::make_shared<const ImageFormation>(formation), state.samples,
-              nullptr};
+              state.sample_idxs, nullptr};
   ParallelFor(moved.samples.size(), num_threads, [&](std::size_t i) {
     RefitSample(*moved.formation, state.formation->tone(), &moved.samples[i]);
   });
@@ -234,33 +236,49 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
   mutable double least_cost_ = std::numeric_limits<double>::infinity();
 };
 
-State FitAll(const std::vector<FormationSample>& samples, double gamma, bool is_inverted,
-             int num_threads) {
+State FitAll(const std::vector<FormationSample>& samples, double gamma,
+             const ImageFormationParameters& formation, int num_threads) {
   State state;
   state.parameters = kMean;
   state.parameters[0] = std::log(gamma);
-  ImageFormationParameters formation;
-  formation.is_inverted = is_inverted;
-  formation.quiet_zone_sigma_cells = kQuietZoneSigma;
   state.formation = std::make_shared<const ImageFormation>(With(state.parameters, formation));
   std::vector<std::optional<FittedSample>> fitted(samples.size());
   ParallelFor(samples.size(), num_threads, [&](std::size_t i) {
     fitted[i] = FitSample(samples[i], *state.formation);
     if (fitted[i]) RefitSample(*state.formation, state.formation->tone(), &*fitted[i]);
   });
-  for (std::optional<FittedSample>& sample : fitted) {
-    if (sample) state.samples.push_back(std::move(*sample));
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    if (!fitted[i]) continue;
+    state.samples.push_back(std::move(*fitted[i]));
+    state.sample_idxs.insert(i);
   }
   return state;
 }
 
+// Drops the samples that another state has not.
+void KeepOnly(const std::set<std::size_t>& sample_idxs, State* state) {
+  std::vector<FittedSample> samples;
+  std::set<std::size_t> kept;
+  std::size_t i = 0;
+  for (const std::size_t sample_idx : state->sample_idxs) {
+    FittedSample& sample = state->samples[i++];
+    if (sample_idxs.count(sample_idx) == 0) continue;
+    samples.push_back(std::move(sample));
+    kept.insert(sample_idx);
+  }
+  if (kept.size() < state->sample_idxs.size()) state->moved.reset();
+  state->samples = std::move(samples);
+  state->sample_idxs = std::move(kept);
+}
+
 // The samples fitted with the gamma that leaves the least noise; none if no fit succeeds.
-State BestStart(const std::vector<FormationSample>& samples, bool is_inverted, int num_threads) {
+State BestStart(const std::vector<FormationSample>& samples,
+                const ImageFormationParameters& formation, int num_threads) {
   constexpr double kGammas[] = {1.0, 1.5, 2.2};
   State best;
   double least_noise = std::numeric_limits<double>::infinity();
   for (const double gamma : kGammas) {
-    State state = FitAll(samples, gamma, is_inverted, num_threads);
+    State state = FitAll(samples, gamma, formation, num_threads);
     const double noise = NoiseOf(state);
     if (noise < least_noise) {
       least_noise = noise;
@@ -270,17 +288,20 @@ State BestStart(const std::vector<FormationSample>& samples, bool is_inverted, i
   return best;
 }
 
-State Minimized(State state, bool sharpens_light, int num_threads) {
+State Minimize(const std::vector<FormationSample>& samples, bool is_inverted, bool sharpens_light,
+               int num_threads) {
   constexpr int kNumRounds = 2;  // each with the noise of the one before
+  ImageFormationParameters formation;
+  formation.is_inverted = is_inverted;
+  formation.sharpens_light = sharpens_light;
+  formation.quiet_zone_sigma_cells = kQuietZoneSigma;
   LeastSquaresOptions options;
   options.max_iterations = 6;
   options.initial_damping = 1e-3;
   options.max_damping = 1e2;
   options.min_relative_decrease = 2e-4;
-  ImageFormationParameters formation = state.formation->parameters();
-  formation.sharpens_light = sharpens_light;
-  state = FittedWith(formation, state.parameters, state, num_threads);
-  for (int round = 0; round < kNumRounds; ++round) {
+  State state = BestStart(samples, formation, num_threads);
+  for (int round = 0; round < kNumRounds && !state.samples.empty(); ++round) {
     state = WithPooledQuietZone(std::move(state), num_threads);
     GaussNewtonEquations<kCount> equations;
     MinimizeSquares(options, FormationProblem(NoiseOf(state), num_threads), &state, &equations);
@@ -293,10 +314,11 @@ State Minimized(State state, bool sharpens_light, int num_threads) {
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads) {
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
-  const State start = BestStart(samples, is_inverted, num_threads);
-  if (start.samples.empty()) return {};
-  const State by_gray = Minimized(start, false, num_threads);
-  const State by_light = Minimized(start, true, num_threads);
+  State by_gray = Minimize(samples, is_inverted, false, num_threads);
+  State by_light = Minimize(samples, is_inverted, true, num_threads);
+  KeepOnly(by_light.sample_idxs, &by_gray);
+  KeepOnly(by_gray.sample_idxs, &by_light);
+  if (by_gray.samples.empty()) return {};
   const double noise = std::min(NoiseOf(by_gray), NoiseOf(by_light));
   const FormationProblem problem(noise, num_threads);
   const bool light_wins = problem.Cost(by_light) < problem.Cost(by_gray);
