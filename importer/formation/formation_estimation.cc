@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "importer/base/parallel.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
@@ -321,7 +323,12 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   if (by_gray.samples.empty()) return {};
   const double noise = std::min(NoiseOf(by_gray), NoiseOf(by_light));
   const FormationProblem problem(noise, num_threads);
-  const bool light_wins = problem.Cost(by_light) < problem.Cost(by_gray);
+  // Most cameras sharpen grey values, and under noise and compression both explain the samples.
+  constexpr double kClearlyLess = 0.9;
+  const double cost_by_gray = problem.Cost(by_gray), cost_by_light = problem.Cost(by_light);
+  const bool light_wins = cost_by_light < kClearlyLess * cost_by_gray;
+  spdlog::debug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
+                cost_by_light);
   const State& best = light_wins ? by_light : by_gray;
   FormationEstimate estimate;
   estimate.parameters = best.formation->parameters();

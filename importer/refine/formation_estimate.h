@@ -21,13 +21,13 @@ struct ImageFormationParameters {
   double s_amplitude = 0.0;
   double sharpening = 0.0;
   double sharpening_radius_px = 1.0;
-  // Of light, before the tone curve, which makes dark halos strong and bright ones weak. Of the
-  // cameras of the real photographs in tests and samples, most are explained better by this.
-  bool sharpens_light = false;
   double ink_spread_sides = 0.0;
   // The images hold 255 less the recorded grey values, so that inverted prints look upright. Light
   // stays what the camera received: bright cells then have less of it than dark ones.
   bool is_inverted = false;
+  // Sharpening of light, before the tone curve, which makes dark halos strong and bright ones weak.
+  // It explains most of the real cameras of tests and samples better than that of grey values.
+  bool sharpens_light = false;
   // The quiet zone around the black squares of all markers: mean width and 1 sigma of a side, as
   // the prior of each fit. A sigma of 0: unknown.
   double quiet_zone_cells = 1.0;

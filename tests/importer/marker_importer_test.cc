@@ -135,11 +135,17 @@ TEST_F(MarkerImporterTest, RerunAddsWhatIsMissingAndNothingElse) {
   EXPECT_EQ(report.num_images_added, 0);
   EXPECT_EQ(report.num_images_present, 2);
   EXPECT_EQ(report.num_pairs, 1);
+  // The estimate from the first images holds for later ones.
+  ColmapDatabase database(options_.database_path, ColmapDatabase::Mode::kReadWriteCreate);
+  FormationEstimate formation = database.ReadFormation().value();
+  formation.parameters.gamma = 1.234;
+  database.WriteFormation(formation);
   WritePicture("2.png", 2, {1, 2});
   report = ImportMarkers(options_);
   EXPECT_EQ(report.num_images_added, 1);
   EXPECT_EQ(report.num_pairs, 3);
   EXPECT_EQ(ReadImages().size(), 3u);
+  EXPECT_EQ(database.ReadFormation()->parameters.gamma, 1.234);
 }
 
 TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {

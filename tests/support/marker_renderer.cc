@@ -222,20 +222,24 @@ void ApplyLight(double gradient, cv::Mat* image) {
   }
 }
 
-// From light to grey values, as importer/refine/image_formation.h has it but computed anew.
+void Sharpen(const ImageFormationParameters& camera, cv::Mat* image) {
+  if (camera.sharpening == 0) return;
+  cv::Mat blurred;
+  cv::GaussianBlur(*image, blurred, {0, 0}, camera.sharpening_radius_px);
+  *image = (1 + camera.sharpening) * *image - camera.sharpening * blurred;
+}
+
+// From light to grey values, as importer/refine/formation_estimate.h has it but computed anew.
 void ApplyCamera(const ImageFormationParameters& camera, cv::Mat* image) {
   constexpr double kPi = 3.14159265358979323846;
+  if (camera.sharpens_light) Sharpen(camera, image);
   if (camera.gamma != 1 || camera.s_amplitude != 0) {
     image->forEach<float>([&camera](float& value, const int*) {
       const double v = std::pow(std::max(0.0, value / 255.0), 1 / camera.gamma);
       value = static_cast<float>(255 * (v - camera.s_amplitude * std::sin(2 * kPi * v)));
     });
   }
-  if (camera.sharpening != 0) {
-    cv::Mat blurred;
-    cv::GaussianBlur(*image, blurred, {0, 0}, camera.sharpening_radius_px);
-    *image = (1 + camera.sharpening) * *image - camera.sharpening * blurred;
-  }
+  if (!camera.sharpens_light) Sharpen(camera, image);
 }
 
 }  // namespace

@@ -100,6 +100,53 @@ TEST(FormationEstimation, LinearCameraIsFoundLinear) {
   EXPECT_LT(std::abs(SideBias(grid, ImageFormation(estimate.parameters))), 0.03);
 }
 
+// A camera that sharpens before it encodes; the scenes above do it afterwards.
+TEST(FormationEstimation, TellsWhetherLightOrGreyValuesAreSharpened) {
+  std::mt19937 random(TestSeed());
+  for (const bool sharpens_light : {false, true}) {
+    MarkerGridOptions scene = DrawScene(&random);
+    scene.side_px = 36;
+    scene.rendering.camera = {2.2, 0.0, 0.8, 1.0};
+    scene.rendering.camera.sharpens_light = sharpens_light;
+    const MarkerGrid grid = MakeMarkerGrid(scene);
+    const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+    EXPECT_EQ(estimate.parameters.sharpens_light, sharpens_light);
+    EXPECT_LT(std::abs(SideBias(grid, ImageFormation(estimate.parameters))), 0.03);
+  }
+}
+
+// One marker with cells of two pixels does not show how wide its narrow margin is; all do.
+TEST(FormationEstimation, SmallMarkersTellTheirQuietZoneTogether) {
+  std::mt19937 random(TestSeed());
+  for (const double quiet_zone_cells : {0.45, 0.6, 1.0}) {
+    MarkerGridOptions scene = DrawScene(&random);
+    scene.side_px = 13;
+    scene.rendering.quiet_zone_cells = quiet_zone_cells;
+    scene.rendering.background = 40;
+    scene.rendering.blur_sigma_px = 0.9;
+    scene.rendering.camera = {};
+    const MarkerGrid grid = MakeMarkerGrid(scene);
+    const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+    EXPECT_NEAR(estimate.parameters.quiet_zone_cells, quiet_zone_cells, 0.15);
+    EXPECT_LT(std::abs(SideBias(grid, ImageFormation(estimate.parameters))), 0.05)
+        << quiet_zone_cells;
+  }
+}
+
+TEST(FormationEstimation, NoiseWidensTheSigmaOfTheInset) {
+  std::mt19937 random(TestSeed());
+  MarkerGridOptions scene = DrawScene(&random);
+  scene.side_px = 30;
+  double before_px = 0.0;
+  for (const double noise_sigma : {1.0, 8.0}) {
+    scene.rendering.noise_sigma = noise_sigma;
+    const double sigma_px = EstimateFormation(Samples(MakeMarkerGrid(scene)), false).inset_sigma_px;
+    EXPECT_GT(sigma_px, 2 * before_px);
+    EXPECT_GT(sigma_px, 0.0);
+    before_px = sigma_px;
+  }
+}
+
 TEST(FormationEstimation, NothingIsKnownWithoutSamples) {
   EXPECT_EQ(EstimateFormation({}, false).num_samples, 0);
 }
@@ -131,6 +178,30 @@ TEST(CutPatch, UndoesTheSharpening) {
   for (int y = 0; y < patch.values.rows; ++y) {
     for (int x = 0; x < patch.values.cols; ++x) {
       EXPECT_NEAR(patch.values.at<float>(y, x), plain.at<float>(y + 10, x + 10), 1.0);
+    }
+  }
+}
+
+TEST(CutPatch, UndoesTheSharpeningOfLight) {
+  const ImageFormation formation({2.2, 0.0, 0.5, 1.2, 0.0, false, true});
+  cv::Mat light(60, 60, CV_32F, cv::Scalar(60));
+  cv::rectangle(light, {20, 18, 21, 17}, cv::Scalar(150), cv::FILLED);
+  cv::GaussianBlur(light, light, {0, 0}, 0.8);
+  cv::Mat blurred;
+  cv::GaussianBlur(light, blurred, {0, 0}, 1.2);
+  const cv::Mat sharpened = 1.5 * light - 0.5 * blurred;
+  cv::Mat gray(light.size(), CV_8U);
+  for (int y = 0; y < gray.rows; ++y) {
+    for (int x = 0; x < gray.cols; ++x) {
+      gray.at<std::uint8_t>(y, x) =
+          cv::saturate_cast<std::uint8_t>(formation.tone().Encode(sharpened.at<float>(y, x)));
+    }
+  }
+  const GrayPatch patch = CutPatch(gray, {10, 10, 40, 40}, formation);
+  for (int y = 0; y < patch.values.rows; ++y) {
+    for (int x = 0; x < patch.values.cols; ++x) {
+      EXPECT_NEAR(patch.values.at<float>(y, x),
+                  formation.tone().Encode(light.at<float>(y + 10, x + 10)), 1.0);
     }
   }
 }
