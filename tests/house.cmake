@@ -30,11 +30,11 @@ house_folder(importer PUBLIC
 house_folder(reconstruct/geometry PUBLIC
   covariance_update frame_shape marker_pose point_covariance)
 house_folder(reconstruct/model PUBLIC
-  adjustment_uncertainty gauge model model_io reprojection)
+  adjustment_uncertainty calibration_evidence gauge model model_io reprojection weak_geometry)
 house_folder(reconstruct/solve PUBLIC
   schur_complement)
 house_folder(reconstruct/registration PUBLIC
-  frame_order registration registration_options)
+  dictionary_doubt frame_order registration registration_options)
 house_folder(reconstruct/evidence PUBLIC
   layout_evidence)
 house_folder(reconstruct/thesis PUBLIC
@@ -61,7 +61,7 @@ house_folder(exporters/sail PUBLIC
 house_folder(exporters/compare PUBLIC
   comparison_ply comparison_report comparison_sigma shape_comparison surface_comparison)
 house_folder(exporters/report PUBLIC
-  report_sail report_writer)
+  report_data report_sail report_writer verdict)
 house_folder(exporters PUBLIC
   shape_exporter shape_report)
 house_folder(workflows/run PUBLIC

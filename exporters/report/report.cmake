@@ -40,6 +40,7 @@ target_sources(velamap_exporters PRIVATE
   report/report_picture.cc
   report/report_sail.cc
   report/report_writer.cc
+  report/verdict.cc
   ${REPORT_ASSETS}
 )
 target_link_libraries(velamap_exporters PRIVATE ${OpenCV_LIBS} Boost::headers)

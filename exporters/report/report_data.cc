@@ -10,6 +10,7 @@
 #include "exporters/report/report_histogram.h"
 #include "exporters/report/report_json.h"
 #include "exporters/report/report_key_numbers.h"
+#include "exporters/report/verdict.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "importer/base/error.h"
 
@@ -39,6 +40,14 @@ Json KeyNumbersJson(const ReportInput& input) {
                        {"status", StatusName(number.status)}});
   }
   return numbers;
+}
+
+Json JsonOf(const Verdict& verdict) {
+  Json reasons = Json::array();
+  for (const VerdictReason& reason : verdict.reasons) {
+    reasons.push_back({{"level", StatusName(reason.level)}, {"text", reason.text}});
+  }
+  return {{"level", StatusName(verdict.level)}, {"reasons", std::move(reasons)}};
 }
 
 Json JsonOf(const Histogram& histogram) {
@@ -188,6 +197,7 @@ std::string ReportJson(const ReportInput& input) {
   Json json = {{"title", input.title}, {"version", input.version}};
   if (!input.created.empty()) json["created"] = input.created;
   json["frame"] = JsonOf(input.frame.value_or(FrameOfCentralCamera(input.metric_model)));
+  json["verdict"] = JsonOf(MakeVerdict(input));
   json["key_numbers"] = KeyNumbersJson(input);
   json["markers"] = MarkersJson(input, errors);
   json["images"] = ImagesJson(input);

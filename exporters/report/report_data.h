@@ -69,6 +69,7 @@ struct ReportInput {
   std::optional<ReportFrame> frame = {};
   const AdjustmentUncertainty* uncertainty = nullptr;  // may be null
   const ScaleAudit* audit = nullptr;                   // may be null
+  std::vector<std::string> warnings = {};              // of the log
   std::vector<ReportLeftOut> images_left_out = {};
   std::vector<ReportLeftOut> markers_left_out =
       {};  // other missing markers of the layout are added

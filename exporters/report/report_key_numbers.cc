@@ -21,6 +21,11 @@ constexpr double kGoodError_px = 0.5, kBadError_px = 0.8;
 constexpr double kGoodAreaError_percent = 2, kBadAreaError_percent = 5;
 constexpr double kGoodRatio = 0.95, kBadRatio = 0.7;
 constexpr double kGoodScaleSpread_percent = 1, kBadScaleSpread_percent = 3;
+// What the calibration that the residuals ask for does to the shape: the sigmas take the given one
+// for granted.
+constexpr double kGoodShapeChange_sigmas = 0.5, kBadShapeChange_sigmas = 1;
+// One parameter is named where it alone explains so much of what all together do.
+constexpr double kDecisiveShare = 0.7;
 
 ReportStatus LowIsGood(double value, double good, double bad) {
   if (value <= good) return ReportStatus::kGood;
@@ -42,6 +47,9 @@ KeyNumber MarkersNumber(const ShapeMetrics& metrics) {
         "of the layout's markers with all four corners reconstructed; good from {:.0f} %",
         100 * kGoodRatio);
     number.status = HighIsGood(ratio, kGoodRatio, kBadRatio);
+    number.advice =
+        "see in the report why the others were left out: film them closer, from more places, or "
+        "correct the layout";
   }
   return number;
 }
@@ -59,7 +67,9 @@ KeyNumber ErrorNumber(const Statistics& error_px) {
           fmt::format("distance between detected and projected corners; good up to a mean of {:g} "
                       "px, above {:g} px the shape may be wrong",
                       kGoodError_px, kBadError_px),
-          LowIsGood(error_px.mean, kGoodError_px, kBadError_px)};
+          LowIsGood(error_px.mean, kGoodError_px, kBadError_px),
+          "check that the calibration belongs to these images, that the layout is that of the "
+          "surface, and that the surface kept its shape"};
 }
 
 KeyNumber AreaNumber(const ShapeMetrics& metrics) {
@@ -68,7 +78,8 @@ KeyNumber AreaNumber(const ShapeMetrics& metrics) {
           fmt::format("{:.2f} % mean, {:.2f} % at most", percent.mean, percent.max),
           fmt::format("difference from the printed area; good up to a mean of {:g} %",
                       kGoodAreaError_percent),
-          LowIsGood(percent.mean, kGoodAreaError_percent, kBadAreaError_percent)};
+          LowIsGood(percent.mean, kGoodAreaError_percent, kBadAreaError_percent),
+          "measure some prints and check marker_length of the layout and the calibration"};
 }
 
 // Whether parts differ by more than the scale's sigma says and no distance decides between them.
@@ -83,7 +94,50 @@ bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
   });
 }
 
-KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit) {
+// Decided by the effect: a change of the calibration that the residuals ask for but that hardly
+// moves the shape harms nobody.
+ReportStatus StatusOf(const CalibrationEvidence& evidence) {
+  if (evidence.num_changes == 0) return ReportStatus::kNone;
+  if (!IsContradicted(evidence)) return ReportStatus::kGood;
+  return LowIsGood(evidence.shape_change_in_sigmas, kGoodShapeChange_sigmas,
+                   kBadShapeChange_sigmas);
+}
+
+// The parameter that explains most, and the options that refine it.
+std::string CalibrationAdvice(const CalibrationEvidence& evidence) {
+  const bool is_focal = evidence.focal_share >= std::max(kDecisiveShare, evidence.distortion_share);
+  const bool is_distortion = !is_focal && evidence.distortion_share >= kDecisiveShare;
+  std::string what = "focal length and distortion", options;
+  if (is_focal)
+    what = fmt::format("its focal length is {:+.1f} % off",
+                       100 * (1 / (1 + evidence.focal_change) - 1));
+  if (is_distortion) what = "its distortion is wrong or missing";
+  if (!is_distortion) options += " --BundleAdjustment.refine_focal_length 1";
+  if (!is_focal) options += " --BundleAdjustment.refine_extra_params 1";
+  return fmt::format(
+      "the calibration does not belong to these images ({}): calibrate this camera as it filmed "
+      "(velamap camera_calibrator), or refine it here:{}",
+      what, options);
+}
+
+// Whether another calibration would explain the residuals. Not tested without the marker-aware
+// adjustment.
+std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertainty) {
+  if (uncertainty == nullptr || uncertainty->calibration.num_changes == 0) return std::nullopt;
+  const CalibrationEvidence& evidence = uncertainty->calibration;
+  return KeyNumber{
+      "Calibration",
+      fmt::format("{:.3f} px systematic, {:.2g} sigmas of the shape", evidence.systematic_px,
+                  evidence.shape_change_in_sigmas),
+      fmt::format("part of the residuals and of the markers' sides over the image that another "
+                  "calibration explains, and how far that would move the shape; good up to {:g} px "
+                  "or {:g} sigmas",
+                  kMaxSystematic_px, kGoodShapeChange_sigmas),
+      StatusOf(evidence), CalibrationAdvice(evidence)};
+}
+
+KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
+                      const AdjustmentUncertainty* uncertainty) {
   const double spread_percent = 100 * scale.relative_spread;
   std::string value = fmt::format("{:.2f} % spread", spread_percent);
   if (scale.relative_sigma) {
@@ -94,14 +148,25 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit) {
       fmt::format("standard deviations of the metric scale and of the scales from each of {} "
                   "markers alone; good up to {:g} % spread",
                   scale.num_markers, kGoodScaleSpread_percent),
-      LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent)};
-  if (audit == nullptr) return number;
-  if (!FailedChecks(*audit).empty()) {
+      LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent),
+      "the sizes of the markers contradict each other: check their prints and marker_length, and "
+      "measure a distance (distances, use: scale)"};
+  if (audit != nullptr && !FailedChecks(*audit).empty()) {
     number.meaning += "; measured distances contradict it";
     number.status = ReportStatus::kBad;
-  } else if (PartsLeaveScaleOpen(scale, *audit) && number.status == ReportStatus::kGood) {
+    number.advice = "find out which is wrong, the measured distances or the shape, before using it";
+  } else if (audit != nullptr && number.status == ReportStatus::kGood &&
+             PartsLeaveScaleOpen(scale, *audit)) {
     number.meaning += "; parts disagree: measure a distance on one of them";
     number.status = ReportStatus::kCheck;
+    number.advice = "parts disagree: measure a distance on one of them (distances, use: scale)";
+  }
+  const bool is_calibration_doubted =
+      uncertainty != nullptr && StatusOf(uncertainty->calibration) > ReportStatus::kGood;
+  if (number.status == ReportStatus::kGood && is_calibration_doubted) {
+    number.meaning += "; the calibration is in doubt, and this with it";
+    number.status = ReportStatus::kCheck;
+    number.advice = "its sigma takes the calibration for granted, which is in doubt";
   }
   return number;
 }
@@ -129,7 +194,9 @@ std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit) {
                    fmt::format("{} of {} distances are in the shape, {} of them as checks of it; "
                                "good within {:g} sigmas of distance and shape together",
                                num_found, num_all, num_checks, kMaxCheckSigmas),
-                   ReportStatus::kNone};
+                   ReportStatus::kNone,
+                   "find out whether a measured distance or the shape is wrong before using the "
+                   "shape"};
   if (worst == nullptr) {
     number.status = ReportStatus::kCheck;
     return number;
@@ -183,7 +250,10 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
     numbers.push_back(ErrorNumber(input.model_metrics.error_px));
   }
   if (input.metrics.area_error_percent.count > 0) numbers.push_back(AreaNumber(input.metrics));
-  numbers.push_back(ScaleNumber(input.scale, input.audit));
+  if (const auto calibration = CalibrationNumber(input.uncertainty)) {
+    numbers.push_back(*calibration);
+  }
+  numbers.push_back(ScaleNumber(input.scale, input.audit, input.uncertainty));
   if (input.audit != nullptr) {
     if (const auto distances = DistancesNumber(*input.audit)) numbers.push_back(*distances);
   }

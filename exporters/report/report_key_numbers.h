@@ -21,8 +21,10 @@ struct KeyNumber {
   std::string value;    // with its unit
   std::string meaning;  // one line, with the limits of the verdict
   ReportStatus status = ReportStatus::kNone;
+  std::string advice = {};  // what to do where the status is not good, one sentence
 };
 
+// In the order of the cards.
 std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input);
 
 // "good", "check", "bad", or empty for kNone.

@@ -148,19 +148,6 @@ void PrintDistances(const ScaleAudit& audit, std::ostream& out) {
   out << '\n';
 }
 
-// A line only where checks fail.
-void PrintVerdict(const ScaleAudit& audit, std::ostream& out) {
-  constexpr std::size_t kMaxDistances = 5;
-  const std::vector<const CheckedDistance*> failed = FailedChecks(audit);
-  if (failed.empty()) return;
-  out << fmt::format("verdict: bad; {} of {} measured distances failed", failed.size(),
-                     NumChecks(audit));
-  for (std::size_t i = 0; i < std::min(failed.size(), kMaxDistances); ++i) {
-    out << (i == 0 ? ": " : ", ") << ShortText(*failed[i]);
-  }
-  out << (failed.size() > kMaxDistances ? ", ...\n" : "\n");
-}
-
 }  // namespace
 
 std::string ShortText(const CheckedDistance& checked) {
@@ -241,7 +228,6 @@ void PrintScaleAudit(const ScaleEstimate& scale, const ScaleAudit& audit, std::o
   if (!audit.markers.empty()) PrintDisagreeingMarkers(audit, out);
   PrintParts(audit, out);
   PrintDistances(audit, out);
-  PrintVerdict(audit, out);
 }
 
 }  // namespace velamap

@@ -28,9 +28,8 @@ std::string ShortText(const CheckedDistance& checked);
 // A warning for each distance that the shape fails: its name, its value, how far it is off.
 std::vector<std::string> ScaleWarnings(const ScaleAudit& audit);
 
-// Prints at most five lines `key: value` for a summary: the sigma of the scale, the markers that
-// disagree, the part that differs most from the others, the known distances, and `verdict: bad`
-// where the shape fails some of these.
+// Prints at most four lines `key: value` for a summary: the sigma of the scale, the markers that
+// disagree, the part that differs most from the others, and the known distances.
 void PrintScaleAudit(const ScaleEstimate& scale, const ScaleAudit& audit, std::ostream& out);
 
 }  // namespace velamap

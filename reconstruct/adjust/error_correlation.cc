@@ -31,14 +31,7 @@ class LinearAdjustment {
   LinearAdjustment(const MarkerState& state, const MarkerProblem& problem,
                    const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                    const std::vector<int>& groups)
-      : covariance_(covariance), num_corner_blocks_(jacobian.corners.size()) {
-    for (const auto* blocks : {&jacobian.corners, &jacobian.priors}) {
-      for (const ResidualJacobian& block : *blocks) {
-        blocks_.push_back(&block);
-        begins_.push_back(num_rows_);
-        num_rows_ += block.NumRows();
-      }
-    }
+      : jacobian_(jacobian), covariance_(covariance) {
     const std::vector<Eigen::Vector3d> positions = Positions(state);
     motions_ = RigidMotions(positions);
     motions_.conservativeResize(Eigen::NoChange, motions_.cols() + 1);
@@ -48,10 +41,12 @@ class LinearAdjustment {
     for (std::size_t i = 0; i < groups.size(); ++i) {
       group_of_image[state.images[i].image_id] = groups[i];
     }
-    for (std::size_t i = 0; i < num_corner_blocks_; ++i) {
-      const auto first_corner = static_cast<std::size_t>(begins_[i] / 2);
+    for (const ResidualJacobian& block : jacobian.corners) {
+      const auto first_corner = static_cast<std::size_t>(num_rows_ / 2);
       group_of_block_.push_back(group_of_image.at(problem.corners[first_corner].second.image_id));
+      num_rows_ += block.NumRows();
     }
+    for (const ResidualJacobian& block : jacobian.priors) num_rows_ += block.NumRows();
   }
 
   Eigen::Index NumRows() const { return num_rows_; }
@@ -60,11 +55,14 @@ class LinearAdjustment {
   // the groups, for each case.
   Eigen::VectorXd SquaredMovements(const RowMajorMatrix& residuals) const {
     const Eigen::Index num_cases = residuals.cols();
-    Parameters parameters = Zero(num_groups_ * num_cases);
-    for (std::size_t i = 0; i < num_corner_blocks_; ++i) {
-      AddGradient(i, residuals, group_of_block_[i] * num_cases, &parameters);
+    ParameterColumns parameters = ZeroColumns(covariance_, num_groups_ * num_cases);
+    Eigen::Index row = 0;
+    for (std::size_t i = 0; i < jacobian_.corners.size(); ++i) {
+      AddGradient(jacobian_.corners[i], covariance_, residuals, row, group_of_block_[i] * num_cases,
+                  &parameters);
+      row += jacobian_.corners[i].NumRows();
     }
-    MultiplyByCovariance(&parameters);
+    MultiplyByCovariance(covariance_, &parameters);
     RowMajorMatrix& movements = parameters.of_points;
     movements -= motions_ * (motions_.transpose() * movements).eval();
     const Eigen::VectorXd squares = movements.colwise().squaredNorm().transpose();
@@ -75,73 +73,12 @@ class LinearAdjustment {
 
   // Residuals that the adjustment leaves of such errors.
   RowMajorMatrix Residuals(const RowMajorMatrix& errors) const {
-    Parameters step = Zero(errors.cols());
-    for (std::size_t i = 0; i < blocks_.size(); ++i) AddGradient(i, errors, 0, &step);
-    MultiplyByCovariance(&step);
-    RowMajorMatrix residuals = errors;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      const ResidualJacobian& block = *blocks_[i];
-      auto rows = residuals.middleRows(begins_[i], block.NumRows());
-      if (block.marker_idx >= 0) {
-        rows -= block.by_marker.lazyProduct(step.of_points.middleRows(
-            covariance_.begins[static_cast<std::size_t>(block.marker_idx)],
-            block.by_marker.cols()));
-      }
-      for (const auto& [column, derivatives] : block.by_globals) {
-        rows -= derivatives.lazyProduct(step.of_globals.middleRows(column, derivatives.cols()));
-      }
-    }
-    return residuals;
+    return ErrorsLeft(jacobian_, covariance_, errors);
   }
 
  private:
-  struct Parameters {
-    RowMajorMatrix of_points, of_globals;
-  };
-
-  Parameters Zero(Eigen::Index num_columns) const {
-    return {RowMajorMatrix::Zero(covariance_.factor.rows(), num_columns),
-            RowMajorMatrix::Zero(covariance_.root.rows(), num_columns)};
-  }
-
-  // Adds J^T residuals of one block to the columns from `column` on.
-  void AddGradient(std::size_t block_idx, const RowMajorMatrix& residuals, Eigen::Index column,
-                   Parameters* gradient) const {
-    const ResidualJacobian& block = *blocks_[block_idx];
-    const auto rows = residuals.middleRows(begins_[block_idx], block.NumRows());
-    const auto add = [&](const RowMajorMatrix& derivatives, Eigen::Index begin,
-                         RowMajorMatrix* sums) {
-      sums->block(begin, column, derivatives.cols(), residuals.cols()) +=
-          derivatives.transpose().lazyProduct(rows);
-    };
-    if (block.marker_idx >= 0) {
-      add(block.by_marker, covariance_.begins[static_cast<std::size_t>(block.marker_idx)],
-          &gradient->of_points);
-    }
-    for (const auto& [first, derivatives] : block.by_globals) {
-      add(derivatives, first, &gradient->of_globals);
-    }
-  }
-
-  // With the matrices of normal_equations.h.
-  void MultiplyByCovariance(Parameters* parameters) const {
-    auto& [points, globals] = *parameters;
-    const auto root = covariance_.root.triangularView<Eigen::Lower>();
-    root.solveInPlace(globals);
-    globals.noalias() -= covariance_.factor.transpose() * points;
-    for (std::size_t i = 0; i < covariance_.marker_blocks.size(); ++i) {
-      const Eigen::MatrixXd& block = covariance_.marker_blocks[i];
-      auto rows = points.middleRows(covariance_.begins[i], block.rows());
-      rows = (block * rows).eval();
-    }
-    points.noalias() -= covariance_.factor * globals;
-    root.transpose().solveInPlace(globals);
-  }
-
+  const MarkerJacobian& jacobian_;
   const MarkerCovariance& covariance_;
-  std::size_t num_corner_blocks_ = 0;
-  std::vector<const ResidualJacobian*> blocks_;  // corners, then priors
-  std::vector<Eigen::Index> begins_;             // first row, by block
   Eigen::Index num_rows_ = 0;
   std::vector<int> group_of_block_;
   int num_groups_ = 0;

@@ -11,16 +11,18 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/adjust/corner_residuals.h"
 #include "reconstruct/adjust/error_correlation.h"
 #include "reconstruct/adjust/marker_sizes.h"
 #include "reconstruct/adjust/marker_uncertainty.h"
 #include "reconstruct/adjust/scale_bars.h"
-#include "reconstruct/adjust/weak_geometry.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
+#include "reconstruct/geometry/covariance_update.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
+#include "reconstruct/model/weak_geometry.h"
 
 namespace velamap {
 namespace {
@@ -164,6 +166,12 @@ void MarkerAdjuster::Finish() {
   uncertainty.variance_factor = summary_.uncertainty.variance_factor;
   uncertainty.share_above_4_sigma = summary_.uncertainty.share_above_4_sigma;
   uncertainty.correlation_factor = correlation_factor;
+  uncertainty.calibration = TestCalibration(model_, linearization->state, linearization->problem,
+                                            linearization->jacobian, linearization->covariance);
+  uncertainty.calibration.shape_change_in_sigmas =
+      uncertainty.calibration.shape_change_m /
+      std::sqrt(Trace(uncertainty.points) /
+                static_cast<double>(uncertainty.points.point3D_ids.size()));
   summary_.uncertainty = std::move(uncertainty);
   UpdatePointErrors(&model_);
   summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(model_));

@@ -207,6 +207,7 @@ class ProblemBuilder {
       observation.row_time_s =
           options_.rolling_shutter_s * (observation.x_in_image_px.y() / camera.height_px - 0.5);
       result_.corners.emplace_back(point3D_id, element);
+      result_.corner_sigmas_px.push_back(observation.sigma_px);
     }
     result_.corner_residuals.push_back(AddResidual(
         std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker->corners.size()),

@@ -52,6 +52,7 @@ struct MarkerProblem {
   std::vector<ceres::ResidualBlockId> prior_residuals;  // all others but scale bars
   // One for every pair of residuals of corner_residuals, in order.
   std::vector<std::pair<Point3DId, TrackElement>> corners;
+  std::vector<double> corner_sigmas_px;  // by which the residuals were divided, by `corners`
 };
 
 // Refers to `state`, which must outlive the problem. `calibration` is the prior of the cameras. The

@@ -188,6 +188,78 @@ std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jaco
   return covariance;
 }
 
+ParameterColumns ZeroColumns(const MarkerCovariance& covariance, Eigen::Index num_columns) {
+  return {RowMajorMatrix::Zero(covariance.factor.rows(), num_columns),
+          RowMajorMatrix::Zero(covariance.root.rows(), num_columns)};
+}
+
+void AddGradient(const ResidualJacobian& block, const MarkerCovariance& covariance,
+                 const RowMajorMatrix& errors, Eigen::Index row, Eigen::Index column,
+                 ParameterColumns* gradient) {
+  const auto rows = errors.middleRows(row, block.NumRows());
+  const auto add = [&](const RowMajorMatrix& derivatives, Eigen::Index begin,
+                       RowMajorMatrix* sums) {
+    sums->block(begin, column, derivatives.cols(), errors.cols()) +=
+        derivatives.transpose().lazyProduct(rows);
+  };
+  if (block.marker_idx >= 0) {
+    add(block.by_marker, covariance.begins[static_cast<std::size_t>(block.marker_idx)],
+        &gradient->of_points);
+  }
+  for (const auto& [first, derivatives] : block.by_globals) {
+    add(derivatives, first, &gradient->of_globals);
+  }
+}
+
+void MultiplyByCovariance(const MarkerCovariance& covariance, ParameterColumns* columns) {
+  auto& [points, globals] = *columns;
+  const auto root = covariance.root.triangularView<Eigen::Lower>();
+  root.solveInPlace(globals);
+  globals.noalias() -= covariance.factor.transpose() * points;
+  for (std::size_t i = 0; i < covariance.marker_blocks.size(); ++i) {
+    const Eigen::MatrixXd& block = covariance.marker_blocks[i];
+    auto rows = points.middleRows(covariance.begins[i], block.rows());
+    rows = (block * rows).eval();
+  }
+  points.noalias() -= covariance.factor * globals;
+  root.transpose().solveInPlace(globals);
+}
+
+ParameterColumns StepOf(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
+                        const RowMajorMatrix& errors) {
+  ParameterColumns step = ZeroColumns(covariance, errors.cols());
+  Eigen::Index row = 0;
+  for (const auto* blocks : {&jacobian.corners, &jacobian.priors}) {
+    for (const ResidualJacobian& block : *blocks) {
+      AddGradient(block, covariance, errors, row, 0, &step);
+      row += block.NumRows();
+    }
+  }
+  MultiplyByCovariance(covariance, &step);
+  return step;
+}
+
+RowMajorMatrix ErrorsLeft(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
+                          const RowMajorMatrix& errors) {
+  const ParameterColumns step = StepOf(jacobian, covariance, errors);
+  RowMajorMatrix left = errors;
+  Eigen::Index row = 0;
+  for (const auto* blocks : {&jacobian.corners, &jacobian.priors}) {
+    for (const ResidualJacobian& block : *blocks) {
+      auto rows = left.middleRows(row, block.NumRows());
+      if (block.marker_idx >= 0) {
+        rows -= block.by_marker.lazyProduct(step.of_points.middleRows(
+            covariance.begins[static_cast<std::size_t>(block.marker_idx)], block.by_marker.cols()));
+      }
+      for (const auto& [column, derivatives] : block.by_globals) {
+        rows -= derivatives.lazyProduct(step.of_globals.middleRows(column, derivatives.cols()));
+      }
+      row += block.NumRows();
+    }
+  }
+  return left;
+}
+
 double Leverage(const MarkerCovariance& covariance, const ResidualJacobian& jacobian) {
   const Eigen::Index num_globals = covariance.root.rows(), num_rows = jacobian.NumRows();
   Eigen::Index first = num_globals;

@@ -58,6 +58,28 @@ struct MarkerCovariance {
 std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jacobian,
                                                       int num_threads);
 
+// Columns of parameters, one for each case.
+struct ParameterColumns {
+  RowMajorMatrix of_points, of_globals;
+};
+
+// The least-squares step for `errors` of all residuals, one row for each residual (corners, then
+// priors) and one column for each case: covariance * J^T errors.
+ParameterColumns StepOf(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
+                        const RowMajorMatrix& errors);
+
+// What is left of such errors after that step.
+RowMajorMatrix ErrorsLeft(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
+                          const RowMajorMatrix& errors);
+
+// Pieces of the two: adds J^T errors of one block, whose rows begin at `row`, to the columns from
+// `column` on; multiplies all columns by the covariance.
+void AddGradient(const ResidualJacobian& block, const MarkerCovariance& covariance,
+                 const RowMajorMatrix& errors, Eigen::Index row, Eigen::Index column,
+                 ParameterColumns* gradient);
+void MultiplyByCovariance(const MarkerCovariance& covariance, ParameterColumns* columns);
+ParameterColumns ZeroColumns(const MarkerCovariance& covariance, Eigen::Index num_columns);
+
 // Sum of the variances of the predicted residuals of one block.
 double Leverage(const MarkerCovariance& covariance, const ResidualJacobian& jacobian);
 

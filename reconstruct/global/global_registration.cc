@@ -17,6 +17,7 @@
 #include "reconstruct/global/map_start.h"
 #include "reconstruct/global/map_verdict.h"
 #include "reconstruct/global/view_selection.h"
+#include "reconstruct/registration/dictionary_doubt.h"
 #include "reconstruct/registration/frame_order.h"
 
 namespace velamap {
@@ -180,6 +181,19 @@ int ChooseCentralFrame(const GlobalRegistration& global) {
   return central_idx;
 }
 
+[[noreturn]] void ThrowNoAgreement(const std::vector<DatabaseImage>& images, int min_num_inliers) {
+  const std::string doubt = DictionaryDoubt(images);
+  throw DataError(fmt::format(
+      "no two images agree on the places of at least {} markers that both see; {}check that the "
+      "camera calibration belongs to these images, that the marker length is right, and that the "
+      "pictures overlap",
+      min_num_inliers,
+      doubt.empty() ? ""
+                    : doubt + ", as false ones of another dictionary are: check the dictionary "
+                              "(--dictionary or the layout's), border_bits and "
+                              "--ArucoDetection.inverted first; if they are right, "));
+}
+
 }  // namespace
 
 Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
@@ -208,10 +222,7 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
     RemoveOutliers(layout, &global);
   }
   if (global.solution.NumRegistered() < 2) {
-    throw DataError("no two images agree on the places of at least " +
-                    std::to_string(options.min_num_inliers) +
-                    " markers that both see; check that the camera calibration belongs to these "
-                    "images, that the marker length is right, and that the pictures overlap");
+    ThrowNoAgreement(images, options.min_num_inliers);
   }
   if (IsSuspicious(global.noise)) {
     global.notes.push_back(fmt::format(

@@ -1,6 +1,7 @@
 #include "reconstruct/model/adjustment_uncertainty.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -14,9 +15,18 @@
 namespace velamap {
 namespace {
 
-// Layout of the file: magic, version, six doubles, points, blocks, factor, signs; little-endian.
+// Layout of the file: magic, version, six doubles, CalibrationEvidence, points, blocks, factor,
+// signs; little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
+
+// In the order of the file, after num_changes.
+constexpr std::array<double CalibrationEvidence::*, 9> kEvidenceMembers = {
+    &CalibrationEvidence::chi_squared,      &CalibrationEvidence::focal_share,
+    &CalibrationEvidence::distortion_share, &CalibrationEvidence::systematic_px,
+    &CalibrationEvidence::focal_change,     &CalibrationEvidence::focal_sigma,
+    &CalibrationEvidence::shape_change_m,   &CalibrationEvidence::shape_change_in_sigmas,
+    &CalibrationEvidence::scale_change};
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is written as memory holds it");
 
@@ -132,6 +142,9 @@ void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::strin
                              uncertainty.correlation_factor, uncertainty.share_above_4_sigma}) {
     Write(value, &out);
   }
+  const CalibrationEvidence& calibration = uncertainty.calibration;
+  Write(static_cast<std::uint64_t>(calibration.num_changes), &out);
+  for (const auto member : kEvidenceMembers) Write(calibration.*member, &out);
   const PointCovariance& points = uncertainty.points;
   WriteCount(points.point3D_ids.size(), &out);
   Write(points.point3D_ids.data(), points.point3D_ids.size(), &out);
@@ -160,6 +173,10 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   uncertainty.apparent_inset_sigma_px = reader.Read<double>();
   uncertainty.correlation_factor = reader.Read<double>();
   uncertainty.share_above_4_sigma = reader.Read<double>();
+  uncertainty.calibration.num_changes = static_cast<int>(reader.Read<std::uint64_t>());
+  for (const auto member : kEvidenceMembers) {
+    uncertainty.calibration.*member = reader.Read<double>();
+  }
   PointCovariance& points = uncertainty.points;
   points.point3D_ids.resize(reader.ReadCount(sizeof(Point3DId)));
   reader.Read(points.point3D_ids.data(), points.point3D_ids.size());

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "reconstruct/geometry/point_covariance.h"
+#include "reconstruct/model/calibration_evidence.h"
 
 namespace velamap {
 
@@ -32,6 +33,7 @@ struct AdjustmentUncertainty {
   // How far corners appear inside along x and y of the marker. 0: not estimated.
   double apparent_inset_px = 0.0;
   double apparent_inset_sigma_px = 0.0;
+  CalibrationEvidence calibration;
 };
 
 // The file in `folder`. ReadUncertainty throws InputError that names the file if it is missing (see

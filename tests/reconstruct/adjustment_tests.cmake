@@ -3,6 +3,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
   SOURCES
     model/adjustment_uncertainty_test.cc
     geometry/covariance_update_test.cc
+    adjust/calibration_score_test.cc
     adjust/marker_adjustment_test.cc
     adjust/marker_cost_functions_test.cc
     adjust/marker_sizes_test.cc
@@ -12,6 +13,6 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     solve/schur_complement_test.cc
     colmap/warm_start_test.cc
     sheet_model.cc
-    adjust/weak_geometry_test.cc
+    model/weak_geometry_test.cc
   LIBRARIES Ceres::ceres
 )

@@ -18,6 +18,7 @@ velamap_test(NAME reconstruct_global_test LABEL unit
     global/map_resection_test.cc
     global/map_start_test.cc
     global/map_verdict_test.cc
+    registration/dictionary_doubt_test.cc
     global/marker_rivals_test.cc
     global/scene_map.cc
   LIBRARIES Ceres::ceres

@@ -115,26 +115,26 @@ std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& a
 }
 
 void WriteReportFile(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
-                     const ReconstructionSummary& summary) {
-  const ShapeExportReport& shape = summary.shape;
-  ReportInput input{shape.metric_model, options.importer.layout, shape.shape,
-                    shape.metrics,      shape.model_metrics,     shape.scale};
+                     ReconstructionSummary* summary) {
+  const ShapeExportReport& shape = summary->shape;
+  ReportInput input = MakeReportInput(shape, options.importer.layout);
   input.title = std::filesystem::path(options.paths.image_path).filename().string();
   input.version = kVersion;
   input.image_path = paths.Images().string();
-  input.uncertainty = shape.uncertainty ? &*shape.uncertainty : nullptr;
   input.frame = MakeReportFrame(shape.frame, shape.metric_model);
   input.sections = MakeReportSections(shape.sail.sections);
   input.surface = MakeReportSurface(shape.sail);
-  for (const LeftOutImage& image : summary.left_out) {
+  for (const LeftOutImage& image : summary->left_out) {
     input.images_left_out.push_back({image.image_name, image.reason});
   }
   for (const DroppedMarker& marker : seed.registration.dropped_markers) {
     input.markers_left_out.push_back({std::to_string(marker.marker_id), marker.reason});
   }
-  input.audit = &shape.audit;
+  input.warnings = LoggedWarnings();  // before those that a key number says, too
+  LogScaleWarnings(shape.audit);
   input.options = TypedOptions(options.arguments);
   input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
+  summary->verdict = MakeVerdict(input);
   WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
 }
 
@@ -154,13 +154,12 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   exporter.shape_output_path = paths.Shape().string();
   summary->shape =
       ExportShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
-  LogScaleWarnings(summary->shape.audit);
   WarnOfMissingSections(summary->shape.sail.sections);
   sparse.Commit();
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
   clock->End("export");
-  WriteReportFile(options, paths, seed, *summary);
+  WriteReportFile(options, paths, seed, summary);
   clock->End("report");
   RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
   summary->num_images = static_cast<int>(model.images.size());

@@ -55,8 +55,12 @@ void Validate(Options* options) {
   options->exporter.shape_output_path = options->paths.shape_path;
 }
 
-void Print(const ShapeExportReport& report, const PathOptions& paths, std::ostream& out) {
+void Print(const ShapeExportReport& report, const Layout& layout, const PathOptions& paths,
+           std::ostream& out) {
+  ReportInput input = MakeReportInput(report, layout);
+  input.warnings = LoggedWarnings();  // before those that a key number says, too
   LogScaleWarnings(report.audit);
+  PrintVerdict(MakeVerdict(input), out);
   PrintShapeSummary(report, out);
   if (!paths.shape_path.empty()) out << "shape_path: " << paths.shape_path << '\n';
   if (!paths.output_path.empty()) out << "model_path: " << paths.output_path << '\n';
@@ -75,7 +79,7 @@ void Run(const Options& options) {
   WarnOfMissingSections(report.sail.sections);
   clock.End("export");
   LogStageTimes(clock);
-  Print(report, options.paths, std::cout);
+  Print(report, layout, options.paths, std::cout);
   report.sail.ThrowSurfaceError();
 }
 

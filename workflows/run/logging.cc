@@ -1,5 +1,6 @@
 #include "workflows/run/logging.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <mutex>
@@ -32,6 +33,25 @@ class TerminalSink : public spdlog::sinks::base_sink<std::mutex> {
   void flush_() override {}
 };
 
+// Keeps the warnings for the verdict.
+class WarningSink : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  std::vector<std::string> Warnings() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return warnings_;
+  }
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    if (message.level != spdlog::level::warn) return;
+    warnings_.emplace_back(message.payload.data(), message.payload.size());
+  }
+  void flush_() override {}
+
+ private:
+  std::vector<std::string> warnings_;
+};
+
 // Puts `warning: ` or `error: ` before the message of such a level.
 class ProblemMark : public spdlog::custom_flag_formatter {
  public:
@@ -53,12 +73,25 @@ std::unique_ptr<spdlog::formatter> MakeFormatter(const std::string& time_pattern
 }
 
 std::shared_ptr<spdlog::sinks::sink> log_file;
+std::shared_ptr<WarningSink> warnings;
+spdlog::level::level_enum written_level = spdlog::level::info;  // of terminal and file
+
+// The logger passes on warnings in any case; terminal and file leave out what is not asked for.
+void SetLevel(spdlog::level::level_enum level) {
+  written_level = level;
+  spdlog::set_level(std::min(level, spdlog::level::warn));
+  for (const auto& sink : spdlog::default_logger()->sinks()) {
+    if (sink != warnings) sink->set_level(level);
+  }
+}
 
 }  // namespace
 
 void SetUpLogging() {
   auto sink = std::make_shared<TerminalSink>();
-  auto logger = std::make_shared<spdlog::logger>("velamap", sink);
+  warnings = std::make_shared<WarningSink>();
+  auto logger =
+      std::make_shared<spdlog::logger>("velamap", spdlog::sinks_init_list{sink, warnings});
   sink->set_formatter(MakeFormatter("%H:%M:%S"));
   spdlog::set_default_logger(logger);
 }
@@ -66,14 +99,18 @@ void SetUpLogging() {
 void SetLogLevel(LogLevel level) {
   switch (level) {
     case LogLevel::kError:
-      return spdlog::set_level(spdlog::level::err);
+      return SetLevel(spdlog::level::err);
     case LogLevel::kWarn:
-      return spdlog::set_level(spdlog::level::warn);
+      return SetLevel(spdlog::level::warn);
     case LogLevel::kInfo:
-      return spdlog::set_level(spdlog::level::info);
+      return SetLevel(spdlog::level::info);
     case LogLevel::kDebug:
-      return spdlog::set_level(spdlog::level::debug);
+      return SetLevel(spdlog::level::debug);
   }
+}
+
+std::vector<std::string> LoggedWarnings() {
+  return warnings == nullptr ? std::vector<std::string>{} : warnings->Warnings();
 }
 
 void AddLogFile(const std::string& path) {
@@ -82,6 +119,7 @@ void AddLogFile(const std::string& path) {
   } catch (const spdlog::spdlog_ex& error) {
     throw InputError(fmt::format("{}: the log cannot be written: {}", path, error.what()));
   }
+  log_file->set_level(written_level);
   log_file->set_formatter(MakeFormatter("%Y-%m-%d %H:%M:%S"));
   spdlog::default_logger()->sinks().push_back(log_file);
   spdlog::default_logger()->flush_on(spdlog::level::info);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace velamap {
 
@@ -13,6 +14,9 @@ void SetUpLogging();
 enum class LogLevel { kError, kWarn, kInfo, kDebug };
 
 void SetLogLevel(LogLevel level);
+
+// The messages of level warning since SetUpLogging(), in order, at every log level.
+std::vector<std::string> LoggedWarnings();
 
 // Appends all later messages to this file, too. Throws InputError if it cannot be written.
 void AddLogFile(const std::string& path);

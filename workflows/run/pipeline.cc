@@ -27,6 +27,8 @@ namespace {
 
 // Corners are accurate to a few tenths of a pixel, so a larger error has another cause.
 constexpr double kSuspiciousErrorPx = 1.0;
+// Rejected detections, as a share of the accepted ones, that nobody has to look at.
+constexpr double kFewRejected = 0.01;
 
 std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
   std::set<std::string> used;
@@ -80,6 +82,21 @@ void LogSeed(const SeedResult& seed) {
   }
 }
 
+// Gives cameras without distortion one of zero, so that it can be refined.
+void AddDistortion(Model* model) {
+  for (auto& [camera_id, camera] : model->cameras) {
+    if (camera.model == CameraModel::kPinhole) {
+      camera.model = CameraModel::kOpenCV;
+    } else if (camera.model == CameraModel::kSimplePinhole) {
+      camera.model = CameraModel::kRadial;
+    } else {
+      continue;
+    }
+    camera.params.resize(static_cast<std::size_t>(NumCameraParams(camera.model)), 0.0);
+    spdlog::info("camera {} has no distortion; it is refined from zero", camera_id);
+  }
+}
+
 void WarnOfRemovedImages(const std::vector<ImageId>& removed_images) {
   if (removed_images.empty()) return;
   spdlog::warn("{} images are left out because most of their observations are outliers",
@@ -117,6 +134,16 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
       "of the corners have residuals above 4 sigmas",
       std::sqrt(uncertainty.variance_factor), uncertainty.correlation_factor,
       100.0 * uncertainty.share_above_4_sigma);
+  const CalibrationEvidence& calibration = uncertainty.calibration;
+  spdlog::info(
+      "calibration: {} changes would explain {:.3f} px of the residuals ({:.1f} sigmas; focal "
+      "length "
+      "{:+.2f} +- {:.2f} %) and move the shape by {:.2f} mm, {:.1f} of its sigmas",
+      calibration.num_changes, calibration.systematic_px, SigmasOff(calibration),
+      100.0 * calibration.focal_change, 100.0 * calibration.focal_sigma,
+      1e3 * calibration.shape_change_m, calibration.shape_change_in_sigmas);
+  spdlog::debug("calibration: focal length explains {:.2f}, distortion {:.2f}",
+                calibration.focal_share, calibration.distortion_share);
   if (uncertainty.apparent_inset_sigma_px > 0) {
     spdlog::info("apparent inset of the corners {:.3f} +- {:.3f} px", uncertainty.apparent_inset_px,
                  uncertainty.apparent_inset_sigma_px);
@@ -167,8 +194,11 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
   if (!options.prior_shape.empty() && report.num_frames_read > 0)
     LogPriorShapeAgreement(report.prior_shape);
   if (!report.ids_not_in_layout.empty()) {
-    spdlog::warn("markers left out because the layout does not name them: {}",
-                 fmt::join(report.ids_not_in_layout, " "));
+    // Few detections are false ones; a marker that the layout forgot is seen as often as others.
+    const bool are_few = report.num_rejected < kFewRejected * report.num_markers;
+    spdlog::log(are_few ? spdlog::level::info : spdlog::level::warn,
+                "markers left out because the layout does not name them: {}",
+                fmt::join(report.ids_not_in_layout, " "));
   }
   return report;
 }
@@ -220,6 +250,7 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
                              const CornerSigmas& corner_sigmas, const std::string& log_path,
                              Model* model) {
   AdjustmentResult result;
+  if (options.colmap.refine_extra_params) AddDistortion(model);
   if (options.UsesColmap()) result = RunColmapBackend(options.colmap, log_path, model);
   if (options.UsesMarkers()) {
     const Statistics before_px = result.error_before_px;

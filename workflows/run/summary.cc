@@ -179,6 +179,14 @@ void LogScaleWarnings(const ScaleAudit& audit) {
   for (const std::string& warning : ScaleWarnings(audit)) spdlog::warn(warning);
 }
 
+ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout) {
+  ReportInput input{report.metric_model,  layout,      report.shape, report.metrics,
+                    report.model_metrics, report.scale};
+  input.uncertainty = report.uncertainty ? &*report.uncertainty : nullptr;
+  input.audit = &report.audit;
+  return input;
+}
+
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   const ShapeMetrics& metrics = report.metrics;
   const Eigen::Vector3d box_m = BoundingBox(report.shape);
@@ -204,6 +212,7 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
 
 void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
                   std::ostream& out) {
+  PrintVerdict(summary.verdict, out);
   fmt::print(out, "images_used: {} of {}\n", summary.num_images, summary.num_images_total);
   fmt::print(out, "images_left_out: {}\n", LeftOutText(summary.left_out));
   fmt::print(out, "markers_left_out: {}\n", MarkersLeftOutText(summary.dropped_markers));

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "exporters/report/report_data.h"
+#include "exporters/report/verdict.h"
 #include "exporters/shape_exporter.h"
 #include "workflows/run/pipeline.h"
 #include "workflows/run/workspace.h"
@@ -35,6 +37,9 @@ std::string ShellQuote(const std::string& text);
 // Logs what contradicts the scale of the shape.
 void LogScaleWarnings(const ScaleAudit& audit);
 
+// What the report shows of an exported shape; refers to both. Without log, title and origin.
+ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout);
+
 // Prints what shape_exporter and automatic_reconstructor share: markers, their errors, scale, size.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);
 
@@ -45,9 +50,11 @@ struct ReconstructionSummary {
   std::vector<DroppedMarker> dropped_markers;
   AdjustmentResult adjustment;
   ShapeExportReport shape;
+  Verdict verdict;
 };
 
-// Prints images, markers, errors, scale, where the results are and how to open them.
+// Prints the verdict with its reasons, images, markers, errors, scale, where the results are and
+// how to open them.
 void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
                   std::ostream& out);
 

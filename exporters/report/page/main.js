@@ -114,6 +114,7 @@ function main() {
   const data = JSON.parse(byId('data').textContent);
   byId('origin').textContent =
       [`velamap ${data.version}`, data.created].filter(Boolean).join(', ');
+  fillVerdict(data.verdict);
   fillKeyNumbers(data.key_numbers);
   fillView(data);
   setChartDefaults();

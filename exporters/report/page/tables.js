@@ -51,6 +51,17 @@ function keepUnits(value) {
   return value.replace(/(\d) (?=%|px|mm|m$)/g, '$1\u00a0');
 }
 
+const VERDICTS = {good: 'Good', check: 'Check before use', bad: 'Do not use as it is'};
+
+function fillVerdict(verdict) {
+  const box = byId('verdict');
+  box.className = `card ${verdict.level}`;
+  box.append(element('p', {className: 'value verdict', textContent: VERDICTS[verdict.level]}));
+  if (verdict.reasons.length === 0) return;
+  box.append(element('ul', {}, ...verdict.reasons.map(reason =>
+      element('li', {className: reason.level, textContent: keepUnits(reason.text)}))));
+}
+
 function fillKeyNumbers(numbers) {
   byId('key_numbers').replaceChildren(...numbers.map(item => {
     const head = element('h3', {}, item.name);

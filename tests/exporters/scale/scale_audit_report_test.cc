@@ -12,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using testing::Not;
 
 ScaleAudit FullAudit() {
   ScaleAudit audit;
@@ -100,14 +99,10 @@ TEST(ScaleAuditReport, TheShortFormHasAtMostFourLines) {
                               "0.050 %, worst 4-9.2 +2.90 mm (+2.9 sigmas)\n"));
 }
 
-TEST(ScaleAuditReport, ACheckBeyondThreeSigmasMakesTheVerdictBad) {
+TEST(ScaleAuditReport, ACheckBeyondThreeSigmasIsAWarning) {
   ScaleAudit audit = FullAudit();
   EXPECT_TRUE(ScaleWarnings(audit).empty());
-  EXPECT_THAT(ShortForm({}, audit), Not(HasSubstr("verdict")));
   audit.distances[0].distance_m = 2.0152;
-  EXPECT_THAT(ShortForm({}, audit),
-              HasSubstr("verdict: bad; 1 of 1 measured distances failed: 4-9.2 "
-                        "+15.20 mm (+15.2 sigmas)\n"));
   ASSERT_EQ(ScaleWarnings(audit).size(), 1u);
   EXPECT_THAT(
       ScaleWarnings(audit)[0],

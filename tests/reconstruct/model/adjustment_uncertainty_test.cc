@@ -27,6 +27,7 @@ class UncertaintyFile : public testing::Test {
     uncertainty_.variance_factor = 1.7;
     uncertainty_.apparent_inset_px = -0.01;
     uncertainty_.apparent_inset_sigma_px = 0.02;
+    uncertainty_.calibration = {8, 123.5, 0.25, 0.5, 0.125, -0.09, 0.002, 0.015, 3.5, 0.01};
     uncertainty_.correlation_factor = 1.3;
     uncertainty_.share_above_4_sigma = 0.004;
   }
@@ -63,6 +64,17 @@ TEST_F(UncertaintyFile, ComesBackToTheLastBit) {
   EXPECT_EQ(read.correlation_factor, uncertainty_.correlation_factor);
   EXPECT_EQ(read.share_above_4_sigma, uncertainty_.share_above_4_sigma);
   EXPECT_EQ(read.apparent_inset_sigma_px, uncertainty_.apparent_inset_sigma_px);
+  const CalibrationEvidence &found = read.calibration, &written = uncertainty_.calibration;
+  EXPECT_EQ(found.num_changes, written.num_changes);
+  EXPECT_EQ(found.chi_squared, written.chi_squared);
+  EXPECT_EQ(found.focal_share, written.focal_share);
+  EXPECT_EQ(found.distortion_share, written.distortion_share);
+  EXPECT_EQ(found.systematic_px, written.systematic_px);
+  EXPECT_EQ(found.focal_change, written.focal_change);
+  EXPECT_EQ(found.focal_sigma, written.focal_sigma);
+  EXPECT_EQ(found.shape_change_m, written.shape_change_m);
+  EXPECT_EQ(found.shape_change_in_sigmas, written.shape_change_in_sigmas);
+  EXPECT_EQ(found.scale_change, written.scale_change);
 }
 
 TEST_F(UncertaintyFile, NoPointsAndNoFactorAreFine) {
@@ -95,7 +107,7 @@ TEST_F(UncertaintyFile, ForeignOrBrokenFilesAreInputErrors) {
   const std::string bytes = FileBytes();
   WriteBytes("no uncertainty at all, but a text that somebody put here");
   EXPECT_THROW(ReadUncertainty(Folder()), InputError);
-  for (const std::size_t at : {8u, 60u, 67u}) {  // version, number of points
+  for (const std::size_t at : {8u, 140u, 147u}) {  // version, number of points
     std::string broken = bytes;
     broken[at] = '\x7f';
     WriteBytes(broken);

@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/weak_geometry.h"
+#include "reconstruct/model/weak_geometry.h"
 
 #include <gmock/gmock.h>
 

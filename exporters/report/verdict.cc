@@ -1,0 +1,61 @@
+#include "exporters/report/verdict.h"
+
+#include <algorithm>
+#include <array>
+#include <ostream>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace velamap {
+namespace {
+
+// The names of key numbers by weight.
+constexpr std::array<const char*, 6> kNames = {
+    "Measured distances", "Calibration",       "Scale",
+    "Reprojection error", "Marker area error", "Markers"};
+
+int WeightOf(const KeyNumber& number) {
+  return static_cast<int>(std::find(kNames.begin(), kNames.end(), number.name) - kNames.begin());
+}
+
+}  // namespace
+
+Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
+                    const std::vector<std::string>& warnings) {
+  std::vector<KeyNumber> doubtful;
+  for (const KeyNumber& number : numbers) {
+    if (number.status > ReportStatus::kGood) doubtful.push_back(number);
+  }
+  std::stable_sort(doubtful.begin(), doubtful.end(), [](const KeyNumber& a, const KeyNumber& b) {
+    return WeightOf(a) < WeightOf(b);
+  });
+  Verdict verdict;
+  for (const KeyNumber& number : doubtful) {
+    verdict.reasons.push_back(
+        {number.status, fmt::format("{}: {}{}{}", number.name, number.value,
+                                    number.advice.empty() ? "" : "; ", number.advice)});
+  }
+  std::set<std::string> said;  // the log repeats a warning for each step that meets it
+  for (const std::string& warning : warnings) {
+    if (said.insert(warning).second) verdict.reasons.push_back({ReportStatus::kCheck, warning});
+  }
+  std::stable_sort(
+      verdict.reasons.begin(), verdict.reasons.end(),
+      [](const VerdictReason& a, const VerdictReason& b) { return a.level > b.level; });
+  if (!verdict.reasons.empty()) verdict.level = verdict.reasons.front().level;
+  return verdict;
+}
+
+Verdict MakeVerdict(const ReportInput& input) {
+  return MakeVerdict(MakeKeyNumbers(input), input.warnings);
+}
+
+void PrintVerdict(const Verdict& verdict, std::ostream& out) {
+  out << "verdict: " << StatusName(verdict.level) << '\n';
+  for (const VerdictReason& reason : verdict.reasons) {
+    out << "verdict_reason: " << StatusName(reason.level) << "; " << reason.text << '\n';
+  }
+}
+
+}  // namespace velamap

@@ -1,0 +1,38 @@
+// What the residuals of an adjustment with a fixed calibration say about that calibration.
+
+#pragma once
+
+namespace velamap {
+
+// Zero for a calibration that was not tested.
+struct CalibrationEvidence {
+  // Number of independent changes of the calibration that the images can tell from another shape
+  // or pose.
+  int num_changes = 0;
+  // Decrease of the sum of squared residuals by these changes: chi-squared with num_changes degrees
+  // of freedom for a right calibration.
+  double chi_squared = 0.0;
+  // Shares of it that a change of the focal length alone, and of the distortion alone, explain.
+  double focal_share = 0.0, distortion_share = 0.0;
+  // RMS over the corners of the part of the residuals that they explain, px.
+  double systematic_px = 0.0;
+  // Relative change of the focal length, with the others free, and its 1 sigma. Linearized, so that
+  // large values are orders of magnitude.
+  double focal_change = 0.0, focal_sigma = 0.0;
+  // How far the changes would move the shape, linearized: RMS over the points after a rigid
+  // alignment, m; the same as a multiple of the 1 sigma that the adjustment states for it; and the
+  // change of the scale alone, as a fraction.
+  double shape_change_m = 0.0, shape_change_in_sigmas = 0.0, scale_change = 0.0;
+};
+
+// The chi-squared as a value of the standard normal distribution (Wilson and Hilferty, 1931): how
+// many sigmas the residuals speak against the calibration. 0 where nothing was tested.
+double SigmasOff(const CalibrationEvidence& evidence);
+
+// Whether the residuals contradict the calibration: beyond chance, and by more than the lens
+// residue that the sigma of every corner contains
+// (MarkerAdjustmentOptions::corner_sigma_floor_px).
+constexpr double kMaxCalibrationSigmas = 3.0, kMaxSystematic_px = 0.02;
+bool IsContradicted(const CalibrationEvidence& evidence);
+
+}  // namespace velamap

@@ -1,0 +1,123 @@
+#include "exporters/report/verdict.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+#include "tests/exporters/report/report_example.h"
+
+namespace velamap {
+namespace {
+
+using testing::Each;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+KeyNumber Number(const std::string& name, ReportStatus status) {
+  return {name, "3 px", "meaning", status, "do this"};
+}
+
+// A calibration that the residuals contradict by far.
+AdjustmentUncertainty Doubtful(double focal_share, double distortion_share) {
+  AdjustmentUncertainty uncertainty;
+  CalibrationEvidence& evidence = uncertainty.calibration;
+  evidence.num_changes = 8;
+  evidence.chi_squared = 5000;
+  evidence.focal_share = focal_share;
+  evidence.distortion_share = distortion_share;
+  evidence.systematic_px = 0.2;
+  evidence.focal_change = -0.0909;
+  evidence.shape_change_in_sigmas = 4;
+  return uncertainty;
+}
+
+TEST(Verdict, IsGoodWithoutAReason) {
+  const Verdict verdict =
+      MakeVerdict({Number("Scale", ReportStatus::kGood), Number("Size", ReportStatus::kNone)}, {});
+  EXPECT_EQ(verdict.level, ReportStatus::kGood);
+  EXPECT_THAT(verdict.reasons, IsEmpty());
+  std::ostringstream out;
+  PrintVerdict(verdict, out);
+  EXPECT_EQ(out.str(), "verdict: good\n");
+}
+
+TEST(Verdict, BadComesBeforeCheckAndCausesBeforeEffectsAndWarningsLast) {
+  const Verdict verdict = MakeVerdict(
+      {Number("Markers", ReportStatus::kBad), Number("Reprojection error", ReportStatus::kCheck),
+       Number("Calibration", ReportStatus::kBad), Number("Scale", ReportStatus::kCheck)},
+      {"a warning", "another", "a warning"});
+  std::ostringstream out;
+  PrintVerdict(verdict, out);
+  EXPECT_EQ(out.str(),
+            "verdict: bad\n"
+            "verdict_reason: bad; Calibration: 3 px; do this\n"
+            "verdict_reason: bad; Markers: 3 px; do this\n"
+            "verdict_reason: check; Scale: 3 px; do this\n"
+            "verdict_reason: check; Reprojection error: 3 px; do this\n"
+            "verdict_reason: check; a warning\n"
+            "verdict_reason: check; another\n");
+}
+
+TEST(Verdict, AWarningAloneIsToBeChecked) {
+  const Verdict verdict = MakeVerdict({}, {"a warning"});
+  EXPECT_EQ(verdict.level, ReportStatus::kCheck);
+}
+
+TEST(Verdict, NamesTheCalibrationAndOffersTheRefinementThatExplainsIt) {
+  const ReportExample example = MakeReportExample(2, 4);
+  ReportInput input = example.Input();
+  const auto first_reason = [&input](const AdjustmentUncertainty& uncertainty) {
+    input.uncertainty = &uncertainty;
+    const Verdict verdict = MakeVerdict(input);
+    EXPECT_EQ(verdict.level, ReportStatus::kBad);
+    return verdict.reasons.empty() ? "" : verdict.reasons.front().text;
+  };
+  EXPECT_EQ(MakeVerdict(input).level, ReportStatus::kGood);
+  EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), StartsWith("Calibration: 0.200 px"));
+  EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), HasSubstr("its focal length is +10.0 % off"));
+  EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)),
+              HasSubstr("--BundleAdjustment.refine_focal_length 1"));
+  EXPECT_THAT(first_reason(Doubtful(0.3, 0.95)),
+              HasSubstr("--BundleAdjustment.refine_extra_params 1"));
+  EXPECT_THAT(first_reason(Doubtful(0.3, 0.3)), HasSubstr("refine_extra_params"));
+  EXPECT_THAT(first_reason(Doubtful(0.3, 0.3)), HasSubstr("refine_focal_length"));
+}
+
+TEST(Verdict, AScaleThatRestsOnADoubtfulCalibrationIsNotGreen) {
+  const ReportExample example = MakeReportExample(2, 4);
+  ReportInput input = example.Input();
+  const AdjustmentUncertainty uncertainty = Doubtful(0.9, 0.9);
+  input.uncertainty = &uncertainty;
+  const std::vector<KeyNumber> numbers = MakeKeyNumbers(input);
+  const auto scale = std::find_if(numbers.begin(), numbers.end(),
+                                  [](const KeyNumber& n) { return n.name == "Scale"; });
+  ASSERT_NE(scale, numbers.end());
+  EXPECT_EQ(scale->status, ReportStatus::kCheck);
+}
+
+// Neither chance, nor less than the lens residue of every corner, nor what hardly moves the shape.
+TEST(Verdict, ACalibrationIsDoubtedOnlyWhereItMatters) {
+  const ReportExample example = MakeReportExample(2, 4);
+  ReportInput input = example.Input();
+  const auto level = [&input](const AdjustmentUncertainty& uncertainty) {
+    input.uncertainty = &uncertainty;
+    return MakeVerdict(input).level;
+  };
+  AdjustmentUncertainty by_chance = Doubtful(0.9, 0.9), tiny = by_chance, harmless = by_chance,
+                        moderate = by_chance;
+  by_chance.calibration.chi_squared = 12;
+  tiny.calibration.systematic_px = 0.01;
+  harmless.calibration.shape_change_in_sigmas = 0.1;
+  moderate.calibration.shape_change_in_sigmas = 0.8;
+  EXPECT_EQ(level(by_chance), ReportStatus::kGood);
+  EXPECT_EQ(level(tiny), ReportStatus::kGood);
+  EXPECT_EQ(level(harmless), ReportStatus::kGood);
+  EXPECT_EQ(level(moderate), ReportStatus::kCheck);
+}
+
+}  // namespace
+}  // namespace velamap
