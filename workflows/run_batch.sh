@@ -46,7 +46,7 @@ workspace_name() {
 duplicates="$(for input in "${inputs[@]}"; do workspace_name "$input"; done | sort | uniq -d)"
 [[ -z "$duplicates" ]] || fail "several inputs would go into the workspace $duplicates; rename one"
 
-keys=(images_used images_left_out markers_reconstructed reconstruction_ratio reprojection_error_px
+keys=(verdict images_used images_left_out markers_reconstructed reconstruction_ratio reprojection_error_px
   central_reprojection_error_px area_error_mm2 area_error_percent side_error_mm scale_m_per_unit
   scale_spread_over_markers bounding_box_m outliers_removed)
 

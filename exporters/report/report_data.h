@@ -70,6 +70,7 @@ struct ReportInput {
   const AdjustmentUncertainty* uncertainty = nullptr;  // may be null
   const ScaleAudit* audit = nullptr;                   // may be null
   std::vector<std::string> warnings = {};              // of the log
+  int num_ids_found = 0;  // different marker ids in the images, in the shape or not; 0: unknown
   std::vector<ReportLeftOut> images_left_out = {};
   std::vector<ReportLeftOut> markers_left_out =
       {};  // other missing markers of the layout are added

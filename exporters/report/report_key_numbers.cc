@@ -20,6 +20,8 @@ namespace {
 constexpr double kGoodError_px = 0.5, kBadError_px = 0.8;
 constexpr double kGoodAreaError_percent = 2, kBadAreaError_percent = 5;
 constexpr double kGoodRatio = 0.95, kBadRatio = 0.7;
+// The codes that a wrong dictionary finds do not fit together, but some do by chance.
+constexpr double kGoodIdShare = 0.5, kBadIdShare = 0.25;
 constexpr double kGoodScaleSpread_percent = 1, kBadScaleSpread_percent = 3;
 // What the calibration that the residuals ask for does to the shape: the sigmas take the given one
 // for granted.
@@ -52,6 +54,19 @@ KeyNumber MarkersNumber(const ShapeMetrics& metrics) {
         "correct the layout";
   }
   return number;
+}
+
+// Of all ids found, those that fit into one shape.
+std::optional<KeyNumber> DictionaryNumber(const ReportInput& input) {
+  if (input.num_ids_found == 0) return std::nullopt;
+  const auto num_fitting = static_cast<int>(input.shape.markers.size());
+  return KeyNumber{
+      "Dictionary", fmt::format("{} of {} ids fit", num_fitting, input.num_ids_found),
+      fmt::format("ids found in the images that are part of the shape; good from {:.0f} %",
+                  100 * kGoodIdShare),
+      HighIsGood(static_cast<double>(num_fitting) / input.num_ids_found, kGoodIdShare, kBadIdShare),
+      "the others contradict each other or are seen once, as false ones of another dictionary "
+      "are: check the dictionary, its border_bits and whether the prints are inverted"};
 }
 
 KeyNumber ImagesNumber(const ReportInput& input) {
@@ -107,17 +122,23 @@ ReportStatus StatusOf(const CalibrationEvidence& evidence) {
 std::string CalibrationAdvice(const CalibrationEvidence& evidence) {
   const bool is_focal = evidence.focal_share >= std::max(kDecisiveShare, evidence.distortion_share);
   const bool is_distortion = !is_focal && evidence.distortion_share >= kDecisiveShare;
-  std::string what = "focal length and distortion", options;
-  if (is_focal)
+  std::string what = "focal length and distortion";
+  std::string command =
+      "velamap automatic_reconstructor --BundleAdjustment.refine_focal_length 1 "
+      "--BundleAdjustment.refine_extra_params 1";
+  if (is_focal) {
     what = fmt::format("its focal length is {:+.1f} % off",
                        100 * (1 / (1 + evidence.focal_change) - 1));
-  if (is_distortion) what = "its distortion is wrong or missing";
-  if (!is_distortion) options += " --BundleAdjustment.refine_focal_length 1";
-  if (!is_focal) options += " --BundleAdjustment.refine_extra_params 1";
+    command = "velamap automatic_reconstructor --BundleAdjustment.refine_focal_length 1";
+  } else if (is_distortion) {
+    what = "its distortion is wrong or missing";
+    command = "velamap automatic_reconstructor --BundleAdjustment.refine_extra_params 1";
+  }
   return fmt::format(
-      "the calibration does not belong to these images ({}): calibrate this camera as it filmed "
-      "(velamap camera_calibrator), or refine it here:{}",
-      what, options);
+      "the calibration {} these images ({}): calibrate this camera as it filmed (velamap "
+      "camera_calibrator), or refine it: {}",
+      StatusOf(evidence) == ReportStatus::kBad ? "does not belong to" : "does not quite fit", what,
+      command);
 }
 
 // Whether another calibration would explain the residuals. Not tested without the marker-aware
@@ -250,6 +271,7 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
     numbers.push_back(ErrorNumber(input.model_metrics.error_px));
   }
   if (input.metrics.area_error_percent.count > 0) numbers.push_back(AreaNumber(input.metrics));
+  if (const auto dictionary = DictionaryNumber(input)) numbers.push_back(*dictionary);
   if (const auto calibration = CalibrationNumber(input.uncertainty)) {
     numbers.push_back(*calibration);
   }

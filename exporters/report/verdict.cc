@@ -11,9 +11,9 @@ namespace velamap {
 namespace {
 
 // The names of key numbers by weight.
-constexpr std::array<const char*, 6> kNames = {
-    "Measured distances", "Calibration",       "Scale",
-    "Reprojection error", "Marker area error", "Markers"};
+constexpr std::array<const char*, 7> kNames = {
+    "Dictionary",         "Measured distances", "Calibration", "Scale",
+    "Reprojection error", "Marker area error",  "Markers"};
 
 int WeightOf(const KeyNumber& number) {
   return static_cast<int>(std::find(kNames.begin(), kNames.end(), number.name) - kNames.begin());

@@ -22,8 +22,8 @@ struct Verdict {
 };
 
 // Every key number that is not good is a reason, every warning one to check. Bad ones come first;
-// of the same level, what was measured outside (distances) comes before causes (calibration,
-// scale), these before effects (markers, errors), and warnings last.
+// of the same level, the dictionary and what was measured outside (distances) come before causes
+// (calibration, scale), these before effects (markers, errors), and warnings last.
 Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
                     const std::vector<std::string>& warnings);
 Verdict MakeVerdict(const ReportInput& input);

@@ -188,10 +188,11 @@ int ChooseCentralFrame(const GlobalRegistration& global) {
       "camera calibration belongs to these images, that the marker length is right, and that the "
       "pictures overlap",
       min_num_inliers,
-      doubt.empty() ? ""
-                    : doubt + ", as false ones of another dictionary are: check the dictionary "
-                              "(--dictionary or the layout's), border_bits and "
-                              "--ArucoDetection.inverted first; if they are right, "));
+      doubt.empty()
+          ? ""
+          : doubt + ", as false ones of another dictionary are: check the dictionary, its "
+                    "border_bits and whether the prints are inverted first; if these are "
+                    "right, "));
 }
 
 }  // namespace

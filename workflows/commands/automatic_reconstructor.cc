@@ -130,6 +130,7 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
   for (const DroppedMarker& marker : seed.registration.dropped_markers) {
     input.markers_left_out.push_back({std::to_string(marker.marker_id), marker.reason});
   }
+  input.num_ids_found = seed.num_ids_found;
   input.warnings = LoggedWarnings();  // before those that a key number says, too
   LogScaleWarnings(shape.audit);
   input.options = TypedOptions(options.arguments);

@@ -216,6 +216,11 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   seed.registration = RegisterFrames(images, cameras, layout, options);
   seed.model = MakeSeedModel(seed.registration, images, cameras);
   seed.left_out = FindLeftOut(seed);
+  std::set<int> ids;
+  for (const DatabaseImage& image : images) {
+    for (const MarkerDetection& marker : image.detections.markers) ids.insert(marker.marker_id);
+  }
+  seed.num_ids_found = static_cast<int>(ids.size());
   seed.corner_sigmas = CornerSigmasOf(images, database.ReadFormation());
   LogSeed(seed);
   return seed;

@@ -26,6 +26,7 @@ struct SeedResult {
   std::vector<std::string> image_names;  // of all images in the database, sorted
   std::vector<LeftOutImage> left_out;    // images that the model does not hold
   CornerSigmas corner_sigmas;            // from the database
+  int num_ids_found = 0;                 // different marker ids in the database
 };
 
 // The part of `video` that the thesis's search around a named central frame can reach (3.4.1), so

@@ -10,11 +10,8 @@
 namespace velamap {
 namespace {
 
-using testing::Each;
-using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::SizeIs;
 using testing::StartsWith;
 
 KeyNumber Number(const std::string& name, ReportStatus status) {
@@ -78,6 +75,7 @@ TEST(Verdict, NamesTheCalibrationAndOffersTheRefinementThatExplainsIt) {
   };
   EXPECT_EQ(MakeVerdict(input).level, ReportStatus::kGood);
   EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), StartsWith("Calibration: 0.200 px"));
+  EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), HasSubstr("does not belong to these images"));
   EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)), HasSubstr("its focal length is +10.0 % off"));
   EXPECT_THAT(first_reason(Doubtful(0.95, 0.3)),
               HasSubstr("--BundleAdjustment.refine_focal_length 1"));
@@ -97,6 +95,22 @@ TEST(Verdict, AScaleThatRestsOnADoubtfulCalibrationIsNotGreen) {
                                   [](const KeyNumber& n) { return n.name == "Scale"; });
   ASSERT_NE(scale, numbers.end());
   EXPECT_EQ(scale->status, ReportStatus::kCheck);
+}
+
+TEST(Verdict, IdsThatDoNotFitTogetherAreBlamedOnTheDictionaryBeforeAllElse) {
+  const ReportExample example = MakeReportExample(2, 4);
+  const auto num_markers = static_cast<int>(example.shape.markers.size());
+  ReportInput input = example.Input();
+  const AdjustmentUncertainty uncertainty = Doubtful(0.95, 0.3);
+  input.uncertainty = &uncertainty;
+  input.num_ids_found = 5 * num_markers;
+  EXPECT_THAT(MakeVerdict(input).reasons.front().text, StartsWith("Dictionary: "));
+  EXPECT_THAT(MakeVerdict(input).reasons.front().text, HasSubstr("check the dictionary"));
+  input.uncertainty = nullptr;
+  input.num_ids_found = 3 * num_markers;
+  EXPECT_EQ(MakeVerdict(input).level, ReportStatus::kCheck);
+  input.num_ids_found = num_markers + 1;
+  EXPECT_EQ(MakeVerdict(input).level, ReportStatus::kGood);
 }
 
 // Neither chance, nor less than the lens residue of every corner, nor what hardly moves the shape.
