@@ -28,7 +28,7 @@ house_folder(importer/database PUBLIC
 house_folder(importer PUBLIC
   marker_importer)
 house_folder(reconstruct/geometry PUBLIC
-  covariance_update frame_shape marker_pose point_covariance)
+  covariance_update frame_shape intrinsics_prior marker_pose point_covariance)
 house_folder(reconstruct/model PUBLIC
   adjustment_uncertainty calibration_evidence gauge model model_io reprojection weak_geometry)
 house_folder(reconstruct/solve PUBLIC

@@ -1,5 +1,6 @@
 #include "importer/camera/camera.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -95,6 +96,46 @@ std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
     ray -= found.by_ray.inverse() * error;
   }
   return std::nullopt;
+}
+
+double MaxRayLength(const Camera& camera) {
+  const Intrinsics intrinsics = GetIntrinsics(camera);
+  double max_length = 0.0;
+  for (const double x_px : {0.0, static_cast<double>(camera.width_px)}) {
+    for (const double y_px : {0.0, static_cast<double>(camera.height_px)}) {
+      const Eigen::Vector2d corner_px(x_px, y_px);
+      const Eigen::Vector2d distorted =
+          (corner_px - intrinsics.principal_point_px).cwiseQuotient(intrinsics.focal_px);
+      max_length = std::max(max_length, CamFromImage(camera, corner_px).value_or(distorted).norm());
+    }
+  }
+  return max_length;
+}
+
+bool HasMonotonicDistortion(const Camera& camera) {
+  constexpr int kNumDirections = 64;
+  constexpr double kMaxRayLength = 12.0;  // 85 degrees
+  constexpr double kPi = 3.14159265358979323846;
+  const Intrinsics intrinsics = GetIntrinsics(camera);
+  // So small beside the image that no fold hides between two steps.
+  const double step =
+      0.01 * std::hypot(camera.width_px, camera.height_px) / intrinsics.focal_px.maxCoeff();
+  if (!(step > 0)) return false;
+  const Eigen::Array2d size_px(camera.width_px, camera.height_px);
+  for (int i = 0; i < kNumDirections; ++i) {
+    const double angle = 2.0 * kPi * i / kNumDirections;
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    for (double length = step; length < kMaxRayLength; length += step) {
+      const RayFunction found =
+          DistortRayWithJacobian(camera.model, intrinsics.distortion, length * direction);
+      const Eigen::Vector2d outwards = found.by_ray * direction;
+      if (!(found.by_ray.determinant() > 0 && outwards.dot(direction) > 0)) return false;
+      const Eigen::Array2d x_px =
+          intrinsics.focal_px.cwiseProduct(found.value) + intrinsics.principal_point_px;
+      if ((x_px < 0).any() || (x_px > size_px).any()) break;
+    }
+  }
+  return true;
 }
 
 }  // namespace velamap

@@ -20,6 +20,7 @@
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/geometry/covariance_update.h"
+#include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/weak_geometry.h"
@@ -119,6 +120,127 @@ void MarkerAdjuster::AdjustTightly() {
     RemoveUnderconstrainedParts();
     Minimize(1e-4);
   }
+}
+
+void MarkerAdjuster::Free(const FreeIntrinsics& free, double sigma) {
+  options_.refine_focal_length = free.focal_length;
+  options_.refine_principal_point = free.principal_point;
+  options_.refine_extra_params = free.distortion;
+  options_.intrinsics_sigma = sigma;
+  if (!free.distortion) return;
+  for (auto& [camera_id, camera] : calibration_) {
+    camera = WithDistortionParams(camera);
+    model_.cameras.at(camera_id) = WithDistortionParams(model_.cameras.at(camera_id));
+  }
+}
+
+double MarkerAdjuster::SumOfSquares() {
+  MarkerState state = MakeState(model_);
+  const MarkerProblem problem = MakeProblem(weights_, model_, &state);
+  double cost = 0.0;
+  VELAMAP_CHECK(problem.ceres->Evaluate({}, &cost, nullptr, nullptr, nullptr));
+  return 2.0 * cost;
+}
+
+MarkerAdjuster::IntrinsicsVerdict MarkerAdjuster::JudgeIntrinsics(const FreeIntrinsics& free,
+                                                                  double sigma) const {
+  MarkerAdjuster trial = *this;
+  trial.Free(free, sigma);
+  const double before = trial.SumOfSquares();
+  trial.Minimize(1e-4);
+  IntrinsicsVerdict verdict;
+  verdict.improvement = before - trial.SumOfSquares();
+  int num_free = 0, num_corners = 0;
+  for (const auto& [camera_id, camera] : trial.calibration_) {
+    num_free += static_cast<int>(MakeIntrinsicsPrior(camera, free, sigma).free.size());
+  }
+  for (const auto& [point3D_id, point] : model_.points3D) {
+    num_corners += static_cast<int>(point.track.size());
+  }
+  // The Bayesian information criterion (Schwarz, "Estimating the Dimension of a Model", 1978).
+  verdict.criterion = verdict.needed = num_free * std::log(2.0 * num_corners);
+  spdlog::debug("free intrinsics: the sum of squares falls by {:.1f}, {:.1f} needed",
+                verdict.improvement, verdict.needed);
+  if (!verdict.IsSignificant()) return verdict;
+  if (!(FreeIntrinsicsOf(trial.options_) == free)) return verdict;  // the distortion folds over
+  // The sigmas of the corners still contain the errors of the calibration.
+  trial.CalibrateRobustly();
+  trial.Minimize(1e-4);
+  const auto linearization = trial.Linearize();
+  // Errors that corners have in common explain a part of the improvement.
+  const double factor = CorrelationFactor(
+      linearization->state, linearization->problem, linearization->jacobian,
+      linearization->covariance, GroupImages(model_, linearization->state), options_.num_threads);
+  verdict.needed *= factor * factor;
+  verdict.determined = free;
+  for (const auto& [camera_id, camera] : trial.calibration_) {
+    const Eigen::MatrixXd covariance =
+        factor * factor *
+        GlobalCovariance(linearization->problem, linearization->covariance,
+                         linearization->state.intrinsics.at(camera_id).data());
+    verdict.determined = DeterminedIntrinsics(
+        verdict.determined, MakeIntrinsicsPrior(camera, free, options_.intrinsics_sigma),
+        trial.model_.cameras.at(camera_id), covariance);
+  }
+  const FreeIntrinsics& found = verdict.determined;
+  spdlog::debug(
+      "{:.1f} needed with correlated errors; determined: focal length {}, principal point {}, "
+      "distortion {}",
+      verdict.needed, found.focal_length, found.principal_point, found.distortion);
+  return verdict;
+}
+
+FreeIntrinsics MarkerAdjuster::ChooseIntrinsics(double sigma) const {
+  const FreeIntrinsics all{true, true, true};
+  const IntrinsicsVerdict first = JudgeIntrinsics(all, sigma);
+  IntrinsicsVerdict verdict = first;
+  FreeIntrinsics free = all;
+  while (verdict.IsSignificant() && !(verdict.determined == free)) {
+    free = verdict.determined;
+    if (!free.Any()) return {};
+    verdict = JudgeIntrinsics(free, sigma);
+    // Parameters that are not determined but needed would be replaced by wrong values of others.
+    const double needed_by_others = first.needed * (1.0 - verdict.criterion / first.criterion);
+    if (first.improvement - verdict.improvement > needed_by_others) return {};
+  }
+  return verdict.IsSignificant() ? free : FreeIntrinsics{};
+}
+
+std::optional<MarkerAdjuster> MarkerAdjuster::WithBetterCalibration(MarkerAdjuster begin) const {
+  // What a calibration that the images contradict still says, relative to its usual sigma.
+  constexpr double kContradicted = 3.0;
+  if (!options_.refine_calibration || FreeIntrinsicsOf(options_).Any()) return std::nullopt;
+  const double sigma = kContradicted * options_.intrinsics_sigma;
+  FreeIntrinsics free;
+  try {
+    free = ChooseIntrinsics(sigma);
+    if (!free.Any()) return std::nullopt;
+    begin.Free(free, sigma);
+    begin.AdjustToCorners();
+  } catch (const DataError& error) {
+    spdlog::debug("not with free intrinsics: {}", error.what());
+    return std::nullopt;
+  }
+  for (const auto& [camera_id, camera] : begin.model_.cameras) {
+    const Camera& calibration = begin.calibration_.at(camera_id);
+    const std::string text =
+        fmt::format("the images contradict the calibration, which is refined: {}",
+                    DescribeRefinement(calibration, camera));
+    if (IsWithin(MakeIntrinsicsPrior(calibration, free, options_.intrinsics_sigma), camera)) {
+      spdlog::info(text);
+    } else {
+      begin.summary_.warnings.push_back(
+          fmt::format("{}; calibrate the camera again, or keep the given calibration by {} 0", text,
+                      OptionName(&MarkerAdjustmentOptions::refine_calibration)));
+    }
+  }
+  return begin;
+}
+
+void MarkerAdjuster::AdjustToCorners() {
+  AdjustLoosely();
+  RejectContradictingSizes();
+  AdjustTightly();
 }
 
 bool MarkerAdjuster::AddScaleBars() {
@@ -241,6 +363,28 @@ void MarkerAdjuster::Minimize(double function_tolerance) {
   summary_.num_iterations +=
       MinimizeMarkerProblem(options_.max_num_iterations, function_tolerance, &problem);
   WriteMarkerState(state_, &model_);
+  if (HoldFoldedDistortion()) Minimize(function_tolerance);
+}
+
+bool MarkerAdjuster::HoldFoldedDistortion() {
+  if (!options_.refine_extra_params) return false;
+  const bool is_folded =
+      std::any_of(model_.cameras.begin(), model_.cameras.end(), [&](const auto& entry) {
+        return !HasMonotonicDistortion(entry.second) &&
+               HasMonotonicDistortion(calibration_.at(entry.first));
+      });
+  if (!is_folded) return false;
+  options_.refine_extra_params = false;
+  for (auto& [camera_id, camera] : model_.cameras) {
+    const std::vector<double>& params = calibration_.at(camera_id).params;
+    for (const int i : MakeIntrinsicsPrior(camera, {false, false, true}, 1.0).free) {
+      camera.params[static_cast<std::size_t>(i)] = params[static_cast<std::size_t>(i)];
+    }
+  }
+  summary_.warnings.push_back(
+      "the distortion is not refined: the images do not determine it, and it would fold over "
+      "inside the image");
+  return true;
 }
 
 std::unique_ptr<const MarkerAdjuster::Linearization> MarkerAdjuster::Linearize() {

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,14 @@ class MarkerAdjuster {
   // come to fit, until nothing changes.
   void AdjustTightly();
 
+  // The three steps above.
+  void AdjustToCorners();
+
+  // Where intrinsics that the images determine better than the calibration explain the corners
+  // significantly better: the result of AdjustToCorners with these, else nothing. After
+  // AdjustToCorners; `begin` is this adjuster before it.
+  std::optional<MarkerAdjuster> WithBetterCalibration(MarkerAdjuster begin) const;
+
   // Adds the scale bars that agree with each other; where they contradict the markers, frees the
   // scale of the print as far as that needs. Returns false where there are none.
   bool AddScaleBars();
@@ -64,6 +73,26 @@ class MarkerAdjuster {
   // Throws DataError where a combination of parameters is undetermined.
   std::unique_ptr<const Linearization> Linearize();
   std::vector<CornerResidual> EvaluateCornersOf(const Model& model);
+  // Frees parameters of all cameras, with a prior around their calibration.
+  void Free(const FreeIntrinsics& free, double sigma);
+  // What freeing some intrinsics brings.
+  struct IntrinsicsVerdict {
+    double improvement = 0.0;   // of the sum of squares
+    double criterion = 0.0;     // what is significant for the number of parameters
+    double needed = 0.0;        // the same with errors that corners have in common
+    FreeIntrinsics determined;  // clearly better than by the calibration
+
+    bool IsSignificant() const { return improvement > needed; }
+  };
+
+  // `sigma` is that of the prior, options_ have that of a calibration.
+  IntrinsicsVerdict JudgeIntrinsics(const FreeIntrinsics& free, double sigma) const;
+  // The intrinsics that the images determine and that explain the corners significantly better.
+  FreeIntrinsics ChooseIntrinsics(double sigma) const;
+  // Holds the distortion at the calibration where it has come to fold over. Returns whether it did.
+  bool HoldFoldedDistortion();
+  // Sum of the squares of all residuals, in sigmas.
+  double SumOfSquares();
   // Sets the factor of the corners' sigmas by the median residual; returns the relative change.
   double CalibrateRobustly();
   // Returns the number of corners that were removed or restored.
@@ -76,7 +105,7 @@ class MarkerAdjuster {
   MarkerAdjustmentOptions options_;
   const Layout& layout_;
   const CornerSigmas& corner_sigmas_;
-  const std::map<CameraId, Camera> calibration_;
+  std::map<CameraId, Camera> calibration_;
   const std::size_t num_images_before_;
   Model model_;
   MarkerState state_;  // the last solution, with inset, print scale and velocities

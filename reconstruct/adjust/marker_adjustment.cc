@@ -29,11 +29,12 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
                                           Model* model) {
   options.Check();
   CheckModel(*model);
-  MarkerAdjuster adjuster(options, layout, corner_sigmas, *model);
-  adjuster.PrepareSeed();
-  adjuster.AdjustLoosely();
-  adjuster.RejectContradictingSizes();
-  adjuster.AdjustTightly();
+  MarkerAdjuster begin(options, layout, corner_sigmas, *model);
+  begin.PrepareSeed();
+  MarkerAdjuster given = begin;
+  given.AdjustToCorners();
+  std::optional<MarkerAdjuster> better = given.WithBetterCalibration(begin);
+  MarkerAdjuster& adjuster = better ? *better : given;
   if (adjuster.AddScaleBars()) adjuster.AdjustTightly();
   adjuster.Finish();
   *model = adjuster.TakeModel();

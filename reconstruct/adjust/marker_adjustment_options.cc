@@ -4,6 +4,10 @@
 
 namespace velamap {
 
+FreeIntrinsics FreeIntrinsicsOf(const MarkerAdjustmentOptions& options) {
+  return {options.refine_focal_length, options.refine_principal_point, options.refine_extra_params};
+}
+
 OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
   return {"Marker-aware adjustment (--backend markers or both)",
           {{"MarkerAdjustment.corner_sigma", &options->corner_sigma_px, "px",
@@ -33,8 +37,12 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
             FromTo(0, 10)},
            {"MarkerAdjustment.estimate_inset", &options->estimate_inset, "0|1",
             "estimate that error from the images"},
+           {"MarkerAdjustment.refine_calibration", &options->refine_calibration, "0|1",
+            "refine the calibration where the images determine it better and contradict it; an "
+            "option BundleAdjustment.refine_* decides instead"},
            {"MarkerAdjustment.intrinsics_sigma", &options->intrinsics_sigma, "fraction",
-            "1 sigma of the calibration, where an option BundleAdjustment.refine_* frees it",
+            "1 sigma of a calibration that is refined: of the focal "
+            "length, and of the image's corners by each distortion parameter",
             FromTo(1e-9, 10)},
            {"MarkerAdjustment.rolling_shutter", &options->rolling_shutter_s, "s",
             "time from the first row of a frame to the last; 0: not modelled", FromTo(0, 1)}}};

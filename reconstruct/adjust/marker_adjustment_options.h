@@ -3,6 +3,7 @@
 #pragma once
 
 #include "importer/base/option.h"
+#include "reconstruct/geometry/intrinsics_prior.h"
 
 namespace velamap {
 
@@ -38,12 +39,15 @@ struct MarkerAdjustmentOptions {
   // a rendered sail 0.031 +- 0.006 px are found where the truth is 0.013 px, and the scale gets
   // worse.
   bool estimate_inset = false;
-  // What is refined has the calibration as its prior.
+  // What is refined has the calibration as its prior. Of the extra parameters only those are
+  // refined that the calibration names.
   bool refine_focal_length = false;
   bool refine_principal_point = false;
   bool refine_extra_params = false;
-  // Of a focal length as a fraction; of the principal point as a fraction of the focal length; of
-  // the other parameters absolute.
+  // Where none of these is set: what the images determine clearly better than the calibration is
+  // refined if it explains the corners significantly better.
+  bool refine_calibration = true;
+  // As a fraction, see MakeIntrinsicsPrior.
   double intrinsics_sigma = 0.01;
   // The rows of a frame are read one after another over this time while the camera moves. 0: not
   // modelled.
@@ -55,6 +59,8 @@ struct MarkerAdjustmentOptions {
 
   void Check() const;  // throws InputError that names the option
 };
+
+FreeIntrinsics FreeIntrinsicsOf(const MarkerAdjustmentOptions& options);
 
 // All but the members that BundleAdjustmentOptions has, too: their options set both.
 OptionGroup DescribeOptions(MarkerAdjustmentOptions* options);

@@ -10,7 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
-#include "importer/camera/camera_projection.h"
+#include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/solve/schur_complement.h"
 
 namespace velamap {
@@ -57,7 +57,7 @@ class ProblemBuilder {
                  const MarkerWeights& weights, MarkerState* state)
       : options_(options), model_(model), weights_(weights), state_(*state) {}
 
-  void AddParameters() {
+  void AddParameters(const std::map<CameraId, Camera>& calibration) {
     for (MarkerBlock& marker : state_.markers) {
       result_.ceres->AddParameterBlock(marker.x_in_world.data(), marker.NumCoordinates());
       result_.marker_blocks.push_back(marker.x_in_world.data());
@@ -68,12 +68,12 @@ class ProblemBuilder {
       AddGlobal(image.velocity.data(), 6, options_.rolling_shutter_s > 0);
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
-      const std::vector<int> held = HeldIntrinsics(model_.cameras.at(camera_id).model);
+      const IntrinsicsPrior prior = PriorOf(calibration.at(camera_id));
       const int size = static_cast<int>(intrinsics.size());
-      const bool refines = held.size() < intrinsics.size();
-      ceres::Manifold* manifold =
-          refines && !held.empty() ? new ceres::SubsetManifold(size, held) : nullptr;
-      AddGlobal(intrinsics.data(), size, refines, manifold);
+      ceres::Manifold* manifold = prior.held.empty() || prior.free.empty()
+                                      ? nullptr
+                                      : new ceres::SubsetManifold(size, prior.held);
+      AddGlobal(intrinsics.data(), size, !prior.free.empty(), manifold);
     }
     AddGlobal(&state_.inset_px, 1, EstimatesInset());
     AddGlobal(&state_.print_scale, 1, print_scale_sigma_ > 0 && !weights_.holds_print_scale);
@@ -137,9 +137,8 @@ class ProblemBuilder {
       }
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
-      const Camera& camera = calibration.at(camera_id);
-      if (HeldIntrinsics(camera.model).size() == intrinsics.size()) continue;
-      AddPrior(MakePrior(camera.params, IntrinsicsSigmas(camera)), {intrinsics.data()});
+      const IntrinsicsPrior prior = PriorOf(calibration.at(camera_id));
+      if (!prior.free.empty()) AddPrior(MakePrior(prior.mean, prior.sigmas), {intrinsics.data()});
     }
   }
 
@@ -223,28 +222,9 @@ class ProblemBuilder {
 
   bool EstimatesInset() const { return options_.estimate_inset && options_.inset_sigma_px > 0; }
 
-  std::vector<int> HeldIntrinsics(CameraModel model) const {
-    const int num_focal = NumFocalLengths(model);
-    std::vector<int> held;
-    for (int i = 0; i < NumCameraParams(model); ++i) {
-      const bool is_refined = i < num_focal       ? options_.refine_focal_length
-                              : i < num_focal + 2 ? options_.refine_principal_point
-                                                  : options_.refine_extra_params;
-      if (!is_refined) held.push_back(i);
-    }
-    return held;
+  IntrinsicsPrior PriorOf(const Camera& calibration) const {
+    return MakeIntrinsicsPrior(calibration, FreeIntrinsicsOf(options_), options_.intrinsics_sigma);
   }
-
-  std::vector<double> IntrinsicsSigmas(const Camera& camera) const {
-    const int num_focal = NumFocalLengths(camera.model);
-    std::vector<double> sigmas(camera.params.size(), options_.intrinsics_sigma);
-    for (int i = 0; i < num_focal + 2; ++i) {
-      sigmas[i] *= i < num_focal ? camera.params[i] : MeanFocalLength(camera);
-    }
-    return sigmas;
-  }
-
-  static int NumFocalLengths(CameraModel model) { return HasOneFocalLength(model) ? 1 : 2; }
 
   const MarkerAdjustmentOptions& options_;
   const Model& model_;
@@ -266,7 +246,7 @@ MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Mo
                                 const std::map<CameraId, Camera>& calibration,
                                 const MarkerWeights& weights, MarkerState* state) {
   ProblemBuilder builder(options, model, weights, state);
-  builder.AddParameters();
+  builder.AddParameters(calibration);
   builder.AddCorners(corner_sigmas);
   builder.AddPriors(calibration);
   builder.AddScaleBars();

@@ -84,6 +84,15 @@ Eigen::MatrixXd BarCovariance(const std::vector<ScaleBar>& bars, const MarkerSta
   return result - with_scale * with_scale.transpose() / unit.squaredNorm();
 }
 
+Eigen::MatrixXd GlobalCovariance(const MarkerProblem& problem, const MarkerCovariance& covariance,
+                                 const double* block) {
+  const Eigen::Index size = problem.ceres->ParameterBlockTangentSize(block);
+  Eigen::MatrixXd units = Eigen::MatrixXd::Zero(covariance.root.rows(), size);
+  units.middleRows(GlobalColumn(problem, block), size).setIdentity();
+  covariance.root.triangularView<Eigen::Lower>().solveInPlace(units);
+  return units.transpose() * units;
+}
+
 double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& covariance) {
   // All leverages add up to the number of parameters. The part of the priors is not determined by
   // corners.

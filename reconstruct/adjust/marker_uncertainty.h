@@ -24,6 +24,10 @@ PointCovariance PointsOf(const MarkerState& state, const MarkerCovariance& covar
 Eigen::MatrixXd BarCovariance(const std::vector<ScaleBar>& bars, const MarkerState& state,
                               const MarkerProblem& problem, const MarkerCovariance& covariance);
 
+// Covariance of one global parameter block that varies, in its tangent space.
+Eigen::MatrixXd GlobalCovariance(const MarkerProblem& problem, const MarkerCovariance& covariance,
+                                 const double* block);
+
 // Number of the corners' residuals less the number of parameters that they determine.
 double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& covariance);
 

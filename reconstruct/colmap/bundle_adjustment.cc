@@ -16,6 +16,7 @@
 #include "importer/base/files.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/colmap/observation_filter.h"
+#include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
@@ -104,6 +105,11 @@ void CheckStructure(const Model& before, const Model& after, bool refines_camera
     if (refines_cameras ? !(MeanFocalLength(it->second) > 0) : !(it->second == camera)) {
       ThrowImplausible(fmt::format("camera {} has implausible parameters", camera_id), log_path);
     }
+    if (refines_cameras && HasMonotonicDistortion(camera) && !HasMonotonicDistortion(it->second)) {
+      ThrowImplausible(
+          fmt::format("the refined distortion of camera {} folds over inside the image", camera_id),
+          log_path);
+    }
   }
 }
 
@@ -158,6 +164,20 @@ void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_p
   }
 }
 
+// COLMAP frees all distortion parameters of a camera, without a prior.
+void CheckRefinableDistortion(const BundleAdjustmentOptions& options, const Model& model) {
+  if (!options.refine_extra_params) return;
+  for (const auto& [camera_id, camera] : model.cameras) {
+    if (!HasUnnamedDistortion(camera)) continue;
+    throw InputError(fmt::format(
+        "{} 1: COLMAP would free the parameters of camera {} ({}) that the calibration leaves "
+        "zero, too, and they run away; adjust with --backend markers or both, which frees the "
+        "others only",
+        OptionName(&BundleAdjustmentOptions::refine_extra_params), camera_id,
+        CameraModelName(camera.model)));
+  }
+}
+
 void CheckEnough(const Model& model, int num_images_before, std::size_t num_outliers) {
   if (model.images.size() >= 2 && !model.points3D.empty()) return;
   throw DataError(fmt::format(
@@ -172,6 +192,7 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
                                          const std::string& log_path, Model* model) {
   options.Check();
   CheckModel(*model);
+  CheckRefinableDistortion(options, *model);
   const int num_images = static_cast<int>(model->images.size());
   Model adjusted = *model;
   BundleAdjustmentSummary summary;

@@ -4,6 +4,8 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     model/adjustment_uncertainty_test.cc
     geometry/covariance_update_test.cc
     adjust/calibration_score_test.cc
+    geometry/intrinsics_prior_test.cc
+    adjust/calibration_refinement_test.cc
     adjust/marker_adjustment_test.cc
     adjust/marker_cost_functions_test.cc
     adjust/marker_sizes_test.cc

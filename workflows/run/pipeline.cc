@@ -256,7 +256,15 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
                              Model* model) {
   AdjustmentResult result;
   if (options.colmap.refine_extra_params) AddDistortion(model);
-  if (options.UsesColmap()) result = RunColmapBackend(options.colmap, log_path, model);
+  if (options.UsesColmap()) {
+    BundleAdjustmentOptions colmap = options.colmap;
+    if (options.UsesMarkers()) {
+      // The marker-aware adjustment has priors, whose mean must be the calibration.
+      colmap.refine_focal_length = colmap.refine_principal_point = colmap.refine_extra_params =
+          false;
+    }
+    result = RunColmapBackend(colmap, log_path, model);
+  }
   if (options.UsesMarkers()) {
     const Statistics before_px = result.error_before_px;
     const int num_removed = result.num_removed;

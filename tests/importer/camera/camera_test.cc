@@ -1,5 +1,6 @@
 #include "importer/camera/camera.h"
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -121,6 +122,31 @@ TEST(Camera, DistortionThatFoldsOverHasNoInverse) {
   const Camera camera{CameraModel::kSimpleRadial, 2000, 2000, {1000, 1000, 1000, -0.5}};
   EXPECT_FALSE(CamFromImage(camera, {1800, 1000}));
   EXPECT_TRUE(CamFromImage(camera, {1400, 1000}));
+}
+
+TEST(Camera, MonotonicDistortionEndsWhereItFoldsInsideTheImage) {
+  for (const Camera& camera : AllModels()) {
+    EXPECT_TRUE(HasMonotonicDistortion(camera)) << CameraModelName(camera.model);
+  }
+  // r (1 - 0.5 r^2) turns at r = 0.816, where the image is 544 px from the principal point.
+  for (const int half_size_px : {300, 370, 400, 700, 1000}) {
+    const double center_px = half_size_px;
+    const Camera camera{CameraModel::kSimpleRadial,
+                        2 * half_size_px,
+                        2 * half_size_px,
+                        {1000, center_px, center_px, -0.5}};
+    EXPECT_EQ(HasMonotonicDistortion(camera), half_size_px * std::sqrt(2.0) < 544.0)
+        << half_size_px;
+  }
+  // Numerator and denominator that cancel each other but for a pole inside the image.
+  const Camera pole{
+      CameraModel::kFullOpenCV, 1920, 1080, {1300, 1300, 960, 540, -3.0, 0, 0, 0, 0, -3.01, 0, 0}};
+  EXPECT_FALSE(HasMonotonicDistortion(pole));
+}
+
+TEST(Camera, MaxRayLengthIsThatOfTheFarthestCorner) {
+  const Camera camera{CameraModel::kPinhole, 300, 400, {100, 100, 100, 200}};
+  EXPECT_NEAR(MaxRayLength(camera), std::hypot(2.0, 2.0), 1e-9);
 }
 
 TEST(Camera, NamesAndIdsAreThoseOfColmap) {

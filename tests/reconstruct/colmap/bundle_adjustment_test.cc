@@ -193,6 +193,25 @@ TEST_F(BundleAdjustment, RefinedIntrinsicsAreTakenOver) {
   EXPECT_EQ(held.cameras, wrong.cameras);
 }
 
+TEST_F(BundleAdjustment, ParametersThatTheCalibrationDoesNotNameAreNotFreed) {
+  Model model = truth_;
+  Camera& camera = model.cameras.at(1);
+  camera.model = CameraModel::kFullOpenCV;
+  camera.params.resize(12, 0.0);
+  camera.params[8] = 0.01;
+  const std::string before = Bytes(model);
+  BundleAdjustmentOptions options;
+  options.refine_extra_params = true;
+  try {
+    Adjust(&model, options);
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--BundleAdjustment.refine_extra_params"));
+    EXPECT_THAT(error.what(), HasSubstr("--backend markers"));
+  }
+  EXPECT_EQ(Bytes(model), before);
+}
+
 TEST_F(BundleAdjustment, TooLittleIsADataError) {
   Model single = truth_;
   while (single.images.size() > 1) {

@@ -1,0 +1,172 @@
+#include "reconstruct/geometry/intrinsics_prior.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "importer/camera/camera_projection.h"
+
+namespace velamap {
+namespace {
+
+// Where the radial distortion is judged, relative to the image's farthest corner.
+constexpr double kJudgedField = 0.7;
+
+int NumFocalLengths(CameraModel model) { return HasOneFocalLength(model) ? 1 : 2; }
+
+// 0 for a tangential parameter. `parameter` counts from the principal point.
+int PowerOfRay(CameraModel model, int parameter) {
+  if (model == CameraModel::kOpenCVFisheye) return 2 * (parameter + 1);
+  constexpr int kPowers[] = {2, 4, 0, 0, 6, 2, 4, 6};  // k1 k2 p1 p2 k3 k4 k5 k6
+  return kPowers[parameter];
+}
+
+// How far a parameter of 1 moves the image of a ray of this length, relative to its distance from
+// the optical axis.
+double RelativeMovement(CameraModel model, int parameter, double ray_length) {
+  const int power = PowerOfRay(model, parameter);
+  if (power == 0) return 3.0 * ray_length;
+  return std::pow(model == CameraModel::kOpenCVFisheye ? std::atan(ray_length) : ray_length, power);
+}
+
+// The relative radial movement of a ray in the judged field by each free parameter.
+Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(prior.free.size()));
+  for (std::size_t i = 0; i < prior.free.size(); ++i) {
+    const int distortion = prior.free[i] - NumFocalLengths(prior.model) - 2;
+    if (distortion < 0 || PowerOfRay(prior.model, distortion) == 0) continue;
+    gradient[static_cast<Eigen::Index>(i)] =
+        RelativeMovement(prior.model, distortion, kJudgedField * prior.max_ray_length);
+  }
+  // The denominator of the rational model works the other way.
+  if (prior.model == CameraModel::kFullOpenCV) {
+    for (std::size_t i = 0; i < prior.free.size(); ++i) {
+      if (prior.free[i] >= 9) gradient[static_cast<Eigen::Index>(i)] *= -1.0;
+    }
+  }
+  return gradient;
+}
+
+// 1 sigma of one distortion parameter moves a ray in the judged field by so much.
+double RadialSigma(const IntrinsicsPrior& prior) {
+  const std::size_t k1 = static_cast<std::size_t>(NumFocalLengths(prior.model)) + 2;
+  if (prior.sigmas.size() <= k1) return 0.0;
+  return prior.sigmas[k1] * RelativeMovement(prior.model, 0, kJudgedField * prior.max_ray_length);
+}
+
+// Of the free parameters, from the prior's mean.
+Eigen::VectorXd Change(const IntrinsicsPrior& prior, const Camera& refined) {
+  Eigen::VectorXd change(static_cast<Eigen::Index>(prior.free.size()));
+  for (std::size_t i = 0; i < prior.free.size(); ++i) {
+    const auto parameter = static_cast<std::size_t>(prior.free[i]);
+    change[static_cast<Eigen::Index>(i)] = refined.params[parameter] - prior.mean[parameter];
+  }
+  return change;
+}
+
+// Than what the calibration says, or than the change that contradicts it.
+bool IsClearlySmaller(double sigma, double prior_sigma, double change) {
+  constexpr double kClearly = 1.0 / 3.0;
+  return sigma <= kClearly * std::max(prior_sigma, std::abs(change));
+}
+
+bool IsUnnamed(const Camera& calibration, int index) {
+  return calibration.model == CameraModel::kFullOpenCV && index >= 4 &&
+         calibration.params[static_cast<std::size_t>(index)] == 0.0;
+}
+
+}  // namespace
+
+IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrinsics& free,
+                                    double sigma) {
+  const int num_focal = NumFocalLengths(calibration.model);
+  const double focal_px = MeanFocalLength(calibration);
+  IntrinsicsPrior prior;
+  prior.model = calibration.model;
+  prior.max_ray_length = MaxRayLength(calibration);
+  prior.mean = calibration.params;
+  for (int i = 0; i < static_cast<int>(calibration.params.size()); ++i) {
+    const int distortion = i - num_focal - 2;
+    prior.sigmas.push_back(distortion < 0 ? sigma * focal_px
+                                          : sigma / RelativeMovement(calibration.model, distortion,
+                                                                     prior.max_ray_length));
+    const bool is_free = i < num_focal    ? free.focal_length
+                         : distortion < 0 ? free.principal_point
+                                          : free.distortion && !IsUnnamed(calibration, i);
+    (is_free ? prior.free : prior.held).push_back(i);
+  }
+  return prior;
+}
+
+bool HasUnnamedDistortion(const Camera& calibration) {
+  for (int i = 0; i < static_cast<int>(calibration.params.size()); ++i) {
+    if (IsUnnamed(calibration, i)) return true;
+  }
+  return false;
+}
+
+Camera WithDistortionParams(const Camera& camera) {
+  Camera result = camera;
+  if (camera.model == CameraModel::kPinhole) result.model = CameraModel::kOpenCV;
+  if (camera.model == CameraModel::kSimplePinhole) result.model = CameraModel::kSimpleRadial;
+  result.params.resize(static_cast<std::size_t>(NumCameraParams(result.model)), 0.0);
+  return result;
+}
+
+FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const IntrinsicsPrior& prior,
+                                    const Camera& refined, const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd change = Change(prior, refined);
+  // Of the free parameters [begin, end) of the camera.
+  const auto is_determined = [&](int begin, int end) {
+    double largest_change = 0.0, largest_sigma = 0.0;
+    for (std::size_t i = 0; i < prior.free.size(); ++i) {
+      if (prior.free[i] < begin || prior.free[i] >= end) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      const double prior_sigma = prior.sigmas[static_cast<std::size_t>(prior.free[i])];
+      largest_change = std::max(largest_change, std::abs(change[row]) / prior_sigma);
+      largest_sigma = std::max(largest_sigma, std::sqrt(covariance(row, row)) / prior_sigma);
+    }
+    return IsClearlySmaller(largest_sigma, 1.0, largest_change);
+  };
+  const int num_focal = NumFocalLengths(prior.model);
+  FreeIntrinsics determined = free;
+  determined.focal_length = free.focal_length && is_determined(0, num_focal);
+  determined.principal_point = free.principal_point && is_determined(num_focal, num_focal + 2);
+  if (free.distortion) {
+    const Eigen::VectorXd gradient = RadialGradient(prior);
+    determined.distortion = IsClearlySmaller(std::sqrt(gradient.dot(covariance * gradient)),
+                                             RadialSigma(prior), gradient.dot(change));
+  }
+  return determined;
+}
+
+bool IsWithin(const IntrinsicsPrior& prior, const Camera& camera) {
+  const Eigen::VectorXd change = Change(prior, camera);
+  bool is_within = std::abs(RadialGradient(prior).dot(change)) <= RadialSigma(prior);
+  for (std::size_t i = 0; i < prior.free.size(); ++i) {
+    if (prior.free[i] >= NumFocalLengths(prior.model) + 2) break;
+    is_within = is_within && std::abs(change[static_cast<Eigen::Index>(i)]) <=
+                                 prior.sigmas[static_cast<std::size_t>(prior.free[i])];
+  }
+  return is_within;
+}
+
+std::string DescribeRefinement(const Camera& calibration, const Camera& refined) {
+  const auto num_focal = static_cast<std::size_t>(NumFocalLengths(refined.model));
+  const std::vector<double>& from = calibration.params;
+  const std::vector<double>& to = refined.params;
+  std::string text = fmt::format(
+      "focal length {:.1f} -> {:.1f} px, principal point ({:.1f}, {:.1f}) -> ({:.1f}, {:.1f}) px",
+      MeanFocalLength(calibration), MeanFocalLength(refined), from[num_focal], from[num_focal + 1],
+      to[num_focal], to[num_focal + 1]);
+  if (to.size() > num_focal + 2) {
+    const auto begin = static_cast<std::ptrdiff_t>(num_focal) + 2;
+    text += fmt::format(", distortion {:.4g} -> {:.4g}",
+                        fmt::join(from.begin() + begin, from.end(), " "),
+                        fmt::join(to.begin() + begin, to.end(), " "));
+  }
+  return text;
+}
+
+}  // namespace velamap

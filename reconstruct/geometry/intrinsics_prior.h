@@ -1,0 +1,69 @@
+// What a calibration file says about the parameters of its camera, and how far an adjustment may
+// move them.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/camera/camera.h"
+
+namespace velamap {
+
+// Groups of parameters that an adjustment frees.
+struct FreeIntrinsics {
+  bool focal_length = false;
+  bool principal_point = false;
+  bool distortion = false;
+
+  bool Any() const { return focal_length || principal_point || distortion; }
+  friend bool operator==(const FreeIntrinsics& a, const FreeIntrinsics& b) {
+    return a.focal_length == b.focal_length && a.principal_point == b.principal_point &&
+           a.distortion == b.distortion;
+  }
+};
+
+// Normal prior of the parameters, in COLMAP's order.
+struct IntrinsicsPrior {
+  CameraModel model = CameraModel::kPinhole;
+  double max_ray_length = 0.0;  // MaxRayLength
+  std::vector<double> mean;
+  std::vector<double> sigmas;  // of the held ones, too
+  std::vector<int> free;       // indices of the parameters that may change, ascending
+  std::vector<int> held;       // all others, ascending
+};
+
+// The prior around `calibration`. A distortion parameter is free only where the calibration names
+// it: a FULL_OPENCV camera that was read from five coefficients has no k4 k5 k6, and those that are
+// zero in it stay zero. Without this, numerator and denominator cancel each other and run away.
+//
+// `sigma` is a fraction: of the focal length for the focal length and the principal point; each
+// distortion parameter moves the image's farthest corner by that fraction of its distance from the
+// optical axis.
+IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrinsics& free,
+                                    double sigma);
+
+// Whether the calibration has distortion parameters that its file does not name.
+bool HasUnnamedDistortion(const Camera& calibration);
+
+// The camera as the model with radial distortion that contains it, where it has none.
+Camera WithDistortionParams(const Camera& camera);
+
+// The groups of `free` that are clearly better known than by the calibration. `covariance` is that
+// of the prior's free parameters, `refined` their estimate. Judged are every focal length, both
+// coordinates of the principal point, and the radial distortion at 0.7 of the way to the image's
+// farthest corner: the sigma must be a third or less of the prior's (for the distortion, of one
+// parameter's), or of the group's change where this is larger and contradicts the prior.
+FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const IntrinsicsPrior& prior,
+                                    const Camera& refined, const Eigen::MatrixXd& covariance);
+
+// Whether the focal lengths, the principal point and the radial distortion at 0.7 of the way to the
+// image's farthest corner are within 1 sigma of the prior's, that of one parameter.
+bool IsWithin(const IntrinsicsPrior& prior, const Camera& camera);
+
+// What has changed, for a message: "focal length 901.3 -> 875.1 px, ...".
+std::string DescribeRefinement(const Camera& calibration, const Camera& refined);
+
+}  // namespace velamap
