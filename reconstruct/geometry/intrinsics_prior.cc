@@ -12,6 +12,7 @@ namespace {
 
 // Where the radial distortion is judged, relative to the image's farthest corner.
 constexpr double kJudgedField = 0.7;
+constexpr double kClearly = 1.0 / 3.0;  // smaller
 
 int NumFocalLengths(CameraModel model) { return HasOneFocalLength(model) ? 1 : 2; }
 
@@ -67,8 +68,13 @@ Eigen::VectorXd Change(const IntrinsicsPrior& prior, const Camera& refined) {
 
 // Than what the calibration says, or than the change that contradicts it.
 bool IsClearlySmaller(double sigma, double prior_sigma, double change) {
-  constexpr double kClearly = 1.0 / 3.0;
   return sigma <= kClearly * std::max(prior_sigma, std::abs(change));
+}
+
+bool ChangesPixelShape(const IntrinsicsPrior& prior, const Camera& refined) {
+  if (HasOneFocalLength(prior.model)) return false;
+  const double x = refined.params[0] / prior.mean[0], y = refined.params[1] / prior.mean[1];
+  return std::abs(x - y) > kClearly * prior.sigmas[0] / prior.mean[0];
 }
 
 bool IsUnnamed(const Camera& calibration, int index) {
@@ -116,6 +122,7 @@ Camera WithDistortionParams(const Camera& camera) {
 
 FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const IntrinsicsPrior& prior,
                                     const Camera& refined, const Eigen::MatrixXd& covariance) {
+  if (ChangesPixelShape(prior, refined)) return {};
   const Eigen::VectorXd change = Change(prior, refined);
   // Of the free parameters [begin, end) of the camera.
   const auto is_determined = [&](int begin, int end) {

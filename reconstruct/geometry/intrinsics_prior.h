@@ -56,6 +56,9 @@ Camera WithDistortionParams(const Camera& camera);
 // coordinates of the principal point, and the radial distortion at 0.7 of the way to the image's
 // farthest corner: the sigma must be a third or less of the prior's (for the distortion, of one
 // parameter's), or of the group's change where this is larger and contradicts the prior.
+//
+// None where the ratio of the focal lengths changes by more than a third of the prior's sigma: the
+// pixels of a sensor keep their shape, but a rolling shutter squeezes rows.
 FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const IntrinsicsPrior& prior,
                                     const Camera& refined, const Eigen::MatrixXd& covariance);
 

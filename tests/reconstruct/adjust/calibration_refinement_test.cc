@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <gmock/gmock.h>
 
@@ -118,6 +119,52 @@ TEST_F(CalibrationRefinement, AnOptionThatFreesParametersDecidesInstead) {
   const auto summary = Adjust(&model, options);
   EXPECT_EQ(model.cameras.at(1).params[0], 1.03 * truth_.cameras.at(1).params[0]);
   EXPECT_THAT(summary.warnings, Not(Contains(HasSubstr("contradict the calibration"))));
+}
+
+// The scene seen by frames between which the cloth moves by some mm, or of which the rows are read
+// over 20 ms by a camera that moves, with noise.
+SyntheticScene WithMotion(const SyntheticScene& scene, bool is_cloth, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  SyntheticScene moving = scene;
+  AddNoise({kNoisePx, 0, 0, 200, seed}, &moving);
+  Eigen::Vector3d linear(0, 0, 0), angular(0, 0, 0);
+  for (std::size_t i = 0; i < moving.frames.size(); ++i) {
+    const double amplitude_m = 5e-3 * normal(random), phase = normal(random);
+    for (int axis = 0; axis < 3; ++axis) {
+      linear[axis] = 0.7 * linear[axis] + 0.3 * normal(random);
+      angular[axis] = 0.7 * angular[axis] + 0.1 * normal(random);
+    }
+    for (MarkerDetection& marker : moving.frames[i].markers) {
+      for (int c = 0; c < kNumCorners; ++c) {
+        const Eigen::Vector3d& x = scene.x_in_world.at(marker.marker_id)[c + 1];
+        const Eigen::Vector3d still = scene.cam_from_world[i] * x;
+        const Eigen::Vector2d still_px = ImageFromCam(scene.camera, still).value();
+        const double time_s = 0.02 * (still_px.y() / scene.camera.height_px - 0.5);
+        const Eigen::Vector3d wave(0, 0, amplitude_m * std::sin(3.0 * x.x() + phase));
+        const Eigen::Vector3d moved =
+            is_cloth ? scene.cam_from_world[i] * (x + wave)
+                     : Eigen::Vector3d(still + time_s * (linear + angular.cross(still)));
+        marker.corners_in_image_px[c] += ImageFromCam(scene.camera, moved).value() - still_px;
+      }
+    }
+  }
+  return moving;
+}
+
+// What the adjustment does not know must not pass for the calibration.
+TEST_F(CalibrationRefinement, MotionIsNotTakenForTheCalibration) {
+  for (const bool is_cloth : {true, false}) {
+    double sum = 0.0, sum_held = 0.0;
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      Model model = MakeSceneModel(WithMotion(scene_, is_cloth, seed)), held = model;
+      Adjust(&model);
+      Adjust(&held, Held());
+      sum += MaxPointError(model, truth_);
+      sum_held += MaxPointError(held, truth_);
+    }
+    EXPECT_LT(sum, 1.1 * sum_held) << (is_cloth ? "cloth" : "rolling shutter");
+  }
 }
 
 class FiveCoefficients : public CalibrationRefinement {

@@ -78,9 +78,11 @@ TEST(IntrinsicsPrior, WhatIsNotClearlyBetterKnownThanThePriorIsNotDetermined) {
   EXPECT_EQ(determined(factors), (FreeIntrinsics{false, true, true}));
   factors[3] = factors[4] = 0.5;
   EXPECT_EQ(determined(factors), FreeIntrinsics{});
-  refined.params[0] *= 1.05;  // ten sigmas of the estimate
+  for (const std::size_t i : {0, 1}) refined.params[i] *= 1.05;  // ten sigmas of the estimate
   refined.params[4] = 0.3;
   EXPECT_EQ(determined(factors), (FreeIntrinsics{true, false, true}));
+  refined.params[1] *= 1.01;  // no lens does that
+  EXPECT_EQ(determined(factors), FreeIntrinsics{});
 }
 
 TEST(IntrinsicsPrior, DistortionParamsOfACameraWithoutThemChangeNoImage) {
