@@ -49,6 +49,15 @@ Intrinsics GetIntrinsics(const Camera& camera) {
   return {{p[0], p[1]}, {p[2], p[3]}, p + 4};
 }
 
+// Whether the rational model passes a pole on the way to a ray of this length. Where numerator and
+// denominator nearly cancel each other, it is too narrow to be seen in the image.
+bool IsBeyondPole(const Camera& camera, double ray_length) {
+  if (camera.model != CameraModel::kFullOpenCV) return false;
+  const double* k4 = GetIntrinsics(camera).distortion + 5;
+  const double r2 = ray_length * ray_length;
+  return !(1.0 + r2 * (k4[0] + r2 * (k4[1] + r2 * k4[2])) > 0);
+}
+
 }  // namespace
 
 std::string CameraModelName(CameraModel model) { return Entry(model).name; }
@@ -126,6 +135,7 @@ bool HasMonotonicDistortion(const Camera& camera) {
     const double angle = 2.0 * kPi * i / kNumDirections;
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     for (double length = step; length < kMaxRayLength; length += step) {
+      if (IsBeyondPole(camera, length)) return false;
       const RayFunction found =
           DistortRayWithJacobian(camera.model, intrinsics.distortion, length * direction);
       const Eigen::Vector2d outwards = found.by_ray * direction;
