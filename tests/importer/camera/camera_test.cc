@@ -138,9 +138,11 @@ TEST(Camera, MonotonicDistortionEndsWhereItFoldsInsideTheImage) {
     EXPECT_EQ(HasMonotonicDistortion(camera), half_size_px * std::sqrt(2.0) < 544.0)
         << half_size_px;
   }
-  // Numerator and denominator that cancel each other but for a pole inside the image.
-  const Camera pole{
-      CameraModel::kFullOpenCV, 1920, 1080, {1300, 1300, 960, 540, -3.0, 0, 0, 0, 0, -3.01, 0, 0}};
+  // Numerator and denominator cancel each other but for a pole, a ten-thousandth of the field wide.
+  const Camera pole{CameraModel::kFullOpenCV,
+                    1920,
+                    1080,
+                    {1300, 1300, 960, 540, -3.0001, 0, 0, 0, 0, -3.0, 0, 0}};
   EXPECT_FALSE(HasMonotonicDistortion(pole));
 }
 
