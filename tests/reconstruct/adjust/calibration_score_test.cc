@@ -27,10 +27,13 @@ SyntheticScene NoisyScene(SceneKind kind, std::uint32_t seed) {
   return scene;
 }
 
+// Of an adjustment that keeps the calibration.
 CalibrationEvidence Evidence(const SyntheticScene& scene, const Camera& assumed) {
   Model model = MakeSceneModel(scene);
   for (auto& [camera_id, camera] : model.cameras) camera = assumed;
-  return AdjustWithMarkers({}, scene.layout, {}, &model).uncertainty.calibration;
+  MarkerAdjustmentOptions options;
+  options.refine_calibration = false;
+  return AdjustWithMarkers(options, scene.layout, {}, &model).uncertainty.calibration;
 }
 
 Camera WithParams(Camera camera, std::vector<double> params) {
@@ -106,6 +109,7 @@ TEST(CalibrationScore, ARefinedFocalLengthLeavesNothingToExplain) {
   for (auto& [camera_id, camera] : model.cameras) camera = WithFocalLength(camera, 1.02);
   MarkerAdjustmentOptions options;
   options.intrinsics_sigma = 0.1;
+  options.refine_calibration = false;
   Model fixed_model = model;
   const auto fixed = AdjustWithMarkers(options, scene.layout, {}, &fixed_model);
   options.refine_focal_length = true;
