@@ -292,7 +292,8 @@ State BestStart(const std::vector<FormationSample>& samples,
 
 State Minimize(const std::vector<FormationSample>& samples, bool is_inverted, bool sharpens_light,
                int num_threads) {
-  constexpr int kNumRounds = 2;  // each with the noise of the one before
+  constexpr int kNumRounds = 2;        // each with the noise of the one before
+  constexpr double kSameNoise = 0.95;  // another round would change nothing
   ImageFormationParameters formation;
   formation.is_inverted = is_inverted;
   formation.sharpens_light = sharpens_light;
@@ -303,10 +304,13 @@ State Minimize(const std::vector<FormationSample>& samples, bool is_inverted, bo
   options.max_damping = 1e2;
   options.min_relative_decrease = 2e-4;
   State state = BestStart(samples, formation, num_threads);
+  double noise = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kNumRounds && !state.samples.empty(); ++round) {
     state = WithPooledQuietZone(std::move(state), num_threads);
+    const double noise_before = std::exchange(noise, NoiseOf(state));
+    if (noise > kSameNoise * noise_before) break;
     GaussNewtonEquations<kCount> equations;
-    MinimizeSquares(options, FormationProblem(NoiseOf(state), num_threads), &state, &equations);
+    MinimizeSquares(options, FormationProblem(noise, num_threads), &state, &equations);
   }
   return state;
 }
