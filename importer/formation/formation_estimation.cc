@@ -4,21 +4,20 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <optional>
-#include <set>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
-#include "importer/base/parallel.h"
 #include "importer/base/statistics.h"
+#include "importer/formation/formation_state.h"
 #include "importer/geometry/least_squares.h"
 
 namespace velamap {
 namespace {
 
-constexpr int kCount = 5;  // log gamma, S, sharpening, log radius, ink spread
-using Vector = Eigen::Matrix<double, kCount, 1>;
+constexpr int kCount = kNumFormationParameters;
+using Vector = FormationVector;
+using State = FormationState;
 
 // Priors and limits: usual cameras. The steps are for derivatives.
 const Vector kMean = (Vector() << std::log(1.6), 0.0, 0.1, 0.0, 0.0).finished();
@@ -30,76 +29,9 @@ const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004).finished();
 // 1 sigma of the width of a quiet zone about the mean of all, cells, while that is being found.
 constexpr double kQuietZoneSigma = 0.25;
 
-// `formation` with the parameters of the problem.
-ImageFormationParameters With(const Vector& p, ImageFormationParameters formation) {
-  formation.gamma = std::exp(p[0]);
-  formation.s_amplitude = p[1];
-  formation.sharpening = p[2];
-  formation.sharpening_radius_px = std::exp(p[3]);
-  formation.ink_spread_sides = p[4];
-  return formation;
-}
-
-// The parameters that all samples share, and the samples fitted with them.
-struct State {
-  Vector parameters;
-  std::shared_ptr<const ImageFormation> formation;
-  std::vector<FittedSample> samples;
-  std::set<std::size_t> sample_idxs;  // of the samples that could be fitted, in the same order
-  // The states after a step of each parameter alone, for derivatives by differences; null until
-  // they are asked for.
-  mutable std::shared_ptr<const std::vector<State>> moved;
-};
-
-// The same samples fitted with another image formation; `parameters` are those of it.
-State FittedWith(const ImageFormationParameters& formation, const Vector& parameters,
-                 const State& state, int num_threads) {
-  State moved{parameters, std::make_shared<const ImageFormation>(formation), state.samples,
-              state.sample_idxs, nullptr};
-  ParallelFor(moved.samples.size(), num_threads, [&](std::size_t i) {
-    RefitSample(*moved.formation, state.formation->tone(), &moved.samples[i]);
-  });
-  return moved;
-}
-
 State MovedTo(const Vector& parameters, const State& state, int num_threads) {
   return FittedWith(With(parameters, state.formation->parameters()), parameters, state,
                     num_threads);
-}
-
-// Widths of the quiet zones of all samples, cells.
-std::vector<double> QuietZones(const State& state) {
-  std::vector<double> widths;
-  for (const FittedSample& sample : state.samples) {
-    const auto& margins = sample.minimum.parameters.segment<4>(PatternParameters::kMargin);
-    widths.insert(widths.end(), margins.begin(), margins.end());
-  }
-  return widths;
-}
-
-// All samples together tell how wide the quiet zone is where each is too small to do so alone: the
-// prior moves to the median until that stands still.
-State WithPooledQuietZone(State state, int num_threads) {
-  constexpr int kMaxIterations = 5;
-  constexpr double kTolerance = 0.01;  // cells
-  for (int i = 0; i < kMaxIterations; ++i) {
-    ImageFormationParameters formation = state.formation->parameters();
-    const double before = formation.quiet_zone_cells;
-    formation.quiet_zone_cells = Median(QuietZones(state));
-    if (std::abs(formation.quiet_zone_cells - before) < kTolerance) break;
-    state = FittedWith(formation, state.parameters, state, num_threads);
-  }
-  return state;
-}
-
-double NoiseOf(const State& state) {
-  std::vector<double> values;
-  for (const FittedSample& sample : state.samples) {
-    values.insert(values.end(), sample.residuals.begin(), sample.residuals.end());
-  }
-  constexpr double kMinNoise = 0.5;  // 8 bits round
-  return values.empty() ? std::numeric_limits<double>::infinity()
-                        : std::max(kMinNoise, RobustSigma(values));
 }
 
 const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
@@ -136,21 +68,6 @@ Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::si
         (residuals_of(moved[static_cast<std::size_t>(k)]) - residuals_of(state)) / kStep[k];
   }
   return jacobian;
-}
-
-// How much farther inside along both sides one state has the corners than another, mean of the
-// samples that both could fit, px.
-double MeanInset(const State& one, const State& other) {
-  double sum = 0.0;
-  int count = 0;
-  for (std::size_t i = 0; i < one.samples.size(); ++i) {
-    const FittedSample &a = one.samples[i], &b = other.samples[i];
-    if (a.residuals.empty() || b.residuals.empty()) continue;
-    sum += 0.5 * (QuadMeanSide(CornersOf(b.minimum.parameters)) -
-                  QuadMeanSide(CornersOf(a.minimum.parameters)));
-    ++count;
-  }
-  return count > 0 ? sum / count : 0.0;
 }
 
 // The estimation as a problem of MinimizeSquares(). A sample whose fit fails counts as residuals
@@ -238,41 +155,6 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
   mutable double least_cost_ = std::numeric_limits<double>::infinity();
 };
 
-State FitAll(const std::vector<FormationSample>& samples, double gamma,
-             const ImageFormationParameters& formation, int num_threads) {
-  State state;
-  state.parameters = kMean;
-  state.parameters[0] = std::log(gamma);
-  state.formation = std::make_shared<const ImageFormation>(With(state.parameters, formation));
-  std::vector<std::optional<FittedSample>> fitted(samples.size());
-  ParallelFor(samples.size(), num_threads, [&](std::size_t i) {
-    fitted[i] = FitSample(samples[i], *state.formation);
-    if (fitted[i]) RefitSample(*state.formation, state.formation->tone(), &*fitted[i]);
-  });
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    if (!fitted[i]) continue;
-    state.samples.push_back(std::move(*fitted[i]));
-    state.sample_idxs.insert(i);
-  }
-  return state;
-}
-
-// Drops the samples that another state has not.
-void KeepOnly(const std::set<std::size_t>& sample_idxs, State* state) {
-  std::vector<FittedSample> samples;
-  std::set<std::size_t> kept;
-  std::size_t i = 0;
-  for (const std::size_t sample_idx : state->sample_idxs) {
-    FittedSample& sample = state->samples[i++];
-    if (sample_idxs.count(sample_idx) == 0) continue;
-    samples.push_back(std::move(sample));
-    kept.insert(sample_idx);
-  }
-  if (kept.size() < state->sample_idxs.size()) state->moved.reset();
-  state->samples = std::move(samples);
-  state->sample_idxs = std::move(kept);
-}
-
 // The samples fitted with the gamma that leaves the least noise; none if no fit succeeds.
 State BestStart(const std::vector<FormationSample>& samples,
                 const ImageFormationParameters& formation, int num_threads) {
@@ -280,7 +162,9 @@ State BestStart(const std::vector<FormationSample>& samples,
   State best;
   double least_noise = std::numeric_limits<double>::infinity();
   for (const double gamma : kGammas) {
-    State state = FitAll(samples, gamma, formation, num_threads);
+    Vector start = kMean;
+    start[0] = std::log(gamma);
+    State state = FitSamples(samples, start, formation, num_threads);
     const double noise = NoiseOf(state);
     if (noise < least_noise) {
       least_noise = noise;

@@ -1,0 +1,112 @@
+#include "importer/formation/formation_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "importer/base/parallel.h"
+#include "importer/base/statistics.h"
+
+namespace velamap {
+
+ImageFormationParameters With(const FormationVector& p, ImageFormationParameters formation) {
+  formation.gamma = std::exp(p[0]);
+  formation.s_amplitude = p[1];
+  formation.sharpening = p[2];
+  formation.sharpening_radius_px = std::exp(p[3]);
+  formation.ink_spread_sides = p[4];
+  return formation;
+}
+
+FormationState FitSamples(const std::vector<FormationSample>& samples, const FormationVector& start,
+                          const ImageFormationParameters& formation, int num_threads) {
+  FormationState state;
+  state.parameters = start;
+  state.formation = std::make_shared<const ImageFormation>(With(state.parameters, formation));
+  std::vector<std::optional<FittedSample>> fitted(samples.size());
+  ParallelFor(samples.size(), num_threads, [&](std::size_t i) {
+    fitted[i] = FitSample(samples[i], *state.formation);
+    if (fitted[i]) RefitSample(*state.formation, state.formation->tone(), &*fitted[i]);
+  });
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    if (!fitted[i]) continue;
+    state.samples.push_back(std::move(*fitted[i]));
+    state.sample_idxs.insert(i);
+  }
+  return state;
+}
+
+FormationState FittedWith(const ImageFormationParameters& formation,
+                          const FormationVector& parameters, const FormationState& state,
+                          int num_threads) {
+  FormationState moved{parameters, std::make_shared<const ImageFormation>(formation), state.samples,
+                       state.sample_idxs, nullptr};
+  ParallelFor(moved.samples.size(), num_threads, [&](std::size_t i) {
+    RefitSample(*moved.formation, state.formation->tone(), &moved.samples[i]);
+  });
+  return moved;
+}
+
+std::vector<double> QuietZones(const FormationState& state) {
+  std::vector<double> widths;
+  for (const FittedSample& sample : state.samples) {
+    const auto& margins = sample.minimum.parameters.segment<4>(PatternParameters::kMargin);
+    widths.insert(widths.end(), margins.begin(), margins.end());
+  }
+  return widths;
+}
+
+FormationState WithPooledQuietZone(FormationState state, int num_threads) {
+  constexpr int kMaxIterations = 5;
+  constexpr double kTolerance = 0.01;  // cells
+  for (int i = 0; i < kMaxIterations; ++i) {
+    ImageFormationParameters formation = state.formation->parameters();
+    const double before = formation.quiet_zone_cells;
+    formation.quiet_zone_cells = Median(QuietZones(state));
+    if (std::abs(formation.quiet_zone_cells - before) < kTolerance) break;
+    state = FittedWith(formation, state.parameters, state, num_threads);
+  }
+  return state;
+}
+
+double NoiseOf(const FormationState& state) {
+  std::vector<double> values;
+  for (const FittedSample& sample : state.samples) {
+    values.insert(values.end(), sample.residuals.begin(), sample.residuals.end());
+  }
+  constexpr double kMinNoise = 0.5;  // 8 bits round
+  return values.empty() ? std::numeric_limits<double>::infinity()
+                        : std::max(kMinNoise, RobustSigma(values));
+}
+
+double MeanInset(const FormationState& one, const FormationState& other) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < one.samples.size(); ++i) {
+    const FittedSample &a = one.samples[i], &b = other.samples[i];
+    if (a.residuals.empty() || b.residuals.empty()) continue;
+    sum += 0.5 * (QuadMeanSide(CornersOf(b.minimum.parameters)) -
+                  QuadMeanSide(CornersOf(a.minimum.parameters)));
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+void KeepOnly(const std::set<std::size_t>& sample_idxs, FormationState* state) {
+  std::vector<FittedSample> samples;
+  std::set<std::size_t> kept;
+  std::size_t i = 0;
+  for (const std::size_t sample_idx : state->sample_idxs) {
+    FittedSample& sample = state->samples[i++];
+    if (sample_idxs.count(sample_idx) == 0) continue;
+    samples.push_back(std::move(sample));
+    kept.insert(sample_idx);
+  }
+  if (kept.size() < state->sample_idxs.size()) state->moved.reset();
+  state->samples = std::move(samples);
+  state->sample_idxs = std::move(kept);
+}
+
+}  // namespace velamap

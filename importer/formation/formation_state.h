@@ -1,0 +1,61 @@
+// The image formation that the estimate has reached, and all samples fitted with it.
+
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/formation/fitted_sample.h"
+
+namespace velamap {
+
+constexpr int kNumFormationParameters = 5;  // log gamma, S, sharpening, log radius, ink spread
+using FormationVector = Eigen::Matrix<double, kNumFormationParameters, 1>;
+
+// `formation` with the parameters of the vector.
+ImageFormationParameters With(const FormationVector& parameters,
+                              ImageFormationParameters formation);
+
+// The parameters that all samples share, and the samples fitted with them.
+struct FormationState {
+  FormationVector parameters;
+  std::shared_ptr<const ImageFormation> formation;
+  std::vector<FittedSample> samples;
+  std::set<std::size_t> sample_idxs;  // of the samples that could be fitted, in the same order
+  // The states after a step of each parameter alone, for derivatives by differences; null until
+  // they are asked for.
+  mutable std::shared_ptr<const std::vector<FormationState>> moved;
+};
+
+// The samples fitted with `formation`, which gets the parameters `start`. Samples that cannot
+// be fitted are left out.
+FormationState FitSamples(const std::vector<FormationSample>& samples, const FormationVector& start,
+                          const ImageFormationParameters& formation, int num_threads);
+
+// The same samples fitted with another image formation; `parameters` are those of it.
+FormationState FittedWith(const ImageFormationParameters& formation,
+                          const FormationVector& parameters, const FormationState& state,
+                          int num_threads);
+
+// Widths of the quiet zones of all samples, cells.
+std::vector<double> QuietZones(const FormationState& state);
+
+// All samples together tell how wide the quiet zone is where each is too small to do so alone: the
+// prior moves to the median until that stands still.
+FormationState WithPooledQuietZone(FormationState state, int num_threads);
+
+// Robust standard deviation of the residuals, grey levels; infinite without any.
+double NoiseOf(const FormationState& state);
+
+// How much farther inside along both sides one state has the corners than another, mean of the
+// samples that both could fit, px. Both must hold the same samples.
+double MeanInset(const FormationState& one, const FormationState& other);
+
+// Drops the samples that another state has not.
+void KeepOnly(const std::set<std::size_t>& sample_idxs, FormationState* state);
+
+}  // namespace velamap
