@@ -19,6 +19,8 @@ namespace {
 
 constexpr int kMaxSamples = 32, kMinSamples = 2;
 constexpr double kMinSidePx = 12.0;
+// What the sRGB curve of most cameras moves edges by that are as sharp as usual.
+constexpr double kUnknownInsetPx = 0.2;
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
 // At most `max_num` markers of the layout, spread over the better half by size.
@@ -145,7 +147,11 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   if (static_cast<int>(samples.size()) >= kMinSamples) {
     estimate = EstimateFormation(samples, detector.options.inverted, num_threads);
   }
-  if (estimate.num_samples < kMinSamples) return {};
+  if (estimate.num_samples < kMinSamples) {
+    FormationEstimate unknown;
+    unknown.inset_sigma_px = kUnknownInsetPx;
+    return unknown;
+  }
   const ImageFormationParameters& found = estimate.parameters;
   spdlog::info(
       "camera and print, from {} markers: gamma {:.2f}, S-curve {:+.3f}, sharpening {:.2f} over "

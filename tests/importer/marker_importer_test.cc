@@ -148,6 +148,16 @@ TEST_F(MarkerImporterTest, RerunAddsWhatIsMissingAndNothingElse) {
   EXPECT_EQ(database.ReadFormation()->parameters.gamma, 1.234);
 }
 
+TEST_F(MarkerImporterTest, OneMarkerDoesNotTellTheCamera) {
+  WritePicture("1.png", 0, {1});
+  ImportMarkers(options_);
+  const ColmapDatabase database(options_.database_path, ColmapDatabase::Mode::kReadOnly);
+  const FormationEstimate formation = database.ReadFormation().value();
+  EXPECT_EQ(formation.num_samples, 0);
+  EXPECT_EQ(formation.parameters.gamma, 1.0);
+  EXPECT_GT(formation.inset_sigma_px, 0.1);
+}
+
 TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
   for (int i = 0; i < 8; ++i) WritePicture(std::to_string(i) + ".png", i, {1, 2, 3});
   options_.num_threads = 1;
