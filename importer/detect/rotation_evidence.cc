@@ -1,4 +1,5 @@
 #include "importer/detect/rotation_evidence.h"
+#include "importer/base/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,12 +56,6 @@ bool HasSamePlace(const Relation& a, const Relation& known) {
 
 bool HasSameDirection(const Relation& a, const Relation& known, double min_cosine) {
   return a.top_side.dot(known.top_side) >= min_cosine;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The relation on which the frames agree; nothing if too few show it or too many depart from it.

@@ -1,7 +1,6 @@
 // The text format of model_io.h. Numbers do not depend on the locale.
 
 #include <cctype>
-#include <charconv>
 #include <istream>
 #include <ostream>
 #include <string_view>
@@ -11,6 +10,7 @@
 #include <fmt/ostream.h>
 
 #include "importer/base/error.h"
+#include "importer/base/numbers.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/model_records.h"
 
@@ -51,8 +51,7 @@ class LineReader {
     static_assert(std::is_arithmetic_v<T>);
     const std::string_view word = Word(what);
     T value{};
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) {
+    if (!ParseNumber(word, &value)) {
       Fail(fmt::format("expected {} as a {}, found '{}'", what, Kind<T>(), word));
     }
     return value;

@@ -1,7 +1,6 @@
 #include "workflows/run/central_frame_sweep.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/numbers.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/warm_start.h"
 #include "reconstruct/model/reprojection.h"
@@ -44,8 +44,7 @@ std::string NameOf(const DatabaseImage& image) {
 std::vector<int> ChooseEvery(const std::string& choice, const std::string& count,
                              const PosedImages& posed) {
   int step = 0;
-  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), step);
-  if (error != std::errc() || end != count.data() + count.size() || step < 1) {
+  if (!ParseNumber(count, &step) || step < 1) {
     ThrowBadChoice(choice, fmt::format("'{}' is no count of 1 or more", count));
   }
   std::vector<int> chosen;

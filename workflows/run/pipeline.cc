@@ -1,7 +1,6 @@
 #include "workflows/run/pipeline.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -14,6 +13,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/numbers.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/model/model_io.h"
@@ -157,11 +157,8 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
 }  // namespace
 
 VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration) {
-  const std::string& central = registration.central_frame;
   int number = 0;
-  const auto [end, error] =
-      std::from_chars(central.data(), central.data() + central.size(), number);
-  if (error != std::errc() || end != central.data() + central.size() || number < 0 ||
+  if (!ParseNumber(registration.central_frame, &number) || number < 0 ||
       registration.frame_order == FrameOrder::kUnordered ||
       registration.method == RegistrationMethod::kGlobal) {
     return video;
