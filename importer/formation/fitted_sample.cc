@@ -12,12 +12,16 @@ namespace {
 
 using P = PatternParameters;
 
-// Modelled less recorded grey values. The patch is without the sharpening, which is applied to the
-// difference again: it would otherwise depend on the sharpening how large the noise looks.
-std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation& formation) {
+cv::Point PatchFromBox(const PatternProblem& problem) {
+  return problem.box.tl() - problem.patch.origin_px;
+}
+
+// Modelled grey values less those of the patch, which is without the sharpening, in the box of the
+// problem; zero where no pixel counts.
+cv::Mat Differences(const FittedSample& sample) {
   const PatternProblem& problem = sample.problem;
   const PatternPicture picture(problem.model, sample.minimum.parameters);
-  const cv::Point patch_from_box = problem.box.tl() - problem.patch.origin_px;
+  const cv::Point patch_from_box = PatchFromBox(problem);
   const Eigen::Vector2d box_from_center =
       Eigen::Vector2d(problem.box.x, problem.box.y) - problem.model.center_px;
   cv::Mat difference = cv::Mat::zeros(problem.box.size(), CV_32F);
@@ -36,26 +40,40 @@ std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation&
           problem.patch.values.at<float>(sample.places[i] + patch_from_box);
     }
   }
+  return difference;
+}
+
+// Slopes of the tone curve at the pixels of the problem's box.
+cv::Mat ToneSlopes(const PatternProblem& problem, const ToneCurve& tone) {
+  cv::Mat slopes =
+      problem.patch.values(cv::Rect(PatchFromBox(problem), problem.box.size())).clone();
+  for (float& value : cv::Mat_<float>(slopes)) {
+    Floats slope;
+    tone.Encode(AllLanes(tone.Decode(value)), &slope);
+    value = slope[0];
+  }
+  return slopes;
+}
+
+void Sharpen(const ImageFormationParameters& parameters, cv::Mat* values) {
+  cv::Mat blurred;
+  cv::GaussianBlur(*values, blurred, {0, 0}, parameters.sharpening_radius_px,
+                   parameters.sharpening_radius_px, cv::BORDER_CONSTANT);
+  *values = (1 + parameters.sharpening) * *values - parameters.sharpening * blurred;
+}
+
+// Modelled less recorded grey values. The sharpening is applied to the differences again: it would
+// otherwise depend on the sharpening how large the noise looks.
+std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation& formation) {
+  cv::Mat difference = Differences(sample);
   const ImageFormationParameters& parameters = formation.parameters();
-  if (parameters.sharpening != 0) {
-    cv::Mat slope(problem.box.size(), CV_32F, cv::Scalar(1));
-    if (parameters.sharpens_light) {
-      for (int y = 0; y < slope.rows; ++y) {
-        for (int x = 0; x < slope.cols; ++x) {
-          Floats one;
-          formation.tone().Encode(AllLanes(formation.tone().Decode(problem.patch.values.at<float>(
-                                      cv::Point(x, y) + patch_from_box))),
-                                  &one);
-          slope.at<float>(y, x) = one[0];
-        }
-      }
-    }
-    cv::Mat blurred;
-    cv::divide(difference, slope, difference);
-    cv::GaussianBlur(difference, blurred, {0, 0}, parameters.sharpening_radius_px,
-                     parameters.sharpening_radius_px, cv::BORDER_CONSTANT);
-    difference = (1 + parameters.sharpening) * difference - parameters.sharpening * blurred;
-    cv::multiply(difference, slope, difference);
+  if (parameters.sharpening != 0 && parameters.sharpens_light) {
+    const cv::Mat slopes = ToneSlopes(sample.problem, formation.tone());
+    cv::divide(difference, slopes, difference);
+    Sharpen(parameters, &difference);
+    cv::multiply(difference, slopes, difference);
+  } else if (parameters.sharpening != 0) {
+    Sharpen(parameters, &difference);
   }
   std::vector<float> residuals;
   residuals.reserve(sample.places.size());

@@ -7,7 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "tests/support/option_range.h"
+#include "tests/support/tool_options.h"
 
 namespace velamap {
 namespace {

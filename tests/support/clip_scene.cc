@@ -9,7 +9,7 @@
 #include "importer/base/error.h"
 #include "tests/support/clip_camera.h"
 #include "tests/support/clip_scene_builder.h"
-#include "tests/support/option_range.h"
+#include "tests/support/tool_options.h"
 
 namespace velamap {
 namespace {

@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tests/support/coverage_image.h"
-#include "tests/support/option_range.h"
 #include "tests/support/picture_effects.h"
+#include "tests/support/tool_options.h"
 
 namespace velamap {
 namespace {

@@ -11,6 +11,7 @@
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "tests/support/corner_comparison.h"
+#include "tests/support/tool_options.h"
 
 namespace velamap {
 namespace {
@@ -62,16 +63,7 @@ void Run(int argc, char** argv) {
   add("database_path", po::value(&database_path)->required(), "of an import of its video");
   add("csv_path", po::value(&csv_path), "writes every marker in every frame");
   po::variables_map values;
-  try {
-    po::store(po::parse_command_line(argc, argv, description), values);
-    if (values.count("help") > 0) {
-      std::cout << description;
-      return;
-    }
-    po::notify(values);
-  } catch (const po::error& error) {
-    throw InputError(fmt::format("{}; see clip_corners --help", error.what()));
-  }
+  if (!ReadToolOptions(description, "clip_corners", argc, argv, &values)) return;
   const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly);
   const auto comparisons = CompareCorners(clip_path, database.ReadImages());
   if (!csv_path.empty()) WriteCsv(comparisons, csv_path);

@@ -48,7 +48,7 @@ double MedianSidePx(const ClipScene& scene) {
       if (corners) sides_px.push_back(QuadMeanSide(*corners));
     }
   }
-  return sides_px.empty() ? 0.0 : ComputeStatistics(sides_px).median;
+  return sides_px.empty() ? 0.0 : Median(std::move(sides_px));
 }
 
 void Run(int argc, char** argv) {

@@ -1,7 +1,6 @@
 #include "tests/tools/render_clip_options.h"
 
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <thread>
 #include <type_traits>
@@ -10,6 +9,7 @@
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "tests/support/tool_options.h"
 
 namespace velamap {
 namespace {
@@ -134,9 +134,13 @@ RenderClipOptions Defaults(int argc, char** argv) {
   po::options_description description;
   description.add_options()("camera", po::value(&camera));
   po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(description).allow_unregistered().run(),
-            values);
-  po::notify(values);
+  try {
+    po::store(po::command_line_parser(argc, argv).options(description).allow_unregistered().run(),
+              values);
+    po::notify(values);
+  } catch (const po::error&) {
+    return {};  // all options are read once more, and that names the mistake
+  }
   return Choose<bool>("camera", camera, {{"plain", false}, {"action", true}}) ? ActionCamera()
                                                                               : RenderClipOptions();
 }
@@ -193,19 +197,10 @@ void Complete(RenderClipOptions* options) {
 }  // namespace
 
 std::optional<RenderClipOptions> ReadRenderClipOptions(int argc, char** argv) {
-  RenderClipOptions options;
-  try {
-    options = Defaults(argc, argv);
-    options.num_threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const po::options_description description = Describe(&options);
-    po::store(po::parse_command_line(argc, argv, description), options.values);
-    if (options.values.count("help") > 0) {
-      std::cout << description;
-      return std::nullopt;
-    }
-    po::notify(options.values);
-  } catch (const po::error& error) {
-    throw InputError(fmt::format("{}; see render_clip --help", error.what()));
+  RenderClipOptions options = Defaults(argc, argv);
+  options.num_threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (!ReadToolOptions(Describe(&options), "render_clip", argc, argv, &options.values)) {
+    return std::nullopt;
   }
   Complete(&options);
   return options;

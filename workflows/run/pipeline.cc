@@ -16,6 +16,7 @@
 #include "importer/base/numbers.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/colmap_runner.h"
+#include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "reconstruct/thesis/frame_selection.h"
@@ -85,14 +86,9 @@ void LogSeed(const SeedResult& seed) {
 // Gives cameras without distortion one of zero, so that it can be refined.
 void AddDistortion(Model* model) {
   for (auto& [camera_id, camera] : model->cameras) {
-    if (camera.model == CameraModel::kPinhole) {
-      camera.model = CameraModel::kOpenCV;
-    } else if (camera.model == CameraModel::kSimplePinhole) {
-      camera.model = CameraModel::kRadial;
-    } else {
-      continue;
-    }
-    camera.params.resize(static_cast<std::size_t>(NumCameraParams(camera.model)), 0.0);
+    const Camera distorted = WithDistortionParams(camera);
+    if (distorted == camera) continue;
+    camera = distorted;
     spdlog::info("camera {} has no distortion; it is refined from zero", camera_id);
   }
 }

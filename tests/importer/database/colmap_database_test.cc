@@ -200,36 +200,6 @@ TEST(ColmapDatabase, TakesLittleMoreThanItsNumbers) {
   EXPECT_EQ(SQLite::Database(path).execAndGet("PRAGMA integrity_check").getString(), "ok");
 }
 
-TEST(ColmapDatabase, HoldsOneImageFormation) {
-  const TempDir dir;
-  const std::string path = dir / "database.db";
-  FormationEstimate estimate;
-  estimate.parameters = {1.9, 0.02, 0.4, 1.2, -0.001, true, true, 0.7, 0.15};
-  estimate.num_samples = 31;
-  estimate.noise_gray = 2.5;
-  estimate.inset_sigma_px = 0.012;
-  {
-    ColmapDatabase database(path, Mode::kReadWriteCreate);
-    EXPECT_FALSE(database.ReadFormation());
-    database.WriteFormation({});
-    database.WriteFormation(estimate);
-  }
-  const auto read = ColmapDatabase(path, Mode::kReadOnly).ReadFormation();
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->parameters.gamma, 1.9);
-  EXPECT_EQ(read->parameters.s_amplitude, 0.02);
-  EXPECT_EQ(read->parameters.sharpening, 0.4);
-  EXPECT_EQ(read->parameters.sharpening_radius_px, 1.2);
-  EXPECT_EQ(read->parameters.ink_spread_sides, -0.001);
-  EXPECT_TRUE(read->parameters.is_inverted);
-  EXPECT_TRUE(read->parameters.sharpens_light);
-  EXPECT_EQ(read->parameters.quiet_zone_cells, 0.7);
-  EXPECT_EQ(read->parameters.quiet_zone_sigma_cells, 0.15);
-  EXPECT_EQ(read->num_samples, 31);
-  EXPECT_EQ(read->noise_gray, 2.5);
-  EXPECT_EQ(read->inset_sigma_px, 0.012);
-}
-
 TEST(ColmapDatabase, UnknownSigmasAreNull) {
   const TempDir dir;
   const std::string path = dir / "database.db";
