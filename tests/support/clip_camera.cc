@@ -27,6 +27,29 @@ double Wave(double time_s, double period_s, double phase_rad) {
   return std::sin(2 * kPi * time_s / period_s + phase_rad);
 }
 
+// Fast turns of the camera about its three axes.
+class Shake {
+ public:
+  Shake(double amplitude_deg, Sway* sway) : amplitude_rad_(kRadPerDeg * amplitude_deg) {
+    for (double& phase : phases_) phase = sway->Phase();
+  }
+
+  Rigid3 CamFromCam(double time_s) const {
+    Rigid3 turned;
+    if (amplitude_rad_ == 0) return turned;
+    constexpr double kPeriods_s[] = {0.43, 0.59, 0.71};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double angle = amplitude_rad_ * Wave(time_s, kPeriods_s[axis], phases_[axis]);
+      turned.rotation = turned.rotation * Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(axis));
+    }
+    return turned;
+  }
+
+ private:
+  double amplitude_rad_;
+  double phases_[3];
+};
+
 Rigid3 LookAt(const Eigen::Vector3d& position_m, const Eigen::Vector3d& target_m, double roll_rad) {
   const Eigen::Vector3d forward = (target_m - position_m).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
@@ -53,15 +76,15 @@ Camera MakeClipCamera(bool wide_angle, int width_px) {
   return camera;
 }
 
-std::vector<Rigid3> MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
-                              double camera_height_m, double drift_deg) {
+CameraPath MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
+                     double camera_height_m, double drift_deg) {
   Sway sway(options.seed);
   const double turn = sway.Phase(), range = sway.Phase(), heave = sway.Phase();
   const double pan = sway.Phase(), tilt = sway.Phase(), roll = sway.Phase();
-  std::vector<Rigid3> cam_from_world;
-  for (int i = 0; i < options.num_frames; ++i) {
-    const double time_s = i / options.fps;
-    const double part = options.num_frames > 1 ? i / (options.num_frames - 1.0) : 0.5;
+  const Shake shake(options.shake_deg, &sway);
+  return [=](double frame) {
+    const double time_s = frame / options.fps;
+    const double part = options.num_frames > 1 ? frame / (options.num_frames - 1.0) : 0.5;
     const double angle =
         kRadPerDeg * (options.angle_deg + drift_deg * (2 * part - 1) + 4 * Wave(time_s, 4.1, turn));
     const double distance_m = options.distance_m * (1 + 0.07 * Wave(time_s, 6.3, range));
@@ -71,21 +94,20 @@ std::vector<Rigid3> MakeOrbit(const ClipOptions& options, const Eigen::Vector3d&
     const Eigen::Vector3d target_m =
         middle_m + 0.02 * options.distance_m *
                        Eigen::Vector3d(Wave(time_s, 2.7, pan), 0, Wave(time_s, 2.2, tilt));
-    cam_from_world.push_back(
-        LookAt(position_m, target_m, 4 * kRadPerDeg * Wave(time_s, 3.7, roll)));
-  }
-  return cam_from_world;
+    const Rigid3 calm = LookAt(position_m, target_m, 4 * kRadPerDeg * Wave(time_s, 3.7, roll));
+    return shake.CamFromCam(time_s) * calm;
+  };
 }
 
-std::vector<Rigid3> MakeBoardMotion(const ClipOptions& options) {
+CameraPath MakeBoardMotion(const ClipOptions& options) {
   Sway sway(options.seed);
   const double phase_x = sway.Phase(), phase_y = sway.Phase(), phase_z = sway.Phase();
   const bool upright = options.motion >= 'e';
   const int kind = (options.motion - 'a') % 4;  // at rest, about y, about x, about the centre
   const double still = 0.3, swing = 38;         // degrees
-  std::vector<Rigid3> cam_from_world;
-  for (int i = 0; i < options.num_frames; ++i) {
-    const double time_s = i / options.fps;
+  const Shake shake(options.shake_deg, &sway);
+  return [=](double frame) {
+    const double time_s = frame / options.fps;
     const double about_y =
         (kind == 1 || kind == 3 ? swing : still) * Wave(time_s, 4.3, phase_y) + options.angle_deg;
     const double about_x = (kind == 2 || kind == 3 ? swing : still) * Wave(time_s, 3.1, phase_x);
@@ -102,9 +124,8 @@ std::vector<Rigid3> MakeBoardMotion(const ClipOptions& options) {
     pose.translation = options.distance_m * Eigen::Vector3d(0.02 * Wave(time_s, 3.9, phase_x),
                                                             0.02 * Wave(time_s, 2.9, phase_y),
                                                             1 + 0.05 * Wave(time_s, 4.9, phase_z));
-    cam_from_world.push_back(pose);
-  }
-  return cam_from_world;
+    return shake.CamFromCam(time_s) * pose;
+  };
 }
 
 }  // namespace velamap

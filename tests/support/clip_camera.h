@@ -2,8 +2,6 @@
 
 #pragma once
 
-#include <vector>
-
 #include "tests/support/clip_scene.h"
 
 namespace velamap {
@@ -12,12 +10,13 @@ namespace velamap {
 // OPENCV with distortion.
 Camera MakeClipCamera(bool wide_angle, int width_px);
 
-// By frame. The camera goes around the vertical through `middle_m` as from a second boat: it drifts
-// from one side to the other in the course of the clip, sways, rises and falls, and turns.
-std::vector<Rigid3> MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
-                              double camera_height_m, double drift_deg);
+// The camera goes around the vertical through `middle_m` as from a second boat: it drifts from one
+// side to the other in the course of the clip, sways, rises and falls, turns, and shakes as a hand
+// or an engine does.
+CameraPath MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
+                     double camera_height_m, double drift_deg);
 
-// By frame. The board of the thesis's section 4.1 is turned in front of a camera at rest.
-std::vector<Rigid3> MakeBoardMotion(const ClipOptions& options);
+// The board of the thesis's section 4.1 is turned in front of a camera at rest.
+CameraPath MakeBoardMotion(const ClipOptions& options);
 
 }  // namespace velamap

@@ -48,9 +48,8 @@ void WriteLines(const char* key, const std::vector<MarkerLine>& lines, std::ostr
 
 void WritePoses(const ClipScene& scene, std::ostream& out) {
   out << "frame,qw,qx,qy,qz,tx,ty,tz\n";
-  for (std::size_t i = 0; i < scene.cam_from_world.size(); ++i) {
-    const Eigen::Quaterniond& q = scene.cam_from_world[i].rotation;
-    const Eigen::Vector3d& t = scene.cam_from_world[i].translation;
+  for (int i = 0; i < scene.options.num_frames; ++i) {
+    const auto [q, t] = scene.cam_from_world(i);
     out << i << ',' << q.w() << ',' << q.x() << ',' << q.y() << ',' << q.z() << ',' << t.x() << ','
         << t.y() << ',' << t.z() << '\n';
   }

@@ -214,14 +214,16 @@ void CheckOptions(const ClipOptions& options) {
   CheckOptionRange("sail_scale", options.sail_scale, 0.4, 1);
   CheckOptionRange("sail_motion_m", options.sail_motion_m, 0, 1);
   CheckOptionRange("trim_change_m", options.trim_change_m, 0, 1);
+  CheckOptionRange("shake_deg", options.shake_deg, 0, 5);
+  CheckOptionRange("rolling_shutter_s", options.rolling_shutter_s, -0.1, 0.1);
   CheckOptionRange("margin_sides", options.margin_sides, 0.02, 0.5);
   CheckOptionRange("ink_spread_mm", options.ink_spread_mm, -0.5, 0.5);
   CheckOptionRange("background_level", options.background_level, 0, 1);
 }
 
 // 0 before the change of trim, 1 after it; it takes a tenth of the clip.
-double TrimAfter(const ClipOptions& options, int frame_idx) {
-  const double part = (frame_idx + 0.5) / options.num_frames;
+double TrimAfter(const ClipOptions& options, double frame) {
+  const double part = (frame + 0.5) / options.num_frames;
   const double t = std::clamp((part - 0.45) / 0.1, 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
@@ -241,14 +243,14 @@ ClipScene MakeClipScene(const ClipOptions& options) {
   throw std::logic_error("unknown kind of clip");
 }
 
-Eigen::Vector3d PositionInFrame(const ClipScene& scene, const ClipVertex& vertex, int frame_idx) {
+Eigen::Vector3d PositionInFrame(const ClipScene& scene, const ClipVertex& vertex, double frame) {
   const ClipOptions& options = scene.options;
-  const double after = options.trim_change_m > 0 ? TrimAfter(options, frame_idx) : 0.0;
+  const double after = options.trim_change_m > 0 ? TrimAfter(options, frame) : 0.0;
   Eigen::Vector3d x_m = (1 - after) * vertex.x_before_m + after * vertex.x_after_m;
   if (options.sail_motion_m > 0) {
     constexpr double kPeriod_s = 2.4;
     const double periods = std::max(1.0, std::round(options.num_frames / options.fps / kPeriod_s));
-    const double phase = 2 * kPi * periods * frame_idx / options.num_frames;
+    const double phase = 2 * kPi * periods * frame / options.num_frames;
     x_m.y() -= options.sail_motion_m * vertex.flap * std::sin(phase - vertex.flap_phase_rad);
   }
   return x_m;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct ClipOptions {
   char motion = 'd';
   double sail_scale = 1.0;     // size of the sail; markers keep theirs, so fewer fit on a small one
   double sail_motion_m = 0.0;  // amplitude of slow flapping, whole periods in a clip: truth = mean
+  double shake_deg = 0.0;      // amplitude of the camera's fast turns
+  // From the first row to the last; negative: read upwards. Poses are those of the middle row.
+  double rolling_shutter_s = 0.0;
   double trim_change_m = 0.0;  // largest displacement when the trim changes, halfway
   double margin_sides = 0.15;  // white paper around a marker, part of its side
   double ink_spread_mm =
@@ -80,6 +84,9 @@ struct ClipPaint {
   double gray_change = 0.0;
 };
 
+// By the number of the frame, also between frames.
+using CameraPath = std::function<Rigid3(double frame)>;
+
 struct ClipScene {
   ClipOptions options;
   Layout layout;
@@ -88,14 +95,14 @@ struct ClipScene {
   std::vector<ClipSheet> sheets;  // no two overlap in a picture
   std::vector<ClipMarker> markers;
   std::vector<ClipPaint> paint;
-  std::vector<Rigid3> cam_from_world;  // by frame
+  CameraPath cam_from_world;
 };
 
 // Throws InputError for options out of range.
 ClipScene MakeClipScene(const ClipOptions& options);
 
-// World position of a vertex in a frame, m.
-Eigen::Vector3d PositionInFrame(const ClipScene& scene, const ClipVertex& vertex, int frame_idx);
+// World position of a vertex, m, in a frame or between frames.
+Eigen::Vector3d PositionInFrame(const ClipScene& scene, const ClipVertex& vertex, double frame);
 
 // The mean shape before (or after) the trim changes; all frames count for every corner.
 MarkerShape TrueShape(const ClipScene& scene, bool after);

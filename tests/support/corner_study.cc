@@ -90,7 +90,9 @@ ClipScene MakeBentScene(const CornerCase& parameters, std::uint32_t seed) {
   const Eigen::Quaterniond cam_from_world =
       Eigen::AngleAxisd(0.2 + 0.3 * seed, Eigen::Vector3d::UnitZ()) *
       Eigen::AngleAxisd(0.5 * 180 * kRadPerDeg, Eigen::Vector3d::UnitX());
-  scene.cam_from_world = {{cam_from_world, {0.001 * seed, 0, distance_m}}};
+  scene.cam_from_world = [pose = Rigid3{cam_from_world, {0.001 * seed, 0, distance_m}}](double) {
+    return pose;
+  };
   return scene;
 }
 

@@ -16,26 +16,50 @@ namespace {
 
 constexpr double kFullLight = 255.0;
 
+struct Vertex {
+  Eigen::Vector3d x_in_world;
+  std::optional<Eigen::Vector2d> x_in_image_px;
+};
+
 // One frame's view of the scene.
 class FrameView {
  public:
-  FrameView(const ClipScene& scene, int frame_idx) : scene_(scene), frame_idx_(frame_idx) {}
+  FrameView(const ClipScene& scene, int frame_idx)
+      : scene_(scene),
+        cam_from_world_(scene.cam_from_world(frame_idx)),
+        frame_idx_(frame_idx),
+        readout_frames_(scene.options.rolling_shutter_s * scene.options.fps) {}
 
-  const Rigid3& cam_from_world() const {
-    return scene_.cam_from_world[static_cast<std::size_t>(frame_idx_)];
-  }
-
-  Eigen::Vector3d World(const ClipVertex& vertex) const {
-    return PositionInFrame(scene_, vertex, frame_idx_);
-  }
+  // Of the middle row.
+  const Rigid3& cam_from_world() const { return cam_from_world_; }
 
   std::optional<Eigen::Vector2d> Image(const Eigen::Vector3d& x_in_world) const {
-    return ImageFromCam(scene_.camera, cam_from_world() * x_in_world);
+    return ImageFromCam(scene_.camera, cam_from_world_ * x_in_world);
+  }
+
+  // World and image at the time when the row is read in which the vertex is then seen.
+  Vertex See(const ClipVertex& vertex) const {
+    Vertex seen{PositionInFrame(scene_, vertex, frame_idx_), {}};
+    seen.x_in_image_px = Image(seen.x_in_world);
+    if (readout_frames_ == 0) return seen;
+    // Each pass leaves of the error what the picture moves by while the rows of the motion are
+    // read: a hundredth in fast motion.
+    constexpr int kNumPasses = 5;
+    for (int pass = 0; pass < kNumPasses && seen.x_in_image_px; ++pass) {
+      const double row = seen.x_in_image_px->y() / scene_.camera.height_px;
+      const double frame = frame_idx_ + readout_frames_ * (std::clamp(row, 0.0, 1.0) - 0.5);
+      seen.x_in_world = PositionInFrame(scene_, vertex, frame);
+      seen.x_in_image_px =
+          ImageFromCam(scene_.camera, scene_.cam_from_world(frame) * seen.x_in_world);
+    }
+    return seen;
   }
 
  private:
   const ClipScene& scene_;
+  Rigid3 cam_from_world_;
   int frame_idx_;
+  double readout_frames_;  // between the first row and the last
 };
 
 // Light from the upper left, behind the camera.
@@ -43,11 +67,6 @@ double Shade(const Eigen::Vector3d& normal) {
   static const Eigen::Vector3d light = Eigen::Vector3d(-0.5, -0.7, 0.5).normalized();
   return 0.7 + 0.3 * std::max(0.0, normal.normalized().dot(light));
 }
-
-struct Vertex {
-  Eigen::Vector3d x_in_world;
-  std::optional<Eigen::Vector2d> x_in_image_px;
-};
 
 struct Patch {
   ImageQuad quad;
@@ -72,8 +91,7 @@ std::vector<Vertex> ProjectVertices(const FrameView& view, const ClipVertex* ver
   std::vector<Vertex> projected;
   projected.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3d x_in_world = view.World(vertices[i]);
-    projected.push_back({x_in_world, view.Image(x_in_world)});
+    projected.push_back(view.See(vertices[i]));
   }
   return projected;
 }
@@ -207,7 +225,7 @@ void AddReflections(const ClipScene& scene, const FrameView& view, int num_refle
     const int column = std::clamp(static_cast<int>(u * sheet.num_columns), 0, sheet.num_columns);
     const int row = std::clamp(static_cast<int>((1 - v) * sheet.num_rows), 0, sheet.num_rows);
     const auto index = static_cast<std::size_t>(row * (sheet.num_columns + 1) + column);
-    return view.Image(view.World(sheet.vertices[index]));
+    return view.See(sheet.vertices[index]).x_in_image_px;
   };
   for (int i = 0; i < num_reflections; ++i) {
     const double u = std::fmod(0.34 + 0.381966 * i, 0.8) + 0.1 - 0.15 * turn;
@@ -277,7 +295,7 @@ std::optional<std::array<Eigen::Vector2d, kNumCorners>> ProjectCorners(const Cli
   const FrameView view(scene, frame_idx);
   std::array<Eigen::Vector2d, kNumCorners> corners;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto x = view.Image(view.World(marker.corners[i]));
+    const auto x = view.See(marker.corners[i]).x_in_image_px;
     if (!x || x->minCoeff() < 0 || x->x() > scene.camera.width_px ||
         x->y() > scene.camera.height_px) {
       return std::nullopt;

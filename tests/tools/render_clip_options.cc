@@ -81,6 +81,10 @@ po::options_description Describe(RenderClipOptions* options) {
   add("sail_scale", Value(&clip->sail_scale), "size of the sail; markers stay 100 mm, fewer fit");
   add("sail_motion_m", Value(&clip->sail_motion_m),
       "amplitude of slow flapping about the mean shape");
+  add("shake_deg", Value(&clip->shake_deg), "amplitude of the camera's fast turns, 0 to 5");
+  add("rolling_shutter_s", Value(&clip->rolling_shutter_s),
+      "time from the first row of a frame to the last; poses are those of the middle row, s, -0.1 "
+      "to 0.1");
   add("trim_change_m", Value(&clip->trim_change_m),
       "largest displacement of a change of trim halfway; truth_after.csv");
   add("reflection", Value(&render->num_reflections), "number of bright patches on the sail");

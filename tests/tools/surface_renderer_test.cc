@@ -246,6 +246,35 @@ TEST(SurfaceRendererTest, BackgroundIsOnlyBehindThePaper) {
   }
 }
 
+// Every corner is where the camera sees it while its row is read, and the picture shows it there.
+TEST(SurfaceRendererTest, RollingShutterSeesEachRowAtItsOwnTime) {
+  ClipOptions options = BoardOptions();
+  options.shake_deg = 2;
+  const ClipScene at_once = MakeClipScene(options);
+  options.rolling_shutter_s = 0.025;
+  const ClipScene by_rows = MakeClipScene(options);
+  const int frame_idx = 31;
+  double largest_px = 0;
+  for (const ClipMarker& marker : by_rows.markers) {
+    const auto corners = ProjectCorners(by_rows, marker, frame_idx);
+    const auto corners_at_once = ProjectCorners(at_once, marker, frame_idx);
+    ASSERT_TRUE(corners && corners_at_once);
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      const double row = (*corners)[i].y() / by_rows.camera.height_px;
+      const double frame = frame_idx + (row - 0.5) * options.rolling_shutter_s * options.fps;
+      const auto then = ImageFromCam(by_rows.camera,
+                                     by_rows.cam_from_world(frame) * marker.corners[i].x_before_m);
+      ASSERT_TRUE(then);
+      EXPECT_LT(((*corners)[i] - *then).norm(), 1e-6);
+      largest_px = std::max(largest_px, ((*corners)[i] - (*corners_at_once)[i]).norm());
+    }
+  }
+  EXPECT_GT(largest_px, 1);
+  const CornerErrors errors = DetectAndCompare(by_rows, {frame_idx});
+  EXPECT_EQ(errors.num_markers, 12);
+  EXPECT_LT(errors.rms_px, 0.05);
+}
+
 // Blur and motion blur mix light, so that a picture through the tone curve is the curve of the
 // linear picture, pixel by pixel, and not a blurred picture of encoded values.
 TEST(SurfaceRendererTest, ToneCurveComesAfterAllBlur) {
