@@ -9,10 +9,10 @@
 
 #include "importer/database/colmap_database.h"
 #include "importer/layout/layout.h"
-#include "reconstruct/adjust/marker_adjustment_options.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model.h"
+#include "reconstruct/problem/marker_adjustment_options.h"
 
 namespace velamap {
 

@@ -12,8 +12,8 @@
 
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/adjust/marker_cost_functions.h"
-#include "reconstruct/adjust/marker_state.h"
 #include "reconstruct/adjust/scale_bars.h"
+#include "reconstruct/problem/marker_state.h"
 
 namespace velamap {
 

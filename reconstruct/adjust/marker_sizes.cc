@@ -10,7 +10,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
-#include "reconstruct/adjust/marker_adjustment_options.h"
+#include "reconstruct/problem/marker_adjustment_options.h"
 
 namespace velamap {
 namespace {

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "importer/layout/layout.h"
-#include "reconstruct/adjust/marker_state.h"
+#include "reconstruct/problem/marker_state.h"
 
 namespace velamap {
 

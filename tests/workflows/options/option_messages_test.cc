@@ -45,6 +45,8 @@ const std::map<std::string, Names> kCommandsOfPath = {
      {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
     {"reconstruct/colmap/colmap_runner.cc",
      {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper", "version"}},
+    {"reconstruct/problem/",
+     {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
     {"reconstruct/adjust/",
      {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
     {"exporters/", {"automatic_reconstructor", "shape_exporter"}},

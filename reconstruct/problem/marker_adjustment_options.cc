@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/marker_adjustment_options.h"
+#include "reconstruct/problem/marker_adjustment_options.h"
 
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 

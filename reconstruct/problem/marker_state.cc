@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/marker_state.h"
+#include "reconstruct/problem/marker_state.h"
 
 #include <algorithm>
 
