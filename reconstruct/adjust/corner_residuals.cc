@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
+
+#include "importer/base/statistics.h"
 
 namespace velamap {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reconstruct/adjust/marker_problem.h"
+#include "reconstruct/colmap/bundle_adjustment.h"
 
 namespace velamap {
 

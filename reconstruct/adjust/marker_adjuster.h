@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "reconstruct/adjust/corner_residuals.h"
+#include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/adjust/marker_problem.h"
 #include "reconstruct/adjust/normal_equations.h"
 

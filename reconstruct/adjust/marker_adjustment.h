@@ -3,29 +3,17 @@
 
 #pragma once
 
-#include <map>
-#include <optional>
+#include <string>
 #include <vector>
 
-#include "importer/database/colmap_database.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model.h"
+#include "reconstruct/problem/corner_sigmas.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
 
 namespace velamap {
-
-// What the images tell of the corners' errors, px.
-struct CornerSigmas {
-  // 1 sigma of a corner's coordinate, by point2D_idx. 0 or a missing image: unknown.
-  std::map<ImageId, std::vector<double>> of_image;
-  double common_inset_px = 0.0;  // FormationEstimate::inset_sigma_px
-};
-
-// `formation` is that of the database, if it has one.
-CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images,
-                            const std::optional<FormationEstimate>& formation = std::nullopt);
 
 struct MarkerAdjustmentSummary {
   int num_iterations = 0;

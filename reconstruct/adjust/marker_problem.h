@@ -10,10 +10,11 @@
 
 #include <ceres/problem.h>
 
-#include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/adjust/marker_cost_functions.h"
-#include "reconstruct/adjust/scale_bars.h"
+#include "reconstruct/problem/corner_sigmas.h"
+#include "reconstruct/problem/marker_adjustment_options.h"
 #include "reconstruct/problem/marker_state.h"
+#include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
 

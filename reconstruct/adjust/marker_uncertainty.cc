@@ -5,8 +5,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "reconstruct/adjust/scale_bars.h"
 #include "reconstruct/geometry/covariance_update.h"
+#include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
 namespace {

@@ -1,5 +1,5 @@
-// Distances of the layout that take part in the adjustment: which of them agree with each other,
-// and the scale of the print that follows from them.
+// Which of the measured distances of the layout agree with each other, and the scale of the print
+// that follows from them.
 
 #pragma once
 
@@ -8,26 +8,10 @@
 
 #include <Eigen/Core>
 
-#include "importer/layout/layout.h"
 #include "reconstruct/problem/marker_state.h"
+#include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
-
-// A known distance, with the weights of corners that ScaleBarError takes.
-struct ScaleBar {
-  KnownDistance distance;
-  std::vector<int> marker_idxs;  // one or two
-  std::vector<std::vector<double>> corner_weights;
-};
-
-// The scale bars of the layout whose corners are in the state.
-std::vector<ScaleBar> FindScaleBars(const MarkerState& state, const Layout& layout);
-
-// Length of the bar in the state, m.
-double BarLength(const ScaleBar& bar, const MarkerState& state);
-
-// Derivative of the bar's length by the coordinates of all points, 3n.
-Eigen::VectorXd BarGradient(const ScaleBar& bar, const MarkerState& state);
 
 struct ScaleBarVerdict {
   std::vector<ScaleBar> used;

@@ -1,0 +1,27 @@
+#include "reconstruct/problem/corner_sigmas.h"
+
+#include <algorithm>
+
+#include "reconstruct/problem/marker_adjustment_options.h"
+
+namespace velamap {
+
+CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images,
+                            const std::optional<FormationEstimate>& formation) {
+  // Corners of the fallback estimator have about this many times the default sigma.
+  constexpr double kFallbackFactor = 5.0;
+  const double fallback_px = kFallbackFactor * MarkerAdjustmentOptions{}.corner_sigma_px;
+  CornerSigmas sigmas;
+  if (formation) sigmas.common_inset_px = formation->inset_sigma_px;
+  for (const DatabaseImage& image : images) {
+    std::vector<double>& of_image = sigmas.of_image[image.image_id];
+    for (const MarkerDetection& marker : image.detections.markers) {
+      for (const double sigma_px : marker.corner_sigma_px) {
+        of_image.push_back(marker.is_fallback ? std::max(sigma_px, fallback_px) : sigma_px);
+      }
+    }
+  }
+  return sigmas;
+}
+
+}  // namespace velamap
