@@ -8,8 +8,8 @@
 
 #include "importer/base/error.h"
 #include "importer/camera/camera_projection.h"
-#include "reconstruct/adjust/marker_uncertainty.h"
 #include "reconstruct/geometry/covariance_update.h"
+#include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {
 namespace {

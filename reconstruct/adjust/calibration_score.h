@@ -2,10 +2,10 @@
 
 #pragma once
 
-#include "reconstruct/adjust/marker_problem.h"
-#include "reconstruct/adjust/normal_equations.h"
 #include "reconstruct/model/calibration_evidence.h"
 #include "reconstruct/model/model.h"
+#include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/problem/normal_equations.h"
 
 namespace velamap {
 

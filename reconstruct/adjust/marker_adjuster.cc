@@ -12,11 +12,8 @@
 
 #include "importer/base/error.h"
 #include "reconstruct/adjust/calibration_score.h"
-#include "reconstruct/adjust/corner_residuals.h"
-#include "reconstruct/adjust/error_correlation.h"
 #include "reconstruct/adjust/marker_sizes.h"
-#include "reconstruct/adjust/marker_uncertainty.h"
-#include "reconstruct/adjust/scale_bars.h"
+#include "reconstruct/adjust/scale_bar_verdict.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/geometry/covariance_update.h"
@@ -24,6 +21,9 @@
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/weak_geometry.h"
+#include "reconstruct/problem/corner_residuals.h"
+#include "reconstruct/problem/error_correlation.h"
+#include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {
 namespace {

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "reconstruct/adjust/corner_residuals.h"
 #include "reconstruct/adjust/marker_adjustment.h"
-#include "reconstruct/adjust/marker_problem.h"
-#include "reconstruct/adjust/normal_equations.h"
+#include "reconstruct/problem/corner_residuals.h"
+#include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/problem/normal_equations.h"
 
 namespace velamap {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "reconstruct/adjust/marker_problem.h"
-#include "reconstruct/adjust/normal_equations.h"
 #include "reconstruct/geometry/point_covariance.h"
+#include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/problem/normal_equations.h"
 
 namespace velamap {
 

@@ -7,10 +7,10 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     geometry/intrinsics_prior_test.cc
     adjust/calibration_refinement_test.cc
     adjust/marker_adjustment_test.cc
-    adjust/marker_cost_functions_test.cc
+    problem/marker_cost_functions_test.cc
     adjust/marker_sizes_test.cc
-    adjust/marker_uncertainty_test.cc
-    adjust/scale_bars_test.cc
+    problem/marker_uncertainty_test.cc
+    adjust/scale_bar_verdict_test.cc
     scene_model.cc
     solve/schur_complement_test.cc
     colmap/warm_start_test.cc

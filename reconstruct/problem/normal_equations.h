@@ -15,7 +15,7 @@
 
 #include <Eigen/Core>
 
-#include "reconstruct/adjust/marker_problem.h"
+#include "reconstruct/problem/marker_problem.h"
 
 namespace velamap {
 

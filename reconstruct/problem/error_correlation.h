@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "reconstruct/adjust/marker_problem.h"
-#include "reconstruct/adjust/normal_equations.h"
+#include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/problem/normal_equations.h"
 
 namespace velamap {
 

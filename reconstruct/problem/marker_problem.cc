@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/marker_problem.h"
+#include "reconstruct/problem/marker_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/error_correlation.h"
+#include "reconstruct/problem/error_correlation.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/parallel.h"
-#include "reconstruct/adjust/marker_uncertainty.h"
 #include "reconstruct/geometry/covariance_update.h"
+#include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {
 namespace {

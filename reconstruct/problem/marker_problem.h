@@ -10,9 +10,9 @@
 
 #include <ceres/problem.h>
 
-#include "reconstruct/adjust/marker_cost_functions.h"
 #include "reconstruct/problem/corner_sigmas.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
+#include "reconstruct/problem/marker_cost_functions.h"
 #include "reconstruct/problem/marker_state.h"
 #include "reconstruct/problem/scale_bar.h"
 

@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/scale_bars.h"
+#include "reconstruct/adjust/scale_bar_verdict.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "reconstruct/adjust/marker_problem.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
+#include "reconstruct/problem/marker_problem.h"
 
 namespace velamap {
 

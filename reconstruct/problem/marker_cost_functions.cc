@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/marker_cost_functions.h"
+#include "reconstruct/problem/marker_cost_functions.h"
 
 #include <algorithm>
 #include <array>

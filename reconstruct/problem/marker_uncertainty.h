@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "reconstruct/adjust/marker_problem.h"
-#include "reconstruct/adjust/normal_equations.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
+#include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/problem/normal_equations.h"
 
 namespace velamap {
 

@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/marker_uncertainty.h"
+#include "reconstruct/problem/marker_uncertainty.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/normal_equations.h"
+#include "reconstruct/problem/normal_equations.h"
 
 #include <algorithm>
 #include <atomic>

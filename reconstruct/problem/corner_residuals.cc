@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/corner_residuals.h"
+#include "reconstruct/problem/corner_residuals.h"
 
 #include <algorithm>
 #include <cmath>

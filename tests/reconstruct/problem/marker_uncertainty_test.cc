@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/marker_uncertainty.h"
+#include "reconstruct/problem/marker_uncertainty.h"
 
 #include <cmath>
 #include <limits>
@@ -10,8 +10,8 @@
 #include <Eigen/LU>
 
 #include "importer/geometry/alignment.h"
-#include "reconstruct/adjust/error_correlation.h"
-#include "reconstruct/adjust/scale_bars.h"
+#include "reconstruct/adjust/scale_bar_verdict.h"
+#include "reconstruct/problem/error_correlation.h"
 #include "tests/reconstruct/scene_model.h"
 
 namespace velamap {
