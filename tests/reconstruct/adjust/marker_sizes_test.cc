@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "importer/geometry/alignment.h"
+#include "reconstruct/adjust/marker_adjustment.h"
 #include "tests/reconstruct/scene_model.h"
 
 namespace velamap {
