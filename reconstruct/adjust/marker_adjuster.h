@@ -2,17 +2,13 @@
 
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "reconstruct/adjust/marker_adjustment.h"
-#include "reconstruct/problem/corner_residuals.h"
-#include "reconstruct/problem/marker_problem.h"
-#include "reconstruct/problem/normal_equations.h"
+#include "reconstruct/adjust/marker_solution.h"
 
 namespace velamap {
 
@@ -56,61 +52,19 @@ class MarkerAdjuster {
   // and the warnings and figures of the summary.
   void Finish();
 
-  Model TakeModel() { return std::move(model_); }
-  MarkerAdjustmentSummary TakeSummary() { return std::move(summary_); }
+  Model TakeModel() { return std::move(solution_.model); }
+  MarkerAdjustmentSummary TakeSummary();
 
  private:
-  // The problem at one state, without loss. `problem` refers to `state`, so it must not be copied.
-  struct Linearization {
-    MarkerState state;
-    MarkerProblem problem;
-    MarkerJacobian jacobian;
-    MarkerCovariance covariance;
-  };
-
-  MarkerProblem MakeProblem(const MarkerWeights& weights, const Model& model, MarkerState* state);
-  MarkerState MakeState(const Model& model) const;
-  void Minimize(double function_tolerance);
-  // Throws DataError where a combination of parameters is undetermined.
-  std::unique_ptr<const Linearization> Linearize();
-  std::vector<CornerResidual> EvaluateCornersOf(const Model& model);
-  // Frees parameters of all cameras, with a prior around their calibration.
-  void Free(const FreeIntrinsics& free, double sigma);
-  // What freeing some intrinsics brings.
-  struct IntrinsicsVerdict {
-    double improvement = 0.0;   // of the sum of squares
-    double criterion = 0.0;     // what is significant for the number of parameters
-    double needed = 0.0;        // the same with errors that corners have in common
-    FreeIntrinsics determined;  // clearly better than by the calibration
-
-    bool IsSignificant() const { return improvement > needed; }
-  };
-
-  // `sigma` is that of the prior, options_ have that of a calibration.
-  IntrinsicsVerdict JudgeIntrinsics(const FreeIntrinsics& free, double sigma) const;
-  // The intrinsics that the images determine and that explain the corners significantly better.
-  FreeIntrinsics ChooseIntrinsics(double sigma) const;
-  // Holds the distortion at the calibration where it has come to fold over. Returns whether it did.
-  bool HoldFoldedDistortion();
-  // Sum of the squares of all residuals, in sigmas.
-  double SumOfSquares();
-  // Sets the factor of the corners' sigmas by the median residual; returns the relative change.
-  double CalibrateRobustly();
   // Returns the number of corners that were removed or restored.
   int ReviseCorners();
   void RemoveUnderconstrainedParts();
   // Minimizes and sets the factor of the corners' sigmas by the sum of squares until it is stable.
   // Sets the variance factor and the share of large residuals.
-  std::unique_ptr<const Linearization> CalibrateCorners();
+  std::unique_ptr<const MarkerLinearization> CalibrateCorners();
 
-  MarkerAdjustmentOptions options_;
-  const Layout& layout_;
-  const CornerSigmas& corner_sigmas_;
-  std::map<CameraId, Camera> calibration_;
+  MarkerSolution solution_;
   const std::size_t num_images_before_;
-  Model model_;
-  MarkerState state_;  // the last solution, with inset, print scale and velocities
-  MarkerWeights weights_;
   std::string part_disagreement_;  // begin of a warning; empty where parts agree
   MarkerAdjustmentSummary summary_;
 };

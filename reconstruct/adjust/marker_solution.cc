@@ -1,0 +1,137 @@
+#include "reconstruct/adjust/marker_solution.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "reconstruct/problem/error_correlation.h"
+
+namespace velamap {
+namespace {
+
+MarkerWeights WithoutLoss(MarkerWeights weights) {
+  weights.loss_sigmas = std::numeric_limits<double>::infinity();
+  return weights;
+}
+
+MarkerProblem MakeProblem(const MarkerSolution& solution, const MarkerWeights& weights,
+                          const Model& model, MarkerState* state) {
+  return MakeMarkerProblem(solution.options, model, *solution.corner_sigmas, solution.calibration,
+                           weights, state);
+}
+
+// The parameters of `model`, whose images and markers are among those of the solution.
+MarkerState MakeState(const MarkerSolution& solution, const Model& model) {
+  MarkerState state = MakeMarkerState(model, *solution.layout);
+  state.inset_px = solution.state.inset_px;
+  state.print_scale = solution.state.print_scale;
+  for (auto& [part, scale] : state.part_scales) scale = solution.state.part_scales.at(part);
+  std::map<ImageId, std::array<double, 6>> velocities;
+  for (const ImageBlock& image : solution.state.images) {
+    velocities[image.image_id] = image.velocity;
+  }
+  for (ImageBlock& image : state.images) image.velocity = velocities.at(image.image_id);
+  return state;
+}
+
+// Holds the distortion at the calibration where it has come to fold over. Returns whether it did.
+bool HoldFoldedDistortion(MarkerSolution* solution) {
+  if (!solution->options.refine_extra_params) return false;
+  Model& model = solution->model;
+  const bool is_folded =
+      std::any_of(model.cameras.begin(), model.cameras.end(), [&](const auto& entry) {
+        return !HasMonotonicDistortion(entry.second) &&
+               HasMonotonicDistortion(solution->calibration.at(entry.first));
+      });
+  if (!is_folded) return false;
+  solution->options.refine_extra_params = false;
+  for (auto& [camera_id, camera] : model.cameras) {
+    const std::vector<double>& params = solution->calibration.at(camera_id).params;
+    for (const int i : MakeIntrinsicsPrior(camera, {false, false, true}, 1.0).free) {
+      camera.params[static_cast<std::size_t>(i)] = params[static_cast<std::size_t>(i)];
+    }
+  }
+  solution->warnings.push_back(
+      "the distortion is not refined: the images do not determine it, and it would fold over "
+      "inside the image");
+  return true;
+}
+
+}  // namespace
+
+void SetFreeIntrinsics(const FreeIntrinsics& free, double sigma, MarkerSolution* solution) {
+  MarkerAdjustmentOptions& options = solution->options;
+  options.refine_focal_length = free.focal_length;
+  options.refine_principal_point = free.principal_point;
+  options.refine_extra_params = free.distortion;
+  options.intrinsics_sigma = sigma;
+  if (!free.distortion) return;
+  for (auto& [camera_id, camera] : solution->calibration) {
+    camera = WithDistortionParams(camera);
+    Camera& of_model = solution->model.cameras.at(camera_id);
+    of_model = WithDistortionParams(of_model);
+  }
+}
+
+void Minimize(double function_tolerance, MarkerSolution* solution) {
+  solution->state = MakeState(*solution, solution->model);
+  MarkerWeights weights = solution->weights;
+  weights.holds_print_scale = weights.scale_bars.empty();
+  MarkerProblem problem = MakeProblem(*solution, weights, solution->model, &solution->state);
+  solution->num_iterations +=
+      MinimizeMarkerProblem(solution->options.max_num_iterations, function_tolerance, &problem);
+  WriteMarkerState(solution->state, &solution->model);
+  if (HoldFoldedDistortion(solution)) Minimize(function_tolerance, solution);
+}
+
+std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solution) {
+  auto linearization = std::make_unique<MarkerLinearization>();
+  linearization->state = MakeState(solution, solution.model);
+  linearization->problem =
+      MakeProblem(solution, WithoutLoss(solution.weights), solution.model, &linearization->state);
+  linearization->jacobian = EvaluateJacobian(linearization->problem);
+  auto covariance = InvertNormalEquations(linearization->jacobian, solution.options.num_threads);
+  if (!covariance) {
+    throw DataError(
+        "the images leave the shape undetermined: take them from more places, so that every marker "
+        "is seen from different sides");
+  }
+  linearization->covariance = std::move(*covariance);
+  return linearization;
+}
+
+double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearization& linearization) {
+  return CorrelationFactor(
+      linearization.state, linearization.problem, linearization.jacobian, linearization.covariance,
+      GroupImages(solution.model, linearization.state), solution.options.num_threads);
+}
+
+std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution) {
+  MarkerState state = MakeState(solution, model);
+  return EvaluateCorners(MakeProblem(solution, WithoutLoss(solution.weights), model, &state));
+}
+
+double SumOfSquares(const MarkerSolution& solution) {
+  MarkerState state = MakeState(solution, solution.model);
+  const MarkerProblem problem = MakeProblem(solution, solution.weights, solution.model, &state);
+  double cost = 0.0;
+  VELAMAP_CHECK(problem.ceres->Evaluate({}, &cost, nullptr, nullptr, nullptr));
+  return 2.0 * cost;
+}
+
+double CalibrateRobustly(MarkerSolution* solution) {
+  const double before = solution->weights.corner_factor;
+  const double variance =
+      RobustVarianceFactor(EvaluateCorners(solution->model, *solution), solution->model);
+  const double after = std::max(kMinCornerFactor, before * std::sqrt(variance));
+  solution->weights.corner_factor = after;
+  spdlog::debug("corner sigmas times {:.4f}", after);
+  return std::abs(after / before - 1.0);
+}
+
+}  // namespace velamap

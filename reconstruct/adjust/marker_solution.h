@@ -1,0 +1,70 @@
+// What the steps of a marker-aware bundle adjustment hand on to each other, and the minimization
+// that they share.
+
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "importer/layout/layout.h"
+#include "reconstruct/geometry/intrinsics_prior.h"
+#include "reconstruct/model/model.h"
+#include "reconstruct/problem/corner_residuals.h"
+#include "reconstruct/problem/corner_sigmas.h"
+#include "reconstruct/problem/marker_adjustment_options.h"
+#include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/problem/normal_equations.h"
+
+namespace velamap {
+
+struct MarkerSolution {
+  MarkerAdjustmentOptions options;
+  const Layout* layout = nullptr;
+  const CornerSigmas* corner_sigmas = nullptr;
+  std::map<CameraId, Camera> calibration;  // the prior of the cameras where they are refined
+  Model model;
+  // Of the last minimization. Inset, print scale and velocities are the start of the next one.
+  MarkerState state;
+  MarkerWeights weights;
+  int num_iterations = 0;  // of all minimizations
+  std::vector<std::string> warnings;
+};
+
+// The problem at a solution, without loss. `problem` refers to `state`, so it must not be copied.
+struct MarkerLinearization {
+  MarkerState state;
+  MarkerProblem problem;
+  MarkerJacobian jacobian;
+  MarkerCovariance covariance;
+};
+
+// Frees parameters of all cameras. Their prior is the calibration with `sigma`, the fraction that
+// MakeIntrinsicsPrior takes.
+void SetFreeIntrinsics(const FreeIntrinsics& free, double sigma, MarkerSolution* solution);
+
+// Minimizes until a step changes the cost by less than the fraction `function_tolerance`. A refined
+// distortion that folds over inside the image is held at the calibration, with a warning. Throws
+// DataError where no step can be computed.
+void Minimize(double function_tolerance, MarkerSolution* solution);
+
+// Throws DataError where a combination of parameters is undetermined.
+std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solution);
+
+// The factor of error_correlation.h, for groups of neighbouring images.
+double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearization& linearization);
+
+// Residuals of the corners of another model with the weights of the solution, without loss.
+std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution);
+
+// Sum of the squares of all residuals, in sigmas, less what the loss takes off.
+double SumOfSquares(const MarkerSolution& solution);
+
+// The smallest factor of the corners' sigmas: exact corners would leave no weight to the priors.
+constexpr double kMinCornerFactor = 1e-3;
+
+// Sets the factor of the corners' sigmas by their median residual. Returns the relative change.
+double CalibrateRobustly(MarkerSolution* solution);
+
+}  // namespace velamap
