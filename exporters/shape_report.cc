@@ -150,6 +150,11 @@ void AddMetrics(const AdjustmentUncertainty& uncertainty, MetricsReport* report)
           {"corner_sigma_factor", std::sqrt(uncertainty.variance_factor)},
           {"correlation_factor", uncertainty.correlation_factor}},
          report);
+  if (uncertainty.rolling_shutter_sigma_s > 0) {
+    Append({{"rolling_shutter_ms", 1e3 * uncertainty.rolling_shutter_s},
+            {"rolling_shutter_sigma_ms", 1e3 * uncertainty.rolling_shutter_sigma_s}},
+           report);
+  }
 }
 
 void AddMetrics(const ShapeComparison& comparison, MetricsReport* report) {

@@ -44,7 +44,8 @@ void AddMetrics(const std::vector<PartPlane>& planes, MetricsReport* report,
 // adjacent_distances.
 void AddMetrics(const std::vector<AdjacentDistance>& distances, MetricsReport* report);
 
-// Adds corners_above_4_sigma_percent, corner_sigma_factor and correlation_factor.
+// Adds corners_above_4_sigma_percent, corner_sigma_factor and correlation_factor, and
+// rolling_shutter_ms and its sigma if it was estimated.
 void AddMetrics(const AdjustmentUncertainty& uncertainty, MetricsReport* report);
 
 // Adds num_points, distance_mm, scale, scale_error_percent, distance_after_scaling_mm and table

@@ -44,7 +44,7 @@ house_folder(reconstruct/global PUBLIC
 house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/problem PUBLIC
-  corner_residuals corner_sigmas error_correlation marker_adjustment_options marker_problem
+  corner_errors corner_residuals corner_velocities error_correlation marker_adjustment_options marker_problem
   marker_state marker_uncertainty normal_equations scale_bar)
 house_folder(reconstruct/adjust PUBLIC
   marker_adjustment)

@@ -157,6 +157,17 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
       StatusOf(evidence), CalibrationAdvice(evidence)};
 }
 
+// Where the adjustment estimated it.
+std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncertainty) {
+  if (uncertainty == nullptr || !(uncertainty->rolling_shutter_sigma_s > 0)) return std::nullopt;
+  return KeyNumber{"Rolling shutter",
+                   fmt::format("{:.1f} \u00b1{:.1f} ms", 1e3 * uncertainty->rolling_shutter_s,
+                               1e3 * uncertainty->rolling_shutter_sigma_s),
+                   "time from the first row of a frame to the last, found in the video and taken "
+                   "out of the shape",
+                   ReportStatus::kNone};
+}
+
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
                       const AdjustmentUncertainty* uncertainty) {
   const double spread_percent = 100 * scale.relative_spread;
@@ -275,6 +286,7 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
   if (const auto calibration = CalibrationNumber(input.uncertainty)) {
     numbers.push_back(*calibration);
   }
+  if (const auto shutter = RollingShutterNumber(input.uncertainty)) numbers.push_back(*shutter);
   numbers.push_back(ScaleNumber(input.scale, input.audit, input.uncertainty));
   if (input.audit != nullptr) {
     if (const auto distances = DistancesNumber(*input.audit)) numbers.push_back(*distances);

@@ -43,13 +43,13 @@ void MoveToFirstCamera(Model* model) {
 }  // namespace
 
 MarkerAdjuster::MarkerAdjuster(const MarkerAdjustmentOptions& options, const Layout& layout,
-                               const CornerSigmas& corner_sigmas, Model model)
+                               const CornerErrors& corner_errors, Model model)
     : num_images_before_(model.images.size()) {
   solution_.options = options;
   solution_.options.inset_sigma_px =
-      std::hypot(options.inset_sigma_px, corner_sigmas.common_inset_px);
+      std::hypot(options.inset_sigma_px, corner_errors.common_inset_px);
   solution_.layout = &layout;
-  solution_.corner_sigmas = &corner_sigmas;
+  solution_.corner_errors = &corner_errors;
   solution_.calibration = model.cameras;
   solution_.model = std::move(model);
 }
@@ -192,6 +192,9 @@ void MarkerAdjuster::Finish() {
       std::sqrt(Trace(uncertainty.points) /
                 static_cast<double>(uncertainty.points.point3D_ids.size()));
   summary_.uncertainty = std::move(uncertainty);
+  WarnOfSlowShutter();
+  MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
+                  &solution_.model);
   UpdatePointErrors(&solution_.model);
   summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(solution_.model));
   if (!(summary_.error_after_px.mean <= solution_.options.max_mean_error_px)) {
@@ -205,6 +208,16 @@ void MarkerAdjuster::Finish() {
        FindWeakGeometry(solution_.model, summary_.uncertainty.points)) {
     solution_.warnings.push_back(warning);
   }
+}
+
+void MarkerAdjuster::WarnOfSlowShutter() {
+  constexpr double kSlowest_s = 0.04;  // a frame at 25 frames a second
+  const AdjustmentUncertainty& uncertainty = summary_.uncertainty;
+  if (!(std::abs(uncertainty.rolling_shutter_s) > kSlowest_s)) return;
+  solution_.warnings.push_back(fmt::format(
+      "the rows of a frame seem to be read over {:.0f} +- {:.0f} ms, longer than cameras take: is "
+      "the video stabilised, slowed down or sped up? Film without",
+      1e3 * uncertainty.rolling_shutter_s, 1e3 * uncertainty.rolling_shutter_sigma_s));
 }
 
 std::unique_ptr<const MarkerLinearization> MarkerAdjuster::CalibrateCorners() {

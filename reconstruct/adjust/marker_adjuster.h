@@ -9,6 +9,7 @@
 
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/adjust/marker_solution.h"
+#include "reconstruct/adjust/rolling_shutter_choice.h"
 
 namespace velamap {
 
@@ -16,7 +17,7 @@ class MarkerAdjuster {
  public:
   // All arguments but the model must outlive the adjuster.
   MarkerAdjuster(const MarkerAdjustmentOptions& options, const Layout& layout,
-                 const CornerSigmas& corner_sigmas, Model model);
+                 const CornerErrors& corner_errors, Model model);
 
   // Removes outliers of the seed and underconstrained images and points, scales the model to metres
   // by the median of the marker sides and moves the world to the first image's camera. Throws
@@ -39,6 +40,11 @@ class MarkerAdjuster {
   // The three steps above.
   void AdjustToCorners();
 
+  // Whether the images show a rolling shutter, which is then to be freed from the beginning. After
+  // AdjustToCorners.
+  bool ShowsRollingShutter() const { return velamap::ShowsRollingShutter(solution_); }
+  void FreeRollingShutter() { solution_.weights.frees_rolling_shutter = true; }
+
   // Where intrinsics that the images determine better than the calibration explain the corners
   // significantly better: the result of AdjustToCorners with these, else nothing. After
   // AdjustToCorners; `begin` is this adjuster before it.
@@ -49,7 +55,8 @@ class MarkerAdjuster {
   bool AddScaleBars();
 
   // Minimizes to a small fraction of a sigma, then finds the correlation of errors, the covariance,
-  // and the warnings and figures of the summary.
+  // and the warnings and figures of the summary. Image points move to where they are while the
+  // middle row is read.
   void Finish();
 
   Model TakeModel() { return std::move(solution_.model); }
@@ -59,12 +66,13 @@ class MarkerAdjuster {
   // Returns the number of corners that were removed or restored.
   int ReviseCorners();
   void RemoveUnderconstrainedParts();
+  void WarnOfSlowShutter();
   // Minimizes and sets the factor of the corners' sigmas by the sum of squares until it is stable.
   // Sets the variance factor and the share of large residuals.
   std::unique_ptr<const MarkerLinearization> CalibrateCorners();
 
   MarkerSolution solution_;
-  const std::size_t num_images_before_;
+  std::size_t num_images_before_;
   std::string part_disagreement_;  // begin of a warning; empty where parts agree
   MarkerAdjustmentSummary summary_;
 };

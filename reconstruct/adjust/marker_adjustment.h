@@ -10,7 +10,7 @@
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model.h"
-#include "reconstruct/problem/corner_sigmas.h"
+#include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
 
 namespace velamap {
@@ -33,7 +33,7 @@ struct MarkerAdjustmentSummary {
 // adjusted, the mean error stays above max_mean_error_px, or the images leave the shape
 // undetermined; the model does not change then.
 MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options,
-                                          const Layout& layout, const CornerSigmas& corner_sigmas,
+                                          const Layout& layout, const CornerErrors& corner_errors,
                                           Model* model);
 
 }  // namespace velamap

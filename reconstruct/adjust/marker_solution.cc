@@ -1,7 +1,6 @@
 #include "reconstruct/adjust/marker_solution.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -21,21 +20,17 @@ MarkerWeights WithoutLoss(MarkerWeights weights) {
 
 MarkerProblem MakeProblem(const MarkerSolution& solution, const MarkerWeights& weights,
                           const Model& model, MarkerState* state) {
-  return MakeMarkerProblem(solution.options, model, *solution.corner_sigmas, solution.calibration,
+  return MakeMarkerProblem(solution.options, model, *solution.corner_errors, solution.calibration,
                            weights, state);
 }
 
 // The parameters of `model`, whose images and markers are among those of the solution.
 MarkerState MakeState(const MarkerSolution& solution, const Model& model) {
   MarkerState state = MakeMarkerState(model, *solution.layout);
+  state.rolling_shutter_s = solution.state.rolling_shutter_s;
   state.inset_px = solution.state.inset_px;
   state.print_scale = solution.state.print_scale;
   for (auto& [part, scale] : state.part_scales) scale = solution.state.part_scales.at(part);
-  std::map<ImageId, std::array<double, 6>> velocities;
-  for (const ImageBlock& image : solution.state.images) {
-    velocities[image.image_id] = image.velocity;
-  }
-  for (ImageBlock& image : state.images) image.velocity = velocities.at(image.image_id);
   return state;
 }
 

@@ -11,8 +11,8 @@
 #include "importer/layout/layout.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/model.h"
+#include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/corner_residuals.h"
-#include "reconstruct/problem/corner_sigmas.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
 #include "reconstruct/problem/marker_problem.h"
 #include "reconstruct/problem/normal_equations.h"
@@ -22,10 +22,10 @@ namespace velamap {
 struct MarkerSolution {
   MarkerAdjustmentOptions options;
   const Layout* layout = nullptr;
-  const CornerSigmas* corner_sigmas = nullptr;
+  const CornerErrors* corner_errors = nullptr;
   std::map<CameraId, Camera> calibration;  // the prior of the cameras where they are refined
   Model model;
-  // Of the last minimization. Inset, print scale and velocities are the start of the next one.
+  // Of the last minimization. Rolling shutter, inset and print scale are the start of the next one.
   MarkerState state;
   MarkerWeights weights;
   int num_iterations = 0;  // of all minimizations

@@ -18,7 +18,7 @@ namespace {
 // Layout of the file: magic, version, six doubles, CalibrationEvidence, points, blocks, factor,
 // signs; little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 // In the order of the file, after num_changes.
 constexpr std::array<double CalibrationEvidence::*, 9> kEvidenceMembers = {
@@ -139,7 +139,8 @@ void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::strin
   Write(kVersion, &out);
   for (const double value : {uncertainty.relative_scale_sigma, uncertainty.variance_factor,
                              uncertainty.apparent_inset_px, uncertainty.apparent_inset_sigma_px,
-                             uncertainty.correlation_factor, uncertainty.share_above_4_sigma}) {
+                             uncertainty.correlation_factor, uncertainty.share_above_4_sigma,
+                             uncertainty.rolling_shutter_s, uncertainty.rolling_shutter_sigma_s}) {
     Write(value, &out);
   }
   const CalibrationEvidence& calibration = uncertainty.calibration;
@@ -173,6 +174,8 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   uncertainty.apparent_inset_sigma_px = reader.Read<double>();
   uncertainty.correlation_factor = reader.Read<double>();
   uncertainty.share_above_4_sigma = reader.Read<double>();
+  uncertainty.rolling_shutter_s = reader.Read<double>();
+  uncertainty.rolling_shutter_sigma_s = reader.Read<double>();
   uncertainty.calibration.num_changes = static_cast<int>(reader.Read<std::uint64_t>());
   for (const auto member : kEvidenceMembers) {
     uncertainty.calibration.*member = reader.Read<double>();

@@ -33,6 +33,9 @@ struct AdjustmentUncertainty {
   // How far corners appear inside along x and y of the marker. 0: not estimated.
   double apparent_inset_px = 0.0;
   double apparent_inset_sigma_px = 0.0;
+  // Time from the first row of an image to the last. A sigma of 0: not estimated.
+  double rolling_shutter_s = 0.0;
+  double rolling_shutter_sigma_s = 0.0;
   CalibrationEvidence calibration;
 };
 

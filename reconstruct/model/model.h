@@ -24,7 +24,8 @@ struct ModelImage {
   CameraId camera_id = 0;
   std::string name;
   Rigid3 cam_from_world;
-  std::vector<Point2D> points2D;  // by keypoint_idx of the database
+  // By keypoint_idx of the database. A rolling shutter that the adjustment knows is taken out.
+  std::vector<Point2D> points2D;
 };
 
 struct TrackElement {

@@ -45,7 +45,10 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
             "length, and of the image's corners by each distortion parameter",
             FromTo(1e-9, 10)},
            {"MarkerAdjustment.rolling_shutter", &options->rolling_shutter_s, "s",
-            "time from the first row of a frame to the last; 0: not modelled", FromTo(0, 1)}}};
+            "time from the first row of a video's frame to the last; negative: upwards; 0: unknown",
+            FromTo(-0.1, 0.1)},
+           {"MarkerAdjustment.estimate_rolling_shutter", &options->estimate_rolling_shutter, "0|1",
+            "estimate that time where the frames show it"}}};
 }
 
 void MarkerAdjustmentOptions::Check() const {

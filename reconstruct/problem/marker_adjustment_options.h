@@ -49,9 +49,11 @@ struct MarkerAdjustmentOptions {
   bool refine_calibration = true;
   // As a fraction, see MakeIntrinsicsPrior.
   double intrinsics_sigma = 0.01;
-  // The rows of a frame are read one after another over this time while the camera moves. 0: not
-  // modelled.
+  // The rows of a frame are read one after another over this time, while the corners move as the
+  // frames before and after say. Negative: from the bottom up. 0: unknown.
   double rolling_shutter_s = 0.0;
+  // Where it is unknown: it is estimated if the frames show it.
+  bool estimate_rolling_shutter = true;
   int max_num_iterations = 100;
   int min_track_length = 2;
   double max_mean_error_px = 5.0;

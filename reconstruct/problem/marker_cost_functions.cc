@@ -102,7 +102,7 @@ MarkerViewError::MarkerViewError(CameraModel camera_model, int num_corners_in_bl
     : camera_model_(camera_model), corners_(std::move(corners)), loss_sigmas_(loss_sigmas) {
   set_num_residuals(2 * static_cast<int>(corners_.size()));
   *mutable_parameter_block_sizes() = {3 * num_corners_in_block, 7, 1, NumCameraParams(camera_model),
-                                      6};
+                                      1};
 }
 
 bool MarkerViewError::Evaluate(double const* const* parameters, double* residuals,
@@ -111,7 +111,7 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
   const Eigen::Map<const Eigen::Vector3d> translation(parameters[1] + 4);
   const double inset_px = parameters[2][0];
   const double* intrinsics = parameters[3];
-  const Eigen::Map<const Eigen::Vector3d> linear(parameters[4]), angular(parameters[4] + 3);
+  const double rolling_shutter_s = parameters[4][0];
   const Eigen::Matrix3d rotation_matrix = rotation.toRotationMatrix();
 
   const auto map = [&](std::size_t i) {
@@ -124,12 +124,12 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
   for (int i = 0; i < num_corners; ++i) {
     const CornerObservation& corner = corners_[i];
     const Eigen::Map<const Eigen::Vector3d> x_in_world(parameters[0] + 3 * corner.slot);
-    const Eigen::Vector3d x_at_middle_row = rotation_matrix * x_in_world + translation;
-    const Eigen::Vector3d x_in_cam =
-        x_at_middle_row + corner.row_time_s * (linear + angular.cross(x_at_middle_row));
+    const Eigen::Vector3d x_in_cam = rotation_matrix * x_in_world + translation;
     if (!(x_in_cam.z() > 0)) return false;
     const Eigen::Vector2d ray = x_in_cam.hnormalized();
-    const Eigen::Vector2d offset_px = inset_px * corner.inset_direction - corner.x_in_image_px;
+    const Eigen::Vector2d offset_px = inset_px * corner.inset_direction +
+                                      rolling_shutter_s * corner.shutter_direction_px_s -
+                                      corner.x_in_image_px;
     if (jacobians == nullptr) {
       const Eigen::Vector2d projected =
           ImageFromRay<double, double>(camera_model_, intrinsics, ray);
@@ -148,14 +148,12 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
     ray_by_cam << 1, 0, -ray.x(), 0, 1, -ray.y();
     const Eigen::Matrix<double, 2, 3> by_cam =
         by_image * projection.by_ray * ray_by_cam / x_in_cam.z();
-    const Eigen::Matrix<double, 2, 3> by_middle_row =
-        by_cam + corner.row_time_s * by_cam * CrossMatrix(angular);
     if (maps[0].rows() > 0) {
-      maps[0].block<2, 3>(2 * i, 3 * corner.slot) = by_middle_row * rotation_matrix;
+      maps[0].block<2, 3>(2 * i, 3 * corner.slot) = by_cam * rotation_matrix;
     }
     if (maps[1].rows() > 0) {
-      maps[1].block<2, 4>(2 * i, 0) = by_middle_row * RotatedFromQuaternion(rotation, x_in_world);
-      maps[1].block<2, 3>(2 * i, 4) = by_middle_row;
+      maps[1].block<2, 4>(2 * i, 0) = by_cam * RotatedFromQuaternion(rotation, x_in_world);
+      maps[1].block<2, 3>(2 * i, 4) = by_cam;
     }
     if (maps[2].rows() > 0) maps[2].block<2, 1>(2 * i, 0) = by_image * corner.inset_direction;
     if (maps[3].rows() > 0) {
@@ -164,8 +162,7 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
           ProjectionByIntrinsics(camera_model_, intrinsics, ray).leftCols(maps[3].cols());
     }
     if (maps[4].rows() > 0) {
-      maps[4].block<2, 3>(2 * i, 0) = corner.row_time_s * by_cam;
-      maps[4].block<2, 3>(2 * i, 3) = -corner.row_time_s * by_cam * CrossMatrix(x_at_middle_row);
+      maps[4].block<2, 1>(2 * i, 0) = by_image * corner.shutter_direction_px_s;
     }
   }
   return true;

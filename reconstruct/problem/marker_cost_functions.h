@@ -3,12 +3,11 @@
 //
 // Parameter blocks
 //   marker      3 x c    the c <= 4 corners of a marker that are in the model, world frame, m
-//   pose        7        cam_from_world at the middle row: quaternion x y z w, translation (m)
-//   inset       1        apparent inset of all corners, px
-//   intrinsics  3..12    parameters of one camera, in COLMAP's order
-//   velocity    6        velocity of the cam frame in one image: linear (m/s), angular (rad/s)
-//   print scale 1        scale of all printed sides, less 1
-//   part scale  1        the same of the sides on one part of the layout, in addition
+//   pose        7        cam_from_world while the middle row is read: quaternion x y z w,
+//   translation (m) inset       1        apparent inset of all corners, px intrinsics  3..12
+//   parameters of one camera, in COLMAP's order shutter     1        time from the first row of an
+//   image to the last, s print scale 1        scale of all printed sides, less 1 part scale  1 the
+//   same of the sides on one part of the layout, in addition
 
 #pragma once
 
@@ -31,7 +30,9 @@ struct CornerObservation {
   // image that point from the corner along its two sides. The sides of a square seen straight on
   // shrink by twice the inset. Zero where a neighbouring corner is unknown.
   Eigen::Vector2d inset_direction = Eigen::Vector2d::Zero();
-  double row_time_s = 0.0;  // time of the corner's image row after that of the middle row
+  // The movement of the corner from when the middle row is read to when its own is, by one second
+  // from the first row to the last.
+  Eigen::Vector2d shutter_direction_px_s = Eigen::Vector2d::Zero();
 };
 
 // Applies the Cauchy loss to a whitened residual r itself, so that one residual block can hold
@@ -41,10 +42,8 @@ struct CornerObservation {
 Eigen::Vector2d RobustResidual(const Eigen::Vector2d& whitened, double loss_sigmas,
                                Eigen::Matrix2d* jacobian);
 
-// Projection + inset - observation of all corners of one marker in one image, two residuals for
-// each corner. Blocks: marker, pose, inset, intrinsics, velocity. The camera moves with constant
-// velocity while the rows are read; to first order,
-//   x_in_cam(row) = x + row_time (linear + angular x x),   x = cam_from_world * x_in_world.
+// Projection + inset + motion while rows are read - observation of all corners of one marker in one
+// image, two residuals for each corner. Blocks: marker, pose, inset, intrinsics, shutter.
 // Evaluation fails for a corner that is not in front of the camera.
 class MarkerViewError : public ceres::CostFunction {
  public:

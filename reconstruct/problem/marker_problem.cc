@@ -16,10 +16,8 @@
 namespace velamap {
 namespace {
 
-// Priors that the motion of a hand or a boat does not exceed. They matter only for images that do
-// not determine their own velocity.
-constexpr double kLinearVelocitySigma = 3.0;   // m/s
-constexpr double kAngularVelocitySigma = 1.0;  // rad/s
+// Prior of the time that a camera takes from the first row of an image to the last.
+constexpr double kRollingShutterSigma_s = 0.03;
 
 int SlotOf(const MarkerBlock& marker, int corner) {
   const auto it = std::find(marker.corners.begin(), marker.corners.end(), corner);
@@ -40,6 +38,13 @@ Eigen::Vector2d InsetDirection(const Camera& camera, const Rigid3& cam_from_worl
   const auto previous = project((corner + kNumCorners - 2) % kNumCorners + 1);
   if (!here || !next || !previous) return Eigen::Vector2d::Zero();
   return (*next - *here).normalized() + (*previous - *here).normalized();
+}
+
+// Null if nothing is known of the image.
+template <typename Values>
+const Values* Find(const std::map<ImageId, Values>& of_image, ImageId image_id) {
+  const auto found = of_image.find(image_id);
+  return found == of_image.end() ? nullptr : &found->second;
 }
 
 // `of_image` may be null.
@@ -65,7 +70,6 @@ class ProblemBuilder {
     auto* pose_manifold = new PoseManifold;  // of all images; the problem owns it
     for (ImageBlock& image : state_.images) {
       AddGlobal(image.cam_from_world.data(), 7, &image != &state_.images.front(), pose_manifold);
-      AddGlobal(image.velocity.data(), 6, options_.rolling_shutter_s > 0);
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
       const IntrinsicsPrior prior = PriorOf(calibration.at(camera_id));
@@ -75,6 +79,8 @@ class ProblemBuilder {
                                       : new ceres::SubsetManifold(size, prior.held);
       AddGlobal(intrinsics.data(), size, !prior.free.empty(), manifold);
     }
+    if (!weights_.frees_rolling_shutter) state_.rolling_shutter_s = options_.rolling_shutter_s;
+    AddGlobal(&state_.rolling_shutter_s, 1, weights_.frees_rolling_shutter);
     AddGlobal(&state_.inset_px, 1, EstimatesInset());
     AddGlobal(&state_.print_scale, 1, print_scale_sigma_ > 0 && !weights_.holds_print_scale);
     for (auto& [part, scale] : state_.part_scales) {
@@ -82,13 +88,14 @@ class ProblemBuilder {
     }
   }
 
-  void AddCorners(const CornerSigmas& corner_sigmas) {
+  void AddCorners(const CornerErrors& corner_errors) {
     std::unordered_map<ImageId, std::size_t> image_idxs;
     std::vector<const std::vector<double>*> sigmas;
+    std::vector<const std::vector<Eigen::Vector2d>*> velocities;
     for (const ImageBlock& image : state_.images) {
       image_idxs[image.image_id] = sigmas.size();
-      const auto of_image = corner_sigmas.of_image.find(image.image_id);
-      sigmas.push_back(of_image == corner_sigmas.of_image.end() ? nullptr : &of_image->second);
+      sigmas.push_back(Find(corner_errors.sigmas_px, image.image_id));
+      velocities.push_back(Find(corner_errors.velocities_px_s, image.image_id));
     }
     std::vector<std::vector<SeenCorner>> views(state_.images.size());  // of one marker, by image
     for (MarkerBlock& marker : state_.markers) {
@@ -101,7 +108,7 @@ class ProblemBuilder {
       }
       for (std::size_t image_idx = 0; image_idx < views.size(); ++image_idx) {
         if (views[image_idx].empty()) continue;
-        AddView(image_idx, views[image_idx], sigmas[image_idx], &marker);
+        AddView(image_idx, views[image_idx], sigmas[image_idx], velocities[image_idx], &marker);
         views[image_idx].clear();
       }
     }
@@ -130,11 +137,8 @@ class ProblemBuilder {
         AddPrior(MakePrior({0.0}, {weights_.part_scale_sigma}), {&scale});
       }
     }
-    if (options_.rolling_shutter_s > 0) {
-      constexpr double v = kLinearVelocitySigma, w = kAngularVelocitySigma;
-      for (ImageBlock& image : state_.images) {
-        AddPrior(MakePrior({0, 0, 0, 0, 0, 0}, {v, v, v, w, w, w}), {image.velocity.data()});
-      }
+    if (weights_.frees_rolling_shutter) {
+      AddPrior(MakePrior({0.0}, {kRollingShutterSigma_s}), {&state_.rolling_shutter_s});
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
       const IntrinsicsPrior prior = PriorOf(calibration.at(camera_id));
@@ -188,7 +192,8 @@ class ProblemBuilder {
   }
 
   void AddView(std::size_t image_idx, const std::vector<SeenCorner>& view,
-               const std::vector<double>* sigmas_px, MarkerBlock* marker) {
+               const std::vector<double>* sigmas_px,
+               const std::vector<Eigen::Vector2d>* velocities_px_s, MarkerBlock* marker) {
     ImageBlock& block = state_.images[image_idx];
     const ModelImage& image = model_.images[image_idx];
     const Camera& camera = model_.cameras.at(image.camera_id);
@@ -203,8 +208,10 @@ class ProblemBuilder {
       if (EstimatesInset()) {
         observation.inset_direction = InsetDirection(camera, image.cam_from_world, *marker, slot);
       }
-      observation.row_time_s =
-          options_.rolling_shutter_s * (observation.x_in_image_px.y() / camera.height_px - 0.5);
+      if (velocities_px_s != nullptr) {
+        observation.shutter_direction_px_s = ShutterDirection(
+            camera, observation.x_in_image_px, velocities_px_s->at(element.point2D_idx));
+      }
       result_.corners.emplace_back(point3D_id, element);
       result_.corner_sigmas_px.push_back(observation.sigma_px);
     }
@@ -212,7 +219,7 @@ class ProblemBuilder {
         std::make_unique<MarkerViewError>(camera.model, static_cast<int>(marker->corners.size()),
                                           std::move(observations), weights_.loss_sigmas),
         {marker->x_in_world.data(), block.cam_from_world.data(), &state_.inset_px,
-         state_.intrinsics.at(image.camera_id).data(), block.velocity.data()}));
+         state_.intrinsics.at(image.camera_id).data(), &state_.rolling_shutter_s}));
   }
 
   static std::unique_ptr<ceres::CostFunction> MakePrior(std::vector<double> mean,
@@ -242,12 +249,12 @@ double PrintScaleSigma(const MarkerAdjustmentOptions& options, const MarkerWeigh
 }
 
 MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Model& model,
-                                const CornerSigmas& corner_sigmas,
+                                const CornerErrors& corner_errors,
                                 const std::map<CameraId, Camera>& calibration,
                                 const MarkerWeights& weights, MarkerState* state) {
   ProblemBuilder builder(options, model, weights, state);
   builder.AddParameters(calibration);
-  builder.AddCorners(corner_sigmas);
+  builder.AddCorners(corner_errors);
   builder.AddPriors(calibration);
   builder.AddScaleBars();
   return builder.Take();

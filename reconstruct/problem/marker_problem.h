@@ -10,7 +10,7 @@
 
 #include <ceres/problem.h>
 
-#include "reconstruct/problem/corner_sigmas.h"
+#include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
 #include "reconstruct/problem/marker_cost_functions.h"
 #include "reconstruct/problem/marker_state.h"
@@ -28,6 +28,8 @@ struct MarkerWeights {
   // 1 sigma of the scale of the print, as a fraction, that explains why scale bars contradict the
   // markers; 0: they do not.
   double print_scale_by_bars = 0.0;
+  // The time from the first row of an image to the last is a parameter instead of an option.
+  bool frees_rolling_shutter = false;
   // 1 sigma of the scale of each part's prints around that of all; 0: parts agree.
   double part_scale_sigma = 0.0;
   // Without scale bars only its prior determines the scale of the print. It is then constant while
@@ -44,7 +46,7 @@ double PrintScaleSigma(const MarkerAdjustmentOptions& options, const MarkerWeigh
 struct MarkerProblem {
   std::unique_ptr<ceres::Problem> ceres = std::make_unique<ceres::Problem>();
   // Parameters that vary, in the order of their columns: markers, then the global ones (poses,
-  // velocities, intrinsics, inset, print scale, scales of parts).
+  // intrinsics, rolling shutter, inset, print scale, scales of parts).
   std::vector<double*> marker_blocks;
   std::vector<double*> global_blocks;
   // One marker of each pair that a scale bar couples: the Schur complement must not eliminate both.
@@ -57,9 +59,9 @@ struct MarkerProblem {
 };
 
 // Refers to `state`, which must outlive the problem. `calibration` is the prior of the cameras. The
-// corners' sigmas follow from `options` and `corner_sigmas`, times the factor of `weights`.
+// corners' sigmas follow from `options` and `corner_errors`, times the factor of `weights`.
 MarkerProblem MakeMarkerProblem(const MarkerAdjustmentOptions& options, const Model& model,
-                                const CornerSigmas& corner_sigmas,
+                                const CornerErrors& corner_errors,
                                 const std::map<CameraId, Camera>& calibration,
                                 const MarkerWeights& weights, MarkerState* state);
 

@@ -44,7 +44,7 @@ MarkerState MakeMarkerState(const Model& model, const Layout& layout) {
     marker.corners.push_back(id.corner);
   }
   for (const ModelImage& image : model.images) {
-    ImageBlock block{image.image_id, image.camera_id, {}, {}};
+    ImageBlock block{image.image_id, image.camera_id, {}};
     Eigen::Map<Eigen::Vector4d>(block.cam_from_world.data()) =
         image.cam_from_world.rotation.coeffs();
     Eigen::Map<Eigen::Vector3d>(block.cam_from_world.data() + 4) = image.cam_from_world.translation;

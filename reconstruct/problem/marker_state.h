@@ -29,7 +29,6 @@ struct ImageBlock {
   ImageId image_id = 0;
   CameraId camera_id = 0;
   std::array<double, 7> cam_from_world{};
-  std::array<double, 6> velocity{};
 };
 
 // The pose of the first image fixes the gauge.
@@ -37,6 +36,7 @@ struct MarkerState {
   std::vector<MarkerBlock> markers;  // by ascending id
   std::vector<ImageBlock> images;    // in the order of the model
   std::map<CameraId, std::vector<double>> intrinsics;
+  double rolling_shutter_s = 0.0;  // from the first row of an image to the last
   double inset_px = 0.0;
   double print_scale = 0.0;
   // Scale of the prints of each part, less 1, in addition to print_scale.

@@ -126,6 +126,12 @@ AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeig
     uncertainty.apparent_inset_sigma_px =
         GlobalSigma(covariance, inset_column, points, bar_gradients, bar_sigmas);
   }
+  uncertainty.rolling_shutter_s = state.rolling_shutter_s;
+  const int shutter_column = GlobalColumn(problem, &state.rolling_shutter_s);
+  if (shutter_column >= 0) {
+    uncertainty.rolling_shutter_sigma_s =
+        GlobalSigma(covariance, shutter_column, points, bar_gradients, bar_sigmas);
+  }
   AddMeasurements(bar_gradients, bar_sigmas, &points);
   const std::vector<Eigen::Vector3d> positions = Positions(state);
   ToInnerConstraints(positions, &points);

@@ -70,7 +70,7 @@ void BM_RegistrationAndAdjustment(benchmark::State& state) {
   for (auto _ : state) {
     Model model =
         MakeSeedModel(RegisterFramesGlobally(images, cameras, scene.layout, {}), images, cameras);
-    AdjustWithMarkers({}, scene.layout, CornerSigmasOf(images), &model);
+    AdjustWithMarkers({}, scene.layout, CornerErrorsOf(images), &model);
   }
   state.counters["cpu_s"] =
       benchmark::Counter(CpuSeconds(RUSAGE_SELF) - before, benchmark::Counter::kAvgIterations);

@@ -145,7 +145,7 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   AtomicFolder sparse(paths.Sparse());
   WriteModel(seed.model, (sparse.TemporaryPath() / "seed").string(), ModelFormat::kBinaryAndText);
   Model model = seed.model;
-  summary->adjustment = AdjustModel(options.adjustment, options.importer.layout, seed.corner_sigmas,
+  summary->adjustment = AdjustModel(options.adjustment, options.importer.layout, seed.corner_errors,
                                     paths.ColmapLog().string(), &model);
   clock->End("adjust", static_cast<int>(model.images.size()));
   AddModelImages(model, options.paths.image_path, paths.Images());

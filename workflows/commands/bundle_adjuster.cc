@@ -1,5 +1,7 @@
 #include <iostream>
+#include <map>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -35,8 +37,8 @@ CommandSyntax Declare(Options* options) {
               "COLMAP's output; left out: colmap.log beside output_path"},
              BackendOption(&options->adjustment.backend),
              {"database_path", &paths->database_path, "path",
-              "database of the model's images, which holds the sigma of each corner (markers, "
-              "optional)"}}},
+              "database of the model's images, which tells the sigma and motion of each corner "
+              "(markers, optional)"}}},
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->adjustment.colmap),
            DescribeOptions(&options->adjustment.markers),
@@ -57,10 +59,33 @@ Layout LoadAdjustmentLayout(const Options& options) {
   return options.adjustment.UsesMarkers() ? LoadLayout(options.markers, false) : Layout{};
 }
 
-CornerSigmas LoadCornerSigmas(const Options& options) {
+// Takes the image points of the model from the database, because an earlier adjustment may have
+// taken a rolling shutter out of them.
+void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOptions& paths,
+                      Model* model) {
+  std::map<ImageId, const FrameDetections*> detections;
+  for (const DatabaseImage& image : images) detections[image.image_id] = &image.detections;
+  for (ModelImage& image : model->images) {
+    const auto found = detections.find(image.image_id);
+    if (found == detections.end() ||
+        image.points2D.size() != kNumCorners * found->second->markers.size()) {
+      throw InputError(fmt::format(
+          "{}: image {} is not the one of {}: give the database that the model was made from",
+          paths.database_path, image.name, paths.input_path));
+    }
+    for (std::size_t i = 0; i < image.points2D.size(); ++i) {
+      image.points2D[i].x_in_image_px =
+          found->second->markers[i / kNumCorners].corners_in_image_px[i % kNumCorners];
+    }
+  }
+}
+
+CornerErrors LoadCorners(const Options& options, Model* model) {
   if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) return {};
   const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
-  return CornerSigmasOf(database.ReadImages(), database.ReadFormation());
+  const std::vector<DatabaseImage> images = database.ReadImages();
+  RestoreKeypoints(images, options.paths, model);
+  return CornerErrorsOf(images, database.ReadFormation());
 }
 
 void Print(const AdjustmentResult& result, const std::string& model_path, std::ostream& out) {
@@ -72,6 +97,7 @@ void Print(const AdjustmentResult& result, const std::string& model_path, std::o
     fmt::print(out, "scale_sigma: {:.4f} %\n", 100.0 * result.uncertainty->relative_scale_sigma);
     fmt::print(out, "corners_above_4_sigma: {:.3f} %\n",
                100.0 * result.uncertainty->share_above_4_sigma);
+    PrintRollingShutter(*result.uncertainty, out);
   }
   fmt::print(out, "model_path: {}\n", model_path);
 }
@@ -80,8 +106,9 @@ void Run(const Options& options) {
   StageClock clock;
   const Layout layout = LoadAdjustmentLayout(options);
   Model model = ReadModel(options.paths.input_path);
-  const AdjustmentResult result = AdjustModel(options.adjustment, layout, LoadCornerSigmas(options),
-                                              options.paths.log_path, &model);
+  const CornerErrors corner_errors = LoadCorners(options, &model);
+  const AdjustmentResult result =
+      AdjustModel(options.adjustment, layout, corner_errors, options.paths.log_path, &model);
   clock.End("adjust", static_cast<int>(model.images.size()));
   WriteAdjustedModel(model, result, options.paths.output_path);
   clock.End("export");

@@ -82,7 +82,7 @@ class Sweep {
     images_ = database.ReadImages();
     cameras_ = database.ReadCameras();
     posed_ = PoseImages(images_, cameras_, layout, options.registration.num_threads);
-    corner_sigmas_ = CornerSigmasOf(images_, database.ReadFormation());
+    corner_errors_ = CornerErrorsOf(images_, database.ReadFormation());
   }
 
   const PosedImages& posed() const { return posed_; }
@@ -124,7 +124,7 @@ class Sweep {
       row->is_warm = StartFromAdjusted(*adjusted_, &model).num_points > 0;
     }
     AdjustmentResult result =
-        AdjustModel(options_.adjustment, layout_, corner_sigmas_, options_.log_path, &model);
+        AdjustModel(options_.adjustment, layout_, corner_errors_, options_.log_path, &model);
     adjusted_ = model;
     if (!result.uncertainty) ScaleModel(EstimateScale(model, layout_), &model);
     UpdatePointErrors(&model);
@@ -151,7 +151,7 @@ class Sweep {
   std::vector<DatabaseImage> images_;
   std::map<CameraId, Camera> cameras_;
   PosedImages posed_;
-  CornerSigmas corner_sigmas_;
+  CornerErrors corner_errors_;
   std::optional<Model> adjusted_;  // around the central frame before
 };
 

@@ -113,10 +113,10 @@ AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
 }
 
 AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const Layout& layout,
-                                   const CornerSigmas& corner_sigmas, Model* model) {
+                                   const CornerErrors& corner_errors, Model* model) {
   spdlog::info("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
                model->points3D.size());
-  MarkerAdjustmentSummary summary = AdjustWithMarkers(options, layout, corner_sigmas, model);
+  MarkerAdjustmentSummary summary = AdjustWithMarkers(options, layout, corner_errors, model);
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
   spdlog::info(
       "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, scale "
@@ -143,6 +143,10 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
   if (uncertainty.apparent_inset_sigma_px > 0) {
     spdlog::info("apparent inset of the corners {:.3f} +- {:.3f} px", uncertainty.apparent_inset_px,
                  uncertainty.apparent_inset_sigma_px);
+  }
+  if (uncertainty.rolling_shutter_sigma_s > 0) {
+    spdlog::info("rolling shutter: {:.2f} +- {:.2f} ms from the first row to the last",
+                 1e3 * uncertainty.rolling_shutter_s, 1e3 * uncertainty.rolling_shutter_sigma_s);
   }
   for (const std::string& warning : summary.warnings) spdlog::warn(warning);
   WarnOfRemovedImages(summary.removed_images);
@@ -214,7 +218,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
     for (const MarkerDetection& marker : image.detections.markers) ids.insert(marker.marker_id);
   }
   seed.num_ids_found = static_cast<int>(ids.size());
-  seed.corner_sigmas = CornerSigmasOf(images, database.ReadFormation());
+  seed.corner_errors = CornerErrorsOf(images, database.ReadFormation());
   LogSeed(seed);
   return seed;
 }
@@ -245,7 +249,7 @@ void CheckColmap(const std::string& colmap_path) {
 }
 
 AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& layout,
-                             const CornerSigmas& corner_sigmas, const std::string& log_path,
+                             const CornerErrors& corner_errors, const std::string& log_path,
                              Model* model) {
   AdjustmentResult result;
   if (options.colmap.refine_extra_params) AddDistortion(model);
@@ -261,7 +265,7 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
   if (options.UsesMarkers()) {
     const Statistics before_px = result.error_before_px;
     const int num_removed = result.num_removed;
-    result = RunMarkersBackend(options.markers, layout, corner_sigmas, model);
+    result = RunMarkersBackend(options.markers, layout, corner_errors, model);
     if (options.UsesColmap()) result.error_before_px = before_px;
     result.num_removed += num_removed;
   }

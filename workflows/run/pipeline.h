@@ -25,7 +25,7 @@ struct SeedResult {
   Model model;
   std::vector<std::string> image_names;  // of all images in the database, sorted
   std::vector<LeftOutImage> left_out;    // images that the model does not hold
-  CornerSigmas corner_sigmas;            // from the database
+  CornerErrors corner_errors;            // from the database
   int num_ids_found = 0;                 // different marker ids in the database
 };
 
@@ -74,9 +74,9 @@ struct AdjustmentResult {
 void CheckColmap(const std::string& colmap_path);
 
 // Adjusts the model and logs how it went. The marker-aware adjustment needs `layout` and takes
-// `corner_sigmas`; `log_path` gets COLMAP's output.
+// `corner_errors`; `log_path` gets COLMAP's output.
 AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& layout,
-                             const CornerSigmas& corner_sigmas, const std::string& log_path,
+                             const CornerErrors& corner_errors, const std::string& log_path,
                              Model* model);
 
 // Warns of lines and heights that have no section, with the reason.

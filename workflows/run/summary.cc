@@ -210,6 +210,12 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   fmt::print(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
 }
 
+void PrintRollingShutter(const AdjustmentUncertainty& uncertainty, std::ostream& out) {
+  if (!(uncertainty.rolling_shutter_sigma_s > 0)) return;
+  fmt::print(out, "rolling_shutter_ms: {:.2f} +- {:.2f}\n", 1e3 * uncertainty.rolling_shutter_s,
+             1e3 * uncertainty.rolling_shutter_sigma_s);
+}
+
 void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
                   std::ostream& out) {
   PrintVerdict(summary.verdict, out);
@@ -219,6 +225,7 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   PrintShapeSummary(summary.shape, out);
   fmt::print(out, "outliers_removed: {} of {} observations\n", summary.adjustment.num_removed,
              summary.adjustment.error_before_px.count);
+  if (summary.adjustment.uncertainty) PrintRollingShutter(*summary.adjustment.uncertainty, out);
   fmt::print(out, "shape_path: {}\n", paths.Shape().string());
   fmt::print(out, "model_path: {}\n", paths.Model().string());
   fmt::print(out,

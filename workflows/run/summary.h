@@ -43,6 +43,9 @@ ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layou
 // Prints what shape_exporter and automatic_reconstructor share: markers, their errors, scale, size.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);
 
+// Prints it where it was estimated.
+void PrintRollingShutter(const AdjustmentUncertainty& uncertainty, std::ostream& out);
+
 struct ReconstructionSummary {
   int num_images = 0;  // images used
   int num_images_total = 0;

@@ -42,8 +42,8 @@ double MaxErrorInFirstCamera(const Model& model, const Model& truth) {
 class MarkerAdjustment : public testing::Test {
  protected:
   MarkerAdjustmentSummary Adjust(Model* model, const MarkerAdjustmentOptions& options = {},
-                                 const CornerSigmas& sigmas = {}) const {
-    return AdjustWithMarkers(options, scene_.layout, sigmas, model);
+                                 const CornerErrors& errors = {}) const {
+    return AdjustWithMarkers(options, scene_.layout, errors, model);
   }
 
   Model NoisyModel(double corner_sigma_px, std::uint32_t seed) const {
@@ -147,16 +147,16 @@ TEST_F(MarkerAdjustment, WorseCornersCountLess) {
   AddNoise({0.05, 0, 0, 200, 5}, &noisy);
   SyntheticScene noisier = scene_;
   AddNoise({1.0, 0, 0, 200, 6}, &noisier);
-  CornerSigmas sigmas;
+  CornerErrors errors;
   for (std::size_t i = 0; i < noisy.frames.size(); ++i) {
     if (i % 2 == 1) noisy.frames[i] = noisier.frames[i];
-    sigmas.of_image[static_cast<ImageId>(i + 1)].assign(4 * noisy.frames[i].markers.size(),
-                                                        i % 2 == 1 ? 1.0 : 0.05);
+    errors.sigmas_px[static_cast<ImageId>(i + 1)].assign(4 * noisy.frames[i].markers.size(),
+                                                         i % 2 == 1 ? 1.0 : 0.05);
   }
   Model informed = MakeSceneModel(noisy), uninformed = informed;
   MarkerAdjustmentOptions options;
   options.outlier_sigmas = options.loss_sigmas = 100;  // so that nothing but the weights decides
-  const auto summary = Adjust(&informed, options, sigmas);
+  const auto summary = Adjust(&informed, options, errors);
   Adjust(&uninformed, options);
   EXPECT_NEAR(summary.uncertainty.variance_factor, 1.0, 0.25);
   EXPECT_LT(2 * MaxPointError(informed, truth_), MaxPointError(uninformed, truth_));
@@ -274,33 +274,6 @@ TEST_F(MarkerAdjustment, IntrinsicsAreRefinedWithTheCalibrationAsPrior) {
   for (std::size_t i = 2; i < 8; ++i) EXPECT_EQ(refined[i], wrong[i]);
 }
 
-TEST_F(MarkerAdjustment, RollingShutterIsModelled) {
-  // The camera moves by some cm and turns by a degree while the rows are read.
-  constexpr double kReadout = 0.02;
-  scene_.layout.parts[0].rigid = true;
-  for (std::size_t i = 0; i < scene_.frames.size(); ++i) {
-    const Eigen::Vector3d linear(0.8, -0.3 + 0.1 * i, 0.2), angular(0.1, 0.3, -0.2 + 0.05 * i);
-    for (MarkerDetection& marker : scene_.frames[i].markers) {
-      for (int c = 0; c < kNumCorners; ++c) {
-        Eigen::Vector2d& x_px = marker.corners_in_image_px[c];
-        for (int k = 0; k < 20; ++k) {  // the row decides the time that decides the row
-          const double time_s = kReadout * (x_px.y() / scene_.camera.height_px - 0.5);
-          const Eigen::Vector3d x =
-              scene_.cam_from_world[i] * scene_.x_in_world.at(marker.marker_id)[c + 1];
-          x_px = ImageFromCam(scene_.camera, x + time_s * (linear + angular.cross(x))).value();
-        }
-      }
-    }
-  }
-  Model model = MakeSceneModel(scene_), without = model;
-  MarkerAdjustmentOptions options;
-  options.rolling_shutter_s = kReadout;
-  Adjust(&model, options);
-  Adjust(&without);
-  EXPECT_LT(MaxPointError(model, truth_), 1e-4);
-  EXPECT_GT(MaxPointError(without, truth_), 10 * MaxPointError(model, truth_));
-}
-
 TEST_F(MarkerAdjustment, TooLittleIsADataErrorAndLeavesTheModel) {
   Model single = truth_;
   single.images.resize(1);
@@ -361,11 +334,11 @@ TEST(MarkerAdjustmentOptions, EveryRangeIsCheckedByName) {
               HasSubstr("--MarkerAdjustment.corner_sigma"));
   EXPECT_THAT(message([](auto* o) { o->outlier_sigmas = 1; }),
               HasSubstr("--MarkerAdjustment.outlier: 1 "));
-  EXPECT_THAT(message([](auto* o) { o->rolling_shutter_s = -1; }),
+  EXPECT_THAT(message([](auto* o) { o->rolling_shutter_s = -0.2; }),
               HasSubstr("--MarkerAdjustment.rolling_shutter"));
 }
 
-TEST(CornerSigmasOf, FollowsTheKeypointsAndDoubtsFallbacks) {
+TEST(CornerErrorsOf, FollowsTheKeypointsAndDoubtsFallbacks) {
   DatabaseImage image;
   image.image_id = 3;
   image.detections.markers.resize(2);
@@ -373,10 +346,11 @@ TEST(CornerSigmasOf, FollowsTheKeypointsAndDoubtsFallbacks) {
   image.detections.markers[1].is_fallback = true;
   FormationEstimate formation;
   formation.inset_sigma_px = 0.02;
-  const CornerSigmas sigmas = CornerSigmasOf({image}, formation);
-  EXPECT_EQ(sigmas.common_inset_px, 0.02);
+  const CornerErrors errors = CornerErrorsOf({image}, formation);
+  EXPECT_EQ(errors.common_inset_px, 0.02);
+  EXPECT_THAT(errors.velocities_px_s, IsEmpty());
   const double fallback = 5 * MarkerAdjustmentOptions{}.corner_sigma_px;
-  EXPECT_THAT(sigmas.of_image.at(3),
+  EXPECT_THAT(errors.sigmas_px.at(3),
               ElementsAre(0.1, 0.2, 0.3, 0.4, fallback, fallback, fallback, fallback));
 }
 

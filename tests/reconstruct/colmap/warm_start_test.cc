@@ -39,7 +39,7 @@ class WarmStartTest : public testing::Test {
   }
 
   MarkerAdjustmentSummary Adjust(Model* model) const {
-    return AdjustWithMarkers({}, scene_.layout, CornerSigmasOf(images_), model);
+    return AdjustWithMarkers({}, scene_.layout, CornerErrorsOf(images_), model);
   }
 
   static double Error(const Model& model) {

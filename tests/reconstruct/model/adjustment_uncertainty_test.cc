@@ -107,7 +107,7 @@ TEST_F(UncertaintyFile, ForeignOrBrokenFilesAreInputErrors) {
   const std::string bytes = FileBytes();
   WriteBytes("no uncertainty at all, but a text that somebody put here");
   EXPECT_THROW(ReadUncertainty(Folder()), InputError);
-  for (const std::size_t at : {8u, 140u, 147u}) {  // version, number of points
+  for (const std::size_t at : {8u, 156u, 163u}) {  // version, number of points
     std::string broken = bytes;
     broken[at] = '\x7f';
     WriteBytes(broken);

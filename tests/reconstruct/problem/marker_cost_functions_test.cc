@@ -52,14 +52,14 @@ std::vector<double> ParamsOf(CameraModel model) {
   return {};
 }
 
-// Marker, pose, inset, intrinsics, velocity: a marker somewhat bent, 1.5 m away, off the axis.
+// Marker, pose, inset, intrinsics, shutter: a marker somewhat bent, 1.5 m away, off the axis.
 std::vector<std::vector<double>> ViewParameters(CameraModel model) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(0.9, 0.2, -0.3, 0.1).normalized();
   return {{0.01, 0.02, 0, 0.11, 0.02, 0.003, 0.11, -0.08, -0.002, 0.012, -0.08, 0.004},
           {q.x(), q.y(), q.z(), q.w(), 0.3, -0.2, 1.5},
           {0.07},
           ParamsOf(model),
-          {0.4, -0.3, 0.2, 0.1, 0.2, -0.3}};
+          {0.02}};
 }
 
 std::vector<CornerObservation> Observations(const std::vector<int>& slots) {
@@ -70,7 +70,7 @@ std::vector<CornerObservation> Observations(const std::vector<int>& slots) {
     observation.x_in_image_px = {1200 + 40.0 * (slot == 1 || slot == 2), 380 - 35.0 * (slot > 1)};
     observation.sigma_px = 30.0 + slot;  // so that the loss is at work, but not all there is
     observation.inset_direction = Eigen::Vector2d(0.8, -0.5 + 0.1 * slot);
-    observation.row_time_s = 0.01 * (slot - 1.5);
+    observation.shutter_direction_px_s = Eigen::Vector2d(90 - 50 * slot, 30 + 20 * slot);
     observations.push_back(observation);
   }
   return observations;
@@ -96,9 +96,8 @@ INSTANTIATE_TEST_SUITE_P(AllModels, MarkerViewErrorOf,
                                          CameraModel::kFullOpenCV),
                          [](const auto& test) { return CameraModelName(test.param); });
 
-TEST(MarkerViewError, ResidualIsProjectionPlusInsetMinusObservationInSigmas) {
+TEST(MarkerViewError, ResidualIsProjectionPlusInsetAndMotionMinusObservationInSigmas) {
   auto parameters = ViewParameters(CameraModel::kOpenCV);
-  parameters[4].assign(6, 0.0);
   const auto observations = Observations({2});
   const MarkerViewError error(CameraModel::kOpenCV, 4, observations, kInfinity);
   std::vector<const double*> blocks;
@@ -110,8 +109,8 @@ TEST(MarkerViewError, ResidualIsProjectionPlusInsetMinusObservationInSigmas) {
   const Eigen::Vector3d x_in_cam =
       rotation * Eigen::Vector3d(&parameters[0][6]) + Eigen::Vector3d(&parameters[1][4]);
   const Eigen::Vector2d expected =
-      (ImageFromCam(camera, x_in_cam).value() + 0.07 * observations[0].inset_direction -
-       observations[0].x_in_image_px) /
+      (ImageFromCam(camera, x_in_cam).value() + 0.07 * observations[0].inset_direction +
+       0.02 * observations[0].shutter_direction_px_s - observations[0].x_in_image_px) /
       32.0;
   EXPECT_LT((residual - expected).norm(), 1e-12);
 }

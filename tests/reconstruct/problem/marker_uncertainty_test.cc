@@ -52,7 +52,7 @@ Eigen::MatrixXd Dense(const PointCovariance& points) {
   return dense;
 }
 
-// Everything at once: a marker with three corners, intrinsics, velocities, inset, print scale,
+// Everything at once: a marker with three corners, intrinsics, rolling shutter, inset, print scale,
 // bars.
 TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
   SyntheticScene scene = TinyScene();
@@ -62,19 +62,25 @@ TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
     RemoveObservation(&model, 22, model.points3D.at(22).track.front());
   }
   RemoveShortTracks(&model, 2);
+  CornerErrors corner_errors;
+  for (const ModelImage& image : model.images) {
+    for (std::size_t i = 0; i < image.points2D.size(); ++i) {
+      corner_errors.velocities_px_s[image.image_id].emplace_back(100.0 * image.image_id, 5.0 * i);
+    }
+  }
   MarkerAdjustmentOptions options;
   options.refine_focal_length = true;
-  options.rolling_shutter_s = 0.01;
   options.common_print_tolerance = 0.003;
   options.estimate_inset = true;
   MarkerState state = MakeMarkerState(model, scene.layout);
   MarkerWeights weights;
   weights.loss_sigmas = std::numeric_limits<double>::infinity();
   weights.print_tolerance = 1e-3;
+  weights.frees_rolling_shutter = true;
   weights.scale_bars = FindScaleBars(state, scene.layout);
   ASSERT_EQ(weights.scale_bars.size(), 2u);
   const MarkerProblem problem =
-      MakeMarkerProblem(options, model, {}, model.cameras, weights, &state);
+      MakeMarkerProblem(options, model, corner_errors, model.cameras, weights, &state);
   const auto covariance = InvertNormalEquations(EvaluateJacobian(problem), 1);
   ASSERT_TRUE(covariance.has_value());
   const AdjustmentUncertainty uncertainty = MakeUncertainty(state, weights, problem, *covariance);

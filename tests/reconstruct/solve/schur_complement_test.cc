@@ -24,13 +24,18 @@ class SchurComplement : public testing::Test {
     scene_options.num_columns = 4;
     scene_options.num_frames = 7;
     SyntheticScene scene = MakeSyntheticScene(scene_options);
-    AddNoise({0.2, 0.1, 0.02, 5, 1}, &scene);
+    AddNoise({0.1, 0.1, 0, 5, 1}, &scene);
     scene.layout.distances = {{0, 0, 5, 1, 0.6, 1e-3, true}, {1, 0, 4, 0, 0.3, 5e-4, true}};
     model_ = MakeSceneModel(scene);
+    for (const ModelImage& image : model_.images) {
+      for (std::size_t i = 0; i < image.points2D.size(); ++i) {
+        corner_errors_.velocities_px_s[image.image_id].emplace_back(100.0 * image.image_id,
+                                                                    5.0 * i);
+      }
+    }
     PerturbSeed(0.001, 1, &model_);
     layout_ = scene.layout;
     options_.refine_focal_length = true;
-    options_.rolling_shutter_s = 0.01;
     options_.estimate_inset = true;
   }
 
@@ -38,8 +43,9 @@ class SchurComplement : public testing::Test {
     MarkerWeights weights;
     weights.loss_sigmas = 3.0;
     weights.print_tolerance = 1e-3;
+    weights.frees_rolling_shutter = true;
     weights.scale_bars = FindScaleBars(*state, layout_);
-    return MakeMarkerProblem(options_, model_, {}, model_.cameras, weights, state);
+    return MakeMarkerProblem(options_, model_, corner_errors_, model_.cameras, weights, state);
   }
 
   MarkerState State() const { return MakeMarkerState(model_, layout_); }
@@ -57,6 +63,7 @@ class SchurComplement : public testing::Test {
 
   Model model_;
   Layout layout_;
+  CornerErrors corner_errors_;
   MarkerAdjustmentOptions options_;
 };
 

@@ -72,7 +72,7 @@ TEST_F(CentralFrameSweepTest, RowsAreWhatSingleRunsGive) {
     const SeedResult seed = RegisterDatabase(options_.database_path, scene_.layout, registration);
     Model model = seed.model;
     const AdjustmentResult adjusted =
-        AdjustModel(options_.adjustment, scene_.layout, seed.corner_sigmas, "", &model);
+        AdjustModel(options_.adjustment, scene_.layout, seed.corner_errors, "", &model);
     const ShapeExportReport single = ExportShape(model, scene_.layout, {}, &*adjusted.uncertainty);
     EXPECT_EQ(row.reason, "");
     EXPECT_EQ(row.is_warm, row.central_frame != "24");

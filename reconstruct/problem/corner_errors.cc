@@ -1,4 +1,4 @@
-#include "reconstruct/problem/corner_sigmas.h"
+#include "reconstruct/problem/corner_errors.h"
 
 #include <algorithm>
 
@@ -6,22 +6,23 @@
 
 namespace velamap {
 
-CornerSigmas CornerSigmasOf(const std::vector<DatabaseImage>& images,
+CornerErrors CornerErrorsOf(const std::vector<DatabaseImage>& images,
                             const std::optional<FormationEstimate>& formation) {
   // Corners of the fallback estimator have about this many times the default sigma.
   constexpr double kFallbackFactor = 5.0;
   const double fallback_px = kFallbackFactor * MarkerAdjustmentOptions{}.corner_sigma_px;
-  CornerSigmas sigmas;
-  if (formation) sigmas.common_inset_px = formation->inset_sigma_px;
+  CornerErrors errors;
+  errors.velocities_px_s = CornerVelocitiesOf(images);
+  if (formation) errors.common_inset_px = formation->inset_sigma_px;
   for (const DatabaseImage& image : images) {
-    std::vector<double>& of_image = sigmas.of_image[image.image_id];
+    std::vector<double>& sigmas_px = errors.sigmas_px[image.image_id];
     for (const MarkerDetection& marker : image.detections.markers) {
       for (const double sigma_px : marker.corner_sigma_px) {
-        of_image.push_back(marker.is_fallback ? std::max(sigma_px, fallback_px) : sigma_px);
+        sigmas_px.push_back(marker.is_fallback ? std::max(sigma_px, fallback_px) : sigma_px);
       }
     }
   }
-  return sigmas;
+  return errors;
 }
 
 }  // namespace velamap

@@ -1,0 +1,33 @@
+#include "reconstruct/adjust/rolling_shutter_choice.h"
+
+#include <cmath>
+
+#include <spdlog/spdlog.h>
+
+#include "reconstruct/problem/marker_uncertainty.h"
+
+namespace velamap {
+
+bool ShowsRollingShutter(const MarkerSolution& solution) {
+  const MarkerAdjustmentOptions& options = solution.options;
+  if (!options.estimate_rolling_shutter || options.rolling_shutter_s != 0) return false;
+  if (solution.corner_errors->velocities_px_s.empty()) return false;
+  MarkerSolution trial = solution;
+  trial.weights.frees_rolling_shutter = true;
+  Minimize(1e-4, &trial);
+  // The sigmas of the corners still contain the motion.
+  CalibrateRobustly(&trial);
+  Minimize(1e-4, &trial);
+  const auto linearization = Linearize(trial);
+  const MarkerState& state = linearization->state;
+  const double variance = GlobalCovariance(linearization->problem, linearization->covariance,
+                                           &state.rolling_shutter_s)(0, 0);
+  const double sigma_s = std::sqrt(variance) * CorrelationFactor(trial, *linearization);
+  const double sigmas = state.rolling_shutter_s / sigma_s;
+  const double needed = std::log(static_cast<double>(2 * linearization->problem.corners.size()));
+  spdlog::debug("rolling shutter {:.2f} +- {:.2f} ms", 1e3 * state.rolling_shutter_s,
+                1e3 * sigma_s);
+  return sigmas * sigmas > needed;
+}
+
+}  // namespace velamap

@@ -1,0 +1,29 @@
+// What is known of the errors of corners before the adjustment, from the database.
+
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "importer/database/colmap_database.h"
+#include "reconstruct/model/model.h"
+#include "reconstruct/problem/corner_velocities.h"
+
+namespace velamap {
+
+struct CornerErrors {
+  // 1 sigma of a corner's coordinate, by point2D_idx, px. 0 or a missing image: unknown.
+  std::map<ImageId, std::vector<double>> sigmas_px;
+  // By which a rolling shutter displaces corners.
+  CornerVelocities velocities_px_s;
+  // 1 sigma of the distance by which all corners are seen too far inside their markers, px:
+  // FormationEstimate::inset_sigma_px.
+  double common_inset_px = 0.0;
+};
+
+// `formation` comes from the database; nothing where that has none.
+CornerErrors CornerErrorsOf(const std::vector<DatabaseImage>& images,
+                            const std::optional<FormationEstimate>& formation = std::nullopt);
+
+}  // namespace velamap

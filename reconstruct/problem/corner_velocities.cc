@@ -1,0 +1,132 @@
+#include "reconstruct/problem/corner_velocities.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <Eigen/QR>
+
+namespace velamap {
+namespace {
+
+// Beyond it a hand has turned back.
+constexpr double kLongestStep_s = 0.15;
+
+// Of one marker, px/s.
+using MarkerVelocity = Eigen::Matrix<double, 2, kNumCorners>;
+
+const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
+  const auto it =
+      std::lower_bound(frame.markers.begin(), frame.markers.end(), marker_id,
+                       [](const MarkerDetection& marker, int id) { return marker.marker_id < id; });
+  return it != frame.markers.end() && it->marker_id == marker_id ? &*it : nullptr;
+}
+
+std::optional<MarkerVelocity> MeasureVelocity(const FrameDetections& before,
+                                              const FrameDetections& after, int marker_id) {
+  const MarkerDetection* from = FindMarker(before, marker_id);
+  const MarkerDetection* to = FindMarker(after, marker_id);
+  if (from == nullptr || to == nullptr) return std::nullopt;
+  MarkerVelocity velocity;
+  for (int i = 0; i < kNumCorners; ++i) {
+    velocity.col(i) = (to->corners_in_image_px[i] - from->corners_in_image_px[i]) /
+                      (*after.time_s - *before.time_s);
+  }
+  return velocity;
+}
+
+// Rows: 1, x, y.
+using AffineField = Eigen::Matrix<double, 3, 2>;
+
+Eigen::RowVector3d FieldRow(const Eigen::Vector2d& x_in_image_px) {
+  return {1.0, x_in_image_px.x(), x_in_image_px.y()};
+}
+
+// Nothing for fewer than three markers.
+std::optional<AffineField> FitField(const FrameDetections& frame,
+                                    const std::vector<std::optional<MarkerVelocity>>& velocities) {
+  constexpr int kMinNumMarkers = 3;
+  const auto num_known = std::count_if(velocities.begin(), velocities.end(),
+                                       [](const auto& velocity) { return velocity.has_value(); });
+  if (num_known < kMinNumMarkers) return std::nullopt;
+  Eigen::MatrixX3d places(kNumCorners * num_known, 3);
+  Eigen::MatrixX2d values(kNumCorners * num_known, 2);
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    if (!velocities[i]) continue;
+    for (int c = 0; c < kNumCorners; ++c, ++row) {
+      places.row(row) = FieldRow(frame.markers[i].corners_in_image_px[c]);
+      values.row(row) = velocities[i]->col(c).transpose();
+    }
+  }
+  return places.colPivHouseholderQr().solve(values);
+}
+
+// Empty where the images before and after tell nothing.
+std::vector<Eigen::Vector2d> VelocitiesOf(const FrameDetections& before,
+                                          const FrameDetections& frame,
+                                          const FrameDetections& after) {
+  std::vector<std::optional<MarkerVelocity>> measured;
+  for (const MarkerDetection& marker : frame.markers) {
+    measured.push_back(MeasureVelocity(before, after, marker.marker_id));
+  }
+  const bool is_complete = std::all_of(measured.begin(), measured.end(),
+                                       [](const auto& velocity) { return velocity.has_value(); });
+  const auto field = is_complete ? std::nullopt : FitField(frame, measured);
+  if (!is_complete && !field) return {};
+  std::vector<Eigen::Vector2d> velocities;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    for (int c = 0; c < kNumCorners; ++c) {
+      velocities.push_back(
+          measured[i] ? Eigen::Vector2d(measured[i]->col(c))
+                      : (FieldRow(frame.markers[i].corners_in_image_px[c]) * *field).transpose());
+    }
+  }
+  return velocities;
+}
+
+}  // namespace
+
+CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images) {
+  std::vector<const DatabaseImage*> frames;
+  for (const DatabaseImage& image : images) {
+    if (image.detections.time_s) frames.push_back(&image);
+  }
+  const auto time_s = [](const DatabaseImage* image) { return *image->detections.time_s; };
+  std::sort(frames.begin(), frames.end(),
+            [&](const DatabaseImage* a, const DatabaseImage* b) { return time_s(a) < time_s(b); });
+  const auto are_near = [&](const DatabaseImage* a, const DatabaseImage* b) {
+    const double step_s = time_s(b) - time_s(a);
+    return step_s > 0 && step_s <= kLongestStep_s && a->camera_id == b->camera_id;
+  };
+  CornerVelocities velocities;
+  for (std::size_t i = 1; i + 1 < frames.size(); ++i) {
+    if (!are_near(frames[i - 1], frames[i]) || !are_near(frames[i], frames[i + 1])) continue;
+    std::vector<Eigen::Vector2d> of_image =
+        VelocitiesOf(frames[i - 1]->detections, frames[i]->detections, frames[i + 1]->detections);
+    if (!of_image.empty()) velocities[frames[i]->image_id] = std::move(of_image);
+  }
+  return velocities;
+}
+
+Eigen::Vector2d ShutterDirection(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
+                                 const Eigen::Vector2d& velocity_px_s) {
+  return (x_in_image_px.y() / camera.height_px - 0.5) * velocity_px_s;
+}
+
+void MoveToMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
+                     Model* model) {
+  if (rolling_shutter_s == 0) return;
+  for (ModelImage& image : model->images) {
+    const auto velocities = velocities_px_s.find(image.image_id);
+    if (velocities == velocities_px_s.end()) continue;
+    const Camera& camera = model->cameras.at(image.camera_id);
+    for (std::size_t i = 0; i < image.points2D.size(); ++i) {
+      Eigen::Vector2d& x_in_image_px = image.points2D[i].x_in_image_px;
+      x_in_image_px -=
+          rolling_shutter_s * ShutterDirection(camera, x_in_image_px, velocities->second.at(i));
+    }
+  }
+}
+
+}  // namespace velamap

@@ -1,0 +1,154 @@
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+
+#include "reconstruct/adjust/marker_adjustment.h"
+#include "tests/reconstruct/scene_model.h"
+#include "tests/reconstruct/sheet_model.h"
+
+namespace velamap {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr double kFrame_s = 1.0 / 30;
+
+// Velocity of the camera frame.
+struct Motion {
+  Eigen::Vector3d linear_m_s, angular_rad_s;
+};
+
+// A hand-held camera that takes a scene in a video, of which the model holds one frame a second.
+class RollingShutter : public testing::Test {
+ protected:
+  RollingShutter() {
+    SyntheticSceneOptions options;
+    options.num_rows = 3;
+    options.num_columns = 4;
+    options.num_frames = 9;
+    scene_ = MakeSyntheticScene(options);
+    truth_ = MakeSceneModel(scene_);
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal;
+    const auto draw = [&](double sigma) -> Eigen::Vector3d {
+      const double x = normal(random), y = normal(random), z = normal(random);
+      return sigma * Eigen::Vector3d(x, y, z);
+    };
+    for (std::size_t i = 0; i < scene_.frames.size(); ++i)
+      motions_.push_back({draw(0.3), draw(0.2)});
+  }
+
+  // Detections in a frame of the scene `time_s` after it, each row at its own time.
+  FrameDetections Detections(std::size_t frame_idx, double time_s, double rolling_shutter_s) const {
+    FrameDetections detections = scene_.frames[frame_idx];
+    const Motion& motion = motions_[frame_idx];
+    for (MarkerDetection& marker : detections.markers) {
+      for (int c = 0; c < kNumCorners; ++c) {
+        Eigen::Vector2d& x_px = marker.corners_in_image_px[c];
+        const Eigen::Vector3d x =
+            scene_.cam_from_world[frame_idx] * scene_.x_in_world.at(marker.marker_id)[c + 1];
+        for (int k = 0; k < 20; ++k) {  // the row decides the time that decides the row
+          const double row = x_px.y() / scene_.camera.height_px - 0.5;
+          x_px = ImageFromCam(scene_.camera,
+                              x + (time_s + rolling_shutter_s * row) *
+                                      (motion.linear_m_s + motion.angular_rad_s.cross(x)))
+                     .value();
+        }
+      }
+    }
+    detections.time_s = static_cast<double>(frame_idx) + time_s;
+    return detections;
+  }
+
+  // Sets the model and what the frames beside its own tell.
+  void Film(double rolling_shutter_s, double noise_px, std::uint32_t seed) {
+    SyntheticScene film = scene_;
+    std::vector<DatabaseImage> images;
+    for (std::size_t i = 0; i < scene_.frames.size(); ++i) {
+      film.frames[i] = Detections(i, 0, rolling_shutter_s);
+    }
+    if (noise_px > 0) AddNoise({noise_px, 0, 0, 0, seed}, &film);
+    for (std::size_t i = 0; i < scene_.frames.size(); ++i) {
+      const auto beside_id = static_cast<ImageId>(100 + 2 * i);
+      images.push_back({beside_id, 1, Detections(i, -kFrame_s, rolling_shutter_s)});
+      images.push_back({static_cast<ImageId>(i + 1), 1, film.frames[i]});
+      images.push_back({beside_id + 1, 1, Detections(i, kFrame_s, rolling_shutter_s)});
+    }
+    model_ = MakeSceneModel(film);
+    corner_errors_ = CornerErrorsOf(images);
+  }
+
+  MarkerAdjustmentSummary Adjust(const MarkerAdjustmentOptions& options = {}) {
+    return AdjustWithMarkers(options, scene_.layout, corner_errors_, &model_);
+  }
+
+  SyntheticScene scene_;
+  Model truth_;
+  std::vector<Motion> motions_;
+  Model model_;
+  CornerErrors corner_errors_;
+};
+
+TEST_F(RollingShutter, IsFoundInEitherDirectionAndTakenOut) {
+  MarkerAdjustmentOptions held;
+  held.estimate_rolling_shutter = false;
+  for (const double rolling_shutter_s : {0.02, -0.015}) {
+    Film(rolling_shutter_s, 0.02, 1);
+    const Model before = model_;
+    const auto without = Adjust(held);
+    const double error_without_m = MaxPointError(model_, truth_);
+    model_ = before;
+    const auto summary = Adjust();
+    const AdjustmentUncertainty& found = summary.uncertainty;
+    EXPECT_NEAR(found.rolling_shutter_s, rolling_shutter_s, 3 * found.rolling_shutter_sigma_s);
+    EXPECT_LT(found.rolling_shutter_sigma_s, 0.05 * std::abs(rolling_shutter_s));
+    EXPECT_LT(MaxPointError(model_, truth_), 0.3 * error_without_m);
+    EXPECT_LT(summary.error_after_px.mean, 0.3 * without.error_after_px.mean);
+    EXPECT_THAT(summary.warnings, IsEmpty());
+    EXPECT_EQ(without.uncertainty.rolling_shutter_sigma_s, 0);
+  }
+}
+
+TEST_F(RollingShutter, IsTheOptionsWhereTheyGiveIt) {
+  Film(0.02, 0, 1);
+  MarkerAdjustmentOptions options;
+  options.rolling_shutter_s = 0.02;
+  const auto summary = Adjust(options);
+  EXPECT_LT(MaxPointError(model_, truth_), 1e-4);
+  EXPECT_EQ(summary.uncertainty.rolling_shutter_s, 0.02);
+  EXPECT_EQ(summary.uncertainty.rolling_shutter_sigma_s, 0);
+}
+
+// A model that a frame at once shows must be the same whether it is looked for or not.
+TEST_F(RollingShutter, IsNotFoundInFramesThatAreTakenAtOnce) {
+  for (const std::uint32_t seed : {1U, 2U, 3U, 4U, 5U}) {
+    Film(0, 0.1, seed);
+    Model before = model_;
+    const auto summary = Adjust();
+    EXPECT_EQ(summary.uncertainty.rolling_shutter_sigma_s, 0);
+    MarkerAdjustmentOptions held;
+    held.estimate_rolling_shutter = false;
+    AdjustWithMarkers(held, scene_.layout, corner_errors_, &before);
+    EXPECT_EQ(Bytes(model_), Bytes(before));
+  }
+}
+
+TEST_F(RollingShutter, IsNotLookedForWithoutFramesBeside) {
+  Film(0.02, 0.05, 1);
+  corner_errors_.velocities_px_s.clear();
+  EXPECT_EQ(Adjust().uncertainty.rolling_shutter_sigma_s, 0);
+}
+
+TEST_F(RollingShutter, LongerThanCamerasTakeIsAWarning) {
+  Film(0.03, 0.05, 1);
+  EXPECT_THAT(Adjust().warnings, Not(Contains(HasSubstr("stabilised"))));
+  Film(0.06, 0.05, 1);
+  EXPECT_THAT(Adjust().warnings, Contains(HasSubstr("stabilised")));
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,122 @@
+#include "reconstruct/problem/corner_velocities.h"
+
+#include <algorithm>
+#include <random>
+
+#include <gmock/gmock.h>
+
+namespace velamap {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Key;
+using testing::UnorderedElementsAre;
+
+// Markers whose corners move as an affine field, px/s.
+Eigen::Vector2d FieldVelocity(const Eigen::Vector2d& x_px) {
+  return {120 - 0.2 * x_px.x() + 0.1 * x_px.y(), -80 + 0.05 * x_px.x() + 0.3 * x_px.y()};
+}
+
+FrameDetections Photograph(int num_markers) {
+  FrameDetections photograph;
+  for (int k = 0; k < num_markers; ++k) {
+    MarkerDetection marker;
+    marker.marker_id = 3 * k;
+    const Eigen::Vector2d middle(150 * (k % 4) + 100, 170 * (k / 4) + 90);
+    marker.corners_in_image_px = {
+        middle + Eigen::Vector2d(-20, -20), middle + Eigen::Vector2d(20, -20),
+        middle + Eigen::Vector2d(20, 20), middle + Eigen::Vector2d(-20, 20)};
+    photograph.markers.push_back(marker);
+  }
+  return photograph;
+}
+
+// The photograph's corners as they are at `time_s`.
+DatabaseImage FrameAt(double time_s, ImageId image_id, const FrameDetections& photograph) {
+  DatabaseImage frame{image_id, 1, photograph};
+  frame.detections.time_s = time_s;
+  for (MarkerDetection& marker : frame.detections.markers) {
+    for (Eigen::Vector2d& x_px : marker.corners_in_image_px) x_px += time_s * FieldVelocity(x_px);
+  }
+  return frame;
+}
+
+void RemoveMarker(int idx, DatabaseImage* frame) {
+  frame->detections.markers.erase(frame->detections.markers.begin() + idx);
+}
+
+void ExpectField(const FrameDetections& photograph, const std::vector<Eigen::Vector2d>& found) {
+  ASSERT_EQ(found.size(), kNumCorners * photograph.markers.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Eigen::Vector2d& x_px =
+        photograph.markers[i / kNumCorners].corners_in_image_px[i % kNumCorners];
+    EXPECT_LT((found[i] - FieldVelocity(x_px)).norm(), 1e-9);
+  }
+}
+
+TEST(CornerVelocities, AreFoundFromTheFramesBesideInAnyOrder) {
+  const FrameDetections photograph = Photograph(8);
+  std::vector<DatabaseImage> frames = {FrameAt(-1.0 / 30, 5, photograph), FrameAt(0, 2, photograph),
+                                       FrameAt(1.0 / 24, 9, photograph)};
+  std::mt19937 random(1);
+  for (int i = 0; i < 4; ++i) {
+    const CornerVelocities velocities = CornerVelocitiesOf(frames);
+    ASSERT_THAT(velocities, UnorderedElementsAre(Key(2)));  // the others are first and last
+    ExpectField(photograph, velocities.at(2));
+    std::shuffle(frames.begin(), frames.end(), random);
+  }
+}
+
+TEST(CornerVelocities, MarkersThatAreMissingBesideMoveWithTheirNeighbours) {
+  const FrameDetections photograph = Photograph(8);
+  std::vector<DatabaseImage> frames = {FrameAt(-0.03, 1, photograph), FrameAt(0, 2, photograph),
+                                       FrameAt(0.03, 3, photograph)};
+  RemoveMarker(6, &frames[0]);
+  RemoveMarker(2, &frames[2]);
+  const CornerVelocities velocities = CornerVelocitiesOf(frames);
+  ASSERT_THAT(velocities, UnorderedElementsAre(Key(2)));
+  ExpectField(photograph, velocities.at(2));
+}
+
+TEST(CornerVelocities, AreUnknownWhereTheFramesBesideTellNothing) {
+  const FrameDetections photograph = Photograph(3);
+  EXPECT_THAT(CornerVelocitiesOf({}), IsEmpty());
+  EXPECT_THAT(CornerVelocitiesOf({{1, 1, photograph}, {2, 1, photograph}, {3, 1, photograph}}),
+              IsEmpty());
+  const DatabaseImage middle = FrameAt(0, 2, photograph);
+  const DatabaseImage before = FrameAt(-0.1, 1, photograph), after = FrameAt(0.1, 3, photograph);
+  EXPECT_EQ(CornerVelocitiesOf({before, middle, after}).size(), 1u);
+  EXPECT_THAT(CornerVelocitiesOf({before, middle}), IsEmpty());
+  EXPECT_THAT(CornerVelocitiesOf({before, middle, FrameAt(0.2, 3, photograph)}), IsEmpty());
+  EXPECT_THAT(CornerVelocitiesOf({before, middle, FrameAt(0, 3, photograph)}), IsEmpty());
+  DatabaseImage other_camera = after;
+  other_camera.camera_id = 2;
+  EXPECT_THAT(CornerVelocitiesOf({before, middle, other_camera}), IsEmpty());
+  DatabaseImage two_markers = before;
+  RemoveMarker(1, &two_markers);  // two are too few for a field
+  EXPECT_THAT(CornerVelocitiesOf({two_markers, middle, after}), IsEmpty());
+}
+
+TEST(CornerVelocities, PointsMoveToTheMiddleRow) {
+  Model model;
+  model.cameras[1] = {CameraModel::kSimplePinhole, 640, 480, {500, 320, 240}};
+  ModelImage image;
+  image.image_id = 7;
+  image.camera_id = 1;
+  for (const double y : {0.0, 240.0, 480.0}) image.points2D.push_back({{100, y}, 0});
+  model.images = {image, image};
+  model.images[1].image_id = 8;
+  MoveToMiddleRow(0.02, {{7, {{50, 100}, {50, 100}, {50, 100}}}}, &model);
+  const auto x_px = [&](int image_idx, int i) -> Eigen::Vector2d {
+    return model.images[image_idx].points2D[i].x_in_image_px;
+  };
+  // Half the time before and after the middle row.
+  EXPECT_LT((x_px(0, 0) - Eigen::Vector2d(100.5, 1)).norm(), 1e-12);
+  EXPECT_EQ(x_px(0, 1), Eigen::Vector2d(100, 240));
+  EXPECT_LT((x_px(0, 2) - Eigen::Vector2d(99.5, 479)).norm(), 1e-12);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(x_px(1, i), image.points2D[i].x_in_image_px);
+}
+
+}  // namespace
+}  // namespace velamap
