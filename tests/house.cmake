@@ -70,6 +70,8 @@ house_folder(exporters PUBLIC
 house_folder(workflows/run PUBLIC
   central_frame_sweep logging pipeline progress stage_times summary version versions
   workspace)
+house_folder(workflows/check PUBLIC
+  clip_check clip_facts clip_verdict)
 house_folder(workflows/options PUBLIC
   nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC

@@ -7,6 +7,12 @@
 #include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {
+namespace {
+
+// No sensor with a rolling shutter reads faster. What flaps or bends may feign less.
+constexpr double kFastest_s = 1e-3;
+
+}  // namespace
 
 bool ShowsRollingShutter(const MarkerSolution& solution) {
   const MarkerAdjustmentOptions& options = solution.options;
@@ -27,7 +33,7 @@ bool ShowsRollingShutter(const MarkerSolution& solution) {
   const double needed = std::log(static_cast<double>(2 * linearization->problem.corners.size()));
   spdlog::debug("rolling shutter {:.2f} +- {:.2f} ms", 1e3 * state.rolling_shutter_s,
                 1e3 * sigma_s);
-  return sigmas * sigmas > needed;
+  return sigmas * sigmas > needed && std::abs(state.rolling_shutter_s) > kFastest_s;
 }
 
 }  // namespace velamap

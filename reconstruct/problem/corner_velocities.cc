@@ -1,6 +1,8 @@
 #include "reconstruct/problem/corner_velocities.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -22,15 +24,41 @@ const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
   return it != frame.markers.end() && it->marker_id == marker_id ? &*it : nullptr;
 }
 
-std::optional<MarkerVelocity> MeasureVelocity(const FrameDetections& before,
-                                              const FrameDetections& after, int marker_id) {
-  const MarkerDetection* from = FindMarker(before, marker_id);
-  const MarkerDetection* to = FindMarker(after, marker_id);
-  if (from == nullptr || to == nullptr) return std::nullopt;
-  MarkerVelocity velocity;
-  for (int i = 0; i < kNumCorners; ++i) {
-    velocity.col(i) = (to->corners_in_image_px[i] - from->corners_in_image_px[i]) /
-                      (*after.time_s - *before.time_s);
+// The two frames before, the frame itself and the two after; null where there is none.
+using FrameWindow = std::array<const FrameDetections*, 5>;
+constexpr int kMiddle = 2;
+
+// Weights of values at `times_s` whose sum is the slope at 0 of the polynomial through them.
+Eigen::VectorXd SlopeWeights(const std::vector<double>& times_s) {
+  const auto size = static_cast<Eigen::Index>(times_s.size());
+  const double unit_s = times_s.back() - times_s.front();
+  Eigen::MatrixXd powers(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index k = 0; k < size; ++k) {
+      powers(k, i) = std::pow(times_s[static_cast<std::size_t>(i)] / unit_s, k);
+    }
+  }
+  return powers.colPivHouseholderQr().solve(Eigen::VectorXd::Unit(size, 1)) / unit_s;
+}
+
+std::optional<MarkerVelocity> MeasureVelocity(const FrameWindow& window, int marker_id) {
+  std::array<const MarkerDetection*, 5> seen{};
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    if (window[i] != nullptr) seen[i] = FindMarker(*window[i], marker_id);
+  }
+  if (seen[kMiddle - 1] == nullptr || seen[kMiddle + 1] == nullptr) return std::nullopt;
+  const bool is_wide = seen.front() != nullptr && seen.back() != nullptr;
+  const int reach = is_wide ? kMiddle : 1;
+  std::vector<double> times_s;
+  for (int i = kMiddle - reach; i <= kMiddle + reach; ++i) {
+    times_s.push_back(*window[i]->time_s - *window[kMiddle]->time_s);
+  }
+  const Eigen::VectorXd weights = SlopeWeights(times_s);
+  MarkerVelocity velocity = MarkerVelocity::Zero();
+  for (int i = 0; i < weights.size(); ++i) {
+    for (int c = 0; c < kNumCorners; ++c) {
+      velocity.col(c) += weights[i] * seen[kMiddle - reach + i]->corners_in_image_px[c];
+    }
   }
   return velocity;
 }
@@ -62,13 +90,12 @@ std::optional<AffineField> FitField(const FrameDetections& frame,
   return places.colPivHouseholderQr().solve(values);
 }
 
-// Empty where the images before and after tell nothing.
-std::vector<Eigen::Vector2d> VelocitiesOf(const FrameDetections& before,
-                                          const FrameDetections& frame,
-                                          const FrameDetections& after) {
+// Empty where the frames beside it tell nothing.
+std::vector<Eigen::Vector2d> VelocitiesOf(const FrameWindow& window) {
+  const FrameDetections& frame = *window[kMiddle];
   std::vector<std::optional<MarkerVelocity>> measured;
   for (const MarkerDetection& marker : frame.markers) {
-    measured.push_back(MeasureVelocity(before, after, marker.marker_id));
+    measured.push_back(MeasureVelocity(window, marker.marker_id));
   }
   const bool is_complete = std::all_of(measured.begin(), measured.end(),
                                        [](const auto& velocity) { return velocity.has_value(); });
@@ -102,8 +129,15 @@ CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images) {
   CornerVelocities velocities;
   for (std::size_t i = 1; i + 1 < frames.size(); ++i) {
     if (!are_near(frames[i - 1], frames[i]) || !are_near(frames[i], frames[i + 1])) continue;
-    std::vector<Eigen::Vector2d> of_image =
-        VelocitiesOf(frames[i - 1]->detections, frames[i]->detections, frames[i + 1]->detections);
+    FrameWindow window{nullptr, &frames[i - 1]->detections, &frames[i]->detections,
+                       &frames[i + 1]->detections, nullptr};
+    if (i >= 2 && are_near(frames[i - 2], frames[i - 1])) {
+      window.front() = &frames[i - 2]->detections;
+    }
+    if (i + 2 < frames.size() && are_near(frames[i + 1], frames[i + 2])) {
+      window.back() = &frames[i + 2]->detections;
+    }
+    std::vector<Eigen::Vector2d> of_image = VelocitiesOf(window);
     if (!of_image.empty()) velocities[frames[i]->image_id] = std::move(of_image);
   }
   return velocities;

@@ -19,6 +19,7 @@ struct Command {
   std::function<void(const Arguments& arguments)> run;  // `arguments` as they were typed
 };
 
+Command ClipChecker();
 Command AutomaticReconstructor();
 Command MarkerImporter();
 Command FrameRegistrator();

@@ -257,6 +257,24 @@ block_rigid_objects() {
     }'
 }
 
+# --- rolling_shutter.sh ---
+
+block_rolling_shutter() {
+  echo "| clip (5 s, 1080p) | shake | flapping | first to last row | found | RMS without | RMS with |"
+  echo "|---|---|---|---|---|---|---|"
+  table rolling_shutter.csv '
+    FNR > 1 {
+      found = "none"
+      if (cell("found_ms") != "") found = sprintf("%.2f ± %.2f ms", cell("found_ms"), cell("sigma_ms"))
+      flapping = "-"
+      if (cell("sail_motion_m") > 0) flapping = num(1000 * cell("sail_motion_m"), "d") " mm"
+      printf "| %s | %s° | %s | %s ms | %s | %s mm | %s mm |\n", cell("scene"),
+        num(cell("shake_deg"), 2), flapping, cell("shutter_ms"), found,
+        num(cell("distance_without_mm"), 2), num(cell("distance_mm"), 2)
+    }'
+  printf '\nRMS distances from the truth after a similarity. From %s.\n' "$(made_by rolling_shutter.csv)"
+}
+
 block_board_motions() {
   echo "| motion | distance, mm | plane, mm | normal, degrees | tangent, degrees | scale, % | RMS to the truth, mm |"
   echo "|---|---|---|---|---|---|---|"

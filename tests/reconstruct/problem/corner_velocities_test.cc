@@ -1,6 +1,7 @@
 #include "reconstruct/problem/corner_velocities.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -65,6 +66,31 @@ TEST(CornerVelocities, AreFoundFromTheFramesBesideInAnyOrder) {
     ASSERT_THAT(velocities, UnorderedElementsAre(Key(2)));  // the others are first and last
     ExpectField(photograph, velocities.at(2));
     std::shuffle(frames.begin(), frames.end(), random);
+  }
+}
+
+// A shake of 3 Hz, filmed at 30 Hz, frames now and then late.
+TEST(CornerVelocities, FollowAFastShake) {
+  const FrameDetections photograph = Photograph(4);
+  const double turn_rad_s = 2 * 3.14159265358979 * 3;
+  std::vector<DatabaseImage> frames;
+  for (const double time_s : {-0.070, -0.033, 0.0, 0.034, 0.066}) {
+    DatabaseImage frame{static_cast<ImageId>(frames.size() + 1), 1, photograph};
+    frame.detections.time_s = 5 + time_s;
+    for (MarkerDetection& marker : frame.detections.markers) {
+      for (Eigen::Vector2d& x_px : marker.corners_in_image_px) {
+        x_px.x() += 10 * std::sin(turn_rad_s * time_s + 0.5);
+      }
+    }
+    frames.push_back(frame);
+  }
+  const double expected_px_s = 10 * turn_rad_s * std::cos(0.5);
+  const auto middle = CornerVelocitiesOf(frames).at(3);
+  const auto between_two = CornerVelocitiesOf({frames[1], frames[2], frames[3]}).at(3);
+  for (std::size_t i = 0; i < middle.size(); ++i) {
+    EXPECT_NEAR(middle[i].x() / expected_px_s, 1, 0.01);
+    EXPECT_NEAR(middle[i].y(), 0, 1e-9);
+    EXPECT_LT(between_two[i].x() / expected_px_s, 0.95);
   }
 }
 

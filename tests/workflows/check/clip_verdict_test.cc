@@ -1,0 +1,110 @@
+#include "workflows/check/clip_verdict.h"
+
+#include <functional>
+
+#include <gmock/gmock.h>
+
+namespace velamap {
+namespace {
+
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+ClipFacts GoodClip() {
+  ClipFacts facts;
+  facts.num_frames = 400;
+  facts.num_frames_read = 40;
+  facts.is_video = facts.has_layout = true;
+  facts.dictionary = "DICT_4X4_50";
+  for (int marker_id = 0; marker_id < 20; ++marker_id) facts.num_frames_of_id[marker_id] = 30;
+  facts.side_px = ComputeStatistics({24, 30, 36});
+  facts.black = 30;
+  facts.white = 210;
+  facts.blur_px = 0.8;
+  facts.motion_px = 1.0;
+  facts.precision = ClipPrecision{40, 20, 0.5, 1e-3, 40, {}, {}};
+  return facts;
+}
+
+TEST(ClipVerdict, NothingToSayOfAGoodClip) {
+  const Verdict verdict = JudgeClip(GoodClip());
+  EXPECT_EQ(verdict.level, ReportStatus::kGood);
+  EXPECT_THAT(verdict.reasons, IsEmpty());
+}
+
+struct Spoilt {
+  const char* word;
+  ReportStatus level;
+  std::function<void(ClipFacts*)> spoil;
+};
+
+TEST(ClipVerdict, EachFaultIsNamedByItself) {
+  const std::vector<Spoilt> cases = {
+      {"no marker is seen", ReportStatus::kBad,
+       [](ClipFacts* facts) {
+         *facts = {};
+         facts->num_frames_read = 40;
+       }},
+      {"name the dictionary", ReportStatus::kBad,
+       [](ClipFacts* facts) {
+         facts->num_markers_found = 30;
+         facts->num_markers_of_second = 20;
+       }},
+      {"never seen: 21-23 25", ReportStatus::kCheck,
+       [](ClipFacts* facts) {
+         facts->ids_never_seen = {21, 22, 23, 25};
+       }},
+      {"seen in fewer than 3 of 40 frames: 7", ReportStatus::kCheck,
+       [](ClipFacts* facts) { facts->num_frames_of_id[7] = 2; }},
+      {"not in the layout: 99", ReportStatus::kCheck,
+       [](ClipFacts* facts) { facts->ids_not_in_layout = {99}; }},
+      {"smaller than 16 px", ReportStatus::kCheck,
+       [](ClipFacts* facts) { facts->side_px = ComputeStatistics({16}); }},
+      {"smaller than 9 px", ReportStatus::kBad,
+       [](ClipFacts* facts) { facts->side_px = ComputeStatistics({9}); }},
+      {"overexposed", ReportStatus::kCheck, [](ClipFacts* facts) { facts->white = 254; }},
+      {"differ by 40", ReportStatus::kCheck, [](ClipFacts* facts) { facts->black = 170; }},
+      {"shorter shutter", ReportStatus::kCheck, [](ClipFacts* facts) { facts->motion_px = 6; }},
+      {"focus", ReportStatus::kCheck, [](ClipFacts* facts) { facts->blur_px = 2.5; }},
+      {"50 % of the frames", ReportStatus::kCheck,
+       [](ClipFacts* facts) { facts->num_frames_with_few_markers = 20; }},
+      {"by 15 degrees", ReportStatus::kCheck,
+       [](ClipFacts* facts) { facts->precision->parallax_deg = 15; }},
+      {"by 5 degrees", ReportStatus::kBad,
+       [](ClipFacts* facts) { facts->precision->parallax_deg = 5; }},
+      {"contradicts the layout: marker 4", ReportStatus::kCheck,
+       [](ClipFacts* facts) { facts->precision->markers_left_out = {"marker 4: out of line"}; }},
+      {"no shape: because", ReportStatus::kBad, [](ClipFacts* facts) {
+         facts->precision.reset();
+         facts->no_precision_because = "because";
+       }}};
+  for (const Spoilt& spoilt : cases) {
+    ClipFacts facts = GoodClip();
+    spoilt.spoil(&facts);
+    const Verdict verdict = JudgeClip(facts);
+    EXPECT_EQ(verdict.level, spoilt.level) << spoilt.word;
+    EXPECT_THAT(verdict.reasons, ElementsAre(Field(&VerdictReason::text, HasSubstr(spoilt.word))));
+  }
+}
+
+TEST(ClipVerdict, IdsAreShownAsRanges) {
+  EXPECT_EQ(IdRanges({}), "none");
+  EXPECT_EQ(IdRanges({4}), "4");
+  EXPECT_EQ(IdRanges({0, 1, 2, 5, 7, 8}), "0-2 5 7-8");
+  EXPECT_EQ(IdRanges({1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21}), "1 3 5 7 9 11 13 15 17 19 ...");
+}
+
+TEST(ClipVerdict, WhatIsBadComesFirst) {
+  ClipFacts facts = GoodClip();
+  facts.white = 254;
+  facts.side_px = ComputeStatistics({9});
+  const Verdict verdict = JudgeClip(facts);
+  EXPECT_EQ(verdict.level, ReportStatus::kBad);
+  EXPECT_THAT(verdict.reasons, ElementsAre(Field(&VerdictReason::text, HasSubstr("9 px")),
+                                           Field(&VerdictReason::text, HasSubstr("overexposed"))));
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,73 @@
+#include "workflows/check/marker_light.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace velamap {
+namespace {
+
+constexpr int kScale = 8;  // samples along a side of a pixel
+
+// A black square on white paper, seen somewhat turned, with the blur of a lens and of a motion
+// along the rows. Values are area means, as a camera's.
+cv::Mat Picture(const QuadCorners& corners_px, double black, double white, double blur_px,
+                double motion_px) {
+  cv::Mat fine(160 * kScale, 160 * kScale, CV_32F, cv::Scalar(white));
+  std::vector<cv::Point> outline;
+  for (const Eigen::Vector2d& x_px : corners_px) {
+    outline.emplace_back(cvRound(kScale * x_px.x() - 0.5), cvRound(kScale * x_px.y() - 0.5));
+  }
+  cv::fillConvexPoly(fine, outline, cv::Scalar(black));
+  cv::GaussianBlur(fine, fine, {0, 0}, kScale * blur_px);
+  if (motion_px > 0) cv::blur(fine, fine, {cvRound(kScale * motion_px) | 1, 1});
+  cv::Mat gray;
+  cv::resize(fine, gray, {160, 160}, 0, 0, cv::INTER_AREA);
+  gray.convertTo(gray, CV_8U);
+  return gray;
+}
+
+QuadCorners Square(double turn_rad) {
+  const Eigen::Vector2d middle(80.3, 79.6), right(std::cos(turn_rad), std::sin(turn_rad));
+  const Eigen::Vector2d down(-right.y(), right.x());
+  return {middle - 40 * right - 40 * down, middle + 40 * right - 40 * down,
+          middle + 40 * right + 40 * down, middle - 40 * right + 40 * down};
+}
+
+TEST(MarkerLight, TellsLevelsAndBlur) {
+  std::mt19937 random(3);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * (random() / 4294967296.0);
+  };
+  for (int i = 0; i < 20; ++i) {
+    const double black = between(10, 60), white = between(140, 240), blur_px = between(0.6, 2.0);
+    const QuadCorners corners_px = Square(between(-0.6, 0.6));
+    const auto light = MeasureLight(Picture(corners_px, black, white, blur_px, 0), corners_px);
+    ASSERT_TRUE(light);
+    EXPECT_NEAR(light->black, black, 2);
+    EXPECT_NEAR(light->white, white, 2);
+    // A pixel's area and the differences over a pixel widen an edge, too.
+    EXPECT_NEAR(light->least_blur_px, std::hypot(blur_px, 0.45), 0.12) << blur_px;
+    EXPECT_NEAR(light->most_blur_px / light->least_blur_px, 1, 0.1);
+  }
+}
+
+TEST(MarkerLight, MotionIsTheBlurAcrossOneWayOnly) {
+  const QuadCorners corners_px = Square(0.05);
+  const auto light = MeasureLight(Picture(corners_px, 30, 220, 0.7, 6), corners_px);
+  ASSERT_TRUE(light);
+  const double motion_px = std::sqrt(12 * (light->most_blur_px * light->most_blur_px -
+                                           light->least_blur_px * light->least_blur_px));
+  EXPECT_NEAR(motion_px, 6, 2.5);
+}
+
+TEST(MarkerLight, IsUnknownAtTheBorderAndWithoutContrast) {
+  QuadCorners corners_px = Square(0);
+  EXPECT_FALSE(MeasureLight(Picture(corners_px, 120, 124, 0.7, 0), corners_px));
+  for (Eigen::Vector2d& x_px : corners_px) x_px.x() -= 40;
+  EXPECT_FALSE(MeasureLight(Picture(corners_px, 30, 220, 0.7, 0), corners_px));
+}
+
+}  // namespace
+}  // namespace velamap

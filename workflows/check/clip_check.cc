@@ -1,0 +1,257 @@
+#include "workflows/check/clip_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "importer/base/error.h"
+#include "importer/base/files.h"
+#include "importer/database/colmap_database.h"
+#include "importer/dictionary_hint.h"
+#include "importer/marker_importer.h"
+#include "importer/track/frame_detector.h"
+#include "workflows/check/clip_frames.h"
+#include "workflows/check/clip_precision.h"
+#include "workflows/check/marker_light.h"
+#include "workflows/run/progress.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kNumFramesWithPixels = 10;
+constexpr int kFewMarkers = 4;
+
+// The smallest dictionary with which most markers are found, where nobody names it.
+Layout FindDictionary(const ClipFrames& clip, ArucoDetectionOptions* detection, ClipFacts* facts) {
+  std::vector<cv::Mat> images;
+  for (const Frame& frame : clip.frames) images.push_back(frame.gray);
+  const std::vector<DictionaryHint> hints = SuggestDictionaries(images, 1, *detection);
+  if (hints.empty()) return {};
+  facts->num_markers_found = hints[0].num_markers;
+  if (hints.size() > 1) {
+    facts->num_markers_of_second = hints[1].num_markers;
+    facts->second_dictionary = hints[1].dictionary + (hints[1].inverted ? ", inverted" : "");
+  }
+  detection->inverted = hints[0].inverted;
+  constexpr double kAnyLength_m = 0.1;  // nothing depends on it
+  return MakeLayout(hints[0].dictionary, kAnyLength_m);
+}
+
+// Detections do not depend on it.
+Camera AnyCamera(const cv::Size& size) {
+  return {CameraModel::kSimplePinhole,
+          size.width,
+          size.height,
+          {static_cast<double>(size.width), 0.5 * size.width, 0.5 * size.height}};
+}
+
+void CountIds(const std::vector<DatabaseImage>& images, const Layout& layout, ClipFacts* facts) {
+  std::map<int, int> foreign;
+  for (const DatabaseImage& image : images) {
+    for (const MarkerDetection& marker : image.detections.markers) {
+      ++facts->num_frames_of_id[marker.marker_id];
+    }
+    for (const RejectedDetection& rejected : image.detections.rejected) {
+      if (rejected.reason == kNotInLayout) ++foreign[rejected.detection.marker_id];
+    }
+  }
+  for (const auto& [marker_id, num_frames] : foreign) {
+    if (num_frames > 1) facts->ids_not_in_layout.push_back(marker_id);  // once may be a mistake
+  }
+  for (const int marker_id : MarkerIds(layout)) {
+    if (facts->num_frames_of_id.count(marker_id) == 0) facts->ids_never_seen.push_back(marker_id);
+  }
+}
+
+// Frames in order with enough markers, as long as no frame between them has too few.
+std::vector<ClipStretch> FindGoodStretches(const std::vector<DatabaseImage>& images,
+                                           double step_s) {
+  std::vector<const FrameDetections*> frames;
+  for (const DatabaseImage& image : images) {
+    const FrameDetections& frame = image.detections;
+    if (frame.time_s && frame.markers.size() >= kFewMarkers) frames.push_back(&frame);
+  }
+  std::sort(frames.begin(), frames.end(),
+            [](const auto* a, const auto* b) { return *a->time_s < *b->time_s; });
+  std::vector<ClipStretch> stretches;
+  for (const FrameDetections* frame : frames) {
+    const double time_s = *frame->time_s;
+    if (!stretches.empty() && time_s - stretches.back().end_s < 1.5 * step_s) {
+      stretches.back().end_s = time_s;
+    } else {
+      stretches.push_back({time_s, time_s});
+    }
+  }
+  return stretches;
+}
+
+double StepOf(const ClipFrames& clip) {
+  const auto& frames = clip.frames;
+  if (frames.size() < 2 || !frames[0].time_s || !frames.back().time_s) return 0.0;
+  return (*frames.back().time_s - *frames[0].time_s) / static_cast<double>(frames.size() - 1);
+}
+
+// Light and blur of all markers in the frames that were read with their pixels.
+void MeasureLights(const ClipFrames& clip,
+                   const std::map<std::string, const FrameDetections*>& detections, bool inverted,
+                   ClipFacts* facts) {
+  std::vector<double> blacks, whites, blurs_px, motions_px;
+  for (const Frame& frame : clip.frames) {
+    const auto found = detections.find(frame.image_name);
+    if (found == detections.end()) continue;
+    cv::Mat gray = frame.gray;
+    if (inverted) cv::bitwise_not(frame.gray, gray);
+    for (const MarkerDetection& marker : found->second->markers) {
+      const auto light = MeasureLight(gray, marker.corners_in_image_px);
+      if (!light) continue;
+      blacks.push_back(light->black);
+      whites.push_back(light->white);
+      blurs_px.push_back(light->least_blur_px);
+      // A path of length l during the exposure adds l^2 / 12 to the variance across its edges.
+      motions_px.push_back(
+          std::sqrt(12.0 * (std::pow(light->most_blur_px, 2) - std::pow(light->least_blur_px, 2))));
+    }
+  }
+  if (blacks.empty()) return;
+  facts->black = Median(std::move(blacks));
+  facts->white = Median(std::move(whites));
+  if (inverted) {
+    facts->black = 255 - *facts->black;
+    facts->white = 255 - *facts->white;
+    std::swap(facts->black, facts->white);
+  }
+  facts->blur_px = Median(std::move(blurs_px));
+  facts->motion_px = Median(std::move(motions_px));
+}
+
+void Mark(const FrameDetections& detections, cv::Mat* image) {
+  const int thickness = std::max(1, image->cols / 960);
+  const auto draw = [&](const MarkerDetection& marker, const cv::Scalar& color) {
+    std::vector<cv::Point> outline;
+    for (const Eigen::Vector2d& x_px : marker.corners_in_image_px) {
+      outline.emplace_back(static_cast<int>(x_px.x()), static_cast<int>(x_px.y()));
+    }
+    cv::polylines(*image, outline, true, color, thickness, cv::LINE_AA);
+    cv::putText(*image, std::to_string(marker.marker_id), outline[0] - cv::Point(0, 3 * thickness),
+                cv::FONT_HERSHEY_SIMPLEX, 0.5 * thickness, color, thickness, cv::LINE_AA);
+  };
+  for (const MarkerDetection& marker : detections.markers) draw(marker, {80, 200, 0});
+  for (const RejectedDetection& rejected : detections.rejected) {
+    draw(rejected.detection, {40, 40, 230});
+  }
+}
+
+class Checker {
+ public:
+  explicit Checker(const ClipCheckOptions& options) : options_(options) {}
+
+  ClipCheck Run() {
+    const ClipFrames clip = ReadClipFrames(options_.image_path, options_.video,
+                                           kNumFramesWithPixels, options_.num_threads);
+    ClipFacts& facts = check_.facts;
+    facts.num_frames = clip.num_frames;
+    facts.num_frames_read = static_cast<int>(clip.frames.size());
+    facts.is_video = clip.is_video;
+    facts.width_px = clip.frames[0].gray.cols;
+    facts.height_px = clip.frames[0].gray.rows;
+    facts.has_layout = options_.layout.has_value();
+    ArucoDetectionOptions detection = options_.detection;
+    const Layout layout =
+        options_.layout ? *options_.layout : FindDictionary(clip, &detection, &facts);
+    facts.dictionary = layout.dictionary;
+    facts.is_inverted = detection.inverted;
+    MarkFrame(clip.frames[0], {});
+    if (layout.dictionary.empty()) return std::move(check_);
+    Detect(clip, layout, detection);
+    return std::move(check_);
+  }
+
+ private:
+  void Detect(const ClipFrames& clip, const Layout& layout,
+              const ArucoDetectionOptions& detection) {
+    const TemporaryFolder folder;
+    MarkerImporterOptions importer;
+    importer.image_path = options_.image_path;
+    importer.database_path = (folder.path() / "look.db").string();
+    importer.camera = options_.camera.value_or(AnyCamera(clip.frames[0].gray.size()));
+    importer.camera_path = options_.camera_path;
+    importer.layout = layout;
+    importer.detection = detection;
+    importer.detection.estimate_formation = false;  // it takes longer than all else
+    importer.num_threads = options_.num_threads;
+    importer.video = clip.is_video
+                         ? SpreadOverClip(options_.image_path, options_.video, options_.num_frames)
+                         : options_.video;
+    try {
+      Progress progress("looking at frames");
+      check_.facts.num_frames_read =
+          ImportMarkers(importer, [&progress](int done, int total, const std::string& message) {
+            progress.Update(done, total, message);
+          }).num_frames_read;
+    } catch (const DataError&) {
+      return;  // no markers
+    }
+    const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
+    const std::vector<DatabaseImage> images = database.ReadImages();
+    CollectFacts(clip, layout, images);
+    if (!options_.camera || !options_.layout) return;
+    try {
+      check_.facts.precision =
+          MeasurePrecision(importer.database_path, layout, options_.num_threads);
+    } catch (const DataError& error) {
+      check_.facts.no_precision_because = error.what();
+    }
+  }
+
+  void CollectFacts(const ClipFrames& clip, const Layout& layout,
+                    const std::vector<DatabaseImage>& images) {
+    ClipFacts& facts = check_.facts;
+    CountIds(images, layout, &facts);
+    std::map<std::string, const FrameDetections*> by_name;
+    std::vector<double> sides_px;
+    int num_with_enough = 0;
+    for (const DatabaseImage& image : images) {
+      by_name[image.detections.image_name] = &image.detections;
+      num_with_enough += image.detections.markers.size() >= kFewMarkers;
+      for (const MarkerDetection& marker : image.detections.markers) {
+        sides_px.push_back(QuadMeanSide(marker.corners_in_image_px));
+      }
+    }
+    facts.num_frames_with_few_markers = facts.num_frames_read - num_with_enough;
+    facts.side_px = ComputeStatistics(std::move(sides_px));
+    const double step_s =
+        StepOf(clip) * static_cast<double>(clip.frames.size()) / std::max(1, facts.num_frames_read);
+    facts.good_stretches = FindGoodStretches(images, step_s);
+    MeasureLights(clip, by_name, facts.is_inverted, &facts);
+    const FrameDetections* best = nullptr;
+    const Frame* best_frame = nullptr;
+    for (const Frame& frame : clip.frames) {
+      const auto found = by_name.find(frame.image_name);
+      if (found == by_name.end()) continue;
+      if (best != nullptr && found->second->markers.size() <= best->markers.size()) continue;
+      best = found->second;
+      best_frame = &frame;
+    }
+    if (best != nullptr) MarkFrame(*best_frame, *best);
+  }
+
+  void MarkFrame(const Frame& frame, const FrameDetections& detections) {
+    check_.marked_frame = ColorImage(frame).clone();
+    check_.marked_frame_name = frame.image_name;
+    Mark(detections, &check_.marked_frame);
+  }
+
+  const ClipCheckOptions& options_;
+  ClipCheck check_;
+};
+
+}  // namespace
+
+ClipCheck CheckClip(const ClipCheckOptions& options) { return Checker(options).Run(); }
+
+}  // namespace velamap

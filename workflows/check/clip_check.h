@@ -1,0 +1,39 @@
+// A look at a clip before any reconstruction, in a few seconds.
+
+#pragma once
+
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "importer/camera/camera.h"
+#include "importer/detect/detection_options.h"
+#include "importer/layout/layout.h"
+#include "importer/video/video_options.h"
+#include "workflows/check/clip_facts.h"
+
+namespace velamap {
+
+struct ClipCheckOptions {
+  std::string image_path;        // folder of images, or a video file
+  std::optional<Layout> layout;  // nothing: the dictionary is found by trying
+  std::optional<Camera> camera;  // with a layout: the precision is found by a reconstruction
+  std::string camera_path;       // for messages only
+  ArucoDetectionOptions detection;
+  VideoOptions video;
+  int num_frames = 40;  // to look at, of a video
+  int num_threads = 0;  // 0: one a core
+};
+
+struct ClipCheck {
+  ClipFacts facts;
+  // The frame with most markers, with their outlines and ids drawn on it; BGR. Markers that the
+  // layout does not name are red.
+  cv::Mat marked_frame;
+  std::string marked_frame_name;
+};
+
+// Throws InputError where OpenFrameSource() and MakeFrameDetector() do.
+ClipCheck CheckClip(const ClipCheckOptions& options);
+
+}  // namespace velamap

@@ -1,0 +1,60 @@
+// What a look at a few frames tells about a clip.
+
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "importer/base/statistics.h"
+
+namespace velamap {
+
+// A stretch of a video in which frames hold enough markers.
+struct ClipStretch {
+  double begin_s = 0.0, end_s = 0.0;
+};
+
+// A reconstruction from these frames alone.
+struct ClipPrecision {
+  int num_images = 0;
+  int num_markers = 0;
+  double marker_sigma_mm = 0.0;  // median over the markers' centres, with the scale
+  double scale_sigma = 0.0;      // fraction
+  double parallax_deg = 0.0;     // largest angle between two views of the middle of the markers
+  std::vector<std::string> warnings;
+  std::vector<std::string> markers_left_out;  // id and reason of those that contradict the layout
+};
+
+struct ClipFacts {
+  int num_frames = 0;  // of the clip; 0 if it does not say
+  int num_frames_read = 0;
+  int num_frames_with_few_markers = 0;  // fewer than four
+  bool is_video = false;
+  int width_px = 0, height_px = 0;
+
+  std::string dictionary;
+  bool is_inverted = false;
+  // Of a dictionary that was found by trying: markers found with it and with the next best one.
+  std::optional<int> num_markers_found, num_markers_of_second;
+  std::string second_dictionary;
+
+  std::map<int, int> num_frames_of_id;  // of markers that the layout names, or of all
+  std::vector<int> ids_never_seen;      // of the layout
+  std::vector<int> ids_not_in_layout;   // in two frames or more
+  bool has_layout = false;
+
+  Statistics side_px;
+  // Medians over the markers; nothing where no side could be measured.
+  std::optional<double> black, white;        // grey levels, 0 to 255
+  std::optional<double> blur_px, motion_px;  // sigma of the blur; path during the exposure
+  std::vector<ClipStretch> good_stretches;   // videos
+  std::optional<ClipPrecision> precision;
+  std::string no_precision_because;
+};
+
+// `0-7 9 11`; at most ten numbers or ranges, then `...`. "none" for no ids. `ids` are ascending.
+std::string IdRanges(const std::vector<int>& ids);
+
+}  // namespace velamap

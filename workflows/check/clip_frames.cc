@@ -1,0 +1,55 @@
+#include "workflows/check/clip_frames.h"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+#include "importer/base/parallel.h"
+
+namespace velamap {
+
+VideoOptions SpreadOverClip(const std::string& image_path, const VideoOptions& video,
+                            int max_num_frames) {
+  const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video);
+  VideoOptions spread = video;
+  spread.frame_step *= std::max(1, source->NumFrames() / max_num_frames);
+  return spread;
+}
+
+ClipFrames ReadClipFrames(const std::string& image_path, const VideoOptions& video,
+                          int max_num_frames, int num_threads) {
+  ClipFrames clip;
+  std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video);
+  clip.is_video = source->IsVideo();
+  clip.num_frames = source->NumFrames();
+  int stride = 1;
+  if (clip.is_video) {
+    source = OpenFrameSource(image_path, SpreadOverClip(image_path, video, max_num_frames));
+  } else {
+    stride = std::max(1, (clip.num_frames + max_num_frames - 1) / max_num_frames);
+  }
+  for (int idx = 0; static_cast<int>(clip.frames.size()) < max_num_frames; ++idx) {
+    std::optional<Frame> frame = source->Next();
+    if (!frame) break;
+    if (idx % stride == 0) clip.frames.push_back(std::move(*frame));
+  }
+  std::vector<std::string> reasons(clip.frames.size());
+  ParallelFor(clip.frames.size(), num_threads,
+              [&](std::size_t i) { source->Load(&clip.frames[i], &reasons[i]); });
+  const auto unreadable =
+      std::stable_partition(clip.frames.begin(), clip.frames.end(),
+                            [](const Frame& frame) { return !frame.gray.empty(); });
+  clip.num_unreadable = static_cast<int>(std::distance(unreadable, clip.frames.end()));
+  clip.frames.erase(unreadable, clip.frames.end());
+  if (clip.frames.empty()) {
+    throw InputError(fmt::format("{}: no frame can be read{}", image_path,
+                                 reasons.empty() ? "" : ": " + reasons.front()));
+  }
+  return clip;
+}
+
+}  // namespace velamap

@@ -1,0 +1,88 @@
+#include "workflows/check/clip_precision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <Eigen/Core>
+
+#include "importer/base/statistics.h"
+#include "importer/database/colmap_database.h"
+#include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/register_frames.h"
+#include "reconstruct/seed_model.h"
+
+namespace velamap {
+namespace {
+
+// Largest angle between the directions from the middle of all points to two cameras.
+double Parallax(const Model& model) {
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
+  for (const auto& [point3D_id, point] : model.points3D) middle_m += point.x_in_world;
+  middle_m /= static_cast<double>(model.points3D.size());
+  std::vector<Eigen::Vector3d> directions;
+  for (const ModelImage& image : model.images) {
+    directions.push_back((Inverse(image.cam_from_world).translation - middle_m).normalized());
+  }
+  double least_cosine = 1.0;
+  for (const Eigen::Vector3d& a : directions) {
+    for (const Eigen::Vector3d& b : directions) least_cosine = std::min(least_cosine, a.dot(b));
+  }
+  return std::acos(std::max(-1.0, least_cosine));
+}
+
+// Sigma of each marker's mean corner in space, mm.
+std::vector<double> MarkerSigmas(const PointCovariance& points) {
+  constexpr double kMmPerM = 1000.0;
+  std::map<int, std::vector<Point3DId>> corners_of_id;
+  for (const Point3DId point3D_id : points.point3D_ids) {
+    corners_of_id[CornerFromPoint3DId(point3D_id).marker_id].push_back(point3D_id);
+  }
+  std::vector<double> sigmas_mm;
+  for (const auto& [marker_id, corners] : corners_of_id) {
+    double variance_m2 = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      PointGradient gradient;
+      for (const Point3DId point3D_id : corners) {
+        gradient.emplace_back(point3D_id, Eigen::Vector3d::Unit(axis) / double(corners.size()));
+      }
+      variance_m2 += VarianceOf(points, gradient);
+    }
+    sigmas_mm.push_back(kMmPerM * std::sqrt(variance_m2));
+  }
+  return sigmas_mm;
+}
+
+}  // namespace
+
+ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& layout,
+                               int num_threads) {
+  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly);
+  const std::vector<DatabaseImage> images = database.ReadImages();
+  const std::map<CameraId, Camera> cameras = database.ReadCameras();
+  RegistrationOptions registration_options;
+  registration_options.num_threads = num_threads;
+  const Registration registration = RegisterFrames(images, cameras, layout, registration_options);
+  Model model = MakeSeedModel(registration, images, cameras);
+  MarkerAdjustmentOptions adjustment_options;
+  adjustment_options.num_threads = num_threads;
+  const MarkerAdjustmentSummary summary =
+      AdjustWithMarkers(adjustment_options, layout, CornerErrorsOf(images), &model);
+  ClipPrecision precision;
+  precision.num_images = static_cast<int>(model.images.size());
+  const std::vector<double> sigmas_mm = MarkerSigmas(summary.uncertainty.points);
+  precision.num_markers = static_cast<int>(sigmas_mm.size());
+  precision.marker_sigma_mm = Median(sigmas_mm);
+  precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
+  precision.parallax_deg = Parallax(model) * 180.0 / M_PI;
+  precision.warnings = summary.warnings;
+  for (const DroppedMarker& marker : registration.dropped_markers) {
+    if (!marker.is_false) continue;
+    precision.markers_left_out.push_back(
+        fmt::format("marker {}: {}", marker.marker_id, marker.reason));
+  }
+  return precision;
+}
+
+}  // namespace velamap

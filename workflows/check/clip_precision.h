@@ -1,0 +1,16 @@
+// The precision that a few frames of a clip would give: a reconstruction of them alone.
+
+#pragma once
+
+#include <string>
+
+#include "importer/layout/layout.h"
+#include "workflows/check/clip_facts.h"
+
+namespace velamap {
+
+// Registers and adjusts the images of a database. Throws DataError where they give no shape.
+ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& layout,
+                               int num_threads);
+
+}  // namespace velamap

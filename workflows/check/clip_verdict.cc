@@ -1,0 +1,153 @@
+#include "workflows/check/clip_verdict.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace velamap {
+namespace {
+
+// Corner fits reach their precision from 25 px on and lose markers below 12.
+constexpr double kGoodSidePx = 20.0, kBadSidePx = 12.0;
+// Parallax below which depth is several times less certain than width, and hopeless.
+constexpr double kGoodParallax_deg = 20.0, kBadParallax_deg = 8.0;
+constexpr double kMaxBlurPx = 1.5, kMaxMotionPx = 4.0;
+constexpr double kMinContrast = 60.0, kMaxWhite = 250.0;
+constexpr double kMaxShareWithFewMarkers = 0.3;
+constexpr int kRarelySeen = 3;
+
+class Judge {
+ public:
+  explicit Judge(const ClipFacts& facts) : facts_(facts) {}
+
+  Verdict Take() {
+    JudgeDictionary();
+    JudgeIds();
+    JudgeSize();
+    JudgeLight();
+    JudgeFrames();
+    JudgePrecision();
+    std::stable_sort(
+        verdict_.reasons.begin(), verdict_.reasons.end(),
+        [](const VerdictReason& a, const VerdictReason& b) { return a.level > b.level; });
+    if (!verdict_.reasons.empty()) verdict_.level = verdict_.reasons.front().level;
+    return std::move(verdict_);
+  }
+
+ private:
+  void Bad(std::string text) { verdict_.reasons.push_back({ReportStatus::kBad, std::move(text)}); }
+  void Check(std::string text) {
+    verdict_.reasons.push_back({ReportStatus::kCheck, std::move(text)});
+  }
+
+  void JudgeDictionary() {
+    if (facts_.num_frames_of_id.empty()) {
+      Bad("no marker is seen: check that the clip shows markers, and the dictionary");
+      return;
+    }
+    if (facts_.num_markers_found && facts_.num_markers_of_second &&
+        2 * *facts_.num_markers_of_second > *facts_.num_markers_found) {
+      Bad(fmt::format("{} and {} find about as many markers: name the dictionary of the print",
+                      facts_.dictionary, facts_.second_dictionary));
+    }
+  }
+
+  void JudgeIds() {
+    if (facts_.num_frames_of_id.empty()) return;
+    if (!facts_.ids_never_seen.empty()) {
+      Check(fmt::format("never seen: {}: film them, or take them out of the layout",
+                        IdRanges(facts_.ids_never_seen)));
+    }
+    std::vector<int> rare;
+    for (const auto& [marker_id, num_frames] : facts_.num_frames_of_id) {
+      if (num_frames < kRarelySeen) rare.push_back(marker_id);
+    }
+    if (facts_.has_layout && !rare.empty() && facts_.num_frames_read >= 4 * kRarelySeen) {
+      Check(fmt::format("seen in fewer than {} of {} frames: {}: film them longer", kRarelySeen,
+                        facts_.num_frames_read, IdRanges(rare)));
+    }
+    if (!facts_.ids_not_in_layout.empty()) {
+      Check(fmt::format("not in the layout: {}: add them, or take them off the object",
+                        IdRanges(facts_.ids_not_in_layout)));
+    }
+  }
+
+  void JudgeSize() {
+    if (facts_.side_px.count == 0) return;
+    const double side_px = facts_.side_px.median;
+    const std::string text = fmt::format("half of the markers are smaller than {:.0f} px", side_px);
+    const std::string remedy = "go closer, film at a higher resolution, or print larger markers";
+    if (side_px < kBadSidePx) {
+      Bad(text + ": " + remedy);
+    } else if (side_px < kGoodSidePx) {
+      Check(text + ": the size is known to a few tenths of a percent only; " + remedy);
+    }
+  }
+
+  void JudgeLight() {
+    if (!facts_.white) return;
+    if (*facts_.white > kMaxWhite) {
+      Check("the paper is overexposed, which moves edges: expose less");
+    }
+    if (*facts_.white - *facts_.black < kMinContrast) {
+      Check(
+          fmt::format("black and white differ by {:.0f} of 255 grey levels: expose more, avoid "
+                      "glare",
+                      *facts_.white - *facts_.black));
+    }
+    if (*facts_.motion_px > kMaxMotionPx) {
+      Check(fmt::format("markers move by {:.0f} px during the exposure: use a shorter shutter",
+                        *facts_.motion_px));
+    }
+    if (*facts_.blur_px > kMaxBlurPx) {
+      Check(
+          fmt::format("edges are blurred by {:.1f} px (1 sigma): focus, clean the lens, use less "
+                      "compression",
+                      *facts_.blur_px));
+    }
+  }
+
+  void JudgeFrames() {
+    if (facts_.num_frames_of_id.empty()) return;
+    const double share =
+        static_cast<double>(facts_.num_frames_with_few_markers) / facts_.num_frames_read;
+    if (share > kMaxShareWithFewMarkers) {
+      Check(
+          fmt::format("{:.0f} % of the frames show fewer than four markers: keep the object in "
+                      "the picture",
+                      100 * share));
+    }
+  }
+
+  void JudgePrecision() {
+    if (!facts_.precision) {
+      if (!facts_.no_precision_because.empty() && !facts_.num_frames_of_id.empty()) {
+        Bad("these frames give no shape: " + facts_.no_precision_because);
+      }
+      return;
+    }
+    const ClipPrecision& precision = *facts_.precision;
+    const std::string text =
+        fmt::format("the camera goes around the object by {:.0f} degrees", precision.parallax_deg);
+    const std::string remedy = "move sideways by a third of the distance or more";
+    if (precision.parallax_deg < kBadParallax_deg) {
+      Bad(text + " only, which leaves its depth open: " + remedy);
+    } else if (precision.parallax_deg < kGoodParallax_deg) {
+      Check(text + ", which leaves depth less certain than width: " + remedy);
+    }
+    for (const std::string& marker : precision.markers_left_out) {
+      Check("contradicts the layout: " + marker);
+    }
+    for (const std::string& warning : precision.warnings) Check(warning);
+  }
+
+  const ClipFacts& facts_;
+  Verdict verdict_;
+};
+
+}  // namespace
+
+Verdict JudgeClip(const ClipFacts& facts) { return Judge(facts).Take(); }
+
+}  // namespace velamap

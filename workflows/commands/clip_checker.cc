@@ -1,0 +1,140 @@
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <fmt/ranges.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "importer/base/atomic_output.h"
+#include "importer/camera/calibration.h"
+#include "workflows/check/clip_check.h"
+#include "workflows/check/clip_verdict.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/shared_options.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  ClipCheckOptions check;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {"clip_checker",
+          "says in seconds whether a clip will do, before any reconstruction",
+          "--image_path clip.mp4 --layout_path layout.yml --camera_path camera.yml \\\n"
+          "    --output_path frame.png",
+          {{"Input and output",
+            {ImagePathOption(paths),
+             {"camera_path", &paths->camera_path, "path",
+              "calibration of the camera; left out: the precision is not found"},
+             {"output_path", &paths->output_path, "path",
+              "PNG of the frame with most markers, with their outlines and ids; left out: none"},
+             {"num_frames", &options->check.num_frames, "", "number of a video's frames to look at",
+              FromTo(5, 1000)}}},
+           DescribeOptions(&options->markers, true),
+           DescribeOptions(&options->check.detection),
+           DescribeOptions(&options->check.video),
+           DescribeOptions(&options->general)}};
+}
+
+void Validate(Options* options) {
+  SetLogLevel(options->general.log_level);
+  ClipCheckOptions& check = options->check;
+  check.detection.Check();
+  check.video.Check();
+  check.image_path = options->paths.image_path;
+  check.num_threads = options->general.num_threads;
+  if (HasMarkerOptions(options->markers) || !options->markers.dictionary.empty()) {
+    check.layout = LoadLayout(options->markers, true);
+  }
+  if (!options->paths.camera_path.empty()) {
+    check.camera = ReadCalibration(options->paths.camera_path);
+    check.camera_path = options->paths.camera_path;
+  }
+}
+
+std::string StretchesText(const std::vector<ClipStretch>& stretches) {
+  std::vector<std::string> texts;
+  for (const ClipStretch& stretch : stretches) {
+    texts.push_back(fmt::format("{:.1f} to {:.1f}", stretch.begin_s, stretch.end_s));
+  }
+  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, ", "));
+}
+
+void PrintLight(const ClipFacts& facts, std::ostream& out) {
+  if (!facts.white) return;
+  fmt::print(out, "grey_levels: black {:.0f}, white {:.0f} of 255\n", *facts.black, *facts.white);
+  fmt::print(out, "blur_px: {:.2f} (1 sigma), motion {:.1f} during the exposure\n", *facts.blur_px,
+             *facts.motion_px);
+}
+
+void PrintPrecision(const ClipPrecision& precision, std::ostream& out) {
+  fmt::print(out, "precision: {:.2g} mm (1 sigma, median marker) from {} images, {} markers\n",
+             precision.marker_sigma_mm, precision.num_images, precision.num_markers);
+  fmt::print(out, "scale_sigma: {:.3f} %\n", 100 * precision.scale_sigma);
+  fmt::print(out, "parallax_deg: {:.0f}\n", precision.parallax_deg);
+}
+
+void Print(const ClipFacts& facts, std::ostream& out) {
+  PrintVerdict(JudgeClip(facts), out);
+  fmt::print(out, "frames: {} of {} looked at, {} x {} px\n", facts.num_frames_read,
+             facts.num_frames, facts.width_px, facts.height_px);
+  if (facts.dictionary.empty()) return;
+  fmt::print(out, "dictionary: {}{}{}\n", facts.dictionary, facts.is_inverted ? ", inverted" : "",
+             facts.num_markers_found
+                 ? fmt::format(" (found: {} markers{})", *facts.num_markers_found,
+                               facts.num_markers_of_second
+                                   ? fmt::format("; {}: {}", facts.second_dictionary,
+                                                 *facts.num_markers_of_second)
+                                   : "")
+                 : "");
+  fmt::print(out, "markers_seen: {}\n", facts.num_frames_of_id.size());
+  if (!facts.has_layout) {
+    std::vector<int> ids;
+    for (const auto& [marker_id, num_frames] : facts.num_frames_of_id) ids.push_back(marker_id);
+    fmt::print(out, "ids: {}\n", IdRanges(ids));
+  } else {
+    fmt::print(out, "ids_never_seen: {}\n", IdRanges(facts.ids_never_seen));
+    fmt::print(out, "ids_not_in_layout: {}\n", IdRanges(facts.ids_not_in_layout));
+  }
+  if (facts.side_px.count > 0) {
+    fmt::print(out, "side_px: median {:.1f}, min {:.1f}, max {:.1f}\n", facts.side_px.median,
+               facts.side_px.min, facts.side_px.max);
+  }
+  PrintLight(facts, out);
+  if (facts.is_video) {
+    fmt::print(out, "good_parts_s: {}\n", StretchesText(facts.good_stretches));
+  }
+  if (facts.precision) PrintPrecision(*facts.precision, out);
+}
+
+void Run(const Options& options) {
+  const ClipCheck check = CheckClip(options.check);
+  Print(check.facts, std::cout);
+  const std::string& path = options.paths.output_path;
+  if (path.empty()) return;
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", check.marked_frame, png);
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  });
+  fmt::print(std::cout, "frame_path: {} ({})\n", path, check.marked_frame_name);
+}
+
+}  // namespace
+
+Command ClipChecker() {
+  const auto options = std::make_shared<Options>();
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(options.get());
+            Run(*options);
+          }};
+}
+
+}  // namespace velamap
