@@ -6,6 +6,7 @@ velamap_test(
     refine/edge_sampling_test.cc
     formation/formation_estimation_test.cc
     refine/fit_equations_test.cc
+    detect/interpolate_test.cc
     detect/marker_alignment_test.cc
     refine/marker_grid.cc
     ../support/marker_renderer_test.cc)
