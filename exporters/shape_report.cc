@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "exporters/shape/units.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -7,7 +7,7 @@ house_folder(importer/base PUBLIC
   statistics text_file)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
-  rigid3 unit_square_map)
+  rigid3 unit_square_map units)
 house_folder(importer/camera PUBLIC
   calibration camera camera_jacobian camera_projection)
 house_folder(importer/layout PUBLIC
@@ -52,8 +52,7 @@ house_folder(reconstruct PUBLIC
   register_frames seed_model)
 house_folder(exporters/shape PUBLIC
   adjacent_distances common_corners joint_covariance known_distances marker_shape part_planes
-  principal_axes sail_lines shape_frame shape_metrics shape_sigma shape_transform
-  units)
+  principal_axes sail_lines shape_frame shape_metrics shape_sigma shape_transform)
 house_folder(exporters/formats PUBLIC
   cad_writer diverging_color mesh_reader mesh_triangles mesh_writer metrics_report
   ply_writer round_number shape_csv shape_ply surface_spline)

@@ -11,8 +11,8 @@
 
 #include "exporters/formats/diverging_color.h"
 #include "exporters/formats/ply_writer.h"
-#include "exporters/shape/units.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

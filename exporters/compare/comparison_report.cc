@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include "exporters/shape/units.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

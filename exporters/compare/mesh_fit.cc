@@ -7,8 +7,8 @@
 
 #include "exporters/compare/closest_points.h"
 #include "exporters/compare/comparison_sigma.h"
-#include "exporters/shape/units.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

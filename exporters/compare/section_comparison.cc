@@ -8,7 +8,7 @@
 
 #include "exporters/shape/shape_frame.h"
 #include "exporters/shape/shape_transform.h"
-#include "exporters/shape/units.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

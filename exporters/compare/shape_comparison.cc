@@ -12,8 +12,8 @@
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/compare/mesh_fit.h"
 #include "exporters/shape/shape_metrics.h"
-#include "exporters/shape/units.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -23,8 +23,8 @@
 #include <TopoDS_Face.hxx>
 
 #include "exporters/formats/cad_library.h"
-#include "exporters/shape/units.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -24,8 +24,8 @@
 #include <XSControl_WorkSession.hxx>
 
 #include "exporters/formats/cad_library.h"
-#include "exporters/shape/units.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "exporters/formats/little_endian.h"
 #include "exporters/formats/ply_writer.h"
-#include "exporters/shape/units.h"
 #include "importer/base/csv.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 
 #include "exporters/scale/scale_audit_report.h"
-#include "exporters/shape/units.h"
 #include "importer/base/statistics.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -6,7 +6,7 @@
 #include "exporters/report/report_json.h"
 #include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/shape_sigma.h"
-#include "exporters/shape/units.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "exporters/sail/section_writer.h"
-#include "exporters/shape/units.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "exporters/sail/section_lines.h"
-#include "exporters/shape/units.h"
 #include "importer/geometry/quad.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

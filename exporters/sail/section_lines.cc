@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include "exporters/shape/units.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

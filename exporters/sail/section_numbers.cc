@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "exporters/shape/units.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
-#include "exporters/shape/units.h"
 #include "importer/base/csv.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

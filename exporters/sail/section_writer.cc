@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "exporters/shape/units.h"
 #include "importer/base/csv.h"
 #include "importer/base/statistics.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

@@ -10,7 +10,7 @@
 #include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/principal_axes.h"
 #include "exporters/shape/shape_sigma.h"
-#include "exporters/shape/units.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {

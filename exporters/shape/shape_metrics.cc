@@ -7,9 +7,9 @@
 
 #include "exporters/shape/common_corners.h"
 #include "exporters/shape/shape_sigma.h"
-#include "exporters/shape/units.h"
 #include "importer/base/error.h"
 #include "importer/geometry/alignment.h"
+#include "importer/geometry/units.h"
 #include "reconstruct/geometry/covariance_update.h"
 
 namespace velamap {

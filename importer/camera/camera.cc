@@ -10,6 +10,7 @@
 #include "importer/base/error.h"
 #include "importer/camera/camera_jacobian.h"
 #include "importer/camera/camera_projection.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -124,7 +125,6 @@ double MaxRayLength(const Camera& camera) {
 bool HasMonotonicDistortion(const Camera& camera) {
   constexpr int kNumDirections = 64;
   constexpr double kMaxRayLength = 12.0;  // 85 degrees
-  constexpr double kPi = 3.14159265358979323846;
   const Intrinsics intrinsics = GetIntrinsics(camera);
   // So small beside the image that no fold hides between two steps.
   const double step =

@@ -6,11 +6,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/detect/interpolate.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kWhite = 255.0;
 constexpr int kKernelReachPx = 5;
 

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/units.h"
 #include "reconstruct/global/map_adjustment.h"
 #include "reconstruct/global/map_intersection.h"
 #include "reconstruct/global/map_resection.h"
@@ -14,7 +15,7 @@
 namespace velamap {
 namespace {
 
-constexpr double kFullParallax = 20 * 3.14159265358979323846 / 180;
+constexpr double kFullParallax = 20 * kRadPerDeg;
 
 // Angle between the directions from which two frames see a marker, rad; the smallest over the
 // combinations of their planar solutions.

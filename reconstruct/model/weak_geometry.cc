@@ -9,6 +9,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "importer/geometry/units.h"
 #include "reconstruct/geometry/covariance_update.h"
 
 namespace velamap {
@@ -19,9 +20,7 @@ namespace {
 // corners are precise and prints are not.
 constexpr double kMaxElongation = 10.0;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180.0;
-constexpr double kMaxWeakParallax = 20.0 * kDegree;
+constexpr double kMaxWeakParallax = 20.0 * kRadPerDeg;
 
 // Medians over the 1-sigma ellipsoids of the points.
 struct Ellipsoid {
@@ -124,7 +123,7 @@ Views DescribeViews(const Model& model) {
 
 std::string Reason(const Views& views) {
   constexpr double kOnePlace = 0.02;
-  constexpr double kHeadOn = 20.0 * kDegree;
+  constexpr double kHeadOn = 20.0 * kRadPerDeg;
   if (views.camera_extent_m < kOnePlace * views.distance_m) {
     return fmt::format(
         "all images are taken from one place (within {:.2g} m, at a distance of {:.2g} m): the "
@@ -134,12 +133,12 @@ std::string Reason(const Views& views) {
   if (views.is_flat && views.max_tilt_rad < kHeadOn) {
     return fmt::format(
         "a flat object is seen head-on in all images (within {:.0f} degrees of its normal)",
-        views.max_tilt_rad / kDegree);
+        kDegPerRad * views.max_tilt_rad);
   }
   return fmt::format(
       "there is hardly any parallax: half of the points are seen within less than "
       "{:.1f} degrees",
-      views.parallax_rad / kDegree);
+      kDegPerRad * views.parallax_rad);
 }
 
 }  // namespace

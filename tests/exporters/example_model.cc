@@ -3,6 +3,8 @@
 #include <random>
 #include <sstream>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
 
@@ -27,7 +29,7 @@ Rigid3 WorldFromMarker(int marker_id) {
 Rigid3 CamFromWorld(const Eigen::Vector3d& x_in_world, double yaw_rad) {
   const Eigen::Quaterniond rotation =
       Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitY()) *
-      Eigen::Quaterniond(Eigen::AngleAxisd(EIGEN_PI, Eigen::Vector3d::UnitX()));
+      Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()));
   return {rotation, -(rotation * x_in_world)};
 }
 

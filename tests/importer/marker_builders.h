@@ -2,12 +2,16 @@
 
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "importer/detect/detection.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 
@@ -18,6 +22,23 @@ inline MarkerDetection SquareMarker(int marker_id, double x, double y, double si
   const double h = 0.5 * side;
   marker.corners_in_image_px = {Eigen::Vector2d(x - h, y - h), Eigen::Vector2d(x + h, y - h),
                                 Eigen::Vector2d(x + h, y + h), Eigen::Vector2d(x - h, y + h)};
+  return marker;
+}
+
+// A square of 20 px whose top side runs at the angle, corners numbered from `first` on.
+inline MarkerDetection TurnedMarker(int id, double x, double y, double angle_deg, int first = 0) {
+  MarkerDetection marker;
+  marker.marker_id = id;
+  const double a = angle_deg * kRadPerDeg;
+  const Eigen::Vector2d right(std::cos(a), std::sin(a)), down(-std::sin(a), std::cos(a));
+  const std::array<Eigen::Vector2d, 4> corners = {
+      {-right - down, right - down, right + down, down - right}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t from = (i + static_cast<std::size_t>(first)) % 4;
+    marker.corners_in_image_px[i] = Eigen::Vector2d(x, y) + 10 * corners[from];
+    marker.colors[i] = {static_cast<std::uint8_t>(from), 0, 0};
+    marker.corner_sigma_px[i] = 0.01 * static_cast<double>(from + 1);
+  }
   return marker;
 }
 

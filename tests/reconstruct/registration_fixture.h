@@ -2,11 +2,13 @@
 
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
 #include "importer/database/colmap_database.h"
 #include "reconstruct/geometry/frame_shape.h"
+#include "reconstruct/registration/registration.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace velamap {
@@ -47,5 +49,31 @@ inline MarkerPoints TruthInCam(const SyntheticScene& scene, int marker_id, int f
   return Transform(scene.cam_from_world[static_cast<std::size_t>(frame_idx)],
                    scene.x_in_world.at(marker_id));
 }
+
+// Of the image whose camera is the frame of the shape.
+inline int CentralIdx(const Registration& registration) {
+  return static_cast<int>(registration.central_image_id) - 1;
+}
+
+// The largest distance of a marker from the truth (root mean square over its corners), m.
+inline double MaxError(const Registration& registration, const SyntheticScene& scene) {
+  double max_error_m = 0;
+  for (const auto& [marker_id, points] : registration.shape) {
+    max_error_m = std::max(
+        max_error_m, RmsDistance(points, TruthInCam(scene, marker_id, CentralIdx(registration))));
+  }
+  return max_error_m;
+}
+
+inline Rigid3 TrueCamFromShape(const Registration& registration, const SyntheticScene& scene,
+                               ImageId image_id) {
+  return scene.cam_from_world[image_id - 1] *
+         Inverse(scene.cam_from_world[static_cast<std::size_t>(CentralIdx(registration))]);
+}
+
+struct RegistrationCase {
+  SceneKind kind;
+  bool video;
+};
 
 }  // namespace velamap

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "importer/geometry/alignment.h"
+#include "importer/geometry/units.h"
 #include "reconstruct/model/model_io.h"
 
 namespace velamap {
@@ -118,7 +119,7 @@ std::vector<std::pair<Point3DId, TrackElement>> AddOutliers(double fraction, std
   for (const auto& [point3D_id, point] : model->points3D) {
     for (const TrackElement& element : point.track) {
       if (uniform(random) >= fraction) continue;
-      const double angle = 2 * EIGEN_PI * uniform(random);
+      const double angle = 2 * kPi * uniform(random);
       const double shift_px = 50 + 250 * uniform(random);
       const auto image = std::find_if(
           model->images.begin(), model->images.end(),

@@ -5,11 +5,10 @@
 
 #include <Eigen/Geometry>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadPerDeg = kPi / 180.0;
 
 // Sums of sines with random phases; std::mt19937's numbers are the same everywhere.
 class Sway {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 #include "tests/support/clip_camera.h"
 #include "tests/support/clip_scene_builder.h"
 #include "tests/support/tool_options.h"
@@ -14,7 +15,6 @@
 namespace velamap {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Places on the line v = constant, evenly spaced in length, `margin_m` from its ends.
 std::vector<Eigen::Vector2d> SpacedAlongLine(const Surface& surface, double v, double spacing_m,
                                              double margin_m) {

@@ -10,6 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/geometry/units.h"
 #include "importer/refine/corner_refinement.h"
 #include "importer/refine/pattern_picture.h"
 #include "tests/importer/refine/marker_grid.h"
@@ -19,7 +20,6 @@
 namespace velamap {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295;
 constexpr int kMaxWidthPx = 2400;
 
 cv::Mat Compressed(const cv::Mat& image, int jpeg_quality) {

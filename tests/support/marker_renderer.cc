@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -231,7 +232,6 @@ void Sharpen(const ImageFormationParameters& camera, cv::Mat* image) {
 
 // From light to grey values, as importer/refine/formation_estimate.h has it but computed anew.
 void ApplyCamera(const ImageFormationParameters& camera, cv::Mat* image) {
-  constexpr double kPi = 3.14159265358979323846;
   if (camera.sharpens_light) Sharpen(camera, image);
   if (camera.gamma != 1 || camera.s_amplitude != 0) {
     image->forEach<float>([&camera](float& value, const int*) {

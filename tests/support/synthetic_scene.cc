@@ -8,12 +8,11 @@
 
 #include <Eigen/Geometry>
 
+#include "importer/geometry/units.h"
 #include "reconstruct/geometry/marker_pose.h"
 
 namespace velamap {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Camera DefaultCamera() {
   return {CameraModel::kOpenCV, 1920, 1080, {1200, 1202, 957.3, 541.8, -0.11, 0.03, 4e-4, -3e-4}};

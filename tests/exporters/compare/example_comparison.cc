@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
 
@@ -139,7 +141,7 @@ std::set<int> IdsOf(const std::string& part) {
 
 Rigid3 FarPose() {
   return {Eigen::Quaterniond(
-              Eigen::AngleAxisd(70 * M_PI / 180, Eigen::Vector3d(1, -2, 0.5).normalized())),
+              Eigen::AngleAxisd(70 * kRadPerDeg, Eigen::Vector3d(1, -2, 0.5).normalized())),
           {4, -7, 2}};
 }
 
@@ -165,9 +167,9 @@ TriangleMesh SphereMesh(double radius_m, int num_rings) {
   const int num_around = 2 * num_rings;
   TriangleMesh mesh;
   for (int ring = 0; ring <= num_rings; ++ring) {
-    const double polar = M_PI * ring / num_rings;
+    const double polar = kPi * ring / num_rings;
     for (int i = 0; i < num_around; ++i) {
-      const double around = 2 * M_PI * i / num_around;
+      const double around = 2 * kPi * i / num_around;
       mesh.vertices_m.emplace_back(radius_m * std::sin(polar) * std::cos(around),
                                    radius_m * std::sin(polar) * std::sin(around),
                                    radius_m * std::cos(polar));

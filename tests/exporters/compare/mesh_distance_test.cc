@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "importer/geometry/units.h"
 #include "tests/exporters/compare/example_comparison.h"
 
 namespace velamap {
@@ -54,7 +55,7 @@ TEST(MeshDistance, ToASphereIsThatToItsCentreLessTheRadius) {
       const Eigen::Vector3d x = RandomPoint(&random, 3.0);
       const double truth_m = x.norm() - radius_m;
       const MeshFoot foot = mesh.Project(x);
-      const double sagitta_m = radius_m * (1 - std::cos(M_PI / 60)) * 1.5;
+      const double sagitta_m = radius_m * (1 - std::cos(kPi / 60)) * 1.5;
       EXPECT_NEAR(foot.distance_m, truth_m, sagitta_m);
       EXPECT_EQ(foot.beside_m, 0);  // it has no border, whether vertices are shared or not
       // No triangle is nearer than the foot.

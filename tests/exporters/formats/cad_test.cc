@@ -13,6 +13,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "tests/exporters/comma_locale.h"
+#include "tests/exporters/formats/mesh_area.h"
 #include "tests/exporters/sail/example_surface.h"
 #include "tests/support/temp_dir.h"
 
@@ -59,15 +60,6 @@ void Extents(const SplineSurface& surface, Eigen::Vector3d* min_m, Eigen::Vector
     *min_m = min_m->cwiseMin(x);
     *max_m = max_m->cwiseMax(x);
   }
-}
-
-double Area(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const auto& x = mesh.vertices_m;
-    area += (x[b] - x[a]).cross(x[c] - x[a]).norm() / 2;
-  }
-  return area;
 }
 
 TEST(Cad, ReadBackWithSameAreaExtentsAndUnit) {

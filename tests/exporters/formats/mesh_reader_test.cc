@@ -12,6 +12,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "tests/exporters/compare/example_comparison.h"
+#include "tests/exporters/formats/mesh_area.h"
 #include "tests/exporters/sail/example_surface.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
@@ -20,15 +21,6 @@ namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
-
-double Area(const TriangleMesh& mesh) {
-  double area = 0.0;
-  for (const auto& t : mesh.triangles) {
-    const auto x = [&](std::size_t k) { return mesh.vertices_m[static_cast<std::size_t>(t[k])]; };
-    area += (x(1) - x(0)).cross(x(2) - x(0)).norm() / 2;
-  }
-  return area;
-}
 
 class MeshReaderTest : public ::testing::Test {
  protected:

@@ -14,6 +14,7 @@
 #include "exporters/formats/mesh_writer.h"
 #include "importer/base/error.h"
 #include "tests/exporters/comma_locale.h"
+#include "tests/exporters/formats/mesh_area.h"
 #include "tests/exporters/formats/ply_reader.h"
 #include "tests/exporters/sail/example_surface.h"
 
@@ -35,15 +36,6 @@ MeshOptions ChordDeviation(double mm) {
   MeshOptions options;
   options.chord_deviation_mm = mm;
   return options;
-}
-
-double Area(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const auto& x = mesh.vertices_m;
-    area += (x[b] - x[a]).cross(x[c] - x[a]).norm() / 2;
-  }
-  return area;
 }
 
 std::string RefusalOf(const SplineSurface& surface, const MeshOptions& options) {

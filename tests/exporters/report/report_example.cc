@@ -7,34 +7,12 @@
 
 #include "exporters/scale/metric_shape.h"
 #include "tests/support/synthetic_scene.h"
+#include "tests/support/true_model.h"
 
 namespace velamap {
 namespace {
 
 constexpr int kUnseenMarkerId = 8000;
-
-Model ModelOf(const SyntheticScene& scene) {
-  Model model;
-  model.cameras[1] = scene.camera;
-  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
-    ModelImage image;
-    image.image_id = static_cast<ImageId>(i + 1);
-    image.camera_id = 1;
-    image.name = scene.frames[i].image_name;
-    image.cam_from_world = scene.cam_from_world[i];
-    for (const MarkerDetection& marker : scene.frames[i].markers) {
-      for (int corner = 1; corner <= kNumCorners; ++corner) {
-        const Point3DId id = Point3DIdFromCorner({marker.marker_id, corner});
-        Point3D& point = model.points3D[id];
-        point.x_in_world = scene.x_in_world.at(marker.marker_id)[corner];
-        point.track.push_back({image.image_id, static_cast<std::uint32_t>(image.points2D.size())});
-        image.points2D.push_back({marker.corners_in_image_px[corner - 1], id});
-      }
-    }
-    model.images.push_back(std::move(image));
-  }
-  return model;
-}
 
 }  // namespace
 
@@ -58,7 +36,7 @@ ReportExample MakeReportExample(int num_rows, int num_images) {
   ReportExample example;
   example.layout = scene.layout;
   example.layout.parts.front().marker_ids.push_back(kUnseenMarkerId);
-  example.model = ModelOf(scene);
+  example.model = TrueModel(scene);
   example.shape = ShapeFromModel(example.model, example.layout);
   example.metrics = ComputeShapeMetrics(example.shape, example.layout);
   example.model_metrics = ComputeModelMetrics(example.model, MarkerIds(example.layout));

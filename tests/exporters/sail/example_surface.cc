@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
-namespace {
-
-constexpr double kPi = 3.14159265358979;
-
-}  // namespace
+namespace {}  // namespace
 
 Eigen::Vector3d BilinearPatch(double u, double v) {
   const Eigen::Vector3d a(0, 0, 0), b(3, 0.2, 0), c(0.3, -0.1, 5), d(2.5, 1, 5.2);

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 
 UnitProfile CircularArc(double camber) {
@@ -41,7 +43,6 @@ ShapeMarker UprightMarker(int marker_id, const std::string& part, const Eigen::V
 }
 
 Sail MakeSailOfLines(const std::vector<SailLine>& lines, int num_markers, int leeward) {
-  constexpr double kRadPerDeg = 3.14159265358979323846 / 180;
   Sail sail;
   sail.layout = MakeLayout("DICT_4X4_250", 0.1);
   LayoutPart part;

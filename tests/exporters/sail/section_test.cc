@@ -11,14 +11,13 @@
 
 #include "exporters/shape/shape_transform.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 #include "tests/exporters/sail/sail_shapes.h"
 
 namespace velamap {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kDegPerRad = 180 / 3.14159265358979323846;
 
 // Sections in the default frame of the layout.
 SectionReport Sections(const Sail& sail, const SectionOptions& options = {},

@@ -11,6 +11,7 @@
 
 #include "exporters/sail/surface_csv.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 #include "tests/exporters/sail/example_surface.h"
 #include "tests/support/error_matchers.h"
 
@@ -84,7 +85,7 @@ TEST(Surface, BilinearPatchIsExactFromTwoLinesOn) {
 // A cubic spline interpolates to 5/384 h^4 max|f''''| (Hall and Meyer, 1976); on an arc of radius R
 // that is |f''''| = 1/R^3. A factor of 1.5 accounts for the ends without given tangents.
 TEST(Surface, CylinderIsAsExactAsCubicSplinesAllow) {
-  const double arc_m = 4 * 40 * 3.14159265358979 / 180;
+  const double arc_m = 4 * 40 * kRadPerDeg;
   for (const int n : {6, 8, 12, 16}) {
     const double h = arc_m / (n - 1);
     const auto fitted = FitSurface(MarkersOn(CylinderSail, 5, n), Interpolating());
@@ -212,7 +213,6 @@ TEST(Surface, MarkersThatLieScatteredBearNone) {
 TEST(Surface, MarkersBetweenTheLinesTakePart) {
   // The sail is 3 cm fuller half way between neighboring lines.
   const auto bulging = [](double u, double v) -> Eigen::Vector3d {
-    constexpr double kPi = 3.14159265358979;
     const double bulge_m = 0.03 * std::sin(kPi * u) * std::pow(std::sin(3 * kPi * v), 2);
     return TwistedSail(u, v) + Eigen::Vector3d(0, bulge_m, 0);
   };
@@ -280,7 +280,7 @@ TEST(Surface, GoesOnBeyondItsMarkersAsItIsCurved) {
   options.foot_extension_mm = 250;
   options.head_extension_mm = 150;
   const auto fitted = FitSurface(MarkersOn(CylinderSail, 6, 8), options);
-  const double arc_m = 4 * 40 * 3.14159265358979 / 180;
+  const double arc_m = 4 * 40 * kRadPerDeg;
   EXPECT_NEAR(SurfaceArea(fitted.surface), (arc_m + 0.5) * 3.4, 0.01);
   EXPECT_NEAR(EvaluatePoint(fitted.surface, 0.5, 0).z(), -0.25, 1e-3);
   EXPECT_NEAR(EvaluatePoint(fitted.surface, 0.5, 1).z(), 3.15, 1e-3);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "importer/geometry/units.h"
 #include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"
 
@@ -32,8 +33,8 @@ void AddFace(const std::string& part, const Eigen::Quaterniond& rotation, double
 MarkerShape Box() {
   MarkerShape shape;
   AddFace("front", Eigen::Quaterniond::Identity(), 0.1, 0, &shape);
-  AddFace("back", Eigen::Quaterniond(Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitX())),
-          0.1, 10, &shape);
+  AddFace("back", Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX())), 0.1, 10,
+          &shape);
   AddFace("side", Eigen::Quaterniond(Eigen::AngleAxisd(1.57079632679490, Eigen::Vector3d::UnitY())),
           0.1, 20, &shape);
   return shape;
@@ -98,7 +99,7 @@ TEST(PartPlanes, PlaneErrorIsTheDistanceOfTheCentersWithoutSign) {
 PartPlane Leaning(double angle_deg, const Eigen::Vector3d& axis) {
   MarkerShape shape;
   for (const int sign : {-1, 1}) {
-    const Eigen::Quaterniond turn(Eigen::AngleAxisd(sign * angle_deg * EIGEN_PI / 180, axis));
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(sign * angle_deg * kRadPerDeg, axis));
     const Eigen::Quaterniond odd(0.8, 0.3, -0.4, 0.1);
     shape.markers.push_back(
         SquareMarker(sign + 1, 0.05, {odd.normalized() * turn, {0.2 * sign, 1, 3}}));

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "importer/geometry/units.h"
+#include "tests/importer/marker_builders.h"
+
 namespace velamap {
 namespace {
 
@@ -24,23 +27,6 @@ Dictionary DictionaryOf(const std::vector<std::string>& codes) {
   return {"test", cv::makePtr<cv::aruco::Dictionary>(bytes, size, 0)};
 }
 
-// A square of 20 px whose top side runs at the angle, corners numbered from `first` on.
-MarkerDetection Marker(int id, double x, double y, double angle_deg, int first = 0) {
-  MarkerDetection marker;
-  marker.marker_id = id;
-  const double a = angle_deg * CV_PI / 180;
-  const Eigen::Vector2d right(std::cos(a), std::sin(a)), down(-std::sin(a), std::cos(a));
-  const std::array<Eigen::Vector2d, 4> corners = {
-      {-right - down, right - down, right + down, down - right}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::size_t from = (i + static_cast<std::size_t>(first)) % 4;
-    marker.corners_in_image_px[i] = Eigen::Vector2d(x, y) + 10 * corners[from];
-    marker.colors[i] = {static_cast<std::uint8_t>(from), 0, 0};
-    marker.corner_sigma_px[i] = 0.01 * static_cast<double>(from + 1);
-  }
-  return marker;
-}
-
 TEST(FindCodeSymmetries, NamesTheTurnsThatLeaveACode) {
   const Dictionary dictionary = DictionaryOf({"110000000", "100000001", "101000101", "010101010"});
   EXPECT_THAT(FindCodeSymmetries(dictionary),
@@ -58,13 +44,13 @@ TEST(ResolveRotations, HalfTurnIsUndoneHoweverTheFrameIsTurned) {
   const CodeSymmetries symmetries = {{5, {2}}};
   for (const double frame_deg : {0.0, 90.0, 200.0}) {
     for (const int reported_from : {0, 2}) {
-      std::vector<MarkerDetection> markers = {Marker(1, 100, 100, frame_deg + 10),
-                                              Marker(2, 200, 100, frame_deg - 15),
-                                              Marker(5, 150, 100, frame_deg, reported_from)};
+      std::vector<MarkerDetection> markers = {TurnedMarker(1, 100, 100, frame_deg + 10),
+                                              TurnedMarker(2, 200, 100, frame_deg - 15),
+                                              TurnedMarker(5, 150, 100, frame_deg, reported_from)};
       std::vector<RejectedDetection> rejected;
       ResolveRotations(symmetries, {}, &markers, &rejected);
       ASSERT_EQ(markers.size(), 3u);
-      const MarkerDetection truth = Marker(5, 150, 100, frame_deg);
+      const MarkerDetection truth = TurnedMarker(5, 150, 100, frame_deg);
       for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_EQ(markers[2].corners_in_image_px[i], truth.corners_in_image_px[i]);
         EXPECT_EQ(markers[2].colors[i], truth.colors[i]);
@@ -77,8 +63,9 @@ TEST(ResolveRotations, HalfTurnIsUndoneHoweverTheFrameIsTurned) {
 TEST(ResolveRotations, GraphTellsWhichNeighboursCount) {
   // Marker 1 is adjacent and stands upside down; 2 and 3 are nearer in the image only.
   const AdjacencyGraph graph = {{1, {5}}, {5, {1}}, {2, {3}}, {3, {2}}};
-  std::vector<MarkerDetection> markers = {Marker(1, 400, 100, 180), Marker(2, 130, 100, 0),
-                                          Marker(3, 170, 100, 0), Marker(5, 150, 100, 0)};
+  std::vector<MarkerDetection> markers = {
+      TurnedMarker(1, 400, 100, 180), TurnedMarker(2, 130, 100, 0), TurnedMarker(3, 170, 100, 0),
+      TurnedMarker(5, 150, 100, 0)};
   std::vector<RejectedDetection> rejected;
   ResolveRotations({{5, {2}}}, graph, &markers, &rejected);
   EXPECT_EQ(markers[3].colors[0][0], 2);
@@ -87,18 +74,20 @@ TEST(ResolveRotations, GraphTellsWhichNeighboursCount) {
 TEST(ResolveRotations, DoubtfulMarkersAreLeftOut) {
   const CodeSymmetries symmetries = {{5, {2}}, {6, {1, 2, 3}}};
   std::vector<RejectedDetection> rejected;
-  std::vector<MarkerDetection> alone = {Marker(5, 150, 100, 0), Marker(6, 180, 100, 0)};
+  std::vector<MarkerDetection> alone = {TurnedMarker(5, 150, 100, 0), TurnedMarker(6, 180, 100, 0)};
   ResolveRotations(symmetries, {}, &alone, &rejected);
   EXPECT_TRUE(alone.empty());
   EXPECT_EQ(rejected.size(), 2u);
 
   rejected.clear();
-  std::vector<MarkerDetection> across = {Marker(1, 100, 100, 85), Marker(5, 150, 100, 0)};
+  std::vector<MarkerDetection> across = {TurnedMarker(1, 100, 100, 85),
+                                         TurnedMarker(5, 150, 100, 0)};
   ResolveRotations(symmetries, {}, &across, &rejected);
   EXPECT_EQ(across.size(), 1u);
 
   rejected.clear();
-  std::vector<MarkerDetection> quarter = {Marker(1, 100, 100, 40), Marker(6, 150, 100, 0)};
+  std::vector<MarkerDetection> quarter = {TurnedMarker(1, 100, 100, 40),
+                                          TurnedMarker(6, 150, 100, 0)};
   ResolveRotations(symmetries, {}, &quarter, &rejected);
   ASSERT_EQ(rejected.size(), 1u);
   EXPECT_EQ(rejected[0].reason, kDoubtfulRotation);

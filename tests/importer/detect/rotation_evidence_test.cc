@@ -7,6 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "importer/geometry/units.h"
+#include "tests/importer/marker_builders.h"
+
 namespace velamap {
 namespace {
 
@@ -14,22 +17,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 const CodeSymmetries kHalf = {{5, {2}}, {6, {2}}};
-
-// A square of 20 px in the frame of the surface, corners numbered from `first` on.
-MarkerDetection Marker(int id, double x, double y, double angle_deg, int first = 0) {
-  MarkerDetection marker;
-  marker.marker_id = id;
-  const double a = angle_deg * 3.14159265358979 / 180;
-  const Eigen::Vector2d right(std::cos(a), std::sin(a)), down(-std::sin(a), std::cos(a));
-  const std::array<Eigen::Vector2d, 4> corners = {
-      {-right - down, right - down, right + down, down - right}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::size_t from = (i + static_cast<std::size_t>(first)) % 4;
-    marker.corners_in_image_px[i] = Eigen::Vector2d(x, y) + 10 * corners[from];
-    marker.corner_sigma_px[i] = 0.01 * static_cast<double>(from + 1);
-  }
-  return marker;
-}
 
 // The surface seen turned and foreshortened, another way in each frame.
 FrameDetections Frame(int idx, std::vector<MarkerDetection> markers) {
@@ -48,12 +35,12 @@ FrameDetections Frame(int idx, std::vector<MarkerDetection> markers) {
 
 // Marker 1 stands as marker 5 does and tells how it stands; marker 2 stands across and does not.
 FrameDetections Clear(int idx, int first = 0) {
-  return Frame(idx,
-               {Marker(1, 100, 100, 0), Marker(2, 160, 100, 88), Marker(5, 130, 100, 0, first)});
+  return Frame(idx, {TurnedMarker(1, 100, 100, 0), TurnedMarker(2, 160, 100, 88),
+                     TurnedMarker(5, 130, 100, 0, first)});
 }
 
 FrameDetections Doubtful(int idx, int first) {
-  return Frame(idx, {Marker(2, 160, 100, 88), Marker(5, 130, 100, 0, first)});
+  return Frame(idx, {TurnedMarker(2, 160, 100, 88), TurnedMarker(5, 130, 100, 0, first)});
 }
 
 bool IsRight(const FrameDetections& frame, int id) {
@@ -80,13 +67,13 @@ TEST(ResolveRotationsAcrossFrames, ResolvedSymmetricMarkersAreEvidence) {
   std::vector<FrameDetections> frames;
   for (int i = 0; i < 4; ++i) {
     frames.push_back(Clear(i));
-    frames.back() = Frame(i, {Marker(1, 100, 100, 0), Marker(2, 160, 100, 88),
-                              Marker(5, 130, 100, 0), Marker(6, 130, 140, 0, 2)});
+    frames.back() = Frame(i, {TurnedMarker(1, 100, 100, 0), TurnedMarker(2, 160, 100, 88),
+                              TurnedMarker(5, 130, 100, 0), TurnedMarker(6, 130, 140, 0, 2)});
   }
-  frames.push_back(
-      Frame(7, {Marker(2, 160, 100, 88), Marker(5, 130, 100, 0, 2), Marker(6, 130, 140, 0)}));
+  frames.push_back(Frame(7, {TurnedMarker(2, 160, 100, 88), TurnedMarker(5, 130, 100, 0, 2),
+                             TurnedMarker(6, 130, 140, 0)}));
   // Neither 1 nor 2 here, but 3, of which nobody knows anything.
-  frames.push_back(Frame(8, {Marker(3, 400, 100, 90), Marker(5, 130, 100, 0)}));
+  frames.push_back(Frame(8, {TurnedMarker(3, 400, 100, 90), TurnedMarker(5, 130, 100, 0)}));
   ResolveRotationsAcrossFrames(kHalf, {}, &frames);
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_TRUE(IsRight(frames[i], 5)) << i;
@@ -106,8 +93,8 @@ TEST(ResolveRotationsAcrossFrames, FramesThatContradictEachOtherSayNothing) {
   // In every other frame marker 1 hangs upside down, and marker 5 follows it.
   std::vector<FrameDetections> frames = {Doubtful(0, 2)};
   for (int i = 1; i <= 8; ++i) {
-    frames.push_back(Frame(i, {Marker(1, 100, 100, i % 2 == 0 ? 0 : 180), Marker(2, 160, 100, 88),
-                               Marker(5, 130, 100, 0)}));
+    frames.push_back(Frame(i, {TurnedMarker(1, 100, 100, i % 2 == 0 ? 0 : 180),
+                               TurnedMarker(2, 160, 100, 88), TurnedMarker(5, 130, 100, 0)}));
   }
   ResolveRotationsAcrossFrames(kHalf, {}, &frames);
   EXPECT_EQ(frames[0].rejected.size(), 1u);
@@ -116,8 +103,8 @@ TEST(ResolveRotationsAcrossFrames, FramesThatContradictEachOtherSayNothing) {
 TEST(ResolveRotationsAcrossFrames, OneWrongFrameAmongManyIsOutvoted) {
   std::vector<FrameDetections> frames = {Doubtful(0, 2)};
   for (int i = 1; i <= 12; ++i) {
-    frames.push_back(Frame(i, {Marker(1, 100, 100, i == 5 ? 180 : 0), Marker(2, 160, 100, 88),
-                               Marker(5, 130, 100, 0)}));
+    frames.push_back(Frame(i, {TurnedMarker(1, 100, 100, i == 5 ? 180 : 0),
+                               TurnedMarker(2, 160, 100, 88), TurnedMarker(5, 130, 100, 0)}));
   }
   ResolveRotationsAcrossFrames(kHalf, {}, &frames);
   EXPECT_TRUE(IsRight(frames[0], 5));
@@ -126,7 +113,8 @@ TEST(ResolveRotationsAcrossFrames, OneWrongFrameAmongManyIsOutvoted) {
 TEST(ResolveRotationsAcrossFrames, FalseIdsElsewhereSayNothing) {
   // What passes for marker 2 stands upside down at another place.
   std::vector<FrameDetections> frames = {
-      Frame(0, {Marker(2, 330, 250, -88), Marker(5, 130, 100, 0)}), Clear(1), Clear(2), Clear(3)};
+      Frame(0, {TurnedMarker(2, 330, 250, -88), TurnedMarker(5, 130, 100, 0)}), Clear(1), Clear(2),
+      Clear(3)};
   ResolveRotationsAcrossFrames(kHalf, {}, &frames);
   EXPECT_EQ(frames[0].rejected.size(), 1u);
 }
@@ -134,12 +122,12 @@ TEST(ResolveRotationsAcrossFrames, FalseIdsElsewhereSayNothing) {
 TEST(ResolveRotationsAcrossFrames, MarkersThatHaveBeenTurnedSinceSayNothing) {
   std::vector<FrameDetections> frames;
   for (int i = 0; i < 4; ++i) {
-    frames.push_back(Frame(i, {Marker(1, 100, 100, 0), Marker(2, 160, 100, 88),
-                               Marker(3, 130, 140, 92), Marker(5, 130, 100, 0)}));
+    frames.push_back(Frame(i, {TurnedMarker(1, 100, 100, 0), TurnedMarker(2, 160, 100, 88),
+                               TurnedMarker(3, 130, 140, 92), TurnedMarker(5, 130, 100, 0)}));
   }
-  frames.push_back(
-      Frame(4, {Marker(2, 160, 100, 88), Marker(3, 130, 140, -88), Marker(5, 130, 100, 0, 2)}));
-  frames.push_back(Frame(5, {Marker(3, 130, 140, -88), Marker(5, 130, 100, 0)}));
+  frames.push_back(Frame(4, {TurnedMarker(2, 160, 100, 88), TurnedMarker(3, 130, 140, -88),
+                             TurnedMarker(5, 130, 100, 0, 2)}));
+  frames.push_back(Frame(5, {TurnedMarker(3, 130, 140, -88), TurnedMarker(5, 130, 100, 0)}));
   ResolveRotationsAcrossFrames(kHalf, {}, &frames);
   EXPECT_TRUE(IsRight(frames[4], 5));
   EXPECT_EQ(frames[5].rejected.size(), 1u);
@@ -147,8 +135,8 @@ TEST(ResolveRotationsAcrossFrames, MarkersThatHaveBeenTurnedSinceSayNothing) {
 
 TEST(ResolveRotationsAcrossFrames, MarkerThatStandsAcrossWhatIsKnownStaysInDoubt) {
   std::vector<FrameDetections> frames = {Clear(1), Clear(2), Clear(3), Clear(4)};
-  frames.push_back(
-      Frame(4, {Marker(1, 100, 100, 0), Marker(2, 160, 100, 88), Marker(5, 130, 100, 85)}));
+  frames.push_back(Frame(4, {TurnedMarker(1, 100, 100, 0), TurnedMarker(2, 160, 100, 88),
+                             TurnedMarker(5, 130, 100, 85)}));
   ResolveRotationsAcrossFrames({{5, {2}}}, {{5, {1}}, {1, {5}}}, &frames);
   EXPECT_EQ(frames[4].rejected.size(), 1u);
 }
@@ -156,14 +144,14 @@ TEST(ResolveRotationsAcrossFrames, MarkerThatStandsAcrossWhatIsKnownStaysInDoubt
 TEST(ResolveRotationsAcrossFrames, QuarterTurnsNeedACloserFit) {
   const CodeSymmetries quarter = {{5, {1, 2, 3}}};
   const auto doubtful = [](double angle_deg) {
-    return Frame(0, {Marker(2, 160, 100, 45), Marker(5, 130, 100, angle_deg, 3)});
+    return Frame(0, {TurnedMarker(2, 160, 100, 45), TurnedMarker(5, 130, 100, angle_deg, 3)});
   };
   for (const double angle_deg : {10.0, 30.0}) {
     std::vector<FrameDetections> frames = {doubtful(angle_deg)};
     for (int i = 1; i < 4; ++i) {
-      frames.push_back(
-          Frame(4 * i, {Marker(1, 100, 100, 0), Marker(2, 160, 100, 45), Marker(4, 100, 130, 0),
-                        Marker(7, 130, 130, 0), Marker(5, 130, 100, 0)}));
+      frames.push_back(Frame(4 * i, {TurnedMarker(1, 100, 100, 0), TurnedMarker(2, 160, 100, 45),
+                                     TurnedMarker(4, 100, 130, 0), TurnedMarker(7, 130, 130, 0),
+                                     TurnedMarker(5, 130, 100, 0)}));
     }
     const AdjacencyGraph graph = {{5, {1, 4, 7}}, {1, {5}}, {4, {5}}, {7, {5}}, {2, {}}};
     ResolveRotationsAcrossFrames(quarter, graph, &frames);

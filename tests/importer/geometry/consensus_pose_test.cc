@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
 
 Rigid3 TruePose(double distance_m) {
-  return {Eigen::Quaterniond(Eigen::AngleAxisd(M_PI - 0.3, Eigen::Vector3d::UnitX()) *
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(kPi - 0.3, Eigen::Vector3d::UnitX()) *
                              Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ())),
           {0.1, -0.2, distance_m}};
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "importer/geometry/least_squares.h"
+#include "importer/geometry/units.h"
 #include "importer/refine/normal_lanes.h"
 
 namespace velamap {
@@ -36,7 +37,7 @@ TEST(NormalAt, AgreesWithTheStandardLibrary) {
   for (double z = -7.0; z < 7.0; z += 0.01) {
     const NormalLanes found = NormalAt(AllLanes(z));
     EXPECT_NEAR(found.distribution[0], 0.5 * std::erfc(-z / std::sqrt(2.0)), 2e-6) << z;
-    EXPECT_NEAR(found.density[0], std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI), 2e-6) << z;
+    EXPECT_NEAR(found.density[0], std::exp(-0.5 * z * z) / std::sqrt(2 * kPi), 2e-6) << z;
   }
 }
 

@@ -3,11 +3,12 @@
 #include <Eigen/Geometry>
 #include <opencv2/aruco.hpp>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
 
 constexpr double kLength = 0.1;
-constexpr double kRadPerDeg = 0.017453292519943295;
 
 PlacedMarkerInCam PlaceMarker(const MarkerGridOptions& options, int marker_id,
                               const Eigen::Vector2d& x_in_image_px, std::mt19937* random) {

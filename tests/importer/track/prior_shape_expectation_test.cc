@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
 
@@ -46,7 +48,7 @@ PriorShape SheetShape() {
 }
 
 Rigid3 CameraPose() {
-  return {Eigen::Quaterniond(Eigen::AngleAxisd(M_PI - 0.1, Eigen::Vector3d::UnitX()) *
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(kPi - 0.1, Eigen::Vector3d::UnitX()) *
                              Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY())),
           {0.1, -0.05, 4.0}};
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
 
@@ -19,7 +21,7 @@ std::array<Eigen::Vector2d, kNumCorners> Project(const Rigid3& cam_from_marker, 
 
 // The face of an upright marker that looks at the camera: z of the marker points back to it.
 Rigid3 FacingCamera(double tilt_rad, const Eigen::Vector3d& position) {
-  const Eigen::Quaterniond face_on(Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitX()));
+  const Eigen::Quaterniond face_on(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()));
   return {Eigen::AngleAxisd(tilt_rad, Eigen::Vector3d(1, 2, 0).normalized()) * face_on, position};
 }
 

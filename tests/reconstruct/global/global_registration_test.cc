@@ -25,19 +25,6 @@ Registration Register(const SyntheticScene& scene, RegistrationOptions options =
   return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, options);
 }
 
-int CentralIdx(const Registration& registration) {
-  return static_cast<int>(registration.central_image_id) - 1;
-}
-
-double MaxError(const Registration& registration, const SyntheticScene& scene) {
-  double max_error_m = 0;
-  for (const auto& [marker_id, points] : registration.shape) {
-    max_error_m = std::max(
-        max_error_m, RmsDistance(points, TruthInCam(scene, marker_id, CentralIdx(registration))));
-  }
-  return max_error_m;
-}
-
 // RMS distance of all points from the truth after the best rigid motion, m.
 double RmsError(const Registration& registration, const SyntheticScene& scene) {
   std::vector<Eigen::Vector3d> estimated, truth;
@@ -91,12 +78,7 @@ std::vector<std::string> OutlierReasons(const Registration& registration) {
   return reasons;
 }
 
-struct Case {
-  SceneKind kind;
-  bool video;
-};
-
-class NoiseFreeGlobalRegistration : public testing::TestWithParam<Case> {};
+class NoiseFreeGlobalRegistration : public testing::TestWithParam<RegistrationCase> {};
 
 TEST_P(NoiseFreeGlobalRegistration, GivesTheTruthBack) {
   const SyntheticScene scene = MakeScene(GetParam().kind, 24, GetParam().video);
@@ -108,18 +90,18 @@ TEST_P(NoiseFreeGlobalRegistration, GivesTheTruthBack) {
   for (const RegisteredFrame& frame : registration.frames) {
     ASSERT_TRUE(frame.cam_from_shape);
     EXPECT_TRUE(frame.outlier_ids.empty());
-    const Rigid3 truth =
-        scene.cam_from_world[frame.image_id - 1] *
-        Inverse(scene.cam_from_world[static_cast<std::size_t>(CentralIdx(registration))]);
-    EXPECT_LT((frame.cam_from_shape->translation - truth.translation).norm(), 1e-8);
+    EXPECT_LT((frame.cam_from_shape->translation -
+               TrueCamFromShape(registration, scene, frame.image_id).translation)
+                  .norm(),
+              1e-8);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NoiseFreeGlobalRegistration,
-                         testing::Values(Case{SceneKind::kSail, true},
-                                         Case{SceneKind::kSail, false},
-                                         Case{SceneKind::kPlane, true},
-                                         Case{SceneKind::kCube, false}));
+                         testing::Values(RegistrationCase{SceneKind::kSail, true},
+                                         RegistrationCase{SceneKind::kSail, false},
+                                         RegistrationCase{SceneKind::kPlane, true},
+                                         RegistrationCase{SceneKind::kCube, false}));
 
 TEST(GlobalRegistration, SpoiltDetectionsCostLittle) {
   const SyntheticScene clean = SceneWithNoise(SceneKind::kSail, TestSeed());

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "importer/geometry/units.h"
 #include "reconstruct/geometry/marker_pose.h"
 #include "reconstruct/global/map_intersection.h"
 
@@ -10,8 +11,7 @@ namespace {
 MarkerPlacement PlaceTiltedMarker(double tilt_rad) {
   const Camera camera{CameraModel::kPinhole, 2000, 1000, {2000, 2000, 1000, 500}};
   const Rigid3 shape_from_marker{
-      Eigen::Quaterniond(Eigen::AngleAxisd(3.14159265 - tilt_rad, Eigen::Vector3d::UnitX())),
-      {0, 0, 5.0}};
+      Eigen::Quaterniond(Eigen::AngleAxisd(kPi - tilt_rad, Eigen::Vector3d::UnitX())), {0, 0, 5.0}};
   std::vector<DatabaseImage> images;
   std::vector<std::optional<Rigid3>> poses;
   for (const double x_m : {0.0, 0.02}) {

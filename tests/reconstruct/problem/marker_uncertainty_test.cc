@@ -229,6 +229,27 @@ struct Coverage {
   double MeanSquare() const { return sum_of_squares / count; }
 };
 
+// Adds the errors of all coordinates after the best rigid motion. Returns the best motion with
+// scale.
+Sim3 AddCoordinates(const Model& model, const Model& truth, const PointCovariance& covariance,
+                    Coverage* coordinates) {
+  std::vector<Eigen::Vector3d> x_in_world, x_in_truth;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    x_in_world.push_back(point.x_in_world);
+    x_in_truth.push_back(truth.points3D.at(point3D_id).x_in_world);
+  }
+  const Rigid3 world_from_truth = EstimateRigid3(x_in_truth, x_in_world);
+  std::size_t i = 0;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    const Eigen::Vector3d error = point.x_in_world - world_from_truth * x_in_truth[i++];
+    const Eigen::Matrix3d of_point = PointCovarianceOf(covariance, point3D_id);
+    for (int axis = 0; axis < 3; ++axis) {
+      coordinates->Add(error[axis], std::sqrt(of_point(axis, axis)));
+    }
+  }
+  return EstimateSim3(x_in_truth, x_in_world);
+}
+
 // Errors that pass from one frame of a video to the next count as fewer frames: with independent
 // ones alone (1.7 times too small here) the mean square is 3 and 44 % lie within one sigma.
 TEST_F(Repetitions, ErrorsThatFramesHaveInCommonAreCounted) {
@@ -265,20 +286,7 @@ TEST_F(Repetitions, ErrorsThatFramesHaveInCommonAreCounted) {
     Model model = MakeSceneModel(noisy);
     const auto summary = AdjustWithMarkers(options, scene.layout, {}, &model);
     EXPECT_GT(summary.uncertainty.correlation_factor, 1.2);
-    std::vector<Eigen::Vector3d> x_in_world, x_in_truth;
-    for (const auto& [point3D_id, point] : model.points3D) {
-      x_in_world.push_back(point.x_in_world);
-      x_in_truth.push_back(truth.points3D.at(point3D_id).x_in_world);
-    }
-    const Rigid3 world_from_truth = EstimateRigid3(x_in_truth, x_in_world);
-    std::size_t i = 0;
-    for (const auto& [point3D_id, point] : model.points3D) {
-      const Eigen::Vector3d error = point.x_in_world - world_from_truth * x_in_truth[i++];
-      const Eigen::Matrix3d covariance = PointCovarianceOf(summary.uncertainty.points, point3D_id);
-      for (int axis = 0; axis < 3; ++axis) {
-        coordinates.Add(error[axis], std::sqrt(covariance(axis, axis)));
-      }
-    }
+    AddCoordinates(model, truth, summary.uncertainty.points, &coordinates);
   }
   EXPECT_NEAR(coordinates.Within1(), 0.683, 0.06);
   EXPECT_NEAR(coordinates.Within2(), 0.954, 0.03);
@@ -307,22 +315,8 @@ TEST_F(Repetitions, ErrorsAreWithinTheirSigmasAsOftenAsTheyShould) {
     const auto summary = AdjustWithMarkers(options, scene.layout, {}, &model);
     const PointCovariance& points = summary.uncertainty.points;
 
-    std::vector<Eigen::Vector3d> x_in_world, x_in_truth;
-    for (const auto& [point3D_id, point] : model.points3D) {
-      x_in_world.push_back(point.x_in_world);
-      x_in_truth.push_back(truth.points3D.at(point3D_id).x_in_world);
-    }
-    const Rigid3 world_from_truth = EstimateRigid3(x_in_truth, x_in_world);
-    std::size_t i = 0;
-    for (const auto& [point3D_id, point] : model.points3D) {
-      const Eigen::Vector3d error = point.x_in_world - world_from_truth * x_in_truth[i++];
-      const Eigen::Matrix3d covariance = PointCovarianceOf(points, point3D_id);
-      for (int axis = 0; axis < 3; ++axis) {
-        coordinates.Add(error[axis], std::sqrt(covariance(axis, axis)));
-      }
-    }
-    scales.Add(EstimateSim3(x_in_truth, x_in_world).scale - 1.0,
-               summary.uncertainty.relative_scale_sigma);
+    const Sim3 world_from_truth = AddCoordinates(model, truth, points, &coordinates);
+    scales.Add(world_from_truth.scale - 1.0, summary.uncertainty.relative_scale_sigma);
     for (const auto& [id1, id2] :
          {std::pair<Point3DId, Point3DId>{1, 54}, {1, 2}, {12, 41}, {23, 34}}) {
       const Eigen::Vector3d line =

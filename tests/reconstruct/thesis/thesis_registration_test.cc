@@ -24,25 +24,7 @@ Registration Register(const SyntheticScene& scene,
   return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, options);
 }
 
-int CentralIdx(const Registration& registration) {
-  return static_cast<int>(registration.central_image_id) - 1;
-}
-
-double MaxError(const Registration& registration, const SyntheticScene& scene) {
-  double max_error_m = 0;
-  for (const auto& [marker_id, points] : registration.shape) {
-    max_error_m = std::max(
-        max_error_m, RmsDistance(points, TruthInCam(scene, marker_id, CentralIdx(registration))));
-  }
-  return max_error_m;
-}
-
-struct Case {
-  SceneKind kind;
-  bool video;
-};
-
-class NoiseFreeRegistration : public testing::TestWithParam<Case> {};
+class NoiseFreeRegistration : public testing::TestWithParam<RegistrationCase> {};
 
 TEST_P(NoiseFreeRegistration, GivesTheTruthBack) {
   const SyntheticScene scene = MakeScene(GetParam().kind, 24, GetParam().video);
@@ -52,18 +34,18 @@ TEST_P(NoiseFreeRegistration, GivesTheTruthBack) {
   for (const RegisteredFrame& frame : registration.frames) {
     if (!frame.cam_from_shape) continue;
     EXPECT_TRUE(frame.outlier_ids.empty());
-    const Rigid3 truth =
-        scene.cam_from_world[frame.image_id - 1] *
-        Inverse(scene.cam_from_world[static_cast<std::size_t>(CentralIdx(registration))]);
-    EXPECT_LT((frame.cam_from_shape->translation - truth.translation).norm(), 1e-8);
+    EXPECT_LT((frame.cam_from_shape->translation -
+               TrueCamFromShape(registration, scene, frame.image_id).translation)
+                  .norm(),
+              1e-8);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NoiseFreeRegistration,
-                         testing::Values(Case{SceneKind::kSail, true},
-                                         Case{SceneKind::kSail, false},
-                                         Case{SceneKind::kPlane, true},
-                                         Case{SceneKind::kCube, false}));
+                         testing::Values(RegistrationCase{SceneKind::kSail, true},
+                                         RegistrationCase{SceneKind::kSail, false},
+                                         RegistrationCase{SceneKind::kPlane, true},
+                                         RegistrationCase{SceneKind::kCube, false}));
 
 TEST(Registration, ImagesThatShareNothingWithTheCentralOneAreReachedThroughOthers) {
   const SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);

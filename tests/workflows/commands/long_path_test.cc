@@ -14,7 +14,7 @@
 #include "tests/importer/marker_builders.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
-#include "tests/workflows/commands/true_model.h"
+#include "tests/support/true_model.h"
 #include "tests/workflows/run_velamap.h"
 
 namespace velamap {
@@ -64,7 +64,7 @@ class LongPathTest : public ::testing::TestWithParam<std::string> {
     options.num_frames = 8;
     options.video = false;
     const SyntheticScene scene = MakeSyntheticScene(options);
-    WriteModel(TrueModel(scene), path("model"), ModelFormat::kBinary);
+    WriteModel(TrueModel(scene, kOtherUnit_m), path("model"), ModelFormat::kBinary);
     {
       ColmapDatabase database(path("database.db"), ColmapDatabase::Mode::kReadWriteCreate);
       const CameraId camera_id = database.AddCamera(scene.camera);

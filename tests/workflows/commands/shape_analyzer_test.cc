@@ -1,8 +1,8 @@
 // shape_analyzer: the same figures on stdout and in files, and input that does not fit together.
 
 #include "reconstruct/model/model_io.h"
+#include "tests/support/true_model.h"
 #include "tests/workflows/commands/stages_fixture.h"
-#include "tests/workflows/commands/true_model.h"
 
 namespace velamap {
 namespace {
@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 class ShapeAnalyzerCommandTest : public StagesTest {};
 
 TEST_F(ShapeAnalyzerCommandTest, SaysTheSameOnStdoutAndInItsFiles) {
-  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
   ASSERT_EQ(Export().exit_code, 0);
   WriteTextFile(dir_ / "layout.yml",
                 "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n"
@@ -63,7 +63,7 @@ TEST_F(ShapeAnalyzerCommandTest, SaysTheSameOnStdoutAndInItsFiles) {
 }
 
 TEST_F(ShapeAnalyzerCommandTest, NoticesTheModelOfAnotherShape) {
-  Model model = TrueModel(scene_);
+  Model model = TrueModel(scene_, kOtherUnit_m);
   WriteModel(model, path("model"), ModelFormat::kBinary);
   ASSERT_EQ(Export().exit_code, 0);
   const std::vector<std::string> arguments = {"shape_analyzer", "--shape_path", path("shape"),
@@ -83,7 +83,7 @@ TEST_F(ShapeAnalyzerCommandTest, NoticesTheModelOfAnotherShape) {
 }
 
 TEST_F(ShapeAnalyzerCommandTest, OutputThatCannotBeWritten) {
-  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
   ASSERT_EQ(Export().exit_code, 0);
   for (const char* option : {"--csv_path", "--json_path"}) {
     ExpectError(RunVelamap({"shape_analyzer", "--shape_path", path("shape"), "--part_planes", "1",

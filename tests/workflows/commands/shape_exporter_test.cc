@@ -9,7 +9,7 @@
 #include "exporters/formats/shape_csv.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/support/temp_dir.h"
-#include "tests/workflows/commands/true_model.h"
+#include "tests/support/true_model.h"
 #include "tests/workflows/run_velamap.h"
 
 namespace velamap {
@@ -43,7 +43,7 @@ std::string LayoutText(const Layout& layout) {
 class ShapeExporterCommandTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    WriteModel(TrueModel(sail_), path("model"), ModelFormat::kBinary);
+    WriteModel(TrueModel(sail_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
     WriteTextFile(dir_ / "layout.yml", LayoutText(sail_.layout));
   }
 

@@ -4,8 +4,8 @@
 
 #include "exporters/formats/shape_csv.h"
 #include "reconstruct/model/model_io.h"
+#include "tests/support/true_model.h"
 #include "tests/workflows/commands/stages_fixture.h"
-#include "tests/workflows/commands/true_model.h"
 
 namespace velamap {
 namespace {
@@ -142,7 +142,7 @@ TEST_F(StagesTest, FullDiskLeavesTheOldModel) {
 }
 
 TEST_F(StagesTest, ExporterGivesTheTruthBack) {
-  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
   const ProgramRun run = Export();
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("scale_m_per_unit: 2\n"));
@@ -163,13 +163,13 @@ TEST_F(StagesTest, ExporterGivesTheTruthBack) {
 }
 
 TEST_F(StagesTest, ExporterOnAFullDiskLeavesNothing) {
-  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
   ExpectError(Export({1000}), 2, "shape.csv: cannot be written");
   EXPECT_THAT(ListFolder(dir_.path()), ElementsAre("model"));
 }
 
 TEST_F(StagesTest, ExporterRefusesAFolderWithOtherFiles) {
-  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
   fs::create_directory(dir_ / "shape");
   WriteTextFile(dir_ / "shape/thesis.tex", "text");
   ExpectError(Export(), 2, "thesis.tex");
@@ -177,7 +177,7 @@ TEST_F(StagesTest, ExporterRefusesAFolderWithOtherFiles) {
 }
 
 TEST_F(StagesTest, TruncatedModelNamesItsFile) {
-  WriteModel(TrueModel(scene_), path("model"), ModelFormat::kBinary);
+  WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
   fs::resize_file(dir_ / "model/points3D.bin", 100);
   ExpectError(Export(), 2, "points3D.bin");
 }
