@@ -34,7 +34,7 @@ ReportFrame FrameOfCentralCamera(const Model& model) {
 Json KeyNumbersJson(const ReportInput& input) {
   Json numbers = Json::array();
   for (const KeyNumber& number : MakeKeyNumbers(input)) {
-    numbers.push_back({{"name", number.name},
+    numbers.push_back({{"name", KeyNumberName(number.kind)},
                        {"value", number.value},
                        {"meaning", number.meaning},
                        {"status", StatusName(number.status)}});

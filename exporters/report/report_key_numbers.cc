@@ -39,7 +39,7 @@ ReportStatus HighIsGood(double value, double good, double bad) {
 }
 
 KeyNumber MarkersNumber(const ShapeMetrics& metrics) {
-  KeyNumber number{"Markers", fmt::format("{}", metrics.num_markers),
+  KeyNumber number{KeyNumberKind::kMarkers, fmt::format("{}", metrics.num_markers),
                    "markers with all four corners reconstructed", ReportStatus::kNone};
   if (metrics.reconstruction_ratio) {
     const double ratio = *metrics.reconstruction_ratio;
@@ -61,7 +61,7 @@ std::optional<KeyNumber> DictionaryNumber(const ReportInput& input) {
   if (input.num_ids_found == 0) return std::nullopt;
   const auto num_fitting = static_cast<int>(input.shape.markers.size());
   return KeyNumber{
-      "Dictionary", fmt::format("{} of {} ids fit", num_fitting, input.num_ids_found),
+      KeyNumberKind::kDictionary, fmt::format("{} of {} ids fit", num_fitting, input.num_ids_found),
       fmt::format("ids found in the images that are part of the shape; good from {:.0f} %",
                   100 * kGoodIdShare),
       HighIsGood(static_cast<double>(num_fitting) / input.num_ids_found, kGoodIdShare, kBadIdShare),
@@ -72,12 +72,12 @@ std::optional<KeyNumber> DictionaryNumber(const ReportInput& input) {
 KeyNumber ImagesNumber(const ReportInput& input) {
   const std::size_t num_used = input.metric_model.images.size();
   const std::size_t num_all = num_used + input.images_left_out.size();
-  return {"Images", fmt::format("{} of {}", num_used, num_all),
+  return {KeyNumberKind::kImages, fmt::format("{} of {}", num_used, num_all),
           "used; the others are listed below with reasons", ReportStatus::kNone};
 }
 
 KeyNumber ErrorNumber(const Statistics& error_px) {
-  return {"Reprojection error",
+  return {KeyNumberKind::kReprojectionError,
           fmt::format("{:.3f} px mean, {:.2f} px at most", error_px.mean, error_px.max),
           fmt::format("distance between detected and projected corners; good up to a mean of {:g} "
                       "px, above {:g} px the shape may be wrong",
@@ -89,7 +89,7 @@ KeyNumber ErrorNumber(const Statistics& error_px) {
 
 KeyNumber AreaNumber(const ShapeMetrics& metrics) {
   const Statistics& percent = metrics.area_error_percent;
-  return {"Marker area error",
+  return {KeyNumberKind::kMarkerAreaError,
           fmt::format("{:.2f} % mean, {:.2f} % at most", percent.mean, percent.max),
           fmt::format("difference from the printed area; good up to a mean of {:g} %",
                       kGoodAreaError_percent),
@@ -147,7 +147,7 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
   if (uncertainty == nullptr || uncertainty->calibration.num_changes == 0) return std::nullopt;
   const CalibrationEvidence& evidence = uncertainty->calibration;
   return KeyNumber{
-      "Calibration",
+      KeyNumberKind::kCalibration,
       fmt::format("{:.3f} px systematic, {:.2g} sigmas of the shape", evidence.systematic_px,
                   evidence.shape_change_in_sigmas),
       fmt::format("part of the residuals and of the markers' sides over the image that another "
@@ -176,7 +176,7 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
     value = fmt::format("\u00b1{:.3f} %, {}", 100 * *scale.relative_sigma, value);
   }
   KeyNumber number{
-      "Scale", value,
+      KeyNumberKind::kScale, value,
       fmt::format("standard deviations of the metric scale and of the scales from each of {} "
                   "markers alone; good up to {:g} % spread",
                   scale.num_markers, kGoodScaleSpread_percent),
@@ -220,7 +220,7 @@ std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit) {
   }
   const auto num_failed = static_cast<int>(FailedChecks(audit).size());
   const int num_checks = NumChecks(audit), num_all = static_cast<int>(audit.distances.size());
-  KeyNumber number{"Measured distances",
+  KeyNumber number{KeyNumberKind::kMeasuredDistances,
                    num_failed > 0 ? fmt::format("{} of {} checks failed", num_failed, num_checks)
                                   : fmt::format("{} of {}", num_found, num_all),
                    fmt::format("{} of {} distances are in the shape, {} of them as checks of it; "
@@ -255,7 +255,7 @@ KeyNumber SizeNumber(const MarkerShape& shape) {
   if (!box.isEmpty()) size = box.sizes();
   const bool is_small = size.maxCoeff() < 1;
   const Eigen::Vector3d shown = is_small ? kMmPerM * size : size;
-  return {"Size",
+  return {KeyNumberKind::kSize,
           fmt::format("{:.4g} \u00d7 {:.4g} \u00d7 {:.4g} {}", shown.x(), shown.y(), shown.z(),
                       is_small ? "mm" : "m"),
           "bounding box of all corners along x, y and z of the shape's frame", ReportStatus::kNone};
@@ -267,7 +267,7 @@ std::optional<KeyNumber> PrecisionNumber(const MarkerShape& shape) {
     if (marker.sigma_m[0]) sigmas_mm.push_back(kMmPerM * marker.sigma_m[0]->norm());
   }
   if (sigmas_mm.empty()) return std::nullopt;
-  return KeyNumber{"Precision",
+  return KeyNumber{KeyNumberKind::kPrecision,
                    fmt::format("{:.3g} mm median, {:.3g} mm at most", Median(sigmas_mm),
                                *std::max_element(sigmas_mm.begin(), sigmas_mm.end())),
                    "1 sigma of a marker's centre in space, including the scale",
@@ -294,6 +294,32 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
   if (const auto precision = PrecisionNumber(input.shape)) numbers.push_back(*precision);
   numbers.push_back(SizeNumber(input.shape));
   return numbers;
+}
+
+std::string KeyNumberName(KeyNumberKind kind) {
+  switch (kind) {
+    case KeyNumberKind::kDictionary:
+      return "Dictionary";
+    case KeyNumberKind::kMeasuredDistances:
+      return "Measured distances";
+    case KeyNumberKind::kCalibration:
+      return "Calibration";
+    case KeyNumberKind::kScale:
+      return "Scale";
+    case KeyNumberKind::kReprojectionError:
+      return "Reprojection error";
+    case KeyNumberKind::kMarkerAreaError:
+      return "Marker area error";
+    case KeyNumberKind::kMarkers:
+      return "Markers";
+    case KeyNumberKind::kImages:
+      return "Images";
+    case KeyNumberKind::kPrecision:
+      return "Precision";
+    case KeyNumberKind::kSize:
+      return "Size";
+  }
+  return {};
 }
 
 std::string StatusName(ReportStatus status) {

@@ -16,8 +16,26 @@ enum class ReportStatus {
   kBad,    // find the cause before using the shape
 };
 
+// The heaviest first: of two that are equally bad, a verdict names the earlier one first. What was
+// measured outside of the images comes before causes, and these before effects.
+enum class KeyNumberKind {
+  kDictionary,
+  kMeasuredDistances,
+  kCalibration,
+  kScale,
+  kReprojectionError,
+  kMarkerAreaError,
+  kMarkers,
+  kImages,
+  kPrecision,
+  kSize,
+};
+
+// The title of its card.
+std::string KeyNumberName(KeyNumberKind kind);
+
 struct KeyNumber {
-  std::string name;
+  KeyNumberKind kind;
   std::string value;    // with its unit
   std::string meaning;  // one line, with the limits of the verdict
   ReportStatus status = ReportStatus::kNone;

@@ -1,39 +1,24 @@
 #include "exporters/report/verdict.h"
 
 #include <algorithm>
-#include <array>
 #include <ostream>
 #include <set>
 
 #include <fmt/format.h>
 
 namespace velamap {
-namespace {
-
-// The names of key numbers by weight.
-constexpr std::array<const char*, 7> kNames = {
-    "Dictionary",         "Measured distances", "Calibration", "Scale",
-    "Reprojection error", "Marker area error",  "Markers"};
-
-int WeightOf(const KeyNumber& number) {
-  return static_cast<int>(std::find(kNames.begin(), kNames.end(), number.name) - kNames.begin());
-}
-
-}  // namespace
-
 Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
                     const std::vector<std::string>& warnings) {
   std::vector<KeyNumber> doubtful;
   for (const KeyNumber& number : numbers) {
     if (number.status > ReportStatus::kGood) doubtful.push_back(number);
   }
-  std::stable_sort(doubtful.begin(), doubtful.end(), [](const KeyNumber& a, const KeyNumber& b) {
-    return WeightOf(a) < WeightOf(b);
-  });
+  std::stable_sort(doubtful.begin(), doubtful.end(),
+                   [](const KeyNumber& a, const KeyNumber& b) { return a.kind < b.kind; });
   Verdict verdict;
   for (const KeyNumber& number : doubtful) {
     verdict.reasons.push_back(
-        {number.status, fmt::format("{}: {}{}{}", number.name, number.value,
+        {number.status, fmt::format("{}: {}{}{}", KeyNumberName(number.kind), number.value,
                                     number.advice.empty() ? "" : "; ", number.advice)});
   }
   std::set<std::string> said;  // the log repeats a warning for each step that meets it

@@ -21,9 +21,8 @@ struct Verdict {
   std::vector<VerdictReason> reasons;        // the heaviest first; empty for kGood
 };
 
-// Every key number that is not good is a reason, every warning one to check. Bad ones come first;
-// of the same level, the dictionary and what was measured outside (distances) come before causes
-// (calibration, scale), these before effects (markers, errors), and warnings last.
+// Every key number that is not good is a reason, and every warning is a reason to check. Bad ones
+// come first; of the same level, key numbers in the order of KeyNumberKind, then warnings.
 Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
                     const std::vector<std::string>& warnings);
 Verdict MakeVerdict(const ReportInput& input);

@@ -14,8 +14,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-KeyNumber Number(const std::string& name, ReportStatus status) {
-  return {name, "3 px", "meaning", status, "do this"};
+KeyNumber Number(KeyNumberKind kind, ReportStatus status) {
+  return {kind, "3 px", "meaning", status, "do this"};
 }
 
 // A calibration that the residuals contradict by far.
@@ -33,8 +33,9 @@ AdjustmentUncertainty Doubtful(double focal_share, double distortion_share) {
 }
 
 TEST(Verdict, IsGoodWithoutAReason) {
-  const Verdict verdict =
-      MakeVerdict({Number("Scale", ReportStatus::kGood), Number("Size", ReportStatus::kNone)}, {});
+  const Verdict verdict = MakeVerdict({Number(KeyNumberKind::kScale, ReportStatus::kGood),
+                                       Number(KeyNumberKind::kSize, ReportStatus::kNone)},
+                                      {});
   EXPECT_EQ(verdict.level, ReportStatus::kGood);
   EXPECT_THAT(verdict.reasons, IsEmpty());
   std::ostringstream out;
@@ -43,10 +44,12 @@ TEST(Verdict, IsGoodWithoutAReason) {
 }
 
 TEST(Verdict, BadComesBeforeCheckAndCausesBeforeEffectsAndWarningsLast) {
-  const Verdict verdict = MakeVerdict(
-      {Number("Markers", ReportStatus::kBad), Number("Reprojection error", ReportStatus::kCheck),
-       Number("Calibration", ReportStatus::kBad), Number("Scale", ReportStatus::kCheck)},
-      {"a warning", "another", "a warning"});
+  const Verdict verdict =
+      MakeVerdict({Number(KeyNumberKind::kMarkers, ReportStatus::kBad),
+                   Number(KeyNumberKind::kReprojectionError, ReportStatus::kCheck),
+                   Number(KeyNumberKind::kCalibration, ReportStatus::kBad),
+                   Number(KeyNumberKind::kScale, ReportStatus::kCheck)},
+                  {"a warning", "another", "a warning"});
   std::ostringstream out;
   PrintVerdict(verdict, out);
   EXPECT_EQ(out.str(),
@@ -91,8 +94,9 @@ TEST(Verdict, AScaleThatRestsOnADoubtfulCalibrationIsNotGreen) {
   const AdjustmentUncertainty uncertainty = Doubtful(0.9, 0.9);
   input.uncertainty = &uncertainty;
   const std::vector<KeyNumber> numbers = MakeKeyNumbers(input);
-  const auto scale = std::find_if(numbers.begin(), numbers.end(),
-                                  [](const KeyNumber& n) { return n.name == "Scale"; });
+  const auto scale = std::find_if(numbers.begin(), numbers.end(), [](const KeyNumber& n) {
+    return n.kind == KeyNumberKind::kScale;
+  });
   ASSERT_NE(scale, numbers.end());
   EXPECT_EQ(scale->status, ReportStatus::kCheck);
 }
