@@ -183,7 +183,7 @@ OptionGroup DescribeOptions(SectionOptions* options) {
     const auto heights_m = ParseNumberList<double>(text);
     if (!heights_m) {
       throw InputError(
-          fmt::format("{}: '{}' is no list of heights in m such as 1,2.5,4", option, text));
+          fmt::format("{}: '{}' is not a list of heights in m such as 1,2.5,4", option, text));
     }
     options->heights_m = *heights_m;
   };
@@ -204,7 +204,8 @@ void SectionOptions::Check() const {
   }
   for (const double height_m : heights_m) {
     if (!std::isfinite(height_m)) {
-      throw InputError(fmt::format("{}: {} is no height; give numbers of metres", name, height_m));
+      throw InputError(
+          fmt::format("{}: {} is not a height; give numbers of metres", name, height_m));
     }
   }
 }

@@ -1,5 +1,5 @@
 // Numbers from text. They are decimal, do not depend on the locale, and fill the whole text: 010 is
-// ten, and "1x" or " 1" are no numbers.
+// ten, and "1x" or " 1" are not numbers.
 
 #pragma once
 

@@ -15,7 +15,7 @@ std::string ReadTextFile(const std::string& path, const std::string& what) {
     throw InputError(fmt::format("{}: there is no such {}", path.empty() ? "''" : path, what));
   }
   if (!IsRegularFile(path)) {
-    throw InputError(fmt::format("{}: the {} is no regular file", path, what));
+    throw InputError(fmt::format("{}: the {} is not a regular file", path, what));
   }
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());

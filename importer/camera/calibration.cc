@@ -75,7 +75,7 @@ std::vector<double> ReadPinholeParams(const cv::FileStorage& storage, const std:
   const std::string key = "camera_matrix";
   const std::vector<double> k = ReadMatrix(RequireKey(storage, path, key), path, key);
   if (k.size() != 9) {
-    Fail(path, fmt::format("key '{}': 3x3 values are expected, found {}", key, k.size()));
+    Fail(path, fmt::format("key '{}': expected 3x3 values, found {}", key, k.size()));
   }
   const bool affine = k[3] == 0 && k[6] == 0 && k[7] == 0 && k[8] == 1;
   if (!affine || k[1] != 0) {
@@ -105,7 +105,7 @@ void AppendDistortion(std::vector<double> distortion, bool fisheye, const std::s
   std::vector<double>& params = camera->params;
   if (fisheye) {
     if (distortion.size() != 4) {
-      Fail(path, fmt::format("key '{}': 4 values are expected for a fisheye camera, found {}", key,
+      Fail(path, fmt::format("key '{}': expected 4 values for a fisheye camera, found {}", key,
                              distortion.size()));
     }
     camera->model = CameraModel::kOpenCVFisheye;
@@ -115,7 +115,7 @@ void AppendDistortion(std::vector<double> distortion, bool fisheye, const std::s
   const std::size_t size = distortion.size();
   const bool known_size = size == 0 || size == 4 || size == 5 || size == 8;
   if (!known_size && !((size == 12 || size == 14) && AllZero(distortion, 8))) {
-    Fail(path, fmt::format("key '{}': none, 4, 5 or 8 values are expected, found {} (thin prism "
+    Fail(path, fmt::format("key '{}': expected 0, 4, 5 or 8 values, found {} (thin prism "
                            "and tilt have no COLMAP camera model; calibrate without them)",
                            key, size));
   }
@@ -170,7 +170,7 @@ Camera ParseColmapCameraLine(const std::string& line, const std::string& place) 
   while (stream >> value) camera.params.push_back(value);
   const std::size_t num_params = static_cast<std::size_t>(NumCameraParams(camera.model));
   if (!stream.eof() || camera.params.size() != num_params) {
-    Fail(place, fmt::format("{} parameters are expected for {}, found {} numbers", num_params,
+    Fail(place, fmt::format("expected {} parameters for {}, found {} numbers", num_params,
                             model_name, camera.params.size()));
   }
   if (!(MeanFocalLength(camera) > 0)) Fail(place, "the focal length must be positive");

@@ -106,7 +106,7 @@ void CheckDatabaseFile(const std::string& path, bool writing) {
   stream.read(begin, sizeof(begin));
   const bool empty = stream.gcount() == 0 && stream.eof();
   if (!empty && std::memcmp(begin, kMagic, sizeof(kMagic)) != 0) {
-    throw InputError(fmt::format("{}: no SQLite database; choose another file", path));
+    throw InputError(fmt::format("{}: not an SQLite database; choose another file", path));
   }
 }
 
@@ -114,7 +114,7 @@ void CheckColmapTables(const std::string& path, const SQLite::Database& database
   for (const char* table : kColmapTables) {
     if (!database.tableExists(table)) {
       throw InputError(
-          fmt::format("{}: a database of another program (no table '{}' of COLMAP); "
+          fmt::format("{}: the database of another program (no table '{}' of COLMAP); "
                       "choose another file",
                       path, table));
     }

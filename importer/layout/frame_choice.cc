@@ -54,10 +54,10 @@ FrameChoice ParseFrameChoice(const std::string& text, const std::string& what) {
   if (ParseFrameKeyword(text, &choice.kind)) return choice;
   const std::vector<int> ids = ParseIds(text);
   if (ids.size() != kNumIds || std::set<int>(ids.begin(), ids.end()).size() != kNumIds) {
-    throw InputError(
-        fmt::format("{}: '{}' is no frame; reference_part, lines, camera, or the ids of three "
-                    "different markers (origin,axis,plane) such as 12,15,40 are expected",
-                    what, text));
+    throw InputError(fmt::format(
+        "{}: '{}' is not a frame; expected reference_part, lines, camera, or the ids of three "
+        "different markers (origin,axis,plane) such as 12,15,40",
+        what, text));
   }
   choice.kind = FrameKind::kMarkers;
   choice.origin_id = ids[0];

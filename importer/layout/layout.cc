@@ -47,7 +47,7 @@ Layout MakeLayout(const std::string& dictionary, double marker_length_m) {
 void CheckMarkerLength(double length_m, const std::string& what) {
   if (!(length_m >= kMinMarkerLength_m && length_m <= kMaxMarkerLength_m)) {
     throw InputError(
-        fmt::format("{}: {} m is no marker side; give the outer edge of the black square in "
+        fmt::format("{}: {} m is not a marker side; give the outer edge of the black square in "
                     "metres, {} to {}",
                     what, length_m, kMinMarkerLength_m, kMaxMarkerLength_m));
   }

@@ -62,7 +62,7 @@ Layout ReadLayout(const std::string& path);
 // The layout of --dictionary and --marker_length: no lines, and every id is accepted.
 Layout MakeLayout(const std::string& dictionary, double marker_length_m);
 
-// Of the black square's outer edge.
+// The length of the black square's outer edge, m.
 constexpr double kMinMarkerLength_m = 1e-4, kMaxMarkerLength_m = 10.0;
 
 // Throws InputError for a length beyond these; `what` names the key or option.

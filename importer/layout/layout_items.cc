@@ -16,7 +16,7 @@ namespace {
 double ReadPositiveMetres(const YamlItem& item) {
   const double length_m = ReadMetres(item);
   if (!std::isfinite(length_m) || length_m <= 0) {
-    item.Fail(fmt::format("{} m is no length; a positive number of metres is expected", length_m));
+    item.Fail(fmt::format("{} m is not a length; expected a positive number of metres", length_m));
   }
   return length_m;
 }
@@ -42,7 +42,7 @@ void ReadMarkerPoint(const YamlItem& item, int* marker_id, int* corner) {
                                    *corner <= kNumCorners && text.size() == dot + 2);
   if (!is_corner || !ParseMarkerId(text.substr(0, dot), marker_id)) {
     item.Fail(
-        fmt::format("'{}' is no point of a marker; expected is the id for its centre, or id.corner "
+        fmt::format("'{}' is not a point of a marker; expected the id for its centre, or id.corner "
                     "(1 to 4) for a corner, such as 12 or 12.1",
                     text));
   }
@@ -85,7 +85,7 @@ KnownDistance ReadDistance(const YamlItem& item) {
                  {"use", [&](const YamlItem& v) { distance.is_scale_bar = ReadUse(v); }}});
   if (!missing.empty()) {
     item.Fail(
-        fmt::format("key '{}' is missing; expected is such as {{from: 12, to: 45, length: "
+        fmt::format("key '{}' is missing; expected an entry like {{from: 12, to: 45, length: "
                     "2.315, sigma: 0.002}} (m)",
                     *missing.begin()));
   }
@@ -110,7 +110,7 @@ FrameChoice ReadFrameMarkers(const YamlItem& map) {
         std::pair(frame.plane_id, "plane")}) {
     if (id < 0) {
       map.Fail(
-          fmt::format("key '{}' is missing; expected is such as {{origin: 12, axis: 15, "
+          fmt::format("key '{}' is missing; expected an entry like {{origin: 12, axis: 15, "
                       "plane: 40}} (marker ids)",
                       key));
     }
@@ -130,7 +130,7 @@ bool ParseMarkerId(const std::string& text, int* id) {
 int ReadMarkerId(const YamlItem& item) {
   int id = -1;
   if (!ParseMarkerId(item.Text(), &id)) {
-    item.Fail(fmt::format("'{}' is no marker id; whole numbers from 0 to {} are expected",
+    item.Fail(fmt::format("'{}' is not a marker id; expected a whole number from 0 to {}",
                           item.Text(), kMaxMarkerId));
   }
   return id;
@@ -140,7 +140,7 @@ double ReadMetres(const YamlItem& item) {
   double length_m = 0.0;
   if (!ParseNumber(item.Text(), &length_m)) {
     item.Fail(
-        fmt::format("'{}' is no number; a length in metres is expected, such as 0.1", item.Text()));
+        fmt::format("'{}' is not a number; expected a length in metres, such as 0.1", item.Text()));
   }
   return length_m;
 }
@@ -163,10 +163,10 @@ FrameChoice ReadFrame(const YamlItem& item, const Layout& layout) {
   }
   FrameChoice frame;
   if (!ParseFrameKeyword(item.Text(), &frame.kind)) {
-    item.Fail(
-        fmt::format("'{}' is no frame; reference_part, lines, camera, or three markers such "
-                    "as {{origin: 12, axis: 15, plane: 40}} are expected",
-                    item.Text()));
+    item.Fail(fmt::format(
+        "'{}' is not a frame; expected reference_part, lines, camera, or three markers such "
+        "as {{origin: 12, axis: 15, plane: 40}}",
+        item.Text()));
   }
   if (frame.kind == FrameKind::kReferencePart && !layout.reference_part) {
     item.Fail("the frame of the reference part needs the key 'reference_part'");

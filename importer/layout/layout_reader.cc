@@ -108,7 +108,7 @@ std::map<int, double> ReadMarkerLengths(const YamlItem& item) {
   ForEachKey(item, [&](const std::string& name, const YamlItem& value) {
     int id = -1;
     if (!ParseMarkerId(name, &id)) {
-      value.Fail(fmt::format("'{}' is no marker id; {{id: length in m}} is expected", name));
+      value.Fail(fmt::format("'{}' is not a marker id; expected {{id: length in m}}", name));
     }
     lengths_m[id] = ReadMarkerLength(value);
   });

@@ -18,7 +18,7 @@ using PriorShape = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 // decide do not count.
 struct PriorShapeAgreement {
   int num_known = 0;     // detected markers that the prior shape holds
-  int num_agreeing = 0;  // those of them that one camera pose of the frame explains
+  int num_agreeing = 0;  // known markers that one camera pose of the frame explains
 
   PriorShapeAgreement& operator+=(const PriorShapeAgreement& other) {
     num_known += other.num_known;

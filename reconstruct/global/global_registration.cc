@@ -41,7 +41,7 @@ void ChooseFrames(GlobalRegistration* global) {
     }
   }
   global->reason_of_image.assign(global->images.size(),
-                                 "not chosen: frames next to it show more or are sharper");
+                                 "not chosen: frames next to it show more markers or are sharper");
   for (const int idx : chosen) global->reason_of_image[static_cast<std::size_t>(idx)].clear();
   global->image_idx_of_frame = std::move(chosen);
 }

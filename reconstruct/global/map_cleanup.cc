@@ -127,11 +127,10 @@ void DropWrongSizes(GlobalRegistration* global) {
     if (places.empty()) continue;
     const double ratio = places.front().scale / median_scale;
     if (ratio < kMaxSizeRatio && ratio > 1 / kMaxSizeRatio) continue;
-    global->Drop(
-        static_cast<int>(idx),
-        fmt::format("its side comes out {:.2f} times as long as marker_length says: a wrong "
-                    "length in the layout, or a false square with its id",
-                    ratio));
+    global->Drop(static_cast<int>(idx),
+                 fmt::format("its side is {:.2f} times as long as marker_length: a wrong "
+                             "length in the layout, or a false square with its id",
+                             ratio));
   }
 }
 

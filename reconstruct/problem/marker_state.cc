@@ -23,7 +23,7 @@ MarkerState MakeMarkerState(const Model& model, const Layout& layout) {
   for (const auto& [point3D_id, point] : model.points3D) {
     if (!IsCornerPoint3DId(point3D_id)) {
       throw DataError(fmt::format(
-          "point {} of the model is no marker corner (corner c of marker k is point 10 k + c)",
+          "point {} of the model is not a marker corner (corner c of marker k is point 10 k + c)",
           point3D_id));
     }
     const CornerId id = CornerFromPoint3DId(point3D_id);

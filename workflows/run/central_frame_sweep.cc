@@ -45,7 +45,7 @@ std::vector<int> ChooseEvery(const std::string& choice, const std::string& count
                              const PosedImages& posed) {
   int step = 0;
   if (!ParseNumber(count, &step) || step < 1) {
-    ThrowBadChoice(choice, fmt::format("'{}' is no count of 1 or more", count));
+    ThrowBadChoice(choice, fmt::format("'{}' is not a count of 1 or more", count));
   }
   std::vector<int> chosen;
   const auto number = [&posed](int idx) {

@@ -89,7 +89,7 @@ TEST(ReadCalibration, NamesFileAndKeyOfAnError) {
   expect("%YAML:1.0\n---\nimage_height: 480\n", "'image_width' is missing");
   expect("%YAML:1.0\n---\nimage_width: -3\nimage_height: 480\n", "'image_width'");
   expect(size, "'camera_matrix' is missing");
-  expect(size + "camera_matrix: [1., 2.]\n", "3x3 values are expected, found 2");
+  expect(size + "camera_matrix: [1., 2.]\n", "expected 3x3 values, found 2");
   expect(size + "camera_matrix: [0., 0., 320., 0., 500., 240., 0., 0., 1.]\n", "focal lengths");
   expect(size + "camera_matrix: [500., 3., 320., 0., 500., 240., 0., 0., 1.]\n", "no skew");
   expect(size + "camera_matrix: [.Nan, 0., 320., 0., 500., 240., 0., 0., 1.]\n", "not finite");
@@ -117,9 +117,9 @@ TEST(ReadCalibration, NamesTheLineOfCamerasTxt) {
   expect("# nothing\n", 0, "no camera");
   expect("image_width: 640\n", 1, "CAMERA_ID MODEL WIDTH HEIGHT");
   expect("# c\n1 FOV 640 480 1 2 3\n", 2, "'FOV' is not supported");
-  expect("1 PINHOLE 640 480 500 500 320\n", 1, "4 parameters are expected");
-  expect("1 PINHOLE 640 480 500 500 320 240 7\n", 1, "4 parameters are expected");
-  expect("1 PINHOLE 640 480 500 x 320 240\n", 1, "4 parameters are expected");
+  expect("1 PINHOLE 640 480 500 500 320\n", 1, "expected 4 parameters");
+  expect("1 PINHOLE 640 480 500 500 320 240 7\n", 1, "expected 4 parameters");
+  expect("1 PINHOLE 640 480 500 x 320 240\n", 1, "expected 4 parameters");
   expect("1 PINHOLE 0 480 500 500 320 240\n", 1, "image size");
   expect("1 PINHOLE 640 480 500 500 320 240\n2 PINHOLE 640 480 500 500 320 240\n", 2, "second");
 }

@@ -309,8 +309,8 @@ TEST(ColmapDatabase, NamesWhatIsWrongWithAFile) {
   expect(dir / "no/folder.db", Mode::kReadWriteCreate, "no folder");
   expect(dir.path(), Mode::kReadWriteCreate, "no regular file");
   std::ofstream(dir / "text.db") << "some text that is no database, long enough";
-  expect(dir / "text.db", Mode::kReadOnly, "no SQLite database");
-  expect(dir / "text.db", Mode::kReadWriteCreate, "no SQLite database");
+  expect(dir / "text.db", Mode::kReadOnly, "not an SQLite database");
+  expect(dir / "text.db", Mode::kReadWriteCreate, "not an SQLite database");
   std::ofstream(dir / "empty.db").close();
   expect(dir / "empty.db", Mode::kReadOnly, "another program");
   SQLite::Database(dir / "other.db", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)

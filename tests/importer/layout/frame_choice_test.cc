@@ -43,7 +43,7 @@ TEST(ParseFrameChoice, RefusesEverythingElse) {
   for (const char* text : {"", "hull", "Lines", "1,2", "1,2,3,4", "1,2,2", "1,2,", "1, 2,3",
                            "1,2,x", "1,2,-3", "1,2,99999"}) {
     ExpectThrows<InputError>([&] { ParseFrameChoice(text, "--frame"); },
-                             {"--frame: '" + std::string(text) + "' is no frame", "12,15,40"});
+                             {"--frame: '" + std::string(text) + "' is not a frame", "12,15,40"});
   }
 }
 
@@ -73,13 +73,13 @@ TEST(ReadLayout, RefusesBadFrames) {
     ExpectThrows<InputError>([&] { ReadLayout(WriteLayout(dir, frame)); },
                              {"layout.yml:9: frame", problem});
   };
-  expect("frame: markers", "'markers' is no frame");
-  expect("frame: [1, 2, 3]", "is no frame");
+  expect("frame: markers", "'markers' is not a frame");
+  expect("frame: [1, 2, 3]", "is not a frame");
   expect("frame: {origin: 1, axis: 3}", "key 'plane' is missing");
   expect("frame: {origin: 1, axis: 3, plane: 3}", "three different markers");
   expect("frame: {origin: 1, axis: 3, plane: 77}", "marker 77 is in no part");
   expect("frame: {origin: 1, axis: 3, plain: 2}", "unknown key");
-  expect("frame: {origin: 1, axis: x, plane: 2}", "'x' is no marker id");
+  expect("frame: {origin: 1, axis: x, plane: 2}", "'x' is not a marker id");
   const std::string path = dir / "flat.yml";
   std::ofstream(path) << "dictionary: D\nmarker_length: 0.1\nframe: lines\n";
   ExpectThrows<InputError>([&] { ReadLayout(path); }, {"flat.yml:3: frame", "horizontal lines"});

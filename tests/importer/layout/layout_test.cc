@@ -103,7 +103,7 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
   for (const char* length : {"0", "-0.1", "0.00001", "100", "nan", "inf"}) {
     expect(std::string("dictionary: D\nmarker_length: ") + length + "\n", 2, "marker_length");
   }
-  expect(head + "marker_lengths: {x: 0.1}\n", 3, "'x' is no marker id");
+  expect(head + "marker_lengths: {x: 0.1}\n", 3, "'x' is not a marker id");
   expect(head + "marker_lengths: {5: 100}\n", 3, "marker_lengths.5: 100 m");
   expect(head + "border_bits: 0\n", 3, "border_bits");
   expect(head + "parts:\n", 3, "parts: has no value");
@@ -111,7 +111,7 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAnError) {
   expect(head + "parts: {sail: {}}\n", 3, "parts.sail: the part has no markers");
   expect(head + "parts:\n  sail:\n    markers: [1, -2]\n", 5, "parts.sail.markers[1]: '-2'");
   expect(head + "parts:\n  sail:\n    markers: [1, 9000]\n", 5, "0 to 8191");
-  expect(head + "parts:\n  sail:\n    markers: [1, 2.5]\n", 5, "'2.5' is no marker id");
+  expect(head + "parts:\n  sail:\n    markers: [1, 2.5]\n", 5, "'2.5' is not a marker id");
   expect(head + "parts:\n  sail:\n    markers: 7\n", 5, "a list is expected");
   expect(head + "parts:\n  sail:\n    rigid: perhaps\n", 5, "true or false");
   expect(head + "parts:\n  sail:\n    horizontal:\n      - {name: h, markers: [1, 2, 1]}\n", 6,
@@ -150,11 +150,11 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAWrongDistance) {
            ".length: " + std::string(length));
     expect(std::string("{from: 12, to: 45, length: 1, sigma: ") + length + "}", ".sigma: ");
   }
-  expect("{from: 12, to: 45, length: 2 m, sigma: 0.01}", "'2 m' is no number");
+  expect("{from: 12, to: 45, length: 2 m, sigma: 0.01}", "'2 m' is not a number");
   for (const char* point :
        {"12.5", "12.0", "12.", "12.10", ".1", "-3", "x", "9000", "12.1.1", "[1]"}) {
     expect(std::string("{to: 12, length: 1, sigma: 0.01, from: ") + point + "}",
-           "is no point of a marker");
+           "is not a point of a marker");
   }
   const std::string empty =
       WriteLayout(dir, "dictionary: DICT_4X4_50\nmarker_length: 0.1\ndistances: []\n");
