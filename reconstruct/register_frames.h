@@ -13,9 +13,9 @@
 
 namespace velamap {
 
-// Registers the images by the method in the options; reconstruct/global/global_registration.h and
-// reconstruct/thesis/thesis_registration.h document what is thrown. The order of `images` and their
-// ids do not change the result.
+// Registers the images by the method in the options. Throws as documented in
+// reconstruct/global/global_registration.h and reconstruct/thesis/thesis_registration.h. The order
+// of `images` and their ids do not change the result.
 Registration RegisterFrames(const std::vector<DatabaseImage>& images,
                             const std::map<CameraId, Camera>& cameras, const Layout& layout,
                             const RegistrationOptions& options);

@@ -18,8 +18,8 @@ namespace {
 constexpr int kFocal = 0, kFirstDistortion = 4, kNumWarps = 8;
 using WarpMatrix = Eigen::Matrix<double, 2, kNumWarps>;
 
-// Directions of which the adjustment leaves less than this share of information could as well be
-// another shape; numbers from them would be rounding.
+// If the adjustment absorbs nearly all of a warp, its effect is that of another shape, and the rest
+// is rounding. A warp needs at least this share of its information.
 constexpr double kMinShareOfInformation = 1e-6;
 
 // Displacements, px, at (u, v): distance from the principal point in half diagonals of the image.

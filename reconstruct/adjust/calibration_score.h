@@ -9,14 +9,14 @@
 
 namespace velamap {
 
-// Score test (Rao 1948) of eight small warps of the image, which span what a wrong focal length,
-// aspect, principal point, and radial and tangential distortion do to it: polynomials of the field.
-// Each passes through the linearized adjustment, which takes up with poses and shape what they can;
-// what is left of the warps is fitted to all residuals, the corners' and those of the markers'
-// sides, which a wrong calibration makes too long near the centre and too short near the border or
-// the other way round. The warps that the camera model itself refines are left to it. Of several
-// cameras, the one with the strongest evidence. `problem` belongs to `state` at its solution and
-// has no loss and calibrated sigmas, which contain the correlation of errors.
+// Score test (Rao 1948) of eight small warps of the image. They are polynomials of the image
+// position and span the effects of a wrong focal length, aspect, principal point, and radial and
+// tangential distortion. The linearized adjustment absorbs as much of each warp as poses and shape
+// can; the rest is fitted to all residuals. These include the sides of the markers, which a wrong
+// calibration makes too long near the centre and too short near the border, or the other way round.
+// Warps that the adjustment itself refines are not tested. For several cameras, returns the
+// strongest evidence. `problem` belongs to `state` at its solution, without loss and with
+// calibrated sigmas that contain the correlation of errors.
 CalibrationEvidence TestCalibration(const Model& model, const MarkerState& state,
                                     const MarkerProblem& problem, const MarkerJacobian& jacobian,
                                     const MarkerCovariance& covariance);

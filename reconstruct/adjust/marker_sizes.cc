@@ -16,7 +16,7 @@ namespace velamap {
 namespace {
 
 constexpr double kMaxSigmas = 4.0;
-// Of fewer markers, one bad print passes for the size of the part.
+// With fewer markers, one bad print would pass for the size of the whole part.
 constexpr std::size_t kMinMarkersOfPart = 3;
 
 // The mean side of a marker divided by the printed length, and its uncertainty.
@@ -55,8 +55,8 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
   return sizes;
 }
 
-// Deviations of the ratios from the median of other markers, and the variance of each that image
-// noise causes. Errors that all these markers share (the scale) cancel.
+// Deviations of the ratios from the median of other markers, and the variances that image noise
+// gives them. Errors that all these markers share (the scale) cancel.
 struct Deviations {
   std::vector<double> values;
   std::vector<double> variances;
@@ -101,8 +101,9 @@ std::map<std::string, MarkerIdxs> GroupByPart(const std::vector<MarkerSize>& siz
   return parts;
 }
 
-// Deviations of each marker from its own part. Parts of few markers, whose median says little, are
-// compared with all; `part_scale_sigma` is what parts differ by.
+// Deviations of the markers from their own parts. The median of a part with few markers means
+// little, so these are compared with all markers; `part_scale_sigma` is the sigma of the parts'
+// differences.
 Deviations FindDeviationsInParts(const std::vector<MarkerSize>& sizes, double part_scale_sigma) {
   Deviations deviations{std::vector<double>(sizes.size()), std::vector<double>(sizes.size())};
   for (const auto& [part, idxs] : GroupByPart(sizes)) {
@@ -261,7 +262,7 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
   const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance);
   MarkerSizeVerdict verdict;
   verdict.print_tolerance = print_tolerance;
-  if (sizes.size() < 3) return verdict;  // of two, neither can be told to be the wrong one
+  if (sizes.size() < 3) return verdict;  // with two markers, either may be the wrong one
   JudgeParts(sizes, print_tolerance, print_scale_sigma, &verdict);
   const Deviations deviations = verdict.part_scale_sigma > 0
                                     ? FindDeviationsInParts(sizes, verdict.part_scale_sigma)

@@ -32,9 +32,9 @@ struct MarkerSizeVerdict {
 // scatter 1.3 times as far as these sigmas explain, the print tolerance is raised.
 //
 // Where the mean of a part (of three markers or more) differs from that of the other parts by more
-// than four sigmas of these means and by more than `print_scale_sigma`, 1 sigma of the scale of the
-// print, its markers are no bad prints: parts disagree, and each marker is compared with its own
-// part. Smaller differences change the scale's sigma by less than an eighth.
+// than four sigmas of these means and by more than `print_scale_sigma` (1 sigma of the scale of the
+// print), the parts disagree: the markers are not bad prints, and each is compared with its own
+// part. Smaller differences would change the scale's sigma by less than an eighth.
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
                                    double print_tolerance, double print_scale_sigma);
 

@@ -14,15 +14,15 @@ namespace {
 
 // A distance that is this many sigmas off contradicts the others.
 constexpr double kMaxSigmas = 4.0;
-// From here on it is not chance but the print that explains what lies between distances and
-// markers.
+// Larger differences between distances and markers are explained by the scale of the print instead
+// of chance.
 constexpr double kMaxChanceSigmas = 3.0;
 // How far a single distance and the markers can be apart before the distance is a mistake, as a
 // logarithm. Cameras move edges by up to 3 % of a small marker; a page that was scaled to fit
 // another paper shrinks by 3 to 6 %. The wrong neighbour, corner or unit is farther off.
 constexpr double kMaxSingleLogScale = 0.07;
-// The same for distances that agree with each other: between 2, a side typed for half of it, and
-// 2.54, the smallest mistake of unit (inch for cm).
+// The same for distances that agree with each other. It lies between 2 (half of a side taken for
+// the side) and 2.54 (inches taken for centimetres, the smallest mistake of unit).
 constexpr double kMaxCommonScale = 2.25;
 
 std::string PointName(int marker_id, int corner) {
@@ -117,7 +117,7 @@ struct Consensus {
   bool is_alone = true;  // no other set is as large
 };
 
-// Of sets of equal size, the one nearest to the markers.
+// The largest set; of equally large ones, the one nearest to the markers.
 Consensus FindConsensus(const LogScales& scales, double print_scale_sigma) {
   const auto sigmas_off = [&](const CommonScale& common) {
     return std::abs(common.mean) / std::sqrt(common.variance + std::pow(print_scale_sigma, 2));
@@ -216,7 +216,7 @@ ScaleBarVerdict JudgeScaleBars(const std::vector<ScaleBar>& bars, const MarkerSt
   }
   if (std::abs(common.mean) <= kMaxChanceSigmas * sigma) return verdict;
   verdict.scale = std::exp(common.mean);
-  // The variance that makes this deviation an ordinary one.
+  // The variance with which this deviation would be an ordinary one.
   verdict.print_scale_sigma =
       std::sqrt(std::max(std::pow(verdict.scale - 1.0, 2) - common.variance, markers.variance));
   verdict.warnings.push_back(OverruledText(common, consensus.set.size()));

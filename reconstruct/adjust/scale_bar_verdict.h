@@ -15,22 +15,22 @@ namespace velamap {
 
 struct ScaleBarVerdict {
   std::vector<ScaleBar> used;
-  // By how much the bars in use enlarge a model whose scale comes from the markers. 1 where they do
-  // not contradict the markers.
+  // Factor by which the bars in use enlarge a model whose scale comes from the markers. 1 if they
+  // do not contradict the markers.
   double scale = 1.0;
-  // 1 sigma of the scale of the print that this contradiction needs; 0 without one.
+  // 1 sigma of the scale of the print that explains this contradiction; 0 without one.
   double print_scale_sigma = 0.0;
   std::vector<std::string> warnings;
 };
 
 // Finds the largest set of bars that agree with each other: each is within four sigmas of the scale
-// that the others give. Such a set overrules the markers, whose sizes have an error in common that
-// no image shows; the others are left out. Where sets are equally large, the one that fits the
-// markers counts, and none where none does. A single bar is right about the scale, too, unless it
-// is so far off that it must be a mistake.
+// that the others give. Such a set overrules the markers, because their sizes may have a common
+// error that no image shows. The other bars are left out. Of equally large sets, the one that fits
+// the markers is used; if none does, no bar is used. A single bar also overrules the markers,
+// unless it is so far off that it must be a mistake.
 //
-// The state has its scale from the markers. `covariance_m2` is that of the bars' lengths in it
-// where the scale of the print is known; `print_scale_sigma` is the prior of that scale.
+// The scale of the state comes from the markers. `covariance_m2` is the covariance of the bars'
+// lengths in it for a known scale of the print; `print_scale_sigma` is the prior of that scale.
 ScaleBarVerdict JudgeScaleBars(const std::vector<ScaleBar>& bars, const MarkerState& state,
                                const Eigen::MatrixXd& covariance_m2, double print_scale_sigma);
 

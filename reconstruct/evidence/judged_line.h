@@ -1,4 +1,5 @@
-// The lines of a layout with the markers on them that are believed so far. Private to the evidence.
+// The lines of a layout, with those markers on them that no evidence has contradicted so far.
+// Private to this folder.
 
 #pragma once
 
@@ -14,11 +15,11 @@
 
 namespace velamap {
 
-using MarkersById = std::map<int, const PlacedMarker*>;  // that are still believed
+using MarkersById = std::map<int, const PlacedMarker*>;  // not contradicted so far
 
 struct Evidence {
   MarkersById markers;
-  std::map<int, std::string> reasons;  // of those that are not believed, by marker id
+  std::map<int, std::string> reasons;  // why a marker is contradicted, by marker id
 
   void Drop(int marker_id, std::string reason) {
     reasons.emplace(marker_id, std::move(reason));
@@ -26,7 +27,7 @@ struct Evidence {
   }
 };
 
-// One line with the markers on it that are believed.
+// One line, with the markers on it that are still believed.
 struct JudgedLine {
   const MarkerLine* line = nullptr;
   std::vector<const PlacedMarker*> markers;
@@ -39,7 +40,7 @@ std::vector<JudgedLine> LinesOf(const LayoutPart& part, const MarkersById& marke
 // The step that the long lines of a part have in common; nothing without a long line.
 std::optional<double> StepOfPart(const std::vector<JudgedLine>& lines);
 
-// Short lines take the step of the part, if their own is not longer for sure.
+// A short line takes the step of its part unless its own step is certainly longer.
 double StepOfLine(const JudgedLine& line, const std::optional<double>& step_of_part_m);
 
 }  // namespace velamap

@@ -61,8 +61,8 @@ UsuallySeen NeighborsSeen(const std::vector<JudgedLine>& lines, const MarkersByI
   return {Median(std::move(ratios)), Median(std::move(nums_seen))};
 }
 
-// Numbers of images below ten decide nothing. A marker that few images can show is missed by no
-// fault of its own, unless its neighbours are in many times as many.
+// Fewer than ten images decide nothing. A marker that few images can show may be missed without
+// being false, unless many times as many images see its neighbours.
 Trust TrustOf(const PlacedMarker& marker, const UsuallySeen& neighbors) {
   constexpr double kSeldom = 0.2, kOftenMissed = 0.5, kMinImages = 10;
   const bool is_known = marker.num_should_see >= kMinImages;
@@ -99,10 +99,10 @@ std::string WhyStray(const JudgedLine& line, const std::vector<std::size_t>& str
          SeenText(*line.markers[idx]);
 }
 
-// What the lines say of a marker: one that holds it acquits it.
+// What the lines say about a marker. A single line that confirms it is enough.
 struct Judgement {
   int num_lines = 0, num_against = 0;
-  std::string reason;  // of the first line against it
+  std::string reason;  // given by the first line that contradicts it
 };
 
 // Returns the markers that lines can judge.
@@ -139,7 +139,7 @@ bool DropStrayMarkers(const LayoutPart& part, Evidence* evidence) {
   return changed;
 }
 
-// Drops markers that no line judges, far from the well-seen markers of their part.
+// Drops markers that no line can judge and that lie far from the well-seen markers of their part.
 void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgement>& judged,
                     Evidence* evidence) {
   constexpr std::size_t kMinForExtent = 4;

@@ -1,10 +1,10 @@
-// Markers that the layout contradicts. A false quad with a legal code, found at one place in a few
-// images, fits these images as well as a true marker does: only what is known of the object tells
-// it. Markers do not overlap, neighbours on a line are as far apart as the other markers on it, and
-// a marker is seen in most images that should show it.
+// Finds markers that the layout contradicts. A false quad with a legal code, found at one place in
+// a few images, fits these images as well as a true marker does. It can only be recognized by what
+// is known about the object: markers do not overlap, neighbours on a line are about as far apart as
+// the other markers on it, and most images that should show a marker do.
 //
-// Each test depends on ratios only: lengths are compared with distances of neighbours or with the
-// extent of a part, and numbers of images with those of the neighbours.
+// All tests depend on ratios only: they compare lengths with the distances between neighbours or
+// with the extent of a part, and numbers of images with the numbers for the neighbours.
 
 #pragma once
 
@@ -27,8 +27,8 @@ struct PlacedMarker {
   // usually is where it is seen. `num_seen_of_these` of them do.
   int num_should_see = 0;
   int num_seen_of_these = 0;
-  // Markers whose places explain all images that see this one, ascending: one of the two ids may be
-  // misread there.
+  // Ascending ids of the markers whose places explain all images that see this one. Either id may
+  // be misread there.
   std::vector<int> rival_ids;
 };
 
@@ -39,13 +39,12 @@ struct Contradiction {
 
 // `markers` by ascending id, each once. The result is by ascending id.
 //
-// - Of two rivals for one place, the one stays that undisputed markers of its lines confirm, or
-// else
-//   the one that more than twice as many images see. If neither decides, neither is believed.
+// - If two markers claim one place, the one that undisputed markers of its lines confirm stays;
+//   otherwise the one that more than twice as many images see. If neither test decides, both go.
 // - On every line, line_evidence.h finds the markers that cannot be on it. A marker on two lines is
 //   believed if one of them holds it.
-// - A marker that no line can judge is not believed if hardly any image that should see it does,
-//   and it is farther from its part than twice the extent of that part.
+// - A marker that no line can judge is contradicted if hardly any image that should see it does and
+//   if it lies farther from its part than twice the extent of that part.
 std::vector<Contradiction> FindContradictions(const Layout& layout,
                                               const std::vector<PlacedMarker>& markers);
 

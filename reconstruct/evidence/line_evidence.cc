@@ -11,15 +11,15 @@ namespace velamap {
 namespace {
 
 constexpr double kNumSigmas = 3.0;
-// A gap in the line costs no more than this many steps however wide it is: the line is torn there.
-// More than the price of one end, less than that of two.
+// A gap in the line costs at most this many steps, however wide it is: the line may be torn there.
+// This is more than the price of one end and less than the price of both.
 constexpr double kTornSteps = 12.0;
 
-// What it costs to leave a marker out, in steps. Between two others, for each place, a marker may
-// cause a detour of one step and not more (see the header). Beyond the last one its distance is one
-// step; there nothing but the evenness of the line contradicts it, so the price is higher. A marker
-// that hardly any of its images shows is given up sooner, but not before its line turns back by
-// more than 120 degrees there.
+// The price of leaving a marker out, in steps. A true marker between two others causes a detour of
+// at most one step for each place (see the header). A true marker at an end is one step away from
+// the next one; only the even spacing of the line can contradict it there, so its price is higher.
+// If hardly any of its images shows the marker, the price is lower, but never so low that a line
+// that turns back by less than 120 degrees loses a marker.
 struct Price {
   double between, at_end;
 };
@@ -48,7 +48,8 @@ double LinkCost(const LinePoint& a, const LinePoint& b, double step_m) {
   return std::min(Distance(a, b), kTornSteps * step_m * Gap(a, b));
 }
 
-// Of leaving out points[idx] between a and b: its own uncertainty lengthens the detour twice.
+// The price of leaving out points[idx] between a and b. The uncertainty of the point lengthens both
+// halves of the detour.
 double CostBetween(const std::vector<LinePoint>& points, std::size_t a, std::size_t b,
                    std::size_t idx, double step_m) {
   const LinePoint& point = points[idx];
@@ -56,8 +57,8 @@ double CostBetween(const std::vector<LinePoint>& points, std::size_t a, std::siz
          2 * kNumSigmas * point.sigma_m;
 }
 
-// Of leaving out points[idx] at an end of the line; `inner_idx` is next to it. Where places between
-// them are missing, only one step may be an unusual one.
+// The price of leaving out points[idx] at an end of the line; `inner_idx` is next to it. If places
+// between them are missing, only one of the steps may be unusually long.
 double CostAtEnd(const std::vector<LinePoint>& points, std::size_t idx, std::size_t inner_idx,
                  double step_m) {
   const LinePoint& point = points[idx];
@@ -108,8 +109,8 @@ double UsualStep(const std::vector<double>& steps_m) {
   return Median(steps_m) + kNumSigmas * RobustSigma(steps_m);
 }
 
-// Distances of neighbours and of next but one neighbours, ascending: where false markers are among
-// the points, the small ones are those of true ones.
+// Distances between neighbours and between next but one neighbours, ascending. Where some points
+// are false markers, the small distances are between true ones.
 std::vector<double> NearSteps(const std::vector<LinePoint>& points) {
   std::vector<double> steps_m;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -127,7 +128,7 @@ double EstimateStep(const std::vector<LinePoint>& points) {
   std::vector<std::size_t> all(points.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   if (points.size() < kMinPointsForStep) return UsualStep(StepsAlong(points, all));
-  // The lower quartile leaves out what cannot be on the line at all; the rest gives the step.
+  // The lower quartile excludes points that cannot be on the line at all; the rest gives the step.
   const std::vector<double> near_steps_m = NearSteps(points);
   const std::vector<double> kept_m =
       StepsAlong(points, CheapestWay(points, near_steps_m[near_steps_m.size() / 4]));
@@ -142,15 +143,16 @@ bool AreAsFarAsTheLineSays(const LinePoint& a, const LinePoint& b, double step_m
 }
 
 std::vector<std::size_t> FindStrayPoints(const std::vector<LinePoint>& points, double step_m) {
-  // Two false markers are hardly ever near each other, so two that are may be less even.
+  // Two false markers are hardly ever near each other, so a pair of points may be spaced less
+  // evenly.
   constexpr double kUnevenInPiece = 3.0;
   if (points.size() < kMinPointsOnLine || !(step_m > 0)) return {};
   const std::vector<std::size_t> way = CheapestWay(points, step_m);
   const auto is_on_way = [&way](std::size_t idx) {
     return std::binary_search(way.begin(), way.end(), idx);
   };
-  // Whether the points of the line that are on the way before and behind it hold the point, or one
-  // beside it that is off the way too.
+  // Whether the kept points before and behind the point confirm it, or confirm a point beside it
+  // that is left out as well.
   const auto is_confirmed = [&](std::size_t idx) {
     const LinePoint& point = points[idx];
     const auto after = std::lower_bound(way.begin(), way.end(), idx);

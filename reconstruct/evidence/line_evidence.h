@@ -1,12 +1,12 @@
-// Which markers do not stand on their line of the layout. The line is followed along the cloth: of
-// all ways to leave markers out, the one is taken that costs least, where what is kept costs the
-// length of the way from marker to marker and what is left out a price in steps of the line.
+// Finds the markers that do not stand on their line of the layout, as the cheapest way along the
+// line. The way costs the distance from each marker that is kept to the next one, and a price, in
+// steps of the line, for each marker that is left out.
 //
-// A step is the distance of neighbours. On cloth that is bent, folded or rolled up in any way,
-// neighbours are never farther apart than along the cloth, so a detour over a marker between two
-// others is never longer than twice the shorter of its two distances: one step a marker on a line
-// of equal steps. The prices are above that, so no bend costs a marker, and a line whose steps
-// scatter has a larger step. Private to the evidence.
+// A step is the distance between neighbours. However cloth is bent, folded or rolled up, neighbours
+// are never farther apart than along the cloth. A detour over a marker between two others is
+// therefore never longer than twice the shorter of its two distances: one step for each marker on a
+// line of equal steps. The prices are higher than that, so that no bend costs a marker. A line with
+// uneven steps gets a larger step. Private to this folder.
 
 #pragma once
 
@@ -16,38 +16,39 @@
 
 namespace velamap {
 
-// How often the images that could show a marker do, compared with its neighbours.
+// How many of the images that could show a marker do so, compared with its neighbours.
 enum class Trust { kSeldomSeen, kOftenMissed, kWellSeen };
 
 // A marker that has a place, on its line.
 struct LinePoint {
-  int place_on_line = 0;  // among all markers of the line, also those that are missing
+  int place_on_line = 0;  // counts all markers of the line, also missing ones
   Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
   double sigma_m = 0.0;
   Trust trust = Trust::kWellSeen;
 };
 
-// The fewest markers among which one can be found to contradict the others.
+// With fewer markers, it cannot be told which one contradicts the others.
 inline constexpr std::size_t kMinPointsOnLine = 3;
-// The fewest from which a step can be estimated although some are false.
+// With fewer markers, a step cannot be estimated if some of them may be false.
 inline constexpr std::size_t kMinPointsForStep = 5;
 
-// The median of the distances of neighbours for each place on the line, plus three times their
-// robust sigma. `points` in the order of the line, at least kMinPointsOnLine.
+// The median distance between neighbours for each place on the line, plus three times its robust
+// sigma. `points` are in the order of the line, and at least kMinPointsOnLine.
 double EstimateStep(const std::vector<LinePoint>& points);
 
-// The smallest distance of neighbours, or of next but one neighbours, for each place on the line: a
-// lower bound of the step where there are too few markers for an estimate. At least two points.
+// The smallest distance between neighbours, or next but one neighbours, for each place on the line.
+// This is a lower bound of the step where too few markers are left to estimate it. Takes at least
+// two points.
 double SmallestStep(const std::vector<LinePoint>& points);
 
-// Whether two points, in the order of the line, are no farther apart than its places are, one of
-// which may be wider by `num_uneven_steps`.
+// Whether two points, given in the order of the line, are no farther apart than their places allow.
+// One of the steps may be longer by `num_uneven_steps`.
 bool AreAsFarAsTheLineSays(const LinePoint& a, const LinePoint& b, double step_m,
                            double num_uneven_steps = 0.5);
 
-// The indices of the points that do not belong on the line, ascending. None if they were half of
-// the points or more: the line is then listed wrongly, or not known well enough. A point stays that
-// its neighbours confirm: where the line is torn, both of its pieces are true.
+// Ascending indices of the points that do not belong on the line. Empty if these would be half of
+// the points or more, because the layout is then likely to list the line wrongly. A point that its
+// neighbours confirm stays: both pieces of a torn line are true.
 std::vector<std::size_t> FindStrayPoints(const std::vector<LinePoint>& points, double step_m);
 
 }  // namespace velamap

@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-// Two markers that claim one place, the one that fewer images see second.
+// Two markers that claim one place. Fewer images see the second one.
 using RivalPair = std::pair<const PlacedMarker*, const PlacedMarker*>;
 
 std::vector<RivalPair> RivalPairs(const MarkersById& markers) {
@@ -41,18 +41,18 @@ std::string MisreadText(const PlacedMarker& marker, const PlacedMarker& rival) {
       rival.marker_id, marker.num_seen, rival.marker_id, rival.num_seen);
 }
 
-// What the next two undisputed markers on each side say of a marker, on all of its lines.
+// The votes on a marker by the next two undisputed markers on each side, over all of its lines.
 struct LineVotes {
   int num_asked = 0;
   int num_for = 0;
-  // To the nearest one that is for it, in places: the nearer, the less is it by chance.
+  // Places between the marker and the nearest vote for it. Near votes are less likely by chance.
   double smallest_gap = std::numeric_limits<double>::infinity();
 
   bool HasMajority() const { return 2 * num_for > num_asked; }
 };
 
 // Whether two markers of a line may be where they are: no farther apart than the cloth allows, and
-// not so near that the line would be folded, which a line that is misread in part looks like.
+// not so near that the line would be folded. A line that is misread in part looks folded.
 bool FitOnLine(const LinePoint& a, const LinePoint& b, double step_m) {
   constexpr double kFolded = 0.5;
   const bool a_is_first = a.place_on_line < b.place_on_line;
@@ -98,9 +98,9 @@ LineVotes VotesFor(const std::vector<std::vector<JudgedLine>>& lines_of_part,
   return votes;
 }
 
-// Whether the layout has one marker in the place that both claim, and not the other: most votes are
-// for the one only, or those for the other come from more than twice as far. A marker that no line
-// can judge is not contradicted by any.
+// Whether the layout puts one marker at the place that both claim, and not the other one: most
+// votes are for this one, or the votes for the other one come from more than twice as far. No line
+// contradicts a marker that is on none.
 bool BelongsRatherThan(const LineVotes& votes, const LineVotes& of_rival) {
   constexpr double kMuchNearer = 0.5;
   if (votes.num_for == 0 || of_rival.num_asked == 0) return false;
@@ -108,8 +108,8 @@ bool BelongsRatherThan(const LineVotes& votes, const LineVotes& of_rival) {
   return votes.smallest_gap <= kMuchNearer * of_rival.smallest_gap;
 }
 
-// Leaves out the rivals that the layout does not confirm where it confirms the other one. Disputed
-// markers confirm nobody: a line may be misread as a whole. Returns whether there are any.
+// Leaves out rivals that the layout does not confirm if it confirms the other one. Disputed markers
+// have no vote, because a whole line may be misread. Returns whether any rival is left out.
 bool DropRivalsByLayout(const Layout& layout, const std::vector<RivalPair>& pairs,
                         Evidence* evidence) {
   std::set<int> disputed_ids;
@@ -136,7 +136,8 @@ double RatioOfSeen(const RivalPair& pair) {
   return static_cast<double>(pair.second->num_seen) / pair.first->num_seen;
 }
 
-// Of the two whose numbers of images differ most, the one with fewer goes; both if they hardly do.
+// Takes the pair whose numbers of images differ most and leaves out the marker that fewer images
+// see, or both if the numbers hardly differ.
 void DropRivalByNumber(const std::vector<RivalPair>& pairs, Evidence* evidence) {
   constexpr double kFew = 0.5;
   const RivalPair& pair = *std::min_element(

@@ -1,4 +1,4 @@
-// Which of two markers that claim one place is there. Private to the evidence.
+// Decides which of two markers that claim one place is really there. Private to this folder.
 
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace velamap {
 
-// Drops misread ids until no place has rivals: first those that the lines decide, then by numbers
-// of images, see FindContradictions().
+// Drops misread ids until no two markers claim one place: first where the lines decide, then by the
+// numbers of images. See FindContradictions().
 void DecideBetweenRivals(const Layout& layout, Evidence* evidence);
 
 }  // namespace velamap

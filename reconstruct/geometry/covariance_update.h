@@ -31,8 +31,8 @@ Eigen::MatrixXd RigidMotions(const std::vector<Eigen::Vector3d>& x_in_world);
 void ToInnerConstraints(const std::vector<Eigen::Vector3d>& x_in_world,
                         PointCovariance* covariance);
 
-// d(scale)/d(points), 3n, where scale is that of a least-squares similarity from `x_in_world` to
-// moved points, at no motion: x - centroid over the sum of its squares.
+// d(scale)/d(points), 3n, for the scale of the least-squares similarity from `x_in_world` to moved
+// points, at zero motion: x - centroid, divided by the sum of its squares.
 Eigen::VectorXd ScaleGradient(const std::vector<Eigen::Vector3d>& x_in_world);
 
 }  // namespace velamap

@@ -15,8 +15,8 @@ void DropWrongSizes(GlobalRegistration* global);
 // Drops markers that the layout contradicts (layout_evidence.h). Needs `noise`.
 void DropContradictions(const Layout& layout, GlobalRegistration* global);
 
-// Leaves out frames whose corners scatter far more than those of the others, where other frames see
-// their markers often enough. Needs `noise`.
+// Leaves out frames whose corners scatter far more than in other frames, if other frames see their
+// markers often enough. Needs `noise`.
 void LeaveOutBlurredFrames(GlobalRegistration* global);
 
 // Leaves out all frames of a video but the max_num_frames that add most to the precision. Needs

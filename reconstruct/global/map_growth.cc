@@ -14,8 +14,8 @@ namespace {
 
 // Ratio of the known markers in a frame that have to agree with its pose.
 constexpr double kMinInlierRatio = 0.4;
-// Frames join in the same round when the map has at least this ratio of the views on their markers
-// that it has on those of the best frame.
+// Frames join in the same round as the best frame if their markers have at least this fraction of
+// the views that the best frame's markers have.
 constexpr double kJoinRatio = 0.5;
 // A map of this many frames is good enough for all frames that see it to join at once.
 constexpr int kManyFrames = 16;

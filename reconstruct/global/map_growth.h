@@ -18,7 +18,7 @@ struct MapGrowthOptions {
   int num_threads = 1;  // 0: one a core; never changes the result
 };
 
-// Registers those of `frame_idxs` that can be registered. Frames that see most of the map come
+// Registers the frames of `frame_idxs` as far as possible. Frames that see most of the map come
 // first; a small map takes at most as many at a time as it already has. Ambiguous frames wait until
 // no others are left. Frames that failed are tried again whenever the map has grown.
 void GrowMap(const MapProblem& problem, const std::vector<int>& frame_idxs,

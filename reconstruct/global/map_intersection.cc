@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t kMaxViews = 8;
 constexpr std::size_t kMaxRefined = 3;
 // Places nearer than this to each other are one: half a side of the marker, and 0.2 rad (11
-// degrees). The two planar solutions of a marker differ by twice its tilt, and a coarser rotation
-// would merge those of a marker that is tilted by 10 degrees.
+// degrees). The two planar solutions of a marker differ by twice its tilt, so a coarser limit would
+// merge the solutions of a marker that is tilted by 10 degrees.
 constexpr double kSamePlaceInSides = 0.5, kSameRotation = 0.2;
 // Rays nearer than this to parallel do not determine a depth, rad.
 constexpr double kMinParallax = 0.02;

@@ -66,7 +66,8 @@ struct MapSolution {
   int NumRegistered() const;
 };
 
-// Estimates the pose of every marker alone. The order of `images` becomes that of frame_idx.
+// Estimates the pose of every marker alone. The frames get their frame_idx in the order
+// of `images`.
 // `num_threads` 0: one a core.
 MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
                           const std::map<CameraId, Camera>& cameras, const Layout& layout,

@@ -20,7 +20,7 @@ struct PlacedObservation {
   const Sim3* shape_from_marker;
 };
 
-// cam_from_shape of one frame, as a problem of MinimizeSquares(). A step is that of PlusPose().
+// cam_from_shape of one frame, as a problem of MinimizeSquares(). Steps are as in PlusPose().
 struct FramePoseProblem : LeastSquaresProblem<6> {
   using Parameters = Rigid3;
 

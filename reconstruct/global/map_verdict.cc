@@ -74,8 +74,8 @@ std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_s
   return width_px;
 }
 
-// 1 sigma of the centre in its least certain direction, with the frames where they are. What the
-// marker's own size says of its distance is added once, because all frames share its error.
+// 1 sigma of the centre in its least certain direction, for fixed frames. The distance by the
+// marker's own size is added as one measurement, because its error is the same in all frames.
 double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
                    int marker_idx) {
   constexpr double kSizeSigma = 0.02;  // of the prior in the map

@@ -16,8 +16,8 @@ struct MapNoise {
   double factor = 1.0;
   std::vector<double> factor_of_frame;  // by frame_idx
   // The same in px, for the map and for markers that are posed alone. The latter is the noise of
-  // the corners whatever the shape is; the noise of the map is larger where the shape is wrong or
-  // the surface moved.
+  // the corners and does not depend on the shape; the noise of the map is larger if the shape is
+  // wrong or the surface moved.
   double sigma_px = 0.0;
   double alone_sigma_px = 0.0;
 };

@@ -18,8 +18,8 @@ struct AdjustmentUncertainty {
   // images and markers do not determine a rigid motion of the whole. Includes the variance factor
   // of the observations.
   PointCovariance points;
-  // 1 sigma of the common scale of all points, as a fraction, by corner noise, print tolerance and
-  // apparent inset together. `points` includes it.
+  // 1 sigma of the common scale of all points, as a fraction, from corner noise, print tolerance
+  // and apparent inset together. `points` includes it.
   double relative_scale_sigma = 0.0;
   // Sum of squares of the weighted corner residuals / redundancy. 1 where the corners' sigmas are
   // right.

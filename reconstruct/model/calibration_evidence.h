@@ -1,4 +1,4 @@
-// What the residuals of an adjustment with a fixed calibration say about that calibration.
+// The evidence that the residuals of an adjustment give for or against its fixed calibration.
 
 #pragma once
 
@@ -12,16 +12,17 @@ struct CalibrationEvidence {
   // Decrease of the sum of squared residuals by these changes: chi-squared with num_changes degrees
   // of freedom for a right calibration.
   double chi_squared = 0.0;
-  // Shares of it that a change of the focal length alone, and of the distortion alone, explain.
+  // Shares of chi_squared that a change of the focal length alone, or of the distortion alone,
+  // explains.
   double focal_share = 0.0, distortion_share = 0.0;
-  // RMS over the corners of the part of the residuals that they explain, px.
+  // RMS over the corners of the part of the residuals that the changes explain, px.
   double systematic_px = 0.0;
   // Relative change of the focal length, with the others free, and its 1 sigma. Linearized, so that
   // large values are orders of magnitude.
   double focal_change = 0.0, focal_sigma = 0.0;
-  // How far the changes would move the shape, linearized: RMS over the points after a rigid
-  // alignment, m; the same as a multiple of the 1 sigma that the adjustment states for it; and the
-  // change of the scale alone, as a fraction.
+  // Linearized movement of the shape by the changes: RMS over the points after a rigid alignment,
+  // m; the same divided by the 1 sigma of the adjustment; and the change of the scale alone, as a
+  // fraction.
   double shape_change_m = 0.0, shape_change_in_sigmas = 0.0, scale_change = 0.0;
 };
 

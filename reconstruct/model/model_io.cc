@@ -44,7 +44,7 @@ bool HasAll(const fs::path& path, const std::array<ModelFile, 3>& files) {
                      [&path](const ModelFile& file) { return Exists(path / file.name); });
 }
 
-// Of the two formats the binary one, unless only the text files are complete.
+// Prefers the binary format unless only the text files are complete.
 const std::array<ModelFile, 3>& ChooseFiles(const fs::path& path) {
   if (!IsFolder(path)) {
     throw InputError(fmt::format("{}: there is no such folder with a COLMAP model", path.string()));

@@ -1,4 +1,4 @@
-// Residuals of the corners in sigmas: what the corner noise is calibrated by, and which corners are
+// Residuals of the corners in sigmas. They calibrate the corner noise and tell which corners are
 // outliers.
 
 #pragma once

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxNumGroups = 5;
 // Simulated errors pass through the adjustment in batches, one draw a column, until their mean is
 // known well enough.
 constexpr int kBatchSize = 8, kMinNumBatches = 2, kMaxNumBatches = 5;
-// 1 sigma of the expected movement, as a fraction of it, at which no more errors are drawn.
+// The simulation ends when 1 sigma of the expected movement is below this fraction of it.
 constexpr double kMaxMeanSigma = 0.005;
 
 // The linearized adjustment: maps errors of the residuals to movements of the points. Errors and

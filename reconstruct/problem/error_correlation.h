@@ -15,13 +15,13 @@ namespace velamap {
 // the group, 0, 1, ..., of each image of the state.
 std::vector<int> GroupImages(const Model& model, const MarkerState& state);
 
-// The factor, 1 or more, by which the corners' sigmas have to grow to account for common errors:
-// the root of the ratio of two squared movements of the shape (after alignment with scale). One is
-// the movement that the residuals of each group cause, the other what independent errors of the
-// same weights would cause; these are simulated and pass through the same linearized adjustment, so
-// that no share of the parameters has to be assumed for a group. 1 where the excess is within two
-// sigmas of chance. Errors that all groups share cause no residuals and are not detected. `problem`
-// belongs to `state` at its solution, has no loss and calibrated sigmas.
+// The factor, 1 or more, by which the corners' sigmas have to grow to account for common errors. It
+// is the root of the ratio of two squared movements of the shape (after alignment with scale): the
+// movement that the residuals of each group cause, and the movement that independent errors with
+// the same weights would cause. The latter are simulated and pass through the same linearized
+// adjustment, so that no share of the parameters has to be assumed for a group. 1 if the excess is
+// within two sigmas of chance. Errors that all groups share cause no residuals and are not
+// detected. `problem` belongs to `state` at its solution, without loss and with calibrated sigmas.
 double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
                          const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                          const std::vector<int>& groups, int num_threads);

@@ -9,10 +9,11 @@
 
 namespace velamap {
 
-// A wrong dictionary or polarity finds a code here and there, most of them once only, where a print
-// is seen again in other pictures. Returns what was counted, such as `52 of 60 ids are seen in one
-// of the 40 images only`, where most ids are seen in one image only or the images hold fewer than
-// three markers in the mean; else, and for fewer than two images with markers, an empty text.
+// With a wrong dictionary or polarity, codes are found by chance, most of them once, whereas a
+// print is seen again in other pictures. If most ids are seen in one image only, or the images hold
+// fewer than three markers on average, returns the count, such as `52 of 60 ids are seen in one of
+// the 40 images only`. Otherwise, and for fewer than two images with markers, returns an empty
+// text.
 std::string DictionaryDoubt(const std::vector<DatabaseImage>& images);
 
 }  // namespace velamap

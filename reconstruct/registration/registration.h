@@ -28,7 +28,7 @@ struct DroppedMarker {
   int marker_id = 0;
   int num_frames = 0;
   std::string reason;
-  // It had a place that the images agree on, and what is known of the object contradicts it.
+  // The images agree on its place, but the layout contradicts it.
   bool is_false = false;
 };
 

@@ -1,4 +1,4 @@
-// Options of the registration: what both methods share, and what each one adds.
+// Options of the registration: common ones, and those of each method.
 
 #pragma once
 
@@ -33,7 +33,7 @@ struct ThesisRegistrationOptions {
 };
 
 struct GlobalRegistrationOptions {
-  // Frames of a video that take part, chosen for what they add to the precision of all markers. All
+  // Frames of a video that take part, chosen for the precision that they add to all markers. All
   // photographs take part.
   int max_num_frames = 80;
   int num_starts = 4;  // pairs of frames from which a map is grown before the best map is kept
@@ -55,6 +55,6 @@ struct RegistrationOptions {
 
 OptionGroup DescribeOptions(ThesisRegistrationOptions* options);
 OptionGroup DescribeOptions(GlobalRegistrationOptions* options);
-OptionGroup DescribeOptions(RegistrationOptions* options);  // those of both methods, too
+OptionGroup DescribeOptions(RegistrationOptions* options);  // common ones and both methods'
 
 }  // namespace velamap
