@@ -39,7 +39,7 @@ class CsvWriter {
  public:
   explicit CsvWriter(std::ostream& out) : out_(out) {}
 
-  // A line of its own that starts with "# ".
+  // Writes a comment: a line that starts with "# ".
   void WriteComment(const std::string& text);
 
   template <typename... Fields>

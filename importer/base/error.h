@@ -1,8 +1,8 @@
 // The kinds of failure, one for each exit code of the program.
 //
 //   InputError         exit 2   a bad file or option; the message names it and the remedy
-//   DataError          exit 1   the input is good but does not support a result; the message says
-//   why ExternalToolError  exit 3   COLMAP is absent, has failed, or its result is implausible
+//   DataError          exit 1   good input that does not support a result; the message says why
+//   ExternalToolError  exit 3   COLMAP is absent, has failed, or its result is implausible
 //   std::logic_error   exit 4   a broken invariant of velamap (VELAMAP_CHECK)
 //
 // They are thrown where the fault is found and caught in one place, workflows/velamap.cc.

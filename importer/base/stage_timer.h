@@ -52,7 +52,7 @@ class StageTimer {
   int outer_;
 };
 
-// Returns what the timers of this thread have charged since the last call.
+// Returns the times that the timers of this thread have charged since the last call.
 ImportTimes TakeStageTimes();
 
 // CPU time of all threads of the program so far.

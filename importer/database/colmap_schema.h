@@ -1,4 +1,4 @@
-// Recognises and creates the tables of a COLMAP 3.8 database, and those that velamap adds.
+// Recognizes and creates the tables of a COLMAP 3.8 database, and those that velamap adds.
 
 #pragma once
 

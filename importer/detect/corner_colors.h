@@ -7,8 +7,8 @@
 
 namespace velamap {
 
-// Sets the colours of all detections of `frame`, the rejected ones included, to those of the pixels
-// in which their corners lie. Corners outside the image take the nearest pixel.
+// Sets the colours of all detections of `frame`, including rejected ones, to the colours of the
+// pixels in which their corners lie. Corners outside the image take the nearest pixel.
 void AddColors(const Frame& frame, FrameDetections* detections);
 
 }  // namespace velamap

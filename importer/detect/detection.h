@@ -22,7 +22,7 @@ struct MarkerDetection {
   std::string part{};                     // of the layout that names it; empty without a layout
   // 1 sigma of a coordinate from the noise of the image, px; 0 without an edge fit.
   std::array<double, kNumCorners> corner_sigma_px{};
-  // The corner fit failed, and the corners are those of cv::cornerSubPix.
+  // The corner fit failed, and the corners come from cv::cornerSubPix.
   bool is_fallback = false;
 };
 

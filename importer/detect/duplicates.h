@@ -14,9 +14,9 @@ struct ResolvedDetections {
   std::vector<RejectedDetection> rejected;  // with reasons, in order of id then position
 };
 
-// Of several candidates with one id, keeps the one whose centre has the smallest mean distance (px)
-// to the centres of the (at most) three topologically nearest markers that were found once. Without
-// such a neighbour the candidates cannot be told apart, and all are left out.
+// If several candidates have the same id, keeps the one whose centre has the smallest mean distance
+// (px) to the centres of the topologically nearest markers (three at most) that were found once.
+// Without such a neighbour the candidates cannot be told apart, and all are left out.
 // The order of `candidates` does not matter.
 ResolvedDetections ResolveDuplicates(std::vector<MarkerDetection> candidates,
                                      const AdjacencyGraph& graph);

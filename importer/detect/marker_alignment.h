@@ -20,7 +20,7 @@ struct MarkerLook {
   bool is_inverted = false;
 };
 
-// Grey level at a place; that of the negative where the marker is inverted.
+// Grey level at a place, taken from the negative if the marker is inverted.
 double GrayAt(const cv::Mat& gray, const Eigen::Vector2d& x_px, const MarkerLook& look);
 
 // The quad along whose sides the grey level is halfway between the black border and its
@@ -29,7 +29,7 @@ double GrayAt(const cv::Mat& gray, const Eigen::Vector2d& x_px, const MarkerLook
 std::optional<QuadCorners> AlignSides(const cv::Mat& gray, const QuadCorners& quad,
                                       const MarkerLook& look);
 
-// One round of it: the sides as found from where the quad is.
+// One round of AlignSides(), with scans that start from the sides of `quad`.
 std::optional<QuadCorners> AlignSidesOnce(const cv::Mat& gray, const QuadCorners& quad,
                                           const MarkerLook& look);
 

@@ -50,7 +50,7 @@ CellPlaces PlacesOfCells(const QuadCorners& quad, const MarkerLook& look) {
   return places;
 }
 
-// Correlation of the grey levels at the shifted places with those of the cells.
+// Correlation between the grey levels at the shifted places and the cells.
 double Correlation(const cv::Mat& gray, const CellPlaces& places, const cv::Point& shift,
                    const MarkerLook& look) {
   int sum = 0, light_sum = 0, square_sum = 0;

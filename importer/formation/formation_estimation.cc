@@ -95,7 +95,7 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
   double Cost(const State& state) const { return SumUp(state, nullptr).cost(); }
 
   // The part of FormationEstimate::inset_sigma_px that the parameters cause, at their minimum. The
-  // residuals of a sample have errors in common (what no parameter describes), so that the scatter
+  // residuals of a sample have errors in common (which no parameter describes), so that the scatter
   // of the samples' gradients tells the covariance (Huber 1967, White 1980), but few samples may
   // agree by chance: it is no smaller than for independent residuals.
   double InsetSigma(const State& state) const {

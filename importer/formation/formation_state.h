@@ -36,7 +36,7 @@ struct FormationState {
 FormationState FitSamples(const std::vector<FormationSample>& samples, const FormationVector& start,
                           const ImageFormationParameters& formation, int num_threads);
 
-// The same samples fitted with another image formation; `parameters` are those of it.
+// The same samples fitted with another image formation, which has these `parameters`.
 FormationState FittedWith(const ImageFormationParameters& formation,
                           const FormationVector& parameters, const FormationState& state,
                           int num_threads);

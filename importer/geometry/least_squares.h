@@ -45,7 +45,7 @@ class GaussNewtonEquations {
     cost_ += 0.5 * loss.Value(squared);
   }
 
-  // Regularises directions that the residuals leave open.
+  // Regularizes directions that the residuals leave open.
   void AddToDiagonal(double value) { hessian_.diagonal().array() += value; }
 
   // Makes the parameters inadmissible, such as a pose that puts a point behind the camera.
@@ -114,7 +114,7 @@ std::optional<typename Equations::Vector> SolveDamped(const Equations& equations
 //   Evaluate(parameters, with_hessian, equations)  sums up; without the Hessian the old one stays
 //   Plus(parameters, step)                         the parameters after a step
 //   StepSize, LimitStep, Predict                   see LeastSquaresProblem
-// `*equations` are those of the last evaluation, which was at `*parameters` but for a last small
+// `*equations` come from the last evaluation, which was at `*parameters` except for a last small
 // step.
 template <typename Problem>
 Convergence MinimizeSquares(const LeastSquaresOptions& options, const Problem& problem,

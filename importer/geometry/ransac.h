@@ -47,7 +47,7 @@ inline std::size_t RandomIndex(std::mt19937* generator, std::size_t size) {
 //   Generate(generator)      models of one random sample; none for a degenerate one
 //   Score(model)             its hypothesis
 //   InlierRatio(hypothesis)  on which the number of samples depends
-// The same for the same seed and input.
+// The result depends on the seed and the input only.
 template <typename Estimator>
 std::vector<typename Estimator::Hypothesis> Ransac(
     const RansacOptions& options, const Estimator& estimator,
@@ -77,7 +77,7 @@ std::vector<typename Estimator::Hypothesis> Ransac(
 // Fits a hypothesis to its inliers again while that lowers its cost and changes its inliers, at
 // most `max_num_rounds` times. The Estimator also has
 //   Refine(hypothesis)              the hypothesis of the model fitted to all its inliers
-//   HasSameInliers(a, b)            whether two hypotheses have
+//   HasSameInliers(a, b)            whether two hypotheses have the same inliers
 template <typename Estimator>
 typename Estimator::Hypothesis RefineHypothesis(const Estimator& estimator, int max_num_rounds,
                                                 typename Estimator::Hypothesis hypothesis) {

@@ -1,4 +1,4 @@
-// Least-squares fit of one side of a marker: what corner_refinement.h falls back on.
+// Least-squares fit of one side of a marker, the fallback of corner_refinement.h.
 //
 // Around the side, with s in [-1, 1] along it and d the distance outwards from the sampled line,
 //
@@ -93,7 +93,7 @@ struct EdgeUncertainty {
   ResidualNoise noise;
 };
 
-// At the minimum that FitEdge() found. The priors stabilise weak parameters but are not
+// At the minimum that FitEdge() found. The priors stabilize weak parameters but are not
 // observations, so that their own error does not count. Nothing for a singular system.
 std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior);
 

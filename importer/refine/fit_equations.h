@@ -92,8 +92,8 @@ class FitEquations {
   double cost() const { return cost_; }  // with the priors
   double Rms() const { return std::sqrt(squared_residuals() / num_observations_); }
 
-  // `inverse` is that of the Hessian; squared_slope(jacobian) is the squared slope of the grey
-  // levels. The leverage is averaged over a part of the observations.
+  // `inverse` is the inverse of the Hessian; squared_slope(jacobian) is the squared slope of the
+  // grey levels. The leverage is averaged over a part of the observations.
   template <typename SquaredSlope>
   ResidualNoise Noise(const Matrix& inverse, const SquaredSlope& squared_slope) const {
     constexpr std::size_t kStride = 4;

@@ -2,9 +2,9 @@
 //
 //   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
-//   sharpening sharpened = gray + sharpening (gray - G gray),  G a Gaussian of
-//   sharpening_radius_px;
-//              or the same of light, before the tone curve
+//   sharpening sharpened = gray + sharpening (gray - G gray), or the same with light before the
+//   tone
+//              curve;  G is a Gaussian of sharpening_radius_px
 //
 // A camera blurs linear light and encodes it afterwards, which moves the middle of an encoded edge
 // by up to 0.8 blur sigmas towards the dark side. The power covers sRGB and Rec. 709 to a few
@@ -26,7 +26,8 @@ struct ImageFormationParameters {
   // stays what the camera received: bright cells then have less of it than dark ones.
   bool is_inverted = false;
   // Sharpening of light, before the tone curve, which makes dark halos strong and bright ones weak.
-  // It explains most of the real cameras of tests and samples better than that of grey values.
+  // Most real cameras of the tests and samples are explained better by it than by sharpened grey
+  // values.
   bool sharpens_light = false;
   // The quiet zone around the black squares of all markers: mean width and 1 sigma of a side, as
   // the prior of each fit. A sigma of 0: unknown.

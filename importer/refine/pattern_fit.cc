@@ -26,7 +26,7 @@ VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const PatternEquations& equations,
   });
 }
 
-// The priors stabilise weak parameters but are not observations, so that their error does not
+// The priors stabilize weak parameters but are not observations, so that their error does not
 // count.
 std::optional<RefinedCorners> WithUncertainty(const PatternProblem& problem,
                                               const PatternMinimum& minimum) {

@@ -7,7 +7,7 @@
 //   L(x) = (1 + gradient . x) * (dark + (light - dark) * sum_ij cell_ij a_i(u) b_j(v))
 //   x = H(u, v) + 4 u (1 - u) bend_u + 4 v (1 - v) bend_v
 //
-// and becomes grey values by what camera and print do (image_formation.h). H is the homography of
+// and becomes grey values by the image formation (image_formation.h). H is the homography of
 // the four corners; the bends (px) are due to cloth or a lens; a_i and b_j are the unit steps of
 // column i and row j blurred by a Gaussian (px; separate widths along u and v model motion blur as
 // well). A quiet zone surrounds the black square; beyond its width, which is fitted for each side,

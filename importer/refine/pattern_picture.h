@@ -142,7 +142,7 @@ class PatternPicture {
     pattern->value += spread * (0.5f * spread * bend - Sqrt(squared_slope));
   }
 
-  // Of the cell at a place in cells, or of the quiet zone.
+  // Whether the cell at a place (in cells), or the quiet zone there, is light.
   bool IsLight(float u, float v) const {
     const auto n = static_cast<float>(model_.num_cells);
     if (!(u >= 0 && v >= 0 && u < n && v < n)) return true;

@@ -161,7 +161,8 @@ Eigen::Vector4d FindMargins(const PatternProblem& problem, const UnitSquareMap& 
 }
 
 // Mean light of the marker's dark and light cells, or of the quiet zone close to the marker where
-// that is brighter: blur darkens cells, and what is beyond a narrow quiet zone darkens that.
+// that is brighter: blur darkens cells, and the surroundings of a narrow quiet zone darken the
+// zone.
 struct CellLights {
   double dark = 0.0, light = 0.0;
 };
