@@ -55,7 +55,7 @@ struct PartCurves {
 PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const Eigen::Vector3d& up,
                         int min_markers);
 
-// Leaves out lines that cross: those with the most crossings first, until none is left. Of a pair
+// Leaves out crossing lines, the one with the most crossings first, until none cross. Of a pair
 // that crosses no other line, nothing says which one is wrong, and both are left out.
 //
 // Two lines cross if one is above the other in one place and below it in another, compared at equal

@@ -39,7 +39,7 @@ struct GroupScale {
   std::string part;       // of a group by part
   double length_m = 0.0;  // of a group by printed size
   int num_markers = 0;
-  double deviation = 0.0;  // of the scale of the group from that of all others
+  double deviation = 0.0;  // of the group's scale from the scale of all other markers
   std::optional<double> sigma;
 };
 

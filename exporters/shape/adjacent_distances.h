@@ -16,7 +16,7 @@ struct AdjacentDistance {
   int marker_id1 = 0, marker_id2 = 0;
   double distance_m = 0.0;
   double reference_distance_m = 0.0;
-  // Of distance_m; known if `covariance` has the corners.
+  // 1 sigma of distance_m; known if `covariance` has the corners.
   std::optional<double> sigma_m = std::nullopt;
 };
 

@@ -16,7 +16,7 @@ struct CheckedDistance {
   std::optional<double> distance_m;  // in the shape; nothing if it lacks one of the points
   std::optional<double> sigma_m;     // of distance_m
 
-  // Sigma of the difference: that of the tape and, if known, that of the result.
+  // 1 sigma of the difference, from the tape and, if known, from the result.
   double DifferenceSigma() const;
   // Difference (result - tape) over its sigma; the distance must be in the shape.
   double DifferenceInSigmas() const;

@@ -33,7 +33,7 @@ Command Version();
 // The registry: all commands but help, in the order in which help lists them.
 std::vector<Command> AllCommands();
 
-// The names of the options of all commands: what a project file may hold.
+// The names of the options of all commands, which a project file may hold.
 std::set<std::string> AllOptionNames();
 
 // Runs the command that the first argument names, with the others; shows help where that is asked

@@ -76,7 +76,7 @@ std::shared_ptr<spdlog::sinks::sink> log_file;
 std::shared_ptr<WarningSink> warnings;
 spdlog::level::level_enum written_level = spdlog::level::info;  // of terminal and file
 
-// The logger passes on warnings in any case; terminal and file leave out what is not asked for.
+// The logger always passes on warnings; terminal and file drop the levels that were not asked for.
 void SetLevel(spdlog::level::level_enum level) {
   written_level = level;
   spdlog::set_level(std::min(level, spdlog::level::warn));

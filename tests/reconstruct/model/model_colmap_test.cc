@@ -57,7 +57,7 @@ TEST_P(ModelInColmap, ModelAnalyzerCountsWhatWeCount) {
   EXPECT_NEAR(AnalyzedValue(output, "Mean reprojection error"), mean_error_px, 1e-5);
 }
 
-// COLMAP normalises quaternions and orders images as its hash table does: equal up to these.
+// COLMAP normalizes quaternions and orders images as its hash table does: equal up to these.
 TEST_P(ModelInColmap, ModelConverterGivesTheModelBack) {
   for (const char* type : {"TXT", "BIN"}) {
     fs::remove_all(dir_ / "out");
