@@ -47,7 +47,7 @@ TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(NumErrorLines(run.err), 0) << run.err;
   for (const char* key :
-       {"images_used: 1", " of 16\n", "images_left_out: ", "markers_reconstructed: 8 of 8 in",
+       {"images_used: 16 of 16\n", "images_left_out: none\n", "markers_reconstructed: 8 of 8 in",
         "reprojection_error_px: mean ", "area_error_mm2: mean ", "scale_m_per_unit: ",
         "scale_spread_over_markers: ", "bounding_box_m: ", "outliers_removed: "}) {
     EXPECT_THAT(run.out, HasSubstr(key));
