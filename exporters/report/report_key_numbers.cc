@@ -160,7 +160,7 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
 // Where the adjustment estimated it.
 std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncertainty) {
   if (uncertainty == nullptr || !(uncertainty->rolling_shutter_sigma_s > 0)) return std::nullopt;
-  return KeyNumber{"Rolling shutter",
+  return KeyNumber{KeyNumberKind::kRollingShutter,
                    fmt::format("{:.1f} \u00b1{:.1f} ms", 1e3 * uncertainty->rolling_shutter_s,
                                1e3 * uncertainty->rolling_shutter_sigma_s),
                    "time from the first row of a frame to the last, found in the video and taken "
@@ -304,6 +304,8 @@ std::string KeyNumberName(KeyNumberKind kind) {
       return "Measured distances";
     case KeyNumberKind::kCalibration:
       return "Calibration";
+    case KeyNumberKind::kRollingShutter:
+      return "Rolling shutter";
     case KeyNumberKind::kScale:
       return "Scale";
     case KeyNumberKind::kReprojectionError:
