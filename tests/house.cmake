@@ -26,7 +26,7 @@ house_folder(importer/formation PUBLIC
 house_folder(importer/database PUBLIC
   colmap_database correspondence database_writer)
 house_folder(importer PUBLIC
-  marker_importer)
+  dictionary_hint marker_importer)
 house_folder(reconstruct/geometry PUBLIC
   covariance_update frame_shape intrinsics_prior marker_pose point_covariance)
 house_folder(reconstruct/model PUBLIC
@@ -44,7 +44,7 @@ house_folder(reconstruct/global PUBLIC
 house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/problem PUBLIC
-  corner_errors corner_residuals corner_velocities error_correlation marker_adjustment_options marker_problem
+  corner_errors corner_residuals error_correlation marker_adjustment_options marker_problem
   marker_state marker_uncertainty normal_equations scale_bar)
 house_folder(reconstruct/adjust PUBLIC
   marker_adjustment)
@@ -70,7 +70,7 @@ house_folder(workflows/run PUBLIC
   central_frame_sweep logging pipeline progress stage_times summary version versions
   workspace)
 house_folder(workflows/check PUBLIC
-  clip_check clip_facts clip_verdict)
+  clip_check clip_verdict)
 house_folder(workflows/options PUBLIC
   nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC
