@@ -3,7 +3,7 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue csv error files ids natural_order numbers option parallel stage_timer
+  atomic_output bounded_queue checksum csv error files ids natural_order numbers option parallel stage_timer
   statistics text_file)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac

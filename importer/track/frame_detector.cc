@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "importer/base/checksum.h"
 #include "importer/detect/corner_colors.h"
 #include "importer/detect/duplicates.h"
 #include "importer/detect/marker_search.h"
@@ -18,13 +19,6 @@
 
 namespace velamap {
 namespace {
-
-// FNV-1a, 64 bit: short, and the same on every machine.
-std::uint64_t Hash(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
 
 std::string PriorShapeText(const PriorShape& prior_shape) {
   std::string text;
@@ -93,7 +87,7 @@ std::string DescribeDetector(const FrameDetector& detector) {
   }
   // Databases of earlier versions hold the prior shape under the name map.
   if (!detector.prior_shape.empty()) {
-    search += fmt::format(" map={:016x}", Hash(PriorShapeText(detector.prior_shape)));
+    search += fmt::format(" map={:016x}", Checksum(PriorShapeText(detector.prior_shape)));
   }
   if (detector.options.corner_refinement == CornerRefinement::kEdge &&
       detector.options.estimate_formation) {
@@ -105,7 +99,7 @@ std::string DescribeDetector(const FrameDetector& detector) {
       detector.dictionary.name, detector.border_bits,
       CornerRefinementName(detector.options.corner_refinement),
       detector.options.min_marker_perimeter_rate, detector.options.error_correction_rate,
-      detector.options.inverted ? 1 : 0, Hash(known), search);
+      detector.options.inverted ? 1 : 0, Checksum(known), search);
 }
 
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray) {
