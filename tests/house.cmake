@@ -3,15 +3,17 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue checksum csv error files ids natural_order numbers option parallel stage_timer
-  statistics text_file)
+  atomic_output bounded_queue checksum csv error files ids natural_order numbers option
+  output_manifest parallel stage_timer statistics text_file)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
   rigid3 unit_square_map units)
 house_folder(importer/camera PUBLIC
   calibration camera camera_jacobian camera_projection)
 house_folder(importer/layout PUBLIC
-  dictionary frame_choice layout prior_shape)
+  code_search dictionary frame_choice layout layout_writer prior_shape)
+house_folder(importer/print PUBLIC
+  marker_sheets)
 house_folder(importer/video PUBLIC
   frame_image frame_source image_file video_options)
 house_folder(importer/detect PUBLIC

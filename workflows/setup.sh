@@ -7,6 +7,7 @@ packages=(
   build-essential cmake ninja-build ccache pkg-config colmap
   libopencv-dev libopencv-contrib-dev libeigen3-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libturbojpeg0-dev
+  libcairo2-dev libpng-dev fonts-dejavu-core
   libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev
   libboost-program-options-dev libspdlog-dev libceres-dev nlohmann-json3-dev
   libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
@@ -14,7 +15,7 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
 )
 test_packages=(
-  xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium
+  xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium poppler-utils librsvg2-bin
   clang libclang-rt-dev llvm clang-format-14  # llvm: names functions in the sanitizers' reports
 )
 

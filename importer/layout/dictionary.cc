@@ -21,6 +21,8 @@ namespace {
 
 using PredefinedEntry = std::pair<const char*, cv::aruco::PREDEFINED_DICTIONARY_NAME>;
 
+constexpr char kThesisName[] = "THESIS_3X3_130";
+
 constexpr std::array<PredefinedEntry, 21> kPredefined = {{
     {"DICT_4X4_50", cv::aruco::DICT_4X4_50},
     {"DICT_4X4_100", cv::aruco::DICT_4X4_100},
@@ -175,6 +177,9 @@ Dictionary LoadDictionary(const std::string& name_or_path) {
   if (const PredefinedEntry* entry = FindPredefined(name_or_path)) {
     return {entry->first, cv::aruco::getPredefinedDictionary(entry->second)};
   }
+  if (ToLower(name_or_path) == ToLower(kThesisName)) {
+    return MakeDictionary(kThesisName, ThesisCodes());
+  }
   if (name_or_path.empty() || !Exists(name_or_path)) {
     throw InputError(fmt::format("dictionary '{}': neither a file nor one of {}", name_or_path,
                                  fmt::join(PredefinedDictionaryNames(), " ")));
@@ -185,7 +190,40 @@ Dictionary LoadDictionary(const std::string& name_or_path) {
 std::vector<std::string> PredefinedDictionaryNames() {
   std::vector<std::string> names;
   for (const PredefinedEntry& entry : kPredefined) names.push_back(entry.first);
+  names.push_back(kThesisName);
   return names;
+}
+
+bool IsOpenCvName(const std::string& name) { return FindPredefined(name) != nullptr; }
+
+int NumMarkers(const Dictionary& dictionary) { return dictionary.aruco->bytesList.rows; }
+
+Dictionary MakeDictionary(const std::string& name, const CodeSet& codes) {
+  cv::Mat bytes;
+  for (const MarkerCode code : codes.codes) {
+    cv::Mat bits(codes.bits_per_side, codes.bits_per_side, CV_8UC1);
+    for (int i = 0; i < static_cast<int>(bits.total()); ++i) {
+      bits.at<std::uint8_t>(i / bits.cols, i % bits.cols) = code >> i & 1;
+    }
+    bytes.push_back(cv::aruco::Dictionary::getByteListFromBits(bits));
+  }
+  const int correction_bits = std::max(0, (codes.min_distance - 1) / 2);
+  return {name, cv::makePtr<cv::aruco::Dictionary>(bytes, codes.bits_per_side, correction_bits)};
+}
+
+std::string DictionaryText(const Dictionary& dictionary) {
+  const cv::aruco::Dictionary& aruco = *dictionary.aruco;
+  std::string text =
+      fmt::format("%YAML:1.0\n---\nnmarkers: {}\nmarkersize: {}\nmaxCorrectionBits: {}\n",
+                  NumMarkers(dictionary), aruco.markerSize, aruco.maxCorrectionBits);
+  for (int id = 0; id < NumMarkers(dictionary); ++id) {
+    const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
+        aruco.bytesList.rowRange(id, id + 1), aruco.markerSize);
+    text += fmt::format("marker_{}: \"", id);
+    for (const std::uint8_t bit : cv::Mat_<std::uint8_t>(bits)) text += bit != 0 ? '1' : '0';
+    text += "\"\n";
+  }
+  return text;
 }
 
 cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits) {

@@ -1,4 +1,5 @@
-// Marker dictionaries: those predefined by OpenCV, including AprilTag families, and files.
+// Marker dictionaries: those predefined by OpenCV, including AprilTag families, that of the thesis,
+// files, and dictionaries of one's own.
 
 #pragma once
 
@@ -6,6 +7,8 @@
 #include <vector>
 
 #include <opencv2/aruco.hpp>
+
+#include "importer/layout/code_search.h"
 
 namespace velamap {
 
@@ -15,13 +18,24 @@ struct Dictionary {
 };
 
 // Takes a predefined name (DICT_4X4_50 ... DICT_ARUCO_ORIGINAL, DICT_APRILTAG_16h5 ... 36h11, also
-// without DICT_ and in lower case) or the path of a cv::aruco dictionary file with nmarkers,
-// markersize, maxCorrectionBits and marker_0 ... as strings of 0 and 1 (3x3 bits and more). Throws
-// InputError that lists the names if the text is neither a known name nor a readable file, or names
-// the key of the file that is missing or has wrong bits.
+// without DICT_ and in lower case; THESIS_3X3_130, see ThesisCodes()) or the path of a cv::aruco
+// dictionary file with nmarkers, markersize, maxCorrectionBits and marker_0 ... as strings of 0 and
+// 1 (3x3 bits and more). Throws InputError that lists the names if the text is neither a known name
+// nor a readable file, or names the key of the file that is missing or has wrong bits.
 Dictionary LoadDictionary(const std::string& name_or_path);
 
 std::vector<std::string> PredefinedDictionaryNames();
+
+// Whether the name is one of OpenCV's, which other programs know, too.
+bool IsOpenCvName(const std::string& name);
+
+int NumMarkers(const Dictionary& dictionary);
+
+// Corrects as many wrong bits as the distance of the codes allows.
+Dictionary MakeDictionary(const std::string& name, const CodeSet& codes);
+
+// The text of a dictionary file, which LoadDictionary() and cv::aruco read.
+std::string DictionaryText(const Dictionary& dictionary);
 
 // Draws the marker and its border with one pixel a cell, 8 bit, zero for black. Row 0 runs from
 // corner 0 to 1 and column 0 from corner 0 to 3.

@@ -42,10 +42,10 @@ void PrintOverview() {
 }  // namespace
 
 std::vector<Command> AllCommands() {
-  return {ClipChecker(),      AutomaticReconstructor(), MarkerImporter(),
-          FrameRegistrator(), BundleAdjuster(),         CentralFrameSweeper(),
-          ShapeExporter(),    ShapeAnalyzer(),          ShapeComparer(),
-          Version()};
+  return {MarkerGenerator(),     ClipChecker(),      AutomaticReconstructor(),
+          MarkerImporter(),      FrameRegistrator(), BundleAdjuster(),
+          CentralFrameSweeper(), ShapeExporter(),    ShapeAnalyzer(),
+          ShapeComparer(),       Version()};
 }
 
 std::set<std::string> AllOptionNames() {

@@ -21,6 +21,7 @@ struct Command {
 
 Command ClipChecker();
 Command AutomaticReconstructor();
+Command MarkerGenerator();
 Command MarkerImporter();
 Command FrameRegistrator();
 Command BundleAdjuster();

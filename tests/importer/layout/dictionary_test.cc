@@ -23,12 +23,48 @@ constexpr char k3x3[] =
 
 TEST(LoadDictionary, KnowsEveryPredefinedName) {
   const std::vector<std::string> names = PredefinedDictionaryNames();
-  EXPECT_EQ(names.size(), 21u);
+  EXPECT_EQ(names.size(), 22u);  // 21 of OpenCV and that of the thesis
   for (const std::string& name : names) EXPECT_EQ(LoadDictionary(name).name, name);
   EXPECT_EQ(LoadDictionary("4x4_50").name, "DICT_4X4_50");
   EXPECT_EQ(LoadDictionary("dict_apriltag_36H11").name, "DICT_APRILTAG_36h11");
   EXPECT_EQ(LoadDictionary("DICT_6X6_250").aruco->bytesList.rows, 250);
   EXPECT_EQ(LoadDictionary("DICT_APRILTAG_36h10").aruco->bytesList.rows, 2320);
+}
+
+TEST(LoadDictionary, ThesisDictionaryIsKnownByName) {
+  const Dictionary dictionary = LoadDictionary("thesis_3x3_130");
+  EXPECT_EQ(dictionary.name, "THESIS_3X3_130");
+  EXPECT_EQ(dictionary.aruco->markerSize, 3);
+  EXPECT_EQ(NumMarkers(dictionary), 130);
+  EXPECT_FALSE(IsOpenCvName(dictionary.name));
+  EXPECT_TRUE(IsOpenCvName("4x4_50"));
+}
+
+TEST(DictionaryText, ReadsBackAsItWas) {
+  const TempDir dir;
+  std::vector<Dictionary> dictionaries;
+  for (const std::string& name : PredefinedDictionaryNames()) {
+    // Comparing a thousand codes or more takes a while.
+    if (NumMarkers(LoadDictionary(name)) < 1000) dictionaries.push_back(LoadDictionary(name));
+  }
+  CodeSearchOptions options;
+  options.bits_per_side = 8;
+  options.num_codes = 5;
+  dictionaries.push_back(MakeDictionary("mine", FindCodes(options, 1)));
+  for (const Dictionary& dictionary : dictionaries) {
+    const std::string path = dir / (dictionary.name + ".yml");
+    std::ofstream(path) << DictionaryText(dictionary);
+    const Dictionary read = LoadDictionary(path);
+    ASSERT_EQ(NumMarkers(read), NumMarkers(dictionary)) << dictionary.name;
+    EXPECT_EQ(read.aruco->markerSize, dictionary.aruco->markerSize) << dictionary.name;
+    EXPECT_EQ(cv::norm(read.aruco->bytesList, dictionary.aruco->bytesList, cv::NORM_L1), 0)
+        << dictionary.name;
+    cv::FileStorage storage(path, cv::FileStorage::READ);
+    cv::aruco::Dictionary opencv;
+    EXPECT_TRUE(opencv.readDictionary(storage.root())) << dictionary.name;
+    EXPECT_EQ(cv::norm(opencv.bytesList, dictionary.aruco->bytesList, cv::NORM_L1), 0)
+        << dictionary.name;
+  }
 }
 
 TEST(LoadDictionary, UnknownNameListsTheKnownOnes) {

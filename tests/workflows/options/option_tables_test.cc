@@ -12,6 +12,7 @@
 #include "exporters/sail/sail_shape.h"
 #include "importer/base/error.h"
 #include "importer/detect/detection_options.h"
+#include "importer/layout/code_search.h"
 #include "importer/video/video_options.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
@@ -129,6 +130,7 @@ void ExpectThatCheckNamesEveryNumber() {
 TEST(OptionTables, CheckNamesTheOptionsOfTheCommandLine) {
   ExpectThatCheckNamesEveryNumber<ArucoDetectionOptions>();
   ExpectThatCheckNamesEveryNumber<VideoOptions>();
+  ExpectThatCheckNamesEveryNumber<CodeSearchOptions>();
   ExpectThatCheckNamesEveryNumber<RegistrationOptions>();
   ExpectThatCheckNamesEveryNumber<BundleAdjustmentOptions>();
   ExpectThatCheckNamesEveryNumber<MarkerAdjustmentOptions>();

@@ -1,0 +1,69 @@
+// The rotations of a marker's code, and distances in bits.
+
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "importer/layout/code_search.h"
+
+namespace velamap {
+
+// A code and the same turned by one, two and three quarters.
+using Rotations = std::array<MarkerCode, 4>;
+
+inline int Distance(MarkerCode a, MarkerCode b) { return __builtin_popcountll(a ^ b); }
+
+inline int Distance(const Rotations& a, const Rotations& b) {
+  return std::min(std::min(Distance(a[0], b[0]), Distance(a[1], b[0])),
+                  std::min(Distance(a[2], b[0]), Distance(a[3], b[0])));
+}
+
+// To its own rotations: a quarter turn forth differs as much as one back.
+inline int DistanceToItself(const Rotations& code) {
+  return std::min(Distance(code[0], code[1]), Distance(code[0], code[2]));
+}
+
+class CodeSpace {
+ public:
+  explicit CodeSpace(int bits_per_side) : size_(bits_per_side) {}
+
+  int NumBits() const { return size_ * size_; }
+  MarkerCode Mask() const { return NumBits() == 64 ? ~MarkerCode{0} : Bit(NumBits()) - 1; }
+  static MarkerCode Bit(int idx) { return MarkerCode{1} << idx; }
+
+  Rotations Turned(MarkerCode code) const {
+    Rotations rotations = {code};
+    for (std::size_t i = 1; i < rotations.size(); ++i) {
+      rotations[i] = QuarterTurned(rotations[i - 1]);
+    }
+    return rotations;
+  }
+
+  // One code for each set of rotations, the least of them, ascending.
+  std::vector<Rotations> All() const {
+    std::vector<Rotations> codes;
+    for (MarkerCode code = 0; code <= Mask(); ++code) {
+      const Rotations rotations = Turned(code);
+      if (code == *std::min_element(rotations.begin(), rotations.end())) codes.push_back(rotations);
+    }
+    return codes;
+  }
+
+ private:
+  MarkerCode QuarterTurned(MarkerCode code) const {
+    MarkerCode turned = 0;
+    for (int row = 0; row < size_; ++row) {
+      for (int column = 0; column < size_; ++column) {
+        const MarkerCode bit = code >> (size_ * (size_ - 1 - column) + row) & 1;
+        turned |= bit << (size_ * row + column);
+      }
+    }
+    return turned;
+  }
+
+  int size_;
+};
+
+}  // namespace velamap

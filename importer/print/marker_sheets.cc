@@ -1,0 +1,129 @@
+#include "importer/print/marker_sheets.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/base/output_manifest.h"
+#include "importer/layout/layout_writer.h"
+#include "importer/print/drawing_writer.h"
+#include "importer/print/png_file.h"
+#include "importer/print/print_plan.h"
+
+namespace velamap {
+namespace {
+
+int NumCells(const PrintedLook& look) {
+  return look.dictionary.aruco->markerSize + 2 * look.border_bits;
+}
+
+std::vector<Drawing> DrawSheets(const std::vector<Sheet>& sheets, const PrintedLook& look) {
+  std::vector<Drawing> pages;
+  for (const Sheet& sheet : sheets) {
+    const double length_mm = sheet.stickers.front().marker.length_mm;
+    pages.push_back(DrawSheet(
+        sheet, look,
+        {fmt::format("{}, black squares of {}", look.dictionary.name, LengthText(length_mm)),
+         static_cast<int>(pages.size()) + 1, static_cast<int>(sheets.size())}));
+  }
+  return pages;
+}
+
+void WarnOfNarrowMargin(const PrintSheetOptions& options, const PrintPlan& plan) {
+  if (!options.margin_mm || plan.markers.empty()) return;
+  double wanted_mm = 0.0;
+  for (const PrintedMarker& marker : plan.markers) {
+    wanted_mm = std::max(wanted_mm, WantedMargin(marker.length_mm, NumCells(plan.look)));
+  }
+  if (*options.margin_mm >= wanted_mm) return;
+  spdlog::warn(
+      "{}: {:.4g} mm of white around the markers are little; a dark ground pulls the corners of "
+      "markers that the camera sees small; {:.4g} mm are wanted",
+      OptionName(&PrintSheetOptions::margin_mm), *options.margin_mm, wanted_mm);
+}
+
+void AddSingleMarkers(const PrintPlan& plan, const PrintSheetOptions& options, OutputFiles* files) {
+  for (const PrintedMarker& marker : plan.markers) {
+    const double margin_mm = MakeSticker(marker, NumCells(plan.look), options).margin_mm;
+    const std::string name = fmt::format("markers/marker_{:04d}", marker.marker_id);
+    if (options.write_svg) {
+      (*files)[name + ".svg"] = SvgText(DrawSingleMarker(marker, plan.look, margin_mm));
+    }
+    if (options.write_png) {
+      (*files)[name + ".png"] =
+          MarkerPng(MarkerCells(plan.look.dictionary, marker.marker_id, plan.look.border_bits),
+                    marker.length_mm, margin_mm, options.png_dpi);
+    }
+  }
+}
+
+std::string LayoutComment(const PrintOptions& options, const PrintPlan& plan) {
+  std::string comment =
+      "Written by velamap marker_generator, to start from: correct what is different on your "
+      "object.\nIf the printed scale is not as long as it says, measure the black squares and set "
+      "marker_length.";
+  if (plan.board) {
+    comment +=
+        fmt::format("\n{} columns, {} rows, {} {}.", plan.board->num_columns, plan.board->num_rows,
+                    LengthText(plan.board->spacing_mm),
+                    plan.board->kind == BoardKind::kCharuco ? "a square" : "between centres");
+  }
+  if (options.arrangement == Arrangement::kSail && !options.layout) {
+    comment += fmt::format("\nSail: luff {} m, foot {} m, leech {} m.", *options.sail.luff_m,
+                           *options.sail.foot_m, *options.sail.leech_m);
+  }
+  return comment;
+}
+
+// Dictionary and layout; a layout that was given is there already.
+void AddLayout(const PrintOptions& options, const PrintPlan& plan, OutputFiles* files) {
+  if (options.layout) return;
+  (*files)["layout.yml"] = LayoutText(plan.layout, LayoutComment(options, plan));
+  if (!IsOpenCvName(plan.look.dictionary.name)) {
+    (*files)[kDictionaryFile] = DictionaryText(plan.look.dictionary);
+  }
+}
+
+}  // namespace
+
+PrintReport PrintMarkers(const PrintOptions& options, const std::string& output_path) {
+  for (const std::string& input : {options.layout_path, options.dictionary,
+                                   options.layout ? options.layout->dictionary : std::string()}) {
+    CheckInputOutside(input, output_path);
+  }
+  CheckOutputFolder(output_path);
+  const PrintPlan plan = MakePrintPlan(options);
+  WarnOfNarrowMargin(options.sheet, plan);
+  PrintReport report;
+  report.dictionary = plan.look.dictionary.name;
+  report.num_codes = NumMarkers(plan.look.dictionary);
+  report.codes = plan.codes;
+  OutputFiles files;
+  std::vector<Drawing> pages, sheets;
+  if (plan.board) {
+    sheets = {DrawBoard(*plan.board, plan.look, {"velamap calibration board", 1, 1})};
+    files["board.svg"] = SvgText(sheets.front());
+    report.num_markers = plan.board->num_markers;
+  } else {
+    const std::vector<Sheet> planned = PlanSheets(plan.markers, NumCells(plan.look), options.sheet);
+    sheets = DrawSheets(planned, plan.look);
+    report.num_markers = static_cast<int>(plan.markers.size());
+    report.margin_mm = planned.front().stickers.front().margin_mm;
+  }
+  if (!plan.places.placements.empty() || !plan.places.rigid_parts.empty()) {
+    pages = DrawPlacement(plan.places, options.sheet.paper);
+    files["placement.svg"] = SvgText(StackDrawings(pages));
+  }
+  report.num_sheets = static_cast<int>(sheets.size());
+  report.num_drawings = static_cast<int>(pages.size());
+  pages.insert(pages.end(), sheets.begin(), sheets.end());
+  files["sheets.pdf"] = PdfBytes(pages, "Markers for velamap, " + plan.look.dictionary.name);
+  AddLayout(options, plan, &files);
+  AddSingleMarkers(plan, options.sheet, &files);
+  WriteOutputFolder(output_path, files);
+  for (const auto& [name, content] : files) report.files.push_back(name);
+  return report;
+}
+
+}  // namespace velamap

@@ -1,0 +1,223 @@
+#include "importer/print/placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kGap_mm = 5.0;            // between stickers, and to the sail's edges
+constexpr int kMarkersOfTopLine = 4;       // the least that give a section of the sail
+constexpr double kMinHeightOfFoot = 1e-3;  // a triangle flatter than that is an error in a length
+
+// The sail's triangle and the room that stickers need in it.
+struct Sail {
+  Eigen::Vector2d tack = Eigen::Vector2d::Zero(), clew, head;
+  double luff_mm = 0.0, foot_mm = 0.0, leech_mm = 0.0;
+  double from_luff_mm = 0.0, from_leech_mm = 0.0;  // along a line, of the first and last centre
+  double pitch_mm = 0.0;                           // least distance of neighbours on a line
+  double min_height = 0.0;                         // part of the luff of the lowest line
+
+  double RoomAt(double height) const {
+    return (1 - height) * foot_mm - from_luff_mm - from_leech_mm;
+  }
+};
+
+double RequireLength(const std::optional<double>& length_m, const std::string& option) {
+  if (!length_m) {
+    throw InputError(option + ": missing; a sail needs the lengths of luff, foot and leech in m");
+  }
+  return 1000 * *length_m;
+}
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+Sail MakeSail(const SailPlacementOptions& options, double sticker_mm) {
+  Sail sail;
+  sail.luff_mm = RequireLength(options.luff_m, OptionName(&SailPlacementOptions::luff_m));
+  sail.foot_mm = RequireLength(options.foot_m, OptionName(&SailPlacementOptions::foot_m));
+  sail.leech_mm = RequireLength(options.leech_m, OptionName(&SailPlacementOptions::leech_m));
+  const double luff = sail.luff_mm, foot = sail.foot_mm, leech = sail.leech_mm;
+  const double clew_up = (luff * luff + foot * foot - leech * leech) / (2 * luff);
+  const double squared = foot * foot - clew_up * clew_up;
+  if (!(squared > kMinHeightOfFoot * foot * foot)) {
+    throw InputError(fmt::format(
+        "{}: a sail with luff {} m, foot {} m and leech {} m is no triangle; measure "
+        "again: each is shorter than the other two together",
+        OptionName(&SailPlacementOptions::leech_m), luff / 1000, foot / 1000, leech / 1000));
+  }
+  sail.clew = {std::sqrt(squared), clew_up};
+  sail.head = {0, luff};
+  // Stickers lie along the line; their corners keep clear of the edges.
+  const double clear_mm = sticker_mm / std::sqrt(2.0) + kGap_mm;
+  const Eigen::Vector2d along = (sail.clew - sail.tack) / foot;
+  sail.from_luff_mm = clear_mm / std::abs(Cross(along, (sail.head - sail.tack) / luff));
+  sail.from_leech_mm = clear_mm / std::abs(Cross(along, (sail.head - sail.clew) / leech));
+  sail.pitch_mm = sticker_mm + kGap_mm;
+  sail.min_height = clear_mm / std::abs(Cross(along, sail.head - sail.tack));
+  return sail;
+}
+
+// How many markers a line holds at a height, at most `wanted`.
+int NumMarkersAt(const Sail& sail, double height, int wanted) {
+  const double room = sail.RoomAt(height);
+  if (room < 0) return 0;
+  return std::min(wanted, 1 + static_cast<int>(std::floor(room / sail.pitch_mm + 1e-9)));
+}
+
+PlacedLine MakeLine(const Sail& sail, const std::string& name, double height, int count,
+                    int first_id) {
+  PlacedLine line{name, {}, height * sail.luff_mm, height * sail.leech_mm};
+  const Eigen::Vector2d start = sail.tack + height * (sail.head - sail.tack);
+  const Eigen::Vector2d along = (sail.clew - sail.tack) / sail.foot_mm;
+  for (int i = 0; i < count; ++i) {
+    const double part = count > 1 ? double(i) / (count - 1) : 0.5;
+    const double along_mm = sail.from_luff_mm + part * sail.RoomAt(height);
+    line.markers.push_back({first_id + i, start + along_mm * along, along_mm});
+  }
+  return line;
+}
+
+// Vertical lines of at least two markers: column `column` of the lines from `begin` to `end`,
+// counted from the leech if negative.
+void AddColumn(const std::vector<PlacedLine>& lines, std::size_t begin, std::size_t end, int column,
+               std::vector<MarkerLine>* vertical) {
+  if (end - begin < 2) return;
+  MarkerLine line{fmt::format("v{}", vertical->size() + 1), {}};
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::vector<MarkerPlace>& markers = lines[i].markers;
+    const auto idx = static_cast<std::size_t>(column < 0 ? int(markers.size()) + column : column);
+    line.marker_ids.push_back(markers[idx].marker_id);
+  }
+  vertical->push_back(line);
+}
+
+std::vector<MarkerLine> MakeVerticalLines(const std::vector<PlacedLine>& lines) {
+  std::vector<MarkerLine> vertical;
+  AddColumn(lines, 0, lines.size(), 0, &vertical);
+  for (std::size_t begin = 0, end = 0; begin < lines.size(); begin = end) {
+    const std::size_t count = lines[begin].markers.size();
+    for (end = begin; end < lines.size() && lines[end].markers.size() == count;) ++end;
+    for (int column = 1; column + 1 < static_cast<int>(count); ++column) {
+      AddColumn(lines, begin, end, column, &vertical);
+    }
+  }
+  const bool has_leech = std::all_of(
+      lines.begin(), lines.end(), [](const PlacedLine& line) { return line.markers.size() > 1; });
+  if (has_leech) AddColumn(lines, 0, lines.size(), -1, &vertical);
+  return vertical;
+}
+
+}  // namespace
+
+OptionGroup DescribeOptions(GridPlacementOptions* options) {
+  return {"Grid, board and charuco",
+          {{"Grid.rows", &options->num_rows, "count", "rows of markers, or of squares of a charuco",
+            FromTo(1, 200)},
+           {"Grid.columns", &options->num_columns, "count",
+            "columns of markers, or of squares of a charuco", FromTo(1, 200)},
+           {"Grid.spacing", &options->spacing_m, "m",
+            "between the centres of neighbours; side of a charuco's squares; left out: twice the "
+            "marker's side on a grid, a quarter more than it on a board, 10/7 of it on a charuco",
+            FromTo(1e-4, 100)}}};
+}
+
+void GridPlacementOptions::Check() const { CheckRanges(*this); }
+
+OptionGroup DescribeOptions(SailPlacementOptions* options) {
+  return {
+      "Sail and hull",
+      {{"Sail.luff", &options->luff_m, "m", "length of the luff, tack to head", FromTo(0.05, 200)},
+       {"Sail.foot", &options->foot_m, "m", "length of the foot, tack to clew", FromTo(0.05, 200)},
+       {"Sail.leech", &options->leech_m, "m", "length of the leech, clew to head",
+        FromTo(0.05, 200)},
+       {"Sail.lines", &options->num_lines, "count", "horizontal lines of markers", FromTo(1, 200)},
+       {"Sail.markers_per_line", &options->markers_per_line, "count",
+        "markers on a line; fewer near the head, where they have no room", FromTo(1, 500)},
+       {"hull_markers", &options->hull_markers, "count",
+        "markers on the hull, a rigid part of its own that motion is measured against; hull: "
+        "0 makes 8",
+        FromTo(0, 500)}}};
+}
+
+void SailPlacementOptions::Check() const { CheckRanges(*this); }
+
+Placement PlaceOnSail(const SailPlacementOptions& options, double length_mm, double sticker_mm,
+                      int first_id) {
+  const Sail sail = MakeSail(options, sticker_mm);
+  const int on_top = std::min(kMarkersOfTopLine, options.markers_per_line);
+  const double max_height =
+      1 - (sail.from_luff_mm + sail.from_leech_mm + (on_top - 1) * sail.pitch_mm) / sail.foot_mm;
+  const int num_lines = options.num_lines;
+  const double step = num_lines > 1 ? (max_height - sail.min_height) / (num_lines - 1) : 0.0;
+  const double step_mm = step * sail.luff_mm * sail.clew.x() / sail.foot_mm;  // across the lines
+  if (max_height < sail.min_height || (num_lines > 1 && step_mm < sail.pitch_mm)) {
+    throw InputError(fmt::format(
+        "{}: the sail has no room for {} lines, the uppermost with {} stickers of {:.0f} mm; give "
+        "fewer lines or smaller markers (--marker_length)",
+        OptionName(&SailPlacementOptions::num_lines), num_lines, on_top, sticker_mm));
+  }
+  Placement placement{"sail", length_mm, sticker_mm, {sail.tack, sail.clew, sail.head}, {}, {}};
+  for (int i = 0; i < num_lines; ++i) {
+    const double height = sail.min_height + i * step;
+    const int count = NumMarkersAt(sail, height, options.markers_per_line);
+    placement.horizontal.push_back(
+        MakeLine(sail, fmt::format("h{}", i + 1), height, count, first_id));
+    first_id += count;
+  }
+  placement.vertical = MakeVerticalLines(placement.horizontal);
+  return placement;
+}
+
+Placement PlaceOnGrid(const GridPlacementOptions& options, double length_mm, double sticker_mm,
+                      int first_id) {
+  const double spacing_mm = options.spacing_m ? 1000 * *options.spacing_m : 2 * length_mm;
+  if (spacing_mm < sticker_mm) {
+    throw InputError(
+        fmt::format("{}: stickers of {:.1f} mm overlap at {:.1f} mm; give {:.3f} m or more, or a "
+                    "smaller --Sheet.margin",
+                    OptionName(&GridPlacementOptions::spacing_m), sticker_mm, spacing_mm,
+                    std::ceil(sticker_mm) / 1000));
+  }
+  Placement placement{"surface", length_mm, sticker_mm, {}, {}, {}};
+  for (int row = 0; row < options.num_rows; ++row) {
+    PlacedLine line{fmt::format("h{}", row + 1), {}, 0, 0};
+    for (int column = 0; column < options.num_columns; ++column) {
+      line.markers.push_back(
+          {first_id++, spacing_mm * Eigen::Vector2d(column, row), spacing_mm * column});
+    }
+    placement.horizontal.push_back(line);
+  }
+  placement.vertical = MakeVerticalLines(placement.horizontal);
+  return placement;
+}
+
+LayoutPart PartOfPlacement(const Placement& placement) {
+  LayoutPart part;
+  part.name = placement.part;
+  for (const PlacedLine& line : placement.horizontal) {
+    MarkerLine& ids = part.horizontal.emplace_back();
+    ids.name = line.name;
+    for (const MarkerPlace& marker : line.markers) ids.marker_ids.push_back(marker.marker_id);
+  }
+  part.vertical = placement.vertical;
+  return part;
+}
+
+LayoutPart RigidPart(const std::string& name, int first_id, int num_markers) {
+  LayoutPart part;
+  part.name = name;
+  part.rigid = true;
+  part.marker_ids.resize(static_cast<std::size_t>(num_markers));
+  std::iota(part.marker_ids.begin(), part.marker_ids.end(), first_id);
+  return part;
+}
+
+}  // namespace velamap

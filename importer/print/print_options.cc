@@ -1,0 +1,94 @@
+#include "importer/print/print_options.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+#include "importer/base/ids.h"
+#include "importer/base/numbers.h"
+
+namespace velamap {
+namespace {
+
+const Choices<Arrangement> kArrangements = {
+    {Arrangement::kMarkers, "markers"}, {Arrangement::kGrid, "grid"},
+    {Arrangement::kSail, "sail"},       {Arrangement::kHull, "hull"},
+    {Arrangement::kBoard, "board"},     {Arrangement::kCharuco, "charuco"}};
+
+[[noreturn]] void ThrowSuperfluous(const std::string& option, const std::string& reason) {
+  throw InputError(fmt::format("{}: {}; leave it out", option, reason));
+}
+
+}  // namespace
+
+bool IsBoard(Arrangement arrangement) {
+  return arrangement == Arrangement::kBoard || arrangement == Arrangement::kCharuco;
+}
+
+OptionGroup DescribeOptions(PrintOptions* options) {
+  const auto set_ids = [options](const std::string& text, const std::string& option) {
+    const auto ids = ParseNumberList<int>(text);
+    if (!ids ||
+        std::any_of(ids->begin(), ids->end(), [](int id) { return id < 0 || id > kMaxMarkerId; })) {
+      throw InputError(fmt::format("{}: '{}' is no list of marker ids; give such as 3,17 (0 to {})",
+                                   option, text, kMaxMarkerId));
+    }
+    options->ids = *ids;
+  };
+  return {
+      "Markers",
+      {ChoiceOption("arrangement", &options->arrangement, kArrangements,
+                    "markers: stickers, wherever they go; grid: stickers in rows and columns; "
+                    "sail: on lines of a sail; hull: on something rigid; board, charuco: one page "
+                    "for calibration"),
+       {"marker_length", &options->marker_length_m, "m",
+        "outer edge of the black square; board and charuco: left out, as large as fits",
+        FromTo(kMinMarkerLength_m, kMaxMarkerLength_m)},
+       {"dictionary", &options->dictionary, "name|path",
+        fmt::format("one of OpenCV's such as DICT_4X4_50 or DICT_APRILTAG_36h11, THESIS_3X3_130, "
+                    "or a dictionary file; left out: {}",
+                    kDefaultDictionary)},
+       {"border_bits", &options->border_bits, "cells", "width of the black border", FromTo(1, 8)},
+       {"num_markers", &options->num_markers, "count", "markers: how many",
+        FromTo(0, kMaxMarkerId + 1)},
+       {"first_id", &options->first_id, "id", "id of the first marker", FromTo(0, kMaxMarkerId)},
+       {"ids", ParsedValue{&options->ids, "", set_ids}, "id,id,...",
+        "print only these, such as those that were lost"}}};
+}
+
+void PrintOptions::Check() const {
+  CheckRanges(*this);
+  grid.Check();
+  sail.Check();
+  sheet.Check();
+  codes.Check();
+  if (layout && (!dictionary.empty() || marker_length_m || arrangement != Arrangement::kMarkers ||
+                 num_markers > 0 || codes.bits_per_side > 0)) {
+    ThrowSuperfluous("--layout_path",
+                     "the layout file says what the markers are, --arrangement, --dictionary, "
+                     "--marker_length, --num_markers and --CustomDictionary.bits say it, too");
+  }
+  if (codes.bits_per_side > 0 && !dictionary.empty()) {
+    ThrowSuperfluous("--dictionary", OptionName(&CodeSearchOptions::bits_per_side) + " makes one");
+  }
+  if (codes.bits_per_side == 0 && (codes.num_codes > 0 || codes.allow_symmetric)) {
+    ThrowSuperfluous(OptionName(&CodeSearchOptions::num_codes),
+                     OptionName(&CodeSearchOptions::bits_per_side) + " is 0, none is made");
+  }
+  if (arrangement != Arrangement::kSail && (sail.luff_m || sail.foot_m || sail.leech_m)) {
+    ThrowSuperfluous(OptionName(&SailPlacementOptions::luff_m), "it goes with --arrangement sail");
+  }
+  if (arrangement != Arrangement::kMarkers && num_markers > 0) {
+    ThrowSuperfluous("--num_markers", "it goes with --arrangement markers");
+  }
+  if (sail.hull_markers > 0 && (arrangement == Arrangement::kMarkers || IsBoard(arrangement))) {
+    ThrowSuperfluous(OptionName(&SailPlacementOptions::hull_markers),
+                     "it goes with --arrangement sail, grid or hull");
+  }
+  if (IsBoard(arrangement) && (!ids.empty() || sheet.write_png || sheet.write_svg)) {
+    ThrowSuperfluous("--ids, --Sheet.svg, --Sheet.png", "a board is printed as a whole");
+  }
+}
+
+}  // namespace velamap

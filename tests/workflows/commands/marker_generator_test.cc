@@ -1,0 +1,91 @@
+// marker_generator as a user calls it: what it prints, and what it says of bad input.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class MarkerGeneratorTest : public ::testing::Test {
+ protected:
+  ProgramRun Run(std::vector<std::string> arguments, const ProgramLimits& limits = {}) const {
+    arguments.insert(arguments.begin(), {"marker_generator", "--output_path", Folder()});
+    return RunVelamap(arguments, limits);
+  }
+  // One line, exit 2, and the test's folder as it was.
+  void ExpectFailure(const std::vector<std::string>& arguments, const std::string& expected,
+                     const ProgramLimits& limits = {}) const {
+    const std::vector<std::string> before = ListFolder(dir_.path());
+    const ProgramRun run = Run(arguments, limits);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("error: "));
+    EXPECT_THAT(run.err, HasSubstr(expected));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(ListFolder(dir_.path()), before);
+  }
+  std::string Folder() const { return dir_ / "out"; }
+
+  TempDir dir_;
+};
+
+const std::vector<std::string> kThree = {"--num_markers", "3", "--marker_length", "0.05"};
+
+std::vector<std::string> Three(std::vector<std::string> more) {
+  more.insert(more.end(), kThree.begin(), kThree.end());
+  return more;
+}
+
+TEST_F(MarkerGeneratorTest, SaysWhatItMade) {
+  const ProgramRun run = Run(Three({"--CustomDictionary.bits", "4", "--random_seed", "3"}));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("dictionary: OWN_4X4_3 (3 codes)\ndictionary_distance: "));
+  EXPECT_THAT(run.out, HasSubstr("markers: 3\npaper: A4\nsheets: 1\n"));
+  EXPECT_THAT(run.out, HasSubstr("white_margin_mm: 12.5\n"));
+  EXPECT_THAT(ListFolder(Folder()),
+              ElementsAre("dictionary.yml", "layout.yml", "sheets.pdf", "velamap_files.txt"));
+}
+
+TEST_F(MarkerGeneratorTest, BadWishes) {
+  ExpectFailure(Three({"--Sheet.paper", "70x70"}),
+                "--Sheet.paper: 70x70 is too small for marker 0");
+  ExpectFailure(Three({"--dictionary", "DICT_4X4_50", "--first_id", "48"}),
+                "marker 50 is wanted, but DICT_4X4_50 has 50 codes");
+  ExpectFailure({"--CustomDictionary.bits", "3", "--num_markers", "130", "--marker_length", "0.05"},
+                "3x3 bits have 120 that look different when turned");
+  ExpectFailure({"--arrangement", "sail", "--marker_length", "0.1", "--Sail.luff", "6",
+                 "--Sail.foot", "3", "--Sail.leech", "12"},
+                "is no triangle");
+  ExpectFailure({"--arrangement", "board", "--marker_length", "0.1"}, "too small for a board");
+  ExpectFailure(Three({"--layout_path", dir_ / "no.yml"}), "no.yml");
+}
+
+TEST_F(MarkerGeneratorTest, FullDiskLeavesNothing) {
+  ProgramLimits limits;
+  limits.max_file_size = 2000;
+  ExpectFailure(kThree, "sheets.pdf: cannot be written", limits);
+}
+
+TEST_F(MarkerGeneratorTest, OutputOfOthersStays) {
+  WriteTextFile(dir_ / "out", "a file");
+  ExpectFailure(kThree, "is no folder");
+  std::filesystem::remove(dir_ / "out");
+  std::filesystem::create_directory(Folder());
+  WriteTextFile(dir_ / "out/sheets.pdf", "mine");
+  ExpectFailure(kThree, "holds sheets.pdf, which velamap did not write there");
+  EXPECT_EQ(ReadFileBytes(dir_ / "out/sheets.pdf"), "mine");
+  std::filesystem::remove(dir_ / "out/sheets.pdf");
+  ASSERT_EQ(Run(kThree).exit_code, 0);
+  ASSERT_EQ(Run(kThree).exit_code, 0);
+  WriteTextFile(dir_ / "out/layout.yml", "edited");
+  ExpectFailure(kThree, "layout.yml has been changed since velamap wrote it");
+}
+
+}  // namespace
+}  // namespace velamap

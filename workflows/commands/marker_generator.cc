@@ -1,0 +1,82 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "importer/layout/layout.h"
+#include "importer/print/marker_sheets.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/shared_options.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  std::string output_path;
+  GeneralOptions general;
+  PrintOptions print;
+};
+
+CommandSyntax Declare(Options* options) {
+  return {"marker_generator",
+          "makes sheets of markers to print, a layout to start from, or a calibration board",
+          "--arrangement sail --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 --hull_markers 8 \\\n"
+          "    --marker_length 0.1 --output_path markers",
+          {{"Input and output",
+            {Required({"output_path", &options->output_path, "path",
+                       "folder for sheets.pdf, layout.yml, placement.svg and the like; new, empty, "
+                       "or as an earlier run left it"}),
+             {"layout_path", &options->print.layout_path, "path",
+              "layout file (YAML) whose markers are printed, instead of an arrangement"}}},
+           DescribeOptions(&options->print),
+           DescribeOptions(&options->print.sheet),
+           DescribeOptions(&options->print.sail),
+           DescribeOptions(&options->print.grid),
+           DescribeOptions(&options->print.codes),
+           DescribeOptions(&options->general)}};
+}
+
+void Validate(Options* options) {
+  SetLogLevel(options->general.log_level);
+  options->print.seed = static_cast<std::uint32_t>(options->general.random_seed);
+  if (!options->print.layout_path.empty()) {
+    options->print.layout = ReadLayout(options->print.layout_path);
+  }
+}
+
+void Print(const PrintReport& report, const Options& options, std::ostream& out) {
+  fmt::print(out, "dictionary: {} ({} codes)\n", report.dictionary, report.num_codes);
+  if (report.codes) {
+    fmt::print(out, "dictionary_distance: {} bits\n", report.codes->min_distance);
+    fmt::print(out, "dictionary_symmetric_codes: {}\n", report.codes->num_symmetric);
+  }
+  fmt::print(out, "markers: {}\n", report.num_markers);
+  fmt::print(out, "paper: {}\n", options.print.sheet.paper.name);
+  fmt::print(out, "sheets: {}\n", report.num_sheets);
+  fmt::print(out, "pages_before_sheets: {}\n", report.num_drawings);
+  if (report.margin_mm > 0) fmt::print(out, "white_margin_mm: {:.4g}\n", report.margin_mm);
+  for (const std::string& file : report.files) {
+    if (file.find('/') == std::string::npos) {
+      fmt::print(out, "file: {}\n", (std::filesystem::path(options.output_path) / file).string());
+    }
+  }
+  out << "output_path: " << options.output_path << '\n';
+}
+
+void Run(const Options& options) {
+  Print(PrintMarkers(options.print, options.output_path), options, std::cout);
+}
+
+}  // namespace
+
+Command MarkerGenerator() {
+  const auto options = std::make_shared<Options>();
+  return {Declare(options.get()), [options](const Arguments&) {
+            Validate(options.get());
+            Run(*options);
+          }};
+}
+
+}  // namespace velamap
