@@ -138,7 +138,11 @@ Board PlanBoard(BoardKind kind, const GridPlacementOptions& grid, const Paper& p
 }
 
 Drawing DrawBoard(const Board& board, const PrintedLook& look, const SheetWords& words) {
-  Drawing drawing = DrawPageFrame(board.frame, words);
+  double first_mm = board.marker_min_mm.front().x();
+  for (const auto* corners : {&board.marker_min_mm, &board.square_min_mm}) {
+    for (const Eigen::Vector2d& min_mm : *corners) first_mm = std::min(first_mm, min_mm.x());
+  }
+  Drawing drawing = DrawPageFrame(board.frame, words, first_mm - board.frame.min_mm.x());
   for (int i = 0; i < board.num_markers; ++i) {
     drawing.areas.push_back(MarkerArea(look, board.first_id + i, board.length_mm,
                                        board.marker_min_mm[static_cast<std::size_t>(i)]));

@@ -12,7 +12,8 @@ namespace {
 constexpr Color kGray = {0.35, 0.35, 0.35};
 constexpr double kHairline_mm = 0.15;
 constexpr double kCutMark_mm = 2.5;
-constexpr double kWords_mm = 3.0;  // size of type
+constexpr double kUprightScale_mm = 14.0;  // room for a scale beside the markers
+constexpr double kWords_mm = 3.0;          // size of type
 
 void AddCutMarks(const Eigen::Vector2d& min_mm, const Eigen::Vector2d& max_mm, Drawing* drawing) {
   for (const double x : {min_mm.x(), max_mm.x()}) {
@@ -60,10 +61,13 @@ void AddLabel(const Sticker& sticker, const PrintedLook& look, Drawing* drawing)
                             room});
 }
 
-// A line of the given length with ticks every 10 mm and every 1 mm in its first 10 mm, and numbers.
-void AddScale(const Eigen::Vector2d& start_mm, int length_mm, Drawing* drawing) {
-  const auto at = [&](double along, double up) {
-    return Eigen::Vector2d(start_mm.x() + along, start_mm.y() - up);
+// A line of the given length with ticks every 10 mm and every 1 mm in its first 10 mm, and numbers;
+// to the right from its start, or upwards. Printers may stretch the paper's two directions
+// differently.
+void AddScale(const Eigen::Vector2d& start_mm, int length_mm, bool is_upright, Drawing* drawing) {
+  const auto at = [&](double along, double beside) -> Eigen::Vector2d {
+    return start_mm +
+           (is_upright ? Eigen::Vector2d(beside, -along) : Eigen::Vector2d(along, -beside));
   };
   drawing->strokes.push_back({{at(0, 0), at(length_mm, 0)}, 0.25, kBlack});
   for (int mm = 0; mm <= length_mm; ++mm) {
@@ -73,8 +77,8 @@ void AddScale(const Eigen::Vector2d& start_mm, int length_mm, Drawing* drawing) 
     drawing->strokes.push_back({{at(mm, 0), at(mm, tick_mm)}, kHairline_mm, kBlack});
     if (mm % 50 != 0 && mm != 10) continue;
     drawing->texts.push_back({mm == length_mm ? fmt::format("{} mm", mm) : fmt::format("{}", mm),
-                              at(mm + 0.6, is_end ? 2.8 : 3.4), 2.4, TextAnchor::kStart, false,
-                              kGray});
+                              is_upright ? at(mm + 0.6, 3.4) : at(mm + 0.6, is_end ? 2.8 : 3.4),
+                              2.4, TextAnchor::kStart, false, kGray});
   }
 }
 
@@ -107,7 +111,7 @@ FilledArea MarkerArea(const PrintedLook& look, int marker_id, double length_mm,
   return area;
 }
 
-Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words) {
+Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double free_left_mm) {
   Drawing drawing;
   drawing.width_mm = frame.width_mm;
   drawing.height_mm = frame.height_mm;
@@ -124,12 +128,16 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words) {
                            0.18 * width});
   const int scale_mm = width >= 112 ? 100 : width >= 62 ? 50 : 30;
   const double bottom = frame.max_mm.y() + 18.0;
-  AddScale({left, bottom - 9.0}, scale_mm, &drawing);
+  AddScale({left, bottom - 9.0}, scale_mm, false, &drawing);
+  const bool has_two_scales =
+      free_left_mm >= kUprightScale_mm && frame.FreeSize().y() > scale_mm + 2 * kUprightScale_mm;
+  if (has_two_scales) {
+    AddScale({left, frame.max_mm.y() - kUprightScale_mm}, scale_mm, true, &drawing);
+  }
   drawing.texts.push_back(
       {fmt::format(
-           "Print at 100 % (\"actual size\", not \"fit to page\"), then measure this scale: "
-           "it has to be {} mm long.",
-           scale_mm),
+           "Print at 100 % (\"actual size\", not \"fit to page\"), then measure {} {} mm long.",
+           has_two_scales ? "both scales: they have to be" : "this scale: it has to be", scale_mm),
        {left, bottom - 4.4},
        kWords_mm,
        TextAnchor::kStart,
@@ -149,7 +157,8 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words) {
 }
 
 Drawing DrawSheet(const Sheet& sheet, const PrintedLook& look, const SheetWords& words) {
-  Drawing drawing = DrawPageFrame(sheet.frame, words);
+  const double first_mm = sheet.stickers.front().min_mm.x() - kCutMark_mm;
+  Drawing drawing = DrawPageFrame(sheet.frame, words, first_mm - sheet.frame.min_mm.x());
   for (const Sticker& sticker : sheet.stickers) {
     drawing.areas.push_back(
         MarkerArea(look, sticker.marker.marker_id, sticker.marker.length_mm, sticker.SquareMin()));

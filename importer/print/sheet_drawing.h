@@ -28,8 +28,9 @@ struct SheetWords {
 FilledArea MarkerArea(const PrintedLook& look, int marker_id, double length_mm,
                       const Eigen::Vector2d& min_mm);
 
-// Words at the top of a page, and the scale with what to do with it at the bottom.
-Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words);
+// Words at the top of a page, and the scale with what to do with it at the bottom. A second scale
+// stands upright at the left edge of the free area where `free_left_mm` of it are enough.
+Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double free_left_mm);
 
 Drawing DrawSheet(const Sheet& sheet, const PrintedLook& look, const SheetWords& words);
 
