@@ -1,9 +1,8 @@
 #include "exporters/shape_exporter.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
-#include <set>
+#include <vector>
 
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
@@ -15,6 +14,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/replacement.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
 
@@ -23,32 +23,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::set<std::string> ShapeFileNames() {
-  std::set<std::string> names = {"shape.csv", "shape.ply",   "markers.ply",
-                                 "scale.csv", "metrics.csv", "metrics.json"};
-  names.merge(SailFileNames());
-  return names;
-}
-
-bool IsInside(const fs::path& path, const fs::path& folder) {
-  const auto [mismatch, unused] =
-      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
-  return mismatch == folder.end();
-}
-
 // The absolute path without dots and a trailing slash; empty for an empty path.
 fs::path OutputFolder(const std::string& path) {
   return path.empty() ? fs::path() : AbsoluteFolder(path);
 }
 
 void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) {
-  if (!model_path.empty()) CheckReplaceableFolder(model_path, ModelFileNames());
-  if (!shape_path.empty()) CheckReplaceableFolder(shape_path, ShapeFileNames());
-  if (model_path.empty() || shape_path.empty()) return;
-  if (IsInside(model_path, shape_path) || IsInside(shape_path, model_path)) {
-    throw InputError(shape_path.string() + ": the folders of the shape and of the model (" +
-                     model_path.string() + ") must not be the same or one inside the other");
-  }
+  std::vector<UsedPath> outputs;
+  if (!model_path.empty()) outputs.push_back({"folder of the model", model_path, true});
+  if (!shape_path.empty()) outputs.push_back({"folder of the shape", shape_path, true});
+  CheckOutputs({}, outputs);
 }
 
 const PointCovariance* CovarianceOf(const ShapeExportReport& report) {
@@ -139,6 +123,7 @@ ShapeExportReport ExportShape(const Model& model, const Layout& layout,
   const fs::path shape_path = OutputFolder(options.shape_output_path);
   CheckOutputFolders(model_path, shape_path);
   options.sail.Check();
+  CheckFrameChoice(options.frame, layout);
   ShapeExportReport report = ComputeReport(model, layout, options, uncertainty);
   std::optional<AtomicFolder> shape_folder;
   if (!shape_path.empty()) {

@@ -42,8 +42,8 @@ struct ShapeExportReport {
 // Writes shape.csv, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv, metrics.json
 // and the files of WriteSailFiles() to shape_output_path, and the metric COLMAP model with true
 // point errors to model_output_path, all in the chosen frame. Each folder is written to a temporary
-// sibling and renamed when complete. An existing folder is replaced if it holds only files of these
-// names.
+// sibling and renamed when complete. An existing folder is replaced if velamap wrote every file in
+// it (importer/base/replacement.h).
 //
 // With `uncertainty` (ReadUncertainty of the model's folder) the model is metric already: it is not
 // scaled, all figures get their sigmas, and the folder of the metric model keeps the uncertainty.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "importer/base/stage_timer.h"
@@ -15,11 +16,12 @@ namespace velamap {
 
 struct FrameResult {
   FrameDetections detections;
-  Camera camera;                    // for the frame's size
-  std::string skipped_because;      // not empty: the file was no whole image
-  PriorShapeAgreement prior_shape;  // of the markers that were found without it
-  ImportTimes times;                // of the thread that processed it
-  double reading_s = 0.0;           // Frame::decode_s
+  Camera camera;                     // for the frame's size
+  std::string skipped_because;       // not empty: the file was no whole image
+  std::optional<SourceFile> source;  // of a photograph
+  PriorShapeAgreement prior_shape;   // of the markers that were found without it
+  ImportTimes times;                 // of the thread that processed it
+  double reading_s = 0.0;            // Frame::decode_s
 };
 
 // Reads all frames of `source`, calls `process` for each on up to `num_threads` threads (frame_idx

@@ -1,42 +1,134 @@
 #include "importer/import_checks.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <optional>
-#include <vector>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/files.h"
+#include "importer/base/replacement.h"
 #include "importer/camera/calibration.h"
+#include "importer/database/source_table.h"
+#include "importer/video/frame_source.h"
+#include "importer/video/source_file.h"
+#include "importer/video/written_frame.h"
 
 namespace velamap {
 namespace {
+
+namespace fs = std::filesystem;
 
 // Another dictionary or polarity has to find this many times as many markers a frame to be
 // suggested.
 constexpr double kConvincingRatio = 10.0;
 
+constexpr char kRemedy[] =
+    "write to a new place, or delete it (in a workspace: the whole workspace)";
+
+void CheckVideo(const MarkerImporterOptions& options,
+                const std::map<std::string, SourceFile>& sources, ColmapDatabase* database) {
+  const SourceFile video = IdentifySource(options.image_path);
+  const auto known = sources.find(kVideoSource);
+  if (known == sources.end()) return database->WriteSource(kVideoSource, video);
+  if (HaveSameContent(known->second, video)) return;
+  throw InputError(fmt::format("{}: was made from {} ({}); {}", options.database_path,
+                               known->second.path == video.path
+                                   ? "the video before it was changed"
+                                   : "another video than " + options.image_path,
+                               SourceText(known->second), kRemedy));
+}
+
+void CheckPhotograph(const MarkerImporterOptions& options, const std::string& name,
+                     const SourceFile& known) {
+  const fs::path file = fs::path(options.image_path) / name;
+  if (IsRegularFile(file)) {
+    if (HaveSameContent(known, IdentifySource(file.string()))) return;
+    throw InputError(fmt::format("{}: {} is another picture now than that imported ({}); {}",
+                                 options.database_path, file.string(), SourceText(known), kRemedy));
+  }
+  // Photographs of several folders may share a database that is no workspace's.
+  if (!options.is_only_source && CanonicalPath(file) != fs::path(known.path)) return;
+  throw InputError(fmt::format("{}: holds {}, which is not in {} (it was {}); {}",
+                               options.database_path, name, options.image_path, SourceText(known),
+                               kRemedy));
+}
+
+void CheckPhotographs(const MarkerImporterOptions& options,
+                      const std::map<std::string, SourceFile>& sources) {
+  for (const auto& [name, source] : sources) {
+    if (name != kVideoSource) {
+      CheckPhotograph(options, name, source);
+    } else if (options.is_only_source) {
+      throw InputError(fmt::format("{}: was made from a video ({}), not from photographs; {}",
+                                   options.database_path, SourceText(source), kRemedy));
+    }
+  }
+}
+
 }  // namespace
 
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
                    const ColmapDatabase& database) {
-  const std::string remedy = "delete it, or write to a new place";
   const std::optional<std::string> known_detector = database.ReadDetector();
   if (!known_detector) return;  // it holds no images
   if (*known_detector != detector) {
     throw InputError(
         fmt::format("{}: was made with other detection options, another layout or "
                     "another prior shape ({}; this run has {}); {}",
-                    options.database_path, *known_detector, detector, remedy));
+                    options.database_path, *known_detector, detector, kRemedy));
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {
     const Camera expected =
         ScaleToImageSize(options.camera, camera.width_px, camera.height_px, options.camera_path);
     if (!(expected == camera)) {
       throw InputError(fmt::format("{}: was made with another calibration than {}; {}",
-                                   options.database_path, options.camera_path, remedy));
+                                   options.database_path, options.camera_path, kRemedy));
     }
+  }
+}
+
+void CheckSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
+                  ColmapDatabase* database) {
+  const std::map<std::string, SourceFile> sources = database->ReadSources();
+  const bool is_video = !IsFolder(options.image_path);
+  if (sources.empty() && !known_names.empty()) {
+    spdlog::warn(
+        "{}: made by an earlier velamap, which did not note what it read; it is taken to be "
+        "of {}",
+        options.database_path, options.image_path);
+    for (const std::string& name : known_names) {
+      const fs::path file = fs::path(options.image_path) / name;
+      if (IsRegularFile(file)) database->WriteSource(name, IdentifySource(file.string()));
+    }
+  }
+  if (!is_video) return CheckPhotographs(options, sources);
+  const auto photograph = sources.upper_bound(kVideoSource);
+  if (options.is_only_source && photograph != sources.end()) {
+    throw InputError(fmt::format("{}: was made from photographs ({}), not from a video; {}",
+                                 options.database_path, SourceText(photograph->second), kRemedy));
+  }
+  CheckVideo(options, sources, database);
+}
+
+void CheckFrameFolder(const MarkerImporterOptions& options,
+                      const std::vector<std::string>& known_names) {
+  const std::string& folder = options.frame_output_path;
+  if (folder.empty() || IsFolder(options.image_path) || !IsFolder(folder)) return;
+  RemoveUnfinished(folder);
+  const std::set<std::string> known(known_names.begin(), known_names.end());
+  for (const fs::path& file : FolderEntries(folder)) {
+    const std::string name = file.filename().string();
+    if (!IsVideoFrameName(name) || known.count(name) > 0 || IsWrittenFrame(file)) continue;
+    throw InputError(
+        fmt::format("{}: a picture that velamap did not write stands where a frame could go; move "
+                    "it away, or choose another folder",
+                    file.string()));
   }
 }
 

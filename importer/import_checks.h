@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "importer/database/colmap_database.h"
 #include "importer/dictionary_hint.h"
@@ -17,6 +18,16 @@ inline constexpr double kFewMarkersPerFrame = 0.5;
 // calibration.
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
                    const ColmapDatabase& database);
+
+// Throws InputError if a photograph of the database, or its video, is another one now or has gone.
+// Notes the sources of a database that an earlier velamap has made, and the video.
+void CheckSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
+                  ColmapDatabase* database);
+
+// Throws InputError if a frame of the video could replace a picture that velamap did not write.
+// Removes what an interrupted run has left unfinished.
+void CheckFrameFolder(const MarkerImporterOptions& options,
+                      const std::vector<std::string>& known_names);
 
 // Throws DataError if the frames hold no marker, or hardly any while another dictionary finds many.
 // A wrong dictionary or polarity finds false ids, most of which the layout does not name, so the

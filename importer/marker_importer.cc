@@ -13,6 +13,7 @@
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/file_lock.h"
 #include "importer/base/files.h"
 #include "importer/base/parallel.h"
 #include "importer/camera/calibration.h"
@@ -73,6 +74,7 @@ class ImportRun {
       result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
       WriteImage(*frame, result.detections);
       AddToSample(frame_idx, frame->gray);
+      result.source = frame->source;
     }
     result.times = TakeStageTimes();
     result.reading_s = frame->decode_s;
@@ -104,7 +106,7 @@ class ImportRun {
     if (!few_found_) ClearSample();
     // Frames of a video without markers are dropped; a photograph is in the database in any case.
     if (source_->IsVideo() && detections.markers.empty()) return;
-    writer_.Add(detections, result.camera);
+    writer_.Add(detections, result.camera, result.source);
     ++report_.num_images_added;
   }
 
@@ -257,6 +259,12 @@ ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetec
   return run.Finish(ProcessCpuSeconds() - cpu_begin_s, num_threads);
 }
 
+// Beside the database, whatever links lead to it.
+std::filesystem::path LockOf(const std::string& database_path) {
+  const std::filesystem::path path = CanonicalPath(database_path);
+  return path.parent_path() / ("." + path.filename().string() + ".lock");
+}
+
 // Runs the steps that need all frames.
 void CompleteDatabase(const FrameDetector& detector, ColmapDatabase* database,
                       ImportReport* report) {
@@ -280,13 +288,18 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;
   if (IsFolder(options.image_path)) detection.search = SearchMode::kExhaustive;
+  CheckImagePath(options.image_path);
   FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
 
+  const FileLock lock(LockOf(options.database_path), options.database_path);
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
-  CheckExisting(options, DescribeDetector(detector), database);
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
+  if (known_names.empty()) database.ForgetSources();
+  CheckSources(options, known_names, &database);
+  CheckExisting(options, DescribeDetector(detector), database);
+  CheckFrameFolder(options, known_names);
   if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }

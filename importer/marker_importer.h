@@ -30,6 +30,8 @@ struct MarkerImporterOptions {
   // Video only: the folder into which frames with markers are written as JPEG, so that later steps
   // need not decode the video again; empty: none are written. Photographs stay where they are.
   std::string frame_output_path;
+  // Whether the database must hold nothing of other folders or videos.
+  bool is_only_source = false;
   int num_threads = 0;  // 0: one a core
 };
 
@@ -62,8 +64,10 @@ struct ImportReport {
 // steps that need all frames follow (import_completion.h). Frames whose name is in the database
 // are skipped.
 //
-// Throws InputError for unreadable input, a calibration for another image size, and a database that
-// was made with another camera or other detector settings. Throws DataError that names the
+// Throws InputError for unreadable input, a calibration for another image size, a layout whose ids
+// the dictionary does not have, a database that was made with another camera, other detector
+// settings or pictures that have changed since, one that another velamap imports into, and a frame
+// that would replace a picture that velamap did not write. Throws DataError that names the
 // dictionaries and polarity that would have found markers if there are none.
 ImportReport ImportMarkers(const MarkerImporterOptions& options,
                            const ProgressCallback& progress = {});

@@ -3,8 +3,8 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue checksum csv error files ids natural_order numbers option
-  output_manifest parallel stage_timer statistics text_file)
+  atomic_output bounded_queue checksum csv error file_lock files ids natural_order numbers option
+  output_manifest parallel replacement stage_timer statistics text_file)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
   rigid3 unit_square_map units)
@@ -15,7 +15,8 @@ house_folder(importer/layout PUBLIC
 house_folder(importer/print PUBLIC
   marker_sheets)
 house_folder(importer/video PUBLIC
-  frame_image frame_source image_file video_options)
+  frame_image frame_source image_file source_file video_options
+  written_frame)
 house_folder(importer/detect PUBLIC
   corner_colors detection detection_options duplicates interpolate marker_alignment
   marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
@@ -26,7 +27,7 @@ house_folder(importer/track PUBLIC
 house_folder(importer/formation PUBLIC
   formation_sampling)
 house_folder(importer/database PUBLIC
-  colmap_database correspondence database_writer)
+  colmap_database correspondence database_writer source_table)
 house_folder(importer PUBLIC
   dictionary_hint marker_importer)
 house_folder(reconstruct/geometry PUBLIC

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Reconstructs several inputs (folders of images, or videos) with one camera and layout, each into its
-# own workspace, and writes a row for each into OUTPUT/summary.csv.
+# own workspace, and writes a row for each into OUTPUT/summary.csv. An earlier summary is
+# kept as summary.1.csv, summary.2.csv ...
 #
 # usage: workflows/run_batch.sh --output_path FOLDER [--keep_going] INPUT... [-- VELAMAP_OPTION...]
 #
@@ -54,6 +55,15 @@ csv_field() { printf '"%s"' "${1//\"/\"\"}"; }
 
 mkdir -p "$output_path"
 summary="$output_path/summary.csv"
+# An earlier summary stays, under the next free number.
+if [[ -e "$summary" || -L "$summary" ]]; then
+  number=1
+  while [[ -e "$output_path/summary.$number.csv" || -L "$output_path/summary.$number.csv" ]]; do
+    number=$((number + 1))
+  done
+  mv --no-clobber "$summary" "$output_path/summary.$number.csv"
+  echo "== the earlier summary is now $output_path/summary.$number.csv"
+fi
 { printf 'input,workspace,exit_code,error'; printf ',%s' "${keys[@]}"; printf '\n'; } >"$summary"
 results="$(mktemp)"
 errors="$(mktemp)"

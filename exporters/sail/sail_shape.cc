@@ -131,13 +131,4 @@ void WriteSailFiles(const SailShape& sail, const ShapeFrame& frame,
   }
 }
 
-std::set<std::string> SailFileNames() {
-  std::set<std::string> names;
-  for (const auto& [name, writer] : SectionFiles()) names.insert(name);
-  for (int i = 0; i < kMaxSurfaces; ++i) {
-    for (const SurfaceFile& file : SurfaceFiles(i)) names.insert(file.name);
-  }
-  return names;
-}
-
 }  // namespace velamap

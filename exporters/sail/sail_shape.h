@@ -60,7 +60,4 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
 void WriteSailFiles(const SailShape& sail, const ShapeFrame& frame,
                     const std::filesystem::path& folder);
 
-// All names that WriteSailFiles() can use.
-std::set<std::string> SailFileNames();
-
 }  // namespace velamap

@@ -233,6 +233,19 @@ Attempt Try(FrameKind kind, const FrameChoice& choice, const MarkerShape& shape,
   return {CameraFrame(shape, layout), ""};
 }
 
+std::string NameOf(FrameKind kind, const FrameChoice& choice) {
+  return kind == FrameKind::kMarkers
+             ? fmt::format("markers {} {} {}", choice.origin_id, choice.axis_id, choice.plane_id)
+             : FrameKeyword(kind);
+}
+
+[[noreturn]] void ThrowNotGranted(const FrameChoice& choice, const std::string& reason) {
+  throw InputError(
+      fmt::format("--frame: {} is not possible: {}; leave the option out, or give "
+                  "another frame",
+                  NameOf(choice.kind, choice), reason));
+}
+
 std::string LeewardText(const MarkerShape& shape, const Layout& layout, const ShapeFrame& frame) {
   const Eigen::Vector3d y_in_shape =
       frame.frame_from_shape.rotation.conjugate() * Eigen::Vector3d::UnitY();
@@ -250,6 +263,23 @@ std::string FrameText(const ShapeFrame& frame) {
   return text;
 }
 
+void CheckFrameChoice(const std::optional<FrameChoice>& choice, const Layout& layout) {
+  if (!choice) return;
+  if (choice->kind == FrameKind::kReferencePart && !layout.reference_part) {
+    ThrowNotGranted(*choice, "the layout names no reference_part");
+  }
+  if (choice->kind == FrameKind::kLines && FirstPartWithLines(layout) == nullptr) {
+    ThrowNotGranted(*choice, "the layout has no horizontal lines");
+  }
+  if (choice->kind != FrameKind::kMarkers || !layout.HasMarkers()) return;
+  for (const int id : {choice->origin_id, choice->axis_id, choice->plane_id}) {
+    const std::vector<int> known = MarkerIds(layout);
+    if (!std::binary_search(known.begin(), known.end(), id)) {
+      ThrowNotGranted(*choice, fmt::format("the layout names no marker {}", id));
+    }
+  }
+}
+
 ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
                        const std::optional<FrameChoice>& choice) {
   const FrameChoice wanted =
@@ -262,11 +292,8 @@ ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
   for (const FrameKind kind : order) {
     Attempt attempt = Try(kind, wanted, shape, layout);
     if (!attempt.frame) {
-      const std::string name =
-          kind == FrameKind::kMarkers
-              ? fmt::format("markers {} {} {}", wanted.origin_id, wanted.axis_id, wanted.plane_id)
-              : FrameKeyword(kind);
-      reasons.push_back(fmt::format("not by {}: {}", name, attempt.reason));
+      if (choice) ThrowNotGranted(wanted, attempt.reason);
+      reasons.push_back(fmt::format("not by {}: {}", NameOf(kind, wanted), attempt.reason));
       continue;
     }
     if (kind != FrameKind::kCamera) {

@@ -53,8 +53,12 @@ struct ShapeFrame {
 // `name: description; reasons` in one line.
 std::string FrameText(const ShapeFrame& frame);
 
-// Returns the first frame that the whole markers allow: `choice` or else the `frame` of the layout,
-// then the reference part, the lines, the camera. The camera is always possible.
+// Throws InputError for a choice that no shape of this layout can grant: before the work.
+void CheckFrameChoice(const std::optional<FrameChoice>& choice, const Layout& layout);
+
+// Returns the frame that is `choice`, and throws InputError if the markers do not allow it. Without
+// a choice, returns the first frame that the whole markers allow: the `frame` of the layout, the
+// reference part, the lines, the camera. The camera is always possible.
 ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
                        const std::optional<FrameChoice>& choice = std::nullopt);
 

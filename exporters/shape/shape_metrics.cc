@@ -116,10 +116,25 @@ void PredictDistances(const PointCovariance* covariance, const std::vector<Corne
   comparison->distance_after_scaling_sigma_m = std::sqrt(std::max(0.0, trace - of_scale) / count);
 }
 
+void CheckHasMarkersOf(const Layout& layout, const MarkerShape& shape) {
+  if (!layout.HasMarkers() || shape.markers.empty()) return;
+  const std::vector<int> ids = MarkerIds(layout);
+  const bool has_one =
+      std::any_of(shape.markers.begin(), shape.markers.end(), [&](const ShapeMarker& marker) {
+        return std::binary_search(ids.begin(), ids.end(), marker.marker_id);
+      });
+  if (has_one) return;
+  throw DataError(fmt::format(
+      "none of the {} markers of the shape is in the layout, neither marker {} nor the others: is "
+      "it the layout of this surface?",
+      shape.markers.size(), shape.markers.front().marker_id));
+}
+
 }  // namespace
 
 ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
                                  const PointCovariance* covariance) {
+  CheckHasMarkersOf(layout, shape);
   ShapeMetrics metrics;
   std::vector<double> area_errors_mm2, area_errors_percent, side_errors_mm;
   std::map<int, bool> is_whole;

@@ -41,7 +41,8 @@ struct ShapeMetrics {
 };
 
 // Compares markers with their printed sides in `layout`. Sigmas are known if `covariance`, of the
-// corners of the shape, has all whole markers.
+// corners of the shape, has all whole markers. Throws DataError if the shape has markers, and none
+// of them is one that the layout names.
 ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
                                  const PointCovariance* covariance = nullptr);
 

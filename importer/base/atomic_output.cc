@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -15,6 +14,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/replacement.h"
 
 namespace velamap {
 namespace {
@@ -25,22 +25,14 @@ namespace fs = std::filesystem;
   throw InputError(fmt::format("{}: cannot be written: {}", path.string(), why));
 }
 
-// A path that no other process or thread of this machine uses.
 fs::path TemporarySibling(const fs::path& path) {
-  static std::atomic<int> counter{0};
-  return path.parent_path() /
-         fmt::format(".{}.tmp-{}-{}", path.filename().string(), getpid(), counter++);
+  return path.parent_path() / TemporaryName(path.filename().string());
 }
 
 // Returns the path that a file in a temporary folder will have when the folder has been renamed.
 fs::path FinalPath(const fs::path& path) {
   fs::path final_path;
-  for (const fs::path& component : path) {
-    const std::string name = component.string();
-    const std::size_t suffix = name.rfind(".tmp-");
-    const bool is_temporary = name.front() == '.' && suffix != std::string::npos && suffix > 1;
-    final_path /= is_temporary ? name.substr(1, suffix - 1) : name;
-  }
+  for (const fs::path& component : path) final_path /= FinalName(component.string());
   return final_path;
 }
 
@@ -71,7 +63,7 @@ void WriteAndRename(const fs::path& path, bool is_synced,
                     const std::function<void(std::ostream&)>& write) {
   // A link stays a link: the file that it points at is replaced.
   std::error_code error;
-  const fs::path target = AbsoluteFolder(fs::is_symlink(path, error) ? CanonicalPath(path) : path);
+  const fs::path target = AbsoluteFolder(IsLink(path) ? CanonicalPath(path) : path);
   if (Exists(target) && !IsRegularFile(target)) {
     ThrowCannotWrite(path, "it exists and is no regular file; choose another output path");
   }
@@ -91,9 +83,7 @@ void WriteAndRename(const fs::path& path, bool is_synced,
 }  // namespace
 
 AtomicFolder::AtomicFolder(const fs::path& path) : path_(AbsoluteFolder(path)) {
-  if (Exists(path_) && !IsFolder(path_)) {
-    ThrowCannotWrite(path_, "it exists and is no folder; choose another output path");
-  }
+  CheckReplaceableFolder(path_);
   CreateFolders(path_.parent_path());
   temporary_path_ = TemporarySibling(path_);
   std::error_code error;
@@ -107,6 +97,11 @@ AtomicFolder::~AtomicFolder() {
 
 void AtomicFolder::Commit() {
   VELAMAP_CHECK(!committed_);
+  CheckReplaceableFolder(path_);  // somebody may have put a file there meanwhile
+  const std::string record = MakeFolderRecord(temporary_path_);
+  if (!record.empty()) {
+    WriteFile(temporary_path_ / kFolderRecord, [&](std::ostream& out) { out << record; });
+  }
   std::error_code error;
   if (!Exists(path_)) {
     fs::rename(temporary_path_, path_, error);
@@ -132,21 +127,6 @@ void AtomicFolder::Commit() {
   }
   committed_ = true;
   RemoveAll(old_path);
-}
-
-void CheckReplaceableFolder(const fs::path& path, const std::set<std::string>& known_files) {
-  if (!Exists(path)) return;
-  if (!IsFolder(path)) {
-    ThrowCannotWrite(path, "it exists and is no folder; choose another output path");
-  }
-  for (const fs::path& entry : FolderEntries(path)) {
-    const std::string name = entry.filename().string();
-    if (known_files.count(name) > 0 && IsRegularFile(entry)) continue;
-    throw InputError(fmt::format(
-        "{}: the output folder holds {}, which velamap did not write there; choose another folder "
-        "or empty it",
-        path.string(), name));
-  }
 }
 
 void WriteFileAtomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {

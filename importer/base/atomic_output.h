@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
-#include <set>
-#include <string>
 
 namespace velamap {
 
-// A fresh folder beside `path`. Commit() renames it to `path`, replacing a folder that is there;
-// without Commit() it is removed. Throws InputError, naming the path, if it cannot be created.
+// A fresh folder beside `path`. Commit() adds the record of its files (replacement.h) and renames
+// it to `path`, replacing a folder that is there; without Commit() it is removed. Throws
+// InputError, naming the path, if it cannot be created or a folder that is there is not
+// replaceable.
 class AtomicFolder {
  public:
   explicit AtomicFolder(const std::filesystem::path& path);
@@ -28,12 +28,6 @@ class AtomicFolder {
   std::filesystem::path temporary_path_;
   bool committed_ = false;
 };
-
-// Throws InputError, naming the path and the first other file, unless `path` is missing or is a
-// folder that holds no files but `known_files`. An AtomicFolder replaces a folder as a whole, and a
-// mistyped path must not cost anyone their files.
-void CheckReplaceableFolder(const std::filesystem::path& path,
-                            const std::set<std::string>& known_files);
 
 // Calls `write` with a stream (classic locale, 17 digits, binary mode), then checks that every byte
 // reached the disk and renames. Throws InputError, naming the path, if it cannot be written.

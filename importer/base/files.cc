@@ -1,14 +1,23 @@
 #include "importer/base/files.h"
 
+#include <fcntl.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <deque>
+#include <fstream>
+#include <set>
 #include <string>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/replacement.h"
 
 namespace velamap {
 namespace {
@@ -34,6 +43,16 @@ fs::file_type TypeOf(const fs::path& path) {
   return type;
 }
 
+// Whether the file system could make `to` a copy that shares its blocks with `from`.
+bool ShareBlocks(const fs::path& from, const fs::path& to) {
+  const int source = open(from.c_str(), O_RDONLY | O_CLOEXEC);
+  const int copy = source < 0 ? -1 : open(to.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  const bool shared = copy >= 0 && ioctl(copy, FICLONE, source) == 0;
+  if (copy >= 0) close(copy);
+  if (source >= 0) close(source);
+  return shared;
+}
+
 }  // namespace
 
 bool Exists(const fs::path& path) { return TypeOf(path) != fs::file_type::not_found; }
@@ -41,6 +60,11 @@ bool Exists(const fs::path& path) { return TypeOf(path) != fs::file_type::not_fo
 bool IsFolder(const fs::path& path) { return TypeOf(path) == fs::file_type::directory; }
 
 bool IsRegularFile(const fs::path& path) { return TypeOf(path) == fs::file_type::regular; }
+
+bool IsLink(const fs::path& path) noexcept {
+  std::error_code error;
+  return fs::is_symlink(path, error);
+}
 
 std::uintmax_t FileSize(const fs::path& path) {
   std::error_code error;
@@ -83,18 +107,21 @@ std::vector<fs::path> FolderEntries(const fs::path& folder) {
 
 std::vector<fs::path> FilesBelow(const fs::path& folder) {
   std::vector<fs::path> files;
-  std::error_code error;
-  fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink,
-                                      error);
-  for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
-    std::error_code ignored;  // a link that leads nowhere is no file
-    if (it->path().filename().string().front() == '.') {
-      it.disable_recursion_pending();
-    } else if (it->is_regular_file(ignored)) {
-      files.push_back(it->path());
+  std::deque<fs::path> folders = {folder}, linked_folders;
+  std::set<fs::path> entered;  // canonical: links may lead in circles
+  while (!folders.empty() || !linked_folders.empty()) {
+    std::deque<fs::path>& next = folders.empty() ? linked_folders : folders;
+    const fs::path current = next.front();
+    next.pop_front();
+    if (!entered.insert(CanonicalPath(current)).second) continue;
+    for (const fs::path& entry : FolderEntries(current)) {
+      std::error_code ignored;  // a link that leads nowhere, or to itself, is no file
+      if (entry.filename().string().front() == '.') continue;
+      if (fs::is_regular_file(entry, ignored)) files.push_back(entry);
+      if (!fs::is_directory(entry, ignored)) continue;
+      (IsLink(entry) ? linked_folders : folders).push_back(entry);
     }
   }
-  CheckRead(error, folder);
   return files;
 }
 
@@ -120,17 +147,38 @@ TemporaryFolder::TemporaryFolder() {
   path_ = pattern;
 }
 
-void LinkOrCopyFile(const fs::path& from, const fs::path& to) {
-  const fs::path target = CanonicalPath(from);
-  CreateFolders(to.parent_path());
+bool IsSameFile(const fs::path& path1, const fs::path& path2) {
   std::error_code error;
-  fs::create_hard_link(target, to, error);
-  if (!error) return;
-  const fs::path temporary_path = to.parent_path() / ("." + to.filename().string() + ".tmp");
-  fs::copy_file(target, temporary_path, fs::copy_options::overwrite_existing, error);
+  return fs::equivalent(path1, path2, error) && !error;
+}
+
+void CloneFile(const fs::path& from, const fs::path& to) {
+  CreateFolders(to.parent_path());
+  const fs::path temporary_path = to.parent_path() / TemporaryName(to.filename().string());
+  std::error_code error;
+  if (!ShareBlocks(from, temporary_path)) {
+    fs::copy_file(CanonicalPath(from), temporary_path, fs::copy_options::overwrite_existing, error);
+  }
   if (!error) fs::rename(temporary_path, to, error);
   if (error) RemoveAll(temporary_path);
   CheckWritten(error, to);
+}
+
+std::uint64_t Hash(std::string_view bytes, std::uint64_t hash) {
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+std::uint64_t HashOfFile(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<char> buffer(1 << 16);
+  std::uint64_t hash = Hash("");
+  while (stream) {
+    stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    hash = Hash({buffer.data(), static_cast<std::size_t>(stream.gcount())}, hash);
+  }
+  if (!stream.eof()) throw InputError(Shown(path) + ": cannot be read");
+  return hash;
 }
 
 void CopyFile(const fs::path& from, const fs::path& to) {

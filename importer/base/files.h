@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace velamap {
@@ -15,6 +16,9 @@ namespace velamap {
 bool Exists(const std::filesystem::path& path);
 bool IsFolder(const std::filesystem::path& path);
 bool IsRegularFile(const std::filesystem::path& path);
+
+// The path itself, wherever it leads.
+bool IsLink(const std::filesystem::path& path) noexcept;
 
 std::uintmax_t FileSize(const std::filesystem::path& path);
 
@@ -30,16 +34,27 @@ std::filesystem::path AbsoluteFolder(const std::filesystem::path& path);
 // Everything in the folder, sorted by name.
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
 
-// Regular files in the folder and below, in no particular order. Links are followed; files and
-// folders whose name starts with a dot are left out.
+// Regular files in the folder and below, in no particular order. Links are followed, but each
+// folder is entered once, by its own name where it has one here. Files and folders whose name
+// starts with a dot are left out.
 std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folder);
 
 // Creates the folder and its missing parents; nothing happens if it is there.
 void CreateFolders(const std::filesystem::path& path);
 
-// Links `to` to the file `from`, which takes no space, or copies the file where the file system has
-// no hard links. The copy is there as a whole or not at all. Creates the missing parents of `to`.
-void LinkOrCopyFile(const std::filesystem::path& from, const std::filesystem::path& to);
+// A copy that an edit of the original does not change, nor the other way round. It takes no space
+// where the file system can share blocks. It is there as a whole or not at all, and replaces `to`.
+// Creates the missing parents of `to`.
+void CloneFile(const std::filesystem::path& from, const std::filesystem::path& to);
+
+// Whether both paths lead to one file, which has several names or is reached through links. False
+// unless both exist.
+bool IsSameFile(const std::filesystem::path& path1, const std::filesystem::path& path2);
+
+// FNV-1a, 64 bit: short, and the same on every machine. `hash` continues an earlier one.
+std::uint64_t Hash(std::string_view bytes, std::uint64_t hash = 0xcbf29ce484222325u);
+
+std::uint64_t HashOfFile(const std::filesystem::path& path);
 
 // Copies a file; `to` is replaced.
 void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to);

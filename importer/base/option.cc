@@ -32,6 +32,19 @@ const void* MemberOf(const OptionTarget& target) {
 
 }  // namespace
 
+Option PathOption(const std::string& name, PathUse use, std::string* path,
+                  const std::string& description) {
+  Option option{name, path, "path", description};
+  option.path_use = use;
+  return option;
+}
+
+Option BesideIfLeftOut(Option option, const std::string* folder, const std::string& name) {
+  option.beside = folder;
+  option.name_beside = name;
+  return option;
+}
+
 std::optional<double> NumberOf(const OptionTarget& target) {
   struct Visitor {
     std::optional<double> operator()(const int* value) const { return *value; }

@@ -45,6 +45,21 @@ inline OptionRange MoreThan(double min) {
 }
 inline OptionRange FromTo(double min, double max) { return {min, max}; }
 
+// What a command does with the path that an option names. The check that no output is an input
+// (workflows/options/path_check.h) follows from it.
+enum class PathUse {
+  kNone,             // the option is no path
+  kReadsFile,        // such as a calibration or a database
+  kReadsLayout,      // a layout file, and the dictionary file that it names
+  kReadsPictures,    // a video, or a folder of images
+  kReadsModel,       // the folder of a COLMAP model
+  kReadsShape,       // a shape.csv, or the folder that holds it
+  kWritesFile,       // replaces it, or adds to it
+  kWritesFolder,     // replaces it as a whole
+  kAddsToFolder,     // replaces none of its files but velamap's
+  kWritesWorkspace,  // files and folders of a workspace
+};
+
 struct Option {
   std::string name;  // without dashes, such as Video.first_frame
   OptionTarget target;
@@ -54,7 +69,17 @@ struct Option {
   bool required = false;
   std::vector<std::string> short_names = {};
   std::vector<std::string> old_names = {};  // still understood, with a warning
+  PathUse path_use = PathUse::kNone;
+  // An output that is left out is the file `name_beside` beside the path that `beside` holds.
+  const std::string* beside = nullptr;
+  std::string name_beside = {};
 };
+
+Option PathOption(const std::string& name, PathUse use, std::string* path,
+                  const std::string& description);
+
+// The file `name` beside `folder` is meant where the option is left out.
+Option BesideIfLeftOut(Option option, const std::string* folder, const std::string& name);
 
 struct OptionGroup {
   std::string title;

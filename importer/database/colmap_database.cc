@@ -8,10 +8,12 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/replacement.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/correspondence.h"
 #include "importer/database/image_formation_table.h"
 #include "importer/database/marker_detections_table.h"
+#include "importer/database/source_table.h"
 #include "importer/database/sqlite_blob.h"
 #include "importer/database/sqlite_errors.h"
 
@@ -263,7 +265,9 @@ std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
     std::map<std::string, ImageId> ids;
     SQLite::Statement query(*database_, "SELECT name, image_id FROM images");
     while (query.executeStep()) {
-      ids.emplace(query.getColumn(0).getString(), query.getColumn(1).getUInt());
+      const std::string name = query.getColumn(0).getString();
+      CheckImageName(name, path_ + ": table images");
+      ids.emplace(name, query.getColumn(1).getUInt());
     }
     return ids;
   });
@@ -278,7 +282,21 @@ void ColmapDatabase::WriteFormation(const FormationEstimate& estimate) {
 }
 
 std::optional<FormationEstimate> ColmapDatabase::ReadFormation() const {
-  return Guarded(path_, [&] { return ReadImageFormation(database_.get()); });
+  return Guarded(path_, [&] { return ReadImageFormation(path_, database_.get()); });
+}
+
+void ColmapDatabase::WriteSource(const std::string& image_name, const SourceFile& source) {
+  Guarded(path_, [&] { WriteSourceRow(image_name, source, database_.get()); });
+}
+
+std::map<std::string, SourceFile> ColmapDatabase::ReadSources() const {
+  return Guarded(path_, [&] { return ReadSourceRows(database_.get()); });
+}
+
+void ColmapDatabase::ForgetSources() {
+  Guarded(path_, [&] {
+    database_->exec("DROP TABLE IF EXISTS marker_sources; DROP TABLE IF EXISTS image_formation");
+  });
 }
 
 }  // namespace velamap

@@ -1,8 +1,9 @@
 // The COLMAP database. Only the files of this folder know its tables.
 //
 // The layout is COLMAP 3.8's (six tables, images with seven nullable prior columns), which every
-// COLMAP from 3.5 to 4.x opens. Three more tables, marker_detections, marker_detector and
-// image_formation, hold what COLMAP has no place for; COLMAP ignores and keeps them. The layout of
+// COLMAP from 3.5 to 4.x opens. More tables, marker_detections, marker_detector,
+// marker_sources and image_formation, hold what COLMAP has no place for; COLMAP ignores and keeps
+// them. The layout of
 // an existing file is recognised by its columns.
 
 #pragma once
@@ -18,6 +19,7 @@
 #include "importer/camera/camera.h"
 #include "importer/detect/detection.h"
 #include "importer/refine/formation_estimate.h"
+#include "importer/video/source_file.h"
 
 namespace SQLite {
 class Database;
@@ -90,7 +92,17 @@ class ColmapDatabase {
 
   // What camera and print do to edges, which is estimated once for all images of a database.
   void WriteFormation(const FormationEstimate& estimate);
+  // Throws InputError for values that no estimate gives.
   std::optional<FormationEstimate> ReadFormation() const;
+
+  // The file that an image was read from, or the video (kVideoSource), so that an import can refuse
+  // what has changed since.
+  void WriteSource(const std::string& image_name, const SourceFile& source);
+  std::map<std::string, SourceFile> ReadSources() const;
+
+  // Forgets sources and image formation, which a run leaves that is interrupted before its first
+  // images.
+  void ForgetSources();
 
  private:
   void OpenForWriting(int busy_timeout_ms);

@@ -10,6 +10,7 @@
 #include "importer/camera/camera.h"
 #include "importer/database/colmap_database.h"
 #include "importer/detect/detection.h"
+#include "importer/video/source_file.h"
 
 namespace velamap {
 
@@ -36,7 +37,9 @@ class DatabaseWriter {
   DatabaseWriter(const std::string& detector, const std::function<void()>& before_commit,
                  ColmapDatabase* database);
 
-  void Add(const FrameDetections& detections, const Camera& camera);
+  // `source` is the file of a photograph.
+  void Add(const FrameDetections& detections, const Camera& camera,
+           const std::optional<SourceFile>& source);
   void Commit();  // the images since the last full batch
 
  private:

@@ -4,6 +4,10 @@
 #include <SQLiteCpp/VariadicBind.h>
 #include <fmt/format.h>
 
+#include "importer/base/csv.h"
+#include "importer/base/error.h"
+#include "importer/base/option.h"
+
 namespace velamap {
 namespace {
 
@@ -45,24 +49,37 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
   insert.exec();
 }
 
-std::optional<FormationEstimate> ReadImageFormation(SQLite::Database* database) {
+std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
+                                                    SQLite::Database* database) {
   if (!database->tableExists("image_formation")) return std::nullopt;
   SQLite::Statement query(*database, fmt::format("SELECT {} FROM image_formation", kColumns));
   if (!query.executeStep()) return std::nullopt;
+  const auto number = [&](const char* name, const OptionRange& range) {
+    const SQLite::Column column = query.getColumn(name);
+    const bool is_number = column.isFloat() || column.isInteger();
+    const double value = column.getDouble();
+    if (is_number && value >= range.min && value <= range.max) return value;
+    throw InputError(
+        fmt::format("{}: table image_formation: {} is '{}', not a number from {} to {}; delete the "
+                    "database and "
+                    "import again",
+                    path, name, SingleLine(column.getString()), range.min, range.max));
+  };
+  const OptionRange is_true = FromTo(0, 1);
   FormationEstimate estimate;
   ImageFormationParameters& found = estimate.parameters;
-  found.gamma = query.getColumn("gamma").getDouble();
-  found.s_amplitude = query.getColumn("s_amplitude").getDouble();
-  found.sharpening = query.getColumn("sharpening").getDouble();
-  found.sharpening_radius_px = query.getColumn("sharpening_radius_px").getDouble();
-  found.sharpens_light = query.getColumn("sharpens_light").getInt() != 0;
-  found.ink_spread_sides = query.getColumn("ink_spread_sides").getDouble();
-  found.is_inverted = query.getColumn("is_inverted").getInt() != 0;
-  found.quiet_zone_cells = query.getColumn("quiet_zone_cells").getDouble();
-  found.quiet_zone_sigma_cells = query.getColumn("quiet_zone_sigma_cells").getDouble();
-  estimate.num_samples = query.getColumn("num_samples").getInt();
-  estimate.noise_gray = query.getColumn("noise_gray").getDouble();
-  estimate.inset_sigma_px = query.getColumn("inset_sigma_px").getDouble();
+  found.gamma = number("gamma", FromTo(0.5, 5));
+  found.s_amplitude = number("s_amplitude", FromTo(-0.15, 0.15));  // the curve rises everywhere
+  found.sharpening = number("sharpening", FromTo(-0.9, 10));
+  found.sharpening_radius_px = number("sharpening_radius_px", FromTo(0.1, 10));
+  found.sharpens_light = number("sharpens_light", is_true) != 0;
+  found.ink_spread_sides = number("ink_spread_sides", FromTo(-0.1, 0.1));
+  found.is_inverted = number("is_inverted", is_true) != 0;
+  found.quiet_zone_cells = number("quiet_zone_cells", FromTo(0, 100));
+  found.quiet_zone_sigma_cells = number("quiet_zone_sigma_cells", FromTo(0, 100));
+  estimate.num_samples = static_cast<int>(number("num_samples", FromTo(0, 1e6)));
+  estimate.noise_gray = number("noise_gray", FromTo(0, 255));
+  estimate.inset_sigma_px = number("inset_sigma_px", FromTo(0, 100));
   return estimate;
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "importer/refine/formation_estimate.h"
 
@@ -18,7 +19,9 @@ namespace velamap {
 // Creates the table if it is missing and replaces its row.
 void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* database);
 
-// Nothing in the database of an earlier velamap, or of an import without an estimate.
-std::optional<FormationEstimate> ReadImageFormation(SQLite::Database* database);
+// Nothing in the database of an earlier velamap, or of an import without an estimate. Throws
+// InputError, naming the path, for a value that is no number or that no estimate gives.
+std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
+                                                    SQLite::Database* database);
 
 }  // namespace velamap

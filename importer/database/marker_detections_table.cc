@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/replacement.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/sqlite_blob.h"
 
@@ -120,6 +121,12 @@ MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::stri
   }
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     marker.corners_in_image_px[i] = {corners[2 * i], corners[2 * i + 1]};
+    if (!marker.corners_in_image_px[i].allFinite()) {
+      throw InputError(
+          fmt::format("{}: table marker_detections: a corner of marker {} is no number; delete the "
+                      "database and import again",
+                      path, marker.marker_id));
+    }
     marker.colors[i] = {colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]};
   }
   std::copy(sigmas.begin(), sigmas.end(), marker.corner_sigma_px.begin());
@@ -184,6 +191,7 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
       image.image_id = image_id;
       image.camera_id = query.getColumn(1).getUInt();
       image.detections.image_name = query.getColumn(2).getString();
+      CheckImageName(image.detections.image_name, path + ": table images");
       if (!query.isColumnNull(3)) image.detections.frame_number = query.getColumn(3).getInt();
       if (!query.isColumnNull(4)) image.detections.time_s = query.getColumn(4).getDouble();
       images.push_back(std::move(image));

@@ -10,6 +10,8 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/checksum.h"
+#include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/detect/corner_colors.h"
 #include "importer/detect/duplicates.h"
 #include "importer/detect/marker_search.h"
@@ -29,6 +31,20 @@ std::string PriorShapeText(const PriorShape& prior_shape) {
     }
   }
   return text;
+}
+
+// The layout's ids must be those of markers that the dictionary has.
+void CheckLayoutIds(const Layout& layout, const Dictionary& dictionary) {
+  std::vector<int> ids = MarkerIds(layout);
+  for (const auto& [id, length_m] : layout.marker_lengths_m) ids.push_back(id);
+  const int num_markers = dictionary.aruco->bytesList.rows;
+  for (const int id : ids) {
+    if (id < num_markers) continue;
+    throw InputError(
+        fmt::format("--layout_path: the layout names marker {}, which the dictionary {} does not "
+                    "have (its ids are 0 to {}); correct the id or the dictionary",
+                    id, dictionary.name, num_markers - 1));
+  }
 }
 
 void WarnOfSymmetries(const FrameDetector& detector) {
@@ -55,6 +71,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
     detector.looks.push_back(
         {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
   }
+  CheckLayoutIds(layout, detector.dictionary);
   detector.symmetries = FindCodeSymmetries(detector.dictionary);
   for (const int id : MarkerIds(layout)) detector.part_of_id[id] = PartOfMarker(layout, id);
   if (options.search == SearchMode::kTracked) detector.lines = LinesOfLayout(layout);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <string_view>
 #include <vector>
 
 #include <turbojpeg.h>
@@ -11,6 +12,7 @@
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/video/written_frame.h"
 
 namespace velamap {
 namespace {
@@ -39,9 +41,8 @@ JpegBytes EncodePlanes(const cv::Mat& luma, const ChromaPlanes& chroma) {
 
 template <typename Byte>
 void WriteBytes(const std::filesystem::path& path, const Byte* data, std::size_t size) {
-  WriteFileAtomicallyUnsynced(path, [&](std::ostream& stream) {
-    stream.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
-  });
+  const std::string_view jpeg(reinterpret_cast<const char*>(data), size);
+  WriteFileAtomicallyUnsynced(path, [&](std::ostream& out) { out << WithFrameMark(jpeg); });
 }
 
 }  // namespace

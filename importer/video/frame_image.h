@@ -13,6 +13,7 @@ namespace velamap {
 // taken over, with the frame's grey image as luma. This is twice as fast as a conversion through
 // BGR, and the file read as grey is the image that the detector saw. Throws InputError if the file
 // cannot be written.
+// The file is marked (written_frame.h).
 void WriteFrameImage(const Frame& frame, const std::filesystem::path& path);
 
 }  // namespace velamap

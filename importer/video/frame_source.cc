@@ -75,6 +75,7 @@ class ImageFolder : public FrameSource {
       spdlog::warn("{}: skipped: {}", path.string(), *reason);
       return false;
     }
+    frame->source = IdentifySource(path.string());
     cv::cvtColor(frame->color, frame->gray, cv::COLOR_BGR2GRAY);
     return true;
   }
@@ -213,19 +214,29 @@ cv::Mat ColorImage(const Frame& frame) {
   return frame.picture ? frame.picture->Color() : frame.color;
 }
 
+void CheckImagePath(const std::string& path) {
+  if (path.empty() || !Exists(path)) {
+    throw InputError(fmt::format("--image_path '{}': there is no such folder or video", path));
+  }
+  if (IsFolder(path)) return;
+  if (!IsRegularFile(path)) {
+    throw InputError(path + ": a pipe or a device; give a video file, or a folder of images");
+  }
+  if (FileSize(path) == 0) throw InputError(path + ": the file is empty");
+  if (HasImageExtension(path)) {
+    throw InputError(path + ": a single image; give the folder that holds the images");
+  }
+}
+
+bool IsVideoFrameName(const std::string& name) { return NumberOfVideoFrame(name).has_value(); }
+
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const VideoOptions& options,
                                              const std::vector<std::string>& known_names,
                                              int num_threads) {
   options.Check();
   SilenceOpenCv();
-  if (path.empty() || !Exists(path)) {
-    throw InputError(fmt::format("--image_path '{}': there is no such folder or video", path));
-  }
+  CheckImagePath(path);
   if (!IsFolder(path)) {
-    if (FileSize(path) == 0) throw InputError(path + ": the file is empty");
-    if (HasImageExtension(path)) {
-      throw InputError(path + ": a single image; give the folder that holds the images");
-    }
     return std::make_unique<VideoFile>(path, options, known_names, num_threads);
   }
   std::vector<std::string> names = ListImages(path);

@@ -9,6 +9,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "importer/video/source_file.h"
 #include "importer/video/video_options.h"
 #include "importer/video/video_picture.h"
 
@@ -24,6 +25,7 @@ struct Frame {
   cv::Mat color;                        // photographs only: BGR, 8 bit, once loaded
   std::optional<VideoPicture> picture;  // video only
   double decode_s = 0.0;                // video only: wall time of Next()
+  std::optional<SourceFile> source;     // photographs only, once loaded
 };
 
 // The whole frame, BGR, 8 bit.
@@ -46,6 +48,12 @@ class FrameSource {
   // The largest number of frames to come; 0 if the container does not say.
   virtual int NumFrames() const = 0;
 };
+
+// Throws InputError unless `path` is a folder or a file that may be a video.
+void CheckImagePath(const std::string& path);
+
+// Whether a frame of a video has such a name.
+bool IsVideoFrameName(const std::string& name);
 
 // `path` is a folder (with its sub-folders and without hidden files, in natural order of names) or
 // a video file. Throws InputError if there is nothing, the folder holds no images, or FFmpeg cannot

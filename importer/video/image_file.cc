@@ -1,11 +1,8 @@
 #include "importer/video/image_file.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <vector>
@@ -61,16 +58,6 @@ bool PngHasEnd(const Bytes& bytes) {
 }
 
 }  // namespace
-
-bool HasImageExtension(const std::string& path) {
-  static constexpr std::array<const char*, 16> kExtensions = {
-      ".jpg",  ".jpeg", ".jpe", ".png", ".tif", ".tiff", ".bmp", ".dib",
-      ".webp", ".jp2",  ".pgm", ".ppm", ".pbm", ".pnm",  ".ras", ".exr"};
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
-}
 
 cv::Mat DecodeImageFile(const std::string& path, std::string* reason) {
   std::ifstream stream(path, std::ios::binary);

@@ -8,9 +8,6 @@
 
 namespace velamap {
 
-// Whether the name has an extension of an image that OpenCV reads (.jpg, .png, .tif ...).
-bool HasImageExtension(const std::string& path);
-
 // Decodes the file to BGR, 8 bit, without the rotation of its metadata, which COLMAP ignores too.
 // Returns an empty image and a reason if the file is missing, empty, cut off or no image. JPEG and
 // PNG files are checked for their end first, because decoders fill missing pixels with grey.

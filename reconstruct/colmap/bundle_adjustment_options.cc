@@ -5,7 +5,7 @@
 namespace velamap {
 
 Option ColmapPathOption(BundleAdjustmentOptions* options) {
-  return {"colmap_path", &options->colmap_path, "path", "COLMAP's program"};
+  return PathOption("colmap_path", PathUse::kReadsFile, &options->colmap_path, "COLMAP's program");
 }
 
 OptionGroup DescribeOptions(BundleAdjustmentOptions* options) {

@@ -10,6 +10,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/replacement.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 
 namespace velamap {
@@ -84,6 +85,7 @@ Model ReadModel(const std::string& path) {
     }
     file.read(in, name, &model);
   }
+  for (const ModelImage& image : model.images) CheckImageName(image.name, path);
   const std::string fault = FindModelFault(model);
   if (!fault.empty()) {
     throw InputError(fmt::format("{}: the model's files do not fit together: {}", path, fault));

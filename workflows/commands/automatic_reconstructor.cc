@@ -48,9 +48,9 @@ CommandSyntax Declare(Options* options) {
       "    --workspace_path result",
       {{"Input and output",
         {ImagePathOption(paths), CameraPathOption(paths), PriorShapePathOption(paths),
-         Required(
-             {"workspace_path", &paths->workspace_path, "path",
-              "folder of the result: new, empty, or of an earlier run, whose detections are kept"}),
+         Required(PathOption(
+             "workspace_path", PathUse::kWritesWorkspace, &paths->workspace_path,
+             "folder of the result: new, empty, or of an earlier run, whose detections are kept")),
          BackendOption(&options->adjustment.backend)}},
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->importer.detection),
@@ -76,6 +76,7 @@ void Validate(Options* options) {
   options->adjustment.Complete(options->general.num_threads);
   CompleteSailOptions(options->surface, &options->exporter);
   options->importer.layout = LoadLayout(options->markers, true);
+  CheckFrameChoice(options->exporter.frame, options->importer.layout);
   options->importer.camera = ReadCalibration(options->paths.camera_path);
   options->importer.camera_path = options->paths.camera_path;
   options->importer.prior_shape = LoadPriorShape(options->paths.prior_shape_path);
@@ -89,6 +90,7 @@ ImportReport Import(MarkerImporterOptions options, Workspace* workspace,
                     std::vector<LeftOutImage>* unreadable) {
   options.database_path = workspace->paths().Database().string();
   options.frame_output_path = workspace->paths().Images().string();
+  options.is_only_source = true;
   ImportReport report = ImportImages(options);
   workspace->Keep();
   for (const SkippedImage& skipped : report.skipped) {

@@ -32,13 +32,15 @@ CommandSyntax Declare(Options* options) {
           "--input_path sparse/seed --output_path sparse/0",
           {{"Input and output",
             {ModelInputOption(paths),
-             Required({"output_path", &paths->output_path, "path", "folder of the adjusted model"}),
-             {"log_path", &paths->log_path, "path",
-              "COLMAP's output; left out: colmap.log beside output_path"},
+             Required(PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
+                                 "folder of the adjusted model")),
+             BesideIfLeftOut(PathOption("log_path", PathUse::kWritesFile, &paths->log_path,
+                                        "COLMAP's output; left out: colmap.log beside output_path"),
+                             &paths->output_path, "colmap.log"),
              BackendOption(&options->adjustment.backend),
-             {"database_path", &paths->database_path, "path",
-              "database of the model's images, which tells the sigma and motion of each corner "
-              "(markers, optional)"}}},
+             PathOption("database_path", PathUse::kReadsFile, &paths->database_path,
+                        "database of the model's images, which tells the sigma and motion of each "
+                        "corner (markers, optional)")}},
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->adjustment.colmap),
            DescribeOptions(&options->adjustment.markers),
@@ -48,10 +50,6 @@ CommandSyntax Declare(Options* options) {
 void Validate(Options* options) {
   SetLogLevel(options->general.log_level);
   options->adjustment.Complete(options->general.num_threads);
-  CheckReplaceableFolder(options->paths.output_path, ModelFileNames());
-  if (options->paths.log_path.empty()) {
-    options->paths.log_path = BesideFolder(options->paths.output_path, "colmap.log");
-  }
 }
 
 // COLMAP's adjustment needs no layout.

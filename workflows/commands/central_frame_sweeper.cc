@@ -44,19 +44,22 @@ CommandSyntax Declare(Options* options) {
       "--database_path database.db --layout_path layout.yml \\\n"
       "    --central_frames every:10 --output_path sweep.csv",
       {{"Input and output",
-        {DatabasePathOption(paths, "COLMAP database that marker_importer made"),
-         Required({"output_path", &paths->output_path, "path", "table of all central frames, CSV"}),
+        {DatabasePathOption(PathUse::kReadsFile, paths,
+                            "COLMAP database that marker_importer made"),
+         Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
+                             "table of all central frames, CSV")),
          {"central_frames", &sweep->central_frames, "all|every:N|LIST",
           "central frames: of all images with markers, of every N-th, or names or frame "
           "numbers with commas"},
-         {"models_path", &sweep->models_path, "path",
-          "folder for the metric model and shape.csv of each central frame, in a folder of the "
-          "image's name; left out: none are written"},
+         PathOption("models_path", PathUse::kWritesFile, &sweep->models_path,
+                    "folder for the metric model and shape.csv of each central frame, in a folder "
+                    "of the image's name; left out: none are written"),
          {"warm_start", &sweep->warm_start, "0|1",
           "start each adjustment at the result around the previous central frame"},
          BackendOption(&sweep->adjustment.backend),
-         {"log_path", &paths->log_path, "path",
-          "COLMAP's output; left out: colmap.log beside output_path"}}},
+         BesideIfLeftOut(PathOption("log_path", PathUse::kWritesFile, &paths->log_path,
+                                    "COLMAP's output; left out: colmap.log beside output_path"),
+                         &paths->output_path, "colmap.log")}},
        DescribeOptions(&options->markers, false),
        RegistrationGroup(&sweep->registration),
        DescribeOptions(&sweep->adjustment.colmap),
@@ -72,9 +75,7 @@ void Validate(Options* options) {
   sweep.registration.num_threads = options->general.num_threads;
   sweep.registration.Check();
   sweep.adjustment.Complete(options->general.num_threads);
-  sweep.log_path = options->paths.log_path.empty()
-                       ? BesideFolder(options->paths.output_path, "colmap.log")
-                       : options->paths.log_path;
+  sweep.log_path = options->paths.log_path;
   if (sweep.adjustment.UsesColmap()) CheckColmap(sweep.adjustment.colmap.colmap_path);
 }
 

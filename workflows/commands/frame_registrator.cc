@@ -30,10 +30,15 @@ CommandSyntax Declare(Options* options) {
           "registers the images of a database and writes the seed model of the bundle adjustment",
           "--database_path database.db --layout_path layout.yml --output_path sparse/seed",
           {{"Input and output",
-            {DatabasePathOption(paths, "COLMAP database that marker_importer made"),
-             Required({"output_path", &paths->output_path, "path", "folder of the seed model"}),
-             {"registration_path", &paths->registration_path, "path",
-              "table of all images, CSV; left out: registration.csv beside output_path"}}},
+            {DatabasePathOption(PathUse::kReadsFile, paths,
+                                "COLMAP database that marker_importer made"),
+             Required(PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
+                                 "folder of the seed model")),
+             BesideIfLeftOut(
+                 PathOption("registration_path", PathUse::kWritesFile, &paths->registration_path,
+                            "table of all images, CSV; left out: registration.csv beside "
+                            "output_path"),
+                 &paths->output_path, "registration.csv")}},
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->registration),
            DescribeOptions(&options->general)}};
@@ -44,10 +49,6 @@ void Validate(Options* options) {
   options->registration.random_seed = options->general.random_seed;
   options->registration.num_threads = options->general.num_threads;
   options->registration.Check();
-  CheckReplaceableFolder(options->paths.output_path, ModelFileNames());
-  if (options->paths.registration_path.empty()) {
-    options->paths.registration_path = BesideFolder(options->paths.output_path, "registration.csv");
-  }
 }
 
 void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) {

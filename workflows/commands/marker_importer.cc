@@ -28,14 +28,13 @@ CommandSyntax Declare(Options* options) {
           "--image_path photos --camera_path camera.yml --layout_path layout.yml \\\n"
           "    --database_path database.db",
           {{"Input and output",
-            {ImagePathOption(paths),
-             CameraPathOption(paths),
-             PriorShapePathOption(paths),
+            {ImagePathOption(paths), CameraPathOption(paths), PriorShapePathOption(paths),
              DatabasePathOption(
-                 paths, "COLMAP database, new or to be added to; images that it holds are skipped"),
-             {"frame_output_path", &paths->frame_output_path, "path",
-              "folder for the frames of a video that hold markers, as JPEG; left out: none are "
-              "written"}}},
+                 PathUse::kWritesFile, paths,
+                 "COLMAP database, new or to be added to; images that it holds are skipped"),
+             PathOption("frame_output_path", PathUse::kAddsToFolder, &paths->frame_output_path,
+                        "folder for the frames of a video that hold markers, as JPEG; left out: "
+                        "none are written")}},
            DescribeOptions(&options->markers, true),
            DescribeOptions(&options->importer.detection),
            DescribeOptions(&options->importer.video),

@@ -29,24 +29,26 @@ struct Options {
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {"shape_analyzer",
-          "judges a shape by its markers, its images and a reference",
-          "--shape_path shape --layout_path layout.yml --input_path sparse/0",
-          {{"Input and output",
-            {Required({"shape_path", &paths->shape_path, "path",
-                       "shape.csv, or the folder that holds it"}),
-             {"input_path", &paths->input_path, "path",
-              "folder of the COLMAP model that the shape is from; for reprojection errors"},
-             {"reference_path", &paths->reference_path, "path",
-              "shape.csv of the truth or the design; the shape is aligned with it, and distances "
-              "of adjacent markers are compared"},
-             {"part_planes", &options->part_planes, "0|1",
-              "fit a plane to every part and compare the planes"},
-             {"csv_path", &options->csv_path, "path",
-              "file for all metrics and the tables of markers and distances"},
-             {"json_path", &options->json_path, "path", "the same as JSON"}}},
-           DescribeOptions(&options->markers, false),
-           DescribeOptions(&options->general)}};
+  return {
+      "shape_analyzer",
+      "judges a shape by its markers, its images and a reference",
+      "--shape_path shape --layout_path layout.yml --input_path sparse/0",
+      {{"Input and output",
+        {Required(PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
+                             "shape.csv, or the folder that holds it")),
+         PathOption("input_path", PathUse::kReadsModel, &paths->input_path,
+                    "folder of the COLMAP model that the shape is from; for reprojection "
+                    "errors"),
+         PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
+                    "shape.csv of the truth or the design; the shape is aligned with it, and "
+                    "distances of adjacent markers are compared"),
+         {"part_planes", &options->part_planes, "0|1",
+          "fit a plane to every part and compare the planes"},
+         PathOption("csv_path", PathUse::kWritesFile, &options->csv_path,
+                    "file for all metrics and the tables of markers and distances"),
+         PathOption("json_path", PathUse::kWritesFile, &options->json_path, "the same as JSON")}},
+       DescribeOptions(&options->markers, false),
+       DescribeOptions(&options->general)}};
 }
 
 void Validate(const Options& options) {
@@ -57,9 +59,6 @@ void Validate(const Options& options) {
     throw InputError(
         "--layout_path: missing; give it or --marker_length to judge the markers' size, "
         "--input_path for reprojection errors, --reference_path to compare, or --part_planes 1");
-  }
-  if (!options.csv_path.empty() && options.csv_path == options.json_path) {
-    throw InputError("--json_path: " + options.json_path + " is the --csv_path too; give another");
   }
 }
 

@@ -49,24 +49,24 @@ OptionGroup InputGroup(Options* options) {
   PathOptions* paths = &options->paths;
   return {
       "Input",
-      {Required(
-           {"shape_path", &paths->shape_path, "path", "shape.csv, or the folder that holds it"}),
-       Required({"reference_path", &paths->reference_path, "path",
-                 "what the shape is compared with: shape.csv or its folder, or a surface as .ply, "
-                 ".stl, .obj, .step or .iges"}),
+      {Required(PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
+                           "shape.csv, or the folder that holds it")),
+       Required(PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
+                           "what the shape is compared with: shape.csv or its folder, or a surface "
+                           "as .ply, .stl, .obj, .step or .iges")),
        {"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
         "unit of a .ply, .stl or .obj; left out: m for .ply, mm for .stl and .obj"},
        {"chord_deviation", &mesh->chord_deviation_mm, "mm",
         "how far triangles may be from the faces of a .step or .iges", MoreThan(0)},
-       {"layout_path", &options->layout_path, "path",
-        "layout file: names the reference part and the lines"},
+       PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,
+                  "layout file: names the reference part and the lines"),
        {"part", &options->part, "name", "compare the markers of this part only"},
-       {"uncertainty_path", &options->uncertainty_path, "path",
-        "folder of the shape's model with its uncertainty.bin, for sigmas with correlations "
-        "between the markers; left out: ../sparse/0 of a shape folder, else the sigmas of "
-        "shape.csv"},
-       {"reference_uncertainty_path", &options->reference_uncertainty_path, "path",
-        "the same for the reference"}}};
+       PathOption("uncertainty_path", PathUse::kReadsModel, &options->uncertainty_path,
+                  "folder of the shape's model with its uncertainty.bin, for sigmas with "
+                  "correlations between the markers; left out: ../sparse/0 of a shape folder, else "
+                  "the sigmas of shape.csv"),
+       PathOption("reference_uncertainty_path", PathUse::kReadsModel,
+                  &options->reference_uncertainty_path, "the same for the reference")}};
 }
 
 OptionGroup AlignmentGroup(AlignmentOptions* alignment) {
@@ -90,28 +90,28 @@ OptionGroup AlignmentGroup(AlignmentOptions* alignment) {
 }
 
 CommandSyntax Declare(Options* options) {
-  return {"shape_comparer",
-          "compares a shape with another one or with the surface of a design",
-          "--shape_path shape --reference_path design.step --layout_path layout.yml",
-          {InputGroup(options),
-           AlignmentGroup(&options->alignment),
-           {"Output",
-            {{"output_path", &options->paths.output_path, "path",
-              "PLY of the markers, coloured by their signed distance"},
-             {"surface_path", &options->surface_path, "path",
-              "PLY of the surface through the lines, coloured in the same way; needs a layout"},
-             {"color_limit", &options->color_limit_mm, "mm",
-              "distance that gets the full colour; left out: the largest", MoreThan(0)},
-             {"csv_path", &options->csv_path, "path", "file for all figures and tables"},
-             {"json_path", &options->json_path, "path", "the same as JSON"}}},
-           DescribeOptions(&options->general)}};
+  return {
+      "shape_comparer",
+      "compares a shape with another one or with the surface of a design",
+      "--shape_path shape --reference_path design.step --layout_path layout.yml",
+      {InputGroup(options),
+       AlignmentGroup(&options->alignment),
+       {"Output",
+        {PathOption("output_path", PathUse::kWritesFile, &options->paths.output_path,
+                    "PLY of the markers, coloured by their signed distance"),
+         PathOption("surface_path", PathUse::kWritesFile, &options->surface_path,
+                    "PLY of the surface through the lines, coloured in the same way; needs a "
+                    "layout"),
+         {"color_limit", &options->color_limit_mm, "mm",
+          "distance that gets the full colour; left out: the largest", MoreThan(0)},
+         PathOption("csv_path", PathUse::kWritesFile, &options->csv_path,
+                    "file for all figures and tables"),
+         PathOption("json_path", PathUse::kWritesFile, &options->json_path, "the same as JSON")}},
+       DescribeOptions(&options->general)}};
 }
 
 void Validate(const Options& options) {
   SetLogLevel(options.general.log_level);
-  if (!options.csv_path.empty() && options.csv_path == options.json_path) {
-    throw InputError("--json_path: " + options.json_path + " is the --csv_path too; give another");
-  }
   if (!options.surface_path.empty() && options.layout_path.empty()) {
     throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
   }

@@ -31,10 +31,11 @@ CommandSyntax Declare(Options* options) {
       "--input_path sparse/0 --layout_path layout.yml --output_path metric --shape_path shape",
       {{"Input and output",
         {ModelInputOption(paths),
-         {"output_path", &paths->output_path, "path",
-          "folder of the metric model; left out: it is not written"},
-         {"shape_path", &paths->shape_path, "path",
-          "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is written"},
+         PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
+                    "folder of the metric model; left out: it is not written"),
+         PathOption("shape_path", PathUse::kWritesFolder, &paths->shape_path,
+                    "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is "
+                    "written"),
          {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"}}},
        DescribeOptions(&options->markers, false)}};
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {

@@ -12,6 +12,7 @@
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
 #include "workflows/options/nearest_name.h"
+#include "workflows/options/path_check.h"
 
 namespace velamap {
 namespace {
@@ -60,8 +61,8 @@ po::options_description DescribeForHelp(const OptionGroup& group) {
 
 OptionGroup ProjectGroup(std::string* project_path) {
   return {"Project file",
-          {{kProjectPath, project_path, "path",
-            "ini file with the same options; the command line wins over it"}}};
+          {PathOption(kProjectPath, PathUse::kReadsFile, project_path,
+                      "ini file with the same options; the command line wins over it")}};
 }
 
 using OptionsByName = std::map<std::string, Option>;    // under each of their names
@@ -242,9 +243,10 @@ bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& a
     GivenValues from_file = ReadProjectFile(syntax, options, project->second.text, known_names);
     values.merge(from_file);  // keeps what the command line has given
   }
-  for (const OptionGroup& group : syntax.groups) {
+  for (const OptionGroup& group : groups) {
     for (const Option& option : group.options) SetOption(syntax, option, values);
   }
+  CompletePaths(groups);
   return true;
 }
 

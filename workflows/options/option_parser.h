@@ -30,7 +30,8 @@ std::set<std::string> OptionNames(const CommandSyntax& syntax);
 // Returns false, having set nothing, when --help or -h is among the arguments. Throws InputError:
 // an option that is unknown (names the nearest), given twice or by two of its names, without a
 // value, with one of another type or beyond its range, or required and missing; a project file that
-// is missing or malformed, or holds an unknown key.
+// is missing or malformed, or holds an unknown key; an output that is one of the inputs
+// (path_check.h).
 bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& arguments,
                   const std::set<std::string>& known_names);
 

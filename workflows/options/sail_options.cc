@@ -10,10 +10,11 @@ OptionGroup SurfaceGroup(SurfaceOptions* options, SurfaceFileOptions* file_optio
   for (const Option& option : DescribeOptions(&file_options->mesh).options) {
     group.options.push_back(option);
   }
-  group.options.push_back({"Surface.edges_path", &file_options->edges_path, "path",
-                           "CSV edge,x,y,z of points on luff, leech, foot or head to which the "
-                           "surface continues; m, in "
-                           "the frame of the result"});
+  group.options.push_back(
+      PathOption("Surface.edges_path", PathUse::kReadsFile, &file_options->edges_path,
+                 "CSV edge,x,y,z of points on luff, leech, foot or head to which the "
+                 "surface continues; m, in "
+                 "the frame of the result"));
   return group;
 }
 

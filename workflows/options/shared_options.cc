@@ -16,28 +16,32 @@ Option Required(Option option) {
 }
 
 Option ImagePathOption(PathOptions* paths) {
-  return Required({"image_path", &paths->image_path, "path", "folder of images, or a video file"});
+  return Required(PathOption("image_path", PathUse::kReadsPictures, &paths->image_path,
+                             "folder of images, or a video file"));
 }
 
 Option CameraPathOption(PathOptions* paths) {
-  return Required({"camera_path", &paths->camera_path, "path",
-                   "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt"});
+  return Required(PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
+                             "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP "
+                             "cameras.txt"));
 }
 
 Option PriorShapePathOption(PathOptions* paths) {
-  Option option = {"prior_shape_path", &paths->prior_shape_path, "path",
-                   "shape.csv of an earlier reconstruction of the surface, or its folder: markers "
-                   "are also searched where it says that they should be visible"};
+  Option option =
+      PathOption("prior_shape_path", PathUse::kReadsShape, &paths->prior_shape_path,
+                 "shape.csv of an earlier reconstruction of the surface, or its folder: markers "
+                 "are also searched where it says that they should be visible");
   option.old_names = {"map_path"};
   return option;
 }
 
-Option DatabasePathOption(PathOptions* paths, const std::string& description) {
-  return Required({"database_path", &paths->database_path, "path", description});
+Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& description) {
+  return Required(PathOption("database_path", use, &paths->database_path, description));
 }
 
 Option ModelInputOption(PathOptions* paths) {
-  return Required({"input_path", &paths->input_path, "path", "folder of the COLMAP model to read"});
+  return Required(PathOption("input_path", PathUse::kReadsModel, &paths->input_path,
+                             "folder of the COLMAP model to read"));
 }
 
 Option BackendOption(AdjustmentBackend* backend) {
@@ -65,8 +69,8 @@ OptionGroup DescribeOptions(GeneralOptions* options) {
 
 OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary) {
   OptionGroup group{"Markers: a layout file, or the options that replace it",
-                    {{"layout_path", &options->layout_path, "path",
-                      "layout file (YAML): dictionary, sizes and places of the markers"},
+                    {PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,
+                                "layout file (YAML): dictionary, sizes and places of the markers"),
                      {"marker_length", &options->marker_length_m, "m",
                       "outer edge of the black square; replaces the layout file",
                       FromTo(kMinMarkerLength_m, kMaxMarkerLength_m)}}};
@@ -74,6 +78,7 @@ OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary) {
     group.options.push_back({"dictionary", &options->dictionary, "name|path",
                              "OpenCV dictionary name such as DICT_4X4_50, or dictionary file; "
                              "goes with --marker_length"});
+    group.options.back().path_use = PathUse::kReadsFile;
   }
   return group;
 }

@@ -47,7 +47,8 @@ Option Required(Option option);
 Option ImagePathOption(PathOptions* paths);
 Option CameraPathOption(PathOptions* paths);
 Option PriorShapePathOption(PathOptions* paths);
-Option DatabasePathOption(PathOptions* paths, const std::string& description);
+// `use`: kReadsFile or kWritesFile.
+Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& description);
 Option ModelInputOption(PathOptions* paths);
 Option BackendOption(AdjustmentBackend* backend);
 

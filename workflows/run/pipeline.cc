@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
+#include <Eigen/Geometry>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
@@ -154,6 +155,19 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
           std::move(summary.uncertainty)};
 }
 
+// Throws DataError for points that determine no shape: all in one place.
+void CheckExtent(const Model& model) {
+  constexpr double kLeastExtent = 1e-9;  // of the points' distance from the origin
+  Eigen::AlignedBox3d box;
+  for (const auto& [point3D_id, point] : model.points3D) box.extend(point.x_in_world);
+  if (box.isEmpty()) return;  // the adjustment says that there are none
+  const double distance = std::max(box.min().norm(), box.max().norm());
+  if (box.diagonal().norm() > kLeastExtent * distance) return;
+  throw DataError(
+      fmt::format("all {} points of the model lie at one place; there is no shape to adjust",
+                  model.points3D.size()));
+}
+
 }  // namespace
 
 VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration) {
@@ -223,10 +237,6 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   return seed;
 }
 
-std::string BesideFolder(const std::string& folder, const std::string& name) {
-  return (AbsoluteFolder(folder).parent_path() / name).string();
-}
-
 void AdjustmentOptions::Complete(int num_threads) {
   colmap.Check();
   markers.refine_focal_length = colmap.refine_focal_length;
@@ -251,6 +261,7 @@ void CheckColmap(const std::string& colmap_path) {
 AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& layout,
                              const CornerErrors& corner_errors, const std::string& log_path,
                              Model* model) {
+  CheckExtent(*model);
   AdjustmentResult result;
   if (options.colmap.refine_extra_params) AddDistortion(model);
   if (options.UsesColmap()) {

@@ -41,9 +41,6 @@ ImportReport ImportImages(const MarkerImporterOptions& options);
 SeedResult RegisterDatabase(const std::string& database_path, const Layout& layout,
                             const RegistrationOptions& options);
 
-// The path of a table or log beside a model folder: sparse/NAME for sparse/seed/.
-std::string BesideFolder(const std::string& folder, const std::string& name);
-
 enum class AdjustmentBackend {
   kColmap,   // COLMAP's own program
   kMarkers,  // ours, which knows the size of the markers

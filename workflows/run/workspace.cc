@@ -9,12 +9,16 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/replacement.h"
 #include "importer/database/colmap_database.h"
+#include "importer/video/written_frame.h"
 
 namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr char kLockName[] = ".velamap.lock";
 
 bool IsInside(const fs::path& path, const fs::path& folder) {
   const fs::path relative = CanonicalPath(path).lexically_relative(CanonicalPath(folder));
@@ -30,7 +34,9 @@ bool IsOurDatabase(const fs::path& path) {
 std::string ForeignEntry(const WorkspacePaths& paths, const std::string& image_path) {
   if (Exists(paths.Log()) || IsOurDatabase(paths.Database())) return "";
   for (const fs::path& entry : FolderEntries(paths.root)) {
-    if (!IsInside(image_path, entry)) return entry.filename().string();
+    if (entry.filename() != kLockName && !IsInside(image_path, entry)) {
+      return entry.filename().string();
+    }
   }
   return "";
 }
@@ -55,12 +61,9 @@ void CheckExisting(const WorkspacePaths& paths, const std::string& image_path) {
   }
 }
 
-// Removes temporary folders of an interrupted run (importer/base/atomic_output.h).
-void RemoveLeftovers(const WorkspacePaths& paths) {
-  for (const fs::path& entry : FolderEntries(paths.root)) {
-    const std::string name = entry.filename().string();
-    if (name.rfind(".sparse.tmp-", 0) == 0 || name.rfind(".shape.tmp-", 0) == 0) RemoveAll(entry);
-  }
+bool AreEqual(const fs::path& file1, const fs::path& file2) {
+  return IsSameFile(file1, file2) ||
+         (FileSize(file1) == FileSize(file2) && HashOfFile(file1) == HashOfFile(file2));
 }
 
 std::set<std::string> ImageNames(const Model& model) {
@@ -79,15 +82,37 @@ Workspace::Workspace(const std::string& path, const std::string& image_path) {
                     "images would be read as photographs; give another folder",
                     paths_.root.string(), image_path));
   }
+  std::optional<fs::path> first_made;
   if (Exists(paths_.root)) {
     CheckExisting(paths_, image_path);
-    RemoveLeftovers(paths_);
-    return;
+  } else {
+    first_made = paths_.root;
+    while (!Exists(first_made->parent_path())) first_made = first_made->parent_path();
+    CreateFolders(paths_.root);
   }
-  fs::path first_made = paths_.root;
-  while (!Exists(first_made.parent_path())) first_made = first_made.parent_path();
-  CreateFolders(paths_.root);
+  lock_.emplace(paths_.root / kLockName, "--workspace_path " + paths_.root.string());
+  if (!Exists(paths_.root)) {
+    throw InputError(
+        fmt::format("--workspace_path {}: another velamap has just removed it; run again",
+                    paths_.root.string()));
+  }
   first_made_ = first_made;
+  for (const fs::path& folder : {paths_.root, paths_.Images(), paths_.Sparse()}) {
+    RemoveUnfinished(folder);
+  }
+}
+
+std::vector<UsedPath> WorkspaceOutputs(const std::string& path, const std::string& used_by) {
+  const WorkspacePaths paths{AbsoluteFolder(path)};
+  std::vector<UsedPath> outputs;
+  for (const fs::path& file : {paths.Database(), paths.RegistrationCsv(), paths.Report(),
+                               paths.Timing(), paths.Log(), paths.ColmapLog()}) {
+    outputs.push_back({used_by, file});
+  }
+  for (const fs::path& folder : {paths.Sparse(), paths.Shape()}) {
+    outputs.push_back({used_by, folder, true});
+  }
+  return outputs;
 }
 
 Workspace::~Workspace() {
@@ -103,14 +128,23 @@ Workspace::~Workspace() {
 void AddModelImages(const Model& model, const std::string& image_path,
                     const fs::path& images_path) {
   const bool is_video = !IsFolder(image_path);
-  std::vector<std::string> missing;
+  if (!is_video && IsSameFile(image_path, images_path)) return;  // these are the originals
+  std::vector<std::string> missing, different;
   for (const std::string& name : ImageNames(model)) {
-    if (Exists(images_path / name)) continue;
-    if (!is_video && Exists(fs::path(image_path) / name)) {
-      LinkOrCopyFile(fs::path(image_path) / name, images_path / name);
-    } else {
-      missing.push_back(name);
+    const fs::path original = fs::path(image_path) / name, copy = images_path / name;
+    const bool has_original = !is_video && Exists(original);
+    if (!Exists(copy)) {
+      has_original ? CloneFile(original, copy) : missing.push_back(name);
+    } else if (has_original && IsSameFile(original, copy)) {
+      if (!IsInside(copy, images_path)) continue;  // a link in images/ leads to the originals
+      CloneFile(original, copy);                   // an earlier velamap made hard links
+    } else if (has_original && FileSize(original) != FileSize(copy)) {
+      different.push_back(name);
     }
+  }
+  if (!different.empty()) {
+    spdlog::warn("{}: {} images are not the photographs of the same names, such as {}; they stay",
+                 images_path.string(), different.size(), different.front());
   }
   if (missing.empty()) return;
   spdlog::warn(
@@ -124,10 +158,12 @@ void RemoveOtherImages(const Model& model, const std::vector<std::string>& datab
   if (IsInside(image_path, images_path)) return;  // these are the originals
   const std::set<std::string> model_names = ImageNames(model);
   for (const std::string& name : database_names) {
-    if (model_names.count(name) > 0) continue;
-    if (is_video || Exists(fs::path(image_path) / name)) {
-      RemoveFileOrEmptyFolder(images_path / name);
-    }
+    const fs::path original = fs::path(image_path) / name, copy = images_path / name;
+    if (model_names.count(name) > 0 || !IsRegularFile(copy) || !IsInside(copy, images_path))
+      continue;
+    const bool is_lost_nowhere =
+        is_video ? IsWrittenFrame(copy) : IsRegularFile(original) && AreEqual(copy, original);
+    if (is_lost_nowhere) RemoveFileOrEmptyFolder(copy);
   }
 }
 

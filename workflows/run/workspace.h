@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "importer/base/file_lock.h"
+#include "importer/base/replacement.h"
 #include "reconstruct/model/model.h"
 
 namespace velamap {
@@ -29,14 +31,18 @@ struct WorkspacePaths {
   std::filesystem::path ColmapLog() const { return root / "colmap.log"; }
 };
 
-// Holds the workspace during a run. Unless Keep() is called, the destructor removes a folder that
-// this run made and the parents that it made, so that a run that fails before it has a database
-// leaves nothing behind.
+// What a run writes there, apart from images/, whose files AddModelImages() looks at one by one.
+// `used_by` names the option.
+std::vector<UsedPath> WorkspaceOutputs(const std::string& path, const std::string& used_by);
+
+// Holds the workspace during a run, and its lock. Unless Keep() is called, the destructor removes a
+// folder that this run made and the parents that it made, so that a run that fails before it has a
+// database leaves nothing behind.
 class Workspace {
  public:
   // Opens an earlier workspace or makes a new one. Throws InputError if the path is a file, if the
-  // folder holds something else than a workspace of velamap and the input, or if it cannot be
-  // written.
+  // folder holds something else than a workspace of velamap and the input, if another velamap works
+  // there, or if it cannot be written.
   Workspace(const std::string& path, const std::string& image_path);
   ~Workspace();
   Workspace(const Workspace&) = delete;
@@ -48,17 +54,18 @@ class Workspace {
  private:
   WorkspacePaths paths_;
   std::optional<std::filesystem::path> first_made_;  // topmost folder that this run made
+  std::optional<FileLock> lock_;
 };
 
-// Adds the images of the model to images/. Photographs are hard-linked from `image_path`, or copied
-// where links are impossible; sub-folders are kept. The import has written the frames of a video
-// there; a later run that selects other frames warns of those that have been removed. Throws
-// InputError if the folder cannot be written.
+// Adds the images of the model to images/. Photographs are copied from `image_path`; sub-folders
+// and files that are there are kept. The import has written the frames of a video there; a later
+// run that selects other frames warns of those that have been removed. Throws InputError if the
+// folder cannot be written.
 void AddModelImages(const Model& model, const std::string& image_path,
                     const std::filesystem::path& images_path);
 
 // Removes images that are in the database but not in the model where nothing is lost: frames of a
-// video, and photographs whose original is at `image_path`.
+// video as velamap wrote them, and photographs that are equal to the original at `image_path`.
 void RemoveOtherImages(const Model& model, const std::vector<std::string>& database_names,
                        const std::string& image_path, const std::filesystem::path& images_path);
 

@@ -7,8 +7,10 @@
 #include <Eigen/Geometry>
 
 #include "exporters/shape/shape_transform.h"
+#include "importer/base/error.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/sail/sail_shapes.h"
+#include "tests/support/error_matchers.h"
 
 namespace velamap {
 namespace {
@@ -201,9 +203,28 @@ TEST(ShapeFrame, ContradictionsAreReasons) {
   std::reverse(ids.begin(), ids.end());
   EXPECT_THAT(FrameText(ChooseFrame(sail.shape, sail.layout)), HasSubstr("from foot to head"));
 
-  const ShapeFrame on_one_line =
-      ChooseFrame(sail.shape, sail.layout, FrameChoice{FrameKind::kMarkers, 100, 200, 300});
-  EXPECT_THAT(on_one_line.reasons[0], HasSubstr("lie on one line"));
+  sail.layout.frame = FrameChoice{FrameKind::kMarkers, 100, 200, 300};
+  EXPECT_THAT(ChooseFrame(sail.shape, sail.layout).reasons[0], HasSubstr("lie on one line"));
+}
+
+TEST(ShapeFrame, AChoiceIsGrantedOrRefused) {
+  const Sail sail = ExampleSail();
+  const FrameChoice on_one_line{FrameKind::kMarkers, 100, 200, 300};
+  ExpectThrows<InputError>([&] { ChooseFrame(sail.shape, sail.layout, on_one_line); },
+                           {"--frame: markers 100 200 300", "lie on one line"});
+  // Before the work, where the layout forbids it.
+  ExpectThrows<InputError>(
+      [&] {
+        CheckFrameChoice(FrameChoice{FrameKind::kMarkers, 100, 200, 4711}, sail.layout);
+      },
+      {"--frame", "the layout names no marker 4711"});
+  for (const FrameKind kind : {FrameKind::kReferencePart, FrameKind::kLines}) {
+    ExpectThrows<InputError>(
+        [&] { CheckFrameChoice(FrameChoice{kind}, MakeLayout("DICT_4X4_50", 0.1)); },
+        {"--frame: " + FrameKeyword(kind), "the layout"});
+  }
+  CheckFrameChoice(on_one_line, sail.layout);
+  CheckFrameChoice(on_one_line, MakeLayout("DICT_4X4_50", 0.1));
 }
 
 TEST(ShapeFrame, WithoutLayoutItIsTheCamera) {

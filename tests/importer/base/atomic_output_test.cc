@@ -87,8 +87,11 @@ TEST(AtomicFolder, ReplacesOnCommit) {
 
 TEST(AtomicFolder, WithoutCommitTheOldOneStays) {
   const TempDir dir;
-  fs::create_directory(dir / "out");
-  WriteFile(dir / "out" / "a.txt", [](std::ostream& stream) { stream << "old"; });
+  {
+    AtomicFolder folder(dir / "out");
+    WriteFile(folder.TemporaryPath() / "a.txt", [](std::ostream& stream) { stream << "old"; });
+    folder.Commit();
+  }
   {
     const AtomicFolder folder(dir / "out");
     WriteFile(folder.TemporaryPath() / "a.txt", [](std::ostream& stream) { stream << "new"; });

@@ -7,6 +7,7 @@
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/replacement.h"
 #include "importer/base/text_file.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
@@ -32,9 +33,9 @@ TEST(Files, TooLongNamesAreInputErrors) {
       [&] { FolderEntries(path); },
       [&] { FilesBelow(path); },
       [&] { CreateFolders(path); },
-      [&] { LinkOrCopyFile(path, dir / "to"); },
+      [&] { CloneFile(path, dir / "to"); },
       [&] { AtomicFolder folder(path); },
-      [&] { CheckReplaceableFolder(path, {}); },
+      [&] { CheckReplaceableFolder(path); },
       [&] { WriteFileAtomically(path, [](std::ostream&) {}); },
       [&] { WriteFile(path, [](std::ostream&) {}); },
       [&] { ReadTextFile(path, "layout file"); }};
@@ -84,16 +85,29 @@ TEST(Files, ListingsFollowLinksAndLeaveHiddenFilesOut) {
                           dir / "photos/b", dir / "photos/dangling"));
 }
 
-TEST(Files, LinkedFilesShareTheirSpace) {
+TEST(Files, LinksInCirclesAreFollowedOnce) {
+  const TempDir dir;
+  fs::create_directories(dir / "photos/day1");
+  Touch(dir / "photos/day1/a");
+  fs::create_symlink(dir / "photos", dir / "photos/day1/up");
+  fs::create_symlink("day1", dir / "photos/again");
+  fs::create_symlink("itself", dir / "photos/itself");
+  EXPECT_THAT(FilesBelow(dir / "photos"), ElementsAre(dir / "photos/day1/a"));
+}
+
+TEST(Files, AnEditOfACloneLeavesTheOriginal) {
   const TempDir dir;
   Touch(dir / "from");
-  LinkOrCopyFile(dir / "from", dir / "a/b/to");
-  EXPECT_TRUE(fs::equivalent(dir / "from", dir / "a/b/to"));
-  // A link is impossible where a file is already.
-  Touch(dir / "other");
-  LinkOrCopyFile(dir / "from", dir / "other");
-  EXPECT_EQ(ReadTextFile(dir / "other", "copy"), "x");
-  EXPECT_EQ(FolderEntries(dir.path()).size(), 3u);
+  fs::create_symlink("from", dir / "link");
+  for (const char* from : {"from", "link"}) {
+    CloneFile(dir / from, dir / "a/b/to");
+    EXPECT_FALSE(IsSameFile(dir / "from", dir / "a/b/to"));
+    std::ofstream(dir / "a/b/to") << "edited";
+    EXPECT_EQ(ReadTextFile(dir / "from", "original"), "x");
+  }
+  CloneFile(dir / "from", dir / "a/b/to");
+  EXPECT_EQ(ReadTextFile(dir / "a/b/to", "copy"), "x");
+  EXPECT_EQ(FolderEntries(dir / "a/b").size(), 1u);
 }
 
 }  // namespace

@@ -81,12 +81,6 @@ TEST_F(ColmapCommandsTest, AdjustsAndExports) {
   EXPECT_THAT(shape.out, HasSubstr("markers_reconstructed: 12\n"));
 }
 
-TEST_F(ColmapCommandsTest, InputMayBeReplaced) {
-  const ProgramRun run =
-      RunVelamap({"bundle_adjuster", "--input_path", path("seed"), "--output_path", path("seed")});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-}
-
 TEST_F(ColmapCommandsTest, Absent) {
   const ProgramRun run = Adjust(path("nowhere"));
   ExpectFailure(run);

@@ -110,11 +110,11 @@ TEST(CommandLineTest, ProjectFileServesAllCommands) {
 
 TEST(CommandLineTest, OldNamesAreUnderstoodWithAWarning) {
   const ProgramRun prior = RunVelamap({"marker_importer", "--image_path", "/n", "--camera_path",
-                                       "/n", "--database_path", "/n", "--map_path", "/n"});
+                                       "/n", "--database_path", "/out", "--map_path", "/n"});
   EXPECT_EQ(prior.exit_code, 2);
   EXPECT_THAT(prior.err, HasSubstr("--map_path: an old name; write prior_shape_path"));
   const ProgramRun backend = RunVelamap(
-      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "ceres"});
+      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/out", "--backend", "ceres"});
   EXPECT_EQ(backend.exit_code, 2);
   EXPECT_THAT(backend.err, HasSubstr("--backend ceres: an old name; write markers"));
   EXPECT_THAT(backend.err, HasSubstr("--layout_path: missing"));  // which markers needs
@@ -148,11 +148,11 @@ TEST(CommandLineTest, UnknownNamesListWhatThereIs) {
               HasSubstr("none, subpix or edge"));
   EXPECT_THAT(error_of("--log_level", "loud"), HasSubstr("error, warn, info or debug"));
   const ProgramRun backend = RunVelamap(
-      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "g2o"});
+      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/out", "--backend", "g2o"});
   EXPECT_EQ(backend.exit_code, 2);
   EXPECT_THAT(backend.err, HasSubstr("--backend: 'g2o' is unknown; give colmap, markers or both"));
   const ProgramRun length = RunVelamap(
-      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/n", "--backend", "markers"});
+      {"bundle_adjuster", "--input_path", "/n", "--output_path", "/out", "--backend", "markers"});
   EXPECT_EQ(length.exit_code, 2);
   EXPECT_THAT(length.err, HasSubstr("--layout_path: missing"));
 }

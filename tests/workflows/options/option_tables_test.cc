@@ -46,7 +46,7 @@ std::string ErrorOf(const Command& command, const Option& option, const std::str
   std::vector<std::string> arguments = {"--" + option.name, value};
   for (const Option& other : OptionsOf(command)) {
     if (!other.required || other.name == option.name) continue;
-    arguments.insert(arguments.end(), {"--" + other.name, "path"});
+    arguments.insert(arguments.end(), {"--" + other.name, "path_of_" + other.name});
   }
   try {
     ParseOptions(command.syntax, arguments, AllOptionNames());
@@ -70,6 +70,17 @@ std::vector<std::string> ValuesBeyond(const Option& option) {
   }
   if (std::isfinite(range.max)) values.push_back(text(range.max + step));
   return values;
+}
+
+// The check that no output is an input follows from the uses of the paths.
+TEST(OptionTables, EveryPathHasAUse) {
+  for (const Command& command : AllCommands()) {
+    for (const Option& option : OptionsOf(command)) {
+      const bool is_path = option.unit.find("path") != std::string::npos;
+      EXPECT_EQ(option.path_use != PathUse::kNone, is_path)
+          << command.syntax.name << " --" << option.name;
+    }
+  }
 }
 
 TEST(OptionTables, NamesAreUniqueAndMeanTheSameEverywhere) {
@@ -146,7 +157,7 @@ std::string GoodValue(const Option& option) {
   if (const auto number = NumberOf(option.target)) return fmt::format("{}", *number);
   if (IsNumber(option.target)) return "0.5";
   if (std::holds_alternative<bool*>(option.target)) return "1";
-  if (std::holds_alternative<std::string*>(option.target)) return "text";
+  if (std::holds_alternative<std::string*>(option.target)) return "text of " + option.name;
   if (option.name == "frame") return "lines";
   if (option.name == "reference_unit") return "mm";
   const std::string default_text = std::get<ParsedValue>(option.target).default_text;

@@ -5,6 +5,7 @@
 
 #include "importer/base/error.h"
 #include "importer/database/colmap_database.h"
+#include "importer/video/written_frame.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 
@@ -110,16 +111,31 @@ TEST(WorkspaceTest, ClearsAwayWhatAnInterruptedRunLeft) {
   EXPECT_THAT(ListFolder(temp_dir / "workspace"), ElementsAre("velamap.log"));
 }
 
-TEST(ModelImagesTest, AreLinkedWithTheirFolders) {
+TEST(WorkspaceTest, IsForOneAtATime) {
+  const TempDir temp_dir;
+  {
+    const Workspace workspace((temp_dir / "workspace").string(), "photos");
+    EXPECT_THAT(ErrorOf(temp_dir / "workspace", "photos"),
+                HasSubstr("another velamap works here since"));
+    EXPECT_TRUE(fs::exists(temp_dir / "workspace"));
+  }
+  EXPECT_EQ(ErrorOf(temp_dir / "workspace", "photos"), "");
+}
+
+TEST(ModelImagesTest, AreCopiedWithTheirFolders) {
   const TempDir temp_dir;
   fs::create_directories(temp_dir / "photos/day1");
   WriteTextFile(temp_dir / "photos/day1/a.jpg", "picture");
   WriteTextFile(temp_dir / "photos/b.jpg", "other");
   const fs::path images = temp_dir / "workspace/images";
-  AddModelImages(ModelWithImages({"day1/a.jpg"}), (temp_dir / "photos").string(), images);
-  EXPECT_EQ(ReadFileBytes(images / "day1/a.jpg"), "picture");
-  EXPECT_EQ(fs::hard_link_count(images / "day1/a.jpg"), 2u);
-  EXPECT_THAT(ListFolder(images), ElementsAre("day1"));
+  fs::create_directories(images);
+  fs::create_hard_link(temp_dir / "photos/b.jpg", images / "b.jpg");  // of an earlier velamap
+  AddModelImages(ModelWithImages({"day1/a.jpg", "b.jpg"}), (temp_dir / "photos").string(), images);
+  for (const char* name : {"day1/a.jpg", "b.jpg"}) {
+    EXPECT_EQ(ReadFileBytes(images / name), ReadFileBytes(temp_dir / "photos" / name));
+    EXPECT_EQ(fs::hard_link_count(images / name), 1u);
+  }
+  EXPECT_THAT(ListFolder(images), ElementsAre("b.jpg", "day1"));
 }
 
 TEST(ModelImagesTest, OnlyWhatIsNotLostIsRemoved) {
@@ -127,17 +143,32 @@ TEST(ModelImagesTest, OnlyWhatIsNotLostIsRemoved) {
   const fs::path images = temp_dir / "images";
   fs::create_directories(images);
   fs::create_directories(temp_dir / "photos");
-  for (const char* name : {"used.jpg", "left_out.jpg", "original_gone.jpg", "not_ours.jpg"}) {
-    WriteTextFile(images / name, name);
-  }
-  WriteTextFile(temp_dir / "photos/left_out.jpg", "original");
+  const std::vector<std::string> names = {"edited.jpg", "left_out.jpg", "not_ours.jpg",
+                                          "original_gone.jpg", "used.jpg"};
+  for (const std::string& name : names) WriteTextFile(images / name, name);
+  WriteTextFile(temp_dir / "photos/left_out.jpg", "left_out.jpg");
+  WriteTextFile(temp_dir / "photos/edited.jpg", "original");
   RemoveOtherImages(ModelWithImages({"used.jpg"}),
-                    {"left_out.jpg", "original_gone.jpg", "used.jpg"},
+                    {"edited.jpg", "left_out.jpg", "original_gone.jpg", "used.jpg"},
                     (temp_dir / "photos").string(), images);
-  EXPECT_THAT(ListFolder(images), ElementsAre("not_ours.jpg", "original_gone.jpg", "used.jpg"));
+  EXPECT_THAT(ListFolder(images),
+              ElementsAre("edited.jpg", "not_ours.jpg", "original_gone.jpg", "used.jpg"));
   // Photographs that are read from images/ itself are the originals.
   RemoveOtherImages(ModelWithImages({}), {"used.jpg"}, images.string(), images);
   EXPECT_TRUE(fs::exists(images / "used.jpg"));
+}
+
+TEST(ModelImagesTest, OfAVideoOnlyFramesThatVelamapWroteAreRemoved) {
+  const TempDir temp_dir;
+  WriteTextFile(temp_dir / "clip.mp4", "video");
+  fs::create_directories(temp_dir / "images");
+  const std::string jpeg = "\xFF\xD8 picture";
+  WriteTextFile(temp_dir / "images/ours.jpg", WithFrameMark(jpeg));
+  WriteTextFile(temp_dir / "images/edited.jpg", WithFrameMark(jpeg) + " edited");
+  WriteTextFile(temp_dir / "images/theirs.jpg", jpeg);
+  RemoveOtherImages(ModelWithImages({}), {"edited.jpg", "ours.jpg", "theirs.jpg"},
+                    (temp_dir / "clip.mp4").string(), temp_dir / "images");
+  EXPECT_THAT(ListFolder(temp_dir / "images"), ElementsAre("edited.jpg", "theirs.jpg"));
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+// One run at a time: a lock that other runs of velamap see, on this machine or another one that
+// shares the file system. It ends with the process, however that ends.
+
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace velamap {
+
+class FileLock {
+ public:
+  // Takes the lock whose file is `path`, and writes since when and by which process it is held.
+  // Throws InputError, which begins with `what`, if another process or FileLock holds it. Where no
+  // lock can be made, nothing can be written either, which is for the writers to say, or the file
+  // system has no locks.
+  FileLock(const std::filesystem::path& path, const std::string& what);
+  ~FileLock();  // removes the file
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  std::filesystem::path path_;
+  int file_ = -1;
+};
+
+}  // namespace velamap

@@ -1,0 +1,148 @@
+// Files, folders and options of the main job that are none. Each case breaks one thing of a call
+// that fails for want of markers only.
+
+#include <sys/stat.h>
+
+#include "tests/bad_input/sandbox.h"
+
+namespace velamap {
+namespace {
+
+std::string Call(const std::string& image_path, const std::string& camera_path,
+                 const std::string& markers = "--dictionary DICT_4X4_50 --marker_length 0.1") {
+  return "automatic_reconstructor --image_path @/" + image_path + " --camera_path @/" +
+         camera_path + " --workspace_path @/new " + markers;
+}
+
+const std::string kCall = Call("grey", "camera.yml");
+
+std::function<void(const fs::path&)> Write(const std::string& name, const std::string& text) {
+  return [=](const fs::path& dir) { WriteTextFile(dir / name, text); };
+}
+
+std::vector<BadInput> Pictures() {
+  return {{"NoMarkerAtAll", kCall, 1, "no marker of DICT_4X4_50"},
+          {"MissingImageFolder", Call("nowhere", "camera.yml"), 2, "nowhere"},
+          {"EmptyImageFolder", Call("empty", "camera.yml"), 2, "empty",
+           [](const fs::path& dir) { fs::create_directory(dir / "empty"); }},
+          {"NoFileIsAnImage", kCall, 2, "none of 2 images can be read",
+           [](const fs::path& dir) {
+             for (const char* name : {"grey/a.png", "grey/b.png"}) {
+               WriteTextFile(dir / name, "no image");
+             }
+           }},
+          {"FoldersInCircles", Call("circle", "camera.yml"), 1, "found in 1 frames",
+           [](const fs::path& dir) {
+             fs::create_directory(dir / "circle");
+             fs::copy(dir / "grey/a.png", dir / "circle/a.png");
+             fs::create_directory_symlink(dir / "circle", dir / "circle/again");
+             fs::create_directory_symlink("..", dir / "circle/up");
+             fs::remove_all(dir / "images");
+             fs::remove_all(dir / "workspace");
+             fs::remove_all(dir / "grey");
+           }},
+          {"VideoThatIsNone", Call("video.mp4", "camera.yml"), 2, "video.mp4",
+           Write("video.mp4", "no video")},
+          {"VideoThatIsAPipe", Call("pipe.mp4", "camera.yml"), 2, "a pipe or a device",
+           [](const fs::path& dir) { mkfifo((dir / "pipe.mp4").c_str(), 0600); }},
+          {"SingleImage", Call("grey/a.png", "camera.yml"), 2, "a single image"}};
+}
+
+std::vector<BadInput> Calibrations() {
+  const std::string bad = Call("grey", "bad.yml");
+  const std::string head = "%YAML:1.0\n---\nimage_width: 320\nimage_height: 240\n";
+  return {{"MissingCalibration", Call("grey", "nowhere.yml"), 2, "nowhere.yml"},
+          {"IncompleteCalibration", bad, 2, "camera_matrix", Write("bad.yml", head)},
+          {"EmptyCalibration", bad, 2, "is empty", Write("bad.yml", " \n")},
+          {"CalibrationForAnotherResolution", kCall, 2, "camera.yml",
+           [](const fs::path& dir) { Replace(dir / "camera.yml", "320", "400"); }},
+          {"CalibrationOfNegativeFocalLength", kCall, 2, "must be positive",
+           [](const fs::path& dir) { Replace(dir / "camera.yml", "[300", "[-300"); }}};
+}
+
+std::vector<BadInput> Markers() {
+  std::vector<BadInput> cases = {
+      {"DictionaryThatDoesNotExist",
+       Call("grey", "camera.yml", "--dictionary DICT_4X4_51 --marker_length 0.1"), 2,
+       "DICT_4X4_51"},
+      {"DictionaryFileWithWrongBits",
+       Call("grey", "camera.yml", "--dictionary @/bad.yml --marker_length 0.1"), 2, "marker_0",
+       Write("bad.yml",
+             "%YAML:1.0\n---\nnmarkers: 1\nmarkersize: 3\nmaxCorrectionBits: 0\nmarker_0: "
+             "\"1010\"\n")},
+      {"NoDictionary", Call("grey", "camera.yml", "--marker_length 0.1"), 2,
+       "--layout_path: missing"},
+      {"LayoutAndItsReplacement",
+       Call("grey", "camera.yml", "--layout_path @/nowhere.yml --marker_length 0.1"), 2,
+       "leave out"},
+      {"MissingLayout", Call("grey", "camera.yml", "--layout_path @/nowhere.yml"), 2,
+       "nowhere.yml"}};
+  for (const char* length : {"0", "-0.1", "1000", "nan", "ten"}) {
+    cases.push_back({"MarkerLength" + std::to_string(cases.size()),
+                     Call("grey", "camera.yml",
+                          std::string("--dictionary DICT_4X4_50 --marker_length ") + length),
+                     2, "--marker_length"});
+  }
+  return cases;
+}
+
+std::vector<BadInput> PriorShapes() {
+  const std::string header = "marker_id,corner,x,y,z,sigma_x,sigma_y,sigma_z,num_frames,part\n";
+  const std::string call = kCall + " --prior_shape_path @/prior.csv";
+  return {
+      {"MissingPriorShape", call, 2, "prior.csv"},
+      {"PriorShapeInAFolderWithoutOne", kCall + " --prior_shape_path @/grey", 2, "grey/shape.csv"},
+      {"PriorShapeWithoutAWholeMarker", call, 2, "no marker has all four corners",
+       Write("prior.csv", header + "1,1,0,0,0,,,,2,\n")},
+      {"PriorShapeThatIsNoNumber", call, 2, "prior.csv:2",
+       Write("prior.csv", header + "1,1,0,nan,0,,,,2,\n")}};
+}
+
+std::vector<BadInput> Workspaces() {
+  const auto call = [](const std::string& workspace) {
+    return "automatic_reconstructor --image_path @/grey --camera_path @/camera.yml --dictionary "
+           "DICT_4X4_50 --marker_length 0.1 --workspace_path " +
+           workspace;
+  };
+  return {
+      {"WorkspaceIsAFile", call("@/camera.yml/"), 2, "camera.yml"},
+      {"WorkspaceIsAnotherFile", call("@/file"), 2, "is a file", Write("file", "a file")},
+      {"WorkspaceBelowAFile", call("@/file/workspace"), 2, "file/workspace",
+       Write("file", "a file")},
+      {"WorkspaceThatCannotBeMade", call("/proc/velamap/workspace"), 2, "/proc/velamap/workspace"},
+      {"WorkspaceAmongThePhotographs", call("@/grey/result"), 2, "lies in the image folder"}};
+}
+
+std::vector<BadInput> Options() {
+  std::vector<BadInput> cases = {
+      {"ColmapAbsent", kCall + " --colmap_path @/colmap", 3, "/colmap"},
+      {"ColmapThatIsAnotherProgram", kCall + " --colmap_path /bin/true", 3, "/bin/true"}};
+  const std::vector<std::pair<std::string, std::string>> beyond = {
+      {"--ArucoDetection.error_correction_rate", "2"},
+      {"--ArucoDetection.min_marker_perimeter_rate", "-1"},
+      {"--Video.frame_step", "0"},
+      {"--Registration.skip", "0"},
+      {"--Registration.frequency_threshold", "30"},
+      {"--BundleAdjustment.max_num_rounds", "-1"},
+      {"--BundleAdjustment.function_tolerance", "-1"},
+      {"--num_threads", "-2"},
+      {"--random_seed", "-1"}};
+  for (const auto& [name, value] : beyond) {
+    cases.push_back({"OptionBeyondItsRange" + std::to_string(cases.size()),
+                     kCall + " " + name + " " + value, 2, name});
+  }
+  return cases;
+}
+
+}  // namespace
+
+std::vector<BadInput> InputCases() {
+  std::vector<BadInput> cases = Pictures();
+  for (const auto& more :
+       {Calibrations(), Markers(), PriorShapes(), Workspaces(), Options()}) {
+    cases.insert(cases.end(), more.begin(), more.end());
+  }
+  return cases;
+}
+
+}  // namespace velamap

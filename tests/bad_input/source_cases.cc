@@ -1,0 +1,184 @@
+// A result is of the data it was asked for.
+
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "tests/bad_input/sandbox.h"
+
+namespace velamap {
+namespace {
+
+const std::vector<std::string> kLog = {"workspace/velamap.log"};
+const std::string kExport = "shape_exporter --input_path @/workspace/sparse/0 --shape_path @/out ";
+
+// Another picture in the place of a photograph.
+void SwapPhotographs(const fs::path& dir) {
+  fs::rename(dir / "images/1.png", dir / "images/swap.png");
+  fs::rename(dir / "images/2.png", dir / "images/1.png");
+  fs::rename(dir / "images/swap.png", dir / "images/2.png");
+}
+
+void RunGood(const fs::path& dir, const std::string& command) {
+  const ProgramRun run = RunVelamap(ArgumentsIn(dir, command));
+  if (run.exit_code != 0) throw std::runtime_error(run.err);
+}
+
+const std::string kImportClip =
+    "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path @/layout.yml "
+    "--database_path @/new.db";
+
+std::vector<BadInput> ChangedSources() {
+  const std::string of_video =
+      "automatic_reconstructor --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
+      "@/layout.yml --backend markers --workspace_path @/workspace";
+  return {{"OtherPhotographsOfTheSameNames", kRerun, 2, "1.png is another picture now",
+           SwapPhotographs, kLog},
+          {"OtherPhotographsInAnotherFolder",
+           "automatic_reconstructor --image_path @/other --camera_path @/camera.yml --layout_path "
+           "@/layout.yml --backend markers --workspace_path @/workspace",
+           2, "1.png is another picture now",
+           [](const fs::path& dir) {
+             fs::copy(dir / "images", dir / "other");
+             fs::copy(dir / "grey/a.png", dir / "other/1.png",
+                      fs::copy_options::overwrite_existing);
+           },
+           kLog},
+          {"APhotographDeleted", kRerun, 2, "holds 4.png, which is not in",
+           [](const fs::path& dir) { fs::remove(dir / "images/4.png"); }, kLog},
+          {"PhotographsOfOtherNames",
+           "automatic_reconstructor --image_path @/grey --camera_path @/camera.yml --layout_path "
+           "@/layout.yml --backend markers --workspace_path @/workspace",
+           2,
+           "holds 1.png, which is not in",
+           {},
+           kLog},
+          {"AVideoInTheWorkspaceOfPhotographs", of_video, 2, "was made from photographs", {}, kLog},
+          {"AnotherVideo", kImportClip, 2, "another video than",
+           [](const fs::path& dir) {
+             RunGood(dir, kImportClip);
+             RunSql(dir / "new.db", "UPDATE marker_sources SET size = size + 1, path = '/old.avi'");
+           }},
+          {"AVideoThatWasChanged", kImportClip, 2, "the video before it was changed",
+           [](const fs::path& dir) {
+             RunGood(dir, kImportClip);
+             WriteTextFile(dir / "clip.avi", ReadFileBytes(dir / "clip.avi") + "more");
+           }},
+          {"APhotographDeletedFromTheFolderOfADatabase", kImport, 2, "holds 4.png, which is not in",
+           [](const fs::path& dir) {
+             RunGood(dir, kImport);
+             fs::remove(dir / "images/4.png");
+           }},
+          {"APhotographReplacedInTheFolderOfADatabase", kImport, 2, "another picture now",
+           [](const fs::path& dir) {
+             RunGood(dir, kImport);
+             SwapPhotographs(dir);
+           }}};
+}
+
+// Wishes that cannot be granted, and data that have no result.
+std::vector<BadInput> Wishes() {
+  const auto write_layout = [](const std::string& rest) {
+    return [rest](const fs::path& dir) {
+      WriteTextFile(dir / "own.yml", "dictionary: DICT_4X4_50\nmarker_length: 0.1\n" + rest);
+    };
+  };
+  const auto at_one_place = [](const fs::path& dir) {
+    fs::create_directory(dir / "model");
+    for (const char* file : {"cameras.txt", "images.txt"}) {
+      fs::copy(dir / "workspace/sparse/0" / file, dir / "model" / file);
+    }
+    std::string points;
+    std::istringstream lines(ReadFileBytes(dir / "workspace/sparse/0/points3D.txt"));
+    for (std::string line, id, number; std::getline(lines, line);) {
+      if (line.front() == '#') continue;
+      std::istringstream words(line);
+      words >> id >> number >> number >> number;
+      points += id + " 0.1 0.2 3";
+      for (std::string word; words >> word;) points += ' ' + word;
+      points += '\n';
+    }
+    WriteTextFile(dir / "model/points3D.txt", points);
+  };
+  return {
+      {"FrameByMarkersThatAreNotThere", kExport + "--marker_length 0.1 --frame 900,901,902", 2,
+       "--frame: markers 900 901 902 is not possible"},
+      {"FrameByMarkersThatTheLayoutDoesNotName",
+       kExport + "--layout_path @/layout.yml --frame 7,8,9", 2,
+       "--frame: markers 7 8 9 is not possible: the layout names no marker 7"},
+      {"FrameByAReferencePartThatIsNone",
+       kExport + "--layout_path @/layout.yml --frame reference_part", 2,
+       "the layout names no reference_part"},
+      {"FrameByLinesThatAreNone", kExport + "--marker_length 0.1 --frame lines", 2,
+       "the layout has no horizontal lines"},
+      {"FrameThatIsNone", kExport + "--marker_length 0.1 --frame sideways", 2,
+       "--frame: 'sideways' is no frame"},
+      {"FrameRefusedBeforeTheWork", kRerun + " --frame reference_part", 2,
+       "the layout names no reference_part"},
+      {"ALayoutOfOtherMarkersExported", kExport + "--layout_path @/own.yml", 1, "is in the layout",
+       write_layout("parts:\n  board: {markers: [40, 41]}\n")},
+      {"ALayoutOfOtherMarkersAnalyzed",
+       "shape_analyzer --shape_path @/workspace/shape --layout_path @/own.yml", 1,
+       "is in the layout", write_layout("parts:\n  board: {markers: [40, 41]}\n")},
+      {"PointsAtOnePlaceForMarkers",
+       "bundle_adjuster --backend markers --marker_length 0.1 --input_path @/model --output_path "
+       "@/out",
+       1, "lie at one place", at_one_place},
+      {"PointsAtOnePlaceForColmap", "bundle_adjuster --input_path @/model --output_path @/out", 1,
+       "lie at one place", at_one_place},
+      {"AMarkerThatTheDictionaryDoesNotHave",
+       "marker_importer --image_path @/images --camera_path @/camera.yml --layout_path @/own.yml "
+       "--database_path @/new.db",
+       2, "names marker 50, which the dictionary DICT_4X4_50 does not have",
+       write_layout("parts:\n  board: {markers: [49, 50]}\n")},
+      {"ALengthOfAMarkerThatTheDictionaryDoesNotHave",
+       "marker_importer --image_path @/images --camera_path @/camera.yml --layout_path @/own.yml "
+       "--database_path @/new.db",
+       2, "names marker 60", write_layout("marker_lengths: {60: 0.2}\n")}};
+}
+
+// What camera and print do to edges, as the database says.
+std::vector<BadInput> ImageFormations() {
+  const std::vector<std::pair<std::string, std::string>> bad_values = {
+      {"gamma", "'text'"},        {"gamma", "0"},        {"gamma", "-1"},
+      {"gamma", "1e9"},           {"gamma", "9e999"},    {"s_amplitude", "1"},
+      {"sharpening", "-1"},       {"sharpening", "1e9"}, {"sharpening_radius_px", "0"},
+      {"sharpens_light", "7"},    {"noise_gray", "-1"},  {"inset_sigma_px", "'text'"},
+      {"ink_spread_sides", "0.5"}};
+  std::vector<BadInput> cases;
+  for (const auto& [column, value] : bad_values) {
+    cases.push_back({fmt::format("ImageFormation{}", cases.size()), kRerun, 2,
+                     "table image_formation: " + column,
+                     [column = column, value = value](const fs::path& dir) {
+                       RunSql(dir / "workspace/database.db",
+                              "UPDATE image_formation SET " + column + " = " + value);
+                     },
+                     kLog});
+  }
+  // NULL, which SQLite stores for a NaN, where no constraint forbids it.
+  cases.push_back({"ImageFormationOfNothing",
+                   "bundle_adjuster --backend markers --marker_length 0.1 --input_path "
+                   "@/workspace/sparse/seed --output_path @/out --database_path "
+                   "@/workspace/database.db",
+                   2, "table image_formation: gamma", [](const fs::path& dir) {
+                     RunSql(dir / "workspace/database.db",
+                            "CREATE TABLE other AS SELECT * FROM image_formation;"
+                            "DROP TABLE image_formation;"
+                            "ALTER TABLE other RENAME TO image_formation;"
+                            "UPDATE image_formation SET gamma = NULL");
+                   }});
+  return cases;
+}
+
+}  // namespace
+
+std::vector<BadInput> SourceCases() {
+  std::vector<BadInput> cases = ChangedSources();
+  for (const auto& more : {Wishes(), ImageFormations()}) {
+    cases.insert(cases.end(), more.begin(), more.end());
+  }
+  return cases;
+}
+
+}  // namespace velamap

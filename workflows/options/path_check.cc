@@ -1,0 +1,102 @@
+#include "workflows/options/path_check.h"
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <variant>
+
+#include "importer/base/error.h"
+#include "importer/base/files.h"
+#include "importer/base/replacement.h"
+#include "importer/layout/layout.h"
+#include "importer/video/source_file.h"
+#include "reconstruct/model/model_io.h"
+#include "workflows/run/workspace.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct UsedPaths {
+  std::vector<UsedPath> inputs, outputs;
+};
+
+void AddModelFiles(const std::string& used_by, const fs::path& folder, UsedPaths* paths) {
+  for (const std::string& name : ModelFileNames()) {
+    if (Exists(folder / name)) paths->inputs.push_back({used_by, folder / name});
+  }
+}
+
+void AddLayout(const std::string& used_by, const std::string& path, UsedPaths* paths) {
+  paths->inputs.push_back({used_by, path});
+  try {
+    const std::string dictionary = ReadLayout(path).dictionary;
+    if (IsRegularFile(dictionary)) paths->inputs.push_back({used_by, dictionary});
+  } catch (const InputError&) {
+    // The command will say so when it reads the layout.
+  }
+}
+
+void AddPictures(const std::string& used_by, const fs::path& path, UsedPaths* paths) {
+  paths->inputs.push_back({used_by, path});
+  if (!IsFolder(path)) return;
+  for (const fs::path& file : FilesBelow(path)) {
+    if (HasImageExtension(file.string())) paths->inputs.push_back({used_by, file});
+  }
+}
+
+// With a folder goes the model beside it, whose uncertainty the comparisons read.
+void AddShape(const std::string& used_by, const fs::path& path, UsedPaths* paths) {
+  if (!IsFolder(path)) return paths->inputs.push_back({used_by, path});
+  paths->inputs.push_back({used_by, path / "shape.csv"});
+  AddModelFiles(used_by, AbsoluteFolder(path).parent_path() / "sparse" / "0", paths);
+}
+
+void AddUse(PathUse use, const std::string& used_by, const std::string& path, UsedPaths* paths) {
+  switch (use) {
+    case PathUse::kNone:
+      return;
+    case PathUse::kReadsFile:
+      return paths->inputs.push_back({used_by, path});
+    case PathUse::kReadsLayout:
+      return AddLayout(used_by, path, paths);
+    case PathUse::kReadsPictures:
+      return AddPictures(used_by, path, paths);
+    case PathUse::kReadsModel:
+      paths->inputs.push_back({used_by, path});
+      return AddModelFiles(used_by, path, paths);
+    case PathUse::kReadsShape:
+      return AddShape(used_by, path, paths);
+    case PathUse::kWritesFile:
+      return paths->outputs.push_back({used_by, path});
+    case PathUse::kWritesFolder:
+      return paths->outputs.push_back({used_by, path, true});
+    case PathUse::kAddsToFolder:
+      return;  // its writer looks at each file
+    case PathUse::kWritesWorkspace:
+      for (const UsedPath& output : WorkspaceOutputs(path, used_by)) {
+        paths->outputs.push_back(output);
+      }
+  }
+}
+
+}  // namespace
+
+void CompletePaths(const std::vector<OptionGroup>& groups) {
+  UsedPaths paths;
+  for (const OptionGroup& group : groups) {
+    for (const Option& option : group.options) {
+      const auto* target = std::get_if<std::string*>(&option.target);
+      if (target == nullptr) continue;
+      std::string* path = *target;
+      if (path->empty() && option.beside != nullptr && !option.beside->empty()) {
+        *path = (AbsoluteFolder(*option.beside).parent_path() / option.name_beside).string();
+      }
+      if (!path->empty()) AddUse(option.path_use, "--" + option.name, *path, &paths);
+    }
+  }
+  CheckOutputs(paths.inputs, paths.outputs);
+}
+
+}  // namespace velamap
