@@ -9,7 +9,7 @@ house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
   rigid3 unit_square_map units)
 house_folder(importer/camera PUBLIC
-  calibration camera camera_jacobian camera_projection)
+  calibration camera camera_jacobian camera_projection storage_wall)
 house_folder(importer/layout PUBLIC
   code_search dictionary frame_choice layout layout_writer prior_shape)
 house_folder(importer/print PUBLIC

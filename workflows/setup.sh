@@ -8,7 +8,7 @@ packages=(
   libopencv-dev libopencv-contrib-dev libeigen3-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libturbojpeg0-dev
   libcairo2-dev libpng-dev fonts-dejavu-core
-  libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev
+  libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev libpugixml-dev
   libboost-program-options-dev libspdlog-dev libceres-dev nlohmann-json3-dev
   libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
   libocct-data-exchange-dev libassimp-dev libjs-three libjs-chart.js

@@ -9,6 +9,11 @@
 #include "importer/base/files.h"
 
 namespace velamap {
+namespace {
+
+const std::string kByteOrderMark = "\xef\xbb\xbf";
+
+}  // namespace
 
 std::string ReadTextFile(const std::string& path, const std::string& what) {
   if (path.empty() || !Exists(path)) {
@@ -17,9 +22,17 @@ std::string ReadTextFile(const std::string& path, const std::string& what) {
   if (!IsRegularFile(path)) {
     throw InputError(fmt::format("{}: the {} is not a regular file", path, what));
   }
+  if (FileSize(path) > kMaxTextFileSize) {
+    throw InputError(
+        fmt::format("{}: {} bytes are no {}, which has at most {}; is it another file?", path,
+                    FileSize(path), what, kMaxTextFileSize));
+  }
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream) throw InputError(fmt::format("{}: the {} cannot be read", path, what));
+  if (text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0) {
+    text.erase(0, kByteOrderMark.size());
+  }
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw InputError(fmt::format("{}: the {} is empty", path, what));
   }

@@ -11,6 +11,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/text_file.h"
+#include "importer/camera/storage_wall.h"
 
 namespace velamap {
 namespace {
@@ -130,6 +131,7 @@ void AppendDistortion(std::vector<double> distortion, bool fisheye, const std::s
 }
 
 Camera ReadOpenCvCalibration(const std::string& text, const std::string& path) {
+  CheckStorageText(text, path);
   cv::FileStorage storage;
   try {
     storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);

@@ -15,6 +15,7 @@
 #include "importer/base/files.h"
 #include "importer/base/ids.h"
 #include "importer/base/text_file.h"
+#include "importer/camera/storage_wall.h"
 
 namespace velamap {
 namespace {
@@ -141,6 +142,7 @@ int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
 
 Dictionary ReadDictionaryFile(const std::string& path) {
   const std::string text = ReadTextFile(path, "dictionary file");
+  CheckStorageText(text, path);
   cv::FileStorage storage;
   try {
     storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);

@@ -60,6 +60,50 @@ std::vector<BadInput> Calibrations() {
            [](const fs::path& dir) { Replace(dir / "camera.yml", "[300", "[-300"); }}};
 }
 
+// Files on which OpenCV's parsers crash, as a calibration and as a dictionary.
+std::vector<BadInput> Walls() {
+  constexpr std::size_t kDeep = 200000;
+  const auto repeat = [](const std::string& text) {
+    std::string repeated;
+    for (std::size_t i = 0; i < kDeep; ++i) repeated += text;
+    return repeated;
+  };
+  const std::string xml = "<?xml version=\"1.0\"?>\n<opencv_storage>";
+  const std::vector<std::pair<std::string, std::string>> texts = {
+      {"XmlCutOffInAnAttribute", xml + "\n<camera_matrix type_id="},
+      {"XmlCutOffInItsFirstLine", "<?xml version=\"1."},
+      {"XmlCutOffInAnElement", xml + "<image_width>320</image_wi"},
+      {"XmlOfAnotherProgram", "<?xml version=\"1.0\"?>\n<svg></svg>"},
+      {"DeepXml", xml + repeat("<a>") + repeat("</a>") + "</opencv_storage>"},
+      {"DeepJson", "{\"a\":" + repeat("[") + repeat("]") + "}"},
+      {"DeepYaml", "%YAML:1.0\n---\na: " + repeat("[") + repeat("]") + "\n"},
+      {"YamlCutOff", "%YAML:1.0\n---\na: [1, 2"},
+      {"YamlOfAList", "%YAML:1.0\n---\n- 1\n- 2\n"},
+      {"YamlOfText", "%YAML:1.0\n---\nonly text\n"},
+      {"JsonCutOff", "{\"image_width\": 320,"},
+      {"ZeroBytes", std::string("%YAML:1.0\n---\na: \0\0\n", 19)}};
+  std::vector<BadInput> cases;
+  for (const auto& [name, text] : texts) {
+    cases.push_back({"Calibration" + name, Call("grey", "bad.yml"), 2,
+                     "bad.yml: no readable OpenCV FileStorage file", Write("bad.yml", text)});
+    cases.push_back({"Dictionary" + name,
+                     Call("grey", "camera.yml", "--dictionary @/bad.yml --marker_length 0.1"), 2,
+                     "bad.yml: no readable OpenCV FileStorage file", Write("bad.yml", text)});
+  }
+  const std::vector<std::pair<std::string, std::string>> calls = {
+      {"Calibration", Call("grey", "bad.yml")},
+      {"Layout", Call("grey", "camera.yml", "--layout_path @/bad.yml")}};
+  for (const auto& [name, call] : calls) {
+    cases.push_back(
+        {name + "OfAByteOrderMarkAlone", call, 2, "is empty", Write("bad.yml", "\xef\xbb\xbf")});
+    cases.push_back({name + "OfManyBytes", call, 2, "is it another file?", [](const fs::path& dir) {
+                       WriteTextFile(dir / "bad.yml", "%YAML");
+                       fs::resize_file(dir / "bad.yml", (std::uintmax_t{64} << 20) + 1);
+                     }});
+  }
+  return cases;
+}
+
 std::vector<BadInput> Markers() {
   std::vector<BadInput> cases = {
       {"DictionaryThatDoesNotExist",
@@ -139,7 +183,7 @@ std::vector<BadInput> Options() {
 std::vector<BadInput> InputCases() {
   std::vector<BadInput> cases = Pictures();
   for (const auto& more :
-       {Calibrations(), Markers(), PriorShapes(), Workspaces(), Options()}) {
+       {Calibrations(), Walls(), Markers(), PriorShapes(), Workspaces(), Options()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

@@ -1,0 +1,73 @@
+#include "importer/camera/storage_wall.h"
+
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+#include <pugixml.hpp>
+
+#include "importer/base/csv.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kMaxDepth = 16;
+
+[[noreturn]] void Fail(const std::string& path, const std::string& why) {
+  throw InputError(
+      fmt::format("{}: no readable OpenCV FileStorage file: {}", path, SingleLine(why)));
+}
+
+[[noreturn]] void FailDepth(const std::string& path) {
+  Fail(path, fmt::format("nested more than {} deep", kMaxDepth));
+}
+
+void CheckDepth(const YAML::Node& node, int depth, const std::string& path) {
+  if (depth > kMaxDepth) FailDepth(path);
+  for (const auto& child : node) CheckDepth(node.IsMap() ? child.second : child, depth + 1, path);
+}
+
+// JSON, too: it is YAML, and OpenCV writes numbers such as 300. that only YAML allows.
+void CheckYaml(const std::string& text, const std::string& path) {
+  std::vector<YAML::Node> documents;
+  try {
+    documents = YAML::LoadAll(text);
+  } catch (const YAML::Exception& exception) {  // beyond a depth of 500, too
+    Fail(path, exception.what());
+  }
+  if (documents.empty()) Fail(path, "it is empty");
+  for (const YAML::Node& document : documents) {
+    if (!document.IsMap()) Fail(path, "its top is no map of keys");
+    CheckDepth(document, 0, path);
+  }
+}
+
+void CheckXml(const std::string& text, const std::string& path) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+  if (!result) Fail(path, result.description());
+  if (std::strcmp(document.document_element().name(), "opencv_storage") != 0) {
+    Fail(path, "its first element is not opencv_storage");
+  }
+  std::vector<std::pair<pugi::xml_node, int>> nodes = {{document.document_element(), 0}};
+  while (!nodes.empty()) {
+    const auto [node, depth] = nodes.back();
+    nodes.pop_back();
+    if (depth > kMaxDepth) FailDepth(path);
+    for (const pugi::xml_node child : node) nodes.emplace_back(child, depth + 1);
+  }
+}
+
+}  // namespace
+
+void CheckStorageText(const std::string& text, const std::string& path) {
+  if (text.find('\0') != std::string::npos) Fail(path, "it holds a zero byte");
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  const bool is_xml = begin != std::string::npos && text[begin] == '<';
+  is_xml ? CheckXml(text, path) : CheckYaml(text, path);
+}
+
+}  // namespace velamap

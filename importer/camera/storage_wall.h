@@ -1,0 +1,15 @@
+// A wall before OpenCV's FileStorage, whose parsers of YAML, XML and JSON crash on files that are
+// cut off or nested deeply.
+
+#pragma once
+
+#include <string>
+
+namespace velamap {
+
+// Throws InputError, naming the path, unless the text, which has no byte order mark, is well-formed
+// by parsers that do not crash, its top is a map, and it is nested no deeper than calibrations and
+// dictionaries are.
+void CheckStorageText(const std::string& text, const std::string& path);
+
+}  // namespace velamap
