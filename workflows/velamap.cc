@@ -26,7 +26,21 @@ void OccupyStandardStreams() {
   }
 }
 
+// Standard output without control characters, as long as it lives.
+class PrintableStdout {
+ public:
+  PrintableStdout() : printable_(std::cout.rdbuf()), original_(std::cout.rdbuf(&printable_)) {}
+  ~PrintableStdout() { std::cout.rdbuf(original_); }
+  PrintableStdout(const PrintableStdout&) = delete;
+  PrintableStdout& operator=(const PrintableStdout&) = delete;
+
+ private:
+  PrintableOutput printable_;
+  std::streambuf* original_;
+};
+
 void Run(const Arguments& arguments) {
+  const PrintableStdout printable;
   RunCommandLine(arguments);
   std::cout.flush();
   if (!std::cout) throw InputError("standard output: cannot be written; is the disk full?");

@@ -68,7 +68,8 @@ class RecordReader {
 
   double ReadDouble(int column, double min) const {
     const std::optional<double> value = Parse<double>(column);
-    if (!value || !std::isfinite(*value) || *value < min) {
+    constexpr double kMaxCoordinate_m = 1e9;
+    if (!value || !(std::abs(*value) <= kMaxCoordinate_m) || *value < min) {
       Fail(column, fmt::format("expected {} in metres with a decimal point, found '{}'",
                                min == 0 ? "a number from 0" : "a number", record_.fields[column]));
     }

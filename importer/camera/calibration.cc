@@ -175,7 +175,7 @@ Camera ParseColmapCameraLine(const std::string& line, const std::string& place) 
     Fail(place, fmt::format("expected {} parameters for {}, found {} numbers", num_params,
                             model_name, camera.params.size()));
   }
-  if (!(MeanFocalLength(camera) > 0)) Fail(place, "the focal length must be positive");
+  if (!(SmallestFocalLength(camera) > 0)) Fail(place, "the focal length must be positive");
   return camera;
 }
 

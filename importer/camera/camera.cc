@@ -81,6 +81,10 @@ std::optional<CameraModel> CameraModelFromId(int model_id) {
 
 double MeanFocalLength(const Camera& camera) { return GetIntrinsics(camera).focal_px.mean(); }
 
+double SmallestFocalLength(const Camera& camera) {
+  return GetIntrinsics(camera).focal_px.minCoeff();
+}
+
 std::optional<Eigen::Vector2d> ImageFromCam(const Camera& camera, const Eigen::Vector3d& x_in_cam) {
   if (!(x_in_cam.z() > 0)) return std::nullopt;
   const Intrinsics intrinsics = GetIntrinsics(camera);

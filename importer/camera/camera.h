@@ -51,6 +51,9 @@ int NumCameraParams(CameraModel model);
 // Mean of the focal lengths in x and y, px.
 double MeanFocalLength(const Camera& camera);
 
+// The smaller of the focal lengths in x and y, px.
+double SmallestFocalLength(const Camera& camera);
+
 // Projects a point into the image (px). Nothing for a point that is not in front of the camera.
 std::optional<Eigen::Vector2d> ImageFromCam(const Camera& camera, const Eigen::Vector3d& x_in_cam);
 

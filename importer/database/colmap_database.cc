@@ -159,6 +159,10 @@ std::map<CameraId, Camera> ColmapDatabase::ReadCameras() const {
         throw InputError(fmt::format("{}: camera {} has a wrong number of parameters", path_,
                                      query.getColumn(0).getInt()));
       }
+      if (!(SmallestFocalLength(camera) > 0)) {
+        throw InputError(fmt::format("{}: camera {} has a focal length that is not positive", path_,
+                                     query.getColumn(0).getInt()));
+      }
       cameras.emplace(query.getColumn(0).getUInt(), camera);
     }
     return cameras;

@@ -14,6 +14,9 @@ namespace {
 
 using ImagesById = std::unordered_map<ImageId, const ModelImage*>;
 
+// Squares and products of larger coordinates leave the range of numbers.
+constexpr double kMaxCoordinate = 1e12;
+
 std::string FindCameraFault(CameraId camera_id, const Camera& camera) {
   if (camera.width_px <= 0 || camera.height_px <= 0) {
     return fmt::format("camera {} has the size {} x {}", camera_id, camera.width_px,
@@ -26,6 +29,9 @@ std::string FindCameraFault(CameraId camera_id, const Camera& camera) {
   if (!std::all_of(camera.params.begin(), camera.params.end(),
                    [](double param) { return std::isfinite(param); })) {
     return fmt::format("camera {} has a parameter that is not finite", camera_id);
+  }
+  if (!(SmallestFocalLength(camera) > 0)) {
+    return fmt::format("camera {} has a focal length that is not positive", camera_id);
   }
   return "";
 }
@@ -45,6 +51,9 @@ std::string FindImageFault(const Model& model, const ModelImage& image) {
         "quaternion",
         image.image_id);
   }
+  if (image.cam_from_world.translation.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    return fmt::format("image {} has a translation beyond {:g}", image.image_id, kMaxCoordinate);
+  }
   for (std::size_t idx = 0; idx < image.points2D.size(); ++idx) {
     const Point2D& point2D = image.points2D[idx];
     if (!point2D.x_in_image_px.allFinite()) {
@@ -60,6 +69,9 @@ std::string FindImageFault(const Model& model, const ModelImage& image) {
 
 std::string FindPointFault(const ImagesById& images, Point3DId point3D_id, const Point3D& point) {
   if (!point.x_in_world.allFinite()) return fmt::format("point {} is not finite", point3D_id);
+  if (point.x_in_world.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    return fmt::format("point {} has a coordinate beyond {:g}", point3D_id, kMaxCoordinate);
+  }
   if (std::isnan(point.mean_error_px)) {
     return fmt::format("the error of point {} is not a number", point3D_id);
   }

@@ -3,6 +3,8 @@
 
 #include <sys/stat.h>
 
+#include <regex>
+
 #include "tests/bad_input/sandbox.h"
 
 namespace velamap {
@@ -21,31 +23,33 @@ std::function<void(const fs::path&)> Write(const std::string& name, const std::s
 }
 
 std::vector<BadInput> Pictures() {
-  return {{"NoMarkerAtAll", kCall, 1, "no marker of DICT_4X4_50"},
-          {"MissingImageFolder", Call("nowhere", "camera.yml"), 2, "nowhere"},
-          {"EmptyImageFolder", Call("empty", "camera.yml"), 2, "empty",
-           [](const fs::path& dir) { fs::create_directory(dir / "empty"); }},
-          {"NoFileIsAnImage", kCall, 2, "none of 2 images can be read",
-           [](const fs::path& dir) {
-             for (const char* name : {"grey/a.png", "grey/b.png"}) {
-               WriteTextFile(dir / name, "no image");
-             }
-           }},
-          {"FoldersInCircles", Call("circle", "camera.yml"), 1, "found in 1 frames",
-           [](const fs::path& dir) {
-             fs::create_directory(dir / "circle");
-             fs::copy(dir / "grey/a.png", dir / "circle/a.png");
-             fs::create_directory_symlink(dir / "circle", dir / "circle/again");
-             fs::create_directory_symlink("..", dir / "circle/up");
-             fs::remove_all(dir / "images");
-             fs::remove_all(dir / "workspace");
-             fs::remove_all(dir / "grey");
-           }},
-          {"VideoThatIsNone", Call("video.mp4", "camera.yml"), 2, "video.mp4",
-           Write("video.mp4", "no video")},
-          {"VideoThatIsAPipe", Call("pipe.mp4", "camera.yml"), 2, "a pipe or a device",
-           [](const fs::path& dir) { mkfifo((dir / "pipe.mp4").c_str(), 0600); }},
-          {"SingleImage", Call("grey/a.png", "camera.yml"), 2, "a single image"}};
+  return {
+      {"NoMarkerAtAll", kCall, 1, "no marker of DICT_4X4_50"},
+      {"MissingImageFolder", Call("nowhere", "camera.yml"), 2, "nowhere"},
+      {"ControlCharactersInAName", Call("no\x1b[31mwhere\x07", "camera.yml"), 2, "no?[31mwhere?"},
+      {"EmptyImageFolder", Call("empty", "camera.yml"), 2, "empty",
+       [](const fs::path& dir) { fs::create_directory(dir / "empty"); }},
+      {"NoFileIsAnImage", kCall, 2, "none of 2 images can be read",
+       [](const fs::path& dir) {
+         for (const char* name : {"grey/a.png", "grey/b.png"}) {
+           WriteTextFile(dir / name, "no image");
+         }
+       }},
+      {"FoldersInCircles", Call("circle", "camera.yml"), 1, "found in 1 frames",
+       [](const fs::path& dir) {
+         fs::create_directory(dir / "circle");
+         fs::copy(dir / "grey/a.png", dir / "circle/a.png");
+         fs::create_directory_symlink(dir / "circle", dir / "circle/again");
+         fs::create_directory_symlink("..", dir / "circle/up");
+         fs::remove_all(dir / "images");
+         fs::remove_all(dir / "workspace");
+         fs::remove_all(dir / "grey");
+       }},
+      {"VideoThatIsNone", Call("video.mp4", "camera.yml"), 2, "video.mp4",
+       Write("video.mp4", "no video")},
+      {"VideoThatIsAPipe", Call("pipe.mp4", "camera.yml"), 2, "a pipe or a device",
+       [](const fs::path& dir) { mkfifo((dir / "pipe.mp4").c_str(), 0600); }},
+      {"SingleImage", Call("grey/a.png", "camera.yml"), 2, "a single image"}};
 }
 
 std::vector<BadInput> Calibrations() {
@@ -102,6 +106,55 @@ std::vector<BadInput> Walls() {
                      }});
   }
   return cases;
+}
+
+// Numbers that cannot be.
+std::vector<BadInput> Numbers() {
+  const auto model_with = [](const std::string& file, const std::string& from,
+                             const std::string& to) {
+    return [=](const fs::path& dir) {
+      fs::create_directory(dir / "model");
+      for (const char* name : {"cameras.txt", "images.txt", "points3D.txt"}) {
+        fs::copy(dir / "workspace/sparse/0" / name, dir / "model" / name);
+      }
+      Replace(dir / "model" / file, from, to);
+    };
+  };
+  const std::string exported =
+      "shape_exporter --marker_length 0.1 --input_path @/model --shape_path @/out";
+  const std::string adjusted =
+      "bundle_adjuster --backend markers --marker_length 0.1 --input_path @/model --output_path "
+      "@/out";
+  const std::string analyzed = "shape_analyzer --marker_length 0.1 --shape_path @/bad.csv";
+  const std::string header = "marker_id,corner,x,y,z,sigma_x,sigma_y,sigma_z,num_frames,part\n";
+  const auto negative = model_with("cameras.txt", "320 240 300 ", "320 240 300 -");
+  const auto far = [=](const fs::path& dir) {
+    model_with("points3D.txt", "", "")(dir);
+    const std::string text = ReadFileBytes(dir / "model/points3D.txt");
+    WriteTextFile(dir / "model/points3D.txt",
+                  std::regex_replace(text, std::regex("\\n(\\d+) \\S+ "), "\n$1 1e200 "));
+  };
+  return {
+      {"FocalLengthBelowZeroInOneAxis", Call("grey", "bad.txt"), 2, "must be positive",
+       Write("bad.txt", "1 PINHOLE 320 240 300 -300 160 120\n")},
+      {"FocalLengthBelowZeroInADatabase",
+       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
+       "--output_path @/out",
+       2, "not positive",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db",
+                "UPDATE cameras SET params = CAST(zeroblob(8) || substr(params, 9) AS BLOB)");
+       }},
+      {"FocalLengthBelowZeroExported", exported, 2, "not positive", negative},
+      {"FocalLengthBelowZeroAdjusted", adjusted, 2, "not positive", negative},
+      {"AFarPointExported", exported, 2, "has a coordinate beyond", far},
+      {"AFarPointAdjusted", adjusted, 2, "has a coordinate beyond", far},
+      {"AFarCorner", analyzed, 2, "bad.csv:2", Write("bad.csv", header + "1,1,1e200,0,0,,,,2,\n")},
+      {"AFarCornerOfAReference",
+       "shape_comparer --shape_path @/workspace/shape --reference_path @/bad.csv", 2, "bad.csv:2",
+       Write("bad.csv", header + "1,1,0,-1e200,0,,,,2,\n")},
+      {"AFarVertex", "shape_comparer --shape_path @/workspace/shape --reference_path @/bad.obj", 2,
+       "bad.obj", Write("bad.obj", "v 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n")}};
 }
 
 std::vector<BadInput> Markers() {
@@ -183,7 +236,7 @@ std::vector<BadInput> Options() {
 std::vector<BadInput> InputCases() {
   std::vector<BadInput> cases = Pictures();
   for (const auto& more :
-       {Calibrations(), Walls(), Markers(), PriorShapes(), Workspaces(), Options()}) {
+       {Calibrations(), Walls(), Numbers(), Markers(), PriorShapes(), Workspaces(), Options()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

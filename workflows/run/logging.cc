@@ -17,9 +17,17 @@
 namespace velamap {
 namespace {
 
+char Printable(char character) {
+  const auto code = static_cast<unsigned char>(character);
+  const bool is_control = (code < 0x20 && code != '\n' && code != '\t') || code == 0x7f;
+  return is_control ? '?' : character;
+}
+
 void WriteToTerminal(const char* text, std::size_t size) {
+  std::string printable(text, size);
+  std::transform(printable.begin(), printable.end(), printable.begin(), Printable);
   ClearProgressLine();
-  std::fwrite(text, 1, size, stderr);
+  std::fwrite(printable.data(), 1, size, stderr);
   std::fflush(stderr);
 }
 
@@ -86,6 +94,12 @@ void SetLevel(spdlog::level::level_enum level) {
 }
 
 }  // namespace
+
+int PrintableOutput::overflow(int character) {
+  if (traits_type::eq_int_type(character, traits_type::eof()))
+    return traits_type::not_eof(character);
+  return out_->sputc(Printable(traits_type::to_char_type(character)));
+}
 
 void SetUpLogging() {
   auto sink = std::make_shared<TerminalSink>();

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <streambuf>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,20 @@ std::vector<std::string> LoggedWarnings();
 
 // Appends all later messages to this file, too. Throws InputError if it cannot be written.
 void AddLogFile(const std::string& path);
+
+// Passes text on with a ? for each control character but tab and line feed, which could change what
+// a terminal shows: names of files may hold any.
+class PrintableOutput : public std::streambuf {
+ public:
+  explicit PrintableOutput(std::streambuf* out) : out_(out) {}
+
+ protected:
+  int overflow(int character) override;
+  int sync() override { return out_->pubsync(); }
+
+ private:
+  std::streambuf* out_;
+};
 
 // Writes one line `error: ...` to stderr, and to the log file if there is one.
 void ReportError(const std::string& message);
