@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <deque>
 #include <fstream>
@@ -17,6 +18,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/base/file_lock.h"
 #include "importer/base/replacement.h"
 
 namespace velamap {
@@ -51,6 +53,33 @@ bool ShareBlocks(const fs::path& from, const fs::path& to) {
   if (copy >= 0) close(copy);
   if (source >= 0) close(source);
   return shared;
+}
+
+constexpr char kScratchName[] = "velamap_XXXXXX";
+constexpr char kScratchLock[] = ".velamap.lock";
+
+// Removes a folder for temporary files of a run that was killed: nobody holds its lock. It may be
+// about to get the lock for a while after it was made.
+void RemoveIfAbandoned(const fs::path& folder) {
+  constexpr auto kGrace = std::chrono::minutes(1);
+  std::error_code error;
+  const auto written = fs::last_write_time(folder / kScratchLock, error);
+  if (error || fs::file_time_type::clock::now() - written < kGrace) return;
+  try {
+    const FileLock lock(folder / kScratchLock, folder.string());
+    RemoveAll(folder);
+  } catch (const InputError&) {
+    // In use.
+  }
+}
+
+void RemoveAbandoned(const fs::path& parent) {
+  std::error_code error;
+  for (fs::directory_iterator it(parent, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    const bool is_ours = name.size() == sizeof(kScratchName) - 1 && name.rfind("velamap_", 0) == 0;
+    if (is_ours) RemoveIfAbandoned(it->path());
+  }
 }
 
 }  // namespace
@@ -136,16 +165,23 @@ void CreateFolders(const fs::path& path) {
 TemporaryFolder::TemporaryFolder() {
   std::error_code error;
   const fs::path parent = fs::temp_directory_path(error);
-  std::string pattern = (parent / "velamap_XXXXXX").string();
+  std::string pattern = (parent / kScratchName).string();
+  const char* wanted = std::getenv("TMPDIR");
   if (!error && mkdtemp(pattern.data()) == nullptr) {
     error = std::error_code(errno, std::generic_category());
   }
   if (error) {
-    throw InputError(
-        fmt::format("{}: no folder for temporary files: {}; set TMPDIR", pattern, error.message()));
+    throw InputError(fmt::format(
+        "TMPDIR {}: no folder for temporary files can be made there: {}; set TMPDIR to a "
+        "folder that can be written",
+        error && wanted != nullptr ? wanted : parent.string(), error.message()));
   }
+  RemoveAbandoned(parent);
   path_ = pattern;
+  lock_ = std::make_unique<FileLock>(path_ / kScratchLock, pattern);
 }
+
+TemporaryFolder::~TemporaryFolder() { RemoveAll(path_); }
 
 bool IsSameFile(const fs::path& path1, const fs::path& path2) {
   std::error_code error;

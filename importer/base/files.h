@@ -6,10 +6,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 #include <vector>
 
 namespace velamap {
+
+class FileLock;
 
 // Links are followed. False if nothing is there; throws if that cannot be determined, because of
 // missing permissions or a path that is too long.
@@ -65,11 +68,12 @@ void RemoveAll(const std::filesystem::path& path) noexcept;
 // Removes a file or an empty folder; a folder that holds something stays.
 void RemoveFileOrEmptyFolder(const std::filesystem::path& path) noexcept;
 
-// A fresh folder in TMPDIR, or in /tmp, that is removed with everything in it.
+// A fresh folder in TMPDIR, or in /tmp, that is removed with everything in it: at the end, or by
+// the next run where a run was killed.
 class TemporaryFolder {
  public:
   TemporaryFolder();
-  ~TemporaryFolder() { RemoveAll(path_); }
+  ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
@@ -77,6 +81,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+  std::unique_ptr<FileLock> lock_;  // shows other runs that it is in use
 };
 
 }  // namespace velamap

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -90,23 +91,26 @@ std::vector<char*> Pointers(std::vector<std::string>& strings) {
   return pointers;
 }
 
-// Our environment, with a Qt platform that needs no display: some commands of COLMAP start Qt.
-std::vector<std::string> ChildEnvironment() {
-  constexpr const char* kQtPlatform = "QT_QPA_PLATFORM=";
-  std::vector<std::string> variables{std::string(kQtPlatform) + "offscreen"};
+// Our environment, with a Qt platform that needs no display, because some commands of COLMAP start
+// Qt, and with `scratch_path` for the logs that it writes into TMPDIR and leaves there.
+std::vector<std::string> ChildEnvironment(const std::string& scratch_path) {
+  std::map<std::string, std::string> own = {{"QT_QPA_PLATFORM", "offscreen"}};
+  if (!scratch_path.empty()) own["TMPDIR"] = scratch_path;
+  std::vector<std::string> variables;
+  for (const auto& [name, value] : own) variables.push_back(name + "=" + value);
   for (char** variable = environ; *variable != nullptr; ++variable) {
-    if (std::strncmp(*variable, kQtPlatform, std::strlen(kQtPlatform)) != 0) {
-      variables.push_back(*variable);
-    }
+    const std::string text = *variable;
+    if (own.count(text.substr(0, text.find('='))) == 0) variables.push_back(text);
   }
   return variables;
 }
 
 // The child stays in our process group, so that an interrupt from the terminal reaches it.
-pid_t Spawn(const std::string& program, const std::vector<std::string>& arguments, int output_fd) {
+pid_t Spawn(const std::string& program, const std::vector<std::string>& arguments,
+            const std::string& scratch_path, int output_fd) {
   std::vector<std::string> words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<std::string> variables = ChildEnvironment();
+  std::vector<std::string> variables = ChildEnvironment(scratch_path);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -173,8 +177,15 @@ ColmapRun RunColmap(const std::string& program, const std::vector<std::string>& 
   std::ofstream log = OpenLog(log_path);
   log << "$ " << command_line << std::endl;
 
+  std::optional<TemporaryFolder> scratch;
+  try {
+    scratch.emplace();
+  } catch (const InputError&) {
+    // COLMAP does without.
+  }
   Pipe pipe;
-  const pid_t pid = Spawn(program, arguments, pipe.WriteEnd());
+  const pid_t pid =
+      Spawn(program, arguments, scratch ? scratch->path().string() : "", pipe.WriteEnd());
   pipe.CloseWriteEnd();
   ColmapRun run;
   for (std::string text = pipe.Read(); !text.empty(); text = pipe.Read()) {

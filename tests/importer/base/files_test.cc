@@ -1,5 +1,7 @@
 #include "importer/base/files.h"
 
+#include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 
@@ -83,6 +85,27 @@ TEST(Files, ListingsFollowLinksAndLeaveHiddenFilesOut) {
   EXPECT_THAT(FolderEntries(dir / "photos"),
               ElementsAre(dir / "photos/.hidden", dir / "photos/.thumbnails", dir / "photos/a",
                           dir / "photos/b", dir / "photos/dangling"));
+}
+
+TEST(TemporaryFolder, OfAKilledRunIsRemovedByTheNext) {
+  const TempDir dir;
+  const char* earlier = std::getenv("TMPDIR");
+  const std::string restored = earlier == nullptr ? "" : earlier;
+  setenv("TMPDIR", dir.path().c_str(), 1);
+  const fs::path killed = dir / "velamap_killed", theirs = dir / "velamap_theirs";
+  for (const fs::path& folder : {killed, theirs}) fs::create_directory(folder);
+  Touch(killed / ".velamap.lock");
+  fs::last_write_time(killed / ".velamap.lock",
+                      fs::file_time_type::clock::now() - std::chrono::hours(1));
+  {
+    const TemporaryFolder one;
+    fs::last_write_time(one.path() / ".velamap.lock",
+                        fs::file_time_type::clock::now() - std::chrono::hours(1));
+    const TemporaryFolder other;
+    EXPECT_TRUE(fs::exists(one.path()));
+  }
+  EXPECT_THAT(FolderEntries(dir.path()), ElementsAre(theirs));
+  restored.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", restored.c_str(), 1);
 }
 
 TEST(Files, LinksInCirclesAreFollowedOnce) {
