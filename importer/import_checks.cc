@@ -13,8 +13,8 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
-#include "importer/camera/calibration.h"
 #include "importer/database/source_table.h"
+#include "importer/frame_camera.h"
 #include "importer/video/frame_source.h"
 #include "importer/video/source_file.h"
 #include "importer/video/written_frame.h"
@@ -83,10 +83,18 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
                     "another prior shape ({}; this run has {}); {}",
                     options.database_path, *known_detector, detector, kRemedy));
   }
+  if (!options.camera && database.HasCalibration() && !database.ReadCameras().empty()) {
+    throw InputError(
+        fmt::format("{}: was made with a calibration (--camera_path); give it again, {}",
+                    options.database_path, remedy));
+  }
+  if (!options.camera) return;
+  if (!database.HasCalibration()) {
+    throw InputError(fmt::format("{}: was made without the calibration {}; {}",
+                                 options.database_path, options.camera_path, remedy));
+  }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {
-    const Camera expected =
-        ScaleToImageSize(options.camera, camera.width_px, camera.height_px, options.camera_path);
-    if (!(expected == camera)) {
+    if (!IsSameCalibration(options, camera)) {
       throw InputError(fmt::format("{}: was made with another calibration than {}; {}",
                                    options.database_path, options.camera_path, kRemedy));
     }

@@ -16,11 +16,11 @@
 #include "importer/base/file_lock.h"
 #include "importer/base/files.h"
 #include "importer/base/parallel.h"
-#include "importer/camera/calibration.h"
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
 #include "importer/dictionary_hint.h"
 #include "importer/formation/formation_sampling.h"
+#include "importer/frame_camera.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
 #include "importer/import_checks.h"
@@ -67,7 +67,7 @@ class ImportRun {
     result.detections.image_name = frame->image_name;
     if (Load(frame, &result.skipped_because)) {
       const StageTimer timer(ImportStage::kDetect);
-      result.camera = CameraOfFrame(*frame);
+      result.camera = CameraOfFrame(options_, source_->IsVideo(), *frame);
       const std::vector<MarkerQuad> quads =
           turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
                : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.prior_shape);
@@ -106,7 +106,7 @@ class ImportRun {
     if (!few_found_) ClearSample();
     // Frames of a video without markers are dropped; a photograph is in the database in any case.
     if (source_->IsVideo() && detections.markers.empty()) return;
-    writer_.Add(detections, result.camera, result.source);
+    writer_.Add(detections, result.camera, options_.camera.has_value(), result.source);
     ++report_.num_images_added;
   }
 
@@ -205,15 +205,6 @@ class ImportRun {
     sample_.Clear();
   }
 
-  Camera CameraOfFrame(const Frame& frame) const {
-    try {
-      return ScaleToImageSize(options_.camera, frame.gray.cols, frame.gray.rows,
-                              options_.camera_path);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{} (image {})", error.what(), frame.image_name));
-    }
-  }
-
   const MarkerImporterOptions& options_;
   const FrameDetector& detector_;
   FrameSource* source_;
@@ -284,6 +275,11 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   if (options.num_threads < 0) {
     throw InputError(
         fmt::format("--num_threads: {} is negative; give 0 for one a core", options.num_threads));
+  }
+  if (!options.camera && !options.prior_shape.empty()) {
+    throw InputError(
+        "--prior_shape_path: says where markers are only with a calibration; give --camera_path, "
+        "such as the camera.yml of an earlier result, or leave the prior shape out");
   }
   const int num_threads = NumThreads(options.num_threads);
   ArucoDetectionOptions detection = options.detection;

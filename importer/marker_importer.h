@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,10 @@ using ProgressCallback = std::function<void(int done, int total, const std::stri
 struct MarkerImporterOptions {
   std::string image_path;     // folder of images, or a video file
   std::string database_path;  // created, or added to
-  Camera camera;              // for one image size; scaled for frames of the same aspect ratio
-  std::string camera_path;    // for messages only
+  // For one image size; scaled for frames of the same aspect ratio, and turned as EXIF says.
+  // Nothing: it is not known, the database gets a guess, and corners do not depend on it.
+  std::optional<Camera> camera;
+  std::string camera_path;  // for messages only
   Layout layout;
   ArucoDetectionOptions detection;
   VideoOptions video;
@@ -64,11 +67,12 @@ struct ImportReport {
 // steps that need all frames follow (import_completion.h). Frames whose name is in the database
 // are skipped.
 //
-// Throws InputError for unreadable input, a calibration for another image size, a layout whose ids
-// the dictionary does not have, a database that was made with another camera, other detector
-// settings or pictures that have changed since, one that another velamap imports into, and a frame
-// that would replace a picture that velamap did not write. Throws DataError that names the
-// dictionaries and polarity that would have found markers if there are none.
+// Throws InputError for unreadable input, a calibration for another image size, a prior shape
+// without a calibration, a layout whose ids the dictionary does not have, a database that was made
+// with another camera, other detector settings or pictures that have changed since, one that another
+// velamap imports into, and a frame that would replace a picture that velamap did not write. Throws
+// DataError that names the dictionaries and polarity that would have found markers if there are
+// none.
 ImportReport ImportMarkers(const MarkerImporterOptions& options,
                            const ProgressCallback& progress = {});
 

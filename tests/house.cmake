@@ -9,13 +9,14 @@ house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
   rigid3 unit_square_map units)
 house_folder(importer/camera PUBLIC
-  calibration camera camera_jacobian camera_projection storage_wall)
+  calibration calibration_writer camera camera_jacobian camera_projection storage_wall
+  turned_camera)
 house_folder(importer/layout PUBLIC
   code_search dictionary frame_choice layout layout_writer prior_shape)
 house_folder(importer/print PUBLIC
   marker_sheets)
 house_folder(importer/video PUBLIC
-  frame_image frame_source image_file source_file video_options
+  frame_image frame_source image_file picture_metadata source_file video_options
   written_frame)
 house_folder(importer/detect PUBLIC
   corner_colors detection detection_options duplicates interpolate marker_alignment
@@ -31,9 +32,12 @@ house_folder(importer/database PUBLIC
 house_folder(importer PUBLIC
   dictionary_hint marker_importer)
 house_folder(reconstruct/geometry PUBLIC
-  covariance_update frame_shape intrinsics_prior marker_pose point_covariance)
+  camera_conversion covariance_update frame_shape intrinsics_prior marker_pose point_covariance)
 house_folder(reconstruct/model PUBLIC
-  adjustment_uncertainty calibration_evidence gauge model model_io reprojection weak_geometry)
+  adjustment_uncertainty calibration_evidence gauge model model_io reprojection turned_model
+  weak_geometry)
+house_folder(reconstruct/camera PUBLIC
+  camera_steadiness focal_evidence)
 house_folder(reconstruct/solve PUBLIC
   schur_complement)
 house_folder(reconstruct/registration PUBLIC
@@ -50,9 +54,9 @@ house_folder(reconstruct/problem PUBLIC
   corner_errors corner_residuals error_correlation marker_adjustment_options marker_problem
   marker_state marker_uncertainty normal_equations scale_bar)
 house_folder(reconstruct/adjust PUBLIC
-  marker_adjustment)
+  camera_adjustment marker_adjustment)
 house_folder(reconstruct PUBLIC
-  register_frames seed_model)
+  camera_search register_frames seed_model)
 house_folder(exporters/shape PUBLIC
   adjacent_distances common_corners joint_covariance known_distances marker_shape part_planes
   principal_axes sail_lines shape_frame shape_metrics shape_sigma shape_transform)

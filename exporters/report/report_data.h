@@ -16,6 +16,7 @@
 #include "exporters/scale/scale_audit.h"
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_metrics.h"
+#include "importer/camera/calibration_writer.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model.h"
@@ -69,6 +70,7 @@ struct ReportInput {
   std::optional<ReportFrame> frame = {};
   const AdjustmentUncertainty* uncertainty = nullptr;  // may be null
   const ScaleAudit* audit = nullptr;                   // may be null
+  std::vector<EstimatedCamera> found_cameras = {};     // by the pictures; empty: calibrated
   std::vector<std::string> warnings = {};              // of the log
   int num_ids_found = 0;  // different marker ids in the images, in the shape or not; 0: unknown
   std::vector<ReportLeftOut> images_left_out = {};

@@ -168,6 +168,31 @@ std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncer
                    ReportStatus::kNone};
 }
 
+// The camera that was found instead of a calibration; of several, the one that is known worst. Its
+// uncertainty is part of the shape's sigmas, so that a vague one is no fault as such.
+std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& cameras) {
+  constexpr double kGood_percent = 1.0, kBad_percent = 5.0;
+  const EstimatedCamera* worst = nullptr;
+  double worst_percent = -1.0;
+  for (const EstimatedCamera& found : cameras) {
+    const double percent = 100 * found.sigmas.front() / found.camera.params.front();
+    if (percent <= worst_percent) continue;
+    worst_percent = percent;
+    worst = &found;
+  }
+  if (worst == nullptr) return std::nullopt;
+  return KeyNumber{
+      KeyNumberKind::kCamera,
+      fmt::format("found; focal length {:.1f} \u00b1 {:.1f} px", worst->camera.params.front(),
+                  worst->sigmas.front()),
+      fmt::format("found from the pictures without a calibration; good up to {:g} % of the focal "
+                  "length, which the sigmas of the shape contain; {}",
+                  kGood_percent, DescribeCamera(*worst)),
+      LowIsGood(worst_percent, kGood_percent, kBad_percent),
+      "the pictures say little of the camera: show markers tilted and in all of the picture, from "
+      "more sides, or give a calibration (--camera_path)"};
+}
+
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
                       const AdjustmentUncertainty* uncertainty) {
   const double spread_percent = 100 * scale.relative_spread;
@@ -287,6 +312,7 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
     numbers.push_back(*calibration);
   }
   if (const auto shutter = RollingShutterNumber(input.uncertainty)) numbers.push_back(*shutter);
+  if (const auto camera = FoundCameraNumber(input.found_cameras)) numbers.push_back(*camera);
   numbers.push_back(ScaleNumber(input.scale, input.audit, input.uncertainty));
   if (input.audit != nullptr) {
     if (const auto distances = DistancesNumber(*input.audit)) numbers.push_back(*distances);
@@ -304,6 +330,8 @@ std::string KeyNumberName(KeyNumberKind kind) {
       return "Measured distances";
     case KeyNumberKind::kCalibration:
       return "Calibration";
+    case KeyNumberKind::kCamera:
+      return "Camera";
     case KeyNumberKind::kRollingShutter:
       return "Rolling shutter";
     case KeyNumberKind::kScale:

@@ -22,6 +22,7 @@ enum class KeyNumberKind {
   kDictionary,
   kMeasuredDistances,
   kCalibration,
+  kCamera,
   kRollingShutter,
   kScale,
   kReprojectionError,

@@ -79,6 +79,15 @@ std::optional<CameraModel> CameraModelFromId(int model_id) {
   return std::nullopt;
 }
 
+Camera UnknownCamera(int width_px, int height_px, double focal_px) {
+  constexpr double kUsualFocal = 1.2;
+  if (!(focal_px > 0)) focal_px = kUsualFocal * std::max(width_px, height_px);
+  return {CameraModel::kSimpleRadial,
+          width_px,
+          height_px,
+          {focal_px, 0.5 * width_px, 0.5 * height_px, 0.0}};
+}
+
 double MeanFocalLength(const Camera& camera) { return GetIntrinsics(camera).focal_px.mean(); }
 
 double SmallestFocalLength(const Camera& camera) {

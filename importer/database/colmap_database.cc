@@ -124,20 +124,28 @@ void ColmapDatabase::Transaction::Commit() {
   Guarded(impl_->path, [&] { impl_->transaction.commit(); });
 }
 
-CameraId ColmapDatabase::AddCamera(const Camera& camera) {
+CameraId ColmapDatabase::AddCamera(const Camera& camera, bool is_calibrated) {
   for (const auto& [camera_id, known_camera] : ReadCameras()) {
     if (known_camera == camera) return camera_id;
   }
   return Guarded(path_, [&] {
     SQLite::Statement insert(*database_,
                              "INSERT INTO cameras(model, width, height, params,"
-                             " prior_focal_length) VALUES(?, ?, ?, ?, 1)");
+                             " prior_focal_length) VALUES(?, ?, ?, ?, ?)");
     insert.bind(1, static_cast<int>(camera.model));
     insert.bind(2, camera.width_px);
     insert.bind(3, camera.height_px);
     BindBlob(insert, 4, camera.params);
+    insert.bind(5, is_calibrated ? 1 : 0);
     insert.exec();
     return static_cast<CameraId>(database_->getLastInsertRowid());
+  });
+}
+
+bool ColmapDatabase::HasCalibration() const {
+  return Guarded(path_, [&] {
+    return database_->execAndGet("SELECT COUNT(*) FROM cameras WHERE prior_focal_length = 0")
+               .getInt() == 0;
   });
 }
 

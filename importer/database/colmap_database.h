@@ -61,9 +61,13 @@ class ColmapDatabase {
     std::unique_ptr<Impl> impl_;
   };
 
-  // Adds the camera unless the database holds an equal one. Returns its id.
-  CameraId AddCamera(const Camera& camera);
+  // Adds the camera unless the database holds an equal one. Returns its id. A camera that is not
+  // calibrated is a guess to begin with: prior_focal_length is 0, as COLMAP's own programs write
+  // it.
+  CameraId AddCamera(const Camera& camera, bool is_calibrated = true);
   std::map<CameraId, Camera> ReadCameras() const;
+  // Whether all cameras are calibrated; true for no camera.
+  bool HasCalibration() const;
 
   // Adds image, keypoints, identity-coding descriptors and marker rows. The name must be new.
   // `detector` says how the detections were made; it must be the same for all images.

@@ -21,9 +21,9 @@ DatabaseWriter::DatabaseWriter(const std::string& detector,
     : detector_(detector), before_commit_(before_commit), database_(database) {}
 
 void DatabaseWriter::Add(const FrameDetections& detections, const Camera& camera,
-                         const std::optional<SourceFile>& source) {
+                         bool is_calibrated, const std::optional<SourceFile>& source) {
   if (!transaction_) transaction_.emplace(database_);
-  database_->AddImage(database_->AddCamera(camera), detections, detector_);
+  database_->AddImage(database_->AddCamera(camera, is_calibrated), detections, detector_);
   if (source) database_->WriteSource(detections.image_name, *source);
   if (++num_in_batch_ == kBatchSize) Commit();
 }

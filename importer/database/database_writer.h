@@ -38,7 +38,7 @@ class DatabaseWriter {
                  ColmapDatabase* database);
 
   // `source` is the file of a photograph.
-  void Add(const FrameDetections& detections, const Camera& camera,
+  void Add(const FrameDetections& detections, const Camera& camera, bool is_calibrated,
            const std::optional<SourceFile>& source);
   void Commit();  // the images since the last full batch
 

@@ -7,11 +7,13 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "reconstruct/adjust/calibration_choice.h"
 #include "reconstruct/adjust/calibration_score.h"
+#include "reconstruct/adjust/camera_model_choice.h"
 #include "reconstruct/adjust/marker_sizes.h"
 #include "reconstruct/adjust/scale_bar_verdict.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
@@ -21,6 +23,7 @@
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/weak_geometry.h"
 #include "reconstruct/problem/corner_residuals.h"
+#include "reconstruct/problem/corner_velocities.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {
@@ -38,6 +41,47 @@ void MoveToFirstCamera(Model* model) {
   const Rigid3 first_from_world = model->images.front().cam_from_world;
   TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
   model->images.front().cam_from_world = Rigid3{};  // exactly, without rounding
+}
+
+std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
+                                              const MarkerLinearization& linearization) {
+  std::map<CameraId, EstimatedCamera> cameras;
+  for (const auto& [camera_id, camera] : model.cameras) {
+    const Eigen::VectorXd variances =
+        GlobalCovariance(linearization.problem, linearization.covariance,
+                         linearization.state.intrinsics.at(camera_id).data())
+            .diagonal();
+    cameras[camera_id].camera = camera;
+    for (const double variance : variances) {
+      cameras[camera_id].sigmas.push_back(std::sqrt(variance));
+    }
+  }
+  return cameras;
+}
+
+void WarnOfFoldedCameras(MarkerSolution* solution) {
+  const bool is_folded =
+      std::any_of(solution->model.cameras.begin(), solution->model.cameras.end(),
+                  [](const auto& entry) { return !HasMonotonicDistortion(entry.second); });
+  if (!is_folded) return;
+  solution->warnings.push_back(
+      "the distortion that was found folds over inside the picture, where no marker was seen: do "
+      "not use the camera file for other clips; move the markers through the whole picture");
+}
+
+// Throws DataError where the images leave the focal length open.
+void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
+                      const std::vector<std::string>& weaknesses) {
+  constexpr double kMaxSigma = 0.05;  // relative
+  for (const auto& [camera_id, found] : cameras) {
+    const double focal_px = found.camera.params.front(), sigma_px = found.sigmas.front();
+    if (sigma_px <= kMaxSigma * focal_px) continue;
+    throw DataError(fmt::format(
+        "these pictures do not tell the focal length of their camera ({:.0f} +- {:.0f} px){}{}; "
+        "film the markers tilted, from near and far and from more sides, or give a calibration "
+        "(--camera_path)",
+        focal_px, sigma_px, weaknesses.empty() ? "" : ": ", fmt::join(weaknesses, "; ")));
+  }
 }
 
 }  // namespace
@@ -135,6 +179,8 @@ std::optional<MarkerAdjuster> MarkerAdjuster::WithBetterCalibration(MarkerAdjust
   return begin;
 }
 
+void MarkerAdjuster::ChooseCameraModel() { solution_ = WithBestCameraModel(solution_); }
+
 void MarkerAdjuster::AdjustToCorners() {
   AdjustLoosely();
   RejectContradictingSizes();
@@ -195,6 +241,10 @@ void MarkerAdjuster::Finish() {
   WarnOfSlowShutter();
   MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
                   &solution_.model);
+  if (solution_.options.find_camera) {
+    summary_.cameras = CamerasOf(solution_.model, *linearization);
+    WarnOfFoldedCameras(&solution_);
+  }
   UpdatePointErrors(&solution_.model);
   summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(solution_.model));
   if (!(summary_.error_after_px.mean <= solution_.options.max_mean_error_px)) {
@@ -204,10 +254,14 @@ void MarkerAdjuster::Finish() {
         summary_.error_after_px.mean, solution_.options.max_mean_error_px,
         OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
   }
-  for (const std::string& warning :
-       FindWeakGeometry(solution_.model, summary_.uncertainty.points)) {
-    solution_.warnings.push_back(warning);
-  }
+  const std::vector<std::string> weaknesses =
+      FindWeakGeometry(solution_.model, summary_.uncertainty.points);
+  if (solution_.options.find_camera) CheckFocalLength(summary_.cameras, weaknesses);
+  solution_.warnings.insert(solution_.warnings.end(), weaknesses.begin(), weaknesses.end());
+}
+
+std::map<CameraId, EstimatedCamera> MarkerAdjuster::EstimateCameras() const {
+  return CamerasOf(solution_.model, *Linearize(solution_));
 }
 
 void MarkerAdjuster::WarnOfSlowShutter() {

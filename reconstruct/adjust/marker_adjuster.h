@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +45,11 @@ class MarkerAdjuster {
   // AdjustToCorners.
   bool ShowsRollingShutter() const { return velamap::ShowsRollingShutter(solution_); }
   void FreeRollingShutter() { solution_.weights.frees_rolling_shutter = true; }
+
+  // With find_camera, after AdjustToCorners: takes the camera model that the images speak for.
+  void ChooseCameraModel();
+  // The cameras with their sigmas.
+  std::map<CameraId, EstimatedCamera> EstimateCameras() const;
 
   // Where intrinsics that the images determine better than the calibration explain the corners
   // significantly better: the result of AdjustToCorners with these, else nothing. After

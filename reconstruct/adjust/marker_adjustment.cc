@@ -1,8 +1,10 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 
 #include <optional>
+#include <utility>
 
 #include "reconstruct/adjust/marker_adjuster.h"
+#include "reconstruct/model/turned_model.h"
 
 namespace velamap {
 
@@ -11,7 +13,9 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
                                           Model* model) {
   options.Check();
   CheckModel(*model);
-  MarkerAdjuster begin(options, layout, corner_errors, *model);
+  Model tied = *model;
+  const TurnedCameras turned = TieTurnedCameras(&tied);
+  MarkerAdjuster begin(options, layout, corner_errors, std::move(tied));
   begin.PrepareSeed();
   MarkerAdjuster given = begin;
   given.AdjustToCorners();
@@ -25,6 +29,7 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
   if (adjuster.AddScaleBars()) adjuster.AdjustTightly();
   adjuster.Finish();
   *model = adjuster.TakeModel();
+  UntieTurnedCameras(turned, model);
   return adjuster.TakeSummary();
 }
 

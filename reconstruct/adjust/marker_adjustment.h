@@ -3,9 +3,11 @@
 
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
+#include "importer/camera/calibration_writer.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
@@ -22,6 +24,9 @@ struct MarkerAdjustmentSummary {
   std::vector<RemovedObservation> removed;
   std::vector<ImageId> removed_images;
   AdjustmentUncertainty uncertainty;
+  // With find_camera: the cameras of the result and their sigmas, which hold the sigmas of shape
+  // and poses.
+  std::map<CameraId, EstimatedCamera> cameras;
   // Messages about weak geometry (all views from one place, a flat board seen head-on, pure
   // rotation), scale bars that contradict each other or the markers, parts that disagree, and
   // markers whose size contradicts the others.

@@ -36,7 +36,8 @@ MarkerState MakeState(const MarkerSolution& solution, const Model& model) {
 
 // Holds the distortion at the calibration where it has come to fold over. Returns whether it did.
 bool HoldFoldedDistortion(MarkerSolution* solution) {
-  if (!solution->options.refine_extra_params) return false;
+  const MarkerAdjustmentOptions& options = solution->options;
+  if (!options.refine_extra_params || options.find_camera) return false;
   Model& model = solution->model;
   const bool is_folded =
       std::any_of(model.cameras.begin(), model.cameras.end(), [&](const auto& entry) {

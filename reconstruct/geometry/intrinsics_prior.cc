@@ -105,6 +105,31 @@ IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrins
   return prior;
 }
 
+IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
+  constexpr double kFocalSigma = 1.0, kCenterSigma = 0.02;
+  constexpr double kRadialSigma = 0.3, kTangentialSigma = 0.01;
+  const int num_focal = NumFocalLengths(camera.model);
+  const double focal_px = MeanFocalLength(camera);
+  Camera central = camera;
+  std::fill(central.params.begin() + num_focal, central.params.end(), 0.0);
+  std::fill_n(central.params.begin(), num_focal, focal_px);
+  central.params[static_cast<std::size_t>(num_focal)] = 0.5 * camera.width_px;
+  central.params[static_cast<std::size_t>(num_focal) + 1] = 0.5 * camera.height_px;
+  IntrinsicsPrior prior = MakeIntrinsicsPrior(central, {true, true, true}, kRadialSigma);
+  for (int i = 0; i < static_cast<int>(prior.sigmas.size()); ++i) {
+    const int distortion = i - num_focal - 2;
+    double& sigma = prior.sigmas[static_cast<std::size_t>(i)];
+    if (i < num_focal) {
+      sigma = kFocalSigma * focal_px;
+    } else if (distortion < 0) {
+      sigma = kCenterSigma * std::max(camera.width_px, camera.height_px);
+    } else if (PowerOfRay(camera.model, distortion) == 0) {
+      sigma *= kTangentialSigma / kRadialSigma;
+    }
+  }
+  return prior;
+}
+
 bool HasUnnamedDistortion(const Camera& calibration) {
   for (int i = 0; i < static_cast<int>(calibration.params.size()); ++i) {
     if (IsUnnamed(calibration, i)) return true;

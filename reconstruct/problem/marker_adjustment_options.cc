@@ -5,6 +5,7 @@
 namespace velamap {
 
 FreeIntrinsics FreeIntrinsicsOf(const MarkerAdjustmentOptions& options) {
+  if (options.find_camera) return {true, true, true};
   return {options.refine_focal_length, options.refine_principal_point, options.refine_extra_params};
 }
 
@@ -40,6 +41,9 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
            {"MarkerAdjustment.refine_calibration", &options->refine_calibration, "0|1",
             "refine the calibration where the images determine it better and contradict it; an "
             "option BundleAdjustment.refine_* decides instead"},
+           {"MarkerAdjustment.find_camera", &options->find_camera, "0|1",
+            "the camera is not known: refine all of it with the prior of any camera; set without "
+            "--camera_path"},
            {"MarkerAdjustment.intrinsics_sigma", &options->intrinsics_sigma, "fraction",
             "1 sigma of a calibration that is refined: of the focal "
             "length, and of the image's corners by each distortion parameter",

@@ -49,6 +49,9 @@ struct MarkerAdjustmentOptions {
   bool refine_calibration = true;
   // As a fraction, see MakeIntrinsicsPrior.
   double intrinsics_sigma = 0.01;
+  // The cameras are not known: all parameters are refined, from any start, and their prior is what
+  // holds for any camera (UnknownCameraPrior) instead of a calibration.
+  bool find_camera = false;
   // The rows of a frame are read one after another over this time, while the corners move as the
   // frames before and after say. Negative: from the bottom up. 0: unknown.
   double rolling_shutter_s = 0.0;

@@ -274,4 +274,22 @@ bool ParameterPriorError::Evaluate(double const* const* parameters, double* resi
   return true;
 }
 
+PixelShapeError::PixelShapeError(int num_params, double sigma)
+    : num_params_(num_params), sigma_(sigma) {
+  set_num_residuals(1);
+  *mutable_parameter_block_sizes() = {num_params};
+}
+
+bool PixelShapeError::Evaluate(double const* const* parameters, double* residuals,
+                               double** jacobians) const {
+  const double fx = parameters[0][0], fy = parameters[0][1];
+  if (!(fx > 0 && fy > 0)) return false;
+  residuals[0] = std::log(fx / fy) / sigma_;
+  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+  std::fill_n(jacobians[0], num_params_, 0.0);
+  jacobians[0][0] = 1.0 / (fx * sigma_);
+  jacobians[0][1] = -1.0 / (fy * sigma_);
+  return true;
+}
+
 }  // namespace velamap

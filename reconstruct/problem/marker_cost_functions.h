@@ -116,4 +116,17 @@ class ParameterPriorError : public ceres::CostFunction {
   std::vector<double> mean_, sigma_;
 };
 
+// log(fx / fy) / sigma of a camera with two focal lengths, which come first of its `num_params`.
+class PixelShapeError : public ceres::CostFunction {
+ public:
+  PixelShapeError(int num_params, double sigma);
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  int num_params_;
+  double sigma_;
+};
+
 }  // namespace velamap

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/camera/camera_projection.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/solve/schur_complement.h"
 
@@ -143,6 +144,11 @@ class ProblemBuilder {
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
       const IntrinsicsPrior prior = PriorOf(calibration.at(camera_id));
       if (!prior.free.empty()) AddPrior(MakePrior(prior.mean, prior.sigmas), {intrinsics.data()});
+      if (options_.find_camera && !HasOneFocalLength(prior.model)) {
+        AddPrior(std::make_unique<PixelShapeError>(static_cast<int>(intrinsics.size()),
+                                                   kPixelShapeSigma),
+                 {intrinsics.data()});
+      }
     }
   }
 
@@ -230,6 +236,7 @@ class ProblemBuilder {
   bool EstimatesInset() const { return options_.estimate_inset && options_.inset_sigma_px > 0; }
 
   IntrinsicsPrior PriorOf(const Camera& calibration) const {
+    if (options_.find_camera) return UnknownCameraPrior(calibration);
     return MakeIntrinsicsPrior(calibration, FreeIntrinsicsOf(options_), options_.intrinsics_sigma);
   }
 

@@ -291,7 +291,7 @@ TEST_F(MarkerImporterTest, OtherWayOfDetectionOrCameraIsRefused) {
   other.layout.parts = {part};
   ExpectThrows<InputError>([&] { ImportMarkers(other); }, {"another layout"});
   other = options_;
-  other.camera.params[0] = 301;
+  other.camera->params[0] = 301;
   ExpectThrows<InputError>([&] { ImportMarkers(other); },
                            {options_.database_path, "another calibration", "camera.yml"});
   EXPECT_EQ(ReadImages().size(), 1u);

@@ -2,6 +2,7 @@
 velamap_test(NAME reconstruct_adjustment_test LABEL unit
   SOURCES
     model/adjustment_uncertainty_test.cc
+    geometry/camera_conversion_test.cc
     geometry/covariance_update_test.cc
     adjust/calibration_score_test.cc
     geometry/intrinsics_prior_test.cc

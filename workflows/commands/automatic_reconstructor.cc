@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -10,7 +11,8 @@
 #include "exporters/report/report_sail.h"
 #include "exporters/report/report_writer.h"
 #include "importer/base/atomic_output.h"
-#include "importer/camera/calibration.h"
+#include "importer/base/error.h"
+#include "importer/camera/calibration_writer.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "workflows/commands/commands.h"
@@ -73,11 +75,19 @@ void Validate(Options* options) {
   options->registration.random_seed = options->general.random_seed;
   options->registration.num_threads = options->general.num_threads;
   options->registration.Check();
+  if (options->paths.camera_path.empty()) {
+    if (!options->adjustment.UsesMarkers()) {
+      throw InputError(
+          "--camera_path: missing; --backend colmap adjusts no unknown camera: give a calibration, "
+          "or take --backend both or markers");
+    }
+    options->adjustment.markers.find_camera = true;
+  }
   options->adjustment.Complete(options->general.num_threads);
   CompleteSailOptions(options->surface, &options->exporter);
   options->importer.layout = LoadLayout(options->markers, true);
   CheckFrameChoice(options->exporter.frame, options->importer.layout);
-  options->importer.camera = ReadCalibration(options->paths.camera_path);
+  options->importer.camera = LoadCalibration(options->paths);
   options->importer.camera_path = options->paths.camera_path;
   options->importer.prior_shape = LoadPriorShape(options->paths.prior_shape_path);
   options->importer.image_path = options->paths.image_path;
@@ -133,12 +143,33 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
     input.markers_left_out.push_back({std::to_string(marker.marker_id), marker.reason});
   }
   input.num_ids_found = seed.num_ids_found;
+  for (const auto& [camera_id, camera] : summary->adjustment.cameras) {
+    input.found_cameras.push_back(camera);
+  }
   input.warnings = LoggedWarnings();  // before those that a key number says, too
   LogScaleWarnings(shape.audit);
   input.options = TypedOptions(options.arguments);
   input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
   summary->verdict = MakeVerdict(input);
   WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
+}
+
+// For the next clip of the camera. Of several cameras, the one with most images.
+void WriteFoundCamera(const AdjustmentResult& adjustment, const Model& model,
+                      const WorkspacePaths& paths) {
+  std::map<CameraId, int> num_images;
+  for (const ModelImage& image : model.images) ++num_images[image.camera_id];
+  const EstimatedCamera* most_used = nullptr;
+  int most = 0;
+  for (const auto& [camera_id, camera] : adjustment.cameras) {
+    if (num_images[camera_id] <= most) continue;
+    most = num_images[camera_id];
+    most_used = &camera;
+  }
+  if (most_used == nullptr) return;
+  WriteCalibration(*most_used,
+                   fmt::format("found by velamap {} from {} images of markers", kVersion, most),
+                   paths.Camera().string());
 }
 
 // Makes the final files from the seed. sparse/ and shape/ replace the old ones when both are whole.
@@ -159,6 +190,7 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
       ExportShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
   WarnOfMissingSections(summary->shape.sail.sections);
   sparse.Commit();
+  WriteFoundCamera(summary->adjustment, model, paths);
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
   clock->End("export");
@@ -185,8 +217,8 @@ void Run(const Options& options) {
   StageClock clock;
   const ImportReport import = Import(options.importer, &workspace, &summary.left_out);
   clock.EndImport(import.times, import.num_frames_read);
-  const SeedResult seed =
-      RegisterDatabase(paths.Database().string(), options.importer.layout, options.registration);
+  const SeedResult seed = RegisterDatabase(paths.Database().string(), options.importer.layout,
+                                           options.registration, options.adjustment.markers);
   clock.End("register", static_cast<int>(seed.image_names.size()));
   summary.num_images_total = static_cast<int>(seed.image_names.size() + summary.left_out.size());
   summary.dropped_markers = seed.registration.dropped_markers;

@@ -97,6 +97,9 @@ void Print(const AdjustmentResult& result, const std::string& model_path, std::o
                100.0 * result.uncertainty->share_above_4_sigma);
     PrintRollingShutter(*result.uncertainty, out);
   }
+  for (const auto& [camera_id, camera] : result.cameras) {
+    fmt::print(out, "camera_found: {}\n", DescribeCamera(camera));
+  }
   fmt::print(out, "model_path: {}\n", model_path);
 }
 

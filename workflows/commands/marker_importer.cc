@@ -5,7 +5,6 @@
 #include <fmt/ostream.h>
 #include <fmt/ranges.h>
 
-#include "importer/camera/calibration.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/pipeline.h"
@@ -47,7 +46,7 @@ void Validate(Options* options) {
   importer.detection.Check();
   importer.video.Check();
   importer.layout = LoadLayout(options->markers, true);
-  importer.camera = ReadCalibration(options->paths.camera_path);
+  importer.camera = LoadCalibration(options->paths);
   importer.camera_path = options->paths.camera_path;
   importer.prior_shape = LoadPriorShape(options->paths.prior_shape_path);
   importer.image_path = options->paths.image_path;

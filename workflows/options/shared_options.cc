@@ -7,6 +7,7 @@
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/camera/calibration.h"
 
 namespace velamap {
 
@@ -21,9 +22,9 @@ Option ImagePathOption(PathOptions* paths) {
 }
 
 Option CameraPathOption(PathOptions* paths) {
-  return Required(PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
-                             "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP "
-                             "cameras.txt"));
+  return PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
+                    "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt; left "
+                    "out: the camera is found from the pictures");
 }
 
 Option PriorShapePathOption(PathOptions* paths) {
@@ -33,6 +34,11 @@ Option PriorShapePathOption(PathOptions* paths) {
                  "are also searched where it says that they should be visible");
   option.old_names = {"map_path"};
   return option;
+}
+
+std::optional<Camera> LoadCalibration(const PathOptions& paths) {
+  if (paths.camera_path.empty()) return std::nullopt;
+  return ReadCalibration(paths.camera_path);
 }
 
 Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& description) {

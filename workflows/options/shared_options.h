@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "importer/camera/camera.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
 #include "workflows/options/option_parser.h"
@@ -58,6 +59,9 @@ OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary);
 
 // Whether any option says how large the markers are.
 bool HasMarkerOptions(const MarkerOptions& options);
+
+// Nothing without a path. Throws InputError where ReadCalibration() does.
+std::optional<Camera> LoadCalibration(const PathOptions& paths);
 
 // Throws InputError unless a layout file alone, or a marker length (with a dictionary, where one is
 // needed) is given, and where ReadLayout() does.

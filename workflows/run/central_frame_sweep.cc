@@ -80,6 +80,12 @@ class Sweep {
       : options_(options), layout_(layout) {
     const ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadOnly);
     images_ = database.ReadImages();
+    if (!database.HasCalibration()) {
+      throw InputError(fmt::format(
+          "{}: was made without a calibration, which a sweep needs; import with one, such as the "
+          "camera.yml that automatic_reconstructor finds",
+          options.database_path));
+    }
     cameras_ = database.ReadCameras();
     posed_ = PoseImages(images_, cameras_, layout, options.registration.num_threads);
     corner_errors_ = CornerErrorsOf(images_, database.ReadFormation());

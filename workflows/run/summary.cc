@@ -226,6 +226,12 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   fmt::print(out, "outliers_removed: {} of {} observations\n", summary.adjustment.num_removed,
              summary.adjustment.error_before_px.count);
   if (summary.adjustment.uncertainty) PrintRollingShutter(*summary.adjustment.uncertainty, out);
+  for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
+    fmt::print(out, "camera_found: {}\n", DescribeCamera(camera));
+  }
+  if (!summary.adjustment.cameras.empty()) {
+    fmt::print(out, "camera_path: {}\n", paths.Camera().string());
+  }
   fmt::print(out, "shape_path: {}\n", paths.Shape().string());
   fmt::print(out, "model_path: {}\n", paths.Model().string());
   fmt::print(out,

@@ -1,7 +1,7 @@
 // The folder of a whole reconstruction, laid out as COLMAP's users expect:
 //
 //   database.db  images/  sparse/seed  sparse/0 (refined, metric)  shape/  registration.csv
-//   report.html  timing.json  velamap.log  colmap.log
+//   camera.yml (where it was found)  report.html  timing.json  velamap.log  colmap.log
 
 #pragma once
 
@@ -25,6 +25,7 @@ struct WorkspacePaths {
   std::filesystem::path Model() const { return root / "sparse" / "0"; }
   std::filesystem::path Shape() const { return root / "shape"; }
   std::filesystem::path RegistrationCsv() const { return root / "registration.csv"; }
+  std::filesystem::path Camera() const { return root / "camera.yml"; }
   std::filesystem::path Report() const { return root / "report.html"; }
   std::filesystem::path Timing() const { return root / "timing.json"; }
   std::filesystem::path Log() const { return root / "velamap.log"; }

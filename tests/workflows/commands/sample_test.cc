@@ -12,6 +12,7 @@
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape/part_planes.h"
 #include "exporters/shape/shape_metrics.h"
+#include "importer/camera/calibration.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model_io.h"
@@ -232,6 +233,22 @@ TEST_F(BoardVideoTest, WithoutTheOptionTheFailureNamesIt) {
   EXPECT_THAT(run.err, HasSubstr("error: "));
   EXPECT_THAT(run.err, HasSubstr("--ArucoDetection.inverted 1"));
   EXPECT_FALSE(fs::exists(workspace()));
+}
+
+// The photographs know their camera nearly as well as its file does.
+TEST(CubeTest, ItsCameraIsFoundWithoutACalibration) {
+  const TempDir dir;
+  const ProgramRun run =
+      RunVelamap({"automatic_reconstructor", "--image_path", (kCube / "images").string(),
+                  "--layout_path", (kCube / "layout.yml").string(), "--backend", "markers",
+                  "--workspace_path", (dir.path() / "workspace").string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Camera found = ReadCalibration((dir.path() / "workspace" / "camera.yml").string());
+  const Camera file = ReadCalibration((kCube / "camera.yml").string());
+  EXPECT_NEAR(MeanFocalLength(found) / MeanFocalLength(file), 1.0, 0.01);
+  const MarkerShape shape =
+      ReadShapeCsv((dir.path() / "workspace" / "shape" / "shape.csv").string());
+  EXPECT_GE(NumWholeMarkers(shape), 250);
 }
 
 }  // namespace

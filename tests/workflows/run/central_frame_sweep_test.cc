@@ -12,6 +12,7 @@
 #include "importer/base/error.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/model/model_io.h"
+#include "tests/support/error_matchers.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
 
@@ -86,6 +87,15 @@ TEST_F(CentralFrameSweepTest, RowsAreWhatSingleRunsGive) {
     EXPECT_NEAR(row.shape.area_error_percent.mean, single.metrics.area_error_percent.mean, 1e-4);
     EXPECT_GT(row.cpu_s, 0.0);
   }
+}
+
+TEST_F(CentralFrameSweepTest, NeedsACalibration) {
+  {
+    ColmapDatabase database(options_.database_path, ColmapDatabase::Mode::kReadWriteCreate);
+    database.AddCamera(UnknownCamera(640, 480), false);
+  }
+  options_.central_frames = "24";
+  ExpectThrows<InputError>([&] { Run(); }, {options_.database_path, "without a calibration"});
 }
 
 TEST_F(CentralFrameSweepTest, WritesTheModelsAndShapesOfTheRows) {

@@ -1,0 +1,84 @@
+#include "importer/camera/calibration_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <ostream>
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "importer/camera/camera_projection.h"
+
+namespace velamap {
+namespace {
+
+// fx, fy, cx, cy and then the distortion, of parameters or of their sigmas.
+std::vector<double> WithTwoFocalLengths(CameraModel model, std::vector<double> values) {
+  if (HasOneFocalLength(model)) values.insert(values.begin(), values.front());
+  return values;
+}
+
+// As OpenCV's files have them: 4, or 8 where a rational model needs them.
+std::vector<double> Distortion(const std::vector<double>& all) {
+  std::vector<double> distortion(all.begin() + 4, all.end());
+  distortion.resize(std::max<std::size_t>(distortion.size(), 4), 0.0);
+  return distortion;
+}
+
+cv::Mat RowOf(const std::vector<double>& values) { return cv::Mat(values, true).reshape(1, 1); }
+
+const char* DistortionName(CameraModel model, std::size_t index) {
+  constexpr std::array<const char*, 8> kBrown = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  constexpr std::array<const char*, 4> kFisheye = {"k1", "k2", "k3", "k4"};
+  return model == CameraModel::kOpenCVFisheye ? kFisheye.at(index) : kBrown.at(index);
+}
+
+}  // namespace
+
+std::string CalibrationText(const EstimatedCamera& estimate, const std::string& origin) {
+  const Camera& camera = estimate.camera;
+  VELAMAP_CHECK(estimate.sigmas.size() == camera.params.size());
+  const std::vector<double> params = WithTwoFocalLengths(camera.model, camera.params);
+  const std::vector<double> sigmas = WithTwoFocalLengths(camera.model, estimate.sigmas);
+  const double cx = params[2] - kImageFromOpenCvPx, cy = params[3] - kImageFromOpenCvPx;
+  cv::FileStorage file(
+      ".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
+  file.writeComment(origin);
+  file << "image_width" << camera.width_px << "image_height" << camera.height_px;
+  file << "camera_matrix" << cv::Mat(cv::Matx33d(params[0], 0, cx, 0, params[1], cy, 0, 0, 1));
+  if (camera.model == CameraModel::kOpenCVFisheye)
+    file << "distortion_model"
+         << "fisheye";
+  file << "distortion_coefficients" << RowOf(Distortion(params));
+  file << "focal_length_sigma_px" << std::vector<double>{sigmas[0], sigmas[1]};
+  file << "principal_point_sigma_px" << std::vector<double>{sigmas[2], sigmas[3]};
+  file << "distortion_sigma" << Distortion(sigmas);
+  return file.releaseAndGetString();
+}
+
+void WriteCalibration(const EstimatedCamera& estimate, const std::string& origin,
+                      const std::string& path) {
+  const std::string text = CalibrationText(estimate, origin);
+  WriteFileAtomically(path, [&text](std::ostream& out) { out << text; });
+}
+
+std::string DescribeCamera(const EstimatedCamera& estimate) {
+  const Camera& camera = estimate.camera;
+  const std::vector<double>&values = camera.params, &sigmas = estimate.sigmas;
+  const bool has_one = HasOneFocalLength(camera.model);
+  const std::size_t center = has_one ? 1 : 2;
+  std::string text = fmt::format("{}, focal length {:.1f} +- {:.1f}", CameraModelName(camera.model),
+                                 values[0], sigmas[0]);
+  if (!has_one) text += fmt::format(" and {:.1f} +- {:.1f}", values[1], sigmas[1]);
+  text += fmt::format(" px, principal point ({:.1f} +- {:.1f}, {:.1f} +- {:.1f}) px",
+                      values[center], sigmas[center], values[center + 1], sigmas[center + 1]);
+  for (std::size_t i = center + 2; i < values.size(); ++i) {
+    text += fmt::format("{} {} {:.4f} +- {:.4f}", i == center + 2 ? ", distortion" : ",",
+                        DistortionName(camera.model, i - center - 2), values[i], sigmas[i]);
+  }
+  return text;
+}
+
+}  // namespace velamap

@@ -1,0 +1,33 @@
+// Writes a camera as the calibration file that ReadCalibration() reads.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "importer/camera/camera.h"
+
+namespace velamap {
+
+// A camera and how well it is known.
+struct EstimatedCamera {
+  Camera camera;
+  std::vector<double> sigmas;  // 1 sigma of each parameter, in the camera's order
+};
+
+// An OpenCV FileStorage file (YAML) with the keys of ReadCalibration(), and for readers
+// focal_length_sigma_px (x, y), principal_point_sigma_px (x, y) and distortion_sigma, by
+// distortion_coefficients, which programs that read calibrations ignore. Models with one focal
+// length or fewer coefficients become the OpenCV model that holds them exactly. `origin` is one
+// line on where the camera comes from, a comment in the file.
+std::string CalibrationText(const EstimatedCamera& estimate, const std::string& origin);
+
+// Writes the text to `path`, whole or not at all. Throws InputError where that fails.
+void WriteCalibration(const EstimatedCamera& estimate, const std::string& origin,
+                      const std::string& path);
+
+// `SIMPLE_RADIAL, focal length 901.3 +- 0.4 px, principal point (964.2 +- 0.5, 536.7 +- 0.6) px,
+// distortion k1 -0.2451 +- 0.0012`.
+std::string DescribeCamera(const EstimatedCamera& estimate);
+
+}  // namespace velamap

@@ -1,0 +1,117 @@
+#include "reconstruct/adjust/camera_adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "importer/base/natural_order.h"
+#include "reconstruct/adjust/marker_adjuster.h"
+#include "reconstruct/geometry/camera_conversion.h"
+#include "reconstruct/model/turned_model.h"
+
+namespace velamap {
+namespace {
+
+double Explained(const Model& model) {
+  constexpr double kTolerance = 5e-4;  // of the larger side
+  double explained = 0.0;
+  for (const ModelImage& image : model.images) {
+    const Camera& camera = model.cameras.at(image.camera_id);
+    const double tolerance_px = kTolerance * std::max(camera.width_px, camera.height_px);
+    for (const Point2D& point2D : image.points2D) {
+      const auto point = model.points3D.find(point2D.point3D_id);
+      if (point == model.points3D.end()) continue;
+      const auto x_px = ImageFromCam(camera, image.cam_from_world * point->second.x_in_world);
+      if (!x_px) continue;
+      const double relative = (*x_px - point2D.x_in_image_px).norm() / tolerance_px;
+      explained += std::max(0.0, 1.0 - relative * relative);
+    }
+  }
+  return explained;
+}
+
+// One radial term alone cannot follow a wide lens.
+void GiveRoom(Model* model) {
+  for (auto& [camera_id, camera] : model->cameras) {
+    if (camera.model == CameraModel::kSimpleRadial) {
+      camera = ConvertCamera(camera, CameraModel::kRadial);
+    }
+  }
+}
+
+CameraAdjustment AdjustTied(const MarkerAdjustmentOptions& free, const Layout& layout,
+                            const CornerErrors& corner_errors, Model tied,
+                            const TurnedCameras& turned) {
+  GiveRoom(&tied);
+  MarkerAdjuster adjuster(free, layout, corner_errors, std::move(tied));
+  adjuster.PrepareSeed();
+  const MarkerAdjuster begin = adjuster;
+  adjuster.AdjustToCorners();
+  if (adjuster.ShowsRollingShutter()) {
+    adjuster = begin;
+    adjuster.FreeRollingShutter();
+    adjuster.AdjustToCorners();
+  }
+  adjuster.ChooseCameraModel();
+  CameraAdjustment adjustment;
+  for (const auto& [camera_id, estimate] : adjuster.EstimateCameras()) {
+    adjustment.focal_sigmas_px[camera_id] = estimate.sigmas.front();
+  }
+  Model result = adjuster.TakeModel();
+  adjustment.explained = Explained(result);
+  UntieTurnedCameras(turned, &result);
+  adjustment.cameras = result.cameras;
+  return adjustment;
+}
+
+}  // namespace
+
+CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Layout& layout,
+                               const CornerErrors& corner_errors, const Model& model) {
+  MarkerAdjustmentOptions free = options;
+  free.find_camera = true;
+  free.Check();
+  CheckModel(model);
+  Model tied = model;
+  TurnedCameras turned = TieTurnedCameras(&tied);
+  CameraAdjustment best = AdjustTied(free, layout, corner_errors, tied, turned);
+  if (!turned.Any()) return best;
+  TurnTheOtherWay(&turned, &tied);
+  CameraAdjustment other = AdjustTied(free, layout, corner_errors, std::move(tied), turned);
+  if (other.explained > best.explained) best = std::move(other);
+  return best;
+}
+
+std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options,
+                                          const Layout& layout, const CornerErrors& corner_errors,
+                                          Model model, FocalStep step) {
+  constexpr double kMinChange = 0.01, kMinSigmas = 10.0;
+  const CameraId second_id = model.cameras.rbegin()->first + 1;
+  model.cameras[second_id] = model.cameras.at(step.camera_id);
+  for (ModelImage& image : model.images) {
+    if (image.camera_id == step.camera_id && !NaturalLess(image.name, step.first_image_after)) {
+      image.camera_id = second_id;
+    }
+  }
+  try {
+    const CameraAdjustment adjustment = AdjustCameras(options, layout, corner_errors, model);
+    const auto sigma_px = [&](CameraId camera_id) {
+      const auto sigma = adjustment.focal_sigmas_px.find(camera_id);
+      return sigma == adjustment.focal_sigmas_px.end() ? 0.0 : sigma->second;
+    };
+    step.before_px = MeanFocalLength(adjustment.cameras.at(step.camera_id));
+    step.after_px = MeanFocalLength(adjustment.cameras.at(second_id));
+    const double change_px = std::abs(step.after_px - step.before_px);
+    step.sigmas = change_px / std::hypot(sigma_px(step.camera_id), sigma_px(second_id));
+    if (change_px < kMinChange * step.before_px || step.sigmas < kMinSigmas) return std::nullopt;
+    return step;
+  } catch (const DataError& error) {
+    spdlog::debug("no two cameras: {}", error.what());
+    return std::nullopt;
+  }
+}
+
+}  // namespace velamap

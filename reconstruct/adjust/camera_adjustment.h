@@ -1,0 +1,37 @@
+// The cameras that explain a registration best, where no calibration is given.
+
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "importer/layout/layout.h"
+#include "reconstruct/camera/camera_steadiness.h"
+#include "reconstruct/model/model.h"
+#include "reconstruct/problem/corner_errors.h"
+#include "reconstruct/problem/marker_adjustment_options.h"
+
+namespace velamap {
+
+struct CameraAdjustment {
+  std::map<CameraId, Camera> cameras;
+  // How much the model explains with them: the sum over all corners of 1 for an error of 0, falling
+  // to 0 at a two-thousandth of the picture's larger side.
+  double explained = 0.0;
+  // 1 sigma of the (first) focal length by camera, px; not of turned cameras.
+  std::map<CameraId, double> focal_sigmas_px;
+};
+
+// Adjusts a copy of `model` with all cameras free (find_camera), from their given values, and
+// chooses the camera model by the evidence. Throws DataError where nothing can be adjusted.
+CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Layout& layout,
+                               const CornerErrors& corner_errors, const Model& model);
+
+// The step of the focal length where `step` is, with a camera of its own for the images from there
+// on; `model` is the one before its adjustment. Nothing where the focal lengths agree to 1 % or
+// within their sigmas, or where one part alone cannot be adjusted.
+std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options,
+                                          const Layout& layout, const CornerErrors& corner_errors,
+                                          Model model, FocalStep step);
+
+}  // namespace velamap

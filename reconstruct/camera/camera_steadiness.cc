@@ -1,0 +1,230 @@
+#include "reconstruct/camera/camera_steadiness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include "importer/base/natural_order.h"
+#include "importer/base/statistics.h"
+#include "importer/camera/camera_jacobian.h"
+#include "importer/geometry/least_squares.h"
+#include "importer/geometry/pose_step.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kNumUnknowns = 9;  // pose, logarithm of the focal length, principal point
+constexpr int kMinCorners = 8;
+
+struct OwnCamera {
+  Rigid3 cam_from_world;
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();  // log focal, offset of the principal point
+};
+
+struct SeenPoint {
+  Eigen::Vector3d x_in_world;
+  Eigen::Vector2d x_in_image_px;
+};
+
+class OwnCameraProblem : public LeastSquaresProblem<kNumUnknowns> {
+ public:
+  using Parameters = OwnCamera;
+
+  OwnCameraProblem(const Camera& camera, const std::vector<SeenPoint>& points, double scale_px)
+      : camera_(camera),
+        center_(camera.params[HasOneFocalLength(camera.model) ? 1 : 2],
+                camera.params[HasOneFocalLength(camera.model) ? 2 : 3]),
+        points_(points),
+        loss_{9.0 * scale_px * scale_px} {}
+
+  void Evaluate(const OwnCamera& own, bool, Equations* equations) const {
+    *equations = {};
+    const double factor = std::exp(own.change.x());
+    for (const SeenPoint& point : points_) {
+      const Eigen::Vector3d rotated = own.cam_from_world.rotation * point.x_in_world;
+      const Eigen::Vector3d x = rotated + own.cam_from_world.translation;
+      if (!(x.z() > 0)) return equations->Reject();
+      const RayFunction image = ImageFromRayWithJacobian(camera_.model, camera_.params.data(),
+                                                         Eigen::Vector2d(x.hnormalized()));
+      const Eigen::Vector2d from_center = factor * (image.value - center_);
+      const Eigen::Vector2d residual =
+          center_ + own.change.tail<2>() + from_center - point.x_in_image_px;
+      const Eigen::Matrix<double, 2, 3> by_point = factor * image.by_ray * RayByPoint(x);
+      Eigen::Matrix<double, 2, kNumUnknowns> jacobian;
+      jacobian.leftCols<3>() = ByRotation(by_point, rotated);
+      jacobian.middleCols<3>(3) = by_point;
+      jacobian.col(6) = from_center;
+      jacobian.rightCols<2>().setIdentity();
+      equations->Add(jacobian, residual, loss_);
+    }
+  }
+
+  OwnCamera Plus(const OwnCamera& own, const Step& step) const {
+    return {PlusPose(own.cam_from_world, step.head<6>()), own.change + step.tail<3>()};
+  }
+
+ private:
+  const Camera& camera_;
+  Eigen::Vector2d center_;
+  const std::vector<SeenPoint>& points_;
+  CauchyLoss loss_;
+};
+
+std::vector<SeenPoint> PointsOf(const Model& model, const ModelImage& image) {
+  std::vector<SeenPoint> points;
+  for (const Point2D& point2D : image.points2D) {
+    const auto point = model.points3D.find(point2D.point3D_id);
+    if (point == model.points3D.end()) continue;
+    points.push_back({point->second.x_in_world, point2D.x_in_image_px});
+  }
+  return points;
+}
+
+std::optional<ImageIntrinsics> IntrinsicsOf(const Model& model, const ModelImage& image,
+                                            double scale_px) {
+  const std::vector<SeenPoint> points = PointsOf(model, image);
+  if (points.size() < kMinCorners) return std::nullopt;
+  const OwnCameraProblem problem(model.cameras.at(image.camera_id), points, scale_px);
+  OwnCamera own{image.cam_from_world};
+  OwnCameraProblem::Equations equations;
+  LeastSquaresOptions options;
+  options.max_iterations = 30;
+  options.min_relative_decrease = 1e-6;
+  if (MinimizeSquares(options, problem, &own, &equations) == Convergence::kFailed) {
+    return std::nullopt;
+  }
+  problem.Evaluate(own, true, &equations);
+  const Eigen::FullPivLU<OwnCameraProblem::Equations::Matrix> lu(equations.hessian());
+  if (!lu.isInvertible()) return std::nullopt;
+  const double redundancy = 2.0 * static_cast<double>(points.size()) - kNumUnknowns;
+  const double variance = 2.0 * equations.cost() / redundancy;
+  const Eigen::Vector3d sigmas =
+      (variance * lu.inverse().diagonal().tail<3>()).cwiseMax(0.0).cwiseSqrt();
+  return ImageIntrinsics{image.image_id, own.change.x(), sigmas.x(), own.change.tail<2>(),
+                         sigmas.tail<2>()};
+}
+
+// The usual residual of the model, px.
+double TypicalError(const Model& model) {
+  std::vector<double> errors;
+  for (const auto& [point3D_id, point] : model.points3D) errors.push_back(point.mean_error_px);
+  constexpr double kMin_px = 1e-3;
+  return errors.empty() ? 1.0 : std::max(kMin_px, Median(std::move(errors)));
+}
+
+// Weighted mean of [begin, end) with its sigma, and the sum of squared deviations in sigmas.
+struct Level {
+  double mean = 0.0, sigma = 0.0, squares = 0.0;
+};
+
+Level LevelOf(const std::vector<ImageIntrinsics>& values, std::size_t begin, std::size_t end) {
+  // Errors of the points, which single images do not see.
+  constexpr double kLeastSigma = 2e-3;
+  const auto variance = [&](std::size_t i) {
+    return std::pow(values[i].log_focal_sigma, 2) + kLeastSigma * kLeastSigma;
+  };
+  Level level;
+  double weights = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    level.mean += values[i].log_focal / variance(i);
+    weights += 1.0 / variance(i);
+  }
+  level.mean /= weights;
+  level.sigma = 1.0 / std::sqrt(weights);
+  for (std::size_t i = begin; i < end; ++i) {
+    level.squares += std::pow(values[i].log_focal - level.mean, 2) / variance(i);
+  }
+  return level;
+}
+
+// The step that divides the images best into those before and those from some image on. The scatter
+// on both sides counts where it is larger than the sigmas.
+std::optional<FocalStep> FindStep(const Model& model, const std::vector<ImageIntrinsics>& values) {
+  constexpr std::size_t kMinImages = 2;
+  std::optional<FocalStep> largest;
+  for (std::size_t i = kMinImages; i + kMinImages <= values.size(); ++i) {
+    const Level first = LevelOf(values, 0, i), second = LevelOf(values, i, values.size());
+    const double scatter = std::max(1.0, (first.squares + second.squares) /
+                                             std::max(1.0, static_cast<double>(values.size()) - 2));
+    const double sigmas = std::abs(second.mean - first.mean) /
+                          (std::sqrt(scatter) * std::hypot(first.sigma, second.sigma));
+    if (largest && sigmas <= largest->sigmas) continue;
+    const ModelImage& image = *model.FindImage(values[i].image_id);
+    const double focal_px = MeanFocalLength(model.cameras.at(image.camera_id));
+    largest = FocalStep{image.name, image.camera_id, focal_px * std::exp(first.mean),
+                        focal_px * std::exp(second.mean), sigmas};
+  }
+  return largest;
+}
+
+std::string Wandering(const Model& model, const std::vector<ImageIntrinsics>& values) {
+  constexpr double kMinSpread = 4e-3, kMinRatio = 4.0;
+  constexpr std::size_t kMinImages = 8;
+  if (values.size() < kMinImages) return {};
+  const Camera& camera = model.cameras.at(model.FindImage(values.front().image_id)->camera_id);
+  const double least_px = kMinSpread * std::max(camera.width_px, camera.height_px);
+  for (const int axis : {0, 1}) {
+    std::vector<double> offsets, sigmas;
+    for (const ImageIntrinsics& value : values) {
+      offsets.push_back(value.offset_px[axis]);
+      sigmas.push_back(value.offset_sigma_px[axis]);
+    }
+    const double spread_px = RobustSigma(offsets);
+    if (spread_px < least_px || spread_px < kMinRatio * Median(std::move(sigmas))) continue;
+    return fmt::format(
+        "the principal point wanders by {:.0f} px from picture to picture, as in a stabilised "
+        "clip: "
+        "switch stabilisation off and film again",
+        spread_px);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<ImageIntrinsics> IntrinsicsOfImages(const Model& model) {
+  const double scale_px = TypicalError(model);
+  std::vector<ImageIntrinsics> result;
+  for (const ModelImage& image : model.images) {
+    if (const auto own = IntrinsicsOf(model, image, scale_px)) result.push_back(*own);
+  }
+  return result;
+}
+
+SteadinessVerdict JudgeSteadiness(const Model& model) {
+  std::map<ImageId, std::string> names;
+  for (const ModelImage& image : model.images) names[image.image_id] = image.name;
+  // A focal length or an offset that an image does not tell says nothing of the camera.
+  constexpr double kVague = 0.05;
+  std::vector<ImageIntrinsics> values = IntrinsicsOfImages(model);
+  values.erase(std::remove_if(
+                   values.begin(), values.end(),
+                   [](const ImageIntrinsics& value) { return !(value.log_focal_sigma < kVague); }),
+               values.end());
+  std::sort(values.begin(), values.end(), [&](const ImageIntrinsics& a, const ImageIntrinsics& b) {
+    return NaturalLess(names.at(a.image_id), names.at(b.image_id));
+  });
+  return {FindStep(model, values), Wandering(model, values)};
+}
+
+bool FocalStep::IsCertain() const {
+  constexpr double kMinChange = 0.02, kMinSigmas = 8.0;
+  return sigmas >= kMinSigmas && std::abs(std::log(after_px / before_px)) >= kMinChange;
+}
+
+bool FocalStep::IsSuspicious() const {
+  constexpr double kMinChange = 0.003, kMinSigmas = 3.0;
+  return sigmas >= kMinSigmas && std::abs(std::log(after_px / before_px)) >= kMinChange;
+}
+
+std::string DescribeStep(const FocalStep& step) {
+  return fmt::format(
+      "the focal length changes from {:.0f} to {:.0f} px about {}: the lens was zoomed, or the "
+      "pictures come from two cameras; give the pictures of one setting alone",
+      step.before_px, step.after_px, step.first_image_after);
+}
+
+}  // namespace velamap

@@ -1,0 +1,58 @@
+// Whether all images of a model were taken by one camera that kept its lens.
+//
+// The points stay where the model has them, and every image alone gets a pose, a focal length and a
+// principal point. A lens that was zoomed, a second camera and a stabilised picture, whose
+// principal point wanders, show as values that scatter beyond their sigmas.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "reconstruct/model/model.h"
+
+namespace velamap {
+
+struct ImageIntrinsics {
+  ImageId image_id = 0;
+  // Relative to the model's camera: logarithm of the focal length, and offset of the principal
+  // point, px; with 1 sigma each, by the image's own residuals.
+  double log_focal = 0.0, log_focal_sigma = 0.0;
+  Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();
+  Eigen::Vector2d offset_sigma_px = Eigen::Vector2d::Zero();
+};
+
+// Of the images that see at least eight corners; nothing for an image that does not tell.
+std::vector<ImageIntrinsics> IntrinsicsOfImages(const Model& model);
+
+// From some image on, the focal length is another one.
+struct FocalStep {
+  std::string first_image_after;  // its name
+  CameraId camera_id = 0;         // of that image
+  double before_px = 0.0, after_px = 0.0;
+  double sigmas = 0.0;  // of the step, by the sigmas of the images or their scatter
+
+  // By 2 % and far beyond what the sigmas explain. The points of the model were found with one
+  // focal length and hide a part of a step, so that a smaller one is worth an adjustment with two
+  // cameras.
+  bool IsCertain() const;
+  bool IsSuspicious() const;
+};
+
+struct SteadinessVerdict {
+  std::optional<FocalStep> step;  // the one that divides the images best; nothing for few images
+  // The principal point wanders by 0.4 % of the larger side and more, far beyond what the images'
+  // sigmas explain: one line. Empty: it does not.
+  std::string wandering;
+};
+
+// In the order of the images' names.
+SteadinessVerdict JudgeSteadiness(const Model& model);
+
+// The step as a warning.
+std::string DescribeStep(const FocalStep& step);
+
+}  // namespace velamap

@@ -1,0 +1,206 @@
+#include "reconstruct/camera/focal_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+
+#include "importer/base/error.h"
+#include "importer/base/parallel.h"
+#include "importer/base/statistics.h"
+#include "importer/camera/camera_projection.h"
+#include "importer/geometry/least_squares.h"
+#include "importer/geometry/quad.h"
+#include "reconstruct/geometry/marker_pose.h"
+
+namespace velamap {
+namespace {
+
+using CornerVector = Eigen::Matrix<double, 2 * kNumCorners, 1>;
+
+constexpr double kMinFocal = 0.2, kMaxFocal = 10.0;  // times the larger side
+constexpr double kGridStep = 0.12;                   // of the logarithm
+constexpr double kMedianOf2 = 1.386;                 // of chi-squared with 2 degrees of freedom
+constexpr double kLossSigmas = 3.0;
+
+Camera LensOf(CameraModel model, int width_px, int height_px, double focal_px) {
+  const double cx = 0.5 * width_px, cy = 0.5 * height_px;
+  if (model == CameraModel::kOpenCVFisheye) {
+    return {model, width_px, height_px, {focal_px, focal_px, cx, cy, 0, 0, 0, 0}};
+  }
+  VELAMAP_CHECK(model == CameraModel::kSimpleRadial);
+  return {model, width_px, height_px, {focal_px, cx, cy, 0}};
+}
+
+// Errors of a square in its best pose, in sigmas, and how they change with the logarithm of the
+// focal length while the pose follows.
+struct ViewErrors {
+  CornerVector errors = CornerVector::Zero();
+  CornerVector by_log_focal = CornerVector::Zero();
+  double SquaredNorm() const { return errors.squaredNorm(); }
+};
+
+std::optional<CornerVector> Project(const Camera& camera, const Rigid3& cam_from_marker) {
+  const auto corners = CornersInMarker(1.0);
+  CornerVector projected;
+  for (int i = 0; i < kNumCorners; ++i) {
+    const auto x_px = ImageFromCam(camera, cam_from_marker * corners[static_cast<std::size_t>(i)]);
+    if (!x_px) return std::nullopt;
+    projected.segment<2>(2 * i) = *x_px;
+  }
+  return projected;
+}
+
+// Central differences by a rotation about the marker's axes and by its position.
+std::optional<Eigen::Matrix<double, 2 * kNumCorners, 6>> ByPose(const Camera& camera,
+                                                                const Rigid3& pose) {
+  constexpr double kStep = 1e-5;
+  Eigen::Matrix<double, 2 * kNumCorners, 6> jacobian;
+  for (int i = 0; i < 6; ++i) {
+    std::array<CornerVector, 2> moved;
+    for (const int side : {0, 1}) {
+      const double step = side == 0 ? -kStep : kStep;
+      Rigid3 near = pose;
+      if (i < 3) {
+        near.rotation =
+            pose.rotation * Eigen::Quaterniond(Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(i)));
+      } else {
+        near.translation[i - 3] += step;
+      }
+      const auto projected = Project(camera, near);
+      if (!projected) return std::nullopt;
+      moved[static_cast<std::size_t>(side)] = *projected;
+    }
+    jacobian.col(i) = (moved[1] - moved[0]) / (2 * kStep);
+  }
+  return jacobian;
+}
+
+// Nothing where the camera cannot have seen the square.
+std::optional<ViewErrors> ErrorsOf(const Camera& camera, const SquareView& view, bool with_change) {
+  const std::vector<MarkerPose> poses = EstimateMarkerPoses(camera, view.corners_px, 1.0);
+  if (poses.empty()) return std::nullopt;
+  const auto projected = Project(camera, poses.front().cam_from_marker);
+  if (!projected) return std::nullopt;
+  ViewErrors result;
+  const Eigen::Vector2d center(0.5 * camera.width_px, 0.5 * camera.height_px);
+  for (int i = 0; i < kNumCorners; ++i) {
+    const Eigen::Vector2d x_px = projected->segment<2>(2 * i);
+    result.errors.segment<2>(2 * i) =
+        (x_px - view.corners_px[static_cast<std::size_t>(i)]) / view.sigma_px;
+    result.by_log_focal.segment<2>(2 * i) = (x_px - center) / view.sigma_px;
+  }
+  if (!with_change) return result;
+  const auto by_pose = ByPose(camera, poses.front().cam_from_marker);
+  if (!by_pose) return std::nullopt;
+  const Eigen::Matrix<double, 2 * kNumCorners, 6> scaled = *by_pose / view.sigma_px;
+  result.by_log_focal -= scaled * scaled.colPivHouseholderQr().solve(result.by_log_focal);
+  return result;
+}
+
+// The views at one focal length.
+class PooledViews {
+ public:
+  PooledViews(std::vector<SquareView> views, int num_threads)
+      : views_(std::move(views)), num_threads_(num_threads) {}
+
+  std::vector<std::optional<ViewErrors>> Evaluate(const Camera& camera, bool with_change) const {
+    std::vector<std::optional<ViewErrors>> errors(views_.size());
+    ParallelFor(views_.size(), num_threads_,
+                [&](std::size_t i) { errors[i] = ErrorsOf(camera, views_[i], with_change); });
+    return errors;
+  }
+
+  // A view that the camera cannot have seen counts as one far off.
+  double Cost(const Camera& camera, double variance) const {
+    constexpr double kFarOff = 1e4;
+    const CauchyLoss loss{kLossSigmas * kLossSigmas * variance};
+    double cost = 0.0;
+    for (const auto& errors : Evaluate(camera, false)) {
+      cost += loss.Value(errors ? errors->SquaredNorm() : kFarOff * variance) / variance;
+    }
+    return cost;
+  }
+
+  // The variance of the errors as a multiple of what the views' sigmas say, by the median.
+  double Variance(const Camera& camera) const {
+    std::vector<double> squares;
+    for (const auto& errors : Evaluate(camera, false)) {
+      if (errors) squares.push_back(errors->SquaredNorm());
+    }
+    constexpr double kMin = 1e-8;  // exact corners
+    return squares.empty() ? 1.0 : std::max(kMin, Median(std::move(squares)) / kMedianOf2);
+  }
+
+ private:
+  std::vector<SquareView> views_;
+  int num_threads_;
+};
+
+std::vector<SquareView> MostTelling(std::vector<SquareView> views) {
+  const auto size_in_sigmas = [](const SquareView& view) {
+    return QuadMeanSide(view.corners_px) / view.sigma_px;
+  };
+  std::stable_sort(views.begin(), views.end(), [&](const SquareView& a, const SquareView& b) {
+    return size_in_sigmas(a) > size_in_sigmas(b);
+  });
+  if (views.size() > kMaxFocalViews) views.resize(kMaxFocalViews);
+  return views;
+}
+
+}  // namespace
+
+FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
+                              std::vector<SquareView> views, int num_threads) {
+  constexpr int kMaxNumSteps = 10;
+  const int side_px = std::max(width_px, height_px);
+  const PooledViews pooled(MostTelling(std::move(views)), num_threads);
+  const auto lens = [&](double log_focal) {
+    return LensOf(model, width_px, height_px, std::exp(log_focal));
+  };
+  const double low = std::log(kMinFocal * side_px), high = std::log(kMaxFocal * side_px);
+  // The noise is that at the best focal length, so two passes: by all, then by the right noise.
+  double variance = std::numeric_limits<double>::infinity();
+  for (double x = low; x <= high; x += kGridStep) {
+    variance = std::min(variance, pooled.Variance(lens(x)));
+  }
+  FocalEvidence result{UnknownCamera(width_px, height_px), 0.0,
+                       std::numeric_limits<double>::infinity(), 0};
+  double best = low;
+  for (double x = low; x <= high; x += kGridStep) {
+    const double cost = pooled.Cost(lens(x), variance);
+    if (cost >= result.cost) continue;
+    result.cost = cost;
+    best = x;
+  }
+  double information = 0.0;
+  for (int i = 0; i < kMaxNumSteps; ++i) {
+    const CauchyLoss loss{kLossSigmas * kLossSigmas * variance};
+    double gradient = 0.0;
+    information = 0.0;
+    result.num_views = 0;
+    for (const auto& errors : pooled.Evaluate(lens(best), true)) {
+      if (!errors) continue;
+      ++result.num_views;
+      const double weight = loss.Weight(errors->SquaredNorm()) / variance;
+      gradient += weight * errors->by_log_focal.dot(errors->errors);
+      information += weight * errors->by_log_focal.squaredNorm();
+    }
+    if (!(information > 0)) break;
+    const double step = std::clamp(-gradient / information, -kGridStep, kGridStep);
+    best = std::clamp(best + step, low, high);
+    if (std::abs(step) < 1e-4) break;
+  }
+  result.log_sigma =
+      information > 0 ? 1.0 / std::sqrt(information) : std::numeric_limits<double>::infinity();
+  if (result.num_views > 0) {
+    result.camera = lens(best);
+    result.cost = pooled.Cost(result.camera, variance);
+  }
+  return result;
+}
+
+}  // namespace velamap

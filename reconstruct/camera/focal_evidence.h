@@ -1,0 +1,47 @@
+// What single markers say of an unknown focal length.
+//
+// The picture of a square determines its pose and, where the square is tilted, a little of the
+// focal length: the two sides that run away from the camera converge as far as the focal length has
+// it (Zhang, "A flexible new technique for camera calibration", 2000, with one plane and square
+// pixels). For each focal length every marker takes its better planar pose (IPPE, two solutions);
+// what is left of its corners' errors depends on the focal length alone. The errors of all markers
+// are pooled with a Cauchy loss, each divided by its corners' sigma, so that a marker counts as far
+// as its corners can tell.
+
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/base/ids.h"
+#include "importer/camera/camera.h"
+
+namespace velamap {
+
+// The corners of one square, 1..4, and their sigma, px.
+struct SquareView {
+  std::array<Eigen::Vector2d, kNumCorners> corners_px;
+  double sigma_px = 0.0;
+};
+
+struct FocalEvidence {
+  Camera camera;  // without distortion: SIMPLE_RADIAL or OPENCV_FISHEYE, principal point central
+  // 1 sigma of the logarithm of the focal length, by the scatter of the views; large where the
+  // squares face the camera or are too small to tell.
+  double log_sigma = 0.0;
+  double cost = 0.0;  // sum of the pooled losses; to be compared between lenses of the same views
+  int num_views = 0;  // that took part
+};
+
+// The best focal length of a lens of this `model` (kSimpleRadial, straight lines stay straight, or
+// kOpenCVFisheye, equidistant), between 0.2 and 10 times the larger side of the picture. At most
+// `kMaxFocalViews` views take part, the largest as a multiple of their sigma. `num_threads` 0: one
+// a core; the result does not depend on it. Without views the result is UnknownCamera()'s focal
+// length with an infinite sigma.
+inline constexpr std::size_t kMaxFocalViews = 600;
+FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
+                              std::vector<SquareView> views, int num_threads = 0);
+
+}  // namespace velamap

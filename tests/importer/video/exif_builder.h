@@ -1,0 +1,67 @@
+// Makes EXIF data for tests.
+
+#pragma once
+
+#include <cstdlib>
+#include <string>
+
+#include <libexif/exif-data.h>
+
+namespace velamap {
+
+class ExifBuilder {
+ public:
+  ExifBuilder() {
+    exif_data_set_option(data_, EXIF_DATA_OPTION_FOLLOW_SPECIFICATION);
+    exif_data_set_byte_order(data_, EXIF_BYTE_ORDER_INTEL);
+  }
+  ~ExifBuilder() { exif_data_unref(data_); }
+  ExifBuilder(const ExifBuilder&) = delete;
+  ExifBuilder& operator=(const ExifBuilder&) = delete;
+
+  void SetShort(ExifIfd directory, ExifTag tag, int value) {
+    exif_set_short(New(directory, tag, EXIF_FORMAT_SHORT, 2)->data, EXIF_BYTE_ORDER_INTEL,
+                   static_cast<ExifShort>(value));
+  }
+  void SetLong(ExifIfd directory, ExifTag tag, int value) {
+    exif_set_long(New(directory, tag, EXIF_FORMAT_LONG, 4)->data, EXIF_BYTE_ORDER_INTEL,
+                  static_cast<ExifLong>(value));
+  }
+  void SetRational(ExifIfd directory, ExifTag tag, unsigned numerator, unsigned denominator) {
+    exif_set_rational(New(directory, tag, EXIF_FORMAT_RATIONAL, 8)->data, EXIF_BYTE_ORDER_INTEL,
+                      {numerator, denominator});
+  }
+
+  // The segment of a JPEG, which follows its first two bytes.
+  std::string Segment() const {
+    unsigned char* bytes = nullptr;
+    unsigned int size = 0;
+    exif_data_save_data(data_, &bytes, &size);
+    std::string segment = "\xFF\xE1";
+    segment += static_cast<char>((size + 2) >> 8);
+    segment += static_cast<char>((size + 2) & 0xFF);
+    segment.append(reinterpret_cast<const char*>(bytes), size);
+    std::free(bytes);
+    return segment;
+  }
+
+ private:
+  ExifEntry* New(ExifIfd directory, ExifTag tag, ExifFormat format, unsigned size) {
+    ExifEntry* entry = exif_entry_new();
+    exif_content_add_entry(data_->ifd[directory], entry);
+    exif_entry_initialize(entry, tag);
+    entry->tag = tag;
+    entry->format = format;
+    entry->components = 1;
+    if (entry->data == nullptr || entry->size < size) {
+      entry->data = static_cast<unsigned char*>(std::realloc(entry->data, size));
+    }
+    entry->size = size;
+    exif_entry_unref(entry);
+    return entry;
+  }
+
+  ExifData* data_ = exif_data_new();
+};
+
+}  // namespace velamap

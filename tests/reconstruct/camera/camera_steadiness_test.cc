@@ -1,0 +1,75 @@
+#include "reconstruct/camera/camera_steadiness.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "reconstruct/model/reprojection.h"
+#include "tests/reconstruct/scene_model.h"
+
+namespace velamap {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// The images are taken with another camera each, and the model has the first one for all.
+Model SceneWith(const std::function<void(int frame_idx, Camera* camera)>& change) {
+  SyntheticSceneOptions options;
+  options.num_frames = 20;
+  SyntheticScene scene = MakeSyntheticScene(options);
+  AddNoise({0.1, 0, 0, 200, 7}, &scene);
+  for (int i = 0; i < options.num_frames; ++i) {
+    Camera camera = scene.camera;
+    change(i, &camera);
+    const Rigid3& pose = scene.cam_from_world[static_cast<std::size_t>(i)];
+    for (MarkerDetection& marker : scene.frames[static_cast<std::size_t>(i)].markers) {
+      for (std::size_t c = 0; c < kNumCorners; ++c) {
+        const Eigen::Vector3d x = pose * scene.x_in_world.at(marker.marker_id)[c + 1];
+        marker.corners_in_image_px[c] += *ImageFromCam(camera, x) - *ImageFromCam(scene.camera, x);
+      }
+    }
+  }
+  Model model = MakeSceneModel(scene);
+  UpdatePointErrors(&model);
+  return model;
+}
+
+TEST(CameraSteadiness, OneCameraIsSteady) {
+  const Model model = SceneWith([](int, Camera*) {});
+  const SteadinessVerdict verdict = JudgeSteadiness(model);
+  EXPECT_FALSE(verdict.step && verdict.step->IsSuspicious());
+  EXPECT_THAT(verdict.wandering, IsEmpty());
+  double sum = 0.0;
+  const auto values = IntrinsicsOfImages(model);
+  ASSERT_EQ(values.size(), 20u);
+  for (const ImageIntrinsics& value : values) {
+    sum += std::pow(value.log_focal / value.log_focal_sigma, 2);
+  }
+  EXPECT_GT(sum / 20, 0.3);
+  EXPECT_LT(sum / 20, 2.4);
+}
+
+TEST(CameraSteadiness, AZoomIsFoundWhereItBegins) {
+  const auto verdict = JudgeSteadiness(SceneWith([](int frame_idx, Camera* camera) {
+    if (frame_idx < 12) return;
+    camera->params[0] *= 1.06;
+    camera->params[1] *= 1.06;
+  }));
+  ASSERT_TRUE(verdict.step);
+  EXPECT_TRUE(verdict.step->IsCertain());
+  EXPECT_NEAR(verdict.step->after_px / verdict.step->before_px, 1.06, 0.01);
+  EXPECT_THAT(DescribeStep(*verdict.step),
+              HasSubstr("about frame_000012.jpg: the lens was zoomed"));
+}
+
+TEST(CameraSteadiness, AStabilisedClipIsRecognised) {
+  const auto verdict = JudgeSteadiness(SceneWith([](int frame_idx, Camera* camera) {
+    camera->params[2] += 40 * std::sin(1.7 * frame_idx);
+    camera->params[3] += 30 * std::cos(2.3 * frame_idx);
+  }));
+  EXPECT_THAT(verdict.wandering, HasSubstr("stabilised"));
+}
+
+}  // namespace
+}  // namespace velamap
