@@ -7,12 +7,18 @@
 
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/atomic_output.h"
+#include "importer/camera/calibration_writer.h"
 
 namespace velamap {
 namespace {
 
 // An OpenCV principal point counts from the first pixel's centre.
 void WriteCamera(const Camera& camera, std::ostream& out) {
+  if (camera.model != CameraModel::kOpenCV) {
+    const std::vector<double> exact(camera.params.size(), 0.0);
+    out << CalibrationText({camera, exact}, "of a rendered clip");
+    return;
+  }
   const std::vector<double>& p = camera.params;
   fmt::print(out,
              "%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\n"

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,10 @@ enum class ClipKind {
 
 struct ClipOptions {
   ClipKind kind = ClipKind::kSail;
-  int dictionary_bits = 4;  // 4: DICT_4X4_250; 3: the 3x3 bits of the thesis
-  int width_px = 1920;      // 16:9; the lens scales with it
-  bool wide_angle = true;   // an action camera's lens instead of a webcam's
+  int dictionary_bits = 4;       // 4: DICT_4X4_250; 3: the 3x3 bits of the thesis
+  int width_px = 1920;           // 16:9; the lens scales with it
+  bool wide_angle = true;        // an action camera's lens instead of a webcam's
+  std::optional<Camera> camera;  // instead of both, 16:9; scaled to the width
   int num_frames = 200;
   double fps = 30.0;
   double distance_m = 6.0;  // of the camera from the scene's middle

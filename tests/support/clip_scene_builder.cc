@@ -7,6 +7,7 @@
 #include <opencv2/aruco.hpp>
 
 #include "importer/base/error.h"
+#include "importer/camera/calibration.h"
 #include "tests/support/clip_camera.h"
 #include "tests/support/nine_bit_dictionary.h"
 
@@ -106,7 +107,9 @@ cv::Mat InkedTiles(const StickerGrid& grid, const cv::Mat& cells, bool draws_bac
 
 ClipSceneBuilder::ClipSceneBuilder(const ClipOptions& options, double marker_length_m) {
   scene_.options = options;
-  scene_.camera = MakeClipCamera(options.wide_angle, options.width_px);
+  scene_.camera = options.camera ? ScaleToImageSize(*options.camera, options.width_px,
+                                                    options.width_px * 9 / 16, "--lens")
+                                 : MakeClipCamera(options.wide_angle, options.width_px);
   scene_.dictionary =
       options.dictionary_bits == 3 ? MakeNineBitDictionary() : LoadDictionary("DICT_4X4_250");
   scene_.layout = MakeLayout(scene_.dictionary.name, marker_length_m);

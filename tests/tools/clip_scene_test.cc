@@ -119,6 +119,23 @@ TEST(ClipSceneTest, TrimChangesHalfwayByTheStatedWay) {
   EXPECT_NEAR(largest_m, 0.2, 0.02);
 }
 
+TEST(ClipSceneTest, AnyLensReadsBack) {
+  const TempDir dir;
+  ClipOptions options;
+  options.width_px = 960;
+  for (const Camera& lens :
+       {Camera{CameraModel::kOpenCVFisheye, 1920, 1080, {950, 950, 965, 537, 0.02, -0.01, 0, 0}},
+        Camera{CameraModel::kRadial, 1920, 1080, {1500, 965, 537, -0.1, 0.02}}}) {
+    options.camera = lens;
+    const ClipScene scene = MakeClipScene(options);
+    EXPECT_EQ(scene.camera, ScaleToImageSize(lens, 960, 540, "lens"));
+    WriteClipFiles(scene, dir.path());
+    const Camera read = ReadCalibration((dir / "camera.yml").string());
+    const Eigen::Vector3d x(0.4, -0.2, 1.0);
+    EXPECT_LT((*ImageFromCam(read, x) - *ImageFromCam(scene.camera, x)).norm(), 1e-9);
+  }
+}
+
 TEST(ClipSceneTest, FilesReadBack) {
   TempDir dir;
   ClipOptions options;

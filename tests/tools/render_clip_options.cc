@@ -9,6 +9,7 @@
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/camera/calibration.h"
 #include "tests/support/tool_options.h"
 
 namespace velamap {
@@ -74,7 +75,8 @@ po::options_description Describe(RenderClipOptions* options) {
   add("width", Value(&options->width_px), "of a frame, px, 16:9; 0: 1920, board 1280");
   add("num_frames", Value(&clip->num_frames), "");
   add("fps", Value(&clip->fps), "frames a second");
-  add("lens", Value(&options->lens), "wide (109 degrees) or webcam (68); empty: the scene's own");
+  add("lens", Value(&options->lens),
+      "wide (109 degrees), webcam (68) or a calibration file of 16:9; empty: the scene's own");
   add("distance", Value(&options->distance_m), "of the camera, m; 0: sail 6, walls 3.5, board 0.6");
   add("angle_deg", Value(&clip->angle_deg), "of the view from straight on");
   add("motion", Value(&options->motion), "board: a ... h of the thesis's Figure 4.3");
@@ -181,9 +183,13 @@ void Complete(RenderClipOptions* options) {
       "scene", options->scene,
       {{"sail", ClipKind::kSail}, {"board", ClipKind::kBoard}, {"walls", ClipKind::kWalls}});
   const bool board = clip.kind == ClipKind::kBoard;
-  clip.wide_angle = options->lens.empty()
-                        ? !board
-                        : Choose<bool>("lens", options->lens, {{"wide", true}, {"webcam", false}});
+  if (std::filesystem::is_regular_file(options->lens)) {
+    clip.camera = ReadCalibration(options->lens);
+  } else {
+    clip.wide_angle = options->lens.empty() ? !board
+                                            : Choose<bool>("lens", options->lens,
+                                                           {{"wide", true}, {"webcam", false}});
+  }
   clip.width_px = options->width_px != 0 ? options->width_px : board ? 1280 : 1920;
   const double own_distance_m = board ? 0.6 : clip.kind == ClipKind::kWalls ? 3.5 : 6.0;
   clip.distance_m = options->distance_m != 0 ? options->distance_m : own_distance_m;
