@@ -86,12 +86,12 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
   if (!options.camera && database.HasCalibration() && !database.ReadCameras().empty()) {
     throw InputError(
         fmt::format("{}: was made with a calibration (--camera_path); give it again, {}",
-                    options.database_path, remedy));
+                    options.database_path, kRemedy));
   }
   if (!options.camera) return;
   if (!database.HasCalibration()) {
     throw InputError(fmt::format("{}: was made without the calibration {}; {}",
-                                 options.database_path, options.camera_path, remedy));
+                                 options.database_path, options.camera_path, kRemedy));
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {
     if (!IsSameCalibration(options, camera)) {

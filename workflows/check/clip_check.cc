@@ -42,14 +42,6 @@ Layout FindDictionary(const ClipFrames& clip, ArucoDetectionOptions* detection, 
   return MakeLayout(hints[0].dictionary, kAnyLength_m);
 }
 
-// Detections do not depend on it.
-Camera AnyCamera(const cv::Size& size) {
-  return {CameraModel::kSimplePinhole,
-          size.width,
-          size.height,
-          {static_cast<double>(size.width), 0.5 * size.width, 0.5 * size.height}};
-}
-
 void CountIds(const std::vector<DatabaseImage>& images, const Layout& layout, ClipFacts* facts) {
   std::map<int, int> foreign;
   for (const DatabaseImage& image : images) {
@@ -191,7 +183,7 @@ class Checker {
     MarkerImporterOptions importer;
     importer.image_path = options_.image_path;
     importer.database_path = (folder.path() / "look.db").string();
-    importer.camera = options_.camera.value_or(AnyCamera(clip.frames[0].gray.size()));
+    importer.camera = options_.camera;
     importer.camera_path = options_.camera_path;
     importer.layout = layout;
     importer.detection = detection;

@@ -7,7 +7,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "importer/base/atomic_output.h"
-#include "importer/camera/calibration.h"
 #include "workflows/check/clip_check.h"
 #include "workflows/check/clip_verdict.h"
 #include "workflows/commands/commands.h"
@@ -31,10 +30,11 @@ CommandSyntax Declare(Options* options) {
           "    --output_path frame.png",
           {{"Input and output",
             {ImagePathOption(paths),
-             {"camera_path", &paths->camera_path, "path",
-              "calibration of the camera; left out: the precision is not found"},
-             {"output_path", &paths->output_path, "path",
-              "PNG of the frame with most markers, with their outlines and ids; left out: none"},
+             PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
+                        "calibration of the camera; left out: the precision is not found"),
+             PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
+                        "PNG of the frame with most markers, with their outlines and ids; left "
+                        "out: none"),
              {"num_frames", &options->check.num_frames, "", "number of a video's frames to look at",
               FromTo(5, 1000)}}},
            DescribeOptions(&options->markers, true),
@@ -53,10 +53,8 @@ void Validate(Options* options) {
   if (HasMarkerOptions(options->markers) || !options->markers.dictionary.empty()) {
     check.layout = LoadLayout(options->markers, true);
   }
-  if (!options->paths.camera_path.empty()) {
-    check.camera = ReadCalibration(options->paths.camera_path);
-    check.camera_path = options->paths.camera_path;
-  }
+  check.camera = LoadCalibration(options->paths);
+  check.camera_path = options->paths.camera_path;
 }
 
 std::string StretchesText(const std::vector<ClipStretch>& stretches) {
