@@ -275,7 +275,7 @@ std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
   }
   if (best) return best->cameras;
   throw DataError(fmt::format(
-      "the camera cannot be found from these pictures: {}; give its calibration (--camera_path)",
+      "the camera cannot be found from these pictures: {}; import them with its calibration",
       first_failure));
 }
 

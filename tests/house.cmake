@@ -3,8 +3,8 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue checksum csv error file_lock files ids natural_order numbers option
-  output_manifest parallel replacement stage_timer statistics text_file)
+  atomic_output bounded_queue csv error file_lock files ids natural_order numbers option
+  parallel replacement stage_timer statistics text_file)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
   rigid3 unit_square_map units)
@@ -51,8 +51,8 @@ house_folder(reconstruct/global PUBLIC
 house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/problem PUBLIC
-  corner_errors corner_residuals error_correlation marker_adjustment_options marker_problem
-  marker_state marker_uncertainty normal_equations scale_bar)
+  corner_errors corner_residuals corner_velocities error_correlation marker_adjustment_options
+  marker_problem marker_state marker_uncertainty normal_equations scale_bar)
 house_folder(reconstruct/adjust PUBLIC
   camera_adjustment marker_adjustment)
 house_folder(reconstruct PUBLIC

@@ -95,13 +95,23 @@ AtomicFolder::~AtomicFolder() {
   if (!committed_) RemoveAll(temporary_path_);
 }
 
+namespace {
+
+void WriteRecords(const fs::path& folder) {
+  for (const fs::path& entry : FolderEntries(folder)) {
+    if (IsFolder(entry)) WriteRecords(entry);
+  }
+  const std::string record = MakeFolderRecord(folder);
+  if (record.empty()) return;
+  WriteFile(folder / kFolderRecord, [&](std::ostream& out) { out << record; });
+}
+
+}  // namespace
+
 void AtomicFolder::Commit() {
   VELAMAP_CHECK(!committed_);
   CheckReplaceableFolder(path_);  // somebody may have put a file there meanwhile
-  const std::string record = MakeFolderRecord(temporary_path_);
-  if (!record.empty()) {
-    WriteFile(temporary_path_ / kFolderRecord, [&](std::ostream& out) { out << record; });
-  }
+  WriteRecords(temporary_path_);
   std::error_code error;
   if (!Exists(path_)) {
     fs::rename(temporary_path_, path_, error);

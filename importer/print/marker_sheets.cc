@@ -1,11 +1,15 @@
 #include "importer/print/marker_sheets.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "importer/base/output_manifest.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/files.h"
+#include "importer/base/replacement.h"
 #include "importer/layout/layout_writer.h"
 #include "importer/print/drawing_writer.h"
 #include "importer/print/png_file.h"
@@ -13,6 +17,9 @@
 
 namespace velamap {
 namespace {
+
+// Contents by path relative to the folder, such as markers/marker_0012.svg.
+using OutputFiles = std::map<std::string, std::string>;
 
 int NumCells(const PrintedLook& look) {
   return look.dictionary.aruco->markerSize + 2 * look.border_bits;
@@ -85,14 +92,20 @@ void AddLayout(const PrintOptions& options, const PrintPlan& plan, OutputFiles* 
   }
 }
 
+void WriteFiles(const OutputFiles& files, const std::string& output_path) {
+  AtomicFolder folder(output_path);
+  for (const auto& [name, content] : files) {
+    const std::filesystem::path path = folder.TemporaryPath() / name;
+    CreateFolders(path.parent_path());
+    WriteFile(path, [&text = content](std::ostream& out) { out << text; });
+  }
+  folder.Commit();
+}
+
 }  // namespace
 
 PrintReport PrintMarkers(const PrintOptions& options, const std::string& output_path) {
-  for (const std::string& input : {options.layout_path, options.dictionary,
-                                   options.layout ? options.layout->dictionary : std::string()}) {
-    CheckInputOutside(input, output_path);
-  }
-  CheckOutputFolder(output_path);
+  CheckReplaceableFolder(output_path);
   const PrintPlan plan = MakePrintPlan(options);
   WarnOfNarrowMargin(options.sheet, plan);
   PrintReport report;
@@ -121,7 +134,7 @@ PrintReport PrintMarkers(const PrintOptions& options, const std::string& output_
   files["sheets.pdf"] = PdfBytes(pages, "Markers for velamap, " + plan.look.dictionary.name);
   AddLayout(options, plan, &files);
   AddSingleMarkers(plan, options.sheet, &files);
-  WriteOutputFolder(output_path, files);
+  WriteFiles(files, output_path);
   for (const auto& [name, content] : files) report.files.push_back(name);
   return report;
 }

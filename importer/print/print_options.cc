@@ -36,6 +36,13 @@ OptionGroup DescribeOptions(PrintOptions* options) {
     }
     options->ids = *ids;
   };
+  Option dictionary{
+      "dictionary", &options->dictionary, "name|path",
+      fmt::format(
+          "one of OpenCV's such as DICT_4X4_50 or DICT_APRILTAG_36h11, THESIS_3X3_130, or a "
+          "dictionary file; left out: {}",
+          kDefaultDictionary)};
+  dictionary.path_use = PathUse::kReadsFile;
   return {
       "Markers",
       {ChoiceOption("arrangement", &options->arrangement, kArrangements,
@@ -45,10 +52,7 @@ OptionGroup DescribeOptions(PrintOptions* options) {
        {"marker_length", &options->marker_length_m, "m",
         "outer edge of the black square; board and charuco: left out, as large as fits",
         FromTo(kMinMarkerLength_m, kMaxMarkerLength_m)},
-       {"dictionary", &options->dictionary, "name|path",
-        fmt::format("one of OpenCV's such as DICT_4X4_50 or DICT_APRILTAG_36h11, THESIS_3X3_130, "
-                    "or a dictionary file; left out: {}",
-                    kDefaultDictionary)},
+       dictionary,
        {"border_bits", &options->border_bits, "cells", "width of the black border", FromTo(1, 8)},
        {"num_markers", &options->num_markers, "count", "markers: how many",
         FromTo(0, kMaxMarkerId + 1)},

@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "importer/base/checksum.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/detect/corner_colors.h"
@@ -21,6 +20,13 @@
 
 namespace velamap {
 namespace {
+
+// FNV-1a, 64 bit: the same on every machine.
+std::uint64_t Checksum(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
 
 std::string PriorShapeText(const PriorShape& prior_shape) {
   std::string text;

@@ -113,7 +113,7 @@ std::vector<BadInput> Wishes() {
       {"FrameByLinesThatAreNone", kExport + "--marker_length 0.1 --frame lines", 2,
        "the layout has no horizontal lines"},
       {"FrameThatIsNone", kExport + "--marker_length 0.1 --frame sideways", 2,
-       "--frame: 'sideways' is no frame"},
+       "--frame: 'sideways' is not a frame"},
       {"FrameRefusedBeforeTheWork", kRerun + " --frame reference_part", 2,
        "the layout names no reference_part"},
       {"ALayoutOfOtherMarkersExported", kExport + "--layout_path @/own.yml", 1, "is in the layout",

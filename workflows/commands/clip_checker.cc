@@ -35,7 +35,7 @@ CommandSyntax Declare(Options* options) {
              PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
                         "PNG of the frame with most markers, with their outlines and ids; left "
                         "out: none"),
-             {"num_frames", &options->check.num_frames, "", "number of a video's frames to look at",
+             {"num_frames", &options->check.num_frames, "frames", "to look at, of a video",
               FromTo(5, 1000)}}},
            DescribeOptions(&options->markers, true),
            DescribeOptions(&options->check.detection),

@@ -25,11 +25,12 @@ CommandSyntax Declare(Options* options) {
           "--arrangement sail --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 --hull_markers 8 \\\n"
           "    --marker_length 0.1 --output_path markers",
           {{"Input and output",
-            {Required({"output_path", &options->output_path, "path",
-                       "folder for sheets.pdf, layout.yml, placement.svg and the like; new, empty, "
-                       "or as an earlier run left it"}),
-             {"layout_path", &options->print.layout_path, "path",
-              "layout file (YAML) whose markers are printed, instead of an arrangement"}}},
+            {Required(PathOption("output_path", PathUse::kWritesFolder, &options->output_path,
+                                 "folder for sheets.pdf, layout.yml, placement.svg and the like; "
+                                 "new, empty, or as an earlier run left it")),
+             PathOption("layout_path", PathUse::kReadsLayout, &options->print.layout_path,
+                        "layout file (YAML) whose markers are printed, instead of an "
+                        "arrangement")}},
            DescribeOptions(&options->print),
            DescribeOptions(&options->print.sheet),
            DescribeOptions(&options->print.sail),

@@ -132,7 +132,7 @@ TEST(Section, OrderOfMarkersInTheShapeAndOfLinesInTheLayoutDoesNotMatter) {
   }
   ExpectSameNumbers(before, Sections(sail), 1e-12);
   // In a frame by markers, the order of the lines does not matter.
-  const FrameChoice choice{FrameKind::kMarkers, 900, 889, 600};
+  const FrameChoice choice{FrameKind::kMarkers, 900, 889, 700};
   const SectionReport by_markers = Sections(sail, {}, choice);
   std::reverse(part.horizontal.begin(), part.horizontal.end());
   ExpectSameNumbers(by_markers, Sections(sail, {}, choice), 1e-12);

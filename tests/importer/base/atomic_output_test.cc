@@ -100,6 +100,22 @@ TEST(AtomicFolder, WithoutCommitTheOldOneStays) {
   EXPECT_EQ(NumEntries(dir.path()), 1);
 }
 
+TEST(AtomicFolder, KnowsWhatItWroteInSubfolders) {
+  const TempDir dir;
+  const auto write = [&] {
+    AtomicFolder folder(dir / "out");
+    fs::create_directory(folder.TemporaryPath() / "markers");
+    WriteFile(folder.TemporaryPath() / "markers/a.svg", [](std::ostream& out) { out << "<svg/>"; });
+    folder.Commit();
+  };
+  write();
+  write();
+  EXPECT_EQ(Content(dir / "out/markers/a.svg"), "<svg/>");
+  WriteFile(dir / "out/markers/photo.jpg", [](std::ostream& out) { out << "mine"; });
+  ExpectThrows<InputError>(write, {"photo.jpg", "did not write there"});
+  EXPECT_EQ(Content(dir / "out/markers/photo.jpg"), "mine");
+}
+
 TEST(AtomicFolder, RefusesAFile) {
   const TempDir dir;
   WriteFile(dir / "out", [](std::ostream&) {});

@@ -111,8 +111,6 @@ TEST_F(PrintMarkersTest, MarkersOfALayoutKeepTheirSizes) {
   EXPECT_EQ(plan.markers[3].length_mm, 20);
   EXPECT_EQ(plan.markers[3].place, "sail h1, 4 of 12");
   EXPECT_EQ(plan.markers.back().place, "hull");
-  options_.layout_path = dir_ / "out/sheets.pdf";
-  ExpectThrows<InputError>([&] { Print(); }, {"sheets.pdf", "replaced"});
 }
 
 TEST_F(PrintMarkersTest, BoardsAreOnePageWithARigidLayout) {

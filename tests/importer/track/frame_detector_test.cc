@@ -35,7 +35,7 @@ TEST(MakeFrameDetector, KeepsMarkersOfThePriorShapeThatCanBeDetected) {
   Layout layout = MakeLayout("DICT_4X4_50", 0.1);
   const PriorShape prior = RowOfMarkers({1, 2, 3, 49, 50});
   EXPECT_EQ(MakeFrameDetector(layout, {}, prior).prior_shape.size(), 4u);
-  layout.parts.push_back({"board", false, {}, {}, {1, 3, 50}});
+  layout.parts.push_back({"board", false, {}, {}, {1, 3}});
   const FrameDetector detector = MakeFrameDetector(layout, {}, prior);
   EXPECT_EQ(detector.prior_shape.size(), 2u);
   EXPECT_EQ(detector.prior_shape.count(2), 0u);

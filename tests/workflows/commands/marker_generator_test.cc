@@ -49,7 +49,7 @@ TEST_F(MarkerGeneratorTest, SaysWhatItMade) {
   EXPECT_THAT(run.out, HasSubstr("markers: 3\npaper: A4\nsheets: 1\n"));
   EXPECT_THAT(run.out, HasSubstr("white_margin_mm: 12.5\n"));
   EXPECT_THAT(ListFolder(Folder()),
-              ElementsAre("dictionary.yml", "layout.yml", "sheets.pdf", "velamap_files.txt"));
+              ElementsAre(".velamap", "dictionary.yml", "layout.yml", "sheets.pdf"));
 }
 
 TEST_F(MarkerGeneratorTest, BadWishes) {
@@ -83,8 +83,9 @@ TEST_F(MarkerGeneratorTest, OutputOfOthersStays) {
   std::filesystem::remove(dir_ / "out/sheets.pdf");
   ASSERT_EQ(Run(kThree).exit_code, 0);
   ASSERT_EQ(Run(kThree).exit_code, 0);
+  ExpectFailure({"--layout_path", dir_ / "out/layout.yml"}, "out/layout.yml");  // is replaced
   WriteTextFile(dir_ / "out/layout.yml", "edited");
-  ExpectFailure(kThree, "layout.yml has been changed since velamap wrote it");
+  ExpectFailure(kThree, "layout.yml, which was changed after velamap wrote it");
 }
 
 }  // namespace
