@@ -190,7 +190,7 @@ std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& c
                   kGood_percent, DescribeCamera(*worst)),
       LowIsGood(worst_percent, kGood_percent, kBad_percent),
       "the pictures say little of the camera: show markers tilted and in all of the picture, from "
-      "more sides, or give a calibration (--camera_path)"};
+      "more sides, or give a calibration"};
 }
 
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,

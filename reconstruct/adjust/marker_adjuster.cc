@@ -78,8 +78,8 @@ void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
     if (sigma_px <= kMaxSigma * focal_px) continue;
     throw DataError(fmt::format(
         "these pictures do not tell the focal length of their camera ({:.0f} +- {:.0f} px){}{}; "
-        "film the markers tilted, from near and far and from more sides, or give a calibration "
-        "(--camera_path)",
+        "film the markers tilted, from near and far and from more sides, or import them with a "
+        "calibration",
         focal_px, sigma_px, weaknesses.empty() ? "" : ": ", fmt::join(weaknesses, "; ")));
   }
 }

@@ -42,8 +42,8 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
             "refine the calibration where the images determine it better and contradict it; an "
             "option BundleAdjustment.refine_* decides instead"},
            {"MarkerAdjustment.find_camera", &options->find_camera, "0|1",
-            "the camera is not known: refine all of it with the prior of any camera; set without "
-            "--camera_path"},
+            "the camera is not known: refine all of it with the prior of any camera; set "
+            "where there is no calibration"},
            {"MarkerAdjustment.intrinsics_sigma", &options->intrinsics_sigma, "fraction",
             "1 sigma of a calibration that is refined: of the focal "
             "length, and of the image's corners by each distortion parameter",
