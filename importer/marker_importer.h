@@ -69,10 +69,10 @@ struct ImportReport {
 //
 // Throws InputError for unreadable input, a calibration for another image size, a prior shape
 // without a calibration, a layout whose ids the dictionary does not have, a database that was made
-// with another camera, other detector settings or pictures that have changed since, one that another
-// velamap imports into, and a frame that would replace a picture that velamap did not write. Throws
-// DataError that names the dictionaries and polarity that would have found markers if there are
-// none.
+// with another camera, other detector settings or pictures that have changed since, one that
+// another velamap imports into, and a frame that would replace a picture that velamap did not
+// write. Throws DataError that names the dictionaries and polarity that would have found markers if
+// there are none.
 ImportReport ImportMarkers(const MarkerImporterOptions& options,
                            const ProgressCallback& progress = {});
 
