@@ -14,9 +14,6 @@ namespace {
 // Beyond it a hand has turned back.
 constexpr double kLongestStep_s = 0.15;
 
-// Of one marker, px/s.
-using MarkerVelocity = Eigen::Matrix<double, 2, kNumCorners>;
-
 const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
   const auto it =
       std::lower_bound(frame.markers.begin(), frame.markers.end(), marker_id,
@@ -41,7 +38,9 @@ Eigen::VectorXd SlopeWeights(const std::vector<double>& times_s) {
   return powers.colPivHouseholderQr().solve(Eigen::VectorXd::Unit(size, 1)) / unit_s;
 }
 
-std::optional<MarkerVelocity> MeasureVelocity(const FrameWindow& window, int marker_id) {
+// Of the mean of a marker's corners, px/s. The corners' own velocities are twice as noisy, and
+// noise in what the shutter multiplies makes it seem shorter.
+std::optional<Eigen::Vector2d> MeasureVelocity(const FrameWindow& window, int marker_id) {
   std::array<const MarkerDetection*, 5> seen{};
   for (std::size_t i = 0; i < window.size(); ++i) {
     if (window[i] != nullptr) seen[i] = FindMarker(*window[i], marker_id);
@@ -54,59 +53,64 @@ std::optional<MarkerVelocity> MeasureVelocity(const FrameWindow& window, int mar
     times_s.push_back(*window[i]->time_s - *window[kMiddle]->time_s);
   }
   const Eigen::VectorXd weights = SlopeWeights(times_s);
-  MarkerVelocity velocity = MarkerVelocity::Zero();
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
   for (int i = 0; i < weights.size(); ++i) {
-    for (int c = 0; c < kNumCorners; ++c) {
-      velocity.col(c) += weights[i] * seen[kMiddle - reach + i]->corners_in_image_px[c];
-    }
+    velocity += weights[i] * CornerMean(*seen[kMiddle - reach + i]);
   }
   return velocity;
 }
 
-// Rows: 1, x, y.
-using AffineField = Eigen::Matrix<double, 3, 2>;
+struct AffineField {
+  Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
+  Eigen::Vector2d value_px_s = Eigen::Vector2d::Zero();  // at the center
+  Eigen::Matrix2d gradient_1_s = Eigen::Matrix2d::Zero();
 
-Eigen::RowVector3d FieldRow(const Eigen::Vector2d& x_in_image_px) {
-  return {1.0, x_in_image_px.x(), x_in_image_px.y()};
-}
+  Eigen::Vector2d At(const Eigen::Vector2d& x_in_image_px) const {
+    return value_px_s + gradient_1_s * (x_in_image_px - center_px);
+  }
+};
 
-// Nothing for fewer than three markers.
+// Nothing for fewer than three markers. Across a line of markers the field does not change.
 std::optional<AffineField> FitField(const FrameDetections& frame,
-                                    const std::vector<std::optional<MarkerVelocity>>& velocities) {
+                                    const std::vector<std::optional<Eigen::Vector2d>>& velocities) {
   constexpr int kMinNumMarkers = 3;
   const auto num_known = std::count_if(velocities.begin(), velocities.end(),
                                        [](const auto& velocity) { return velocity.has_value(); });
   if (num_known < kMinNumMarkers) return std::nullopt;
-  Eigen::MatrixX3d places(kNumCorners * num_known, 3);
-  Eigen::MatrixX2d values(kNumCorners * num_known, 2);
+  Eigen::MatrixX2d places(num_known, 2), values(num_known, 2);
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     if (!velocities[i]) continue;
-    for (int c = 0; c < kNumCorners; ++c, ++row) {
-      places.row(row) = FieldRow(frame.markers[i].corners_in_image_px[c]);
-      values.row(row) = velocities[i]->col(c).transpose();
-    }
+    places.row(row) = CornerMean(frame.markers[i]).transpose();
+    values.row(row++) = velocities[i]->transpose();
   }
-  return places.colPivHouseholderQr().solve(values);
+  AffineField field;
+  field.center_px = places.colwise().mean();
+  field.value_px_s = values.colwise().mean();
+  places.rowwise() -= field.center_px.transpose();
+  values.rowwise() -= field.value_px_s.transpose();
+  const Eigen::Matrix2d by_place = places.completeOrthogonalDecomposition().solve(values);
+  field.gradient_1_s = by_place.transpose();
+  return field;
 }
 
 // Empty where the frames beside it tell nothing.
 std::vector<Eigen::Vector2d> VelocitiesOf(const FrameWindow& window) {
   const FrameDetections& frame = *window[kMiddle];
-  std::vector<std::optional<MarkerVelocity>> measured;
+  std::vector<std::optional<Eigen::Vector2d>> measured;
   for (const MarkerDetection& marker : frame.markers) {
     measured.push_back(MeasureVelocity(window, marker.marker_id));
   }
-  const bool is_complete = std::all_of(measured.begin(), measured.end(),
-                                       [](const auto& velocity) { return velocity.has_value(); });
-  const auto field = is_complete ? std::nullopt : FitField(frame, measured);
-  if (!is_complete && !field) return {};
+  const std::optional<AffineField> field = FitField(frame, measured);
   std::vector<Eigen::Vector2d> velocities;
   for (std::size_t i = 0; i < measured.size(); ++i) {
-    for (int c = 0; c < kNumCorners; ++c) {
-      velocities.push_back(
-          measured[i] ? Eigen::Vector2d(measured[i]->col(c))
-                      : (FieldRow(frame.markers[i].corners_in_image_px[c]) * *field).transpose());
+    if (!measured[i] && !field) return {};
+    const MarkerDetection& marker = frame.markers[i];
+    for (const Eigen::Vector2d& x_in_image_px : marker.corners_in_image_px) {
+      // Within a marker, the field says how the velocity changes.
+      Eigen::Vector2d velocity = field ? field->At(x_in_image_px) : *measured[i];
+      if (field && measured[i]) velocity += *measured[i] - field->At(CornerMean(marker));
+      velocities.push_back(velocity);
     }
   }
   return velocities;

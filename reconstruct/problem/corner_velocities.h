@@ -15,11 +15,12 @@ namespace velamap {
 // Velocities of the corners of one image by point2D_idx, px/s.
 using CornerVelocities = std::map<ImageId, std::vector<Eigen::Vector2d>>;
 
-// The slope of a polynomial through the places of a corner in the frame, two before and two after
-// it, or one each, whatever moves: camera, boat or cloth. Over a shake of 3 Hz the straight line
-// through two frames at 30 Hz is 7 % too slow, the polynomial through five 0.5 %. Steps between
-// frames may take 0.15 s; photographs tell nothing. A marker that the frames beside it lack moves
-// as the affine field that the others in the image fit best. Images without velocities are missing.
+// The slope of a polynomial through the places of a marker in the frame, two before and two after
+// it, or one each, whatever moves: camera, boat or cloth. Its corners and the markers that the
+// frames beside it lack follow from the affine field that all markers of the image fit best. Over a
+// shake of 3 Hz the straight line through two frames at 30 Hz is 7 % too slow, the polynomial
+// through five 0.5 %. Steps between frames may take 0.15 s; photographs tell nothing. Images
+// without velocities are missing.
 CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images);
 
 // The movement of a corner from when the middle row is read to when its own is, px, by one second
