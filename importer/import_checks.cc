@@ -49,7 +49,7 @@ void CheckPhotograph(const MarkerImporterOptions& options, const std::string& na
   const fs::path file = fs::path(options.image_path) / name;
   if (IsRegularFile(file)) {
     if (HaveSameContent(known, IdentifySource(file.string()))) return;
-    throw InputError(fmt::format("{}: {} is another picture now than that imported ({}); {}",
+    throw InputError(fmt::format("{}: {} has changed since it was imported (it was {}); {}",
                                  options.database_path, file.string(), SourceText(known), kRemedy));
   }
   // Photographs of several folders may share a database that is no workspace's.

@@ -85,9 +85,10 @@ void WriteAndRename(const fs::path& path, bool is_synced,
 AtomicFolder::AtomicFolder(const fs::path& path) : path_(AbsoluteFolder(path)) {
   CheckReplaceableFolder(path_);
   CreateFolders(path_.parent_path());
-  temporary_path_ = TemporarySibling(path_);
   std::error_code error;
-  fs::create_directory(temporary_path_, error);
+  do {  // a killed run of the same process number may have left a folder
+    temporary_path_ = TemporarySibling(path_);
+  } while (!fs::create_directory(temporary_path_, error) && !error);
   if (error) ThrowCannotWrite(path_, error.message());
 }
 

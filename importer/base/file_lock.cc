@@ -46,7 +46,9 @@ bool IsStillThere(const std::filesystem::path& path, int file) {
 FileLock::FileLock(const std::filesystem::path& path, const std::string& what) : path_(path) {
   while (file_ < 0) {
     // Closed on exec, so that a COLMAP that outlives us does not hold it.
-    const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+    int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+    // The file of another user can be locked without being written.
+    if (file < 0 && errno == EACCES) file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
     if (file < 0) return;
     if (flock(file, LOCK_EX | LOCK_NB) != 0) {
       const bool is_held = errno == EWOULDBLOCK;
@@ -56,9 +58,9 @@ FileLock::FileLock(const std::filesystem::path& path, const std::string& what) :
         spdlog::warn("{}: the file system has no locks; start one run at a time", path.string());
         return;
       }
-      throw InputError(
-          fmt::format("{}: another velamap works here{}; wait until it ends, or give another place",
-                      what, holder));
+      throw InputError(fmt::format(
+          "{}: another velamap works here{}; wait until it has finished, or choose another folder",
+          what, holder));
     }
     if (IsStillThere(path, file)) {
       file_ = file;
@@ -71,7 +73,9 @@ FileLock::FileLock(const std::filesystem::path& path, const std::string& what) :
 
 FileLock::~FileLock() {
   if (file_ < 0) return;
-  unlink(path_.c_str());  // while it is held: who opens it later makes a new one
+  // While it is held, so that who opens it later makes a new one. Another run may have made its own
+  // after the whole folder was removed.
+  if (IsStillThere(path_, file_)) unlink(path_.c_str());
   close(file_);
 }
 

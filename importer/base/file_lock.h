@@ -11,11 +11,12 @@ namespace velamap {
 class FileLock {
  public:
   // Takes the lock whose file is `path`, and writes since when and by which process it is held.
-  // Throws InputError, which begins with `what`, if another process or FileLock holds it. Where no
-  // lock can be made, nothing can be written either, which is for the writers to say, or the file
-  // system has no locks.
+  // Throws InputError, which begins with `what`, if another process or FileLock holds it. If the
+  // lock file cannot be opened, the run continues without a lock, because writing will normally
+  // fail as well and report the reason. If the file system has no locks, a warning says so.
   FileLock(const std::filesystem::path& path, const std::string& what);
   ~FileLock();  // removes the file
+  bool IsHeld() const { return file_ >= 0; }
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
 

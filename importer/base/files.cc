@@ -48,7 +48,8 @@ fs::file_type TypeOf(const fs::path& path) {
 // Whether the file system could make `to` a copy that shares its blocks with `from`.
 bool ShareBlocks(const fs::path& from, const fs::path& to) {
   const int source = open(from.c_str(), O_RDONLY | O_CLOEXEC);
-  const int copy = source < 0 ? -1 : open(to.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  const int copy =
+      source < 0 ? -1 : open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   const bool shared = copy >= 0 && ioctl(copy, FICLONE, source) == 0;
   if (copy >= 0) close(copy);
   if (source >= 0) close(source);
@@ -56,7 +57,8 @@ bool ShareBlocks(const fs::path& from, const fs::path& to) {
 }
 
 constexpr char kScratchName[] = "velamap_XXXXXX";
-constexpr char kScratchLock[] = ".velamap.lock";
+// No workspace has a file of this name, whatever its folder is called.
+constexpr char kScratchLock[] = ".velamap.scratch.lock";
 
 // Removes a folder for temporary files of a run that was killed: nobody holds its lock. It may be
 // about to get the lock for a while after it was made.
@@ -67,7 +69,7 @@ void RemoveIfAbandoned(const fs::path& folder) {
   if (error || fs::file_time_type::clock::now() - written < kGrace) return;
   try {
     const FileLock lock(folder / kScratchLock, folder.string());
-    RemoveAll(folder);
+    if (lock.IsHeld()) RemoveAll(folder);
   } catch (const InputError&) {
     // In use.
   }

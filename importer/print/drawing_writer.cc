@@ -7,6 +7,8 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 
+#include "importer/base/error.h"
+
 namespace velamap {
 namespace {
 
@@ -28,8 +30,11 @@ cairo_status_t Append(void* closure, const unsigned char* data, unsigned int len
   return CAIRO_STATUS_SUCCESS;
 }
 
-// Nothing here reads files, so that a failure is a fault of velamap's own.
+// Nothing here reads files, so that any other failure is a fault of velamap's own.
 void CheckStatus(cairo_status_t status) {
+  if (status == CAIRO_STATUS_INVALID_STRING) {
+    throw InputError("a name in the layout or of the dictionary's file is not UTF-8; save it so");
+  }
   if (status != CAIRO_STATUS_SUCCESS) {
     throw std::logic_error(std::string("cairo: ") + cairo_status_to_string(status));
   }

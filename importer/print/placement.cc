@@ -68,8 +68,10 @@ Sail MakeSail(const SailPlacementOptions& options, double sticker_mm) {
 // How many markers a line holds at a height, at most `wanted`.
 int NumMarkersAt(const Sail& sail, double height, int wanted) {
   const double room = sail.RoomAt(height);
-  if (room < 0) return 0;
-  return std::min(wanted, 1 + static_cast<int>(std::floor(room / sail.pitch_mm + 1e-9)));
+  constexpr double kRounding_mm = 1e-6;
+  if (room < -kRounding_mm) return 0;
+  return std::min(wanted,
+                  1 + static_cast<int>(std::floor(std::max(0.0, room) / sail.pitch_mm + 1e-9)));
 }
 
 PlacedLine MakeLine(const Sail& sail, const std::string& name, double height, int count,

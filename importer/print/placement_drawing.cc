@@ -24,8 +24,9 @@ struct PageWriter {
   double y_mm = kBorder_mm;
 
   explicit PageWriter(const Paper& paper) {
-    page.width_mm = std::min(paper.width_mm, paper.height_mm);
-    page.height_mm = std::max(paper.width_mm, paper.height_mm);
+    // Pictures are not in true scale and need some room, whatever the markers are printed on: A5.
+    page.width_mm = std::max(148.0, std::min(paper.width_mm, paper.height_mm));
+    page.height_mm = std::max(210.0, std::max(paper.width_mm, paper.height_mm));
   }
   double Width() const { return page.width_mm - 2 * kBorder_mm; }
   double Bottom() const { return page.height_mm - kBorder_mm; }

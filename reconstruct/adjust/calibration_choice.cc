@@ -58,10 +58,12 @@ IntrinsicsVerdict JudgeIntrinsics(MarkerSolution trial, const FreeIntrinsics& fr
   verdict.needed *= factor * factor;
   verdict.determined = free;
   for (const auto& [camera_id, camera] : trial.calibration) {
+    const auto intrinsics = linearization->state.intrinsics.find(camera_id);
+    if (intrinsics == linearization->state.intrinsics.end()) continue;  // its images were left out
     const Eigen::MatrixXd covariance =
         factor * factor *
         GlobalCovariance(linearization->problem, linearization->covariance,
-                         linearization->state.intrinsics.at(camera_id).data());
+                         intrinsics->second.data());
     verdict.determined = DeterminedIntrinsics(verdict.determined,
                                               MakeIntrinsicsPrior(camera, free, calibration_sigma),
                                               trial.model.cameras.at(camera_id), covariance);

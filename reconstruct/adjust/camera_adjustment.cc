@@ -98,14 +98,14 @@ std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options
   }
   try {
     const CameraAdjustment adjustment = AdjustCameras(options, layout, corner_errors, model);
-    const auto sigma_px = [&](CameraId camera_id) {
-      const auto sigma = adjustment.focal_sigmas_px.find(camera_id);
-      return sigma == adjustment.focal_sigmas_px.end() ? 0.0 : sigma->second;
-    };
+    const std::map<CameraId, double>& sigmas_px = adjustment.focal_sigmas_px;
+    for (const CameraId camera_id : {step.camera_id, second_id}) {
+      if (sigmas_px.count(camera_id) == 0) return std::nullopt;  // its images were left out
+    }
     step.before_px = MeanFocalLength(adjustment.cameras.at(step.camera_id));
     step.after_px = MeanFocalLength(adjustment.cameras.at(second_id));
     const double change_px = std::abs(step.after_px - step.before_px);
-    step.sigmas = change_px / std::hypot(sigma_px(step.camera_id), sigma_px(second_id));
+    step.sigmas = change_px / std::hypot(sigmas_px.at(step.camera_id), sigmas_px.at(second_id));
     if (change_px < kMinChange * step.before_px || step.sigmas < kMinSigmas) return std::nullopt;
     return step;
   } catch (const DataError& error) {

@@ -47,9 +47,10 @@ std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
                                               const MarkerLinearization& linearization) {
   std::map<CameraId, EstimatedCamera> cameras;
   for (const auto& [camera_id, camera] : model.cameras) {
+    const auto intrinsics = linearization.state.intrinsics.find(camera_id);
+    if (intrinsics == linearization.state.intrinsics.end()) continue;  // its images were left out
     const Eigen::VectorXd variances =
-        GlobalCovariance(linearization.problem, linearization.covariance,
-                         linearization.state.intrinsics.at(camera_id).data())
+        GlobalCovariance(linearization.problem, linearization.covariance, intrinsics->second.data())
             .diagonal();
     cameras[camera_id].camera = camera;
     for (const double variance : variances) {

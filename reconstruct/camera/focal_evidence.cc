@@ -107,6 +107,8 @@ class PooledViews {
   PooledViews(std::vector<SquareView> views, int num_threads)
       : views_(std::move(views)), num_threads_(num_threads) {}
 
+  std::size_t NumViews() const { return views_.size(); }
+
   std::vector<std::optional<ViewErrors>> Evaluate(const Camera& camera, bool with_change) const {
     std::vector<std::optional<ViewErrors>> errors(views_.size());
     ParallelFor(views_.size(), num_threads_,
@@ -167,6 +169,9 @@ FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
   for (double x = low; x <= high; x += kGridStep) {
     variance = std::min(variance, pooled.Variance(lens(x)));
   }
+  // A few views cannot show that corners are better than their sigmas.
+  constexpr std::size_t kFewViews = 8;
+  if (pooled.NumViews() < kFewViews) variance = std::max(variance, 1.0);
   FocalEvidence result{UnknownCamera(width_px, height_px), 0.0,
                        std::numeric_limits<double>::infinity(), 0};
   double best = low;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -116,6 +117,10 @@ IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
   central.params[static_cast<std::size_t>(num_focal)] = 0.5 * camera.width_px;
   central.params[static_cast<std::size_t>(num_focal) + 1] = 0.5 * camera.height_px;
   IntrinsicsPrior prior = MakeIntrinsicsPrior(central, {true, true, true}, kRadialSigma);
+  // Coefficients that a calibration does not name are free as well.
+  prior.held.clear();
+  prior.free.resize(prior.sigmas.size());
+  std::iota(prior.free.begin(), prior.free.end(), 0);
   for (int i = 0; i < static_cast<int>(prior.sigmas.size()); ++i) {
     const int distortion = i - num_focal - 2;
     double& sigma = prior.sigmas[static_cast<std::size_t>(i)];

@@ -2,12 +2,15 @@
 // derivatives are analytic.
 //
 // Parameter blocks
-//   marker      3 x c    the c <= 4 corners of a marker that are in the model, world frame, m
-//   pose        7        cam_from_world while the middle row is read: quaternion x y z w,
-//   translation (m) inset       1        apparent inset of all corners, px intrinsics  3..12
-//   parameters of one camera, in COLMAP's order shutter     1        time from the first row of an
-//   image to the last, s print scale 1        scale of all printed sides, less 1 part scale  1 the
-//   same of the sides on one part of the layout, in addition
+// clang-format off
+//   marker       3 x c  the c <= 4 corners of a marker that are in the model, world frame, m
+//   pose         7      cam_from_world while the middle row is read: quaternion x y z w, then m
+//   inset        1      apparent inset of all corners, px
+//   intrinsics   3..12  parameters of one camera, in COLMAP's order
+//   shutter      1      time from the first row of an image to the last, s
+//   print scale  1      scale of all printed sides, less 1
+//   part scale   1      the same for the sides on one part of the layout, in addition
+// clang-format on
 
 #pragma once
 

@@ -33,12 +33,12 @@ std::vector<BadInput> ChangedSources() {
   const std::string of_video =
       "automatic_reconstructor --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
       "@/layout.yml --backend markers --workspace_path @/workspace";
-  return {{"OtherPhotographsOfTheSameNames", kRerun, 2, "1.png is another picture now",
+  return {{"OtherPhotographsOfTheSameNames", kRerun, 2, "1.png has changed since it was imported",
            SwapPhotographs, kLog},
           {"OtherPhotographsInAnotherFolder",
            "automatic_reconstructor --image_path @/other --camera_path @/camera.yml --layout_path "
            "@/layout.yml --backend markers --workspace_path @/workspace",
-           2, "1.png is another picture now",
+           2, "1.png has changed since it was imported",
            [](const fs::path& dir) {
              fs::copy(dir / "images", dir / "other");
              fs::copy(dir / "grey/a.png", dir / "other/1.png",

@@ -82,10 +82,10 @@ std::vector<ClipStretch> FindGoodStretches(const std::vector<DatabaseImage>& ima
   return stretches;
 }
 
-double StepOf(const ClipFrames& clip) {
-  const auto& frames = clip.frames;
-  if (frames.size() < 2 || !frames[0].time_s || !frames.back().time_s) return 0.0;
-  return (*frames.back().time_s - *frames[0].time_s) / static_cast<double>(frames.size() - 1);
+double SecondsPerFrame(const ClipFrames& clip) {
+  const Frame &first = clip.frames.front(), &last = clip.frames.back();
+  if (!first.time_s || !last.time_s || first.frame_number == last.frame_number) return 0.0;
+  return (*last.time_s - *first.time_s) / (*last.frame_number - *first.frame_number);
 }
 
 // Light and blur of all markers in the frames that were read with their pixels.
@@ -156,15 +156,17 @@ class Checker {
   explicit Checker(const ClipCheckOptions& options) : options_(options) {}
 
   ClipCheck Run() {
-    const ClipFrames clip = ReadClipFrames(options_.image_path, options_.video,
-                                           kNumFramesWithPixels, options_.num_threads);
+    const VideoOptions video =
+        SpreadOverClip(options_.image_path, options_.video, options_.num_frames);
+    const ClipFrames clip =
+        ReadClipFrames(options_.image_path, video, kNumFramesWithPixels, options_.num_threads);
     ClipFacts& facts = check_.facts;
     facts.num_frames = clip.num_frames;
     facts.num_frames_read = static_cast<int>(clip.frames.size());
     facts.is_video = clip.is_video;
     facts.width_px = clip.frames[0].gray.cols;
     facts.height_px = clip.frames[0].gray.rows;
-    facts.has_layout = options_.layout.has_value();
+    facts.has_layout = options_.layout && options_.layout->HasMarkers();
     ArucoDetectionOptions detection = options_.detection;
     const Layout layout =
         options_.layout ? *options_.layout : FindDictionary(clip, &detection, &facts);
@@ -172,12 +174,12 @@ class Checker {
     facts.is_inverted = detection.inverted;
     MarkFrame(clip.frames[0], {});
     if (layout.dictionary.empty()) return std::move(check_);
-    Detect(clip, layout, detection);
+    Detect(clip, video, layout, detection);
     return std::move(check_);
   }
 
  private:
-  void Detect(const ClipFrames& clip, const Layout& layout,
+  void Detect(const ClipFrames& clip, const VideoOptions& video, const Layout& layout,
               const ArucoDetectionOptions& detection) {
     const TemporaryFolder folder;
     MarkerImporterOptions importer;
@@ -189,21 +191,20 @@ class Checker {
     importer.detection = detection;
     importer.detection.estimate_formation = false;  // it takes longer than all else
     importer.num_threads = options_.num_threads;
-    importer.video = clip.is_video
-                         ? SpreadOverClip(options_.image_path, options_.video, options_.num_frames)
-                         : options_.video;
+    importer.video = video;
     try {
       Progress progress("looking at frames");
       check_.facts.num_frames_read =
           ImportMarkers(importer, [&progress](int done, int total, const std::string& message) {
             progress.Update(done, total, message);
           }).num_frames_read;
-    } catch (const DataError&) {
-      return;  // no markers
+    } catch (const DataError& error) {
+      check_.facts.no_markers_because = error.what();
+      return;
     }
     const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
     const std::vector<DatabaseImage> images = database.ReadImages();
-    CollectFacts(clip, layout, images);
+    CollectFacts(clip, video.frame_step, layout, images);
     if (!options_.camera || !options_.layout) return;
     try {
       check_.facts.precision =
@@ -213,7 +214,7 @@ class Checker {
     }
   }
 
-  void CollectFacts(const ClipFrames& clip, const Layout& layout,
+  void CollectFacts(const ClipFrames& clip, int frame_step, const Layout& layout,
                     const std::vector<DatabaseImage>& images) {
     ClipFacts& facts = check_.facts;
     CountIds(images, layout, &facts);
@@ -229,9 +230,7 @@ class Checker {
     }
     facts.num_frames_with_few_markers = facts.num_frames_read - num_with_enough;
     facts.side_px = ComputeStatistics(std::move(sides_px));
-    const double step_s =
-        StepOf(clip) * static_cast<double>(clip.frames.size()) / std::max(1, facts.num_frames_read);
-    facts.good_stretches = FindGoodStretches(images, step_s);
+    facts.good_stretches = FindGoodStretches(images, frame_step * SecondsPerFrame(clip));
     MeasureLights(clip, by_name, facts.is_inverted, &facts);
     const FrameDetections* best = nullptr;
     const Frame* best_frame = nullptr;

@@ -20,8 +20,8 @@ struct ClipFrames {
 VideoOptions SpreadOverClip(const std::string& image_path, const VideoOptions& video,
                             int max_num_frames);
 
-// Up to `max_num_frames` frames. Throws InputError where OpenFrameSource() does and if no frame can
-// be read.
+// Up to `max_num_frames` frames, of a video some of those that `video` chooses. Throws InputError
+// where OpenFrameSource() does and if no frame can be read.
 ClipFrames ReadClipFrames(const std::string& image_path, const VideoOptions& video,
                           int max_num_frames, int num_threads);
 

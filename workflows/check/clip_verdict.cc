@@ -43,7 +43,9 @@ class Judge {
 
   void JudgeDictionary() {
     if (facts_.num_frames_of_id.empty()) {
-      Bad("no marker is seen: check that the clip shows markers, and the dictionary");
+      Bad(facts_.no_markers_because.empty()
+              ? "no marker is seen: check that the clip shows markers, and the dictionary"
+              : "no marker to go by: " + facts_.no_markers_because);
       return;
     }
     if (facts_.num_markers_found && facts_.num_markers_of_second &&

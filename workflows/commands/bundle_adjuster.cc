@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <spdlog/spdlog.h>
 
 #include "importer/base/atomic_output.h"
 #include "importer/database/colmap_database.h"
@@ -78,11 +79,17 @@ void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOption
   }
 }
 
-CornerErrors LoadCorners(const Options& options, Model* model) {
+// A camera that was found instead of calibrated is refined, so that the sigmas contain it.
+CornerErrors LoadCorners(const Options& options, AdjustmentOptions* adjustment, Model* model) {
   if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) return {};
   const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
   const std::vector<DatabaseImage> images = database.ReadImages();
   RestoreKeypoints(images, options.paths, model);
+  if (!database.HasCalibration() && !adjustment->markers.find_camera) {
+    spdlog::info("{}: made without a calibration; the camera is refined",
+                 options.paths.database_path);
+    adjustment->markers.find_camera = true;
+  }
   return CornerErrorsOf(images, database.ReadFormation());
 }
 
@@ -107,9 +114,10 @@ void Run(const Options& options) {
   StageClock clock;
   const Layout layout = LoadAdjustmentLayout(options);
   Model model = ReadModel(options.paths.input_path);
-  const CornerErrors corner_errors = LoadCorners(options, &model);
+  AdjustmentOptions adjustment = options.adjustment;
+  const CornerErrors corner_errors = LoadCorners(options, &adjustment, &model);
   const AdjustmentResult result =
-      AdjustModel(options.adjustment, layout, corner_errors, options.paths.log_path, &model);
+      AdjustModel(adjustment, layout, corner_errors, options.paths.log_path, &model);
   clock.End("adjust", static_cast<int>(model.images.size()));
   WriteAdjustedModel(model, result, options.paths.output_path);
   clock.End("export");

@@ -161,8 +161,11 @@ void RemoveOtherImages(const Model& model, const std::vector<std::string>& datab
     const fs::path original = fs::path(image_path) / name, copy = images_path / name;
     if (model_names.count(name) > 0 || !IsRegularFile(copy) || !IsInside(copy, images_path))
       continue;
-    const bool is_lost_nowhere =
-        is_video ? IsWrittenFrame(copy) : IsRegularFile(original) && AreEqual(copy, original);
+    // A link that leads to the copy is no second copy.
+    const bool is_lost_nowhere = is_video ? IsWrittenFrame(copy)
+                                          : IsRegularFile(original) &&
+                                                CanonicalPath(original) != CanonicalPath(copy) &&
+                                                AreEqual(copy, original);
     if (is_lost_nowhere) RemoveFileOrEmptyFolder(copy);
   }
 }

@@ -93,18 +93,22 @@ TEST(TemporaryFolder, OfAKilledRunIsRemovedByTheNext) {
   const std::string restored = earlier == nullptr ? "" : earlier;
   setenv("TMPDIR", dir.path().c_str(), 1);
   const fs::path killed = dir / "velamap_killed", theirs = dir / "velamap_theirs";
-  for (const fs::path& folder : {killed, theirs}) fs::create_directory(folder);
-  Touch(killed / ".velamap.lock");
-  fs::last_write_time(killed / ".velamap.lock",
+  const fs::path workspace = dir / "velamap_result";  // of a run that was killed, too
+  for (const fs::path& folder : {killed, theirs, workspace}) fs::create_directory(folder);
+  Touch(workspace / ".velamap.lock");
+  fs::last_write_time(workspace / ".velamap.lock",
+                      fs::file_time_type::clock::now() - std::chrono::hours(1));
+  Touch(killed / ".velamap.scratch.lock");
+  fs::last_write_time(killed / ".velamap.scratch.lock",
                       fs::file_time_type::clock::now() - std::chrono::hours(1));
   {
     const TemporaryFolder one;
-    fs::last_write_time(one.path() / ".velamap.lock",
+    fs::last_write_time(one.path() / ".velamap.scratch.lock",
                         fs::file_time_type::clock::now() - std::chrono::hours(1));
     const TemporaryFolder other;
     EXPECT_TRUE(fs::exists(one.path()));
   }
-  EXPECT_THAT(FolderEntries(dir.path()), ElementsAre(theirs));
+  EXPECT_THAT(FolderEntries(dir.path()), ElementsAre(workspace, theirs));
   restored.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", restored.c_str(), 1);
 }
 

@@ -53,7 +53,7 @@ TEST(PlaceOnSail, StickersLieInsideAndApartOnRandomSails) {
     SailPlacementOptions options =
         Sail(luff, foot, std::hypot(luff, foot) * (0.85 + 0.25 * part(random)));
     options.num_lines = 1 + i % 9;
-    options.markers_per_line = 2 + i % 14;
+    options.markers_per_line = 1 + i % 14;
     Placement placement;
     try {
       placement = PlaceOnSail(options, kLength_mm, kSticker_mm, 10);
