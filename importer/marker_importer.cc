@@ -293,9 +293,9 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
   if (known_names.empty()) database.ForgetSources();
+  CheckSources(options, known_names, &database);
   CheckExisting(options, DescribeDetector(detector), database);
   CheckFrameFolder(options, known_names);
-  CheckSources(options, known_names, &database);
   if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }

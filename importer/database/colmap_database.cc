@@ -144,11 +144,11 @@ CameraId ColmapDatabase::AddCamera(const Camera& camera, bool is_calibrated) {
 
 bool ColmapDatabase::HasCalibration() const {
   return Guarded(path_, [&] {
-    // Cameras of images that another program has added do not count.
+    // Cameras whose images another program has added do not count.
     const std::string ours =
         database_->tableExists("marker_detections")
-            ? " AND camera_id IN (SELECT camera_id FROM images JOIN marker_detections"
-              " USING(image_id))"
+            ? " AND camera_id NOT IN (SELECT camera_id FROM images WHERE camera_id NOT IN"
+              " (SELECT camera_id FROM images JOIN marker_detections USING(image_id)))"
             : "";
     return database_->execAndGet("SELECT COUNT(*) FROM cameras WHERE prior_focal_length = 0" + ours)
                .getInt() == 0;

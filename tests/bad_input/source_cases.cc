@@ -33,48 +33,48 @@ std::vector<BadInput> ChangedSources() {
   const std::string of_video =
       "automatic_reconstructor --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
       "@/layout.yml --backend markers --workspace_path @/workspace";
-  return {{"OtherPhotographsOfTheSameNames", kRerun, 2, "1.png has changed since it was imported",
-           SwapPhotographs, kLog},
-          {"OtherPhotographsInAnotherFolder",
-           "automatic_reconstructor --image_path @/other --camera_path @/camera.yml --layout_path "
-           "@/layout.yml --backend markers --workspace_path @/workspace",
-           2, "1.png has changed since it was imported",
-           [](const fs::path& dir) {
-             fs::copy(dir / "images", dir / "other");
-             fs::copy(dir / "grey/a.png", dir / "other/1.png",
-                      fs::copy_options::overwrite_existing);
-           },
-           kLog},
-          {"APhotographDeleted", kRerun, 2, "holds 4.png, which is not in",
-           [](const fs::path& dir) { fs::remove(dir / "images/4.png"); }, kLog},
-          {"PhotographsOfOtherNames",
-           "automatic_reconstructor --image_path @/grey --camera_path @/camera.yml --layout_path "
-           "@/layout.yml --backend markers --workspace_path @/workspace",
-           2,
-           "holds 1.png, which is not in",
-           {},
-           kLog},
-          {"AVideoInTheWorkspaceOfPhotographs", of_video, 2, "was made from photographs", {}, kLog},
-          {"AnotherVideo", kImportClip, 2, "another video than",
-           [](const fs::path& dir) {
-             RunGood(dir, kImportClip);
-             RunSql(dir / "new.db", "UPDATE marker_sources SET size = size + 1, path = '/old.avi'");
-           }},
-          {"AVideoThatWasChanged", kImportClip, 2, "the video before it was changed",
-           [](const fs::path& dir) {
-             RunGood(dir, kImportClip);
-             WriteTextFile(dir / "clip.avi", ReadFileBytes(dir / "clip.avi") + "more");
-           }},
-          {"APhotographDeletedFromTheFolderOfADatabase", kImport, 2, "holds 4.png, which is not in",
-           [](const fs::path& dir) {
-             RunGood(dir, kImport);
-             fs::remove(dir / "images/4.png");
-           }},
-          {"APhotographReplacedInTheFolderOfADatabase", kImport, 2, "another picture now",
-           [](const fs::path& dir) {
-             RunGood(dir, kImport);
-             SwapPhotographs(dir);
-           }}};
+  return {
+      {"OtherPhotographsOfTheSameNames", kRerun, 2, "1.png has changed since it was imported",
+       SwapPhotographs, kLog},
+      {"OtherPhotographsInAnotherFolder",
+       "automatic_reconstructor --image_path @/other --camera_path @/camera.yml --layout_path "
+       "@/layout.yml --backend markers --workspace_path @/workspace",
+       2, "1.png has changed since it was imported",
+       [](const fs::path& dir) {
+         fs::copy(dir / "images", dir / "other");
+         fs::copy(dir / "grey/a.png", dir / "other/1.png", fs::copy_options::overwrite_existing);
+       },
+       kLog},
+      {"APhotographDeleted", kRerun, 2, "holds 4.png, which is not in",
+       [](const fs::path& dir) { fs::remove(dir / "images/4.png"); }, kLog},
+      {"PhotographsOfOtherNames",
+       "automatic_reconstructor --image_path @/grey --camera_path @/camera.yml --layout_path "
+       "@/layout.yml --backend markers --workspace_path @/workspace",
+       2,
+       "holds 1.png, which is not in",
+       {},
+       kLog},
+      {"AVideoInTheWorkspaceOfPhotographs", of_video, 2, "was made from photographs", {}, kLog},
+      {"AnotherVideo", kImportClip, 2, "another video than",
+       [](const fs::path& dir) {
+         RunGood(dir, kImportClip);
+         RunSql(dir / "new.db", "UPDATE marker_sources SET size = size + 1, path = '/old.avi'");
+       }},
+      {"AVideoThatWasChanged", kImportClip, 2, "the video before it was changed",
+       [](const fs::path& dir) {
+         RunGood(dir, kImportClip);
+         WriteTextFile(dir / "clip.avi", ReadFileBytes(dir / "clip.avi") + "more");
+       }},
+      {"APhotographDeletedFromTheFolderOfADatabase", kImport, 2, "holds 4.png, which is not in",
+       [](const fs::path& dir) {
+         RunGood(dir, kImport);
+         fs::remove(dir / "images/4.png");
+       }},
+      {"APhotographReplacedInTheFolderOfADatabase", kImport, 2, "has changed since it was imported",
+       [](const fs::path& dir) {
+         RunGood(dir, kImport);
+         SwapPhotographs(dir);
+       }}};
 }
 
 // Wishes that cannot be granted, and data that have no result.
