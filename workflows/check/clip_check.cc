@@ -161,7 +161,7 @@ class Checker {
     const ClipFrames clip =
         ReadClipFrames(options_.image_path, video, kNumFramesWithPixels, options_.num_threads);
     ClipFacts& facts = check_.facts;
-    facts.num_frames = clip.num_frames;
+    facts.num_frames = OpenFrameSource(options_.image_path, options_.video)->NumFrames();
     facts.num_frames_read = static_cast<int>(clip.frames.size());
     facts.is_video = clip.is_video;
     facts.width_px = clip.frames[0].gray.cols;

@@ -11,7 +11,7 @@ namespace velamap {
 
 struct ClipFrames {
   std::vector<Frame> frames;  // loaded, in order
-  int num_frames = 0;         // of the whole clip; 0 if the container does not say
+  int num_frames = 0;         // that `video` chooses; 0 if the container does not say
   int num_unreadable = 0;
   bool is_video = false;
 };
