@@ -80,6 +80,15 @@ void WriteAndRename(const fs::path& path, bool is_synced,
   }
 }
 
+void WriteRecords(const fs::path& folder) {
+  for (const fs::path& entry : FolderEntries(folder)) {
+    if (IsFolder(entry)) WriteRecords(entry);
+  }
+  const std::string record = MakeFolderRecord(folder);
+  if (record.empty()) return;
+  WriteFile(folder / kFolderRecord, [&](std::ostream& out) { out << record; });
+}
+
 }  // namespace
 
 AtomicFolder::AtomicFolder(const fs::path& path) : path_(AbsoluteFolder(path)) {
@@ -95,19 +104,6 @@ AtomicFolder::AtomicFolder(const fs::path& path) : path_(AbsoluteFolder(path)) {
 AtomicFolder::~AtomicFolder() {
   if (!committed_) RemoveAll(temporary_path_);
 }
-
-namespace {
-
-void WriteRecords(const fs::path& folder) {
-  for (const fs::path& entry : FolderEntries(folder)) {
-    if (IsFolder(entry)) WriteRecords(entry);
-  }
-  const std::string record = MakeFolderRecord(folder);
-  if (record.empty()) return;
-  WriteFile(folder / kFolderRecord, [&](std::ostream& out) { out << record; });
-}
-
-}  // namespace
 
 void AtomicFolder::Commit() {
   VELAMAP_CHECK(!committed_);

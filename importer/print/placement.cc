@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/geometry/quad.h"
 
 namespace velamap {
 namespace {
@@ -33,10 +34,6 @@ double RequireLength(const std::optional<double>& length_m, const std::string& o
     throw InputError(option + ": missing; a sail needs the lengths of luff, foot and leech in m");
   }
   return 1000 * *length_m;
-}
-
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 Sail MakeSail(const SailPlacementOptions& options, double sticker_mm) {

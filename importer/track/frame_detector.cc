@@ -21,13 +21,6 @@
 namespace velamap {
 namespace {
 
-// FNV-1a, 64 bit: the same on every machine.
-std::uint64_t Checksum(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
-
 std::string PriorShapeText(const PriorShape& prior_shape) {
   std::string text;
   for (const auto& [id, in_shape_m] : prior_shape) {
@@ -110,7 +103,7 @@ std::string DescribeDetector(const FrameDetector& detector) {
   }
   // Databases of earlier versions hold the prior shape under the name map.
   if (!detector.prior_shape.empty()) {
-    search += fmt::format(" map={:016x}", Checksum(PriorShapeText(detector.prior_shape)));
+    search += fmt::format(" map={:016x}", Hash(PriorShapeText(detector.prior_shape)));
   }
   if (detector.options.corner_refinement == CornerRefinement::kEdge &&
       detector.options.estimate_formation) {
@@ -122,7 +115,7 @@ std::string DescribeDetector(const FrameDetector& detector) {
       detector.dictionary.name, detector.border_bits,
       CornerRefinementName(detector.options.corner_refinement),
       detector.options.min_marker_perimeter_rate, detector.options.error_correction_rate,
-      detector.options.inverted ? 1 : 0, Checksum(known), search);
+      detector.options.inverted ? 1 : 0, Hash(known), search);
 }
 
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray) {

@@ -22,17 +22,12 @@ struct IntrinsicsVerdict {
   bool IsSignificant() const { return improvement > needed; }
 };
 
-// The Bayesian information criterion (Schwarz, "Estimating the Dimension of a Model", 1978).
-double InformationCriterion(const MarkerSolution& solution, const FreeIntrinsics& free,
-                            double sigma) {
-  int num_free = 0, num_corners = 0;
+int NumFree(const MarkerSolution& solution, const FreeIntrinsics& free, double sigma) {
+  int num_free = 0;
   for (const auto& [camera_id, camera] : solution.calibration) {
     num_free += static_cast<int>(MakeIntrinsicsPrior(camera, free, sigma).free.size());
   }
-  for (const auto& [point3D_id, point] : solution.model.points3D) {
-    num_corners += static_cast<int>(point.track.size());
-  }
-  return num_free * std::log(2.0 * num_corners);
+  return num_free;
 }
 
 // `trial` holds the calibration; its options have the sigma of an ordinary one, and `sigma` is the
@@ -44,7 +39,7 @@ IntrinsicsVerdict JudgeIntrinsics(MarkerSolution trial, const FreeIntrinsics& fr
   Minimize(1e-4, &trial);
   IntrinsicsVerdict verdict;
   verdict.improvement = before - SumOfSquares(trial);
-  verdict.criterion = verdict.needed = InformationCriterion(trial, free, sigma);
+  verdict.criterion = verdict.needed = InformationCriterion(NumFree(trial, free, sigma), trial);
   spdlog::debug("free intrinsics: the sum of squares falls by {:.1f}, {:.1f} needed",
                 verdict.improvement, verdict.needed);
   if (!verdict.IsSignificant()) return verdict;

@@ -46,15 +46,9 @@ CameraAdjustment AdjustTied(const MarkerAdjustmentOptions& free, const Layout& l
                             const CornerErrors& corner_errors, Model tied,
                             const TurnedCameras& turned) {
   GiveRoom(&tied);
-  MarkerAdjuster adjuster(free, layout, corner_errors, std::move(tied));
-  adjuster.PrepareSeed();
-  const MarkerAdjuster begin = adjuster;
-  adjuster.AdjustToCorners();
-  if (adjuster.ShowsRollingShutter()) {
-    adjuster = begin;
-    adjuster.FreeRollingShutter();
-    adjuster.AdjustToCorners();
-  }
+  MarkerAdjuster begin(free, layout, corner_errors, std::move(tied));
+  begin.PrepareSeed();
+  MarkerAdjuster adjuster = MarkerAdjuster::AdjustedFrom(&begin);
   adjuster.ChooseCameraModel();
   CameraAdjustment adjustment;
   for (const auto& [camera_id, estimate] : adjuster.EstimateCameras()) {

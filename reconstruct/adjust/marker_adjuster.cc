@@ -15,6 +15,7 @@
 #include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/adjust/camera_model_choice.h"
 #include "reconstruct/adjust/marker_sizes.h"
+#include "reconstruct/adjust/rolling_shutter_choice.h"
 #include "reconstruct/adjust/scale_bar_verdict.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
@@ -186,6 +187,16 @@ void MarkerAdjuster::AdjustToCorners() {
   AdjustLoosely();
   RejectContradictingSizes();
   AdjustTightly();
+}
+
+MarkerAdjuster MarkerAdjuster::AdjustedFrom(MarkerAdjuster* begin) {
+  MarkerAdjuster adjuster = *begin;
+  adjuster.AdjustToCorners();
+  if (!ShowsRollingShutter(adjuster.solution_)) return adjuster;
+  begin->solution_.weights.frees_rolling_shutter = true;
+  adjuster = *begin;
+  adjuster.AdjustToCorners();
+  return adjuster;
 }
 
 bool MarkerAdjuster::AddScaleBars() {

@@ -10,7 +10,6 @@
 
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/adjust/marker_solution.h"
-#include "reconstruct/adjust/rolling_shutter_choice.h"
 
 namespace velamap {
 
@@ -41,10 +40,9 @@ class MarkerAdjuster {
   // The three steps above.
   void AdjustToCorners();
 
-  // Whether the images show a rolling shutter, which is then to be freed from the beginning. After
-  // AdjustToCorners.
-  bool ShowsRollingShutter() const { return velamap::ShowsRollingShutter(solution_); }
-  void FreeRollingShutter() { solution_.weights.frees_rolling_shutter = true; }
+  // The result of AdjustToCorners. If it shows a rolling shutter, that is freed in `begin`, and the
+  // result is the one from there.
+  static MarkerAdjuster AdjustedFrom(MarkerAdjuster* begin);
 
   // With find_camera, after AdjustToCorners: takes the camera model that the images speak for.
   void ChooseCameraModel();

@@ -17,13 +17,7 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
   const TurnedCameras turned = TieTurnedCameras(&tied);
   MarkerAdjuster begin(options, layout, corner_errors, std::move(tied));
   begin.PrepareSeed();
-  MarkerAdjuster given = begin;
-  given.AdjustToCorners();
-  if (given.ShowsRollingShutter()) {
-    begin.FreeRollingShutter();
-    given = begin;
-    given.AdjustToCorners();
-  }
+  MarkerAdjuster given = MarkerAdjuster::AdjustedFrom(&begin);
   std::optional<MarkerAdjuster> better = given.WithBetterCalibration(begin);
   MarkerAdjuster& adjuster = better ? *better : given;
   if (adjuster.AddScaleBars()) adjuster.AdjustTightly();

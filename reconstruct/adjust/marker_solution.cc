@@ -120,6 +120,14 @@ double SumOfSquares(const MarkerSolution& solution) {
   return 2.0 * cost;
 }
 
+double InformationCriterion(int num_parameters, const MarkerSolution& solution) {
+  int num_corners = 0;
+  for (const auto& [point3D_id, point] : solution.model.points3D) {
+    num_corners += static_cast<int>(point.track.size());
+  }
+  return num_parameters * std::log(2.0 * num_corners);
+}
+
 double CalibrateRobustly(MarkerSolution* solution) {
   const double before = solution->weights.corner_factor;
   const double variance =

@@ -61,6 +61,10 @@ std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolu
 // Sum of the squares of all residuals, in sigmas, less what the loss takes off.
 double SumOfSquares(const MarkerSolution& solution);
 
+// The decrease of SumOfSquares that is significant for so many more parameters: the Bayesian
+// information criterion (Schwarz, "Estimating the Dimension of a Model", 1978).
+double InformationCriterion(int num_parameters, const MarkerSolution& solution);
+
 // The smallest factor of the corners' sigmas: exact corners would leave no weight to the priors.
 constexpr double kMinCornerFactor = 1e-3;
 

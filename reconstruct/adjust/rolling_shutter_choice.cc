@@ -30,10 +30,10 @@ bool ShowsRollingShutter(const MarkerSolution& solution) {
                                            &state.rolling_shutter_s)(0, 0);
   const double sigma_s = std::sqrt(variance) * CorrelationFactor(trial, *linearization);
   const double sigmas = state.rolling_shutter_s / sigma_s;
-  const double needed = std::log(static_cast<double>(2 * linearization->problem.corners.size()));
   spdlog::debug("rolling shutter {:.2f} +- {:.2f} ms", 1e3 * state.rolling_shutter_s,
                 1e3 * sigma_s);
-  return sigmas * sigmas > needed && std::abs(state.rolling_shutter_s) > kFastest_s;
+  return sigmas * sigmas > InformationCriterion(1, trial) &&
+         std::abs(state.rolling_shutter_s) > kFastest_s;
 }
 
 }  // namespace velamap

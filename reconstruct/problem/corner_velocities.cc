@@ -38,24 +38,26 @@ Eigen::VectorXd SlopeWeights(const std::vector<double>& times_s) {
   return powers.colPivHouseholderQr().solve(Eigen::VectorXd::Unit(size, 1)) / unit_s;
 }
 
-// Of the mean of a marker's corners, px/s. The corners' own velocities are twice as noisy, and
-// noise in what the shutter multiplies makes it seem shorter.
-std::optional<Eigen::Vector2d> MeasureVelocity(const FrameWindow& window, int marker_id) {
-  std::array<const MarkerDetection*, 5> seen{};
-  for (std::size_t i = 0; i < window.size(); ++i) {
-    if (window[i] != nullptr) seen[i] = FindMarker(*window[i], marker_id);
-  }
-  if (seen[kMiddle - 1] == nullptr || seen[kMiddle + 1] == nullptr) return std::nullopt;
-  const bool is_wide = seen.front() != nullptr && seen.back() != nullptr;
-  const int reach = is_wide ? kMiddle : 1;
+// The weights of `reach` frames before the middle one to `reach` after it.
+Eigen::VectorXd SlopeWeights(const FrameWindow& window, int reach) {
   std::vector<double> times_s;
   for (int i = kMiddle - reach; i <= kMiddle + reach; ++i) {
     times_s.push_back(*window[i]->time_s - *window[kMiddle]->time_s);
   }
-  const Eigen::VectorXd weights = SlopeWeights(times_s);
+  return SlopeWeights(times_s);
+}
+
+// Of the mean of a marker's corners, px/s. The corners' own velocities are twice as noisy, and
+// noise in what the shutter multiplies makes it seem shorter. Nothing unless all frames that
+// `weights` reaches show the marker.
+std::optional<Eigen::Vector2d> MeasureVelocity(const FrameWindow& window,
+                                               const Eigen::VectorXd& weights, int marker_id) {
+  const int reach = static_cast<int>(weights.size()) / 2;
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
-  for (int i = 0; i < weights.size(); ++i) {
-    velocity += weights[i] * CornerMean(*seen[kMiddle - reach + i]);
+  for (int i = -reach; i <= reach; ++i) {
+    const MarkerDetection* seen = FindMarker(*window[kMiddle + i], marker_id);
+    if (seen == nullptr) return std::nullopt;
+    velocity += weights[reach + i] * CornerMean(*seen);
   }
   return velocity;
 }
@@ -98,8 +100,13 @@ std::optional<AffineField> FitField(const FrameDetections& frame,
 std::vector<Eigen::Vector2d> VelocitiesOf(const FrameWindow& window) {
   const FrameDetections& frame = *window[kMiddle];
   std::vector<std::optional<Eigen::Vector2d>> measured;
+  const Eigen::VectorXd narrow = SlopeWeights(window, 1);
+  const bool is_wide = window.front() != nullptr && window.back() != nullptr;
+  const Eigen::VectorXd wide = is_wide ? SlopeWeights(window, kMiddle) : narrow;
   for (const MarkerDetection& marker : frame.markers) {
-    measured.push_back(MeasureVelocity(window, marker.marker_id));
+    auto velocity = MeasureVelocity(window, wide, marker.marker_id);
+    if (!velocity && is_wide) velocity = MeasureVelocity(window, narrow, marker.marker_id);
+    measured.push_back(velocity);
   }
   const std::optional<AffineField> field = FitField(frame, measured);
   std::vector<Eigen::Vector2d> velocities;

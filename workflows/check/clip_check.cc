@@ -156,12 +156,14 @@ class Checker {
   explicit Checker(const ClipCheckOptions& options) : options_(options) {}
 
   ClipCheck Run() {
-    const VideoOptions video =
-        SpreadOverClip(options_.image_path, options_.video, options_.num_frames);
-    const ClipFrames clip =
-        ReadClipFrames(options_.image_path, video, kNumFramesWithPixels, options_.num_threads);
     ClipFacts& facts = check_.facts;
     facts.num_frames = OpenFrameSource(options_.image_path, options_.video)->NumFrames();
+    const VideoOptions video =
+        SpreadOverClip(options_.video, facts.num_frames, options_.num_frames);
+    const int num_looked_at = facts.num_frames * options_.video.frame_step / video.frame_step;
+    const ClipFrames clip = ReadClipFrames(
+        options_.image_path, SpreadOverClip(video, num_looked_at, kNumFramesWithPixels),
+        kNumFramesWithPixels, options_.num_threads);
     facts.num_frames_read = static_cast<int>(clip.frames.size());
     facts.is_video = clip.is_video;
     facts.width_px = clip.frames[0].gray.cols;

@@ -12,26 +12,19 @@
 
 namespace velamap {
 
-VideoOptions SpreadOverClip(const std::string& image_path, const VideoOptions& video,
-                            int max_num_frames) {
-  const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video);
+VideoOptions SpreadOverClip(const VideoOptions& video, int num_frames, int max_num_frames) {
   VideoOptions spread = video;
-  spread.frame_step *= std::max(1, source->NumFrames() / max_num_frames);
+  spread.frame_step *= std::max(1, num_frames / max_num_frames);
   return spread;
 }
 
 ClipFrames ReadClipFrames(const std::string& image_path, const VideoOptions& video,
                           int max_num_frames, int num_threads) {
   ClipFrames clip;
-  std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video);
+  const std::unique_ptr<FrameSource> source = OpenFrameSource(image_path, video);
   clip.is_video = source->IsVideo();
-  clip.num_frames = source->NumFrames();
-  int stride = 1;
-  if (clip.is_video) {
-    source = OpenFrameSource(image_path, SpreadOverClip(image_path, video, max_num_frames));
-  } else {
-    stride = std::max(1, (clip.num_frames + max_num_frames - 1) / max_num_frames);
-  }
+  const int stride =
+      clip.is_video ? 1 : std::max(1, (source->NumFrames() + max_num_frames - 1) / max_num_frames);
   for (int idx = 0; static_cast<int>(clip.frames.size()) < max_num_frames; ++idx) {
     std::optional<Frame> frame = source->Next();
     if (!frame) break;

@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
 #include <Eigen/Core>
 
+#include "exporters/shape/shape_sigma.h"
+#include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "importer/database/colmap_database.h"
+#include "importer/geometry/units.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
@@ -32,24 +37,16 @@ double Parallax(const Model& model) {
   return std::acos(std::max(-1.0, least_cosine));
 }
 
-// Sigma of each marker's mean corner in space, mm.
+// In space, of the centre of each marker whose four corners are known, mm.
 std::vector<double> MarkerSigmas(const PointCovariance& points) {
-  constexpr double kMmPerM = 1000.0;
-  std::map<int, std::vector<Point3DId>> corners_of_id;
+  std::set<int> marker_ids;
   for (const Point3DId point3D_id : points.point3D_ids) {
-    corners_of_id[CornerFromPoint3DId(point3D_id).marker_id].push_back(point3D_id);
+    marker_ids.insert(CornerFromPoint3DId(point3D_id).marker_id);
   }
   std::vector<double> sigmas_mm;
-  for (const auto& [marker_id, corners] : corners_of_id) {
-    double variance_m2 = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      PointGradient gradient;
-      for (const Point3DId point3D_id : corners) {
-        gradient.emplace_back(point3D_id, Eigen::Vector3d::Unit(axis) / double(corners.size()));
-      }
-      variance_m2 += VarianceOf(points, gradient);
-    }
-    sigmas_mm.push_back(kMmPerM * std::sqrt(variance_m2));
+  for (const int marker_id : marker_ids) {
+    const auto sigma_m = PointSigma(&points, marker_id, 0);
+    if (sigma_m) sigmas_mm.push_back(kMmPerM * sigma_m->norm());
   }
   return sigmas_mm;
 }
@@ -72,10 +69,11 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   ClipPrecision precision;
   precision.num_images = static_cast<int>(model.images.size());
   const std::vector<double> sigmas_mm = MarkerSigmas(summary.uncertainty.points);
+  if (sigmas_mm.empty()) throw DataError("no marker is left with all four corners");
   precision.num_markers = static_cast<int>(sigmas_mm.size());
   precision.marker_sigma_mm = Median(sigmas_mm);
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
-  precision.parallax_deg = Parallax(model) * 180.0 / M_PI;
+  precision.parallax_deg = kDegPerRad * Parallax(model);
   precision.warnings = summary.warnings;
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (!marker.is_false) continue;

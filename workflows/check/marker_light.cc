@@ -8,24 +8,13 @@
 #include <Eigen/Core>
 
 #include "importer/base/statistics.h"
+#include "importer/detect/interpolate.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
 
 constexpr double kMinContrast = 8.0;
-
-std::optional<double> GrayAt(const cv::Mat& gray, const Eigen::Vector2d& x_in_image_px) {
-  // Pixel centres are at halves.
-  const double x = x_in_image_px.x() - 0.5, y = x_in_image_px.y() - 0.5;
-  const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
-  if (column < 0 || row < 0 || column + 1 >= gray.cols || row + 1 >= gray.rows) {
-    return std::nullopt;
-  }
-  const double right = x - column, down = y - row;
-  const auto at = [&](int r, int c) { return static_cast<double>(gray.at<std::uint8_t>(r, c)); };
-  return (1 - down) * ((1 - right) * at(row, column) + right * at(row, column + 1)) +
-         down * ((1 - right) * at(row + 1, column) + right * at(row + 1, column + 1));
-}
 
 // Across one side.
 struct Edge {
@@ -40,13 +29,16 @@ std::optional<Edge> MeasureEdge(const cv::Mat& gray, const Eigen::Vector2d& from
   const Eigen::Vector2d along = to - from;
   const Eigen::Vector2d outwards = Eigen::Vector2d(along.y(), -along.x()).normalized();
   const double reach_px = std::max(1.5, kReachSides * along.norm());
+  const cv::Rect2d inside(0, 0, gray.cols - 1, gray.rows - 1);
   std::vector<double> profile;
   for (double offset_px = -reach_px; offset_px <= reach_px; offset_px += kStep_px) {
     double sum = 0.0;
     for (const double part : {0.4, 0.5, 0.6}) {
-      const auto value = GrayAt(gray, from + part * along + offset_px * outwards);
-      if (!value) return std::nullopt;
-      sum += *value / 3;
+      // From COLMAP's image frame to OpenCV's.
+      const Eigen::Vector2d x_px =
+          from + part * along + offset_px * outwards - Eigen::Vector2d::Constant(0.5);
+      if (!inside.contains({x_px.x(), x_px.y()})) return std::nullopt;
+      sum += InterpolateGray(gray, x_px) / 3;
     }
     profile.push_back(sum);
   }
@@ -59,7 +51,7 @@ std::optional<Edge> MeasureEdge(const cv::Mat& gray, const Eigen::Vector2d& from
     steepest = std::max(steepest, (profile[i] - profile[i - kSpan]) / (kSpan * kStep_px));
   }
   if (edge.white - edge.black < kMinContrast || steepest <= 0) return std::nullopt;
-  edge.blur_px = (edge.white - edge.black) / (std::sqrt(2 * M_PI) * steepest);
+  edge.blur_px = (edge.white - edge.black) / (std::sqrt(2 * kPi) * steepest);
   return edge;
 }
 

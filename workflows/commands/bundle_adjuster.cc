@@ -130,10 +130,7 @@ void Run(const Options& options) {
 Command BundleAdjuster() {
   const auto options = std::make_shared<Options>();
   options->adjustment.backend = AdjustmentBackend::kColmap;  // needs no more than a model
-  return {Declare(options.get()), [options](const Arguments&) {
-            Validate(options.get());
-            Run(*options);
-          }};
+  return MakeCommand(options, Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -115,10 +115,7 @@ Command CentralFrameSweeper() {
   const auto options = std::make_shared<Options>();
   options->sweep.registration.method = RegistrationMethod::kThesis;
   options->sweep.adjustment.backend = AdjustmentBackend::kMarkers;  // profits from a warm start
-  return {Declare(options.get()), [options](const Arguments&) {
-            Validate(options.get());
-            Run(*options);
-          }};
+  return MakeCommand(options, Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -127,12 +127,6 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ClipChecker() {
-  const auto options = std::make_shared<Options>();
-  return {Declare(options.get()), [options](const Arguments&) {
-            Validate(options.get());
-            Run(*options);
-          }};
-}
+Command ClipChecker() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
 
 }  // namespace velamap

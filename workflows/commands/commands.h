@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,6 +19,17 @@ struct Command {
   CommandSyntax syntax;                                 // its options set values that `run` uses
   std::function<void(const Arguments& arguments)> run;  // `arguments` as they were typed
 };
+
+// The command whose options are `options`: declared at once; when it runs, validated and used. The
+// command keeps them.
+template <typename Options>
+Command MakeCommand(const std::shared_ptr<Options>& options, CommandSyntax (*declare)(Options*),
+                    void (*validate)(Options*), void (*run)(const Options&)) {
+  return {declare(options.get()), [=](const Arguments&) {
+            validate(options.get());
+            run(*options);
+          }};
+}
 
 Command ClipChecker();
 Command AutomaticReconstructor();

@@ -86,11 +86,7 @@ void Run(const Options& options) {
 }  // namespace
 
 Command MarkerImporter() {
-  const auto options = std::make_shared<Options>();
-  return {Declare(options.get()), [options](const Arguments&) {
-            Validate(options.get());
-            Run(*options);
-          }};
+  return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run);
 }
 
 }  // namespace velamap

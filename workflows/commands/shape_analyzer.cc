@@ -51,11 +51,11 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->general)}};
 }
 
-void Validate(const Options& options) {
-  SetLogLevel(options.general.log_level);
-  const PathOptions& paths = options.paths;
-  if (!HasMarkerOptions(options.markers) && paths.reference_path.empty() &&
-      paths.input_path.empty() && !options.part_planes) {
+void Validate(Options* options) {
+  SetLogLevel(options->general.log_level);
+  const PathOptions& paths = options->paths;
+  if (!HasMarkerOptions(options->markers) && paths.reference_path.empty() &&
+      paths.input_path.empty() && !options->part_planes) {
     throw InputError(
         "--layout_path: missing; give it or --marker_length to judge the markers' size, "
         "--input_path for reprojection errors, --reference_path to compare, or --part_planes 1");
@@ -144,12 +144,6 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ShapeAnalyzer() {
-  const auto options = std::make_shared<Options>();
-  return {Declare(options.get()), [options](const Arguments&) {
-            Validate(*options);
-            Run(*options);
-          }};
-}
+Command ShapeAnalyzer() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
 
 }  // namespace velamap

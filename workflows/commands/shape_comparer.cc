@@ -110,13 +110,13 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->general)}};
 }
 
-void Validate(const Options& options) {
-  SetLogLevel(options.general.log_level);
-  if (!options.surface_path.empty() && options.layout_path.empty()) {
+void Validate(Options* options) {
+  SetLogLevel(options->general.log_level);
+  if (!options->surface_path.empty() && options->layout_path.empty()) {
     throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
   }
-  if (!options.alignment.marker_ids.empty() &&
-      options.alignment.method != AlignmentMethod::kMarkers) {
+  if (!options->alignment.marker_ids.empty() &&
+      options->alignment.method != AlignmentMethod::kMarkers) {
     throw InputError("--align_markers: goes with --align markers only");
   }
 }
@@ -263,12 +263,6 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ShapeComparer() {
-  const auto options = std::make_shared<Options>();
-  return {Declare(options.get()), [options](const Arguments&) {
-            Validate(*options);
-            Run(*options);
-          }};
-}
+Command ShapeComparer() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
 
 }  // namespace velamap

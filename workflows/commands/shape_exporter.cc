@@ -86,12 +86,6 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ShapeExporter() {
-  const auto options = std::make_shared<Options>();
-  return {Declare(options.get()), [options](const Arguments&) {
-            Validate(options.get());
-            Run(*options);
-          }};
-}
+Command ShapeExporter() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
 
 }  // namespace velamap

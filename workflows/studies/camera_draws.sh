@@ -13,25 +13,14 @@ set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-num_draws="" seed=1 rest=()
-while [[ $# -gt 0 ]]; do
-  case "$1" in
-    --num_draws | --seed)
-      [[ "${2:-}" =~ ^[0-9]{1,6}$ && "$2" -gt 0 ]] || fail "$1: expected a number from 1 on"
-      if [[ "$1" == --seed ]]; then seed="$2"; else num_draws="$2"; fi
-      shift
-      ;;
-    *) rest+=("$1") ;;
-  esac
-  shift
-done
+read_draw_arguments "$@"
 begin_study camera_draws "${rest[@]}"
 clip_corners="$(find_program CLIP_CORNERS clip_corners tests/tools/clip_corners)"
 folder="$(dirname "${BASH_SOURCE[0]}")"
 if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 6 : 200)); fi
 csv="$work/camera_draws.csv"
 
-mapfile -t draws < <(awk -f "$folder/draw_cameras.awk" -v seed="$seed" -v num_draws="$num_draws" \
+mapfile -t draws < <(awk -f "$folder/random.awk" -f "$folder/draw_cameras.awk" -v seed="$seed" -v num_draws="$num_draws" \
   -v quick="$quick")
 IFS=, read -ra names <<<"${draws[0]}"
 results=(exit_code side_px side_bias_px side_bias_percent corner_error_px corner_error_over_sigma

@@ -58,6 +58,23 @@ begin_study() {
   echo "== $study: into $work"
 }
 
+# read_draw_arguments "$@": of a study that draws its clips at random, sets num_draws (empty: the study's
+# own number) and seed, and leaves the other arguments in rest.
+read_draw_arguments() {
+  num_draws="" seed=1 rest=()
+  while [[ $# -gt 0 ]]; do
+    case "$1" in
+      --num_draws | --seed)
+        [[ "${2:-}" =~ ^[0-9]{1,6}$ && "$2" -gt 0 ]] || fail "$1: expected a number from 1 on"
+        if [[ "$1" == --seed ]]; then seed="$2"; else num_draws="$2"; fi
+        shift
+        ;;
+      *) rest+=("$1") ;;
+    esac
+    shift
+  done
+}
+
 # The sail of all studies: 122 markers of 100 mm as in section 4.3, at half the size for --quick.
 full_sail=(--scene sail --width 1920)
 quick_sail=(--scene sail --width 1280 --sail_scale 0.5 --distance 3)

@@ -1,15 +1,9 @@
 # Prints the conditions of random draws as CSV: draw, class, curve, then options of render_clip, empty
 # where a draw does not set them.
-# usage: awk -f draw_cameras.awk -v seed=1 -v num_draws=200 -v quick=0
+# usage: awk -f random.awk -f draw_cameras.awk -v seed=1 -v num_draws=200 -v quick=0
 # More draws leave the first ones as they are. Scenes and tone curves take turns, so that every class has
 # as many draws; all else is random.
 
-# Park and Miller's minimal standard generator: the same numbers in every awk.
-function uniform() {
-  state = (16807 * state) % 2147483647
-  return state / 2147483647
-}
-function between(low, high) { return low + (high - low) * uniform() }
 function log_between(low, high) { return low * exp(log(high / low) * uniform()) }
 function set(name, format, value) { values[name] = sprintf(format, value) }
 

@@ -1,14 +1,8 @@
 # Prints the conditions of random lenses as CSV: draw, lens (brown or fisheye), scene, width, focal length
 # in widths, then fx, cx and cy (px, OpenCV's) and four distortion coefficients, then options of
 # render_clip. Focal lengths are 0.5 to 1.6 widths, those of a fisheye to 0.8.
-# usage: awk -f draw_lenses.awk -v seed=1 -v num_draws=24 -v quick=0
+# usage: awk -f random.awk -f draw_lenses.awk -v seed=1 -v num_draws=24 -v quick=0
 
-# Park and Miller's minimal standard generator: the same numbers in every awk.
-function uniform() {
-  state = (16807 * state) % 2147483647
-  return state / 2147483647
-}
-function between(low, high) { return low + (high - low) * uniform() }
 function normal() { return sqrt(-2 * log(uniform())) * cos(6.283185307 * uniform()) }
 
 # Distortions by what they do at the picture's corner, as a part of its distance from the axis.

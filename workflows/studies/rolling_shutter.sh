@@ -14,12 +14,9 @@ csv="$work/rolling_shutter.csv"
 echo "clip,scene,shutter_ms,shake_deg,sail_motion_m,found_ms,sigma_ms,distance_without_mm,distance_mm" \
   >"$csv"
 
-# Park and Miller's generator, as in draw_cameras.awk.
 draw_clips() {  # NUM_CLIPS
-  awk -v num_clips="$1" '
-    function uniform() { state = (16807 * state) % 2147483647; return state / 2147483647 }
+  awk -v num_clips="$1" -v state=20201 "$(cat "$(dirname "${BASH_SOURCE[0]}")/random.awk")"'
     BEGIN {
-      state = 20201
       for (i = 1; i <= num_clips; i++) {
         shutter = i % 3 == 0 ? 0 : (uniform() < 0.25 ? -1 : 1) * (4 + 26 * uniform())
         shake = 0.6 * uniform()

@@ -9,18 +9,7 @@ set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-num_draws="" seed=1 rest=()
-while [[ $# -gt 0 ]]; do
-  case "$1" in
-    --num_draws | --seed)
-      [[ "${2:-}" =~ ^[0-9]{1,6}$ && "$2" -gt 0 ]] || fail "$1: expected a number from 1 on"
-      if [[ "$1" == --seed ]]; then seed="$2"; else num_draws="$2"; fi
-      shift
-      ;;
-    *) rest+=("$1") ;;
-  esac
-  shift
-done
+read_draw_arguments "$@"
 begin_study unknown_cameras "${rest[@]}"
 folder="$(dirname "${BASH_SOURCE[0]}")"
 if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 4 : 24)); fi
@@ -56,7 +45,7 @@ found_focal() {
 }
 
 csv="$work/unknown_cameras.csv"
-mapfile -t draws < <(awk -f "$folder/draw_lenses.awk" -v seed="$seed" -v num_draws="$num_draws" \
+mapfile -t draws < <(awk -f "$folder/random.awk" -f "$folder/draw_lenses.awk" -v seed="$seed" -v num_draws="$num_draws" \
   -v quick="$quick")
 echo "draw,lens,scene,focal_widths,model,focal_px,focal_sigma_px,focal_error_percent,\
 distance_after_scaling_mm,distance_after_scaling_calibrated_mm,ratio,scale_error_percent,\
