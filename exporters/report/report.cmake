@@ -32,6 +32,7 @@ add_custom_command(
   COMMENT "Building the report's page" VERBATIM)
 
 target_sources(velamap_exporters PRIVATE
+  report/camera_key_numbers.cc
   report/report_data.cc
   report/report_histogram.cc
   report/report_images.cc

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/report/camera_key_numbers.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
@@ -23,16 +24,6 @@ constexpr double kGoodRatio = 0.95, kBadRatio = 0.7;
 // The codes that a wrong dictionary finds do not fit together, but some do by chance.
 constexpr double kGoodIdShare = 0.5, kBadIdShare = 0.25;
 constexpr double kGoodScaleSpread_percent = 1, kBadScaleSpread_percent = 3;
-// What the calibration that the residuals ask for does to the shape: the sigmas take the given one
-// for granted.
-constexpr double kGoodShapeChange_sigmas = 0.5, kBadShapeChange_sigmas = 1;
-// One parameter is named where it alone explains so much of what all together do.
-constexpr double kDecisiveShare = 0.7;
-
-ReportStatus LowIsGood(double value, double good, double bad) {
-  if (value <= good) return ReportStatus::kGood;
-  return value <= bad ? ReportStatus::kCheck : ReportStatus::kBad;
-}
 
 ReportStatus HighIsGood(double value, double good, double bad) {
   return LowIsGood(-value, -good, -bad);
@@ -107,90 +98,6 @@ bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
   return std::any_of(audit.parts.begin(), audit.parts.end(), [&scale](const GroupScale& part) {
     return std::abs(part.deviation) > scale.relative_sigma.value_or(0.0);
   });
-}
-
-// Decided by the effect: a change of the calibration that the residuals ask for but that hardly
-// moves the shape harms nobody.
-ReportStatus StatusOf(const CalibrationEvidence& evidence) {
-  if (evidence.num_changes == 0) return ReportStatus::kNone;
-  if (!IsContradicted(evidence)) return ReportStatus::kGood;
-  return LowIsGood(evidence.shape_change_in_sigmas, kGoodShapeChange_sigmas,
-                   kBadShapeChange_sigmas);
-}
-
-// The parameter that explains most, and the options that refine it.
-std::string CalibrationAdvice(const CalibrationEvidence& evidence) {
-  const bool is_focal = evidence.focal_share >= std::max(kDecisiveShare, evidence.distortion_share);
-  const bool is_distortion = !is_focal && evidence.distortion_share >= kDecisiveShare;
-  std::string what = "focal length and distortion";
-  std::string command =
-      "velamap automatic_reconstructor --BundleAdjustment.refine_focal_length 1 "
-      "--BundleAdjustment.refine_extra_params 1";
-  if (is_focal) {
-    what = fmt::format("its focal length is {:+.1f} % off",
-                       100 * (1 / (1 + evidence.focal_change) - 1));
-    command = "velamap automatic_reconstructor --BundleAdjustment.refine_focal_length 1";
-  } else if (is_distortion) {
-    what = "its distortion is wrong or missing";
-    command = "velamap automatic_reconstructor --BundleAdjustment.refine_extra_params 1";
-  }
-  return fmt::format(
-      "the calibration {} these images ({}): calibrate this camera as it filmed (velamap "
-      "camera_calibrator), or refine it: {}",
-      StatusOf(evidence) == ReportStatus::kBad ? "does not belong to" : "does not quite fit", what,
-      command);
-}
-
-// Whether another calibration would explain the residuals. Not tested without the marker-aware
-// adjustment.
-std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertainty) {
-  if (uncertainty == nullptr || uncertainty->calibration.num_changes == 0) return std::nullopt;
-  const CalibrationEvidence& evidence = uncertainty->calibration;
-  return KeyNumber{
-      KeyNumberKind::kCalibration,
-      fmt::format("{:.3f} px systematic, {:.2g} sigmas of the shape", evidence.systematic_px,
-                  evidence.shape_change_in_sigmas),
-      fmt::format("part of the residuals and of the markers' sides over the image that another "
-                  "calibration explains, and how far that would move the shape; good up to {:g} px "
-                  "or {:g} sigmas",
-                  kMaxSystematic_px, kGoodShapeChange_sigmas),
-      StatusOf(evidence), CalibrationAdvice(evidence)};
-}
-
-// Where the adjustment estimated it.
-std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncertainty) {
-  if (uncertainty == nullptr || !(uncertainty->rolling_shutter_sigma_s > 0)) return std::nullopt;
-  return KeyNumber{KeyNumberKind::kRollingShutter,
-                   fmt::format("{:.1f} \u00b1{:.1f} ms", 1e3 * uncertainty->rolling_shutter_s,
-                               1e3 * uncertainty->rolling_shutter_sigma_s),
-                   "time from the first row of a frame to the last, found in the video and taken "
-                   "out of the shape",
-                   ReportStatus::kNone};
-}
-
-// The camera that was found instead of a calibration; of several, the one that is known worst. Its
-// uncertainty is part of the shape's sigmas, so that a vague one is no fault as such.
-std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& cameras) {
-  constexpr double kGood_percent = 1.0, kBad_percent = 5.0;
-  const EstimatedCamera* worst = nullptr;
-  double worst_percent = -1.0;
-  for (const EstimatedCamera& found : cameras) {
-    const double percent = 100 * found.sigmas.front() / found.camera.params.front();
-    if (percent <= worst_percent) continue;
-    worst_percent = percent;
-    worst = &found;
-  }
-  if (worst == nullptr) return std::nullopt;
-  return KeyNumber{
-      KeyNumberKind::kCamera,
-      fmt::format("found; focal length {:.1f} \u00b1 {:.1f} px", worst->camera.params.front(),
-                  worst->sigmas.front()),
-      fmt::format("found from the pictures without a calibration; good up to {:g} % of the focal "
-                  "length, which the sigmas of the shape contain; {}",
-                  kGood_percent, DescribeCamera(*worst)),
-      LowIsGood(worst_percent, kGood_percent, kBad_percent),
-      "the pictures say little of the camera: show markers tilted and in all of the picture, from "
-      "more sides, or give a calibration"};
 }
 
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,

@@ -16,14 +16,12 @@
 #include "importer/base/files.h"
 #include "importer/base/numbers.h"
 #include "importer/database/colmap_database.h"
-#include "reconstruct/adjust/camera_adjustment.h"
-#include "reconstruct/camera/camera_steadiness.h"
-#include "reconstruct/camera_search.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "reconstruct/thesis/frame_selection.h"
+#include "workflows/run/camera_checks.h"
 #include "workflows/run/progress.h"
 #include "workflows/run/summary.h"
 
@@ -101,82 +99,6 @@ void WarnOfRemovedImages(const std::vector<ImageId>& removed_images) {
   if (removed_images.empty()) return;
   spdlog::warn("{} images are left out because most of their observations are outliers",
                removed_images.size());
-}
-
-// EXIF is a claim: cropped pictures keep it, and so do pictures that a program wrote.
-void CompareWithMetadata(const Camera& guess, const Camera& found) {
-  constexpr double kFarOff = 0.1;
-  const Camera without = UnknownCamera(guess.width_px, guess.height_px);
-  const double claimed_px = MeanFocalLength(guess), focal_px = MeanFocalLength(found);
-  if (claimed_px == MeanFocalLength(without)) return;  // no claim
-  const auto level = std::abs(std::log(focal_px / claimed_px)) > kFarOff ? spdlog::level::warn
-                                                                         : spdlog::level::info;
-  spdlog::log(level, "the pictures show a focal length of {:.0f} px, and EXIF says {:.0f} px{}",
-              focal_px, claimed_px,
-              level == spdlog::level::warn
-                  ? ": the pictures were cropped, scaled or written by a program; EXIF is not used"
-                  : "");
-}
-
-std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& images,
-                                              const std::map<CameraId, Camera>& guesses,
-                                              const Layout& layout,
-                                              const CornerErrors& corner_errors,
-                                              const RegistrationOptions& registration,
-                                              const MarkerAdjustmentOptions& adjustment) {
-  spdlog::info("no calibration: looking for the camera in the pictures");
-  const std::map<CameraId, Camera> found =
-      FindCameras(images, guesses, layout, corner_errors, registration, adjustment);
-  for (const auto& [camera_id, camera] : found) {
-    CompareWithMetadata(guesses.at(camera_id), camera);
-  }
-  return found;
-}
-
-bool HasFisheye(const std::map<CameraId, Camera>& cameras) {
-  return std::any_of(cameras.begin(), cameras.end(), [](const auto& entry) {
-    return entry.second.model == CameraModel::kOpenCVFisheye;
-  });
-}
-
-// Where the images contradict a calibration that is no fisheye and speak for one.
-void WarnOfFisheye(const AdjustmentOptions& options, const Layout& layout,
-                   const CornerErrors& corner_errors, const Model& seed, const Model& adjusted,
-                   const AdjustmentResult& result) {
-  const bool is_contradicted =
-      result.uncertainty &&
-      (IsContradicted(result.uncertainty->calibration) || !(adjusted.cameras == seed.cameras));
-  if (!is_contradicted || HasFisheye(seed.cameras)) return;
-  try {
-    const CameraAdjustment free = AdjustCameras(options.markers, layout, corner_errors, seed);
-    if (!HasFisheye(free.cameras)) return;
-  } catch (const DataError& error) {
-    spdlog::debug("the lens is not tested: {}", error.what());
-    return;
-  }
-  spdlog::warn(
-      "the residuals are those of a fisheye lens, and the calibration is none: calibrate it as one "
-      "(distortion_model: fisheye), or leave --camera_path out, so that the camera is found");
-}
-
-// Throws DataError where a camera that was found cannot be one camera. `seed` is the model before
-// its marker-aware adjustment; null without one.
-void CheckSteadiness(const AdjustmentOptions& options, const Layout& layout,
-                     const CornerErrors& corner_errors, const Model* seed, const Model& model) {
-  SteadinessVerdict verdict = JudgeSteadiness(model);
-  if (!verdict.wandering.empty()) spdlog::warn(verdict.wandering);
-  std::optional<FocalStep> step = verdict.step;
-  if (!step || !step->IsSuspicious()) return;
-  if (seed != nullptr && !step->IsCertain()) {
-    step = MeasureFocalStep(options.markers, layout, corner_errors, *seed, *step);
-    if (!step) return;
-  } else if (!step->IsCertain()) {
-    return;
-  }
-  if (seed != nullptr && options.markers.find_camera) {
-    throw DataError("the camera cannot be found: " + DescribeStep(*step));
-  }
-  spdlog::warn(DescribeStep(*step));
 }
 
 AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
@@ -370,12 +292,12 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
     seed = *model;
     result = RunMarkersBackend(options.markers, layout, corner_errors, model);
     if (!options.markers.find_camera) {
-      WarnOfFisheye(options, layout, corner_errors, *seed, *model, result);
+      WarnOfFisheye(options.markers, layout, corner_errors, *seed, *model, result.uncertainty);
     }
     if (options.UsesColmap()) result.error_before_px = before_px;
     result.num_removed += num_removed;
   }
-  CheckSteadiness(options, layout, corner_errors, seed ? &*seed : nullptr, *model);
+  CheckSteadiness(options.markers, layout, corner_errors, seed ? &*seed : nullptr, *model);
   if (result.error_after_px.mean > kSuspiciousErrorPx) {
     spdlog::warn(
         "a mean reprojection error of {:.2f} px is more than the noise of corners explains: does "

@@ -1,0 +1,90 @@
+#include "workflows/run/camera_checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "reconstruct/adjust/camera_adjustment.h"
+#include "reconstruct/camera/camera_steadiness.h"
+#include "reconstruct/camera_search.h"
+
+namespace velamap {
+namespace {
+
+// EXIF is a claim: cropped pictures keep it, and so do pictures that a program wrote.
+void CompareWithMetadata(const Camera& guess, const Camera& found) {
+  constexpr double kFarOff = 0.1;
+  const Camera without = UnknownCamera(guess.width_px, guess.height_px);
+  const double claimed_px = MeanFocalLength(guess), focal_px = MeanFocalLength(found);
+  if (claimed_px == MeanFocalLength(without)) return;  // no claim
+  const auto level = std::abs(std::log(focal_px / claimed_px)) > kFarOff ? spdlog::level::warn
+                                                                         : spdlog::level::info;
+  spdlog::log(level, "the pictures show a focal length of {:.0f} px, and EXIF says {:.0f} px{}",
+              focal_px, claimed_px,
+              level == spdlog::level::warn
+                  ? ": the pictures were cropped, scaled or written by a program; EXIF is not used"
+                  : "");
+}
+
+bool HasFisheye(const std::map<CameraId, Camera>& cameras) {
+  return std::any_of(cameras.begin(), cameras.end(), [](const auto& entry) {
+    return entry.second.model == CameraModel::kOpenCVFisheye;
+  });
+}
+
+}  // namespace
+
+std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& images,
+                                              const std::map<CameraId, Camera>& guesses,
+                                              const Layout& layout,
+                                              const CornerErrors& corner_errors,
+                                              const RegistrationOptions& registration,
+                                              const MarkerAdjustmentOptions& adjustment) {
+  spdlog::info("no calibration: looking for the camera in the pictures");
+  const std::map<CameraId, Camera> found =
+      FindCameras(images, guesses, layout, corner_errors, registration, adjustment);
+  for (const auto& [camera_id, camera] : found) {
+    CompareWithMetadata(guesses.at(camera_id), camera);
+  }
+  return found;
+}
+
+void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
+                   const CornerErrors& corner_errors, const Model& seed, const Model& adjusted,
+                   const std::optional<AdjustmentUncertainty>& uncertainty) {
+  const bool is_contradicted = uncertainty && (IsContradicted(uncertainty->calibration) ||
+                                               !(adjusted.cameras == seed.cameras));
+  if (!is_contradicted || HasFisheye(seed.cameras)) return;
+  try {
+    const CameraAdjustment free = AdjustCameras(options, layout, corner_errors, seed);
+    if (!HasFisheye(free.cameras)) return;
+  } catch (const DataError& error) {
+    spdlog::debug("the lens is not tested: {}", error.what());
+    return;
+  }
+  spdlog::warn(
+      "the residuals are those of a fisheye lens, and the calibration is none: calibrate it as one "
+      "(distortion_model: fisheye), or leave --camera_path out, so that the camera is found");
+}
+
+void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
+                     const CornerErrors& corner_errors, const Model* seed, const Model& model) {
+  SteadinessVerdict verdict = JudgeSteadiness(model);
+  if (!verdict.wandering.empty()) spdlog::warn(verdict.wandering);
+  std::optional<FocalStep> step = verdict.step;
+  if (!step || !step->IsSuspicious()) return;
+  if (seed != nullptr && !step->IsCertain()) {
+    step = MeasureFocalStep(options, layout, corner_errors, *seed, *step);
+    if (!step) return;
+  } else if (!step->IsCertain()) {
+    return;
+  }
+  if (seed != nullptr && options.find_camera) {
+    throw DataError("the camera cannot be found: " + DescribeStep(*step));
+  }
+  spdlog::warn(DescribeStep(*step));
+}
+
+}  // namespace velamap

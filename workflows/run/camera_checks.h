@@ -1,0 +1,40 @@
+// The cameras of a reconstruction: found where there is no calibration, doubted where the images
+// contradict them. Each function logs what it finds.
+
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "importer/database/colmap_database.h"
+#include "importer/layout/layout.h"
+#include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/model/model.h"
+#include "reconstruct/register_frames.h"
+
+namespace velamap {
+
+// FindCameras() of reconstruct/camera_search.h. `guesses` are the cameras of a database without a
+// calibration; a focal length that EXIF claims is compared with what the images show. Throws
+// DataError where the images do not tell.
+std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& images,
+                                              const std::map<CameraId, Camera>& guesses,
+                                              const Layout& layout,
+                                              const CornerErrors& corner_errors,
+                                              const RegistrationOptions& registration,
+                                              const MarkerAdjustmentOptions& adjustment);
+
+// Warns where the images contradict a calibration that is no fisheye and speak for one. `seed` and
+// `adjusted` are the model before and after its marker-aware adjustment.
+void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
+                   const CornerErrors& corner_errors, const Model& seed, const Model& adjusted,
+                   const std::optional<AdjustmentUncertainty>& uncertainty);
+
+// Warns where the images were not taken by one steady camera; throws DataError where that camera
+// was to be found (`options.find_camera`) and its focal length changes. `seed` is the model before
+// its marker-aware adjustment, null without one.
+void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
+                     const CornerErrors& corner_errors, const Model* seed, const Model& model);
+
+}  // namespace velamap
