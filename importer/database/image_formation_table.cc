@@ -19,6 +19,7 @@ CREATE TABLE IF NOT EXISTS image_formation (
     sharpening_radius_px REAL NOT NULL,
     sharpens_light INTEGER NOT NULL,
     ink_spread_sides REAL NOT NULL,
+    outline_corner_weight REAL NOT NULL,
     is_inverted INTEGER NOT NULL,
     quiet_zone_cells REAL NOT NULL,
     quiet_zone_sigma_cells REAL NOT NULL,
@@ -27,9 +28,11 @@ CREATE TABLE IF NOT EXISTS image_formation (
     inset_sigma_px REAL NOT NULL);
 )";
 
+constexpr int kNumColumns = 13;
 constexpr char kColumns[] =
     "gamma, s_amplitude, sharpening, sharpening_radius_px, sharpens_light, ink_spread_sides,"
-    " is_inverted, quiet_zone_cells, quiet_zone_sigma_cells, num_samples, noise_gray,"
+    " outline_corner_weight, is_inverted, quiet_zone_cells, quiet_zone_sigma_cells, num_samples, "
+    "noise_gray,"
     " inset_sigma_px";
 
 }  // namespace
@@ -39,19 +42,26 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
   database->exec("DELETE FROM image_formation");
   SQLite::Statement insert(
       *database, fmt::format("INSERT INTO image_formation({}) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
-                             " ?, ?)",
+                             " ?, ?, ?)",
                              kColumns));
   const ImageFormationParameters& found = estimate.parameters;
   SQLite::bind(insert, found.gamma, found.s_amplitude, found.sharpening, found.sharpening_radius_px,
-               found.sharpens_light ? 1 : 0, found.ink_spread_sides, found.is_inverted ? 1 : 0,
-               found.quiet_zone_cells, found.quiet_zone_sigma_cells, estimate.num_samples,
-               estimate.noise_gray, estimate.inset_sigma_px);
+               found.sharpens_light ? 1 : 0, found.ink_spread_sides, found.outline_corner_weight,
+               found.is_inverted ? 1 : 0, found.quiet_zone_cells, found.quiet_zone_sigma_cells,
+               estimate.num_samples, estimate.noise_gray, estimate.inset_sigma_px);
   insert.exec();
 }
 
 std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
                                                     SQLite::Database* database) {
   if (!database->tableExists("image_formation")) return std::nullopt;
+  if (database->execAndGet("SELECT COUNT(*) FROM pragma_table_info('image_formation')").getInt() !=
+      kNumColumns) {
+    throw InputError(fmt::format(
+        "{}: table image_formation is that of another version of velamap; delete the database and "
+        "import again",
+        path));
+  }
   SQLite::Statement query(*database, fmt::format("SELECT {} FROM image_formation", kColumns));
   if (!query.executeStep()) return std::nullopt;
   const auto number = [&](const char* name, const OptionRange& range) {
@@ -74,6 +84,7 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   found.sharpening_radius_px = number("sharpening_radius_px", FromTo(0.1, 10));
   found.sharpens_light = number("sharpens_light", is_true) != 0;
   found.ink_spread_sides = number("ink_spread_sides", FromTo(-0.1, 0.1));
+  found.outline_corner_weight = number("outline_corner_weight", FromTo(0, 1));
   found.is_inverted = number("is_inverted", is_true) != 0;
   found.quiet_zone_cells = number("quiet_zone_cells", FromTo(0, 100));
   found.quiet_zone_sigma_cells = number("quiet_zone_sigma_cells", FromTo(0, 100));

@@ -30,14 +30,14 @@ cv::Mat Differences(const FittedSample& sample) {
     const std::size_t end = std::min(begin + kLanes, sample.places.size());
     Floats x{}, y{};
     for (std::size_t i = begin; i < end; ++i) {
-      x[i - begin] = static_cast<float>(sample.places[i].x + box_from_center.x());
-      y[i - begin] = static_cast<float>(sample.places[i].y + box_from_center.y());
+      x[i - begin] = static_cast<float>(sample.places[i].in_box.x + box_from_center.x());
+      y[i - begin] = static_cast<float>(sample.places[i].in_box.y + box_from_center.y());
     }
     picture.At(x, y, &modelled);
     for (std::size_t i = begin; i < end; ++i) {
-      difference.at<float>(sample.places[i]) =
+      difference.at<float>(sample.places[i].in_box) =
           modelled.gray[i - begin] -
-          problem.patch.values.at<float>(sample.places[i] + patch_from_box);
+          problem.patch.values.at<float>(sample.places[i].in_box + patch_from_box);
     }
   }
   return difference;
@@ -77,7 +77,9 @@ std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation&
   }
   std::vector<float> residuals;
   residuals.reserve(sample.places.size());
-  for (const cv::Point& place : sample.places) residuals.push_back(difference.at<float>(place));
+  for (const SamplePlace& place : sample.places) {
+    residuals.push_back(difference.at<float>(place.in_box));
+  }
   return residuals;
 }
 
@@ -96,10 +98,11 @@ std::optional<FittedSample> FitSample(const FormationSample& sample,
   const Eigen::Vector2d& center = fitted.problem.model.center_px;
   for (int y = 0; y < fitted.problem.box.height; ++y) {
     for (int x = 0; x < fitted.problem.box.width; ++x) {
-      if (picture.Covers(AllLanes(fitted.problem.box.x + x - center.x()),
-                         AllLanes(fitted.problem.box.y + y - center.y()))[0]) {
-        fitted.places.emplace_back(x, y);
-      }
+      const Floats from_center_x = AllLanes(fitted.problem.box.x + x - center.x());
+      const Floats from_center_y = AllLanes(fitted.problem.box.y + y - center.y());
+      if (!picture.Covers(from_center_x, from_center_y)[0]) continue;
+      const bool is_at_corner = picture.IsAtOutlineCorner(from_center_x, from_center_y)[0] != 0;
+      fitted.places.push_back({{x, y}, is_at_corner});
     }
   }
   return fitted;
@@ -113,6 +116,7 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
   problem.model.tone = &formation.tone();
   problem.model.ink_spread_cells =
       formation.parameters().ink_spread_sides * problem.model.num_cells;
+  problem.model.outline_corner_weight = formation.parameters().outline_corner_weight;
   SetQuietZonePrior(formation.parameters(), &problem);
   for (const int index : {P::kDark, P::kLight}) {
     double& light = sample->minimum.parameters[index];

@@ -19,14 +19,19 @@ struct FormationSample {
   cv::Mat cells;           // as in FitPattern()
 };
 
+struct SamplePlace {
+  cv::Point in_box;
+  bool is_at_outline_corner;
+};
+
 // A sample with its fit. Refers to the image formation that it was fitted with.
 struct FittedSample {
   cv::Mat gray;
   cv::Rect patch_box;
   PatternProblem problem;
   PatternMinimum minimum;
-  std::vector<cv::Point> places;  // of all pixels that count, in the problem's box
-  std::vector<float> residuals;   // at these places; empty: the fit failed
+  std::vector<SamplePlace> places;  // of all pixels that the model covers
+  std::vector<float> residuals;     // at these places; empty: the fit failed
 };
 
 // Nothing where the fit fails. No residuals yet: RefitSample() computes them.

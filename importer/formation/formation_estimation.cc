@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/statistics.h"
+#include "importer/formation/edge_shift.h"
 #include "importer/formation/formation_state.h"
 #include "importer/geometry/least_squares.h"
 
@@ -49,7 +50,18 @@ const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
 
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
 
-// Derivatives of the residuals of the i-th sample; zero where a fit failed.
+// Of the j-th residual of the i-th sample.
+double RootWeight(const State& state, std::size_t i, Eigen::Index j) {
+  const SamplePlace& place = state.samples[i].places[static_cast<std::size_t>(j)];
+  return place.is_at_outline_corner ? std::sqrt(state.formation->parameters().outline_corner_weight)
+                                    : 1.0;
+}
+
+double WeightedResidual(const State& state, std::size_t i, Eigen::Index j) {
+  return RootWeight(state, i, j) * state.samples[i].residuals[static_cast<std::size_t>(j)];
+}
+
+// Derivatives of the weighted residuals of the i-th sample; zero where a fit failed.
 Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::size_t i) {
   const auto residuals_of = [i](const State& one) {
     const std::vector<float>& residuals = one.samples[i].residuals;
@@ -67,6 +79,7 @@ Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::si
     jacobian.col(k) =
         (residuals_of(moved[static_cast<std::size_t>(k)]) - residuals_of(state)) / kStep[k];
   }
+  for (Eigen::Index j = 0; j < count; ++j) jacobian.row(j) *= RootWeight(state, i, j);
   return jacobian;
 }
 
@@ -103,13 +116,12 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
     Equations::Matrix scatter = Equations::Matrix::Zero();
     int num_fitted = 0;
     for (std::size_t i = 0; i < state.samples.size(); ++i) {
-      const std::vector<float>& residuals = state.samples[i].residuals;
       const Jacobian jacobian = JacobianOf(state, moved, i);
       if (jacobian.isZero(0)) continue;
       ++num_fitted;
       Vector gradient = Vector::Zero();
       for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
-        const double residual = residuals[static_cast<std::size_t>(j)];
+        const double residual = WeightedResidual(state, i, j);
         gradient += loss_.Weight(residual * residual) * residual * jacobian.row(j).transpose();
       }
       scatter += gradient * gradient.transpose();
@@ -132,13 +144,13 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
   Equations SumUp(const State& state, const std::vector<State>* moved) const {
     Equations equations;
     for (std::size_t i = 0; i < state.samples.size(); ++i) {
-      const std::vector<float>& residuals = state.samples[i].residuals;
       const auto count = static_cast<Eigen::Index>(state.samples[i].places.size());
       const Jacobian jacobian =
           moved != nullptr ? JacobianOf(state, *moved, i) : Jacobian(Jacobian::Zero(count, kCount));
       for (Eigen::Index j = 0; j < count; ++j) {
-        const double residual =
-            residuals.empty() ? 6 * noise_ : residuals[static_cast<std::size_t>(j)];
+        const double residual = state.samples[i].residuals.empty()
+                                    ? 6 * noise_ * RootWeight(state, i, j)
+                                    : WeightedResidual(state, i, j);
         equations.Add<1>(jacobian.row(j), Eigen::Matrix<double, 1, 1>(residual), loss_);
       }
     }
@@ -178,10 +190,12 @@ State Minimize(const std::vector<FormationSample>& samples, bool is_inverted, bo
                int num_threads) {
   constexpr int kNumRounds = 2;        // each with the noise of the one before
   constexpr double kSameNoise = 0.95;  // another round would change nothing
+  constexpr double kLittleWeight = 0.2;
   ImageFormationParameters formation;
   formation.is_inverted = is_inverted;
   formation.sharpens_light = sharpens_light;
   formation.quiet_zone_sigma_cells = kQuietZoneSigma;
+  formation.outline_corner_weight = 0.0;  // until straight edges tell how they look
   LeastSquaresOptions options;
   options.max_iterations = 6;
   options.initial_damping = 1e-3;
@@ -192,11 +206,55 @@ State Minimize(const std::vector<FormationSample>& samples, bool is_inverted, bo
   for (int round = 0; round < kNumRounds && !state.samples.empty(); ++round) {
     state = WithPooledQuietZone(std::move(state), num_threads);
     const double noise_before = std::exchange(noise, NoiseOf(state));
-    if (noise > kSameNoise * noise_before) break;
+    const bool corners_count = state.formation->parameters().outline_corner_weight > kLittleWeight;
+    if (noise > kSameNoise * noise_before && !corners_count) break;
     GaussNewtonEquations<kCount> equations;
     MinimizeSquares(options, FormationProblem(noise, num_threads), &state, &equations);
+    if (round == 0) {
+      state = WithOutlineCorners(OutlineCornerWeight(state), state, num_threads);
+    }
   }
   return state;
+}
+
+// A state whose ink spreads so far that inner edges lie where the model has them, and how well the
+// inset of the corners is known by that.
+struct Balanced {
+  State state;
+  double inset_sigma_px = 0.0;
+};
+
+// The best fit of all pixels may leave inner edges of both polarities beside their places where no
+// description of the camera fits the shape of its edges. The spread of ink then follows their
+// places, as far as the scatter of the samples does not explain the shift.
+Balanced WithBalancedEdges(const State& state, int num_threads) {
+  constexpr int kIterations = 3;
+  Balanced balanced{state, 0.0};
+  EdgeShift edges;
+  for (int i = 0; i < kIterations; ++i) {
+    edges = InnerEdgeShift(balanced.state);
+    Vector parameters = balanced.state.parameters;
+    parameters[4] = std::clamp(parameters[4] + edges.mean_sides, kMin[4], kMax[4]);
+    balanced.state = MovedTo(parameters, balanced.state, num_threads);
+  }
+  const double change = balanced.state.parameters[4] - state.parameters[4];
+  const double inset_px = MeanInset(state, balanced.state);
+  if (std::abs(change) < 1e-7) return {state, 0.0};
+  // James and Stein's estimate, positive part: what noise explains is not corrected.
+  const double share = std::max(0.0, 1 - edges.sigma_sides * edges.sigma_sides / (change * change));
+  Vector parameters = state.parameters;
+  parameters[4] += share * change;
+  spdlog::debug(
+      "inner edges: ink spread {:+.3f} -> {:+.3f} +- {:.3f} % of the side, corners {:.3f} px "
+      "outwards; half difference of the directions {:.3f} %",
+      100 * state.parameters[4], 100 * balanced.state.parameters[4], 100 * edges.sigma_sides,
+      inset_px, 100 * edges.half_difference_sides);
+  const double unexplained =
+      std::sqrt(std::max(0.0, edges.half_difference_sides * edges.half_difference_sides -
+                                  edges.sigma_sides * edges.sigma_sides));
+  const double inset_by_spread_px = inset_px / change;
+  return {MovedTo(parameters, state, num_threads),
+          std::abs(inset_by_spread_px) * std::hypot(share * edges.sigma_sides, unexplained)};
 }
 
 }  // namespace
@@ -209,6 +267,10 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   KeepOnly(by_light.sample_idxs, &by_gray);
   KeepOnly(by_gray.sample_idxs, &by_light);
   if (by_gray.samples.empty()) return {};
+  // Costs can be compared where all pixels have the same weights.
+  const double weight = std::min(OutlineCornerWeight(by_gray), OutlineCornerWeight(by_light));
+  by_gray = WithOutlineCorners(weight, by_gray, num_threads);
+  by_light = WithOutlineCorners(weight, by_light, num_threads);
   const double noise = std::min(NoiseOf(by_gray), NoiseOf(by_light));
   const FormationProblem problem(noise, num_threads);
   // Most cameras sharpen grey values, and under noise and compression both explain the samples.
@@ -217,7 +279,8 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   const bool light_wins = cost_by_light < kClearlyLess * cost_by_gray;
   spdlog::debug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
                 cost_by_light);
-  const State& best = light_wins ? by_light : by_gray;
+  const Balanced balanced = WithBalancedEdges(light_wins ? by_light : by_gray, num_threads);
+  const State& best = balanced.state;
   FormationEstimate estimate;
   estimate.parameters = best.formation->parameters();
   estimate.parameters.quiet_zone_sigma_cells =
@@ -226,8 +289,8 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   estimate.noise_gray = NoiseOf(best);
   // No camera is quite as either of the two descriptions says, and they may differ by more than
   // the noise leaves open.
-  estimate.inset_sigma_px =
-      std::hypot(problem.InsetSigma(best), 0.5 * MeanInset(by_gray, by_light));
+  estimate.inset_sigma_px = std::hypot(problem.InsetSigma(light_wins ? by_light : by_gray),
+                                       0.5 * MeanInset(by_gray, by_light), balanced.inset_sigma_px);
   return estimate;
 }
 

@@ -10,6 +10,23 @@
 #include "importer/base/statistics.h"
 
 namespace velamap {
+namespace {
+
+double NoiseOf(const FormationState& state, bool at_outline_corners) {
+  constexpr double kMinNoise = 0.5;  // 8 bits round
+  std::vector<double> values;
+  for (const FittedSample& sample : state.samples) {
+    for (std::size_t j = 0; j < sample.residuals.size(); ++j) {
+      if (sample.places[j].is_at_outline_corner == at_outline_corners) {
+        values.push_back(sample.residuals[j]);
+      }
+    }
+  }
+  return values.empty() ? std::numeric_limits<double>::infinity()
+                        : std::max(kMinNoise, RobustSigma(values));
+}
+
+}  // namespace
 
 ImageFormationParameters With(const FormationVector& p, ImageFormationParameters formation) {
   formation.gamma = std::exp(p[0]);
@@ -71,14 +88,17 @@ FormationState WithPooledQuietZone(FormationState state, int num_threads) {
   return state;
 }
 
-double NoiseOf(const FormationState& state) {
-  std::vector<double> values;
-  for (const FittedSample& sample : state.samples) {
-    values.insert(values.end(), sample.residuals.begin(), sample.residuals.end());
-  }
-  constexpr double kMinNoise = 0.5;  // 8 bits round
-  return values.empty() ? std::numeric_limits<double>::infinity()
-                        : std::max(kMinNoise, RobustSigma(values));
+double NoiseOf(const FormationState& state) { return NoiseOf(state, false); }
+
+double OutlineCornerWeight(const FormationState& state) {
+  const double relative_noise = NoiseOf(state, true) / NoiseOf(state, false);
+  return 1 / std::max(1.0, relative_noise * relative_noise);
+}
+
+FormationState WithOutlineCorners(double weight, const FormationState& state, int num_threads) {
+  ImageFormationParameters formation = state.formation->parameters();
+  formation.outline_corner_weight = weight;
+  return FittedWith(formation, state.parameters, state, num_threads);
 }
 
 double MeanInset(const FormationState& one, const FormationState& other) {

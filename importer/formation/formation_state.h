@@ -48,8 +48,15 @@ std::vector<double> QuietZones(const FormationState& state);
 // prior moves to the median until that stands still.
 FormationState WithPooledQuietZone(FormationState state, int num_threads);
 
-// Robust standard deviation of the residuals, grey levels; infinite without any.
+// Robust standard deviation of the residuals at straight edges and within cells, grey levels;
+// infinite without any.
 double NoiseOf(const FormationState& state);
+
+// The weight of the pixels at the corners of outlines that their residuals ask for, compared with
+// the others.
+double OutlineCornerWeight(const FormationState& state);
+
+FormationState WithOutlineCorners(double weight, const FormationState& state, int num_threads);
 
 // How much farther inside along both sides one state has the corners than another, mean of the
 // samples that both could fit, px. Both must hold the same samples.

@@ -33,6 +33,9 @@ struct ImageFormationParameters {
   // the prior of each fit. A sigma of 0: unknown.
   double quiet_zone_cells = 1.0;
   double quiet_zone_sigma_cells = 0.0;
+  // Weight of the pixels at the corners of the cells' outlines. Printers, noise filters and
+  // compression round these corners, which the blur of straight edges does not describe.
+  double outline_corner_weight = 1.0;
 };
 
 struct FormationEstimate {

@@ -47,7 +47,8 @@ struct PatternModel {
   Lightness surround;     // of the outermost ring, relative to light; the other cells are zero
   Eigen::Vector2d center_px;
   double diagonal_px = 0.0;
-  double ink_spread_cells = 0.0;  // how far dark cells reach beyond their outlines
+  double ink_spread_cells = 0.0;       // how far dark cells reach beyond their outlines
+  double outline_corner_weight = 1.0;  // of the pixels at the corners of the cells' outlines
   const ToneCurve* tone = nullptr;
 };
 

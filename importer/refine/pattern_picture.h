@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -56,6 +57,38 @@ class PatternPicture {
       is_near[lane] = -static_cast<int>(changes || EndsQuietZone(u, v, reach_u, reach_v));
     }
     return is_near;
+  }
+
+  // Whether a place is at a corner of the outlines of the cells; -1 for yes. Printers, noise
+  // filters and compression round these corners more than the blur of straight edges tells.
+  Ints IsAtOutlineCorner(Floats x, Floats y) const {
+    constexpr float kReachPx = 2.0f, kReachCells = 0.4f;
+    const Place place = ToSquare(x, y);
+    const auto n = static_cast<float>(model_.num_cells);
+    Ints is_near{};
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const float u = n * place.u[lane], v = n * place.v[lane];
+      const float corner_u = std::round(u), corner_v = std::round(v);
+      if (!IsOutlineCorner(corner_u, corner_v)) continue;
+      // Cells by px, inverted to px by cells.
+      const float u_by_x = n * place.u_by_x[lane], u_by_y = n * place.u_by_y[lane];
+      const float v_by_x = n * place.v_by_x[lane], v_by_y = n * place.v_by_y[lane];
+      const float du = corner_u - u, dv = corner_v - v;
+      const float px2_by_cells2 = 1.0f / (u_by_x * v_by_y - u_by_y * v_by_x);
+      const float dx = px2_by_cells2 * (v_by_y * du - u_by_y * dv);
+      const float dy = px2_by_cells2 * (u_by_x * dv - v_by_x * du);
+      const float reach2 =
+          std::min(kReachPx * kReachPx, kReachCells * kReachCells * std::abs(px2_by_cells2));
+      is_near[lane] = -static_cast<int>(dx * dx + dy * dy < reach2);
+    }
+    return is_near;
+  }
+
+  // Whether a place is further inside of the black square than half a cell; -1 for yes.
+  Ints IsAmongInnerCells(Floats x, Floats y) const {
+    const Place place = ToSquare(x, y);
+    const auto border = static_cast<float>(0.5 / model_.num_cells);
+    return (Min(place.u, place.v) > border) & (Max(place.u, place.v) < 1.0f - border);
   }
 
   void At(Floats x, Floats y, PatternPixels* pixels) const {
@@ -147,6 +180,13 @@ class PatternPicture {
     const auto n = static_cast<float>(model_.num_cells);
     if (!(u >= 0 && v >= 0 && u < n && v < n)) return true;
     return model_.inner[static_cast<std::size_t>(v) + kRing] >> (static_cast<int>(u) + kRing) & 1;
+  }
+
+  // Whether neither two rows nor two columns of the four cells around a place are alike.
+  bool IsOutlineCorner(float u, float v) const {
+    const bool a = IsLight(u - 0.5f, v - 0.5f), b = IsLight(u + 0.5f, v - 0.5f);
+    const bool c = IsLight(u - 0.5f, v + 0.5f), d = IsLight(u + 0.5f, v + 0.5f);
+    return !(a == b && c == d) && !(a == c && b == d);
   }
 
   bool EndsQuietZone(float u, float v, float reach_u, float reach_v) const {

@@ -29,6 +29,7 @@ struct Pixels {
   struct Group {
     Floats x, y;  // relative to center_px of the model
     Floats gray;
+    Floats root_weight;
   };
   std::vector<Group> groups;
   int count = 0;  // the last group may be incomplete
@@ -41,6 +42,7 @@ inline void FillUp(Pixels* pixels) {
     last.x[lane] = last.x[0];
     last.y[lane] = last.y[0];
     last.gray[lane] = last.gray[0];
+    last.root_weight[lane] = last.root_weight[0];
   }
 }
 
@@ -55,7 +57,7 @@ inline void ForEachGroup(const PatternProblem& problem, const PatternPicture& pi
     const float* values = problem.patch.values.ptr<float>(row - problem.patch.origin_px.y);
     const Floats y = AllLanes(row - center.y());
     for (int begin = box.x; begin < box.x + box.width; begin += kLanes) {
-      Pixels::Group group{static_cast<float>(begin - center.x()) + LaneIndex(), y, {}};
+      Pixels::Group group{static_cast<float>(begin - center.x()) + LaneIndex(), y, {}, {}};
       Ints covered = picture.Covers(group.x, group.y);
       for (int lane = 0; lane < kLanes; ++lane) {
         if (begin + lane >= box.x + box.width) covered[lane] = 0;
@@ -68,7 +70,7 @@ inline void ForEachGroup(const PatternProblem& problem, const PatternPicture& pi
 
 // About `max_pixels` of the pixels that the model covers with these parameters. If there are more,
 // every k-th one of those near an edge, which tell where the corners are, and a few others, which
-// tell the levels.
+// tell the levels. Corners of outlines without weight are left out.
 VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const PatternProblem& problem,
                                            const P::Vector& parameters, int max_pixels) {
   constexpr int kPartOfOthers = 5;  // one in so many pixels
@@ -84,9 +86,17 @@ VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const PatternProblem& problem,
     last.x[place] = group.x[lane];
     last.y[place] = group.y[lane];
     last.gray[place] = group.gray[lane];
+    last.root_weight[place] = group.root_weight[lane];
   };
-  ForEachGroup(problem, picture, [&](const Pixels::Group& group, Ints covered) {
+  const double corner_weight = problem.model.outline_corner_weight;
+  ForEachGroup(problem, picture, [&](Pixels::Group group, Ints covered) {
     if (MinLane(covered) == 0) return;
+    group.root_weight = AllLanes(1.0);
+    if (corner_weight < 1) {
+      const Ints is_at_corner = picture.IsAtOutlineCorner(group.x, group.y);
+      if (corner_weight == 0) covered &= ~is_at_corner;
+      group.root_weight = is_at_corner ? AllLanes(std::sqrt(corner_weight)) : group.root_weight;
+    }
     const Ints is_near = takes_all ? covered : picture.IsNearEdge(group.x, group.y, reach_px);
     for (int lane = 0; lane < kLanes; ++lane) {
       if (covered[lane]) add(group, lane, is_near[lane] ? &near : &others);
@@ -115,10 +125,14 @@ VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const Pixels& p
   const PatternPicture picture(problem.model, parameters);
   equations->Clear(with_hessian);
   PatternPixels modelled;
+  const bool is_weighted = problem.model.outline_corner_weight < 1;
   int left = pixels.count;
   for (const Pixels::Group& group : pixels.groups) {
     picture.At(group.x, group.y, &modelled);
-    equations->Add(&modelled.jacobian, modelled.gray - group.gray, left);
+    if (is_weighted) {
+      for (Floats& derivative : modelled.jacobian) derivative *= group.root_weight;
+    }
+    equations->Add(&modelled.jacobian, group.root_weight * (modelled.gray - group.gray), left);
     left -= kLanes;
   }
   equations->Finish(parameters - problem.mean, problem.weight);
@@ -308,6 +322,7 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
   problem.patch = CutPatch(gray, cv::Rect(box->tl() - beyond, box->br() + beyond), formation);
   problem.model.tone = &formation.tone();
   problem.model.ink_spread_cells = formation.parameters().ink_spread_sides * cells.rows;
+  problem.model.outline_corner_weight = formation.parameters().outline_corner_weight;
   problem.model.center_px = map.ToImage(0.5, 0.5);
   problem.model.diagonal_px =
       0.5 * ((corners_px[2] - corners_px[0]).norm() + (corners_px[3] - corners_px[1]).norm());

@@ -141,11 +141,20 @@ std::vector<BadInput> Wishes() {
 // What camera and print do to edges, as the database says.
 std::vector<BadInput> ImageFormations() {
   const std::vector<std::pair<std::string, std::string>> bad_values = {
-      {"gamma", "'text'"},        {"gamma", "0"},        {"gamma", "-1"},
-      {"gamma", "1e9"},           {"gamma", "9e999"},    {"s_amplitude", "1"},
-      {"sharpening", "-1"},       {"sharpening", "1e9"}, {"sharpening_radius_px", "0"},
-      {"sharpens_light", "7"},    {"noise_gray", "-1"},  {"inset_sigma_px", "'text'"},
-      {"ink_spread_sides", "0.5"}};
+      {"gamma", "'text'"},
+      {"gamma", "0"},
+      {"gamma", "-1"},
+      {"gamma", "1e9"},
+      {"gamma", "9e999"},
+      {"s_amplitude", "1"},
+      {"sharpening", "-1"},
+      {"sharpening", "1e9"},
+      {"sharpening_radius_px", "0"},
+      {"sharpens_light", "7"},
+      {"noise_gray", "-1"},
+      {"inset_sigma_px", "'text'"},
+      {"ink_spread_sides", "0.5"},
+      {"outline_corner_weight", "2"}};
   std::vector<BadInput> cases;
   for (const auto& [column, value] : bad_values) {
     cases.push_back({fmt::format("ImageFormation{}", cases.size()), kRerun, 2,
@@ -156,6 +165,12 @@ std::vector<BadInput> ImageFormations() {
                      },
                      kLog});
   }
+  cases.push_back({"ImageFormationOfAnotherVersion", kRerun, 2, "another version of velamap",
+                   [](const fs::path& dir) {
+                     RunSql(dir / "workspace/database.db",
+                            "ALTER TABLE image_formation DROP COLUMN outline_corner_weight");
+                   },
+                   kLog});
   // NULL, which SQLite stores for a NaN, where no constraint forbids it.
   cases.push_back({"ImageFormationOfNothing",
                    "bundle_adjuster --backend markers --marker_length 0.1 --input_path "

@@ -146,6 +146,26 @@ TEST(FormationEstimation, NoiseWidensTheSigmaOfTheInset) {
   }
 }
 
+// A median leaves straight edges where they are and rounds corners, as noise filters of cameras do.
+TEST(FormationEstimation, RoundedCornersDoNotMoveSides) {
+  std::mt19937 random(TestSeed());
+  for (int draw = 0; draw < 3; ++draw) {
+    MarkerGridOptions scene = DrawScene(&random);
+    scene.side_px = 42;
+    scene.rendering.camera.s_amplitude = scene.rendering.camera.sharpening = 0.0;
+    MarkerGrid grid = MakeMarkerGrid(scene);
+    cv::medianBlur(grid.image, grid.image, 5);
+    ImageFormationParameters found = EstimateFormation(Samples(grid), false).parameters;
+    EXPECT_LT(found.outline_corner_weight, 0.5);
+    const double bias_px = SideBias(grid, ImageFormation(found));
+    EXPECT_LT(std::abs(bias_px), 0.05) << draw;
+    found.outline_corner_weight = 1.0;
+    const double bias_with_corners_px = SideBias(grid, ImageFormation(found));
+    EXPECT_LT(bias_with_corners_px, bias_px) << draw;
+    RecordProperty("bias_px", std::to_string(bias_px) + " " + std::to_string(bias_with_corners_px));
+  }
+}
+
 TEST(FormationEstimation, NothingIsKnownWithoutSamples) {
   EXPECT_EQ(EstimateFormation({}, false).num_samples, 0);
 }
