@@ -25,10 +25,7 @@ struct BusyTime {
   double cpu_s = 0.0;
 };
 
-// The times of an import by ImportStage. Their wall_s is the part of the import's wall time during
-// which the reading thread waits for the decoder (kDecode), a worker is busy with the stage on
-// average (kDetect, kRefine, kImages), or the calling thread writes (kDatabase). The cpu_s of
-// kDecode is what no other stage claims, because FFmpeg decodes on threads of its own.
+// By ImportStage.
 class ImportTimes {
  public:
   BusyTime& operator[](ImportStage stage) { return times_[static_cast<std::size_t>(stage)]; }
