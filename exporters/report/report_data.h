@@ -1,5 +1,22 @@
 // Collects everything that the report shows in one JSON text, from which the page computes only
-// colors and drawings. README.md of this room lists the keys.
+// colors and drawings. It is the text of <script id="data"> in report.html. Keys:
+//
+//   title, version, created; options, versions
+//   frame                    name, up, forward
+//   verdict                  level, reasons (level, text)
+//   key_numbers              name, value, meaning, status
+//   markers                  id, part, corners, num_images, num_observations, error_px, centre,
+//                            length_mm, side_deviation_percent, area_deviation_percent, sigma_mm,
+//                            ellipsoid, scale_deviation_percent
+//   images                   name, central, centre, frustum, num_markers, marker_ratio,
+//                            num_corners, error_mean_px, error_rms_px, error_max_px
+//   histograms               first_border, bin_width, counts, num_below, num_above
+//   scale                    m_per_unit, spread_percent, sigma_percent, num_markers; scale_audit
+//   images_left_out, markers_left_out    name, reason
+//   picture                  name, width_px, height_px, jpeg or problem, points
+//   sections                 name, height_m, chord_m, camber_percent, draft_percent, entry_deg,
+//                            exit_deg, twist_deg with their sigmas, profile, profile_in_shape
+//   surface                  vertices, triangles
 
 #pragma once
 
