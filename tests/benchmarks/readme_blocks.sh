@@ -167,3 +167,27 @@ block_corner_accuracy() {
 }
 
 block_corner_trials() { corner_table "trial" 'trial() != ""' 'trial()'; }
+
+block_own_solver() {
+  echo "| main job | stage | own solver, CPU s | Ceres, CPU s | difference |"
+  echo "|---|---|---|---|---|"
+  table own_solver.csv '
+    BEGIN {
+      title["cube"] = "`sample_project/cube`, medians of 5 runs each"
+      title["sail"] = "rendered sail, 4K, 400 frames at 60 Mbit/s, 2 runs each"
+    }
+    {
+      row = cell("job") SUBSEP cell("stage")
+      if (!(row in own)) order[++num_rows] = row
+      own[row] += cell("own_solver_s"); ceres[row] += cell("ceres_s")
+      note("own" row, cell("own_solver_s")); note("ceres" row, cell("ceres_s"))
+    }
+    END {
+      for (i = 1; i <= num_rows; i++) {
+        row = order[i]; split(row, name, SUBSEP)
+        printf "| %s | %s | %s | %s | %s %% |\n", title[name[1]], name[2],
+          span(least["own" row], most["own" row], 3), span(least["ceres" row], most["ceres" row], 3),
+          num(100 * (ceres[row] / own[row] - 1), "+2")
+      }
+    }'
+}

@@ -48,8 +48,13 @@ for part in detection adjustment main memory growth markers tracking sweep; do
 done
 command_of[corner_accuracy.csv]=tests/benchmarks/corner_accuracy.sh
 
+# Folders of results that cannot be made again, because they compare with code that was removed.
+declare -A folder_of_past=([own_solver.csv]=tests/benchmarks)
+
 # stored RESULT: where it is kept, beside the command that makes it.
-stored() { echo "$repository/$(dirname "${command_of[$1]%% *}")/results/$1"; }
+stored() {
+  echo "$repository/${folder_of_past[$1]:-$(dirname "${command_of[$1]%% *}")}/results/$1"
+}
 
 # settings: the variables that change what a command measures, as they would stand before it.
 settings() {
