@@ -165,8 +165,8 @@ void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& 
   }
   if (report.num_rejected > 0) {
     throw DataError(
-        fmt::format("{}: every marker id is there more than once; give a layout "
-                    "(--layout_path) that tells the markers apart",
+        fmt::format("{}: every marker id occurs more than once; give a layout (--layout_path) that "
+                    "tells the markers apart",
                     options.image_path));
   }
   throw DataError(fmt::format(

@@ -140,9 +140,8 @@ std::vector<Start> Starts(const std::vector<DatabaseImage>& images, const Camera
   const Lens fisheye =
       LensOf(CameraModel::kOpenCVFisheye, images, guesses, registration, adjustment);
   spdlog::info(
-      "single markers: focal length {:.0f} px +- {:.1f} % (lines straight) or {:.0f} px +- {:.1f} "
-      "% "
-      "(fisheye)",
+      "single markers: focal length {:.0f} px +- {:.1f} % (rectilinear lens) or {:.0f} px +- "
+      "{:.1f} % (fisheye)",
       MeanFocalLength(straight.cameras.begin()->second), 100.0 * straight.log_sigma,
       MeanFocalLength(fisheye.cameras.begin()->second), 100.0 * fisheye.log_sigma);
   std::vector<Start> starts = {{"straight lines", straight.cameras}, {"fisheye", fisheye.cameras}};

@@ -96,7 +96,7 @@ Alignment AlignToMesh(const MarkerShape& shape, const MeshDistance& mesh,
                       const AlignmentOptions& options) {
   if (options.method == AlignmentMethod::kNone) {
     Alignment alignment;
-    alignment.description = "none, both frames count as the same";
+    alignment.description = "none; both frames are taken to be the same";
     return alignment;
   }
   if (options.method != AlignmentMethod::kAuto && options.method != AlignmentMethod::kBestFit) {

@@ -159,7 +159,7 @@ Alignment AlignShapes(const MarkerShape& shape, const MarkerShape& reference, co
   alignment.method = choice.method;
   if (!choice.note.empty()) alignment.notes.push_back(choice.note);
   if (choice.method == AlignmentMethod::kNone) {
-    alignment.description = "none, both frames count as the same";
+    alignment.description = "none; both frames are taken to be the same";
     alignment.notes.push_back("the sigmas do not include the uncertainty of the frames");
     return alignment;
   }

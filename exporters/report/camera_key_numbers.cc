@@ -70,8 +70,8 @@ std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncer
   return KeyNumber{KeyNumberKind::kRollingShutter,
                    fmt::format("{:.1f} \u00b1{:.1f} ms", 1e3 * uncertainty->rolling_shutter_s,
                                1e3 * uncertainty->rolling_shutter_sigma_s),
-                   "time from the first row of a frame to the last, found in the video and taken "
-                   "out of the shape",
+                   "time from the first row of a frame to the last, estimated from the video and "
+                   "corrected in the shape",
                    ReportStatus::kNone};
 }
 
@@ -94,8 +94,8 @@ std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& c
                   "length, which the sigmas of the shape contain; {}",
                   kGood_percent, DescribeCamera(*worst)),
       LowIsGood(worst_percent, kGood_percent, kBad_percent),
-      "the pictures say little of the camera: show markers tilted and in all of the picture, from "
-      "more sides, or give a calibration"};
+      "the pictures hardly determine the camera: show markers tilted, everywhere in the picture "
+      "and from more sides, or give a calibration"};
 }
 
 }  // namespace velamap

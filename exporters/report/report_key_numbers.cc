@@ -56,8 +56,8 @@ std::optional<KeyNumber> DictionaryNumber(const ReportInput& input) {
       fmt::format("ids found in the images that are part of the shape; good from {:.0f} %",
                   100 * kGoodIdShare),
       HighIsGood(static_cast<double>(num_fitting) / input.num_ids_found, kGoodIdShare, kBadIdShare),
-      "the others contradict each other or are seen once, as false ones of another dictionary "
-      "are: check the dictionary, its border_bits and whether the prints are inverted"};
+      "the others contradict each other or are seen only once, which happens with a wrong "
+      "dictionary: check the dictionary, its border_bits and whether the prints are inverted"};
 }
 
 KeyNumber ImagesNumber(const ReportInput& input) {

@@ -34,8 +34,8 @@ std::string CrossingAlongText(const LineCurve& lower, const LineCurve& upper,
 
 // The same as seen from the side, along `aside`, where lines of different lengths lie beside each
 // other otherwise than by fractions.
-std::string CrossingFromTheSideText(const LineCurve& lower, const LineCurve& upper,
-                                    const Eigen::Vector3d& up, const Eigen::Vector3d& aside) {
+std::string SideViewCrossingText(const LineCurve& lower, const LineCurve& upper,
+                                 const Eigen::Vector3d& up, const Eigen::Vector3d& aside) {
   Eigen::Matrix<double, 2, 3> side_from_frame;
   side_from_frame << up.cross(aside).transpose(), up.transpose();
   const Eigen::Matrix2Xd a = side_from_frame * SampleForCut(lower.fit.curve);
@@ -79,7 +79,7 @@ std::vector<Crossing> FindCrossings(const std::vector<LineCurve>& lines,
   for (std::size_t i = 0; i < lines.size(); ++i) {
     for (std::size_t j = i + 1; j < lines.size(); ++j) {
       std::string text = CrossingAlongText(lines[i], lines[j], up);
-      if (text.empty()) text = CrossingFromTheSideText(lines[i], lines[j], up, aside);
+      if (text.empty()) text = SideViewCrossingText(lines[i], lines[j], up, aside);
       const bool is_above = lines[j].place_in_layout > lines[i].place_in_layout;
       if (text.empty() && is_above != from_the_foot) {
         text = fmt::format(

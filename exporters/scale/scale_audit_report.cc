@@ -179,9 +179,8 @@ std::vector<std::string> ScaleWarnings(const ScaleAudit& audit) {
     const KnownDistance& known = checked->known;
     warnings.push_back(fmt::format(
         "the distance from marker {} to marker {} was measured as {:.5g} +- {:.2g} m, but is "
-        "{:.5g}{} m in the "
-        "shape: off by {:+.1f} mm, {:.1f} sigmas of both; find out which is wrong before using the "
-        "shape",
+        "{:.5g}{} m in the shape: off by {:+.1f} mm, {:.1f} sigmas of both; find out which is "
+        "wrong before using the shape",
         PointName(known.marker_id1, known.corner1), PointName(known.marker_id2, known.corner2),
         known.length_m, known.sigma_m, *checked->distance_m,
         checked->sigma_m ? fmt::format(" +- {:.2g}", *checked->sigma_m) : "",

@@ -302,7 +302,7 @@ ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
     attempt.frame->reasons = reasons;
     return *attempt.frame;
   }
-  VELAMAP_CHECK(false && "the camera's frame is always there");
+  VELAMAP_CHECK(false && "the camera's frame is always available");
   return {};
 }
 

@@ -65,7 +65,7 @@ void WriteAndRename(const fs::path& path, bool is_synced,
   std::error_code error;
   const fs::path target = AbsoluteFolder(IsLink(path) ? CanonicalPath(path) : path);
   if (Exists(target) && !IsRegularFile(target)) {
-    ThrowCannotWrite(path, "it exists and is no regular file; choose another output path");
+    ThrowCannotWrite(path, "it exists and is not a regular file; choose another output path");
   }
   CreateFolders(target.parent_path());
   const fs::path temporary_path = TemporarySibling(target);

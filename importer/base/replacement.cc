@@ -90,9 +90,9 @@ std::string MakeFolderRecord(const fs::path& folder) {
 void CheckReplaceableFolder(const fs::path& path) {
   if (!Exists(path)) return;
   if (!IsFolder(path)) {
-    throw InputError(
-        fmt::format("{}: cannot be written: it exists and is no folder; choose another output path",
-                    path.string()));
+    throw InputError(fmt::format(
+        "{}: cannot be written: it exists and is not a folder; choose another output path",
+        path.string()));
   }
   const std::map<std::string, std::string> hash_of_name = ReadFolderRecord(path);
   for (const fs::path& entry : FolderEntries(path)) {

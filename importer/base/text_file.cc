@@ -23,9 +23,9 @@ std::string ReadTextFile(const std::string& path, const std::string& what) {
     throw InputError(fmt::format("{}: the {} is not a regular file", path, what));
   }
   if (FileSize(path) > kMaxTextFileSize) {
-    throw InputError(
-        fmt::format("{}: {} bytes are no {}, which has at most {}; is it another file?", path,
-                    FileSize(path), what, kMaxTextFileSize));
+    throw InputError(fmt::format(
+        "{}: {} bytes are too many for a {}, which has at most {}; check that it is the right file",
+        path, FileSize(path), what, kMaxTextFileSize));
   }
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());

@@ -63,7 +63,7 @@ std::vector<double> ReadMatrix(const cv::FileNode& node, const std::string& path
       Fail(path, fmt::format("key '{}': a matrix is expected", key));
     }
   } catch (const cv::Exception& exception) {
-    Fail(path, fmt::format("key '{}': no readable matrix ({})", key, exception.err));
+    Fail(path, fmt::format("key '{}': not a readable matrix ({})", key, exception.err));
   }
   for (const double value : values) {
     if (!std::isfinite(value)) Fail(path, fmt::format("key '{}': a value is not finite", key));
@@ -136,9 +136,9 @@ Camera ReadOpenCvCalibration(const std::string& text, const std::string& path) {
   try {
     storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
   } catch (const cv::Exception& exception) {
-    Fail(path, fmt::format("no readable OpenCV FileStorage file ({})", exception.err));
+    Fail(path, fmt::format("not a readable OpenCV FileStorage file ({})", exception.err));
   }
-  if (!storage.isOpened()) Fail(path, "no readable OpenCV FileStorage file");
+  if (!storage.isOpened()) Fail(path, "not a readable OpenCV FileStorage file");
   Camera camera;
   camera.width_px = ReadImageSize(storage, path, "image_width");
   camera.height_px = ReadImageSize(storage, path, "image_height");

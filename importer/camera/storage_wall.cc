@@ -18,7 +18,7 @@ constexpr int kMaxDepth = 16;
 
 [[noreturn]] void Fail(const std::string& path, const std::string& why) {
   throw InputError(
-      fmt::format("{}: no readable OpenCV FileStorage file: {}", path, SingleLine(why)));
+      fmt::format("{}: not a readable OpenCV FileStorage file: {}", path, SingleLine(why)));
 }
 
 [[noreturn]] void FailDepth(const std::string& path) {
@@ -40,7 +40,7 @@ void CheckYaml(const std::string& text, const std::string& path) {
   }
   if (documents.empty()) Fail(path, "it is empty");
   for (const YAML::Node& document : documents) {
-    if (!document.IsMap()) Fail(path, "its top is no map of keys");
+    if (!document.IsMap()) Fail(path, "its top level is not a map of keys");
     CheckDepth(document, 0, path);
   }
 }

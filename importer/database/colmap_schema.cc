@@ -87,9 +87,7 @@ void CheckDatabaseFile(const std::string& path, bool writing) {
   const bool exists = Exists(path);
   if (!exists && !writing) {
     throw InputError(
-        fmt::format("{}: there is no such database; make it with velamap "
-                    "marker_importer",
-                    path));
+        fmt::format("{}: there is no such database; make it with velamap marker_importer", path));
   }
   if (!exists) {
     const std::filesystem::path folder = AbsolutePath(path).parent_path();
@@ -99,7 +97,7 @@ void CheckDatabaseFile(const std::string& path, bool writing) {
     }
     return;
   }
-  if (!IsRegularFile(path)) throw InputError(path + ": no regular file");
+  if (!IsRegularFile(path)) throw InputError(path + ": not a regular file");
   constexpr char kMagic[] = "SQLite format 3";
   char begin[sizeof(kMagic)] = {};
   std::ifstream stream(path, std::ios::binary);
@@ -143,10 +141,9 @@ void CheckCanBeAddedTo(const std::string& path, SQLite::Database* database) {
   }
   if (database->tableExists("frames") &&
       database->execAndGet("SELECT COUNT(*) FROM frames").getInt64() > 0) {
-    throw InputError(
-        fmt::format("{}: holds frames of COLMAP 3.12 or later, which every image "
-                    "would need; choose a new file",
-                    path));
+    throw InputError(fmt::format(
+        "{}: holds frames of COLMAP 3.12 or later, which velamap does not write; choose a new file",
+        path));
   }
   SQLite::Statement images(*database, "SELECT name FROM images ORDER BY name LIMIT 1");
   if (!ReadDetectorOfDetections(database) && images.executeStep()) {

@@ -71,8 +71,7 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
     if (is_number && value >= range.min && value <= range.max) return value;
     throw InputError(
         fmt::format("{}: table image_formation: {} is '{}', not a number from {} to {}; delete the "
-                    "database and "
-                    "import again",
+                    "database and import again",
                     path, name, SingleLine(column.getString()), range.min, range.max));
   };
   const OptionRange is_true = FromTo(0, 1);

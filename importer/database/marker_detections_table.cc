@@ -123,8 +123,8 @@ MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::stri
     marker.corners_in_image_px[i] = {corners[2 * i], corners[2 * i + 1]};
     if (!marker.corners_in_image_px[i].allFinite()) {
       throw InputError(
-          fmt::format("{}: table marker_detections: a corner of marker {} is no number; delete the "
-                      "database and import again",
+          fmt::format("{}: table marker_detections: a corner of marker {} is not a number; delete "
+                      "the database and import again",
                       path, marker.marker_id));
     }
     marker.colors[i] = {colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]};
@@ -179,11 +179,10 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
   }
   std::vector<DatabaseImage> images;
   SQLite::Statement query(
-      *database,
-      fmt::format("SELECT images.image_id, camera_id, name, frame_number, time_s, rejected_because,"
-                  " {} FROM images JOIN marker_detections USING(image_id)"
-                  " ORDER BY images.image_id, detection_id",
-                  columns));
+      *database, fmt::format("SELECT images.image_id, camera_id, name, frame_number, time_s, "
+                             "rejected_because, {} FROM images JOIN marker_detections "
+                             "USING(image_id) ORDER BY images.image_id, detection_id",
+                             columns));
   while (query.executeStep()) {
     const ImageId image_id = query.getColumn(0).getUInt();
     if (images.empty() || images.back().image_id != image_id) {

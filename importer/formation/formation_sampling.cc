@@ -156,8 +156,7 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   spdlog::info(
       "camera and print, from {} markers: gamma {:.2f}, S-curve {:+.3f}, sharpening {:.2f} over "
       "{:.1f} px{}, ink spread {:+.2f} % of the side, quiet zone {:.2f} cells; residuals {:.1f} "
-      "grey "
-      "levels",
+      "grey levels",
       estimate.num_samples, found.gamma, found.s_amplitude, found.sharpening,
       found.sharpening_radius_px, found.sharpens_light ? " of light" : "",
       100 * found.ink_spread_sides, found.quiet_zone_cells, estimate.noise_gray);

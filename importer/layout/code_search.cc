@@ -221,7 +221,7 @@ void CodeSearchOptions::Check() const {
 }
 
 OptionGroup DescribeOptions(CodeSearchOptions* options) {
-  return {"A dictionary of one's own",
+  return {"Custom dictionary",
           {{"CustomDictionary.bits", &options->bits_per_side, "cells",
             "makes a dictionary of 3x3 to 8x8 bits whose codes differ as much as possible; give "
             "the cells a side; 0: --dictionary is used",

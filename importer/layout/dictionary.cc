@@ -84,8 +84,8 @@ int RequireInt(const cv::FileStorage& storage, const std::string& path, const st
   const std::optional<int> value = ReadInt(storage, path, key, min, max);
   if (!value) {
     Fail(path, key,
-         "missing; a cv::aruco dictionary file has nmarkers, markersize, "
-         "maxCorrectionBits and marker_0, marker_1 ...");
+         "missing; a cv::aruco dictionary file has nmarkers, markersize, maxCorrectionBits and "
+         "marker_0, marker_1 ...");
   }
   return *value;
 }
@@ -148,10 +148,10 @@ Dictionary ReadDictionaryFile(const std::string& path) {
     storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
   } catch (const cv::Exception& exception) {
     throw InputError(
-        fmt::format("{}: no readable cv::aruco dictionary file ({})", path, exception.err));
+        fmt::format("{}: not a readable cv::aruco dictionary file ({})", path, exception.err));
   }
   if (!storage.isOpened()) {
-    throw InputError(fmt::format("{}: no readable cv::aruco dictionary file", path));
+    throw InputError(fmt::format("{}: not a readable cv::aruco dictionary file", path));
   }
   const int num_markers = RequireInt(storage, path, "nmarkers", 1, kMaxMarkerId + 1);
   const int marker_size = RequireInt(storage, path, "markersize", 3, 20);

@@ -23,7 +23,7 @@ double Extent(BoardKind kind, int count, double spacing_mm, double length_mm) {
 Eigen::Vector2d SizeWithMargin(const Board& board, int num_cells) {
   const bool is_charuco = board.kind == BoardKind::kCharuco;
   const double white_mm =
-      std::max(0.0, WantedMargin(board.length_mm, num_cells) - board.frame.min_mm.x());
+      std::max(0.0, DefaultMargin(board.length_mm, num_cells) - board.frame.min_mm.x());
   return Eigen::Vector2d(Extent(board.kind, board.num_columns, board.spacing_mm, board.length_mm),
                          Extent(board.kind, board.num_rows, board.spacing_mm, board.length_mm)) +
          Eigen::Vector2d::Constant(is_charuco ? 0.0 : 2 * white_mm);
@@ -31,7 +31,7 @@ Eigen::Vector2d SizeWithMargin(const Board& board, int num_cells) {
 
 double DefaultSpacing(BoardKind kind, double length_mm, int num_cells) {
   return kind == BoardKind::kCharuco ? kSquareOfMarker * length_mm
-                                     : length_mm + WantedMargin(length_mm, num_cells);
+                                     : length_mm + DefaultMargin(length_mm, num_cells);
 }
 
 // Free area for the board itself, whose outer white margin lies in the page's border.
@@ -65,16 +65,17 @@ void ChooseSize(const std::optional<double>& spacing_m, int num_cells, Board* bo
 
 void CheckSize(const Paper& paper, int num_cells, const Board& board) {
   if (board.spacing_mm <= board.length_mm) {
-    throw InputError(
-        fmt::format("{}: markers of {} have no room at {:.4g} m; give more than their side",
-                    OptionName(&GridPlacementOptions::spacing_m), LengthText(board.length_mm),
-                    board.spacing_mm / 1000));
+    throw InputError(fmt::format(
+        "{}: markers of {} do not fit at a spacing of {:.4g} m; give more than their side",
+        OptionName(&GridPlacementOptions::spacing_m), LengthText(board.length_mm),
+        board.spacing_mm / 1000));
   }
   if (Fits(board, num_cells)) return;
   const Eigen::Vector2d size = SizeWithMargin(board, num_cells), room = Room(board.frame);
   throw InputError(fmt::format(
-      "{}: {} is too small for a board of {:.0f} x {:.0f} mm, {:.0f} x {:.0f} mm are free; give "
-      "larger paper, smaller markers (--marker_length) or fewer --Grid.columns and --Grid.rows",
+      "{}: {} is too small for a board of {:.0f} x {:.0f} mm, because {:.0f} x {:.0f} mm are free; "
+      "give larger paper, smaller markers (--marker_length) or fewer --Grid.columns and "
+      "--Grid.rows",
       OptionName(&PrintSheetOptions::paper), paper.name, size.x(), size.y(), room.x(), room.y()));
 }
 

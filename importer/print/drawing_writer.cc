@@ -33,7 +33,8 @@ cairo_status_t Append(void* closure, const unsigned char* data, unsigned int len
 // Nothing here reads files, so that any other failure is a fault of velamap's own.
 void CheckStatus(cairo_status_t status) {
   if (status == CAIRO_STATUS_INVALID_STRING) {
-    throw InputError("a name in the layout or of the dictionary's file is not UTF-8; save it so");
+    throw InputError(
+        "a name in the layout or of the dictionary's file is not UTF-8; save the file as UTF-8");
   }
   if (status != CAIRO_STATUS_SUCCESS) {
     throw std::logic_error(std::string("cairo: ") + cairo_status_to_string(status));

@@ -39,15 +39,15 @@ std::vector<Drawing> DrawSheets(const std::vector<Sheet>& sheets, const PrintedL
 
 void WarnOfNarrowMargin(const PrintSheetOptions& options, const PrintPlan& plan) {
   if (!options.margin_mm || plan.markers.empty()) return;
-  double wanted_mm = 0.0;
+  double default_mm = 0.0;
   for (const PrintedMarker& marker : plan.markers) {
-    wanted_mm = std::max(wanted_mm, WantedMargin(marker.length_mm, NumCells(plan.look)));
+    default_mm = std::max(default_mm, DefaultMargin(marker.length_mm, NumCells(plan.look)));
   }
-  if (*options.margin_mm >= wanted_mm) return;
+  if (*options.margin_mm >= default_mm) return;
   spdlog::warn(
-      "{}: {:.4g} mm of white around the markers are little; a dark ground pulls the corners of "
-      "markers that the camera sees small; {:.4g} mm are wanted",
-      OptionName(&PrintSheetOptions::margin_mm), *options.margin_mm, wanted_mm);
+      "{}: a white margin of {:.4g} mm is narrow: a dark background shifts the corners of markers "
+      "that are small in the images; {:.4g} mm or more avoid that",
+      OptionName(&PrintSheetOptions::margin_mm), *options.margin_mm, default_mm);
 }
 
 void AddSingleMarkers(const PrintPlan& plan, const PrintSheetOptions& options, OutputFiles* files) {

@@ -47,10 +47,10 @@ Paper ParsePaper(const std::string& text, const std::string& option) {
   if (times == std::string::npos || !ParseNumber(text.substr(0, times), &paper.width_mm) ||
       !ParseNumber(text.substr(times + 1), &paper.height_mm) || !IsSide(paper.width_mm) ||
       !IsSide(paper.height_mm)) {
-    throw InputError(fmt::format(
-        "{}: '{}' is no paper; give A4, A3, Letter, A0 to A6, Legal, Tabloid, or width x height in "
-        "mm from {} to {}, such as 330x480",
-        option, text, kMinPaper_mm, kMaxPaper_mm));
+    throw InputError(
+        fmt::format("{}: '{}' is not a paper size; give A4, A3, Letter, A0 to A6, Legal, Tabloid, "
+                    "or width x height in mm from {} to {}, such as 330x480",
+                    option, text, kMinPaper_mm, kMaxPaper_mm));
   }
   return paper;
 }

@@ -46,8 +46,8 @@ Sail MakeSail(const SailPlacementOptions& options, double sticker_mm) {
   const double squared = foot * foot - clew_up * clew_up;
   if (!(squared > kMinHeightOfFoot * foot * foot)) {
     throw InputError(fmt::format(
-        "{}: a sail with luff {} m, foot {} m and leech {} m is no triangle; measure "
-        "again: each is shorter than the other two together",
+        "{}: a sail with luff {} m, foot {} m and leech {} m is not a triangle; measure again: "
+        "each side is shorter than the other two together",
         OptionName(&SailPlacementOptions::leech_m), luff / 1000, foot / 1000, leech / 1000));
   }
   sail.clew = {std::sqrt(squared), clew_up};
@@ -123,8 +123,8 @@ OptionGroup DescribeOptions(GridPlacementOptions* options) {
            {"Grid.columns", &options->num_columns, "count",
             "columns of markers, or of squares of a charuco", FromTo(1, 200)},
            {"Grid.spacing", &options->spacing_m, "m",
-            "between the centres of neighbours; side of a charuco's squares; left out: twice the "
-            "marker's side on a grid, a quarter more than it on a board, 10/7 of it on a charuco",
+            "distance between the centres of neighbours, or side of a charuco's squares; left out: "
+            "2 marker sides on a grid, 1.25 on a board, 10/7 on a charuco",
             FromTo(1e-4, 100)}}};
 }
 
@@ -141,8 +141,8 @@ OptionGroup DescribeOptions(SailPlacementOptions* options) {
        {"Sail.markers_per_line", &options->markers_per_line, "count",
         "markers on a line; fewer near the head, where they have no room", FromTo(1, 500)},
        {"hull_markers", &options->hull_markers, "count",
-        "markers on the hull, a rigid part of its own that motion is measured against; hull: "
-        "0 makes 8",
+        "markers on the hull, a rigid part against which motion is measured; --arrangement hull: 0 "
+        "means 8",
         FromTo(0, 500)}}};
 }
 

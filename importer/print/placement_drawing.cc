@@ -199,14 +199,14 @@ void WriteRigidPart(const LayoutPart& part, PageWriter* pen) {
       "Anywhere on what is rigid and seen together with the rest: far apart, not all on one line, "
       "at different heights.",
       kWords_mm, false);
-  pen->Write("None on what moves against it, such as the boom.", kWords_mm, false);
+  pen->Write("Put none on parts that move against it, such as the boom.", kWords_mm, false);
 }
 
 Drawing DrawPicture(const PlacementPlan& plan, const Paper& paper) {
   PageWriter pen(paper);
   pen.Write("Where the markers go", kTitle_mm, true);
   if (!plan.placements.empty()) {
-    pen.Write("A picture, not in true scale; the sheets behind it are.", kWords_mm, false);
+    pen.Write("This drawing is not in true scale; the sheets after it are.", kWords_mm, false);
   }
   for (const Placement& placement : plan.placements) {
     const std::vector<std::string> instructions = Instructions(placement);

@@ -31,8 +31,9 @@ OptionGroup DescribeOptions(PrintOptions* options) {
     const auto ids = ParseNumberList<int>(text);
     if (!ids ||
         std::any_of(ids->begin(), ids->end(), [](int id) { return id < 0 || id > kMaxMarkerId; })) {
-      throw InputError(fmt::format("{}: '{}' is no list of marker ids; give such as 3,17 (0 to {})",
-                                   option, text, kMaxMarkerId));
+      throw InputError(
+          fmt::format("{}: '{}' is not a list of marker ids; give ids such as 3,17 (0 to {})",
+                      option, text, kMaxMarkerId));
     }
     options->ids = *ids;
   };
@@ -69,16 +70,18 @@ void PrintOptions::Check() const {
   codes.Check();
   if (layout && (!dictionary.empty() || marker_length_m || arrangement != Arrangement::kMarkers ||
                  num_markers > 0 || codes.bits_per_side > 0)) {
-    ThrowSuperfluous("--layout_path",
-                     "the layout file says what the markers are, --arrangement, --dictionary, "
-                     "--marker_length, --num_markers and --CustomDictionary.bits say it, too");
+    ThrowSuperfluous(
+        "--layout_path",
+        "it cannot be combined with --arrangement, --dictionary, --marker_length, --num_markers or "
+        "--CustomDictionary.bits, because the layout file describes the markers");
   }
   if (codes.bits_per_side > 0 && !dictionary.empty()) {
     ThrowSuperfluous("--dictionary", OptionName(&CodeSearchOptions::bits_per_side) + " makes one");
   }
   if (codes.bits_per_side == 0 && (codes.num_codes > 0 || codes.allow_symmetric)) {
-    ThrowSuperfluous(OptionName(&CodeSearchOptions::num_codes),
-                     OptionName(&CodeSearchOptions::bits_per_side) + " is 0, none is made");
+    ThrowSuperfluous(
+        OptionName(&CodeSearchOptions::num_codes),
+        OptionName(&CodeSearchOptions::bits_per_side) + " is 0, so that no dictionary is made");
   }
   if (arrangement != Arrangement::kSail && (sail.luff_m || sail.foot_m || sail.leech_m)) {
     ThrowSuperfluous(OptionName(&SailPlacementOptions::luff_m), "it goes with --arrangement sail");

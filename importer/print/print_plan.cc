@@ -136,7 +136,7 @@ std::vector<int> PlannedIds(const PrintPlan& plan) {
   return ids;
 }
 
-void MakeOwnDictionary(const PrintOptions& options, int max_id, PrintPlan* plan) {
+void MakeCustomDictionary(const PrintOptions& options, int max_id, PrintPlan* plan) {
   CodeSearchOptions search = options.codes;
   if (search.num_codes == 0) search.num_codes = max_id + 1;
   plan->codes = FindCodes(search, options.seed);
@@ -192,7 +192,7 @@ PrintPlan MakePrintPlan(const PrintOptions& options) {
     throw InputError(
         fmt::format("--first_id: marker {} is wanted; ids end at {}", max_id, kMaxMarkerId));
   }
-  if (options.codes.bits_per_side > 0) MakeOwnDictionary(options, max_id, &plan);
+  if (options.codes.bits_per_side > 0) MakeCustomDictionary(options, max_id, &plan);
   CheckIds(max_id, plan);
   KeepOnly(options.ids, &plan);
   plan.layout.border_bits = plan.look.border_bits;

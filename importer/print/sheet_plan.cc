@@ -42,9 +42,8 @@ Grid MakeGrid(const Paper& paper, bool is_landscape, const Sticker& sticker) {
   const Eigen::Vector2d room_mm = MakePageFrame(options.paper, false).FreeSize();
   throw InputError(fmt::format(
       "{}: {} is too small for marker {}, which takes {:.0f} x {:.0f} mm with its margin and "
-      "words, "
-      "{:.0f} x {:.0f} mm are free; give larger paper, smaller markers (--marker_length) or a "
-      "smaller {}",
+      "label, while {:.0f} x {:.0f} mm are free; give larger paper, smaller markers "
+      "(--marker_length) or a smaller {}",
       OptionName(&PrintSheetOptions::paper), options.paper.name, sticker.marker.marker_id,
       sticker.Width(), sticker.Height(), std::max(0.0, room_mm.x()), std::max(0.0, room_mm.y()),
       OptionName(&PrintSheetOptions::margin_mm)));
@@ -103,17 +102,18 @@ OptionGroup DescribeOptions(PrintSheetOptions* options) {
   return {"Sheets",
           {{"Sheet.paper", ParsedValue{&options->paper, options->paper.name, set_paper},
             "A4|A3|Letter|WIDTHxHEIGHT in mm",
-            "paper; also A0 to A6, Legal, Tabloid, or such as 330x480"},
+            "paper size; also A0 to A6, Legal, Tabloid, or width x height in mm such as 330x480"},
            {"Sheet.margin", &options->margin_mm, "mm",
-            "white around the black square; left out: a quarter of its side and at least one and a "
-            "half cells, which search and corner fit want",
+            "width of the white margin around the black square; left out: a quarter of the "
+            "square's side, and at least 1.5 cells",
             FromTo(0, 500)},
            {"Sheet.markers_per_sheet", &options->markers_per_sheet, "count",
             "markers on a sheet at most; 0: as many as there is room for", AtLeast(0)},
            {"Sheet.svg", &options->write_svg, "0|1", "also write every marker as an SVG file"},
            {"Sheet.png", &options->write_png, "0|1", "also write every marker as a PNG file"},
            {"Sheet.png_resolution", &options->png_dpi, "dpi",
-            "of the PNG files, at least; a cell is a whole number of pixels", FromTo(10, 10000)}}};
+            "least resolution of the PNG files; a cell is a whole number of pixels",
+            FromTo(10, 10000)}}};
 }
 
 PageFrame MakePageFrame(const Paper& paper, bool is_landscape) {
@@ -125,7 +125,7 @@ PageFrame MakePageFrame(const Paper& paper, bool is_landscape) {
   return frame;
 }
 
-double WantedMargin(double length_mm, int num_cells) {
+double DefaultMargin(double length_mm, int num_cells) {
   constexpr double kOfLength = 0.25, kCells = 1.5;
   return std::max(kOfLength * length_mm, kCells * length_mm / num_cells);
 }
@@ -133,7 +133,7 @@ double WantedMargin(double length_mm, int num_cells) {
 Sticker MakeSticker(const PrintedMarker& marker, int num_cells, const PrintSheetOptions& options) {
   Sticker sticker;
   sticker.marker = marker;
-  sticker.margin_mm = options.margin_mm.value_or(WantedMargin(marker.length_mm, num_cells));
+  sticker.margin_mm = options.margin_mm.value_or(DefaultMargin(marker.length_mm, num_cells));
   sticker.label_mm = std::clamp(kLabelOfLength * marker.length_mm, kMinLabel_mm, kMaxLabel_mm);
   return sticker;
 }

@@ -15,7 +15,7 @@ namespace velamap {
 
 struct PrintSheetOptions {
   Paper paper{"A4"};
-  std::optional<double> margin_mm;  // white around the black square; nothing: WantedMargin()
+  std::optional<double> margin_mm;  // white around the black square; nothing: DefaultMargin()
   int markers_per_sheet = 0;        // 0: as many as there is room for
   bool write_svg = false;           // a file for each marker
   bool write_png = false;
@@ -65,7 +65,7 @@ struct Sheet {
 // The white margin that search and corner fit want: the fit of a marker of small cells takes up to
 // one and a half cells of it into account, and a ground that is closer than a quarter of the side
 // pulls corners. `num_cells` is that of a side, border included.
-double WantedMargin(double length_mm, int num_cells);
+double DefaultMargin(double length_mm, int num_cells);
 
 Sticker MakeSticker(const PrintedMarker& marker, int num_cells, const PrintSheetOptions& options);
 

@@ -50,8 +50,8 @@ std::vector<std::string> ListImages(const fs::path& folder) {
                     folder.string()));
   }
   if (!others.empty()) {
-    spdlog::warn("{}: left out, no images by their names: {}, such as {}", folder.string(),
-                 others.size(), others.front());
+    spdlog::warn("{}: left out, because their names are not those of images: {}, such as {}",
+                 folder.string(), others.size(), others.front());
   }
   return names;
 }
@@ -193,7 +193,7 @@ class VideoFile : public FrameSource {
     // A container that derives the count from its duration is off by a frame or so.
     const int tolerance = std::max(2, num_container_frames_ / 100);
     if (num_read_ < num_container_frames_ - tolerance) {
-      spdlog::warn("{}: the video breaks off after {} of {} frames; what is there is used", path_,
+      spdlog::warn("{}: the video breaks off after {} of {} frames; these are used", path_,
                    num_read_, num_container_frames_);
     }
   }

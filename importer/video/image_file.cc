@@ -77,7 +77,7 @@ cv::Mat DecodeImageFile(const std::string& path, std::string* reason) {
     } catch (const cv::Exception&) {
       // Falls through: OpenCV throws for some damaged files and returns nothing for others.
     }
-    *reason = "no image that can be decoded";
+    *reason = "not an image that can be decoded";
   }
   return {};
 }

@@ -37,10 +37,10 @@ struct FrameFreer {
 using FormatPtr = std::unique_ptr<AVFormatContext, FormatCloser>;
 
 [[noreturn]] void ThrowUnreadable(const std::string& path) {
-  throw InputError(fmt::format(
-      "{}: no video that can be read, or cut off before its index; give a folder of images or a "
-      "whole video file",
-      path));
+  throw InputError(
+      fmt::format("{}: not a readable video, or cut off before its index; give a folder of images "
+                  "or a whole video file",
+                  path));
 }
 
 FormatPtr OpenFormat(const std::string& path) {

@@ -79,9 +79,9 @@ void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
     const double focal_px = found.camera.params.front(), sigma_px = found.sigmas.front();
     if (sigma_px <= kMaxSigma * focal_px) continue;
     throw DataError(fmt::format(
-        "these pictures do not tell the focal length of their camera ({:.0f} +- {:.0f} px){}{}; "
-        "film the markers tilted, from near and far and from more sides, or import them with a "
-        "calibration",
+        "these pictures do not determine the focal length of their camera ({:.0f} +- {:.0f} "
+        "px){}{}; film the markers tilted, from near and far and from more sides, or import them "
+        "with a calibration",
         focal_px, sigma_px, weaknesses.empty() ? "" : ": ", fmt::join(weaknesses, "; ")));
   }
 }

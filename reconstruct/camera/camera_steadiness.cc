@@ -176,8 +176,7 @@ std::string Wandering(const Model& model, const std::vector<ImageIntrinsics>& va
     if (spread_px < least_px || spread_px < kMinRatio * Median(std::move(sigmas))) continue;
     return fmt::format(
         "the principal point wanders by {:.0f} px from picture to picture, as in a stabilised "
-        "clip: "
-        "switch stabilisation off and film again",
+        "clip: switch stabilisation off and film again",
         spread_px);
   }
   return {};
@@ -223,7 +222,7 @@ bool FocalStep::IsSuspicious() const {
 std::string DescribeStep(const FocalStep& step) {
   return fmt::format(
       "the focal length changes from {:.0f} to {:.0f} px about {}: the lens was zoomed, or the "
-      "pictures come from two cameras; give the pictures of one setting alone",
+      "pictures come from two cameras; use the pictures of one setting only",
       step.before_px, step.after_px, step.first_image_after);
 }
 

@@ -142,7 +142,7 @@ class PooledViews {
   int num_threads_;
 };
 
-std::vector<SquareView> MostTelling(std::vector<SquareView> views) {
+std::vector<SquareView> MostInformative(std::vector<SquareView> views) {
   const auto size_in_sigmas = [](const SquareView& view) {
     return QuadMeanSide(view.corners_px) / view.sigma_px;
   };
@@ -159,7 +159,7 @@ FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
                               std::vector<SquareView> views, int num_threads) {
   constexpr int kMaxNumSteps = 10;
   const int side_px = std::max(width_px, height_px);
-  const PooledViews pooled(MostTelling(std::move(views)), num_threads);
+  const PooledViews pooled(MostInformative(std::move(views)), num_threads);
   const auto lens = [&](double log_focal) {
     return LensOf(model, width_px, height_px, std::exp(log_focal));
   };

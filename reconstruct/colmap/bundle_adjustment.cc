@@ -169,12 +169,12 @@ void CheckRefinableDistortion(const BundleAdjustmentOptions& options, const Mode
   if (!options.refine_extra_params) return;
   for (const auto& [camera_id, camera] : model.cameras) {
     if (!HasUnnamedDistortion(camera)) continue;
-    throw InputError(fmt::format(
-        "{} 1: COLMAP would free the parameters of camera {} ({}) that the calibration leaves "
-        "zero, too, and they run away; adjust with --backend markers or both, which frees the "
-        "others only",
-        OptionName(&BundleAdjustmentOptions::refine_extra_params), camera_id,
-        CameraModelName(camera.model)));
+    throw InputError(
+        fmt::format("{} 1: COLMAP would also free the parameters of camera {} ({}) that are zero "
+                    "in the calibration, and they would diverge; use --backend markers or both, "
+                    "which keeps them at zero",
+                    OptionName(&BundleAdjustmentOptions::refine_extra_params), camera_id,
+                    CameraModelName(camera.model)));
   }
 }
 
@@ -205,7 +205,7 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
     ++summary.num_rounds;
     if (summary.num_rounds == options.max_num_rounds) break;
     const int num_changes = ReviseObservations(options, &adjusted, &summary.removed);
-    spdlog::debug("round {}: {} observations changed sides", summary.num_rounds, num_changes);
+    spdlog::debug("round {}: {} observations removed or restored", summary.num_rounds, num_changes);
     if (num_changes == 0) break;
   }
   UpdatePointErrors(&adjusted);

@@ -24,13 +24,13 @@ OptionGroup DescribeOptions(BundleAdjustmentOptions* options) {
            {"BundleAdjustment.max_num_rounds", &options->max_num_rounds, "count",
             "most rounds of adjustment and removal of outliers", AtLeast(1)},
            {"BundleAdjustment.outlier_ratio", &options->outlier_ratio, "sigmas",
-            "an error beyond so many robust sigmas is an outlier", AtLeast(2)},
+            "errors beyond this many robust sigmas are outliers", AtLeast(2)},
            {"BundleAdjustment.min_outlier_error", &options->min_outlier_error_px, "px",
-            "a smaller error is no outlier", AtLeast(0)},
+            "errors below this are never outliers", AtLeast(0)},
            {"BundleAdjustment.min_track_length", &options->min_track_length, "images",
             "fewest images that have to see a corner", AtLeast(2)},
            {"BundleAdjustment.max_mean_error", &options->max_mean_error_px, "px",
-            "a larger mean reprojection error is no result", AtLeast(0)}}};
+            "a result with a larger mean reprojection error is refused", AtLeast(0)}}};
 }
 
 void BundleAdjustmentOptions::Check() const {

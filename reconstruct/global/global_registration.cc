@@ -190,9 +190,8 @@ int ChooseCentralFrame(const GlobalRegistration& global) {
       min_num_inliers,
       doubt.empty()
           ? ""
-          : doubt + ", as false ones of another dictionary are: check the dictionary, its "
-                    "border_bits and whether the prints are inverted first; if these are "
-                    "right, "));
+          : doubt + ", which happens with a wrong dictionary: first check the dictionary, its "
+                    "border_bits and whether the prints are inverted; if these are right, "));
 }
 
 }  // namespace

@@ -152,8 +152,8 @@ std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovaria
   const Views views = DescribeViews(model);
   if (views.parallax_rad > kMaxWeakParallax) return {};
   const std::string text = fmt::format(
-      "{}; so the points are known to {:.2g} mm along the line of sight, to {:.2g} mm across: "
-      "take images from places more than 30 degrees apart",
+      "{}; therefore the points are known to {:.2g} mm along the line of sight, but to {:.2g} mm "
+      "across it: take images from places more than 30 degrees apart",
       Reason(views), 1e3 * ellipsoid.longest_m, 1e3 * ellipsoid.shortest_m);
   if (ellipsoid.longest_m > kMaxRelativeSigma * views.object_extent_m) {
     throw DataError("the images leave the shape undetermined: " + text);

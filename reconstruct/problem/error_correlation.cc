@@ -152,8 +152,10 @@ double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
   const double found = adjustment.SquaredMovements(residuals)[0];
   const ExpectedMovement expected = SimulateIndependentErrors(adjustment, num_threads);
   const double factor = std::sqrt(found / expected.mean);
-  spdlog::debug("groups of images move the shape by {:.3f} times (+- {:.3f}) what chance does",
-                factor, 0.5 * expected.sigma / expected.mean);
+  spdlog::debug(
+      "the residuals of groups of images move the shape {:.3f} +- {:.3f} times as far as "
+      "independent errors",
+      factor, 0.5 * expected.sigma / expected.mean);
   return found > expected.mean + 2.0 * expected.sigma ? factor : 1.0;
 }
 

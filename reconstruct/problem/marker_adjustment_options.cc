@@ -14,7 +14,7 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
           {{"MarkerAdjustment.corner_sigma", &options->corner_sigma_px, "px",
             "1 sigma of a corner's coordinate where the detector gives none", FromTo(1e-4, 100)},
            {"MarkerAdjustment.corner_sigma_floor", &options->corner_sigma_floor_px, "px",
-            "added to every corner's own sigma, by squares", FromTo(0, 100)},
+            "added to every corner's own sigma (root of the sum of squares)", FromTo(0, 100)},
            {"MarkerAdjustment.loss", &options->loss_sigmas, "sigmas",
             "errors beyond this lose weight", FromTo(1, 1000)},
            {"MarkerAdjustment.outlier", &options->outlier_sigmas, "sigmas",
@@ -23,8 +23,7 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
             "1 sigma of each printed side", FromTo(1e-6, 0.5)},
            {"MarkerAdjustment.common_print_tolerance", &options->common_print_tolerance, "fraction",
             "1 sigma of the print as a whole; widens the scale's sigma; distances with use: scale "
-            "overrule "
-            "it",
+            "overrule it",
             FromTo(0, 0.5)},
            {"MarkerAdjustment.cloth_flatness", &options->cloth_flatness, "fraction",
             "1 sigma of a corner's distance from its marker's plane, relative to the side; 0: "
@@ -33,20 +32,20 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
            {"MarkerAdjustment.rigid_flatness", &options->rigid_flatness, "fraction",
             "the same on parts that the layout calls rigid", FromTo(0, 1)},
            {"MarkerAdjustment.inset_sigma", &options->inset_sigma_px, "px",
-            "1 sigma of an error that all corners share, seen too far inside; widens the scale's "
-            "sigma",
+            "1 sigma of an inset that all corners share (seen too far inside their marker); widens "
+            "the scale's sigma",
             FromTo(0, 10)},
            {"MarkerAdjustment.estimate_inset", &options->estimate_inset, "0|1",
-            "estimate that error from the images"},
+            "estimate the inset from the images"},
            {"MarkerAdjustment.refine_calibration", &options->refine_calibration, "0|1",
             "refine the calibration where the images determine it better and contradict it; an "
             "option BundleAdjustment.refine_* decides instead"},
            {"MarkerAdjustment.find_camera", &options->find_camera, "0|1",
-            "the camera is not known: refine all of it with the prior of any camera; set "
-            "where there is no calibration"},
+            "the camera is not known: refine all its parameters with a prior that holds for any "
+            "camera; set without a calibration"},
            {"MarkerAdjustment.intrinsics_sigma", &options->intrinsics_sigma, "fraction",
-            "1 sigma of a calibration that is refined: of the focal "
-            "length, and of the image's corners by each distortion parameter",
+            "1 sigma of a calibration that is refined: of the focal length, and of how far each "
+            "distortion parameter moves the image's corners",
             FromTo(1e-9, 10)},
            {"MarkerAdjustment.rolling_shutter", &options->rolling_shutter_s, "s",
             "time from the first row of a video's frame to the last; negative: upwards; 0: unknown",

@@ -89,10 +89,10 @@ std::vector<BadInput> Walls() {
   std::vector<BadInput> cases;
   for (const auto& [name, text] : texts) {
     cases.push_back({"Calibration" + name, Call("grey", "bad.yml"), 2,
-                     "bad.yml: no readable OpenCV FileStorage file", Write("bad.yml", text)});
+                     "bad.yml: not a readable OpenCV FileStorage file", Write("bad.yml", text)});
     cases.push_back({"Dictionary" + name,
                      Call("grey", "camera.yml", "--dictionary @/bad.yml --marker_length 0.1"), 2,
-                     "bad.yml: no readable OpenCV FileStorage file", Write("bad.yml", text)});
+                     "bad.yml: not a readable OpenCV FileStorage file", Write("bad.yml", text)});
   }
   const std::vector<std::pair<std::string, std::string>> calls = {
       {"Calibration", Call("grey", "bad.yml")},
@@ -100,10 +100,11 @@ std::vector<BadInput> Walls() {
   for (const auto& [name, call] : calls) {
     cases.push_back(
         {name + "OfAByteOrderMarkAlone", call, 2, "is empty", Write("bad.yml", "\xef\xbb\xbf")});
-    cases.push_back({name + "OfManyBytes", call, 2, "is it another file?", [](const fs::path& dir) {
-                       WriteTextFile(dir / "bad.yml", "%YAML");
-                       fs::resize_file(dir / "bad.yml", (std::uintmax_t{64} << 20) + 1);
-                     }});
+    cases.push_back(
+        {name + "OfManyBytes", call, 2, "check that it is the right file", [](const fs::path& dir) {
+           WriteTextFile(dir / "bad.yml", "%YAML");
+           fs::resize_file(dir / "bad.yml", (std::uintmax_t{64} << 20) + 1);
+         }});
   }
   return cases;
 }

@@ -141,7 +141,7 @@ std::vector<BadInput> FoldersOfOthers() {
       {"AHiddenFileInTheShape", kRerun, 2, "holds .stray", Put("workspace/shape/.stray")},
       {"AnEditedShape", kRerun, 2, "shape.csv, which was changed",
        Put("workspace/shape/shape.csv")},
-      {"AFileInPlaceOfTheShape", kRerun, 2, "is no folder",
+      {"AFileInPlaceOfTheShape", kRerun, 2, "is not a folder",
        [](const fs::path& dir) {
          fs::remove_all(dir / "workspace/shape");
          WriteTextFile(dir / "workspace/shape", "of the user");

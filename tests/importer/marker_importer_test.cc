@@ -349,7 +349,7 @@ TEST_F(MarkerImporterTest, BrokenImagesAreSkippedUnlessAllAre) {
   EXPECT_EQ(report.num_images_added, 1);
   ASSERT_EQ(report.skipped.size(), 1u);
   EXPECT_EQ(report.skipped[0].image_name, "2.png");
-  EXPECT_EQ(report.skipped[0].reason, "no image that can be decoded");
+  EXPECT_EQ(report.skipped[0].reason, "not an image that can be decoded");
   fs::remove(dir_ / "images/1.png");
   fs::remove(options_.database_path);
   ExpectThrows<InputError>([&] { ImportMarkers(options_); }, {"none of 1 images", "2.png"});

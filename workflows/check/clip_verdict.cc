@@ -45,7 +45,7 @@ class Judge {
     if (facts_.num_frames_of_id.empty()) {
       Bad(facts_.no_markers_because.empty()
               ? "no marker is seen: check that the clip shows markers, and the dictionary"
-              : "no marker to go by: " + facts_.no_markers_because);
+              : "the markers cannot be judged: " + facts_.no_markers_because);
       return;
     }
     if (facts_.num_markers_found && facts_.num_markers_of_second &&
@@ -125,7 +125,7 @@ class Judge {
   void JudgePrecision() {
     if (!facts_.precision) {
       if (!facts_.no_precision_because.empty() && !facts_.num_frames_of_id.empty()) {
-        Bad("these frames give no shape: " + facts_.no_precision_because);
+        Bad("no shape can be reconstructed from these frames: " + facts_.no_precision_because);
       }
       return;
     }

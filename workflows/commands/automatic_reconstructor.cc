@@ -78,8 +78,8 @@ void Validate(Options* options) {
   if (options->paths.camera_path.empty()) {
     if (!options->adjustment.UsesMarkers()) {
       throw InputError(
-          "--camera_path: missing; --backend colmap adjusts no unknown camera: give a calibration, "
-          "or take --backend both or markers");
+          "--camera_path: missing; --backend colmap cannot adjust an unknown camera: give a "
+          "calibration, or --backend both or markers");
     }
     options->adjustment.markers.find_camera = true;
   }

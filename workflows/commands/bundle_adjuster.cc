@@ -40,8 +40,8 @@ CommandSyntax Declare(Options* options) {
                              &paths->output_path, "colmap.log"),
              BackendOption(&options->adjustment.backend),
              PathOption("database_path", PathUse::kReadsFile, &paths->database_path,
-                        "database of the model's images, which tells the sigma and motion of each "
-                        "corner (markers, optional)")}},
+                        "database of the model's images, for the sigma and motion of each corner "
+                        "(markers, optional)")}},
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->adjustment.colmap),
            DescribeOptions(&options->adjustment.markers),

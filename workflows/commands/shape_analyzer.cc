@@ -77,8 +77,7 @@ void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathO
   if (max_distance_m <= kTolerance_m) return;
   spdlog::warn(
       "{} is not the shape of the model {}: corners differ by up to {:.6f} m, so the model's "
-      "errors "
-      "are not those of the shape",
+      "errors are not those of the shape",
       paths.shape_path, paths.input_path, max_distance_m);
 }
 

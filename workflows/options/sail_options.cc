@@ -10,11 +10,10 @@ OptionGroup SurfaceGroup(SurfaceOptions* options, SurfaceFileOptions* file_optio
   for (const Option& option : DescribeOptions(&file_options->mesh).options) {
     group.options.push_back(option);
   }
-  group.options.push_back(
-      PathOption("Surface.edges_path", PathUse::kReadsFile, &file_options->edges_path,
-                 "CSV edge,x,y,z of points on luff, leech, foot or head to which the "
-                 "surface continues; m, in "
-                 "the frame of the result"));
+  group.options.push_back(PathOption("Surface.edges_path", PathUse::kReadsFile,
+                                     &file_options->edges_path,
+                                     "CSV edge,x,y,z of points on luff, leech, foot or head to "
+                                     "which the surface continues; m, in the frame of the result"));
   return group;
 }
 
@@ -24,10 +23,10 @@ std::vector<OptionGroup> SailGroups(ShapeExporterOptions* exporter, SurfaceFileO
   const auto set_frame = [exporter](const std::string& text, const std::string& option) {
     exporter->frame = ParseFrameChoice(text, option);
   };
-  const Option frame = {"frame", ParsedValue{&exporter->frame, "", set_frame}, "name|ids",
-                        "reference_part, lines, camera, or the ids of origin, axis and plane "
-                        "marker such as 12,15,40; "
-                        "left out: as the layout says, else the first of these that can be made"};
+  const Option frame = {
+      "frame", ParsedValue{&exporter->frame, "", set_frame}, "name|ids",
+      "reference_part, lines, camera, or the ids of origin, axis and plane marker such as "
+      "12,15,40; left out: as the layout says, else the first of these that can be made"};
   return {{"Frame of the result", {frame}},
           DescribeOptions(&exporter->sail.sections),
           SurfaceGroup(&exporter->sail.surface, surface)};

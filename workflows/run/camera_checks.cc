@@ -42,7 +42,7 @@ std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& 
                                               const CornerErrors& corner_errors,
                                               const RegistrationOptions& registration,
                                               const MarkerAdjustmentOptions& adjustment) {
-  spdlog::info("no calibration: looking for the camera in the pictures");
+  spdlog::info("no calibration: estimating the camera from the pictures");
   const std::map<CameraId, Camera> found =
       FindCameras(images, guesses, layout, corner_errors, registration, adjustment);
   for (const auto& [camera_id, camera] : found) {
@@ -65,8 +65,9 @@ void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
     return;
   }
   spdlog::warn(
-      "the residuals are those of a fisheye lens, and the calibration is none: calibrate it as one "
-      "(distortion_model: fisheye), or leave --camera_path out, so that the camera is found");
+      "the residuals are those of a fisheye lens, but the calibration is not a fisheye model: "
+      "calibrate the camera as a fisheye (distortion_model: fisheye), or leave --camera_path out, "
+      "so that the camera is found");
 }
 
 void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,

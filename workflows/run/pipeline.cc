@@ -54,8 +54,7 @@ void LogPriorShapeAgreement(const PriorShapeAgreement& agreement) {
   if (agreement.num_known == 0) {
     spdlog::warn(
         "--prior_shape_path: not used, because no frame shows four of its markers; are its ids "
-        "those "
-        "of the dictionary and the layout?");
+        "those of the dictionary and the layout?");
     return;
   }
   spdlog::info("{} of the {} markers found that the prior shape holds are where it has them",
@@ -63,8 +62,7 @@ void LogPriorShapeAgreement(const PriorShapeAgreement& agreement) {
   if (2 * agreement.num_agreeing < agreement.num_known) {
     spdlog::warn(
         "--prior_shape_path: the prior shape does not fit these images and was of little use; is "
-        "it of "
-        "this surface, and does the calibration belong to these images?");
+        "it of this surface, and does the calibration belong to these images?");
   }
 }
 
@@ -125,21 +123,18 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
   spdlog::info(
       "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, scale "
-      "sigma "
-      "{:.3f} %",
+      "sigma {:.3f} %",
       summary.num_iterations, summary.removed.size(), summary.error_before_px.mean,
       summary.error_after_px.mean, 100.0 * uncertainty.relative_scale_sigma);
   spdlog::info(
-      "corner noise {:.2f} times the detector's sigmas, times {:.2f} for correlated errors; {:.2f} "
-      "% "
-      "of the corners have residuals above 4 sigmas",
+      "sigmas of the corners scaled by {:.2f} to fit the residuals and by {:.2f} for correlated "
+      "errors; {:.2f} % of the residuals exceed 4 sigmas",
       std::sqrt(uncertainty.variance_factor), uncertainty.correlation_factor,
       100.0 * uncertainty.share_above_4_sigma);
   const CalibrationEvidence& calibration = uncertainty.calibration;
   spdlog::info(
       "calibration: {} changes would explain {:.3f} px of the residuals ({:.1f} sigmas; focal "
-      "length "
-      "{:+.2f} +- {:.2f} %) and move the shape by {:.2f} mm, {:.1f} of its sigmas",
+      "length {:+.2f} +- {:.2f} %) and move the shape by {:.2f} mm ({:.1f} of its sigmas)",
       calibration.num_changes, calibration.systematic_px, SigmasOff(calibration),
       100.0 * calibration.focal_change, 100.0 * calibration.focal_sigma,
       1e3 * calibration.shape_change_m, calibration.shape_change_in_sigmas);

@@ -59,7 +59,7 @@ TEST(WriteFileAtomically, KeepsALinkAndRefusesOtherThanFiles) {
   EXPECT_EQ(Content(dir / "target"), "new");
   const auto nothing = [](std::ostream&) {};
   ExpectThrows<InputError>([&] { WriteFileAtomically(dir.path(), nothing); },
-                           {dir.path(), "no regular file"});
+                           {dir.path(), "not a regular file"});
   ExpectThrows<InputError>([&] { WriteFileAtomically("/dev/full", nothing); }, {"/dev/full"});
   ExpectThrows<InputError>([&] { WriteFileAtomically(dir / "target" / "x", nothing); },
                            {dir / "target", "cannot be written"});
@@ -119,7 +119,8 @@ TEST(AtomicFolder, KnowsWhatItWroteInSubfolders) {
 TEST(AtomicFolder, RefusesAFile) {
   const TempDir dir;
   WriteFile(dir / "out", [](std::ostream&) {});
-  ExpectThrows<InputError>([&] { AtomicFolder folder(dir / "out"); }, {dir / "out", "no folder"});
+  ExpectThrows<InputError>([&] { AtomicFolder folder(dir / "out"); },
+                           {dir / "out", "not a folder"});
   ExpectThrows<InputError>([&] { AtomicFolder folder(dir / "out" / "x"); }, {"cannot be written"});
 }
 

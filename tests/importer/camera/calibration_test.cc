@@ -102,7 +102,7 @@ TEST(ReadCalibration, NamesFileAndKeyOfAnError) {
          "'spline' is unknown");
   expect(size + matrix + "distortion_coefficients: [0., 0.]\ndistortion_model: fisheye\n",
          "4 values");
-  expect("%YAML:1.0\n---\nimage_width: [1, 2\n", "no readable OpenCV FileStorage");
+  expect("%YAML:1.0\n---\nimage_width: [1, 2\n", "not a readable OpenCV FileStorage");
   ExpectThrows<InputError>([&] { ReadCalibration(dir / "none.yml"); },
                            {"none.yml", "there is no such"});
 }

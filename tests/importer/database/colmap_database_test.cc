@@ -307,7 +307,7 @@ TEST(ColmapDatabase, NamesWhatIsWrongWithAFile) {
   expect(dir / "none.db", Mode::kReadOnly, "no such database");
   EXPECT_FALSE(fs::exists(dir / "none.db"));
   expect(dir / "no/folder.db", Mode::kReadWriteCreate, "no folder");
-  expect(dir.path(), Mode::kReadWriteCreate, "no regular file");
+  expect(dir.path(), Mode::kReadWriteCreate, "not a regular file");
   std::ofstream(dir / "text.db") << "some text that is no database, long enough";
   expect(dir / "text.db", Mode::kReadOnly, "not an SQLite database");
   expect(dir / "text.db", Mode::kReadWriteCreate, "not an SQLite database");

@@ -84,7 +84,7 @@ TEST(PlanBoard, FillsThePaperWithoutALength) {
         EXPECT_GE((min_mm - board.frame.min_mm).minCoeff(), -1e-6);
         EXPECT_GE((board.frame.max_mm - min_mm).minCoeff(), board.length_mm - 1e-6);
         // White as far as the corner fit looks, up to the paper's edge.
-        EXPECT_GE(min_mm.minCoeff(), WantedMargin(board.length_mm, 6) - 1e-6);
+        EXPECT_GE(min_mm.minCoeff(), DefaultMargin(board.length_mm, 6) - 1e-6);
         high = high.cwiseMax(min_mm);
       }
       GridPlacementOptions larger = Grid(rows, columns);

@@ -108,9 +108,9 @@ TEST(PlaceOnSail, BadLengthsNameTheOption) {
   ExpectThrows<InputError>([] { PlaceOnSail(SailPlacementOptions(), kLength_mm, kSticker_mm, 0); },
                            {"--Sail.luff", "missing"});
   ExpectThrows<InputError>([] { PlaceOnSail(Sail(6, 3, 10), kLength_mm, kSticker_mm, 0); },
-                           {"--Sail.leech", "no triangle"});
+                           {"--Sail.leech", "not a triangle"});
   ExpectThrows<InputError>([] { PlaceOnSail(Sail(9, 3, 5), kLength_mm, kSticker_mm, 0); },
-                           {"--Sail.leech", "no triangle"});
+                           {"--Sail.leech", "not a triangle"});
   ExpectThrows<InputError>([] { PlaceOnSail(Sail(1, 0.5, 1.1), kLength_mm, kSticker_mm, 0); },
                            {"--Sail.lines", "no room", "--marker_length"});
   SailPlacementOptions many = Sail(6, 3, 6.2);

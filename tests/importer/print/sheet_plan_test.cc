@@ -62,9 +62,9 @@ TEST(PlanSheets, EveryMarkerOnceInsideThePageAndApart) {
 
 TEST(PlanSheets, MarginIsWhatSearchAndFitWant) {
   // A quarter of the side pulls no corner; one and a half cells are as far as the fit looks.
-  EXPECT_DOUBLE_EQ(WantedMargin(100, 8), 25);
-  EXPECT_DOUBLE_EQ(WantedMargin(100, 6), 25);
-  EXPECT_DOUBLE_EQ(WantedMargin(100, 5), 30);
+  EXPECT_DOUBLE_EQ(DefaultMargin(100, 8), 25);
+  EXPECT_DOUBLE_EQ(DefaultMargin(100, 6), 25);
+  EXPECT_DOUBLE_EQ(DefaultMargin(100, 5), 30);
   PrintSheetOptions options = On("A4");
   EXPECT_DOUBLE_EQ(PlanSheets(Markers(1, 100), 5, options)[0].stickers[0].margin_mm, 30);
   options.margin_mm = 12.5;

@@ -105,7 +105,7 @@ TEST(DecodeImageFile, SaysWhyThereIsNoImage) {
   EXPECT_EQ(reason, "the file is empty");
   std::ofstream(dir / "text.jpg") << "no picture";
   EXPECT_TRUE(DecodeImageFile(dir / "text.jpg", &reason).empty());
-  EXPECT_EQ(reason, "no image that can be decoded");
+  EXPECT_EQ(reason, "not an image that can be decoded");
 }
 
 TEST(ImageFolder, ListsNestedImagesInNaturalOrder) {
@@ -174,7 +174,7 @@ TEST(OpenFrameSource, NamesWhatIsWrong) {
   ExpectThrows<InputError>([&] { OpenFrameSource(dir / "empty.mp4", {}); }, {"file is empty"});
   std::ofstream(dir / "text.mp4") << "no video at all";
   ExpectThrows<InputError>([&] { OpenFrameSource(dir / "text.mp4", {}); },
-                           {dir / "text.mp4", "no video that can be read"});
+                           {dir / "text.mp4", "not a readable video"});
   cv::imwrite(dir / "a.png", NoiseImage(8, 6));
   ExpectThrows<InputError>([&] { OpenFrameSource(dir / "a.png", {}); }, {"a single image"});
 }

@@ -76,7 +76,7 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
        [](ClipFacts* facts) { facts->precision->parallax_deg = 5; }},
       {"contradicts the layout: marker 4", ReportStatus::kCheck,
        [](ClipFacts* facts) { facts->precision->markers_left_out = {"marker 4: out of line"}; }},
-      {"no shape: because", ReportStatus::kBad, [](ClipFacts* facts) {
+      {"from these frames: because", ReportStatus::kBad, [](ClipFacts* facts) {
          facts->precision.reset();
          facts->no_precision_because = "because";
        }}};

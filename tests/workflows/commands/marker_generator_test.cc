@@ -61,7 +61,7 @@ TEST_F(MarkerGeneratorTest, BadWishes) {
                 "3x3 bits have 120 that look different when turned");
   ExpectFailure({"--arrangement", "sail", "--marker_length", "0.1", "--Sail.luff", "6",
                  "--Sail.foot", "3", "--Sail.leech", "12"},
-                "is no triangle");
+                "is not a triangle");
   ExpectFailure({"--arrangement", "board", "--marker_length", "0.1"}, "too small for a board");
   ExpectFailure(Three({"--layout_path", dir_ / "no.yml"}), "no.yml");
 }
@@ -74,7 +74,7 @@ TEST_F(MarkerGeneratorTest, FullDiskLeavesNothing) {
 
 TEST_F(MarkerGeneratorTest, OutputOfOthersStays) {
   WriteTextFile(dir_ / "out", "a file");
-  ExpectFailure(kThree, "is no folder");
+  ExpectFailure(kThree, "is not a folder");
   std::filesystem::remove(dir_ / "out");
   std::filesystem::create_directory(Folder());
   WriteTextFile(dir_ / "out/sheets.pdf", "mine");
