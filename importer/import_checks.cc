@@ -52,7 +52,7 @@ void CheckPhotograph(const MarkerImporterOptions& options, const std::string& na
     throw InputError(fmt::format("{}: {} has changed since it was imported (it was {}); {}",
                                  options.database_path, file.string(), SourceText(known), kRemedy));
   }
-  // Photographs of several folders may share a database that is no workspace's.
+  // Photographs of several folders may share a database outside of a workspace.
   if (!options.is_only_source && CanonicalPath(file) != fs::path(known.path)) return;
   throw InputError(fmt::format("{}: holds {}, which is not in {} (it was {}); {}",
                                options.database_path, name, options.image_path, SourceText(known),

@@ -19,8 +19,8 @@ inline constexpr double kFewMarkersPerFrame = 0.5;
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
                    const ColmapDatabase& database);
 
-// Throws InputError if a photograph of the database, or its video, is another one now or has gone.
-// Notes the sources of a database that an earlier velamap has made, and the video.
+// Throws InputError if a photograph of the database, or its video, has changed or is missing. Notes
+// the sources of a database that an earlier velamap has made, and the video.
 void CheckSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
                   ColmapDatabase* database);
 

@@ -44,7 +44,7 @@ std::vector<SquareView> ViewsOf(CameraId camera_id, const std::vector<DatabaseIm
   return views;
 }
 
-// What to begin with, for all cameras alike.
+// The focal length and lens to start with, for all cameras alike.
 struct Start {
   std::string name;
   Cameras cameras;
@@ -62,8 +62,8 @@ Cameras Scaled(const Cameras& cameras, double factor) {
   return scaled;
 }
 
-// By camera, the camera of the same pictures upright, of which it is taken to be the turned one:
-// that with the same guess but for the turn. Its own id where there is none.
+// For each camera the upright camera of which it is the turned one, by their guesses; its own id
+// where there is none.
 std::map<CameraId, CameraId> UprightCameras(const Cameras& guesses) {
   std::map<CameraId, CameraId> upright;
   for (const auto& [camera_id, camera] : guesses) {
@@ -84,7 +84,7 @@ struct Lens {
   double cost = 0.0;
 };
 
-// Cameras that say little share what the others say, relative to the larger side.
+// Cameras with weak evidence share the evidence of the others, relative to the larger side.
 Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const Cameras& guesses,
             const RegistrationOptions& registration, const MarkerAdjustmentOptions& adjustment) {
   constexpr double kVague = 0.1;

@@ -1,13 +1,12 @@
 // Finds the camera of images that come without a calibration.
 //
-// 1. Start: the focal length that the markers' own squares speak for (camera/focal_evidence.h), for
-// a
-//    lens that keeps lines straight and for a fisheye; the focal length that the database has (from
-//    EXIF, else a guess); and others within the evidence's sigma where it is vague.
-// 2. From each start: registration, then an adjustment with all cameras free and the camera model
-//    chosen by the evidence (adjust/camera_adjustment.h), and again with the better camera until it
-//    stays.
-// 3. The start that explains most wins. A start that explains nearly all corners ends the search.
+// 1. Starts. The focal length is estimated from the squares of single markers, for a rectilinear
+//    lens and for a fisheye (camera/focal_evidence.h). Other starts are the focal length in the
+//    database (from EXIF, or a guess) and, if the estimate is uncertain, longer and shorter ones.
+// 2. Each start is registered and adjusted with all cameras free. The adjustment also chooses the
+//    camera model (adjust/camera_adjustment.h). Both are repeated with the better camera until it
+//    no longer changes.
+// 3. The start that explains most corners is taken. One that explains nearly all ends the search.
 //
 // Corners do not depend on the camera, so that nothing is imported again.
 

@@ -1,4 +1,4 @@
-// Distances of the smooth surface of a sail from that of another shape or from a design.
+// Distances of the smooth surface of a sail from the surface of another shape or from a design.
 
 #pragma once
 

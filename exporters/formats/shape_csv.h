@@ -16,7 +16,7 @@ namespace velamap {
 void WriteShapeCsv(const MarkerShape& shape, std::ostream& out, const std::string& frame = "");
 
 // Rows may be in any order; missing centers are computed. Throws InputError naming file, line and
-// column for another header, a value that is no number or out of range, a duplicate corner, a
+// column for another header, a value that is not a number or is out of range, a duplicate corner, a
 // marker in two parts, a center without its corners or more than 1 mm from their mean, or no row.
 MarkerShape ReadShapeCsv(std::istream& in, const std::string& name);
 MarkerShape ReadShapeCsv(const std::string& path);

@@ -8,10 +8,10 @@
 namespace velamap {
 namespace {
 
-// What the calibration that the residuals ask for does to the shape: the sigmas take the given one
-// for granted.
+// How far the calibration that fits the residuals best would move the shape: the sigmas take the
+// given one for granted.
 constexpr double kGoodShapeChange_sigmas = 0.5, kBadShapeChange_sigmas = 1;
-// One parameter is named where it alone explains so much of what all together do.
+// A single parameter is named if it explains at least this share of what all of them explain.
 constexpr double kDecisiveShare = 0.7;
 
 // The parameter that explains most, and the options that refine it.

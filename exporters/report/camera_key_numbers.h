@@ -12,8 +12,8 @@ namespace velamap {
 // kGood up to `good`, kCheck up to `bad`, else kBad.
 ReportStatus LowIsGood(double value, double good, double bad);
 
-// Decided by the effect: a change of the calibration that the residuals ask for but that hardly
-// moves the shape harms nobody. kNone where it was not tested.
+// Judged by the effect: a different calibration does no harm if it hardly moves the shape. kNone
+// where it was not tested.
 ReportStatus StatusOf(const CalibrationEvidence& evidence);
 
 // Whether another calibration would explain the residuals. None without the marker-aware
@@ -23,8 +23,8 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
 // None where the adjustment did not estimate it; `uncertainty` may be null.
 std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncertainty);
 
-// The camera that was found instead of a calibration; of several, the one that is known worst. Its
-// uncertainty is part of the shape's sigmas, so that a vague one is no fault as such.
+// The camera that was found where there is no calibration; the least certain one of several. Its
+// uncertainty is part of the shape's sigmas, so that an uncertain one is not a fault in itself.
 std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& cameras);
 
 }  // namespace velamap

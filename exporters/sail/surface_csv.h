@@ -16,7 +16,7 @@ void WriteSurfaceResidualsCsv(const FittedSurface& surface, std::ostream& out);
 
 // Header edge,x,y,z: edge is luff or leech (points from foot to head), foot or head (points from
 // luff to leech), coordinates in m. Throws InputError naming file, line and column for another
-// header or edge, a coordinate that is no finite number, or an edge of a single point.
+// header or edge, a coordinate that is not a finite number, or an edge of a single point.
 SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name);
 SurfaceEdges ReadSurfaceEdges(const std::string& path);
 

@@ -30,7 +30,7 @@ struct ModelMetrics {
   std::vector<ImageMetrics> images;  // by name
 };
 
-// `layout_ids` are the markers of the layout, ascending; without any there is no ratio. Throws
+// `layout_ids` are the markers of the layout, ascending; if empty, there is no ratio. Throws
 // DataError for a model without images.
 ModelMetrics ComputeModelMetrics(const Model& model, const std::vector<int>& layout_ids);
 

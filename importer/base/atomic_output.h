@@ -1,4 +1,4 @@
-// Output that is there as a whole or not at all: it is written to a temporary sibling and renamed
+// Output that exists as a whole or not at all: it is written to a temporary sibling and renamed
 // when it is complete.
 
 #pragma once

@@ -73,8 +73,8 @@ FileLock::FileLock(const std::filesystem::path& path, const std::string& what) :
 
 FileLock::~FileLock() {
   if (file_ < 0) return;
-  // While it is held, so that who opens it later makes a new one. Another run may have made its own
-  // after the whole folder was removed.
+  // Removed while it is held, so that whoever opens the path later makes a new one. Another run may
+  // have made its own after the whole folder was removed.
   if (IsStillThere(path_, file_)) unlink(path_.c_str());
   close(file_);
 }

@@ -20,7 +20,7 @@ bool Exists(const std::filesystem::path& path);
 bool IsFolder(const std::filesystem::path& path);
 bool IsRegularFile(const std::filesystem::path& path);
 
-// The path itself, wherever it leads.
+// Whether the path itself is a link, wherever that leads.
 bool IsLink(const std::filesystem::path& path) noexcept;
 
 std::uintmax_t FileSize(const std::filesystem::path& path);

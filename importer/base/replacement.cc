@@ -118,7 +118,7 @@ void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPat
     for (const Place& input : input_places) CheckApart(output_places[i], input);
     for (std::size_t k = 0; k < output_places.size(); ++k) {
       if (k == i) continue;
-      // Of two equal ones, the later is named first.
+      // If both are equal, the later one is named first.
       CheckApart(output_places[std::max(i, k)], output_places[std::min(i, k)]);
       CheckApart(output_places[i], output_places[k]);
     }

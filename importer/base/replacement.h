@@ -4,7 +4,7 @@
 //            option, under whatever name
 //   folder   as a whole, if velamap wrote every file in it and nobody has changed one since. Each
 //            folder that velamap writes holds a record of its files, kFolderRecord
-//   picture  in a folder of pictures: none but frames that velamap wrote (video/frame_image.h)
+//   picture  in a folder of pictures: only frames that velamap wrote (video/written_frame.h)
 //
 // Names that come from files must not lead to other places: CheckImageName().
 

@@ -104,8 +104,8 @@ class ColmapDatabase {
   void WriteSource(const std::string& image_name, const SourceFile& source);
   std::map<std::string, SourceFile> ReadSources() const;
 
-  // Forgets sources and image formation, which a run leaves that is interrupted before its first
-  // images.
+  // Forgets sources and image formation, which a run that is interrupted before its first images
+  // leaves behind.
   void ForgetSources();
 
  private:

@@ -62,8 +62,8 @@ void Sharpen(const ImageFormationParameters& parameters, cv::Mat* values) {
   *values = (1 + parameters.sharpening) * *values - parameters.sharpening * blurred;
 }
 
-// Modelled less recorded grey values. The sharpening is applied to the differences again: it would
-// otherwise depend on the sharpening how large the noise looks.
+// Modelled less recorded grey values. The sharpening is applied to the differences again; otherwise
+// the apparent noise would depend on the sharpening.
 std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation& formation) {
   cv::Mat difference = Differences(sample);
   const ImageFormationParameters& parameters = formation.parameters();

@@ -287,8 +287,8 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
       std::clamp(RobustSigma(QuietZones(best)), kMinQuietZoneSigma, kQuietZoneSigma);
   estimate.num_samples = static_cast<int>(best.samples.size());
   estimate.noise_gray = NoiseOf(best);
-  // No camera is quite as either of the two descriptions says, and they may differ by more than
-  // the noise leaves open.
+  // No camera is exactly as either of the two descriptions says, and they may differ by more than
+  // the noise explains.
   estimate.inset_sigma_px = std::hypot(problem.InsetSigma(light_wins ? by_light : by_gray),
                                        0.5 * MeanInset(by_gray, by_light), balanced.inset_sigma_px);
   return estimate;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kMaxSamples = 32, kMinSamples = 2;
 constexpr double kMinSidePx = 12.0;
-// What the sRGB curve of most cameras moves edges by that are as sharp as usual.
+// How far the sRGB curve of most cameras moves edges of the usual sharpness.
 constexpr double kUnknownInsetPx = 0.2;
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 

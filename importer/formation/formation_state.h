@@ -45,7 +45,7 @@ FormationState FittedWith(const ImageFormationParameters& formation,
 std::vector<double> QuietZones(const FormationState& state);
 
 // All samples together tell how wide the quiet zone is where each is too small to do so alone: the
-// prior moves to the median until that stands still.
+// prior moves to the median until it no longer changes.
 FormationState WithPooledQuietZone(FormationState state, int num_threads);
 
 // Robust standard deviation of the residuals at straight edges and within cells, grey levels;

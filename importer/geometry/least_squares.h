@@ -70,7 +70,7 @@ struct LeastSquaresOptions {
   // A step smaller than this, as the problem measures it, is taken without an evaluation and ends
   // the search.
   double min_step = 0.0;
-  // After a step no larger than this the Hessian is taken over instead of summed up again.
+  // After a step no larger than this the last Hessian is used again instead of being summed up.
   double min_step_for_new_hessian = 0.0;
   // A smaller relative decrease of the cost ends the search.
   double min_relative_decrease = 0.0;

@@ -25,7 +25,7 @@ namespace {
 constexpr int kMinBits = 3, kMaxBits = 8;
 constexpr int kMaxEnumeratedBits = 4;  // per side; larger codes are drawn
 constexpr int kThesisNumCodes = 130;
-// Bounds of the work, and thereby of the time: comparisons of codes.
+// Bounds of the work, and with it of the time: comparisons of codes.
 constexpr double kMaxGreedyWork = 1e8, kMaxAnnealingWork = 3e8;
 constexpr int kMaxAnnealingSteps = 500000;
 constexpr std::size_t kMinDrawsPerCode = 20;

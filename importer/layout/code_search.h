@@ -36,9 +36,9 @@ std::int64_t NumAsymmetricCodes(int bits_per_side);
 
 // `num_codes` codes with a distance as great as the search attains: a random greedy choice, then
 // simulated annealing of the pairs that are too close, for greater and greater distances. A code is
-// as far from its own rotations as from other codes. Symmetric codes, of 3x3 bits only, come into
-// it when all others are used. Same options and seed, same codes. Throws InputError if there are
-// fewer such codes.
+// as far from its own rotations as from other codes. Symmetric codes are taken for 3x3 bits only,
+// when all others are used. Same options and seed, same codes. Throws InputError if there are fewer
+// such codes.
 CodeSet FindCodes(const CodeSearchOptions& options, std::uint32_t seed);
 
 // 130 codes of 3x3 bits, as many as Maciel (2018) stuck to a sail and its hull: the 120 that look

@@ -1,5 +1,5 @@
-// Marker dictionaries: those predefined by OpenCV, including AprilTag families, that of the thesis,
-// files, and dictionaries of one's own.
+// Marker dictionaries: OpenCV's predefined ones with the AprilTag families, the thesis's, files,
+// and custom ones.
 
 #pragma once
 

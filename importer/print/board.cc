@@ -19,7 +19,7 @@ double Extent(BoardKind kind, int count, double spacing_mm, double length_mm) {
   return kind == BoardKind::kCharuco ? count * spacing_mm : (count - 1) * spacing_mm + length_mm;
 }
 
-// With what the outer markers of a grid need of white beyond the page's border.
+// Includes the white margin that the outer markers of a grid need beyond the page's border.
 Eigen::Vector2d SizeWithMargin(const Board& board, int num_cells) {
   const bool is_charuco = board.kind == BoardKind::kCharuco;
   const double white_mm =

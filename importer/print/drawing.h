@@ -1,4 +1,4 @@
-// What is on a page, as values: nothing here knows how it is put to paper.
+// What is on a page, as values that do not depend on the file format.
 //
 // Page frame: x right, y down, origin at the page's top left corner, mm.
 

@@ -24,7 +24,8 @@ struct PageWriter {
   double y_mm = kBorder_mm;
 
   explicit PageWriter(const Paper& paper) {
-    // Pictures are not in true scale and need some room, whatever the markers are printed on: A5.
+    // Drawings are not in true scale and need at least A5, even if the markers are printed on
+    // smaller paper.
     page.width_mm = std::max(148.0, std::min(paper.width_mm, paper.height_mm));
     page.height_mm = std::max(210.0, std::max(paper.width_mm, paper.height_mm));
   }

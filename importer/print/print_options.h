@@ -1,4 +1,4 @@
-// The wishes for a print.
+// Options of a print.
 
 #pragma once
 

@@ -24,8 +24,8 @@ struct PrintPlan {
   Layout layout;  // names the dictionary's file dictionary.yml where it is none of OpenCV's
 };
 
-// Throws InputError, naming the option, for wishes that contradict each other, more ids than codes,
-// an id that is not there, and where the planners do.
+// Throws InputError, naming the option, for options that contradict each other, more ids than
+// codes, an id that is not there, and where the planners do.
 PrintPlan MakePrintPlan(const PrintOptions& options);
 
 constexpr char kDictionaryFile[] = "dictionary.yml";

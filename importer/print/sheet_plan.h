@@ -46,7 +46,7 @@ struct Sticker {
   Eigen::Vector2d SquareMin() const { return min_mm + Eigen::Vector2d::Constant(margin_mm); }
 };
 
-// The page and what of it is free for markers: above and below are words and the scale.
+// A page and its free area for markers, above and below which are words and the scale.
 struct PageFrame {
   double width_mm = 0.0;
   double height_mm = 0.0;
@@ -62,9 +62,9 @@ struct Sheet {
   std::vector<Sticker> stickers;
 };
 
-// The white margin that search and corner fit want: the fit of a marker of small cells takes up to
-// one and a half cells of it into account, and a ground that is closer than a quarter of the side
-// pulls corners. `num_cells` is that of a side, border included.
+// The default white margin: the corner fit takes up to one and a half cells of it into account, and
+// a dark background that is closer than a quarter of the side shifts the corners. `num_cells`
+// counts the cells of a side, with the border.
 double DefaultMargin(double length_mm, int num_cells);
 
 Sticker MakeSticker(const PrintedMarker& marker, int num_cells, const PrintSheetOptions& options);

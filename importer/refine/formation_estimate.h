@@ -2,9 +2,8 @@
 //
 //   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
-//   sharpening sharpened = gray + sharpening (gray - G gray), or the same with light before the
-//   tone
-//              curve;  G is a Gaussian of sharpening_radius_px
+//   sharpening sharpened = gray + sharpening (gray - G gray), or the same with light, before the
+//              tone curve;  G is a Gaussian of sharpening_radius_px
 //
 // A camera blurs linear light and encodes it afterwards, which moves the middle of an encoded edge
 // by up to 0.8 blur sigmas towards the dark side. The power covers sRGB and Rec. 709 to a few

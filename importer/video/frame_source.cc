@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// OpenCV would add its own lines to our one about a broken file.
+// OpenCV would print lines of its own about a broken file.
 void SilenceOpenCv() {
   static std::once_flag once;
   std::call_once(once,

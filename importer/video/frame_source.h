@@ -40,7 +40,7 @@ class FrameSource {
 
   // Fills the pixels of a frame, which Next() leaves empty so that many threads can decode image
   // files and compute grey images in parallel. Thread-safe. Returns false, with a warning and the
-  // reason, if the file is no whole image.
+  // reason, if the file is not a whole image.
   virtual bool Load(Frame* frame, std::string* reason) const = 0;
 
   virtual bool IsVideo() const = 0;

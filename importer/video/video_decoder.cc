@@ -205,7 +205,7 @@ class VideoDecoder::Stream {
 VideoDecoder::VideoDecoder(const std::string& path, int num_threads)
     : path_(path), num_threads_(num_threads) {
   VELAMAP_CHECK(num_threads >= 0);
-  // FFmpeg would add its own lines to our one about a broken file.
+  // FFmpeg would print lines of its own about a broken file.
   av_log_set_level(AV_LOG_QUIET);
   stream_ = std::make_unique<Stream>(path_);
   stream_->OpenCodec(path_, num_threads_);

@@ -91,7 +91,7 @@ FreeIntrinsics SignificantIntrinsics(const MarkerSolution& solution, double sigm
 }  // namespace
 
 std::optional<RefinedIntrinsics> ChooseIntrinsics(const MarkerSolution& solution) {
-  // What a calibration that the images contradict still says, relative to its usual sigma.
+  // The sigma of a calibration that the images contradict, as a multiple of its usual one.
   constexpr double kContradicted = 3.0;
   const MarkerAdjustmentOptions& options = solution.options;
   if (!options.refine_calibration || FreeIntrinsicsOf(options).Any()) return std::nullopt;

@@ -27,9 +27,9 @@ struct CameraAdjustment {
 CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Layout& layout,
                                const CornerErrors& corner_errors, const Model& model);
 
-// The step of the focal length where `step` is, with a camera of its own for the images from there
-// on; `model` is the one before its adjustment. Nothing where the focal lengths agree to 1 % or
-// within their sigmas, or where one part alone cannot be adjusted.
+// Measures a step of the focal length at `step` by an adjustment with a camera of its own for the
+// images from there on; `model` is the one before its adjustment. Nothing where the focal lengths
+// agree to 1 % or within their sigmas, or where one part alone cannot be adjusted.
 std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           Model model, FocalStep step);

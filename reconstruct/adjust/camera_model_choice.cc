@@ -19,8 +19,8 @@ constexpr std::array<CameraModel, 4> kModels = {CameraModel::kSimpleRadial, Came
 
 constexpr double kMinRayLength = 0.7;  // of a fisheye, tangent
 
-// Whether any camera sees more than 35 degrees off its axis. What sees less is no fisheye, whose
-// many parameters would describe nothing there.
+// Whether any camera sees more than 35 degrees off its axis. A fisheye model has no purpose for
+// narrower lenses.
 bool IsWide(const Model& model) {
   return std::any_of(model.cameras.begin(), model.cameras.end(),
                      [](const auto& entry) { return MaxRayLength(entry.second) > kMinRayLength; });
@@ -31,7 +31,7 @@ bool IsFolded(const MarkerSolution& solution) {
                      [](const auto& entry) { return !HasMonotonicDistortion(entry.second); });
 }
 
-// Nothing where the model leads nowhere from here.
+// Nothing where the adjustment with this model fails.
 std::optional<MarkerSolution> Refined(MarkerSolution trial, CameraModel model) {
   try {
     SetCameraModel(model, &trial);

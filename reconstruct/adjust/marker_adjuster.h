@@ -44,7 +44,7 @@ class MarkerAdjuster {
   // result is the one from there.
   static MarkerAdjuster AdjustedFrom(MarkerAdjuster* begin);
 
-  // With find_camera, after AdjustToCorners: takes the camera model that the images speak for.
+  // With find_camera, after AdjustToCorners: takes the camera model that explains the images best.
   void ChooseCameraModel();
   // The cameras with their sigmas.
   std::map<CameraId, EstimatedCamera> EstimateCameras() const;

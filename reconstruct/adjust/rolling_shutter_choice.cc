@@ -9,7 +9,8 @@
 namespace velamap {
 namespace {
 
-// No sensor with a rolling shutter reads faster. What flaps or bends may feign less.
+// No sensor with a rolling shutter reads faster. Cloth that flaps or bends may look like a shorter
+// time.
 constexpr double kFastest_s = 1e-3;
 
 }  // namespace

@@ -196,7 +196,7 @@ std::vector<ImageIntrinsics> IntrinsicsOfImages(const Model& model) {
 SteadinessVerdict JudgeSteadiness(const Model& model) {
   std::map<ImageId, std::string> names;
   for (const ModelImage& image : model.images) names[image.image_id] = image.name;
-  // A focal length or an offset that an image does not tell says nothing of the camera.
+  // A focal length or an offset that an image does not determine is no evidence.
   constexpr double kVague = 0.05;
   std::vector<ImageIntrinsics> values = IntrinsicsOfImages(model);
   values.erase(std::remove_if(

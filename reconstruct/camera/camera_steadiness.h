@@ -25,10 +25,10 @@ struct ImageIntrinsics {
   Eigen::Vector2d offset_sigma_px = Eigen::Vector2d::Zero();
 };
 
-// Of the images that see at least eight corners; nothing for an image that does not tell.
+// For images that see at least eight corners; nothing for an image that does not determine them.
 std::vector<ImageIntrinsics> IntrinsicsOfImages(const Model& model);
 
-// From some image on, the focal length is another one.
+// A change of the focal length from some image on.
 struct FocalStep {
   std::string first_image_after;  // its name
   CameraId camera_id = 0;         // of that image

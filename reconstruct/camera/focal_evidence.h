@@ -1,12 +1,11 @@
-// What single markers say of an unknown focal length.
+// The focal length of an unknown camera, estimated from single markers.
 //
-// The picture of a square determines its pose and, where the square is tilted, a little of the
-// focal length: the two sides that run away from the camera converge as far as the focal length has
-// it (Zhang, "A flexible new technique for camera calibration", 2000, with one plane and square
-// pixels). For each focal length every marker takes its better planar pose (IPPE, two solutions);
-// what is left of its corners' errors depends on the focal length alone. The errors of all markers
-// are pooled with a Cauchy loss, each divided by its corners' sigma, so that a marker counts as far
-// as its corners can tell.
+// The image of a square determines its pose and, if the square is tilted, constrains the focal
+// length: how far the two sides that run away from the camera converge depends on it (Zhang, "A
+// flexible new technique for camera calibration", 2000, with one plane and square pixels). For each
+// focal length every marker takes its better planar pose (IPPE, two solutions); the remaining
+// errors of its corners depend on the focal length alone. The errors of all markers are pooled with
+// a Cauchy loss, each divided by its corners' sigma, so that precise markers count more.
 
 #pragma once
 

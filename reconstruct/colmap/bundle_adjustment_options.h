@@ -22,7 +22,7 @@ struct BundleAdjustmentOptions {
   double outlier_ratio = 6.0;
   double min_outlier_error_px = 0.5;
   int min_track_length = 2;
-  double max_mean_error_px = 5.0;  // a model with a larger mean reprojection error is no result
+  double max_mean_error_px = 5.0;  // a model with a larger mean reprojection error is refused
 
   void Check() const;  // throws InputError that names the option
 };

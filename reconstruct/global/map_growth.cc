@@ -32,8 +32,8 @@ bool IsRegistered(const MapSolution& solution, int frame_idx) {
   return solution.cam_from_shape[static_cast<std::size_t>(frame_idx)].has_value();
 }
 
-// Number of views that the map has of the markers that a frame sees; of each marker two count at
-// most, because two confirm its place.
+// Number of views that the map has of the markers that a frame sees; at most two of each marker
+// count, because two confirm its place.
 int NumViewsOfSeen(const MapProblem& problem, const MapSolution& solution,
                    const std::vector<int>& num_fits, int frame_idx) {
   int num_views = 0;

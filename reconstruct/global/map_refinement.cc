@@ -21,7 +21,8 @@ LeastSquaresOptions Options() {
 }
 
 // Adds the whitened residuals of an observation's corners. `corner(i)` returns corner i in the cam
-// frame; `by_step(i, by_x)` completes `by_x`, a derivative by that point, to the one by a step.
+// frame; `by_step(i, by_x)` turns `by_x`, the derivative with respect to that point, into the one
+// with respect to a step.
 template <int N, typename Corner, typename ByStep>
 void AddObservation(const MapObservation& observation, const Corner& corner, const ByStep& by_step,
                     GaussNewtonEquations<N>* equations) {

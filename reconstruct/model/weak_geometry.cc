@@ -144,7 +144,7 @@ std::string Reason(const Views& views) {
 }  // namespace
 
 std::vector<std::string> FindWeakGeometry(const Model& model, const PointCovariance& points) {
-  // Points that are more uncertain than this fraction of the object's extent are no shape.
+  // If points are more uncertain than this fraction of the object's extent, there is no shape.
   constexpr double kMaxRelativeSigma = 0.2;
   if (points.IsEmpty()) return {};
   const Ellipsoid ellipsoid = MedianEllipsoid(WithoutScale(model, points));

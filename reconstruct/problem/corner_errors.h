@@ -1,4 +1,4 @@
-// What is known of the errors of corners before the adjustment, from the database.
+// What the database says about the errors of corners.
 
 #pragma once
 

@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-// Beyond it a hand has turned back.
+// Over a longer time the motion of a hand may have reversed.
 constexpr double kLongestStep_s = 0.15;
 
 const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
@@ -96,7 +96,7 @@ std::optional<AffineField> FitField(const FrameDetections& frame,
   return field;
 }
 
-// Empty where the frames beside it tell nothing.
+// Empty where the neighbouring frames show too few markers.
 std::vector<Eigen::Vector2d> VelocitiesOf(const FrameWindow& window) {
   const FrameDetections& frame = *window[kMiddle];
   std::vector<std::optional<Eigen::Vector2d>> measured;

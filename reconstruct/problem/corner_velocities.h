@@ -15,16 +15,16 @@ namespace velamap {
 // Velocities of the corners of one image by point2D_idx, px/s.
 using CornerVelocities = std::map<ImageId, std::vector<Eigen::Vector2d>>;
 
-// The slope of a polynomial through the places of a marker in the frame, two before and two after
-// it, or one each, whatever moves: camera, boat or cloth. Its corners and the markers that the
-// frames beside it lack follow from the affine field that all markers of the image fit best. Over a
-// shake of 3 Hz the straight line through two frames at 30 Hz is 7 % too slow, the polynomial
-// through five 0.5 %. Steps between frames may take 0.15 s; photographs tell nothing. Images
-// without velocities are missing.
+// The slope of a polynomial through the places of a marker in the frame, the two before and the two
+// after it (or one each), whether camera, boat or cloth moves. The velocities of its corners, and
+// of markers that the neighbouring frames do not show, follow from the affine field that fits all
+// markers of the image best. Over a shake of 3 Hz the straight line through two frames at 30 Hz is
+// 7 % too slow, the polynomial through five 0.5 %. Steps between frames may take 0.15 s;
+// photographs have no velocities. Images without velocities are missing.
 CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images);
 
-// The movement of a corner from when the middle row is read to when its own is, px, by one second
-// from the first row to the last.
+// How far a corner moves between the time when the middle row is read and the time when its own row
+// is, px, if reading the frame takes one second.
 Eigen::Vector2d ShutterDirection(const Camera& camera, const Eigen::Vector2d& x_in_image_px,
                                  const Eigen::Vector2d& velocity_px_s);
 

@@ -46,7 +46,7 @@ struct MarkerState {
 Eigen::Map<const Eigen::Vector3d> CornerPosition(const MarkerBlock& marker, int slot);
 
 // Takes points, poses and cameras from the model, lengths and rigid parts from the layout. Throws
-// DataError for a point that is no marker corner.
+// DataError for a point that is not a marker corner.
 MarkerState MakeMarkerState(const Model& model, const Layout& layout);
 
 // Writes points, poses and cameras of the state into the model.

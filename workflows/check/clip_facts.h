@@ -40,7 +40,7 @@ struct ClipFacts {
   std::optional<int> num_markers_found, num_markers_of_second;
   std::string second_dictionary;
 
-  std::string no_markers_because;       // of the importer, where it found none to go by
+  std::string no_markers_because;       // the importer's reason why there are none
   std::map<int, int> num_frames_of_id;  // of markers that the layout names, or of all
   std::vector<int> ids_never_seen;      // of the layout
   std::vector<int> ids_not_in_layout;   // in two frames or more

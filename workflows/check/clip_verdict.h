@@ -1,4 +1,4 @@
-// What to think of a clip and what to do better.
+// Judges a clip and says what to do better.
 
 #pragma once
 

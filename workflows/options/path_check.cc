@@ -34,7 +34,7 @@ void AddLayout(const std::string& used_by, const std::string& path, UsedPaths* p
     const std::string dictionary = ReadLayout(path).dictionary;
     if (IsRegularFile(dictionary)) paths->inputs.push_back({used_by, dictionary});
   } catch (const InputError&) {
-    // The command will say so when it reads the layout.
+    // The command reports it when it reads the layout.
   }
 }
 

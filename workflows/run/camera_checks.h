@@ -25,8 +25,8 @@ std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& 
                                               const RegistrationOptions& registration,
                                               const MarkerAdjustmentOptions& adjustment);
 
-// Warns where the images contradict a calibration that is no fisheye and speak for one. `seed` and
-// `adjusted` are the model before and after its marker-aware adjustment.
+// Warns where the images contradict a calibration that has no fisheye model and fit such a model
+// better. `seed` and `adjusted` are the model before and after its marker-aware adjustment.
 void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
                    const CornerErrors& corner_errors, const Model& seed, const Model& adjusted,
                    const std::optional<AdjustmentUncertainty>& uncertainty);

@@ -161,7 +161,7 @@ void RemoveOtherImages(const Model& model, const std::vector<std::string>& datab
     const fs::path original = fs::path(image_path) / name, copy = images_path / name;
     if (model_names.count(name) > 0 || !IsRegularFile(copy) || !IsInside(copy, images_path))
       continue;
-    // A link that leads to the copy is no second copy.
+    // A link to the copy is not a second copy.
     const bool is_lost_nowhere = is_video ? IsWrittenFrame(copy)
                                           : IsRegularFile(original) &&
                                                 CanonicalPath(original) != CanonicalPath(copy) &&
