@@ -14,7 +14,7 @@ house_folder(importer/camera PUBLIC
 house_folder(importer/layout PUBLIC
   code_search dictionary frame_choice layout layout_writer prior_shape)
 house_folder(importer/print PUBLIC
-  marker_sheets)
+  drawing drawing_writer marker_sheets placement print_options sheet_plan)
 house_folder(importer/video PUBLIC
   frame_image frame_source image_file picture_metadata source_file video_options
   written_frame)
@@ -77,7 +77,9 @@ house_folder(workflows/run PUBLIC
   central_frame_sweep logging pipeline progress stage_times summary version versions
   workspace)
 house_folder(workflows/check PUBLIC
-  clip_check clip_verdict)
+  clip_check clip_facts clip_limits clip_verdict)
+house_folder(workflows/plan PUBLIC
+  plan_drawing plan_writer)
 house_folder(workflows/options PUBLIC
   nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC

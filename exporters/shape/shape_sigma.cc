@@ -83,4 +83,15 @@ std::optional<Eigen::Vector3d> PointSigma(const PointCovariance* covariance, int
   return sigma_m;
 }
 
+std::map<int, double> CenterSigmas(const PointCovariance& covariance) {
+  std::map<int, double> sigmas_m;
+  for (const Point3DId point3D_id : covariance.point3D_ids) {
+    const int marker_id = CornerFromPoint3DId(point3D_id).marker_id;
+    if (sigmas_m.count(marker_id) > 0) continue;
+    const auto sigma_m = PointSigma(&covariance, marker_id, 0);
+    if (sigma_m) sigmas_m[marker_id] = sigma_m->norm();
+  }
+  return sigmas_m;
+}
+
 }  // namespace velamap

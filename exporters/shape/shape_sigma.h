@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "exporters/shape/marker_shape.h"
@@ -38,5 +39,9 @@ std::optional<double> SigmaOf(const PointCovariance* covariance, const PointGrad
 // 1 sigma of a corner or the center along x, y and z, m.
 std::optional<Eigen::Vector3d> PointSigma(const PointCovariance* covariance, int marker_id,
                                           int corner);
+
+// 1 sigma in space, the root of the trace of the covariance, of the centre of each marker whose
+// four corners are known, m; by marker id.
+std::map<int, double> CenterSigmas(const PointCovariance& covariance);
 
 }  // namespace velamap

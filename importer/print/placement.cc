@@ -71,6 +71,27 @@ int NumMarkersAt(const Sail& sail, double height, int wanted) {
                   1 + static_cast<int>(std::floor(std::max(0.0, room) / sail.pitch_mm + 1e-9)));
 }
 
+// Of horizontal lines, as parts of the luff.
+struct LineHeights {
+  double first = 0.0, step = 0.0;
+};
+
+LineHeights SpaceLines(const Sail& sail, int num_lines, int markers_on_top) {
+  const double max_height =
+      1 - (sail.from_luff_mm + sail.from_leech_mm + (markers_on_top - 1) * sail.pitch_mm) /
+              sail.foot_mm;
+  const double step = num_lines > 1 ? (max_height - sail.min_height) / (num_lines - 1) : 0.0;
+  const double step_mm = step * sail.luff_mm * sail.clew.x() / sail.foot_mm;  // across the lines
+  if (max_height < sail.min_height || (num_lines > 1 && step_mm < sail.pitch_mm)) {
+    throw InputError(fmt::format(
+        "{}: the sail has no room for {} lines, the uppermost with {} stickers of {:.0f} mm; give "
+        "fewer lines or smaller markers (--marker_length)",
+        OptionName(&SailPlacementOptions::num_lines), num_lines, markers_on_top,
+        sail.pitch_mm - kGap_mm));
+  }
+  return {sail.min_height, step};
+}
+
 PlacedLine MakeLine(const Sail& sail, const std::string& name, double height, int count,
                     int first_id) {
   PlacedLine line{name, {}, height * sail.luff_mm, height * sail.leech_mm};
@@ -151,21 +172,11 @@ void SailPlacementOptions::Check() const { CheckRanges(*this); }
 Placement PlaceOnSail(const SailPlacementOptions& options, double length_mm, double sticker_mm,
                       int first_id) {
   const Sail sail = MakeSail(options, sticker_mm);
-  const int on_top = std::min(kMarkersOfTopLine, options.markers_per_line);
-  const double max_height =
-      1 - (sail.from_luff_mm + sail.from_leech_mm + (on_top - 1) * sail.pitch_mm) / sail.foot_mm;
-  const int num_lines = options.num_lines;
-  const double step = num_lines > 1 ? (max_height - sail.min_height) / (num_lines - 1) : 0.0;
-  const double step_mm = step * sail.luff_mm * sail.clew.x() / sail.foot_mm;  // across the lines
-  if (max_height < sail.min_height || (num_lines > 1 && step_mm < sail.pitch_mm)) {
-    throw InputError(fmt::format(
-        "{}: the sail has no room for {} lines, the uppermost with {} stickers of {:.0f} mm; give "
-        "fewer lines or smaller markers (--marker_length)",
-        OptionName(&SailPlacementOptions::num_lines), num_lines, on_top, sticker_mm));
-  }
+  const LineHeights heights =
+      SpaceLines(sail, options.num_lines, std::min(kMarkersOfTopLine, options.markers_per_line));
   Placement placement{"sail", length_mm, sticker_mm, {sail.tack, sail.clew, sail.head}, {}, {}};
-  for (int i = 0; i < num_lines; ++i) {
-    const double height = sail.min_height + i * step;
+  for (int i = 0; i < options.num_lines; ++i) {
+    const double height = heights.first + i * heights.step;
     const int count = NumMarkersAt(sail, height, options.markers_per_line);
     placement.horizontal.push_back(
         MakeLine(sail, fmt::format("h{}", i + 1), height, count, first_id));
@@ -175,13 +186,48 @@ Placement PlaceOnSail(const SailPlacementOptions& options, double length_mm, dou
   return placement;
 }
 
+Placement PlaceLinesOnSail(const SailPlacementOptions& options, const Layout& layout,
+                           double sticker_mm) {
+  const auto part = std::find_if(layout.parts.begin(), layout.parts.end(),
+                                 [](const LayoutPart& one) { return !one.horizontal.empty(); });
+  if (part == layout.parts.end()) {
+    throw InputError(
+        "--layout_path: the layout has no horizontal lines to place on a sail; give lines, or "
+        "leave the layout out");
+  }
+  const Sail sail = MakeSail(options, sticker_mm);
+  const std::vector<MarkerLine>& lines = part->horizontal;
+  const LineHeights heights = SpaceLines(sail, static_cast<int>(lines.size()),
+                                         static_cast<int>(lines.back().marker_ids.size()));
+  Placement placement{part->name, 1000 * layout.marker_length_m,
+                      sticker_mm, {sail.tack, sail.clew, sail.head},
+                      {},         part->vertical};
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const double height = heights.first + static_cast<double>(i) * heights.step;
+    const int count = static_cast<int>(lines[i].marker_ids.size());
+    if (NumMarkersAt(sail, height, count) < count) {
+      throw InputError(fmt::format(
+          "--layout_path: line {} has {} markers, for which a sail of these lengths has no room; "
+          "check {}, {} and {}",
+          lines[i].name, count, OptionName(&SailPlacementOptions::luff_m),
+          OptionName(&SailPlacementOptions::foot_m), OptionName(&SailPlacementOptions::leech_m)));
+    }
+    PlacedLine line = MakeLine(sail, lines[i].name, height, count, 0);
+    for (std::size_t k = 0; k < line.markers.size(); ++k) {
+      line.markers[k].marker_id = lines[i].marker_ids[k];
+    }
+    placement.horizontal.push_back(line);
+  }
+  return placement;
+}
+
 Placement PlaceOnGrid(const GridPlacementOptions& options, double length_mm, double sticker_mm,
                       int first_id) {
   const double spacing_mm = options.spacing_m ? 1000 * *options.spacing_m : 2 * length_mm;
   if (spacing_mm < sticker_mm) {
     throw InputError(
-        fmt::format("{}: stickers of {:.1f} mm overlap at {:.1f} mm; give {:.3f} m or more, or a "
-                    "smaller --Sheet.margin",
+        fmt::format("{}: stickers of {:.1f} mm overlap at {:.1f} mm; give {:.3f} m or more, or "
+                    "smaller stickers",
                     OptionName(&GridPlacementOptions::spacing_m), sticker_mm, spacing_mm,
                     std::ceil(sticker_mm) / 1000));
   }

@@ -68,6 +68,12 @@ struct Placement {
 Placement PlaceOnSail(const SailPlacementOptions& options, double length_mm, double sticker_mm,
                       int first_id);
 
+// The horizontal lines of the first part of `layout` that has any: at heights as above, the markers
+// of each at equal distances. Throws InputError where PlaceOnSail() does, for a layout without
+// horizontal lines, and for a line that has no room for its markers.
+Placement PlaceLinesOnSail(const SailPlacementOptions& options, const Layout& layout,
+                           double sticker_mm);
+
 // Rows from below, each from the left. Throws InputError for a spacing at which stickers overlap.
 Placement PlaceOnGrid(const GridPlacementOptions& options, double length_mm, double sticker_mm,
                       int first_id);

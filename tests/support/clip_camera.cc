@@ -76,7 +76,8 @@ Camera MakeClipCamera(bool wide_angle, int width_px) {
 }
 
 CameraPath MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
-                     double camera_height_m, double drift_deg) {
+                     double camera_height_m, double own_drift_deg) {
+  const double drift_deg = options.drift_deg > 0 ? options.drift_deg : own_drift_deg;
   Sway sway(options.seed);
   const double turn = sway.Phase(), range = sway.Phase(), heave = sway.Phase();
   const double pan = sway.Phase(), tilt = sway.Phase(), roll = sway.Phase();

@@ -210,6 +210,7 @@ void CheckOptions(const ClipOptions& options) {
   CheckOptionRange("fps", options.fps, 0.1, 1000);
   CheckOptionRange("distance", options.distance_m, 0.1, 100);
   CheckOptionRange("angle_deg", options.angle_deg, -80, 80);
+  CheckOptionRange("drift_deg", options.drift_deg, 0, 80);
   CheckOptionRange("motion", options.motion, 'a', 'h');
   CheckOptionRange("sail_scale", options.sail_scale, 0.4, 1);
   CheckOptionRange("sail_motion_m", options.sail_motion_m, 0, 1);

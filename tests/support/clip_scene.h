@@ -36,6 +36,7 @@ struct ClipOptions {
   double fps = 30.0;
   double distance_m = 6.0;  // of the camera from the scene's middle
   double angle_deg = 0.0;   // of the view from straight on
+  double drift_deg = 0.0;   // by which the camera goes around to either side; 0: each scene's own
   // Motion of the board in the thesis's Figure 4.3, 'a' to 'h'; for the board only.
   char motion = 'd';
   double sail_scale = 1.0;     // size of the sail; markers keep theirs, so fewer fit on a small one

@@ -10,6 +10,7 @@
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "importer/camera/calibration.h"
+#include "importer/geometry/units.h"
 #include "tests/support/clip_files.h"
 #include "tests/support/nine_bit_dictionary.h"
 #include "tests/support/temp_dir.h"
@@ -83,6 +84,19 @@ TEST(ClipSceneTest, MarkersDoNotTouch) {
         }
       }
     }
+  }
+}
+
+// The camera sways by 4 degrees more at most.
+TEST(ClipSceneTest, CameraGoesAroundAsFarAsIsAsked) {
+  for (const double drift_deg : {20.0, 60.0}) {
+    ClipOptions options;
+    options.num_frames = 2;
+    options.drift_deg = drift_deg;
+    const ClipScene scene = MakeClipScene(options);
+    const Rigid3 last_from_first = scene.cam_from_world(1) * Inverse(scene.cam_from_world(0));
+    const double angle_deg = kDegPerRad * AngularDistance(last_from_first, Rigid3{});
+    EXPECT_NEAR(angle_deg, 2 * drift_deg, 12);
   }
 }
 

@@ -79,6 +79,8 @@ po::options_description Describe(RenderClipOptions* options) {
       "wide (109 degrees), webcam (68) or a calibration file of 16:9; empty: the scene's own");
   add("distance", Value(&options->distance_m), "of the camera, m; 0: sail 6, walls 3.5, board 0.6");
   add("angle_deg", Value(&clip->angle_deg), "of the view from straight on");
+  add("drift_deg", Value(&clip->drift_deg),
+      "by which the camera goes around to either side; 0: sail 18, walls 22");
   add("motion", Value(&options->motion), "board: a ... h of the thesis's Figure 4.3");
   add("sail_scale", Value(&clip->sail_scale), "size of the sail; markers stay 100 mm, fewer fit");
   add("sail_motion_m", Value(&clip->sail_motion_m),

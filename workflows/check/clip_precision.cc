@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -37,20 +36,6 @@ double Parallax(const Model& model) {
   return std::acos(std::max(-1.0, least_cosine));
 }
 
-// In space, of the centre of each marker whose four corners are known, mm.
-std::vector<double> MarkerSigmas(const PointCovariance& points) {
-  std::set<int> marker_ids;
-  for (const Point3DId point3D_id : points.point3D_ids) {
-    marker_ids.insert(CornerFromPoint3DId(point3D_id).marker_id);
-  }
-  std::vector<double> sigmas_mm;
-  for (const int marker_id : marker_ids) {
-    const auto sigma_m = PointSigma(&points, marker_id, 0);
-    if (sigma_m) sigmas_mm.push_back(kMmPerM * sigma_m->norm());
-  }
-  return sigmas_mm;
-}
-
 }  // namespace
 
 ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& layout,
@@ -68,7 +53,10 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
       AdjustWithMarkers(adjustment_options, layout, CornerErrorsOf(images), &model);
   ClipPrecision precision;
   precision.num_images = static_cast<int>(model.images.size());
-  const std::vector<double> sigmas_mm = MarkerSigmas(summary.uncertainty.points);
+  std::vector<double> sigmas_mm;
+  for (const auto& [marker_id, sigma_m] : CenterSigmas(summary.uncertainty.points)) {
+    sigmas_mm.push_back(kMmPerM * sigma_m);
+  }
   if (sigmas_mm.empty()) throw DataError("no marker is left with all four corners");
   precision.num_markers = static_cast<int>(sigmas_mm.size());
   precision.marker_sigma_mm = Median(sigmas_mm);

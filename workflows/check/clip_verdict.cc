@@ -5,13 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "workflows/check/clip_limits.h"
+
 namespace velamap {
 namespace {
 
-// Corner fits reach their precision from 25 px on and lose markers below 12.
-constexpr double kGoodSidePx = 20.0, kBadSidePx = 12.0;
-// Parallax below which depth is several times less certain than width, and hopeless.
-constexpr double kGoodParallax_deg = 20.0, kBadParallax_deg = 8.0;
 constexpr double kMaxBlurPx = 1.5, kMaxMotionPx = 4.0;
 constexpr double kMinContrast = 60.0, kMaxWhite = 250.0;
 constexpr double kMaxShareWithFewMarkers = 0.3;

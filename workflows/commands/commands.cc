@@ -42,10 +42,9 @@ void PrintOverview() {
 }  // namespace
 
 std::vector<Command> AllCommands() {
-  return {MarkerGenerator(),     ClipChecker(),      AutomaticReconstructor(),
-          MarkerImporter(),      FrameRegistrator(), BundleAdjuster(),
-          CentralFrameSweeper(), ShapeExporter(),    ShapeAnalyzer(),
-          ShapeComparer(),       Version()};
+  return {MarkerGenerator(), ShootPlanner(),     ClipChecker(),    AutomaticReconstructor(),
+          MarkerImporter(),  FrameRegistrator(), BundleAdjuster(), CentralFrameSweeper(),
+          ShapeExporter(),   ShapeAnalyzer(),    ShapeComparer(),  Version()};
 }
 
 std::set<std::string> AllOptionNames() {

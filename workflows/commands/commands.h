@@ -41,6 +41,7 @@ Command CentralFrameSweeper();
 Command ShapeExporter();
 Command ShapeAnalyzer();
 Command ShapeComparer();
+Command ShootPlanner();
 Command Version();
 
 // The registry: all commands but help, in the order in which help lists them.

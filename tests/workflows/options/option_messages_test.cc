@@ -31,6 +31,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
     {"importer/layout/code_search.cc", {"marker_generator"}},
     {"importer/layout/layout_reader.cc", {"automatic_reconstructor", "shape_comparer"}},
     {"importer/print/", {"marker_generator"}},
+    {"importer/print/placement.cc", {"marker_generator", "shoot_planner"}},
     {"importer/database/",
      {"automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
       "central_frame_sweeper"}},
@@ -57,6 +58,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
     {"workflows/run/pipeline.cc", {"automatic_reconstructor"}},
     {"workflows/run/workspace.cc", {"automatic_reconstructor"}},
     {"workflows/run/central_frame_sweep.cc", {"central_frame_sweeper"}},
+    {"workflows/plan/", {"shoot_planner"}},
     {"workflows/options/", {"automatic_reconstructor"}},
     {"workflows/options/sail_options.cc", {"automatic_reconstructor", "shape_exporter"}},
 };

@@ -1,0 +1,70 @@
+// The command shoot_planner: its files, and input that it refuses.
+
+#include <gmock/gmock.h>
+
+#include "tests/support/temp_dir.h"
+#include "tests/workflows/run_velamap.h"
+
+namespace velamap {
+namespace {
+
+using testing::HasSubstr;
+
+const std::vector<std::string> kSail = {"shoot_planner",
+                                        "--field_of_view",
+                                        "90",
+                                        "--marker_length",
+                                        "0.1",
+                                        "--Sail.luff",
+                                        "4",
+                                        "--Sail.foot",
+                                        "2",
+                                        "--Sail.leech",
+                                        "4.2",
+                                        "--Sail.lines",
+                                        "3",
+                                        "--Plan.num_views",
+                                        "10"};
+
+ProgramRun RunWith(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return RunVelamap(arguments);
+}
+
+TEST(ShootPlannerTest, WritesTheSamePlanTwice) {
+  TempDir dir;
+  const std::string folder = (dir / "plan").string();
+  const ProgramRun first = RunWith(kSail, {"--output_path", folder, "--hull_markers", "4"});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(ListFolder(folder),
+            (std::vector<std::string>{".velamap", "markers.csv", "plan.csv", "plan.svg"}));
+  const std::string svg = ReadFileBytes(folder + "/plan.svg");
+  const ProgramRun second = RunWith(kSail, {"--output_path", folder, "--hull_markers", "4"});
+  EXPECT_EQ(first.out, second.out);
+  EXPECT_EQ(svg, ReadFileBytes(folder + "/plan.svg"));
+}
+
+TEST(ShootPlannerTest, InputThatMakesNoPlanIsNamed) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> faults = {
+      {{"shoot_planner", "--marker_length", "0.1"}, "--camera_path: missing"},
+      {{"shoot_planner", "--field_of_view", "90"}, "--layout_path: missing"},
+      {{"shoot_planner", "--field_of_view", "90", "--marker_length", "0.1"},
+       "--Sail.luff: missing"},
+      {{"shoot_planner", "--field_of_view", "90", "--marker_length", "9", "--Sail.luff", "4",
+        "--Sail.foot", "2", "--Sail.leech", "4.2"},
+       "the sail has no room"},
+      {{"shoot_planner", "--camera_path", "none.yml", "--marker_length", "0.1"}, "none.yml"},
+  };
+  for (const auto& [arguments, message] : faults) {
+    const ProgramRun run = RunVelamap(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr(message));
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+  }
+  const ProgramRun far = RunWith(kSail, {"--Plan.distance", "90"});
+  EXPECT_EQ(far.exit_code, 2);
+  EXPECT_THAT(far.err, HasSubstr("--Plan.distance: from 90 m"));
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,127 @@
+#include "workflows/plan/shoot_plan.h"
+
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "importer/base/error.h"
+#include "importer/geometry/units.h"
+#include "tests/support/error_matchers.h"
+#include "tests/workflows/plan/plan_example.h"
+#include "workflows/plan/plan_writer.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::HasSubstr;
+
+PlannedSurface FlatSquare() {
+  const Placement placement = PlaceOnGrid({1, 1, {}}, 100, 150, 0);
+  Layout layout = MakeLayout("DICT_4X4_250", 0.1);
+  layout.parts = {PartOfPlacement(placement)};
+  return SurfaceOfPlacement(placement, layout, 0, 0);
+}
+
+TEST(PlannedViewTest, SizesFollowDistanceAndAngle) {
+  const PlannedSurface square = FlatSquare();
+  const auto view_at = [&](double distance_m, double angle_deg) {
+    const auto views =
+        SeeMarkers(square, LinearCamera(), CameraAt(square, {distance_m, 0, 0, 1}, angle_deg));
+    EXPECT_EQ(views.size(), 1u);
+    return views.front();
+  };
+  EXPECT_NEAR(view_at(5, 0).side_px, 20.0, 0.01);
+  EXPECT_NEAR(view_at(10, 0).side_px, 10.0, 0.01);
+  EXPECT_NEAR(view_at(10, 60).narrow_px, 5.0, 0.05);
+  EXPECT_GT(view_at(5, 0).found, 0.99);
+  EXPECT_LT(view_at(10, 0).found, 0.5);
+  EXPECT_LT(view_at(10, 60).found, 0.01);
+}
+
+TEST(PlannedViewTest, BacksAndWhatIsOutsideAreNotSeen) {
+  const PlannedSurface square = FlatSquare();
+  EXPECT_TRUE(SeeMarkers(square, LinearCamera(), CameraAt(square, {5, 0, 0, 1}, 180)).empty());
+  EXPECT_TRUE(SeeMarkers(square, LinearCamera(), CameraAt(square, {0.08, 0, 0, 1}, 0)).empty());
+}
+
+TEST(PlannedViewTest, AnglesSpanTheArc) {
+  const std::vector<double> angles_deg = AnglesOf({5, 80, 0, 5});
+  EXPECT_THAT(angles_deg, ::testing::ElementsAre(-40, -20, 0, 20, 40));
+}
+
+TEST(CameraOfFieldOfViewTest, BordersLieAtHalfTheAngle) {
+  ShootPlanOptions options;
+  options.field_of_view_deg = 100;
+  for (const LensMode lens : {LensMode::kLinear, LensMode::kWide}) {
+    options.lens = lens;
+    const Camera camera = CameraOfFieldOfView(options);
+    const auto ray = CamFromImage(camera, {0, 540});
+    ASSERT_TRUE(ray);
+    EXPECT_NEAR(kDegPerRad * std::atan(-ray->x()), 50, 1e-6);
+  }
+  options.lens = LensMode::kLinear;
+  options.field_of_view_deg = 170;
+  ExpectThrows<InputError>([&] { CameraOfFieldOfView(options); },
+                           {"--field_of_view", "--lens wide"});
+  options.field_of_view_deg.reset();
+  ExpectThrows<InputError>([&] { CameraOfFieldOfView(options); }, {"--camera_path: missing"});
+}
+
+TEST(SimulatePlanTest, ShapeFollowsTheCornersAndTheNumberOfViews) {
+  const PlannedSurface sail = PlannedSail();
+  const auto shape_sigma = [&](double corner_sigma_px, int num_views) {
+    ShootPlanOptions options;
+    options.corner_sigma_px = corner_sigma_px;
+    return SimulatePlan(sail, LinearCamera(), {4, 80, 1, num_views}, options)
+        .distance_after_scaling_sigma_mm;
+  };
+  const double sigma_mm = shape_sigma(0.2, 15);
+  EXPECT_NEAR(shape_sigma(0.4, 15) / sigma_mm, 2.0, 0.3);
+  EXPECT_NEAR(shape_sigma(0.2, 60) / sigma_mm, 0.5, 0.1);
+}
+
+TEST(SimulatePlanTest, OneMarkerInOneViewGivesNoShape) {
+  EXPECT_THROW(SimulatePlan(FlatSquare(), LinearCamera(), {5, 0, 0, 1}, {}), DataError);
+}
+
+TEST(ShootPlanTest, ChoosesADistanceAndSaysWhatItGives) {
+  ShootPlanOptions options;
+  options.num_views = 12;
+  const ShootPlan plan = MakeShootPlan(PlannedSail(), LinearCamera(), options);
+  EXPECT_GT(plan.along_path.found, 0.8);
+  ASSERT_TRUE(plan.plan().precision);
+  EXPECT_GT(plan.plan().precision->MedianMarkerSigma_mm(), 0.1);
+  EXPECT_LT(plan.shutters[1].motion_px_s, plan.shutters[0].motion_px_s);
+  EXPECT_GT(plan.shutters[1].exposure_s, plan.shutters[2].exposure_s);
+  std::ostringstream out, csv, markers, again;
+  PrintPlan(plan, out);
+  EXPECT_EQ(out.str().rfind("verdict: ", 0), 0u);
+  EXPECT_THAT(out.str(), HasSubstr("\nrecommendation: go 90 degrees around"));
+  WritePlanCsv(plan, csv);
+  WriteMarkersCsv(plan, markers);
+  WriteMarkersCsv(MakeShootPlan(PlannedSail(), LinearCamera(), options), again);
+  EXPECT_EQ(markers.str(), again.str());
+  EXPECT_THAT(csv.str(), HasSubstr("\nshutter,"));
+}
+
+TEST(ShootPlanTest, DistanceWithoutMarkersIsRefusedWithABetterOne) {
+  ShootPlanOptions options;
+  options.distance_m = 60;
+  ExpectThrows<InputError>([&] { MakeShootPlan(PlannedSail(), LinearCamera(), options); },
+                           {"--Plan.distance: from 60 m", "give such as"});
+}
+
+TEST(JudgePlanTest, NarrowArcsAndSmallMarkersAreNamed) {
+  ShootPlan plan;
+  plan.path = {5, 5, 1, 10};
+  plan.along_path = {1.0, 0.6, 15, 15};
+  plan.shutters = {{1, 100, 0.01}};
+  plan.variants = {{"plan", plan.path, std::nullopt, "two views needed"}};
+  const Verdict verdict = JudgePlan(plan);
+  EXPECT_EQ(verdict.level, ReportStatus::kBad);
+  EXPECT_EQ(verdict.reasons.size(), 4u);
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,135 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "exporters/formats/shape_csv.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
+#include "importer/layout/dictionary.h"
+#include "importer/print/drawing_writer.h"
+#include "importer/print/placement.h"
+#include "importer/print/print_options.h"
+#include "importer/print/sheet_plan.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/shared_options.h"
+#include "workflows/plan/plan_drawing.h"
+#include "workflows/plan/plan_writer.h"
+
+namespace velamap {
+namespace {
+
+struct Options {
+  PathOptions paths;
+  MarkerOptions markers;
+  Arrangement arrangement = Arrangement::kSail;
+  SailPlacementOptions sail;
+  GridPlacementOptions grid;
+  GeneralOptions general;
+  ShootPlanOptions plan;
+  Layout layout;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {"shoot_planner",
+          "says what a shoot will give: distance, shutter, path, sigmas of the markers",
+          "--field_of_view 90 --lens wide --width 3840 --height 2160 --marker_length 0.1 \\\n"
+          "    --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 --Plan.speed_knots 3 "
+          "--output_path plan",
+          {{"Input and output",
+            {PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
+                        "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt"),
+             PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
+                        "shape.csv, or its folder, of an earlier result or a design: where the "
+                        "markers are, instead of --Plan.surface"),
+             PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
+                        "folder for plan.csv, markers.csv and plan.svg; new, empty, or as an "
+                        "earlier run left it; left out: none"),
+             ChoiceOption("Plan.surface", &options->arrangement,
+                          {{Arrangement::kSail, "sail"}, {Arrangement::kGrid, "grid"}},
+                          "that the markers are on, where marker_generator would place them")}},
+           DescribeOptions(&options->markers, true),
+           DescribeOptions(&options->plan),
+           DescribeOptions(&options->sail),
+           DescribeOptions(&options->grid),
+           DescribeOptions(&options->general)}};
+}
+
+void CheckCamera(const Options& options) {
+  if (options.paths.camera_path.empty() || !options.plan.field_of_view_deg) return;
+  throw InputError("--field_of_view: the calibration says what the camera is; leave it out");
+}
+
+void Validate(Options* options) {
+  SetLogLevel(options->general.log_level);
+  options->plan.seed = static_cast<std::uint32_t>(options->general.random_seed);
+  options->plan.num_threads = options->general.num_threads;
+  options->plan.Check();
+  options->sail.Check();
+  options->grid.Check();
+  CheckCamera(*options);
+  if (options->markers.layout_path.empty() && options->markers.dictionary.empty()) {
+    options->markers.dictionary = kDefaultDictionary;
+  }
+  options->layout = LoadLayout(options->markers, true);
+}
+
+// Places the markers of the options as marker_generator does, or those of the layout's lines.
+PlannedSurface PlaceMarkers(const Options& options) {
+  Layout layout = options.layout;
+  const double length_mm = 1000 * layout.marker_length_m;
+  const int num_cells =
+      LoadDictionary(layout.dictionary).aruco->markerSize + 2 * layout.border_bits;
+  const double sticker_mm = MakeSticker({0, length_mm, ""}, num_cells, {}).Height();
+  Placement placement;
+  if (layout.HasMarkers()) {
+    if (options.arrangement != Arrangement::kSail) {
+      throw InputError("--Plan.surface: a layout's lines are placed on a sail; leave it out");
+    }
+    placement = PlaceLinesOnSail(options.sail, layout, sticker_mm);
+  } else {
+    placement = options.arrangement == Arrangement::kSail
+                    ? PlaceOnSail(options.sail, length_mm, sticker_mm, 0)
+                    : PlaceOnGrid(options.grid, length_mm, sticker_mm, 0);
+    layout.parts = {PartOfPlacement(placement)};
+    if (options.sail.hull_markers > 0) {
+      layout.parts.push_back(
+          RigidPart("hull", MarkerIds(layout).back() + 1, options.sail.hull_markers));
+    }
+  }
+  return SurfaceOfPlacement(placement, layout, options.plan.camber, options.plan.twist_deg);
+}
+
+PlannedSurface MakeSurface(const Options& options) {
+  if (options.paths.shape_path.empty()) return PlaceMarkers(options);
+  const std::string file = ShapeFile(options.paths.shape_path);
+  return SurfaceOfShape(ReadShapeCsv(file), options.layout, file);
+}
+
+void WritePlan(const ShootPlan& plan, const std::string& output_path) {
+  AtomicFolder folder(output_path);
+  const std::filesystem::path& path = folder.TemporaryPath();
+  WriteFile(path / "plan.csv", [&](std::ostream& out) { WritePlanCsv(plan, out); });
+  WriteFile(path / "markers.csv", [&](std::ostream& out) { WriteMarkersCsv(plan, out); });
+  WriteFile(path / "plan.svg", [&](std::ostream& out) { out << SvgText(DrawPlan(plan)); });
+  folder.Commit();
+}
+
+void Run(const Options& options) {
+  const std::optional<Camera> calibration = LoadCalibration(options.paths);
+  const Camera camera = calibration ? *calibration : CameraOfFieldOfView(options.plan);
+  const ShootPlan plan = MakeShootPlan(MakeSurface(options), camera, options.plan);
+  PrintPlan(plan, std::cout);
+  if (options.paths.output_path.empty()) return;
+  WritePlan(plan, options.paths.output_path);
+  fmt::print(std::cout, "\noutput_path: {}\n", options.paths.output_path);
+}
+
+}  // namespace
+
+Command ShootPlanner() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
+
+}  // namespace velamap

@@ -1,0 +1,55 @@
+// The wishes for a plan of a shoot.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "importer/base/option.h"
+#include "importer/camera/camera.h"
+
+namespace velamap {
+
+enum class LensMode {
+  kLinear,  // straight lines stay straight
+  kWide,    // an action camera's: angles in proportion to the distance from the picture's middle
+};
+
+struct ShootPlanOptions {
+  // The camera without a calibration.
+  std::optional<double> field_of_view_deg;  // from the left border of the picture to the right
+  LensMode lens = LensMode::kLinear;
+  int width_px = 1920, height_px = 1080;
+
+  // The camera's path: on an arc around the middle of the markers, which it looks at.
+  std::optional<double> distance_m;  // nothing: as near as the picture holds the markers
+  double arc_deg = 90.0;             // from the first view to the last
+  double height_m = 1.0;             // of the camera over the lowest marker
+  int num_views = 40;                // that the adjustment uses
+
+  double speed_m_s = 1.0;  // of the camera against the surface
+  std::optional<double> speed_knots;
+  double turn_rate_deg_s = 10.0;
+
+  // 1 sigma of a corner's coordinate on a marker of 20 px, with what neighbouring frames have in
+  // common. Rendered action cameras at 18 to 23 crf had 0.056 to 0.09 px.
+  double corner_sigma_px = 0.075;
+
+  // Of a sail whose shape is not given.
+  double camber = 0.1;  // depth, part of the chord
+  double twist_deg = 10.0;
+
+  std::uint32_t seed = 0;
+  int num_threads = 0;  // 0: one a core; never changes the result
+
+  void Check() const;  // throws InputError that names the option
+
+  double SpeedInMPerS() const;
+};
+
+OptionGroup DescribeOptions(ShootPlanOptions* options);
+
+// Throws InputError without a field of view, and for one that the lens cannot have.
+Camera CameraOfFieldOfView(const ShootPlanOptions& options);
+
+}  // namespace velamap

@@ -1,0 +1,125 @@
+#include "workflows/plan/plan_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "importer/base/statistics.h"
+#include "importer/geometry/units.h"
+
+namespace velamap {
+namespace {
+
+// From workflows/studies/shooting.sh, as everything else here that pictures decide: half of the
+// markers are found at so many pixels a cell, and the share rises over this width.
+constexpr double kPxPerCellForHalf = 1.9, kPxPerCellWidth = 0.17;
+constexpr double kToleratedMotionCells = 0.5;
+
+double FoundShare(double narrow_px, int num_cells) {
+  return 1 / (1 + std::exp((kPxPerCellForHalf - narrow_px / num_cells) / kPxPerCellWidth));
+}
+
+// Its y axis as far down as it goes.
+Rigid3 LookAtOrigin(const Eigen::Vector3d& position) {
+  const Eigen::Vector3d forward = -position.normalized();
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Matrix3d rotation;
+  rotation << right.transpose(), forward.cross(right).transpose(), forward.transpose();
+  return {Eigen::Quaterniond(rotation), -(rotation * position)};
+}
+
+std::optional<MarkerView> SeeMarker(const ShapeMarker& marker, int num_cells, const Camera& camera,
+                                    double max_ray_length, const Rigid3& cam_from_plan) {
+  constexpr double kBorder_px = 3.0;
+  MarkerView view;
+  view.marker_id = marker.marker_id;
+  double longest_px = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const Eigen::Vector3d x_in_cam = cam_from_plan * *marker.x_in_shape_m[i + 1];
+    // Distortion may fold what lies far outside the picture back into it.
+    if (!(x_in_cam.z() > 0) || x_in_cam.hnormalized().norm() > max_ray_length) return std::nullopt;
+    const auto x_px = ImageFromCam(camera, x_in_cam);
+    if (!x_px || x_px->minCoeff() < kBorder_px || x_px->x() > camera.width_px - kBorder_px ||
+        x_px->y() > camera.height_px - kBorder_px) {
+      return std::nullopt;
+    }
+    view.corners_in_image_px[i] = *x_px;
+  }
+  const QuadCorners& c = view.corners_in_image_px;
+  // The corners go clockwise as the face is seen, y down.
+  if (!(Cross(c[2] - c[0], c[3] - c[1]) > 0)) return std::nullopt;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    longest_px = std::max(longest_px, (c[(i + 1) % kNumCorners] - c[i]).norm());
+  }
+  view.side_px = std::sqrt(QuadArea(c));
+  view.narrow_px = QuadArea(c) / longest_px;
+  view.found = FoundShare(view.narrow_px, num_cells);
+  return view;
+}
+
+}  // namespace
+
+Rigid3 CameraAt(const PlannedSurface& surface, const PlannedPath& path, double angle_deg) {
+  double lowest_m = 0.0;
+  for (const ShapeMarker& marker : surface.shape.markers) {
+    lowest_m = std::min(lowest_m, marker.x_in_shape_m[0]->z());
+  }
+  const double angle = kRadPerDeg * angle_deg;
+  return LookAtOrigin({path.distance_m * std::sin(angle), -path.distance_m * std::cos(angle),
+                       lowest_m + path.height_m});
+}
+
+std::vector<double> AnglesOf(const PlannedPath& path) {
+  std::vector<double> angles_deg;
+  for (int i = 0; i < path.num_views; ++i) {
+    const double part = path.num_views > 1 ? double(i) / (path.num_views - 1) : 0.5;
+    angles_deg.push_back(path.arc_deg * (part - 0.5));
+  }
+  return angles_deg;
+}
+
+std::vector<MarkerView> SeeMarkers(const PlannedSurface& surface, const Camera& camera,
+                                   const Rigid3& cam_from_plan) {
+  std::vector<MarkerView> views;
+  const double max_ray_length = MaxRayLength(camera);
+  for (const ShapeMarker& marker : surface.shape.markers) {
+    const auto view = SeeMarker(marker, surface.num_cells, camera, max_ray_length, cam_from_plan);
+    if (view) views.push_back(*view);
+  }
+  return views;
+}
+
+ViewSummary Summarize(const PlannedSurface& surface,
+                      const std::vector<std::vector<MarkerView>>& views) {
+  ViewSummary summary;
+  std::vector<double> sides_px, narrow_px;
+  for (const std::vector<MarkerView>& view : views) {
+    for (const MarkerView& marker : view) {
+      sides_px.push_back(marker.side_px);
+      narrow_px.push_back(marker.narrow_px);
+      summary.found += marker.found;
+    }
+  }
+  if (sides_px.empty()) return summary;
+  const double num_possible = static_cast<double>(surface.shape.markers.size() * views.size());
+  summary.in_picture = static_cast<double>(sides_px.size()) / num_possible;
+  summary.found /= num_possible;
+  summary.median_side_px = Median(std::move(sides_px));
+  summary.median_narrow_px = Median(std::move(narrow_px));
+  return summary;
+}
+
+double NarrowPxForHalf(int num_cells) { return kPxPerCellForHalf * num_cells; }
+
+double CornerSigma(double corner_sigma_px, double side_px) {
+  // Noise that the length of an edge averages, and what the encoder does to all sizes alike.
+  const auto relative = [](double side) { return std::hypot(0.05, 0.6 / side); };
+  return corner_sigma_px * relative(side_px) / relative(20.0);
+}
+
+double ToleratedMotionPx(double narrow_px, int num_cells) {
+  return kToleratedMotionCells * narrow_px / num_cells;
+}
+
+}  // namespace velamap

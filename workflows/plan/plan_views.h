@@ -1,0 +1,63 @@
+// What a camera sees of the markers of a plan: pictures of them in pixels, and what importer and
+// corner fit make of pictures of that size.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "importer/camera/camera.h"
+#include "importer/geometry/quad.h"
+#include "importer/geometry/rigid3.h"
+#include "workflows/plan/plan_surface.h"
+
+namespace velamap {
+
+// An arc around the middle of the markers at equal height, from its one end to the other.
+struct PlannedPath {
+  double distance_m = 0.0;  // horizontally, from the middle of the markers
+  double arc_deg = 0.0;
+  double height_m = 0.0;  // of the camera over the lowest marker
+  int num_views = 0;
+};
+
+// At an angle to the right of straight ahead, looking at the middle of the markers.
+Rigid3 CameraAt(const PlannedSurface& surface, const PlannedPath& path, double angle_deg);
+
+std::vector<double> AnglesOf(const PlannedPath& path);  // degrees, of its views
+
+// A marker wholly in the picture that shows its face.
+struct MarkerView {
+  int marker_id = 0;
+  QuadCorners corners_in_image_px;
+  double side_px = 0.0;    // root of the area
+  double narrow_px = 0.0;  // area / longest side: the height of an oblique view
+  double found = 0.0;      // share of such views in which the importer finds the marker
+};
+
+std::vector<MarkerView> SeeMarkers(const PlannedSurface& surface, const Camera& camera,
+                                   const Rigid3& cam_from_plan);
+
+// The same in figures: of one view, or of several together.
+struct ViewSummary {
+  double in_picture = 0.0;      // part of the markers
+  double found = 0.0;           // part of the markers that are found
+  double median_side_px = 0.0;  // of the markers in the picture; 0: none
+  double median_narrow_px = 0.0;
+};
+
+ViewSummary Summarize(const PlannedSurface& surface,
+                      const std::vector<std::vector<MarkerView>>& views);
+
+// Width of a marker of which half of the views are found, px.
+double NarrowPxForHalf(int num_cells);
+
+// 1 sigma of a corner's coordinate, px, where that of a marker of 20 px is `corner_sigma_px`.
+double CornerSigma(double corner_sigma_px, double side_px);
+
+// The longest path of a marker in the picture while the shutter is open: half a cell of its narrow
+// side. It costs some 5 % of the markers and a quarter of the corners' precision; with a whole cell
+// a fifth of the markers are lost, and with one and a half most of them.
+double ToleratedMotionPx(double narrow_px, int num_cells);
+
+}  // namespace velamap

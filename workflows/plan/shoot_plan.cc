@@ -1,0 +1,227 @@
+#include "workflows/plan/shoot_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+#include "importer/geometry/units.h"
+#include "workflows/check/clip_facts.h"
+#include "workflows/check/clip_limits.h"
+
+namespace velamap {
+namespace {
+
+// The least that a view has to show for its pose to be trusted.
+constexpr double kMinMarkersOfView = 4.0;
+
+ViewSummary SummarizePath(const PlannedSurface& surface, const Camera& camera,
+                          const PlannedPath& path) {
+  std::vector<std::vector<MarkerView>> views;
+  for (const double angle_deg : AnglesOf(path)) {
+    views.push_back(SeeMarkers(surface, camera, CameraAt(surface, path, angle_deg)));
+  }
+  return Summarize(surface, views);
+}
+
+double NumFound(const PlannedSurface& surface, const ViewSummary& summary) {
+  return summary.found * static_cast<double>(surface.shape.markers.size());
+}
+
+// To two digits.
+double Rounded(double value) {
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return step * std::round(value / step);
+}
+
+// The nearest distance at which nearly as many markers are found along the arc as at the best.
+double ChooseDistance(const PlannedSurface& surface, const Camera& camera, PlannedPath path) {
+  constexpr double kNearest = 0.3, kFarthest = 60.0, kStep = 1.08, kNearlyAll = 0.98;
+  double extent_m = 0.0;
+  for (const ShapeMarker& marker : surface.shape.markers) {
+    extent_m = std::max(
+        {extent_m, marker.x_in_shape_m[0]->norm(), MarkerLength(surface.layout, marker.marker_id)});
+  }
+  path.num_views = std::min(path.num_views, 9);
+  std::vector<std::pair<double, double>> distance_and_found;
+  double most = 0.0;
+  for (double factor = kNearest; factor < kFarthest; factor *= kStep) {
+    path.distance_m = Rounded(factor * extent_m);
+    const double found = SummarizePath(surface, camera, path).found;
+    distance_and_found.emplace_back(path.distance_m, found);
+    most = std::max(most, found);
+  }
+  const double num_needed =
+      std::min(kMinMarkersOfView, static_cast<double>(surface.shape.markers.size()));
+  if (most * static_cast<double>(surface.shape.markers.size()) < 0.5 * num_needed) {
+    throw InputError(
+        "--marker_length: at no distance does the picture hold enough markers that are large "
+        "enough to be found; give larger or fewer markers, or a camera with more pixels");
+  }
+  return std::find_if(distance_and_found.begin(), distance_and_found.end(),
+                      [&](const auto& entry) { return entry.second >= kNearlyAll * most; })
+      ->first;
+}
+
+void CheckGivenDistance(const PlannedSurface& surface, const Camera& camera,
+                        const PlannedPath& path, const ViewSummary& summary) {
+  const double num_found = NumFound(surface, summary);
+  if (num_found >= kMinMarkersOfView || summary.found > 0.5) return;
+  PlannedPath straight = path;
+  straight.arc_deg = 0;
+  straight.num_views = 1;
+  const double side_px = SummarizePath(surface, camera, straight).median_side_px;
+  throw InputError(fmt::format(
+      "--Plan.distance: from {} m {:.1f} of {} markers are found in a view ({:.1f} px wide where "
+      "{:.0f} px are needed); give such as {} m",
+      path.distance_m, num_found, surface.shape.markers.size(), side_px,
+      NarrowPxForHalf(surface.num_cells), ChooseDistance(surface, camera, path)));
+}
+
+// Pixels a second, where the camera does not follow what it films.
+double MotionPxPerS(const Camera& camera, double distance_m, double speed_m_s,
+                    double turn_rate_deg_s) {
+  return MeanFocalLength(camera) * (speed_m_s / distance_m + kRadPerDeg * turn_rate_deg_s);
+}
+
+double LongestExposure(const PlannedSurface& surface, const ViewSummary& summary,
+                       double motion_px_s) {
+  constexpr double kLongest_s = 1.0;
+  const double path_px = ToleratedMotionPx(summary.median_narrow_px, surface.num_cells);
+  return path_px < kLongest_s * motion_px_s ? path_px / motion_px_s : kLongest_s;
+}
+
+PlannedVariant MakeVariant(const std::string& changed, const PlannedPath& path,
+                           const PlannedSurface& surface, const Camera& camera,
+                           const ShootPlanOptions& options) {
+  PlannedVariant variant{changed, path, std::nullopt, ""};
+  try {
+    variant.precision = SimulatePlan(surface, camera, path, options);
+  } catch (const DataError& error) {
+    variant.failure = error.what();
+  }
+  return variant;
+}
+
+std::vector<PlannedVariant> MakeVariants(const PlannedPath& path, const PlannedSurface& surface,
+                                         const Camera& camera, const ShootPlanOptions& options) {
+  std::vector<PlannedVariant> variants;
+  const auto add = [&](const std::string& changed, const PlannedPath& changed_path) {
+    variants.push_back(MakeVariant(changed, changed_path, surface, camera, options));
+  };
+  add("plan", path);
+  for (const int num_views : {5, 10, 20, 40, 80}) {
+    PlannedPath changed = path;
+    changed.num_views = num_views;
+    add("views", changed);
+  }
+  for (const double arc_deg : {10.0, 20.0, 40.0, 60.0, 90.0, 120.0}) {
+    PlannedPath changed = path;
+    changed.arc_deg = arc_deg;
+    add("arc", changed);
+  }
+  for (const double factor : {0.7, 1.5, 2.0}) {
+    PlannedPath changed = path;
+    changed.distance_m = Rounded(factor * path.distance_m);
+    add("distance", changed);
+  }
+  return variants;
+}
+
+std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
+
+}  // namespace
+
+ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
+                        const ShootPlanOptions& options) {
+  ShootPlan plan;
+  plan.camera = camera;
+  plan.surface = surface;
+  plan.path = {0.0, options.arc_deg, options.height_m, options.num_views};
+  plan.path.distance_m =
+      options.distance_m ? *options.distance_m : ChooseDistance(surface, camera, plan.path);
+  plan.along_path = SummarizePath(surface, camera, plan.path);
+  CheckGivenDistance(surface, camera, plan.path, plan.along_path);
+  const double speed_m_s = options.SpeedInMPerS();
+  for (const double factor : {0.5, 0.7, 1.0, 1.5, 2.0, 3.0}) {
+    for (const double angle_deg : {0.0, 30.0, 60.0}) {
+      PlannedPath from = plan.path;
+      from.distance_m = factor == 1 ? plan.path.distance_m : Rounded(factor * from.distance_m);
+      PlannedView view{from.distance_m, angle_deg, {}, 0.0};
+      view.summary =
+          Summarize(surface, {SeeMarkers(surface, camera, CameraAt(surface, from, angle_deg))});
+      view.exposure_s = LongestExposure(
+          surface, view.summary,
+          MotionPxPerS(camera, from.distance_m, speed_m_s, options.turn_rate_deg_s));
+      plan.views.push_back(view);
+    }
+  }
+  for (const double factor : {1.0, 0.5, 2.0}) {
+    PlannedShutter shutter{factor * speed_m_s, 0.0, 0.0};
+    shutter.motion_px_s =
+        MotionPxPerS(camera, plan.path.distance_m, shutter.speed_m_s, options.turn_rate_deg_s);
+    shutter.exposure_s = LongestExposure(surface, plan.along_path, shutter.motion_px_s);
+    plan.shutters.push_back(shutter);
+  }
+  plan.variants = MakeVariants(plan.path, surface, camera, options);
+  return plan;
+}
+
+Verdict JudgePlan(const ShootPlan& plan) {
+  constexpr double kGoodShare = 0.8, kBadShare = 0.5, kShortest_s = 1.0 / 4000;
+  Verdict verdict;
+  const auto add = [&](ReportStatus level, const std::string& text) {
+    verdict.reasons.push_back({level, text});
+  };
+  const auto judge = [&](double value, double good, double bad, const std::string& text) {
+    if (value < good) add(value < bad ? ReportStatus::kBad : ReportStatus::kCheck, text);
+  };
+  const PlannedVariant& planned = plan.plan();
+  if (!planned.precision) {
+    add(ReportStatus::kBad, "these views give no shape: " + planned.failure);
+  }
+  const std::string closer = "go closer, film with more pixels, or print larger markers";
+  judge(plan.along_path.found, kGoodShare, kBadShare,
+        fmt::format("a view finds {} of the markers, {} are in the picture: {}",
+                    Percent(plan.along_path.found), Percent(plan.along_path.in_picture),
+                    plan.along_path.in_picture < kGoodShare ? "go farther away, or film in parts"
+                                                            : closer));
+  judge(plan.along_path.median_side_px, kGoodSidePx, kBadSidePx,
+        fmt::format("half of the markers are smaller than {:.0f} px: {}",
+                    plan.along_path.median_side_px, closer));
+  judge(plan.path.arc_deg, kGoodParallax_deg, kBadParallax_deg,
+        fmt::format("the camera goes around by {:.0f} degrees only, which leaves depth open: go "
+                    "around further",
+                    plan.path.arc_deg));
+  if (plan.shutters.front().exposure_s < kShortest_s) {
+    add(ReportStatus::kCheck, "few cameras have a shutter that short: go slower, hold it calmer");
+  }
+  if (!plan.surface.markers_left_out.empty()) {
+    add(ReportStatus::kCheck,
+        fmt::format("not planned, because the layout does not say where they are: {}: give "
+                    "--shape_path",
+                    IdRanges(plan.surface.markers_left_out)));
+  }
+  if (planned.precision) {
+    std::vector<int> missing;
+    for (const ShapeMarker& marker : plan.surface.shape.markers) {
+      if (planned.precision->marker_sigma_mm.count(marker.marker_id) == 0) {
+        missing.push_back(marker.marker_id);
+      }
+    }
+    if (!missing.empty()) {
+      add(ReportStatus::kCheck,
+          fmt::format("found in fewer than two views: {}: {}", IdRanges(missing), closer));
+    }
+    for (const std::string& warning : planned.precision->warnings) {
+      add(ReportStatus::kCheck, warning);
+    }
+  }
+  std::stable_sort(verdict.reasons.begin(), verdict.reasons.end(),
+                   [](const auto& a, const auto& b) { return a.level > b.level; });
+  if (!verdict.reasons.empty()) verdict.level = verdict.reasons.front().level;
+  return verdict;
+}
+
+}  // namespace velamap

@@ -1,0 +1,57 @@
+// A plan of a shoot: where from, how fast, how many views, and what precision that gives.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exporters/report/verdict.h"
+#include "workflows/plan/plan_options.h"
+#include "workflows/plan/plan_precision.h"
+#include "workflows/plan/plan_views.h"
+
+namespace velamap {
+
+// What one view sees, from one place.
+struct PlannedView {
+  double distance_m = 0.0, angle_deg = 0.0;
+  ViewSummary summary;
+  double exposure_s = 0.0;  // the longest at the planned speed; 0: nothing is seen
+};
+
+// The shutter on the planned path.
+struct PlannedShutter {
+  double speed_m_s = 0.0;
+  double motion_px_s = 0.0;  // of a marker in the picture
+  double exposure_s = 0.0;   // the longest
+};
+
+// The planned path, or one that differs from it in one thing.
+struct PlannedVariant {
+  std::string changed;  // plan, views, arc or distance
+  PlannedPath path;
+  std::optional<PlanPrecision> precision;
+  std::string failure;  // where the views give no shape
+};
+
+struct ShootPlan {
+  Camera camera;
+  PlannedSurface surface;
+  PlannedPath path;
+  ViewSummary along_path;
+  std::vector<PlannedView> views;
+  std::vector<PlannedShutter> shutters;  // the planned speed, half of it and twice as much
+  std::vector<PlannedVariant> variants;  // the plan itself is the first
+
+  const PlannedVariant& plan() const { return variants.front(); }
+};
+
+// Throws InputError for a distance at which hardly any marker is found, and where no distance shows
+// four markers.
+ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
+                        const ShootPlanOptions& options);
+
+Verdict JudgePlan(const ShootPlan& plan);
+
+}  // namespace velamap
