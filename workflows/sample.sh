@@ -1,19 +1,39 @@
 #!/usr/bin/env bash
-# Installs the packages on a fresh Debian 12 machine, builds velamap and reconstructs the photographs of
-# a cube with printed markers in sample_project.
-# usage: workflows/sample.sh [WORKSPACE]   (default: ./workspace/cube)
-# VELAMAP_PRESET: the build; default release.
+# Installs the packages on a fresh Debian 12 machine, builds velamap, and reconstructs two objects of
+# sample_project: photographs of a cube with printed markers, and a clip of a sail.
+# usage: workflows/sample.sh [FOLDER]   (default: ./workspace; workspaces FOLDER/cube and FOLDER/sail)
+# VELAMAP_PRESET: the build; default release. VELAMAP: a program that is there, instead of a build.
 set -euo pipefail
 
-workspace="$(realpath --canonicalize-missing "${1:-workspace/cube}")"
+folder="$(realpath --canonicalize-missing "${1:-workspace}")"
 preset="${VELAMAP_PRESET:-release}"
+velamap="${VELAMAP:-}"
+if [[ -n "$velamap" ]]; then velamap="$(realpath "$velamap")"; fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-workflows/setup.sh
-workflows/build.sh "$preset" velamap
-echo "== sample: reconstructing sample_project/cube into $workspace"
-"build/$preset/workflows/velamap" automatic_reconstructor \
-  --image_path sample_project/cube/images \
-  --camera_path sample_project/cube/camera.yml \
-  --layout_path sample_project/cube/layout.yml \
-  --workspace_path "$workspace"
+if [[ -z "$velamap" ]]; then
+  workflows/setup.sh
+  workflows/build.sh "$preset" velamap
+  velamap="build/$preset/workflows/velamap"
+fi
+
+# reconstruct NAME PICTURES: an object of sample_project.
+reconstruct() {
+  echo "== sample: $1: reconstructing sample_project/$1/$2 into $folder/$1"
+  "$velamap" automatic_reconstructor --image_path "sample_project/$1/$2" \
+    --camera_path "sample_project/$1/camera.yml" --layout_path "sample_project/$1/layout.yml" \
+    --workspace_path "$folder/$1"
+}
+reconstruct cube images
+reconstruct sail clip.mp4
+
+echo "== sample: the sail against its truth"
+"$velamap" shape_analyzer --shape_path "$folder/sail/shape" --input_path "$folder/sail/sparse/0" \
+  --layout_path sample_project/sail/layout.yml --reference_path sample_project/sail/truth.csv \
+  --log_level error |
+  grep -E '^(scale_error_percent|distance(_after_scaling)?_(mm_rms|sigma_mm)):'
+echo "== sample: open these"
+echo "report: $folder/sail/report.html (in a browser)"
+echo "sections: $folder/sail/shape/section_profiles.svg"
+echo "surface: $folder/sail/shape/surface.step (CAD), surface.ply (MeshLab, Blender)"
+echo "cube: $folder/cube/report.html"

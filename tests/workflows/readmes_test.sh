@@ -70,6 +70,6 @@ while IFS=: read -r readme path; do
     [[ -n "$(find "$folder" -name "$path" -not -path './build/*' -print -quit)" ]] ||
       fail "$readme names $path, which is not below its folder"
   fi
-done < <(find . -name README.md -not -path './build/*' -not -path './workspace/*' -not -path './.*/*' \
+done < <(find . -name '*.md' -not -path './build/*' -not -path './workspace/*' -not -path './.*/*' \
   -exec grep -Ho '`[a-z0-9_./]*\.\(h\|cc\|sh\|cmake\|awk\)`' {} + | tr -d '`')
 exit "$status"

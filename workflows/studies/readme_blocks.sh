@@ -7,7 +7,7 @@
 
 block_sample_output() {
   echo '```'
-  data sample_project.txt | grep -E '^(verdict|verdict_reason|images_used|markers_reconstructed|reprojection_error_px|side_error_mm|scale_sigma|bounding_box_m|shape_path|model_path|colmap_command):'
+  data sample_project.txt | grep -E '^(verdict|verdict_reason|images_used|markers_reconstructed|reprojection_error_px|side_error_mm|scale_sigma|sections|surface|rolling_shutter_ms|distance_mm_rms|scale_error_percent|report|cube):'
   echo '```'
 }
 
@@ -38,11 +38,21 @@ cube_pairs() {
     }'
 }
 
-# summary KEY: a line of the sample run's summary.
-summary() { data sample_project.txt | sed -n "s/^$1: //p"; }
-
 images_used() {
   data sample_project.csv | awk -F, -v object="$1" '$1 == object && $4 == "images_used" { printf "%s", $5 }'
+}
+
+block_sail() {
+  cat <<ROWS
+| figure | result | what is known |
+|---|---|---|
+| images used | $(images_used sail) | |
+| markers reconstructed | $(sample sail num_markers d) of $(sample sail num_layout_markers d) | |
+| mean reprojection error | $(sample sail reprojection_error_px_mean 2) px | |
+| RMS distance from the truth | $(sample sail distance_mm_rms 2) mm; expected $(sample sail distance_sigma_mm 2) mm | exact |
+| the same after an alignment with scale | $(sample sail distance_after_scaling_mm_rms 2) mm; expected $(sample sail distance_after_scaling_sigma_mm 2) mm | exact |
+| scale error | $(sample sail scale_error_percent +2) % | |
+ROWS
 }
 
 block_cube() {
@@ -99,6 +109,7 @@ block_accuracy_summary() {
   cat <<ROWS
 | data | velamap | the thesis's method |
 |---|---|---|
+| rendered 5 s clip of a 2.6 x 5.1 m sail, 1080p, action camera | $(sample sail distance_mm_rms 2) mm RMS, scale $(sample sail scale_error_percent +2) %, $(sample sail num_markers d) markers | |
 | 24 photographs of a 40 mm cube, 2.4 mm markers | faces $(cube_pairs distances) mm apart (known: 40.0 to 40.3), at 90 ± $(cube_pairs off) degrees | |
 ROWS
   table accuracy.csv "$accuracy_library"'
@@ -254,6 +265,39 @@ block_rigid_objects() {
           num(of[o, "num_markers"], "d")
       }
     }'
+}
+
+# --- shooting.sh ---
+
+block_shooting_distance() {
+  echo "| distance | side | markers found | error of a corner |"
+  echo "|---|---|---|---|"
+  table shooting.csv 'FNR > 1 && cell("series") == "distance" {
+    printf "| %s m | %s px | %s %% | %s px |\n", cell("distance_m"), num(cell("side_px"), 3),
+      num(cell("found_percent"), "d"), num(cell("corner_error_px"), 2) }'
+}
+
+block_shooting_motion() {
+  echo "| side | path while the shutter is open | markers found | error of a corner |"
+  echo "|---|---|---|---|"
+  table shooting.csv '
+    FNR > 1 && cell("series") == "motion" {
+      if (cell("motion_px") == 0) side = cell("side_px")
+      printf "| %s px | %s px, %s cells | %s %% | %s px |\n", num(side, 2), cell("motion_px"),
+        num(6 * cell("motion_px") / side, 2), num(cell("found_percent"), "d"),
+        num(cell("corner_error_px"), 2) }'
+}
+
+block_shooting_plan() {
+  echo "| distance | side | sigma of a marker: planned, found | RMS to the truth: planned, found, true | after scaling: planned, found, true |"
+  echo "|---|---|---|---|---|"
+  table shooting.csv '
+    FNR > 1 && cell("series") == "plan" {
+      printf "| %s m | %s px | %s, %s mm | %s, %s, %s mm | %s, %s, %s mm |\n", cell("distance_m"),
+        num(cell("side_px"), 2), num(cell("planned_marker_sigma_mm"), 2), num(cell("marker_sigma_mm"), 2),
+        num(cell("planned_distance_sigma_mm"), 2), num(cell("distance_sigma_mm"), 2),
+        num(cell("distance_mm"), 2), num(cell("planned_shape_sigma_mm"), 2),
+        num(cell("shape_sigma_mm"), 2), num(cell("shape_mm"), 2) }'
 }
 
 # --- rolling_shutter.sh ---

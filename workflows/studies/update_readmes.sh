@@ -33,7 +33,7 @@ fail() {
 
 # The command that writes each result into the work folder.
 declare -A command_of
-for study in accuracy board_motions parameters repeatability rigid_objects rolling_shutter sample_project; do
+for study in accuracy board_motions parameters repeatability rigid_objects rolling_shutter sample_project shooting; do
   command_of[$study.csv]="workflows/studies/$study.sh"
 done
 command_of[sample_project.txt]=workflows/studies/sample_project.sh
@@ -188,7 +188,7 @@ while IFS= read -r readme; do
     cat "$temporary/readme" >"$readme"
     echo "== written: $readme"
   fi
-done < <(find "$repository" -name README.md -not -path '*/build/*' -not -path '*/workspace/*' \
+done < <(find "$repository" -name '*.md' -not -path '*/build/*' -not -path '*/workspace/*' \
   -not -path '*/.*' | sort)
 
 if [[ -s "$temporary/problems" ]]; then

@@ -26,6 +26,7 @@ using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
 const fs::path kCube = fs::path(VELAMAP_SOURCE_DIR) / "sample_project/cube";
+const fs::path kSail = fs::path(VELAMAP_SOURCE_DIR) / "sample_project/sail";
 const fs::path kStylus = fs::path(VELAMAP_SOURCE_DIR) / "sample_project/stylus";
 const fs::path kAprilGrid = fs::path(VELAMAP_SOURCE_DIR) / "tests/data/aprilgrid";
 const fs::path kBoardVideo = fs::path(VELAMAP_SOURCE_DIR) / "tests/data/board_video";
@@ -132,6 +133,22 @@ void ExpectFacesOfACube(const std::vector<PartPlane>& planes, double scale_sigma
 }
 
 // One test, because each runs in a process of its own and would reconstruct the cube again.
+TEST(SailTest, ComesBackFromItsClip) {
+  const TempDir dir;
+  const ProgramRun run = Reconstruct(kSail, kSail / "clip.mp4", dir / "workspace");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("verdict: good"));
+  EXPECT_THAT(run.out, HasSubstr("sections: 7;"));
+  EXPECT_TRUE(fs::exists(dir / "workspace/shape/surface.step"));
+  const ShapeComparison comparison =
+      CompareShapes(ReadShapeCsv((dir / "workspace/shape/shape.csv").string()),
+                    ReadShapeCsv((kSail / "truth.csv").string()));
+  EXPECT_EQ(comparison.markers.size(), 102u);
+  EXPECT_LT(comparison.distance_m.rms, 1e-3);
+  EXPECT_LT(comparison.distance_after_scaling_m.rms, 5e-4);
+  EXPECT_NEAR(comparison.scale, 1.0, 1e-3);
+}
+
 TEST(CubeTest, ReachesTheGoals) {
   const TempDir dir;
   const ProgramRun run = Reconstruct(kCube, kCube / "images", dir / "cube");
