@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -109,23 +110,25 @@ PlannedSurface MakeSurface(const Options& options) {
   return SurfaceOfShape(ReadShapeCsv(file), options.layout, file);
 }
 
-void WritePlan(const ShootPlan& plan, const std::string& output_path) {
-  AtomicFolder folder(output_path);
-  const std::filesystem::path& path = folder.TemporaryPath();
-  WriteFile(path / "plan.csv", [&](std::ostream& out) { WritePlanCsv(plan, out); });
-  WriteFile(path / "markers.csv", [&](std::ostream& out) { WriteMarkersCsv(plan, out); });
-  WriteFile(path / "plan.svg", [&](std::ostream& out) { out << SvgText(DrawPlan(plan)); });
-  folder.Commit();
+void WritePlan(const ShootPlan& plan, const std::filesystem::path& folder) {
+  WriteFile(folder / "plan.csv", [&](std::ostream& out) { WritePlanCsv(plan, out); });
+  WriteFile(folder / "markers.csv", [&](std::ostream& out) { WriteMarkersCsv(plan, out); });
+  WriteFile(folder / "plan.svg", [&](std::ostream& out) { out << SvgText(DrawPlan(plan)); });
 }
 
 void Run(const Options& options) {
+  const std::string& output_path = options.paths.output_path;
+  std::optional<AtomicFolder> folder;
+  if (!output_path.empty()) folder.emplace(output_path);
   const std::optional<Camera> calibration = LoadCalibration(options.paths);
   const Camera camera = calibration ? *calibration : CameraOfFieldOfView(options.plan);
   const ShootPlan plan = MakeShootPlan(MakeSurface(options), camera, options.plan);
+  if (folder) {
+    WritePlan(plan, folder->TemporaryPath());
+    folder->Commit();
+  }
   PrintPlan(plan, std::cout);
-  if (options.paths.output_path.empty()) return;
-  WritePlan(plan, options.paths.output_path);
-  fmt::print(std::cout, "\noutput_path: {}\n", options.paths.output_path);
+  if (folder) fmt::print(std::cout, "\noutput_path: {}\n", output_path);
 }
 
 }  // namespace

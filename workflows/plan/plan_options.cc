@@ -34,11 +34,14 @@ OptionGroup DescribeOptions(ShootPlanOptions* options) {
         FromTo(0.01, 10000)},
        {"Plan.arc", &options->arc_deg, "deg", "that the camera goes around the markers",
         FromTo(0, 160)},
-       {"Plan.height", &options->height_m, "m", "of the camera over the lowest marker",
+       {"Plan.height", &options->height_m, "m",
+        "of the camera over the lowest marker; left out: 1, or the middle of the markers if that "
+        "is "
+        "lower",
         FromTo(-100, 1000)},
        {"Plan.num_views", &options->num_views, "frames",
         "that the adjustment uses, evenly along the arc", FromTo(2, 400)},
-       {"Plan.speed", &options->speed_m_s, "m/s", "of the camera against the markers",
+       {"Plan.speed", &options->speed_m_s, "m/s", "of the camera against the markers; left out: 1",
         FromTo(0, 100)},
        {"Plan.speed_knots", &options->speed_knots, "knots", "replaces --Plan.speed",
         FromTo(0, 200)},
@@ -52,10 +55,15 @@ OptionGroup DescribeOptions(ShootPlanOptions* options) {
         FromTo(-60, 60)}}};
 }
 
-void ShootPlanOptions::Check() const { CheckRanges(*this); }
+void ShootPlanOptions::Check() const {
+  CheckRanges(*this);
+  if (speed_m_s && speed_knots) {
+    throw InputError("--Plan.speed_knots: the speed is given in m/s; leave one of them out");
+  }
+}
 
 double ShootPlanOptions::SpeedInMPerS() const {
-  return speed_knots ? kMPerSPerKnot * *speed_knots : speed_m_s;
+  return speed_knots ? kMPerSPerKnot * *speed_knots : speed_m_s.value_or(1.0);
 }
 
 Camera CameraOfFieldOfView(const ShootPlanOptions& options) {

@@ -24,10 +24,12 @@ struct ShootPlanOptions {
   // The camera's path: on an arc around the middle of the markers, which it looks at.
   std::optional<double> distance_m;  // nothing: as near as the picture holds the markers
   double arc_deg = 90.0;             // from the first view to the last
-  double height_m = 1.0;             // of the camera over the lowest marker
-  int num_views = 40;                // that the adjustment uses
+  // Of the camera over the lowest marker; nothing: 1 m, or the middle of the markers if that is
+  // lower.
+  std::optional<double> height_m;
+  int num_views = 40;  // that the adjustment uses
 
-  double speed_m_s = 1.0;  // of the camera against the surface
+  std::optional<double> speed_m_s;  // of the camera against the surface; nothing: 1
   std::optional<double> speed_knots;
   double turn_rate_deg_s = 10.0;
 

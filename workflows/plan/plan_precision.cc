@@ -85,7 +85,6 @@ PlanPrecision SimulatePlan(const PlannedSurface& surface, const Camera& camera,
       AdjustWithMarkers(adjustment, surface.layout, clip.corner_errors, &clip.model);
   const PointCovariance& points = summary.uncertainty.points;
   PlanPrecision precision;
-  precision.num_views = static_cast<int>(clip.model.images.size());
   for (const auto& [marker_id, sigma_m] : CenterSigmas(points)) {
     precision.marker_sigma_mm[marker_id] = kMmPerM * sigma_m;
   }

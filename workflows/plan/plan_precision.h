@@ -14,7 +14,6 @@
 namespace velamap {
 
 struct PlanPrecision {
-  int num_views = 0;                      // that are left
   std::map<int, double> marker_sigma_mm;  // in space, of the centres, with the scale
   double scale_sigma = 0.0;               // fraction
   // Expected rms distance of the corners from the truth after a rigid alignment, and after one with

@@ -60,14 +60,18 @@ std::optional<MarkerView> SeeMarker(const ShapeMarker& marker, int num_cells, co
 
 }  // namespace
 
-Rigid3 CameraAt(const PlannedSurface& surface, const PlannedPath& path, double angle_deg) {
-  double lowest_m = 0.0;
+double LowestDepth(const PlannedSurface& surface) {
+  double depth_m = 0.0;
   for (const ShapeMarker& marker : surface.shape.markers) {
-    lowest_m = std::min(lowest_m, marker.x_in_shape_m[0]->z());
+    depth_m = std::max(depth_m, -marker.x_in_shape_m[0]->z());
   }
+  return depth_m;
+}
+
+Rigid3 CameraAt(const PlannedSurface& surface, const PlannedPath& path, double angle_deg) {
   const double angle = kRadPerDeg * angle_deg;
   return LookAtOrigin({path.distance_m * std::sin(angle), -path.distance_m * std::cos(angle),
-                       lowest_m + path.height_m});
+                       path.height_m - LowestDepth(surface)});
 }
 
 std::vector<double> AnglesOf(const PlannedPath& path) {

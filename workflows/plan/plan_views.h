@@ -21,6 +21,9 @@ struct PlannedPath {
   int num_views = 0;
 };
 
+// Of the lowest marker below the middle of all, m.
+double LowestDepth(const PlannedSurface& surface);
+
 // At an angle to the right of straight ahead, looking at the middle of the markers.
 Rigid3 CameraAt(const PlannedSurface& surface, const PlannedPath& path, double angle_deg);
 

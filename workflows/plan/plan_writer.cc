@@ -23,7 +23,7 @@ std::string PrecisionText(const PlannedVariant& variant) {
 
 void PrintFacts(const ShootPlan& plan, std::ostream& out) {
   const PlannedPath& path = plan.path;
-  fmt::print(out, "markers: {} on {:.2f} m\n", plan.surface.shape.markers.size(),
+  fmt::print(out, "markers: {} of {:.4g} m\n", plan.surface.shape.markers.size(),
              plan.surface.layout.marker_length_m);
   fmt::print(out, "picture: {} x {} px, focal length {:.0f} px\n", plan.camera.width_px,
              plan.camera.height_px, MeanFocalLength(plan.camera));

@@ -15,6 +15,7 @@ namespace {
 
 // The least that a view has to show for its pose to be trusted.
 constexpr double kMinMarkersOfView = 4.0;
+constexpr double kUsualHeight_m = 1.0;  // of a hand in a boat over a sail's foot
 
 ViewSummary SummarizePath(const PlannedSurface& surface, const Camera& camera,
                           const PlannedPath& path) {
@@ -71,12 +72,13 @@ void CheckGivenDistance(const PlannedSurface& surface, const Camera& camera,
   PlannedPath straight = path;
   straight.arc_deg = 0;
   straight.num_views = 1;
-  const double side_px = SummarizePath(surface, camera, straight).median_side_px;
+  const ViewSummary ahead = SummarizePath(surface, camera, straight);
   throw InputError(fmt::format(
-      "--Plan.distance: from {} m {:.1f} of {} markers are found in a view ({:.1f} px wide where "
-      "{:.0f} px are needed); give such as {} m",
-      path.distance_m, num_found, surface.shape.markers.size(), side_px,
-      NarrowPxForHalf(surface.num_cells), ChooseDistance(surface, camera, path)));
+      "--Plan.distance: from {} m {:.1f} of {} markers are found in a view (from straight ahead, "
+      "{:.0f} % are in the picture, {:.1f} px wide where {:.0f} px are needed); give such as {} m",
+      path.distance_m, num_found, surface.shape.markers.size(), 100 * ahead.in_picture,
+      ahead.median_side_px, NarrowPxForHalf(surface.num_cells),
+      ChooseDistance(surface, camera, path)));
 }
 
 // Pixels a second, where the camera does not follow what it films.
@@ -138,7 +140,9 @@ ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
   ShootPlan plan;
   plan.camera = camera;
   plan.surface = surface;
-  plan.path = {0.0, options.arc_deg, options.height_m, options.num_views};
+  plan.path = {0.0, options.arc_deg,
+               options.height_m.value_or(std::min(kUsualHeight_m, LowestDepth(surface))),
+               options.num_views};
   plan.path.distance_m =
       options.distance_m ? *options.distance_m : ChooseDistance(surface, camera, plan.path);
   plan.along_path = SummarizePath(surface, camera, plan.path);

@@ -53,6 +53,15 @@ TEST(ShootPlannerTest, InputThatMakesNoPlanIsNamed) {
       {{"shoot_planner", "--field_of_view", "90", "--marker_length", "9", "--Sail.luff", "4",
         "--Sail.foot", "2", "--Sail.leech", "4.2"},
        "the sail has no room"},
+      {{"shoot_planner", "--field_of_view", "90", "--marker_length", "0.1", "--Plan.speed", "1",
+        "--Plan.speed_knots", "2"},
+       "--Plan.speed_knots"},
+      {{"shoot_planner", "--camera_path", "none.yml", "--field_of_view", "90", "--marker_length",
+        "0.1"},
+       "--field_of_view"},
+      {{"shoot_planner", "--field_of_view", "90", "--marker_length", "0.1", "--shape_path",
+        "none.csv"},
+       "none.csv"},
       {{"shoot_planner", "--camera_path", "none.yml", "--marker_length", "0.1"}, "none.yml"},
   };
   for (const auto& [arguments, message] : faults) {
@@ -64,6 +73,9 @@ TEST(ShootPlannerTest, InputThatMakesNoPlanIsNamed) {
   const ProgramRun far = RunWith(kSail, {"--Plan.distance", "90"});
   EXPECT_EQ(far.exit_code, 2);
   EXPECT_THAT(far.err, HasSubstr("--Plan.distance: from 90 m"));
+  const ProgramRun near = RunWith(kSail, {"--Plan.distance", "0.1"});
+  EXPECT_EQ(near.exit_code, 2);
+  EXPECT_THAT(near.err, HasSubstr("0 % are in the picture"));
 }
 
 }  // namespace
