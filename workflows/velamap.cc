@@ -9,6 +9,7 @@
 #include <new>
 #include <string>
 
+#include "exporters/design/mesh_reader.h"
 #include "importer/base/error.h"
 #include "workflows/commands/commands.h"
 #include "workflows/run/logging.h"
@@ -72,4 +73,7 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace velamap
 
-int main(int argc, char** argv) { return velamap::Main(argc, argv); }
+int main(int argc, char** argv) {
+  velamap::ServeMeshReader(argc, argv);
+  return velamap::Main(argc, argv);
+}

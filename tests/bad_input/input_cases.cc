@@ -158,6 +158,30 @@ std::vector<BadInput> Numbers() {
        "bad.obj", Write("bad.obj", "v 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n")}};
 }
 
+// A reference of these formats is read in a process of its own.
+std::vector<BadInput> Meshes() {
+  const auto compared = [](const std::string& reference) {
+    return "shape_comparer --shape_path @/workspace/shape --reference_path @/" + reference;
+  };
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+      "float z\nelement face 1\nproperty list uchar int vertex_indices\n";
+  return {{"PlyHeaderThatDoesNotEnd", compared("bad.ply"), 2, "bad.ply: cannot be read",
+           Write("bad.ply", ply + "end_header,\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")},
+          {"StepCutOff", compared("bad.step"), 2, "bad.step: is cut off",
+           Write("bad.step", "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=DIRECTION('',(0.,0.,")},
+          {"StepOfNothing", compared("bad.step"), 2, "bad.step: cannot be read as STEP",
+           Write("bad.step", "END-ISO-10303-21;\n")},
+          {"IgesCutOff", compared("bad.igs"), 2, "bad.igs: is cut off",
+           Write("bad.igs", std::string(72, ' ') + "S      1\n")},
+          {"ObjWithoutFaces", compared("bad.obj"), 2, "bad.obj", Write("bad.obj", "v 0 0 0\n")},
+          {"MeshOfManyBytes", compared("bad.stl"), 2, "bad.stl: has 536870913 bytes",
+           [](const fs::path& dir) {
+             WriteTextFile(dir / "bad.stl", "solid");
+             fs::resize_file(dir / "bad.stl", (std::uintmax_t{512} << 20) + 1);
+           }}};
+}
+
 std::vector<BadInput> Markers() {
   std::vector<BadInput> cases = {
       {"DictionaryThatDoesNotExist",
@@ -236,8 +260,8 @@ std::vector<BadInput> Options() {
 
 std::vector<BadInput> InputCases() {
   std::vector<BadInput> cases = Pictures();
-  for (const auto& more :
-       {Calibrations(), Walls(), Numbers(), Markers(), PriorShapes(), Workspaces(), Options()}) {
+  for (const auto& more : {Calibrations(), Walls(), Numbers(), Meshes(), Markers(), PriorShapes(),
+                           Workspaces(), Options()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

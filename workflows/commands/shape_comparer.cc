@@ -11,7 +11,7 @@
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/compare/shape_comparison.h"
 #include "exporters/compare/surface_comparison.h"
-#include "exporters/formats/mesh_reader.h"
+#include "exporters/design/mesh_reader.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/atomic_output.h"

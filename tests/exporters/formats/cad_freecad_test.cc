@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exporters/formats/cad_reader.h"
+#include "exporters/design/cad_reader.h"
 #include "exporters/formats/cad_writer.h"
 #include "importer/base/atomic_output.h"
 #include "tests/exporters/sail/example_surface.h"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "exporters/formats/cad_reader.h"
+#include "exporters/design/cad_reader.h"
 #include "exporters/formats/cad_writer.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "exporters/formats/cad_reader.h"
+#include "exporters/design/cad_reader.h"
 #include "exporters/sail/surface_csv.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/shape_exporter.h"

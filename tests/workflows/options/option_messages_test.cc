@@ -54,7 +54,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
      {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
     {"exporters/", {"automatic_reconstructor", "shape_exporter"}},
     {"exporters/compare/", {"shape_comparer"}},
-    {"exporters/formats/mesh_reader.cc", {"shape_comparer"}},
+    {"exporters/design/mesh_reader.cc", {"shape_comparer"}},
     {"workflows/run/pipeline.cc", {"automatic_reconstructor"}},
     {"workflows/run/workspace.cc", {"automatic_reconstructor"}},
     {"workflows/run/central_frame_sweep.cc", {"central_frame_sweeper"}},

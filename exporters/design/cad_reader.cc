@@ -1,7 +1,10 @@
-#include "exporters/formats/cad_reader.h"
+#include "exporters/design/cad_reader.h"
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
+#include <iterator>
+#include <regex>
 
 #include <fmt/format.h>
 #include <BRepBndLib.hxx>
@@ -24,6 +27,7 @@
 
 #include "exporters/formats/cad_library.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -38,7 +42,36 @@ constexpr double kAngularDeflection = 0.2;  // rad; coarse, so that the chord de
                                path.string(), format));
 }
 
+[[noreturn]] void ThrowCutOff(const fs::path& path, const char* end) {
+  throw InputError(fmt::format("{}: is cut off: it does not end with {}; copy or export it again",
+                               path.string(), end));
+}
+
+// The last bytes of a file, which hold its end and what may follow.
+std::string TailOf(const fs::path& path) {
+  constexpr std::uintmax_t kTailSize = 1 << 16;
+  const std::uintmax_t size = FileSize(path);
+  std::ifstream stream(path, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(size - std::min(size, kTailSize)));
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+// Open CASCADE reads what there is of a file that is cut off, and says nothing.
+void CheckWholeStep(const fs::path& path) {
+  const char* end = "END-ISO-10303-21";
+  if (TailOf(path).find(end) == std::string::npos) ThrowCutOff(path, end);
+}
+
+// The last line of an IGES file has a T in column 73 and the number 1 up to column 80.
+void CheckWholeIges(const fs::path& path) {
+  static const std::regex terminate_section("T[ 0]{6}1[ \r\n\x1a]*$");
+  if (!std::regex_search(TailOf(path), terminate_section)) {
+    ThrowCutOff(path, "a terminate section");
+  }
+}
+
 TopoDS_Shape ReadStep(const fs::path& path, std::string* unit) {
+  CheckWholeStep(path);
   STEPControl_Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, "STEP");
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
@@ -49,6 +82,7 @@ TopoDS_Shape ReadStep(const fs::path& path, std::string* unit) {
 }
 
 TopoDS_Shape ReadIges(const fs::path& path, std::string* unit) {
+  CheckWholeIges(path);
   IGESControl_Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, "IGES");
   const auto name = reader.IGESModel()->GlobalSection().UnitName();

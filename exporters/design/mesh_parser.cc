@@ -1,4 +1,4 @@
-#include "exporters/formats/mesh_reader.h"
+#include "exporters/design/mesh_parser.h"
 
 #include <algorithm>
 #include <fstream>
@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
 
-#include "exporters/formats/cad_reader.h"
+#include "exporters/design/cad_reader.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 
@@ -19,22 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void CheckFile(const fs::path& path) {
-  if (!Exists(path)) {
-    throw InputError(fmt::format("{}: no such file", path.string()));
-  }
-  if (!IsRegularFile(path)) {
-    throw InputError(fmt::format("{}: not a regular file", path.string()));
-  }
-}
-
-// Assimp does not terminate on a PLY file whose header does not end.
+// Assimp does not terminate on a PLY file whose header does not end in a line of its own.
 bool HasWholePlyHeader(const fs::path& path) {
   constexpr int kMaxHeaderLines = 10000;
   std::ifstream stream(path, std::ios::binary);
   std::string line;
   for (int i = 0; i < kMaxHeaderLines && std::getline(stream, line); ++i) {
-    if (line.rfind("end_header", 0) == 0) return !stream.eof();
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line == "end_header") return !stream.eof();
   }
   return false;
 }
@@ -87,31 +79,25 @@ bool HasArea(const TriangleMesh& mesh) {
 
 }  // namespace
 
-bool HasOwnUnit(const fs::path& path) {
-  const std::string extension = LowerExtension(path);
-  return extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs";
-}
-
-bool IsMeshPath(const fs::path& path) {
-  const std::string extension = LowerExtension(path);
-  return extension == ".ply" || extension == ".stl" || extension == ".obj" || HasOwnUnit(path);
-}
-
-double DefaultMPerUnit(const fs::path& path) { return LowerExtension(path) == ".ply" ? 1.0 : 1e-3; }
-
-double MPerUnitFromName(const std::string& name, const std::string& what) {
-  if (name == "m") return 1.0;
-  if (name == "mm") return 1e-3;
-  throw InputError(fmt::format("{}: '{}' is unknown; give m or mm", what, name));
-}
-
-TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
+void CheckMeshFile(const fs::path& path) {
   if (!IsMeshPath(path)) {
     throw InputError(
         fmt::format("{}: unknown extension; expected .ply, .stl, .obj, .step, .stp, .iges or .igs",
                     path.string()));
   }
-  CheckFile(path);
+  if (!Exists(path)) throw InputError(fmt::format("{}: no such file", path.string()));
+  if (!IsRegularFile(path)) {
+    throw InputError(fmt::format("{}: not a regular file", path.string()));
+  }
+  if (FileSize(path) > kMaxMeshFileSize) {
+    throw InputError(
+        fmt::format("{}: has {} bytes; files of at most {} are read, export a coarser "
+                    "mesh",
+                    path.string(), FileSize(path), kMaxMeshFileSize));
+  }
+}
+
+TriangleMesh ParseMesh(const fs::path& path, const MeshReadOptions& options) {
   const TriangleMesh mesh =
       HasOwnUnit(path) ? ReadCad(path, options.chord_deviation_mm).mesh
                        : ReadWithAssimp(path, options.m_per_unit.value_or(DefaultMPerUnit(path)));
@@ -119,6 +105,12 @@ TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
                                      [](const Eigen::Vector3d& x) { return x.allFinite(); });
   if (!is_finite) {
     throw InputError(fmt::format("{}: a coordinate is not finite; export it again", path.string()));
+  }
+  const std::size_t num_elements = std::max(mesh.vertices_m.size(), mesh.triangles.size());
+  if (num_elements > kMaxMeshElements) {
+    throw InputError(fmt::format(
+        "{}: has {} vertices and {} triangles; at most {} of each are read, export a coarser mesh",
+        path.string(), mesh.vertices_m.size(), mesh.triangles.size(), kMaxMeshElements));
   }
   if (!HasArea(mesh)) {
     throw InputError(fmt::format(

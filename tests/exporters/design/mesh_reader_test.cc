@@ -1,12 +1,15 @@
-#include "exporters/formats/mesh_reader.h"
+#include "exporters/design/mesh_reader.h"
 
 #include <fstream>
 #include <functional>
+#include <random>
 #include <sstream>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "exporters/design/mesh_parser.h"
+#include "exporters/design/mesh_process.h"
 #include "exporters/formats/cad_writer.h"
 #include "exporters/formats/mesh_writer.h"
 #include "importer/base/atomic_output.h"
@@ -69,6 +72,66 @@ TEST_F(MeshReaderTest, StepAndIgesHaveTheirUnit) {
   }
 }
 
+// Open CASCADE reads what there is of these, Assimp hangs on the header.
+TEST_F(MeshReaderTest, CutOffFiles) {
+  const SplineSurface surface = FitSurface(MarkersOn(BilinearPatch, 4, 5)).surface;
+  const TriangleMesh mesh = SailMesh();
+  std::ostringstream step, iges, ply, stl;
+  WriteStep(surface, "a", step);
+  WriteIges(surface, "a", iges);
+  WriteMeshPly(mesh, "a", ply);
+  WriteMeshStl(mesh, "a", stl);
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"a.step", step.str()}, {"a.iges", iges.str()}, {"a.ply", ply.str()}, {"a.stl", stl.str()}};
+  for (const auto& [name, text] : files) {
+    Write(name, text);
+    EXPECT_GT(Area(ReadMesh(dir_ / name)), 0) << name;
+    for (const double share : {0.3, 0.5, 0.7, 0.98}) {
+      const auto size = static_cast<std::size_t>(share * static_cast<double>(text.size()));
+      ExpectRefused(Write("cut_" + name, text.substr(0, size)), {"cut_" + name});
+    }
+  }
+}
+
+TEST_F(MeshReaderTest, HeaderOfPlyThatDoesNotEnd) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+      "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header";
+  const std::string body = "\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(ReadMesh(Write("good.ply", text + body)).triangles.size(), 1u);
+  EXPECT_EQ(ReadMesh(Write("dos.ply", text + "\r" + body)).triangles.size(), 1u);
+  for (const char* end : {",", " ", "\t", "s"}) {
+    ExpectRefused(Write("a.ply", text + end + body), {"a.ply", "header does not end"});
+  }
+}
+
+TEST_F(MeshReaderTest, LargeFiles) {
+  Write("a.ply", "ply\n");
+  fs::resize_file(dir_ / "a.ply", kMaxMeshFileSize + 1);
+  ExpectRefused(dir_ / "a.ply", {"a.ply", "at most"});
+}
+
+// Open CASCADE crashes on some of these.
+TEST_F(MeshReaderTest, WrongBytesInStepAreRefusedOrRead) {
+  const SplineSurface surface = FitSurface(MarkersOn(BilinearPatch, 4, 5)).surface;
+  std::ostringstream step;
+  WriteStep(surface, "a", step);
+  MeshLimits limits;
+  limits.cpu_s = 2;
+  limits.wall_s = 10;
+  std::mt19937 random(1);
+  for (int i = 0; i < 25; ++i) {
+    std::string text = step.str();
+    text[random() % text.size()] = "#,(0$Z'"[random() % 7];
+    const fs::path path = Write("a.step", text);
+    try {
+      EXPECT_GT(ParseMeshInChild(path, {}, limits).triangles.size(), 0u);
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(path.string(), 0), 0u) << error.what();
+    }
+  }
+}
+
 TEST_F(MeshReaderTest, UnitThatIsGivenCounts) {
   const fs::path path = Write("a.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n");
   EXPECT_NEAR(Area(ReadMesh(path)), 6e-6, 1e-12);
@@ -87,7 +150,8 @@ TEST_F(MeshReaderTest, BadFiles) {
   ExpectRefused(dir_ / "folder.stl", {"folder.stl", "not a regular file"});
   ExpectRefused(Write("empty.ply", ""), {"empty.ply", "cannot be read as ply"});
   ExpectRefused(Write("text.stl", "this is no mesh\n"), {"text.stl"});
-  ExpectRefused(Write("text.step", "this is no mesh\n"), {"text.step", "STEP"});
+  ExpectRefused(Write("text.step", "this is no mesh\n"), {"text.step", "ISO-10303-21"});
+  ExpectRefused(Write("end.step", "no mesh\nEND-ISO-10303-21;\n"), {"end.step", "as STEP"});
   ExpectRefused(Write("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"),
                 {"cut.ply"});
   const std::string header =

@@ -1,5 +1,6 @@
 // Reads a design or a measured surface as triangles: PLY, STL and OBJ with Assimp, STEP and IGES
-// with Open CASCADE (cad_reader.h).
+// with Open CASCADE. Both crash or never end on some bad files, so they run in a process of its
+// own, which is this program once more, with limits of time and memory.
 
 #pragma once
 
@@ -29,9 +30,14 @@ double DefaultMPerUnit(const std::filesystem::path& path);
 // 1 for "m", 0.001 for "mm". Throws InputError naming `what` for any other name.
 double MPerUnitFromName(const std::string& name, const std::string& what);
 
+// main() of each program that calls ReadMesh() calls this first: if the program was started to read
+// a mesh, it does so and ends.
+void ServeMeshReader(int argc, char** argv);
+
 // Divides polygons into triangles and ignores points, lines, normals and colors. Throws InputError
-// naming the file if it is missing, has another extension, cannot be read, has no triangles, or has
-// a coordinate that is not finite.
+// naming the file if it is missing, has another extension, is too large (mesh_parser.h), cannot be
+// read, has no triangles, or has a coordinate that is not finite; also if reading it crashes, or
+// takes more time or memory than MeshLimits (mesh_process.h) allow.
 TriangleMesh ReadMesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 }  // namespace velamap

@@ -1,0 +1,37 @@
+#include "exporters/design/mesh_reader.h"
+
+#include <fmt/format.h>
+
+#include "exporters/design/cad_reader.h"
+#include "exporters/design/mesh_parser.h"
+#include "exporters/design/mesh_process.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+
+namespace fs = std::filesystem;
+
+bool HasOwnUnit(const fs::path& path) {
+  const std::string extension = LowerExtension(path);
+  return extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs";
+}
+
+bool IsMeshPath(const fs::path& path) {
+  const std::string extension = LowerExtension(path);
+  return extension == ".ply" || extension == ".stl" || extension == ".obj" || HasOwnUnit(path);
+}
+
+double DefaultMPerUnit(const fs::path& path) { return LowerExtension(path) == ".ply" ? 1.0 : 1e-3; }
+
+double MPerUnitFromName(const std::string& name, const std::string& what) {
+  if (name == "m") return 1.0;
+  if (name == "mm") return 1e-3;
+  throw InputError(fmt::format("{}: '{}' is unknown; give m or mm", what, name));
+}
+
+TriangleMesh ReadMesh(const fs::path& path, const MeshReadOptions& options) {
+  CheckMeshFile(path);
+  return ParseMeshInChild(path, options);
+}
+
+}  // namespace velamap
