@@ -12,6 +12,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/option.h"
 #include "importer/base/replacement.h"
 #include "importer/database/source_table.h"
 #include "importer/frame_camera.h"
@@ -28,27 +29,40 @@ namespace fs = std::filesystem;
 // suggested.
 constexpr double kConvincingRatio = 10.0;
 
-constexpr char kRemedy[] =
-    "write to a new place, or delete it (in a workspace: the whole workspace)";
+constexpr char kRemedy[] = "write to a new place, or give --import_anew 1 to import all anew";
 
 void CheckVideo(const MarkerImporterOptions& options,
-                const std::map<std::string, SourceFile>& sources, ColmapDatabase* database) {
-  const SourceFile video = IdentifySource(options.image_path);
+                const std::map<std::string, SourceFile>& sources) {
   const auto known = sources.find(kVideoSource);
-  if (known == sources.end()) return database->WriteSource(kVideoSource, video);
-  if (HaveSameContent(known->second, video)) return;
-  throw InputError(fmt::format("{}: was made from {} ({}); {}", options.database_path,
-                               known->second.path == video.path
-                                   ? "the video before it was changed"
-                                   : "another video than " + options.image_path,
-                               SourceText(known->second), kRemedy));
+  if (known == sources.end() || HasSameContent(known->second, options.image_path)) return;
+  const bool is_same_path = CanonicalPath(options.image_path) == fs::path(known->second.path);
+  throw InputError(fmt::format(
+      "{}: was made from {} ({}); {}", options.database_path,
+      is_same_path ? "the video before it was changed" : "another video than " + options.image_path,
+      SourceText(known->second), kRemedy));
+}
+
+// Frames that are there would be in the result, whatever the options select now.
+void CheckFrames(const MarkerImporterOptions& options,
+                 const std::vector<std::string>& known_names) {
+  const auto is_left_out = [&](const std::string& name) {
+    const std::optional<int> number = NumberOfVideoFrame(name);
+    return number && !options.allowed_frames.Selects(*number);
+  };
+  const auto first = std::find_if(known_names.begin(), known_names.end(), is_left_out);
+  if (first == known_names.end()) return;
+  throw InputError(fmt::format(
+      "{}: holds {} frames, such as {}, that {}, {} and {} leave out; {}", options.database_path,
+      std::count_if(first, known_names.end(), is_left_out), *first,
+      OptionName(&VideoOptions::first_frame), OptionName(&VideoOptions::last_frame),
+      OptionName(&VideoOptions::frame_step), kRemedy));
 }
 
 void CheckPhotograph(const MarkerImporterOptions& options, const std::string& name,
                      const SourceFile& known) {
   const fs::path file = fs::path(options.image_path) / name;
   if (IsRegularFile(file)) {
-    if (HaveSameContent(known, IdentifySource(file.string()))) return;
+    if (HasSameContent(known, file.string())) return;
     throw InputError(fmt::format("{}: {} has changed since it was imported (it was {}); {}",
                                  options.database_path, file.string(), SourceText(known), kRemedy));
   }
@@ -102,26 +116,28 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
 }
 
 void CheckSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
-                  ColmapDatabase* database) {
-  const std::map<std::string, SourceFile> sources = database->ReadSources();
-  const bool is_video = !IsFolder(options.image_path);
-  if (sources.empty() && !known_names.empty()) {
-    spdlog::warn(
-        "{}: made by an earlier velamap, which did not note what it read; it is taken to be "
-        "of {}",
-        options.database_path, options.image_path);
-    for (const std::string& name : known_names) {
-      const fs::path file = fs::path(options.image_path) / name;
-      if (IsRegularFile(file)) database->WriteSource(name, IdentifySource(file.string()));
-    }
-  }
-  if (!is_video) return CheckPhotographs(options, sources);
+                  const ColmapDatabase& database) {
+  const std::map<std::string, SourceFile> sources = database.ReadSources();
+  if (IsFolder(options.image_path)) return CheckPhotographs(options, sources);
   const auto photograph = sources.upper_bound(kVideoSource);
   if (options.is_only_source && photograph != sources.end()) {
     throw InputError(fmt::format("{}: was made from photographs ({}), not from a video; {}",
                                  options.database_path, SourceText(photograph->second), kRemedy));
   }
-  CheckVideo(options, sources, database);
+  CheckVideo(options, sources);
+  if (options.is_only_source) CheckFrames(options, known_names);
+}
+
+void NoteSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
+                 ColmapDatabase* database) {
+  if (known_names.empty() || !database->ReadSources().empty()) return;
+  spdlog::warn(
+      "{}: made by an earlier velamap, which did not note what it read; it is taken to be of {}",
+      options.database_path, options.image_path);
+  for (const std::string& name : known_names) {
+    const fs::path file = fs::path(options.image_path) / name;
+    if (IsRegularFile(file)) database->WriteSource(name, IdentifySource(file.string()));
+  }
 }
 
 void CheckFrameFolder(const MarkerImporterOptions& options,
@@ -132,7 +148,7 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
   const std::set<std::string> known(known_names.begin(), known_names.end());
   for (const fs::path& file : FolderEntries(folder)) {
     const std::string name = file.filename().string();
-    if (!IsVideoFrameName(name) || known.count(name) > 0 || IsWrittenFrame(file)) continue;
+    if (!NumberOfVideoFrame(name) || known.count(name) > 0 || IsWrittenFrame(file)) continue;
     throw InputError(
         fmt::format("{}: a picture that velamap did not write stands where a frame could go; move "
                     "it away, or choose another folder",

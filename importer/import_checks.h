@@ -19,10 +19,14 @@ inline constexpr double kFewMarkersPerFrame = 0.5;
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
                    const ColmapDatabase& database);
 
-// Throws InputError if a photograph of the database, or its video, has changed or is missing. Notes
-// the sources of a database that an earlier velamap has made, and the video.
+// Throws InputError if a photograph of the database, or its video, has changed or is missing, or if
+// the database holds frames that options.allowed_frames leaves out.
 void CheckSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
-                  ColmapDatabase* database);
+                  const ColmapDatabase& database);
+
+// Notes the photographs of a database that an earlier velamap has made, with a warning.
+void NoteSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
+                 ColmapDatabase* database);
 
 // Throws InputError if a frame of the video could replace a picture that velamap did not write.
 // Removes what an interrupted run has left unfinished.

@@ -23,12 +23,14 @@
 #include "importer/frame_camera.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
+#include "importer/import_anew.h"
 #include "importer/import_checks.h"
 #include "importer/import_completion.h"
 #include "importer/track/frame_detector.h"
 #include "importer/track/marker_tracking.h"
 #include "importer/video/frame_image.h"
 #include "importer/video/frame_source.h"
+#include "importer/video/source_file.h"
 
 namespace velamap {
 namespace {
@@ -56,7 +58,10 @@ class ImportRun {
         source_(source),
         writes_images_(source->IsVideo() && !options.frame_output_path.empty()),
         writer_(
-            DescribeDetector(detector), [this] { SecureImages(); }, database),
+            DescribeDetector(detector),
+            source->IsVideo() ? std::make_optional(IdentifySource(options.image_path))
+                              : std::nullopt,
+            [this] { SecureImages(); }, database),
         held_markers_(HoldsMarkers(*database)),
         few_found_(!held_markers_) {}
 
@@ -288,13 +293,15 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
 
   const FileLock lock(LockOf(options.database_path), options.database_path);
+  if (options.import_anew) RemoveEarlierImport(options);
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
   std::vector<std::string> known_names;
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
   if (known_names.empty()) database.ForgetSources();
-  CheckSources(options, known_names, &database);
+  CheckSources(options, known_names, database);
   CheckExisting(options, DescribeDetector(detector), database);
+  NoteSources(options, known_names, &database);
   CheckFrameFolder(options, known_names);
   if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);

@@ -33,8 +33,12 @@ struct MarkerImporterOptions {
   // Video only: the folder into which frames with markers are written as JPEG, so that later steps
   // need not decode the video again; empty: none are written. Photographs stay where they are.
   std::string frame_output_path;
-  // Whether the database must hold nothing of other folders or videos.
+  // Whether the database must hold nothing of other folders or videos, nor frames that
+  // `allowed_frames` leaves out, of which `video` may choose fewer.
   bool is_only_source = false;
+  VideoOptions allowed_frames;
+  // Whether an earlier import is removed first: the database, and the pictures that it made.
+  bool import_anew = false;
   int num_threads = 0;  // 0: one a core
 };
 
@@ -71,8 +75,9 @@ struct ImportReport {
 // without a calibration, a layout whose ids the dictionary does not have, a database that was made
 // with another camera, other detector settings or pictures that have changed since, one that
 // another velamap imports into, and a frame that would replace a picture that velamap did not
-// write. Throws DataError that names the dictionaries and polarity that would have found markers if
-// there are none.
+// write. What an earlier import made stays where a new one (import_anew) cannot begin. Throws
+// DataError that names the dictionaries and polarity that would have found markers if there are
+// none.
 ImportReport ImportMarkers(const MarkerImporterOptions& options,
                            const ProgressCallback& progress = {});
 

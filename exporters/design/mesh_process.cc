@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr char kProgram[] = "/proc/self/exe";
-constexpr char kArgument[] = "--read-mesh-for-parent";
+constexpr char kArgument[] = "read_mesh_for_parent";
 constexpr int kNumArguments = 7;  // program, kArgument, path, chord, unit, seconds, bytes
 constexpr int kAnswerFd = STDERR_FILENO + 1;
 

@@ -1,6 +1,7 @@
 #include "importer/database/database_writer.h"
 
 #include "importer/base/files.h"
+#include "importer/database/source_table.h"
 
 namespace velamap {
 namespace {
@@ -9,21 +10,26 @@ constexpr int kBatchSize = 50;  // images a transaction
 
 }  // namespace
 
+void RemoveDatabase(const std::string& path) {
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) RemoveAll(path + suffix);
+}
+
 NewDatabaseGuard::NewDatabaseGuard(const std::string& path) : path_(path), is_new_(!Exists(path)) {}
 
 NewDatabaseGuard::~NewDatabaseGuard() {
-  if (!is_new_) return;
-  for (const char* suffix : {"", "-journal"}) RemoveAll(path_ + suffix);
+  if (is_new_) RemoveDatabase(path_);
 }
 
-DatabaseWriter::DatabaseWriter(const std::string& detector,
+DatabaseWriter::DatabaseWriter(const std::string& detector, const std::optional<SourceFile>& video,
                                const std::function<void()>& before_commit, ColmapDatabase* database)
-    : detector_(detector), before_commit_(before_commit), database_(database) {}
+    : detector_(detector), video_(video), before_commit_(before_commit), database_(database) {}
 
 void DatabaseWriter::Add(const FrameDetections& detections, const Camera& camera,
                          bool is_calibrated, const std::optional<SourceFile>& source) {
   if (!transaction_) transaction_.emplace(database_);
   database_->AddImage(database_->AddCamera(camera, is_calibrated), detections, detector_);
+  if (video_) database_->WriteSource(kVideoSource, *video_);
+  video_.reset();
   if (source) database_->WriteSource(detections.image_name, *source);
   if (++num_in_batch_ == kBatchSize) Commit();
 }

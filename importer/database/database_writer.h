@@ -14,6 +14,9 @@
 
 namespace velamap {
 
+// Removes the file and SQLite's files beside it.
+void RemoveDatabase(const std::string& path);
+
 // Removes a database that this run has created, unless Keep() was called.
 class NewDatabaseGuard {
  public:
@@ -32,10 +35,10 @@ class NewDatabaseGuard {
 // Writes images in one transaction a batch.
 class DatabaseWriter {
  public:
-  // For `detector` see ColmapDatabase::AddImage(). `before_commit` secures what the rows of a batch
-  // refer to.
-  DatabaseWriter(const std::string& detector, const std::function<void()>& before_commit,
-                 ColmapDatabase* database);
+  // For `detector` see ColmapDatabase::AddImage(). `video` is noted with the first image.
+  // `before_commit` secures what the rows of a batch refer to.
+  DatabaseWriter(const std::string& detector, const std::optional<SourceFile>& video,
+                 const std::function<void()>& before_commit, ColmapDatabase* database);
 
   // `source` is the file of a photograph.
   void Add(const FrameDetections& detections, const Camera& camera, bool is_calibrated,
@@ -44,6 +47,7 @@ class DatabaseWriter {
 
  private:
   std::string detector_;
+  std::optional<SourceFile> video_;  // until it is noted
   std::function<void()> before_commit_;
   ColmapDatabase* database_;
   std::optional<ColmapDatabase::Transaction> transaction_;

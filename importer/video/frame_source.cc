@@ -93,17 +93,6 @@ std::string VideoFrameName(int frame_number) {
   return fmt::format("frame_{:06}.jpg", frame_number);
 }
 
-// Nothing for a name that VideoFrameName() does not give.
-std::optional<int> NumberOfVideoFrame(const std::string& name) {
-  const std::size_t begin = name.find('_') + 1, end = name.find('.');
-  int number = -1;
-  if (end == std::string::npos || begin > end) return std::nullopt;
-  const bool is_number =
-      ParseNumber(std::string_view(name).substr(begin, end - begin), &number) && number >= 0;
-  if (!is_number || VideoFrameName(number) != name) return std::nullopt;
-  return number;
-}
-
 class VideoFile : public FrameSource {
  public:
   VideoFile(const std::string& path, const VideoOptions& options,
@@ -126,7 +115,7 @@ class VideoFile : public FrameSource {
         break;
       }
       num_read_ = read->number + 1;
-      if (!IsWanted(read->number) || known_names_.count(VideoFrameName(read->number)) > 0) {
+      if (!options_.Selects(read->number) || known_names_.count(VideoFrameName(read->number)) > 0) {
         continue;
       }
       Frame frame;
@@ -154,12 +143,6 @@ class VideoFile : public FrameSource {
   int NumFrames() const override { return num_frames_; }
 
  private:
-  // Whether first_frame and frame_step include the frame.
-  bool IsWanted(int number) const {
-    return number >= options_.first_frame &&
-           (number - options_.first_frame) % options_.frame_step == 0;
-  }
-
   // In 64 bits, because options may be as large as an int.
   int CountFrames() const {
     if (num_container_frames_ == 0 && options_.last_frame < 0) return 0;
@@ -178,7 +161,7 @@ class VideoFile : public FrameSource {
     return static_cast<int>(
         std::count_if(known_names_.begin(), known_names_.end(), [&](const std::string& name) {
           const std::optional<int> number = NumberOfVideoFrame(name);
-          return number && *number < end && IsWanted(*number);
+          return number && *number < end && options_.Selects(*number);
         }));
   }
 
@@ -228,7 +211,15 @@ void CheckImagePath(const std::string& path) {
   }
 }
 
-bool IsVideoFrameName(const std::string& name) { return NumberOfVideoFrame(name).has_value(); }
+std::optional<int> NumberOfVideoFrame(const std::string& name) {
+  const std::size_t begin = name.find('_') + 1, end = name.find('.');
+  int number = -1;
+  if (end == std::string::npos || begin > end) return std::nullopt;
+  const bool is_number =
+      ParseNumber(std::string_view(name).substr(begin, end - begin), &number) && number >= 0;
+  if (!is_number || VideoFrameName(number) != name) return std::nullopt;
+  return number;
+}
 
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, const VideoOptions& options,
                                              const std::vector<std::string>& known_names,

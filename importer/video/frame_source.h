@@ -52,8 +52,8 @@ class FrameSource {
 // Throws InputError unless `path` is a folder or a file that may be a video.
 void CheckImagePath(const std::string& path);
 
-// Whether a frame of a video has such a name.
-bool IsVideoFrameName(const std::string& name);
+// The number of the frame of a video that has such a name; nothing for other names.
+std::optional<int> NumberOfVideoFrame(const std::string& name);
 
 // `path` is a folder (with its sub-folders and without hidden files, in natural order of names) or
 // a video file. Throws InputError if there is nothing, the folder holds no images, or FFmpeg cannot

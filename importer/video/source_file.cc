@@ -21,22 +21,35 @@ namespace {
 
 constexpr std::uint64_t kPartSize = 1 << 16, kNumParts = 16;
 
+// Of a large file.
 std::uint64_t HashOfParts(const std::string& path, std::uint64_t size) {
   std::ifstream stream(path, std::ios::binary);
   std::vector<char> part(kPartSize);
   std::uint64_t hash = Hash("");
-  const std::uint64_t last = size > kPartSize ? size - kPartSize : 0;
   for (std::uint64_t i = 0; i < kNumParts && stream; ++i) {
-    // Small files are read as a whole, without overlap.
-    const std::uint64_t begin =
-        size <= kNumParts * kPartSize ? i * kPartSize : last / (kNumParts - 1) * i;
-    if (begin >= size) break;
-    stream.seekg(static_cast<std::streamoff>(begin));
-    stream.read(part.data(), static_cast<std::streamsize>(std::min(kPartSize, size - begin)));
+    stream.seekg(static_cast<std::streamoff>((size - kPartSize) * i / (kNumParts - 1)));
+    stream.read(part.data(), static_cast<std::streamsize>(kPartSize));
     hash = Hash({part.data(), static_cast<std::size_t>(stream.gcount())}, hash);
   }
   if (!stream) throw InputError(path + ": cannot be read");
   return hash;
+}
+
+std::uint64_t HashOfContent(const std::string& path, std::uint64_t size) {
+  const bool is_whole = HasImageExtension(path) || size <= kNumParts * kPartSize;
+  return is_whole ? HashOfFile(path) : HashOfParts(path, size);
+}
+
+SourceFile SourceWithoutHash(const std::string& path) {
+  constexpr std::int64_t kNsPerS = 1'000'000'000;
+  SourceFile source;
+  source.path = CanonicalPath(path).string();
+  source.size = FileSize(path);
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) throw InputError(path + ": cannot be read");
+  source.modified_s = status.st_mtim.tv_sec;
+  source.changed_ns = status.st_ctim.tv_sec * kNsPerS + status.st_ctim.tv_nsec;
+  return source;
 }
 
 }  // namespace
@@ -52,17 +65,16 @@ bool HasImageExtension(const std::string& path) {
 }
 
 SourceFile IdentifySource(const std::string& path) {
-  SourceFile source;
-  source.path = CanonicalPath(path).string();
-  source.size = FileSize(path);
-  struct stat status {};
-  if (stat(path.c_str(), &status) == 0) source.modified_s = status.st_mtim.tv_sec;
-  source.parts_hash = HashOfParts(path, source.size);
+  SourceFile source = SourceWithoutHash(path);
+  source.content_hash = HashOfContent(path, source.size);
   return source;
 }
 
-bool HaveSameContent(const SourceFile& one, const SourceFile& other) {
-  return one.size == other.size && one.parts_hash == other.parts_hash;
+bool HasSameContent(const SourceFile& known, const std::string& path) {
+  const SourceFile now = SourceWithoutHash(path);
+  if (now.size != known.size) return false;
+  if (now.path == known.path && now.changed_ns == known.changed_ns) return true;
+  return HashOfContent(path, now.size) == known.content_hash;
 }
 
 std::string SourceText(const SourceFile& source) {

@@ -8,11 +8,14 @@
 namespace velamap {
 
 struct SourceFile {
-  std::string path;  // absolute
+  std::string path;  // absolute, without links
   std::uint64_t size = 0;
   std::int64_t modified_s = 0;  // since 1970, UTC
-  std::uint64_t parts_hash =
-      0;  // of 16 parts that are spread over the file, or the whole of a small one
+  // When content, name or rights were changed last, which no program sets back (ctime); since 1970.
+  std::int64_t changed_ns = 0;
+  // Of the whole picture; of 16 parts that are spread over a video, because an encoded video that
+  // is changed somewhere is changed in many places.
+  std::uint64_t content_hash = 0;
 };
 
 // Whether the name has an extension of an image that OpenCV reads (.jpg, .png, .tif ...).
@@ -21,8 +24,9 @@ bool HasImageExtension(const std::string& path);
 // Throws InputError if the file cannot be read.
 SourceFile IdentifySource(const std::string& path);
 
-// Whether both have the same content, whatever their names and times.
-bool HaveSameContent(const SourceFile& one, const SourceFile& other);
+// Whether the file at `path` has the content that was read from `known`, whatever its name and
+// times. It is not read if nothing has touched it since. Throws InputError if it cannot be read.
+bool HasSameContent(const SourceFile& known, const std::string& path);
 
 // "path, 1234 bytes of 2024-05-01 14:02 UTC".
 std::string SourceText(const SourceFile& source);

@@ -25,4 +25,9 @@ void VideoOptions::Check() const {
   }
 }
 
+bool VideoOptions::Selects(int frame_number) const {
+  return frame_number >= first_frame && (last_frame < 0 || frame_number <= last_frame) &&
+         (frame_number - first_frame) % frame_step == 0;
+}
+
 }  // namespace velamap

@@ -12,6 +12,8 @@ struct VideoOptions {
   int frame_step = 1;   // reads every k-th frame from the first
 
   void Check() const;  // throws InputError that names the option
+
+  bool Selects(int frame_number) const;
 };
 
 OptionGroup DescribeOptions(VideoOptions* options);

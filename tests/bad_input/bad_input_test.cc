@@ -76,5 +76,34 @@ TEST(BadInputSandbox, IsGood) {
   EXPECT_EQ(ListFolder(dir / "frames").size(), 4u);
 }
 
+TEST(BadInputSandbox, WhatHasChangedIsImportedAnewOnRequest) {
+  const TempDir dir;
+  MakeSandbox(dir.path());
+  const auto run = [&](const std::string& command) {
+    return RunVelamap(ArgumentsIn(dir.path(), command));
+  };
+  fs::rename(dir / "images/1.png", dir / "images/swap.png");
+  fs::rename(dir / "images/2.png", dir / "images/1.png");
+  fs::rename(dir / "images/swap.png", dir / "images/2.png");
+  fs::remove(dir / "images/4.png");
+  EXPECT_EQ(run(kRerun).exit_code, 2);
+  const ProgramRun anew = run(kRerun + " --import_anew 1");
+  EXPECT_EQ(anew.exit_code, 0) << anew.err;
+  for (const char* name : {"1.png", "2.png", "3.png"}) {
+    EXPECT_EQ(ReadFileBytes(dir / "workspace/images" / name), ReadFileBytes(dir / "images" / name));
+  }
+  EXPECT_EQ(run(kRerun).exit_code, 0);
+
+  const std::string clip =
+      "marker_importer --image_path @/clip.avi --camera_path @/camera.yml "
+      "--layout_path @/layout.yml --database_path @/clip.db "
+      "--frame_output_path @/frames";
+  EXPECT_EQ(run(clip).exit_code, 0);
+  const ProgramRun fewer = run(clip + " --Video.frame_step 2 --import_anew 1");
+  EXPECT_EQ(fewer.exit_code, 0) << fewer.err;
+  EXPECT_THAT(fewer.out, HasSubstr("images_added: 2\n"));
+  EXPECT_EQ(ListFolder(dir / "frames").size(), 2u);
+}
+
 }  // namespace
 }  // namespace velamap

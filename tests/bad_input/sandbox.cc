@@ -100,7 +100,7 @@ void Replace(const fs::path& file, const std::string& from, const std::string& t
 }
 
 void RunSql(const fs::path& database, const std::string& sql) {
-  SQLite::Database(database.string(), SQLite::OPEN_READWRITE).exec(sql);
+  SQLite::Database(database.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql);
 }
 
 }  // namespace velamap

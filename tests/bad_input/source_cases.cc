@@ -29,6 +29,10 @@ const std::string kImportClip =
     "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path @/layout.yml "
     "--database_path @/new.db";
 
+const std::string kImportNoVideo =
+    "marker_importer --image_path @/video.mp4 --camera_path @/camera.yml --layout_path "
+    "@/layout.yml --database_path @/new.db";
+
 std::vector<BadInput> ChangedSources() {
   const std::string of_video =
       "automatic_reconstructor --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
@@ -60,6 +64,21 @@ std::vector<BadInput> ChangedSources() {
          RunGood(dir, kImportClip);
          RunSql(dir / "new.db", "UPDATE marker_sources SET size = size + 1, path = '/old.avi'");
        }},
+      {"AVideoWithOtherOptions", kImportClip + " --ArucoDetection.corner_refinement subpix", 2,
+       "was made with other detection options", [](const fs::path& dir) { RunGood(dir, kImport); }},
+      {"FramesThatTheOptionsLeaveOut",
+       of_video + "2 --Video.frame_step 2",
+       2,
+       "holds 2 frames, such as frame_000001.jpg",
+       [of_video](const fs::path& dir) { RunGood(dir, of_video + "2"); },
+       {"workspace2/velamap.log"}},
+      {"ImportedAnewFromNoVideo", kImportNoVideo + " --import_anew 1", 2, "video.mp4",
+       [](const fs::path& dir) {
+         RunGood(dir, kImportClip);
+         WriteTextFile(dir / "video.mp4", "no video");
+       }},
+      {"ImportedAnewOverADatabaseOfOthers", kImportClip + " --import_anew 1", 2, "new.db",
+       [](const fs::path& dir) { RunSql(dir / "new.db", "CREATE TABLE notes(text TEXT)"); }},
       {"AVideoThatWasChanged", kImportClip, 2, "the video before it was changed",
        [](const fs::path& dir) {
          RunGood(dir, kImportClip);

@@ -53,7 +53,7 @@ CommandSyntax Declare(Options* options) {
          Required(PathOption(
              "workspace_path", PathUse::kWritesWorkspace, &paths->workspace_path,
              "folder of the result: new, empty, or of an earlier run, whose detections are kept")),
-         BackendOption(&options->adjustment.backend)}},
+         ImportAnewOption(&options->importer), BackendOption(&options->adjustment.backend)}},
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->importer.detection),
        DescribeOptions(&options->importer.video),
@@ -91,6 +91,7 @@ void Validate(Options* options) {
   options->importer.camera_path = options->paths.camera_path;
   options->importer.prior_shape = LoadPriorShape(options->paths.prior_shape_path);
   options->importer.image_path = options->paths.image_path;
+  options->importer.allowed_frames = options->importer.video;
   options->importer.video = NarrowToReach(options->importer.video, options->registration);
   options->importer.num_threads = options->general.num_threads;
   if (options->adjustment.UsesColmap()) CheckColmap(options->adjustment.colmap.colmap_path);

@@ -33,7 +33,8 @@ CommandSyntax Declare(Options* options) {
                  "COLMAP database, new or to be added to; images that it holds are skipped"),
              PathOption("frame_output_path", PathUse::kAddsToFolder, &paths->frame_output_path,
                         "folder for the frames of a video that hold markers, as JPEG; left out: "
-                        "none are written")}},
+                        "none are written"),
+             ImportAnewOption(&options->importer)}},
            DescribeOptions(&options->markers, true),
            DescribeOptions(&options->importer.detection),
            DescribeOptions(&options->importer.video),

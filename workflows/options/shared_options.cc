@@ -45,6 +45,11 @@ Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& de
   return Required(PathOption("database_path", use, &paths->database_path, description));
 }
 
+Option ImportAnewOption(MarkerImporterOptions* importer) {
+  return {"import_anew", &importer->import_anew, "0|1",
+          "1: forget what the database holds, such as of pictures that have changed since"};
+}
+
 Option ModelInputOption(PathOptions* paths) {
   return Required(PathOption("input_path", PathUse::kReadsModel, &paths->input_path,
                              "folder of the COLMAP model to read"));

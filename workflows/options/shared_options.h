@@ -50,6 +50,7 @@ Option CameraPathOption(PathOptions* paths);
 Option PriorShapePathOption(PathOptions* paths);
 // `use`: kReadsFile or kWritesFile.
 Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& description);
+Option ImportAnewOption(MarkerImporterOptions* importer);
 Option ModelInputOption(PathOptions* paths);
 Option BackendOption(AdjustmentBackend* backend);
 

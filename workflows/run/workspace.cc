@@ -148,7 +148,7 @@ void AddModelImages(const Model& model, const std::string& image_path,
   }
   if (missing.empty()) return;
   spdlog::warn(
-      "{}: {} images of the model are missing, such as {}; delete the workspace to read them again",
+      "{}: {} images of the model are missing, such as {}; --import_anew 1 reads them again",
       images_path.string(), missing.size(), missing.front());
 }
 

@@ -17,5 +17,13 @@ TEST(VideoOptions, CheckNamesTheOption) {
   ExpectThrows<InputError>([] { VideoOptions{0, -1, 0}.Check(); }, {"--Video.frame_step"});
 }
 
+TEST(VideoOptions, SelectWholeStepsUpToTheLastFrame) {
+  const VideoOptions all, some{3, 10, 4};
+  for (int number = 0; number < 20; ++number) {
+    EXPECT_TRUE(all.Selects(number));
+    EXPECT_EQ(some.Selects(number), number == 3 || number == 7) << number;
+  }
+}
+
 }  // namespace
 }  // namespace velamap
