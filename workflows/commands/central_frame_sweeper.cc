@@ -51,7 +51,7 @@ CommandSyntax Declare(Options* options) {
          {"central_frames", &sweep->central_frames, "all|every:N|LIST",
           "central frames: of all images with markers, of every N-th, or names or frame "
           "numbers with commas"},
-         PathOption("models_path", PathUse::kWritesFile, &sweep->models_path,
+         PathOption("models_path", PathUse::kAddsToFolder, &sweep->models_path,
                     "folder for the metric model and shape.csv of each central frame, in a folder "
                     "of the image's name; left out: none are written"),
          {"warm_start", &sweep->warm_start, "0|1",

@@ -19,6 +19,7 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/numbers.h"
+#include "importer/base/replacement.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/warm_start.h"
 #include "reconstruct/model/reprojection.h"
@@ -73,6 +74,21 @@ std::vector<int> ChooseListed(const std::string& choice, const PosedImages& pose
   return {chosen.begin(), chosen.end()};
 }
 
+// The name of the folder for an image: without its extension, unless another image would have the
+// same folder or one in it.
+fs::path ModelFolderOf(const std::string& image_name, const PosedImages& posed) {
+  const fs::path folder = fs::path(image_name).replace_extension();
+  const auto is_in_folder = [&](const DatabaseImage* image) {
+    const std::string& name = image->detections.image_name;
+    const fs::path other = fs::path(name).replace_extension();
+    return name != image_name &&
+           std::mismatch(folder.begin(), folder.end(), other.begin(), other.end()).first ==
+               folder.end();
+  };
+  const bool is_shared = std::any_of(posed.images.begin(), posed.images.end(), is_in_folder);
+  return is_shared ? fs::path(image_name) : folder;
+}
+
 // What all central frames share.
 class Sweep {
  public:
@@ -92,6 +108,16 @@ class Sweep {
   }
 
   const PosedImages& posed() const { return posed_; }
+
+  // Throws InputError if a folder for a model holds what velamap did not write.
+  void CheckModelFolders(const std::vector<int>& central_frames) const {
+    if (options_.models_path.empty()) return;
+    for (const int frame_idx : central_frames) {
+      const DatabaseImage& image = *posed_.images[static_cast<std::size_t>(frame_idx)];
+      CheckReplaceableFolder(fs::path(options_.models_path) /
+                             ModelFolderOf(image.detections.image_name, posed_));
+    }
+  }
 
   SweepRow Run(int frame_idx) {
     const DatabaseImage& image = *posed_.images[static_cast<std::size_t>(frame_idx)];
@@ -144,12 +170,11 @@ class Sweep {
 
   void Write(const SweepRow& row, const Model& model, const AdjustmentResult& result,
              const MarkerShape& shape) const {
-    const fs::path folder =
-        fs::path(options_.models_path) / fs::path(row.image_name).replace_extension();
-    CreateFolders(folder);
-    WriteAdjustedModel(model, result, (folder / "sparse").string());
-    WriteFileAtomically(folder / "shape.csv",
-                        [&shape](std::ostream& out) { WriteShapeCsv(shape, out); });
+    AtomicFolder folder(fs::path(options_.models_path) / ModelFolderOf(row.image_name, posed_));
+    WriteAdjustedModel(model, result, (folder.TemporaryPath() / "sparse").string());
+    WriteFile(folder.TemporaryPath() / "shape.csv",
+              [&shape](std::ostream& out) { WriteShapeCsv(shape, out); });
+    folder.Commit();
   }
 
   const CentralFrameSweepOptions& options_;
@@ -187,6 +212,7 @@ std::vector<SweepRow> SweepCentralFrames(const CentralFrameSweepOptions& options
   Sweep sweep(options, layout);
   const std::vector<int> central_frames =
       ChooseCentralFrames(options.central_frames, sweep.posed());
+  sweep.CheckModelFolders(central_frames);
   clock->End("read", static_cast<int>(sweep.posed().images.size()));
   std::vector<SweepRow> rows;
   for (const int frame_idx : central_frames) {

@@ -29,8 +29,10 @@ struct CentralFrameSweepOptions {
   RegistrationOptions registration;  // of the thesis's method; central_frame is ignored
   AdjustmentOptions adjustment;
   bool warm_start = true;
-  std::string models_path;  // folder for the metric models and shapes; empty: none are written
-  std::string log_path;     // COLMAP's output
+  // Folder for the metric models and shapes, in a folder for each image, which is named after it
+  // and replaced as a whole; empty: none are written.
+  std::string models_path;
+  std::string log_path;  // COLMAP's output
 };
 
 // The result around one central frame. If there is none, `reason` says why, and the metrics are

@@ -1,6 +1,8 @@
 #include "workflows/run/central_frame_sweep.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -29,7 +31,17 @@ class CentralFrameSweepTest : public testing::Test {
     scene_options.num_frames = 60;
     scene_ = MakeSyntheticScene(scene_options);
     AddNoise({0.2, 0.05, 0.0, 200, 3}, &scene_);
-    options_.database_path = (dir_ / "database.db").string();
+    WriteDatabase("database.db");
+    options_.registration.method = RegistrationMethod::kThesis;
+    options_.registration.thesis.num_frames = 6;
+    options_.registration.thesis.skip = 4;
+    options_.registration.thesis.neighborhood = 1;
+    options_.adjustment.backend = AdjustmentBackend::kMarkers;
+    options_.adjustment.Complete(1);
+  }
+
+  void WriteDatabase(const std::string& name) {
+    options_.database_path = (dir_ / name).string();
     ColmapDatabase database(options_.database_path, ColmapDatabase::Mode::kReadWriteCreate);
     ColmapDatabase::Transaction transaction(&database);
     const CameraId camera_id = database.AddCamera(scene_.camera);
@@ -37,12 +49,6 @@ class CentralFrameSweepTest : public testing::Test {
       database.AddImage(camera_id, frame, "test");
     }
     transaction.Commit();
-    options_.registration.method = RegistrationMethod::kThesis;
-    options_.registration.thesis.num_frames = 6;
-    options_.registration.thesis.skip = 4;
-    options_.registration.thesis.neighborhood = 1;
-    options_.adjustment.backend = AdjustmentBackend::kMarkers;
-    options_.adjustment.Complete(1);
   }
 
   std::vector<SweepRow> Run() {
@@ -106,6 +112,34 @@ TEST_F(CentralFrameSweepTest, WritesTheModelsAndShapesOfTheRows) {
   EXPECT_EQ(static_cast<int>(model.images.size()), rows[0].num_images);
   const MarkerShape shape = ReadShapeCsv((dir_ / "models/frame_000030/shape.csv").string());
   EXPECT_EQ(ComputeShapeMetrics(shape, scene_.layout).num_markers, rows[0].shape.num_markers);
+}
+
+TEST_F(CentralFrameSweepTest, ReplacesItsOwnModelsAndNoOthers) {
+  options_.central_frames = "30";
+  options_.models_path = (dir_ / "models").string();
+  EXPECT_EQ(Run().at(0).reason, "");
+  EXPECT_EQ(Run().at(0).reason, "");
+  const auto notes = dir_ / "models/frame_000030/notes.txt";
+  std::ofstream(notes) << "of the user";
+  ExpectThrows<InputError>([&] { Run(); }, {"frame_000030", "notes.txt"});
+  std::filesystem::remove(notes);
+  std::ofstream(dir_ / "models/frame_000030/shape.csv") << "of the user";
+  ExpectThrows<InputError>([&] { Run(); }, {"shape.csv, which was changed"});
+}
+
+TEST_F(CentralFrameSweepTest, NamesThatDifferInTheirExtensionDoNotCollide) {
+  options_.central_frames = "30,31";
+  options_.models_path = (dir_ / "models").string();
+  for (FrameDetections& frame : scene_.frames) {
+    if (frame.frame_number == 31) frame.image_name = "frame_000030.png";
+  }
+  WriteDatabase("other.db");
+  const std::vector<SweepRow> rows = Run();
+  ASSERT_EQ(rows.size(), 2u);
+  for (const SweepRow& row : rows) {
+    EXPECT_TRUE(std::filesystem::exists(dir_ / ("models/" + row.image_name + "/shape.csv")))
+        << row.image_name << row.reason;
+  }
 }
 
 TEST_F(CentralFrameSweepTest, FrameWithoutAResultIsARowWithAReason) {
