@@ -64,9 +64,12 @@ int Main(int argc, char** argv) {
   } catch (const ExternalToolError& error) {
     return fail(kExternalTool, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(kBrokenInvariant, "out of memory; use fewer images or fewer threads");
+    return fail(kBadInput, "out of memory; use fewer images or fewer threads");
   } catch (const std::exception& error) {
-    return fail(kBrokenInvariant, std::string(error.what()) + " (an error of velamap itself)");
+    return fail(
+        kBrokenInvariant,
+        std::string(error.what()) +
+            " (a fault of velamap itself; report it with this line, the command and the log)");
   }
 }
 

@@ -13,6 +13,7 @@
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
+#include "importer/base/text_file.h"
 
 namespace velamap {
 namespace {
@@ -206,6 +207,8 @@ MarkerShape ReadShapeCsv(std::istream& in, const std::string& name) {
 }
 
 MarkerShape ReadShapeCsv(const std::string& path) {
+  constexpr std::uintmax_t kMaxSize = 256 << 20;
+  CheckInputFile(path, "shape.csv", kMaxSize);
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path + ": cannot be opened; expected a shape.csv");
   return ReadShapeCsv(in, path);

@@ -11,6 +11,7 @@
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
+#include "importer/base/text_file.h"
 
 namespace velamap {
 namespace {
@@ -73,6 +74,7 @@ SurfaceEdges ReadSurfaceEdges(std::istream& in, const std::string& name) {
 }
 
 SurfaceEdges ReadSurfaceEdges(const std::string& path) {
+  CheckInputFile(path, "CSV of edges", kMaxTextFileSize);
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path + ": cannot be opened; expected a CSV with edge,x,y,z");
   return ReadSurfaceEdges(in, path);

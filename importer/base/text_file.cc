@@ -15,23 +15,32 @@ const std::string kByteOrderMark = "\xef\xbb\xbf";
 
 }  // namespace
 
+void CheckInputFile(const std::string& path, const std::string& what, std::uintmax_t max_size) {
+  if (!Exists(path)) return;
+  if (!IsRegularFile(path)) {
+    throw InputError(fmt::format("{}: the {} is not a regular file", path, what));
+  }
+  if (FileSize(path) > max_size) {
+    throw InputError(
+        fmt::format("{}: {} bytes are no {}, which has at most {}; check that it is the right file", path,
+                    FileSize(path), what, max_size));
+  }
+}
+
 std::string ReadTextFile(const std::string& path, const std::string& what) {
   if (path.empty() || !Exists(path)) {
     throw InputError(fmt::format("{}: there is no such {}", path.empty() ? "''" : path, what));
   }
-  if (!IsRegularFile(path)) {
-    throw InputError(fmt::format("{}: the {} is not a regular file", path, what));
-  }
-  if (FileSize(path) > kMaxTextFileSize) {
-    throw InputError(fmt::format(
-        "{}: {} bytes are too many for a {}, which has at most {}; check that it is the right file",
-        path, FileSize(path), what, kMaxTextFileSize));
-  }
+  CheckInputFile(path, what, kMaxTextFileSize);
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream) throw InputError(fmt::format("{}: the {} cannot be read", path, what));
   if (text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0) {
     text.erase(0, kByteOrderMark.size());
+  }
+  if (text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0) {
+    throw InputError(fmt::format(
+        "{}: the {} begins with two byte order marks; save it as UTF-8 without any", path, what));
   }
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw InputError(fmt::format("{}: the {} is empty", path, what));

@@ -7,11 +7,15 @@
 
 namespace velamap {
 
-// Calibrations, layouts and dictionaries are far smaller.
-inline constexpr std::uintmax_t kMaxTextFileSize = 64 << 20;
+// Calibrations, layouts, dictionaries and project files are far smaller.
+inline constexpr std::uintmax_t kMaxTextFileSize = 16 << 20;
+
+// Throws InputError, naming `what` and the path, if the file is a folder, a pipe or the like, or
+// larger than `max_size` bytes. Nothing happens if it is missing.
+void CheckInputFile(const std::string& path, const std::string& what, std::uintmax_t max_size);
 
 // The text without a byte order mark. Throws InputError, naming `what` and the path, if the file is
-// missing, a folder, unreadable, empty, or larger than kMaxTextFileSize.
+// missing, a folder, unreadable, empty, larger than kMaxTextFileSize, or has two such marks.
 std::string ReadTextFile(const std::string& path, const std::string& what);
 
 }  // namespace velamap

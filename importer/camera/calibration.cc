@@ -198,7 +198,7 @@ Camera ReadColmapCamera(const std::string& text, const std::string& path) {
 
 Camera ReadCalibration(const std::string& path) {
   const std::string text = ReadTextFile(path, "calibration file (--camera_path)");
-  const std::size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool storage = text.compare(begin, 5, "%YAML") == 0 || text.compare(begin, 1, "<") == 0 ||
                        text.compare(begin, 1, "{") == 0;
   return storage ? ReadOpenCvCalibration(text.substr(begin), path) : ReadColmapCamera(text, path);

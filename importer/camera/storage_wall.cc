@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-constexpr int kMaxDepth = 16;
+constexpr int kMaxDepth = 16, kMaxValues = 2'000'000;
 
 [[noreturn]] void Fail(const std::string& path, const std::string& why) {
   throw InputError(
@@ -25,9 +25,15 @@ constexpr int kMaxDepth = 16;
   Fail(path, fmt::format("nested more than {} deep", kMaxDepth));
 }
 
-void CheckDepth(const YAML::Node& node, int depth, const std::string& path) {
+// Visits each value as often as aliases repeat it, which OpenCV's parser would, too.
+void CheckNode(const YAML::Node& node, int depth, int* num_values, const std::string& path) {
   if (depth > kMaxDepth) FailDepth(path);
-  for (const auto& child : node) CheckDepth(node.IsMap() ? child.second : child, depth + 1, path);
+  if (++*num_values > kMaxValues) {
+    Fail(path, fmt::format("it holds more than {} values, aliases resolved", kMaxValues));
+  }
+  for (const auto& child : node) {
+    CheckNode(node.IsMap() ? child.second : child, depth + 1, num_values, path);
+  }
 }
 
 // JSON, too: it is YAML, and OpenCV writes numbers such as 300. that only YAML allows.
@@ -41,7 +47,8 @@ void CheckYaml(const std::string& text, const std::string& path) {
   if (documents.empty()) Fail(path, "it is empty");
   for (const YAML::Node& document : documents) {
     if (!document.IsMap()) Fail(path, "its top level is not a map of keys");
-    CheckDepth(document, 0, path);
+    int num_values = 0;
+    CheckNode(document, 0, &num_values, path);
   }
 }
 

@@ -8,8 +8,8 @@
 namespace velamap {
 
 // Throws InputError, naming the path, unless the text, which has no byte order mark, is well-formed
-// by parsers that do not crash, its top is a map, and it is nested no deeper than calibrations and
-// dictionaries are.
+// by parsers that do not crash, its top is a map, and it is nested no deeper and holds no more
+// values than calibrations and dictionaries do.
 void CheckStorageText(const std::string& text, const std::string& path);
 
 }  // namespace velamap

@@ -11,6 +11,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/text_file.h"
 
 namespace velamap {
 namespace {
@@ -53,8 +54,10 @@ void WriteCount(std::size_t count, std::ostream* out) {
 // file cannot make it allocate all memory.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path)
-      : path_(path.string()), in_(path, std::ios::binary) {
+  explicit Reader(const std::filesystem::path& path) : path_(path.string()) {
+    constexpr std::uintmax_t kMaxSize = std::uintmax_t{4} << 30;
+    CheckInputFile(path_, kUncertaintyFileName, kMaxSize);
+    in_.open(path, std::ios::binary);
     if (!in_) throw InputError(path_ + ": cannot be read");
     in_.seekg(0, std::ios::end);
     left_ = static_cast<std::uint64_t>(in_.tellg());

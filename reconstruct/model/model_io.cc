@@ -11,12 +11,16 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
+#include "importer/base/text_file.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 
 namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Models of the markers in tens of thousands of images are far smaller.
+constexpr std::uintmax_t kMaxModelFileSize = std::uintmax_t{4} << 30;
 
 using Reader = void (*)(std::istream& in, const std::string& name, Model* model);
 using Writer = void (*)(const Model& model, std::ostream& out);
@@ -79,6 +83,7 @@ Model ReadModel(const std::string& path) {
   Model model;
   for (const ModelFile& file : ChooseFiles(path)) {
     const std::string name = (fs::path(path) / file.name).string();
+    CheckInputFile(name, "file of a COLMAP model", kMaxModelFileSize);
     std::ifstream in(name, std::ios::binary);
     if (!in || !IsRegularFile(name)) {
       throw InputError(fmt::format("{}: missing or unreadable; a COLMAP model needs it", name));

@@ -72,6 +72,12 @@ std::vector<BadInput> Walls() {
     for (std::size_t i = 0; i < kDeep; ++i) repeated += text;
     return repeated;
   };
+  std::string aliases = "%YAML:1.0\n---\na0: &a0 1\n";
+  for (int i = 1; i < 12; ++i) {
+    aliases += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [";
+    for (int k = 0; k < 10; ++k) aliases += (k > 0 ? ", *a" : "*a") + std::to_string(i - 1);
+    aliases += "]\n";
+  }
   const std::string xml = "<?xml version=\"1.0\"?>\n<opencv_storage>";
   const std::vector<std::pair<std::string, std::string>> texts = {
       {"XmlCutOffInAnAttribute", xml + "\n<camera_matrix type_id="},
@@ -84,6 +90,8 @@ std::vector<BadInput> Walls() {
       {"YamlCutOff", "%YAML:1.0\n---\na: [1, 2"},
       {"YamlOfAList", "%YAML:1.0\n---\n- 1\n- 2\n"},
       {"YamlOfText", "%YAML:1.0\n---\nonly text\n"},
+      {"YamlOfAliases", aliases},
+      {"YamlOfAnAliasOfItself", "%YAML:1.0\n---\na: &a [*a, *a]\n"},
       {"JsonCutOff", "{\"image_width\": 320,"},
       {"ZeroBytes", std::string("%YAML:1.0\n---\na: \0\0\n", 19)}};
   std::vector<BadInput> cases;
@@ -96,15 +104,18 @@ std::vector<BadInput> Walls() {
   }
   const std::vector<std::pair<std::string, std::string>> calls = {
       {"Calibration", Call("grey", "bad.yml")},
+      {"Dictionary", Call("grey", "camera.yml", "--dictionary @/bad.yml --marker_length 0.1")},
+      {"ProjectFile", "shape_analyzer --project_path @/bad.yml"},
       {"Layout", Call("grey", "camera.yml", "--layout_path @/bad.yml")}};
   for (const auto& [name, call] : calls) {
     cases.push_back(
         {name + "OfAByteOrderMarkAlone", call, 2, "is empty", Write("bad.yml", "\xef\xbb\xbf")});
-    cases.push_back(
-        {name + "OfManyBytes", call, 2, "check that it is the right file", [](const fs::path& dir) {
-           WriteTextFile(dir / "bad.yml", "%YAML");
-           fs::resize_file(dir / "bad.yml", (std::uintmax_t{64} << 20) + 1);
-         }});
+    cases.push_back({name + "OfTwoByteOrderMarks", call, 2, "two byte order marks",
+                     Write("bad.yml", "\xef\xbb\xbf\xef\xbb\xbf")});
+    cases.push_back({name + "OfManyBytes", call, 2, "check that it is the right file", [](const fs::path& dir) {
+                       WriteTextFile(dir / "bad.yml", "%YAML");
+                       fs::resize_file(dir / "bad.yml", (std::uintmax_t{16} << 20) + 1);
+                     }});
   }
   return cases;
 }
@@ -154,6 +165,13 @@ std::vector<BadInput> Numbers() {
       {"AFarCornerOfAReference",
        "shape_comparer --shape_path @/workspace/shape --reference_path @/bad.csv", 2, "bad.csv:2",
        Write("bad.csv", header + "1,1,0,-1e200,0,,,,2,\n")},
+      {"AShapeOfManyBytes", analyzed, 2, "bad.csv: 268435457 bytes are no shape.csv",
+       [](const fs::path& dir) {
+         WriteTextFile(dir / "bad.csv", "marker_id");
+         fs::resize_file(dir / "bad.csv", (std::uintmax_t{256} << 20) + 1);
+       }},
+      {"AShapeThatIsAPipe", analyzed, 2, "bad.csv: the shape.csv is not a regular file",
+       [](const fs::path& dir) { mkfifo((dir / "bad.csv").c_str(), 0600); }},
       {"AFarVertex", "shape_comparer --shape_path @/workspace/shape --reference_path @/bad.obj", 2,
        "bad.obj", Write("bad.obj", "v 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n")}};
 }
@@ -236,7 +254,15 @@ std::vector<BadInput> Workspaces() {
 }
 
 std::vector<BadInput> Options() {
+  const std::string project =
+      "shape_analyzer --shape_path @/workspace/shape --project_path @/p.ini";
   std::vector<BadInput> cases = {
+      {"ProjectFileOfAnUnknownKey", project, 2, "p.ini: unknown key marker_lenght; did you mean",
+       Write("p.ini", "\xef\xbb\xbfmarker_lenght=0.1\n")},
+      {"ProjectFileThatIsAFolder", "shape_analyzer --project_path @/grey", 2,
+       "grey: the project file (--project_path) is not a regular file"},
+      {"ProjectFileThatIsMissing", "shape_analyzer --project_path @/p.ini", 2,
+       "p.ini: there is no such project file"},
       {"ColmapAbsent", kCall + " --colmap_path @/colmap", 3, "/colmap"},
       {"ColmapThatIsAnotherProgram", kCall + " --colmap_path /bin/true", 3, "/bin/true"}};
   const std::vector<std::pair<std::string, std::string>> beyond = {

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <ostream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <boost/program_options.hpp>
 
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
+#include "importer/base/text_file.h"
 #include "workflows/options/nearest_name.h"
 #include "workflows/options/path_check.h"
 
@@ -155,12 +156,7 @@ GivenValues ReadCommandLine(const CommandSyntax& syntax, const OptionsByName& op
 
 GivenValues ReadProjectFile(const CommandSyntax& syntax, const OptionsByName& options,
                             const std::string& path, const std::set<std::string>& known_names) {
-  std::ifstream stream(path);
-  if (!stream || stream.peek() == std::ifstream::traits_type::eof()) {
-    throw InputError(
-        fmt::format("--{} {}: cannot be read, or is empty; give an ini file with key=value lines",
-                    kProjectPath, path));
-  }
+  std::istringstream stream(ReadTextFile(path, fmt::format("project file (--{})", kProjectPath)));
   GivenValues values;
   try {
     constexpr bool kAllowUnregistered = true;

@@ -170,6 +170,15 @@ TEST(OptionParserTest, ProjectFileErrorsNameFileAndKey) {
   EXPECT_THAT(ErrorOf(arguments), HasSubstr(file));
 }
 
+TEST(OptionParserTest, ProjectFileMayBeginWithAByteOrderMark) {
+  const TempDir temp_dir;
+  const std::string file = (temp_dir / "project.ini").string();
+  WriteTextFile(file, "\xef\xbb\xbfpath=a\n");
+  Values values;
+  ASSERT_TRUE(ParseOptions(MakeSyntax(&values), {"--project_path", file}, {}));
+  EXPECT_EQ(values.path, "a");
+}
+
 TEST(OptionParserTest, ProjectFileMayGiveAnOptionOnceOnly) {
   const TempDir temp_dir;
   const std::string file = (temp_dir / "project.ini").string();
