@@ -79,13 +79,14 @@ GridSize ChooseGrid(const SplineSurface& surface, const MeshOptions& options) {
 void CheckCount(const GridSize& grid, const MeshOptions& options) {
   const double num_triangles = 2 * grid.num_u * grid.num_v;
   if (num_triangles <= kMaxTriangles) return;
-  const double excess = num_triangles / kMaxTriangles;
+  // Of roots, because the number may be infinite.
+  const double root_of_excess = std::sqrt(grid.num_u) * std::sqrt(2 * grid.num_v / kMaxTriangles);
   const auto member =
       options.edge_length_mm ? &MeshOptions::edge_length_mm : &MeshOptions::chord_deviation_mm;
   const double given = *(options.*member);
   // The number is proportional to the inverse square of the edge length and to the inverse of the
   // deviation.
-  const double possible = options.edge_length_mm ? given * std::sqrt(excess) : given * excess;
+  const double possible = given * root_of_excess * (options.edge_length_mm ? 1.0 : root_of_excess);
   throw InputError(
       fmt::format("{}: {:.3g} mm would need {:.4g} triangles, more than {}; give {:.2g} mm or more",
                   OptionName(member), given, num_triangles, kMaxTriangles, 1.1 * possible));

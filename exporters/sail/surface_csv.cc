@@ -22,7 +22,8 @@ Eigen::Vector3d ReadPoint(const CsvRecord& record, const std::string& name) {
   Eigen::Vector3d x_m;
   for (std::size_t i = 1; i < kEdgeColumns.size(); ++i) {
     double value = 0.0;
-    if (!ParseNumber(record.fields[i], &value) || !std::isfinite(value)) {
+    constexpr double kMaxCoordinate_m = 1e9;
+    if (!ParseNumber(record.fields[i], &value) || !(std::abs(value) <= kMaxCoordinate_m)) {
       throw InputError(fmt::format("{}:{}: column {}: expected a number in metres, found '{}'",
                                    name, record.line, kEdgeColumns[i], record.fields[i]));
     }

@@ -122,9 +122,10 @@ TEST(Mesh, AbsurdResolutionIsRefusedWithItsTriangles) {
 }
 
 TEST(Mesh, TheSuggestedResolutionFits) {
-  for (const bool by_edge : {true, false}) {
+  for (const auto& [by_edge, given_mm] : std::vector<std::pair<bool, double>>{
+           {true, 0.01}, {true, 1e-300}, {false, 1e-7}, {false, 1e-300}}) {
     const std::string refusal =
-        RefusalOf(Sail(), by_edge ? EdgeLength(0.01) : ChordDeviation(1e-7));
+        RefusalOf(Sail(), by_edge ? EdgeLength(given_mm) : ChordDeviation(given_mm));
     const double suggested = std::stod(refusal.substr(refusal.find("; give ") + 7));
     const MeshOptions options = by_edge ? EdgeLength(suggested) : ChordDeviation(suggested);
     EXPECT_LT(CountTriangles(Sail(), options), kMaxTriangles);

@@ -152,6 +152,7 @@ TEST(SurfaceEdges, AreReadAndRefusedWithLineAndColumn) {
            {header + "luff,1,x,3\n",
             "edges.csv:2: column y: expected a number in metres, found 'x'"},
            {header + "luff,1,nan,3\n", "column y"},
+           {header + "luff,1e200,2,3\n", "column x: expected a number in metres"},
            {header + "luff,1,2,3\n", "the luff edge has one point"}}) {
     ExpectThrows<InputError>([&, t = text] { read(t); }, {part});
   }
