@@ -22,7 +22,7 @@ void CheckInputFile(const std::string& path, const std::string& what, std::uintm
   }
   if (FileSize(path) > max_size) {
     throw InputError(
-        fmt::format("{}: {} bytes are no {}, which has at most {}; check that it is the right file", path,
+        fmt::format("{}: {} bytes are too many for a {}, which has at most {}; check that it is the right file", path,
                     FileSize(path), what, max_size));
   }
 }
