@@ -1,12 +1,9 @@
 #include "workflows/plan/plan_drawing.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 
-#include "importer/geometry/units.h"
 #include "workflows/plan/plan_writer.h"
 
 namespace velamap {

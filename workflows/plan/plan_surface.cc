@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <set>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
