@@ -21,9 +21,9 @@ void CheckInputFile(const std::string& path, const std::string& what, std::uintm
     throw InputError(fmt::format("{}: the {} is not a regular file", path, what));
   }
   if (FileSize(path) > max_size) {
-    throw InputError(
-        fmt::format("{}: {} bytes are too many for a {}, which has at most {}; check that it is the right file", path,
-                    FileSize(path), what, max_size));
+    throw InputError(fmt::format(
+        "{}: {} bytes are too many for a {}, which has at most {}; check that it is the right file",
+        path, FileSize(path), what, max_size));
   }
 }
 
