@@ -7,7 +7,10 @@
 
 #include <array>
 #include <cerrno>
-#include <ctime>
+#include <chrono>
+#include <climits>
+#include <sstream>
+#include <thread>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -18,18 +21,35 @@
 namespace velamap {
 namespace {
 
-// "since 14:02, process 4711", as the holder of the lock has written it.
-std::string HolderText(int file) {
-  std::array<char, 100> text{};
-  const ssize_t size = pread(file, text.data(), text.size() - 1, 0);
-  return size > 0 ? " " + std::string(text.data(), static_cast<std::size_t>(size)) : "";
+constexpr std::size_t kMaxRecordSize = 200;
+
+std::string HostName() {
+  std::array<char, HOST_NAME_MAX + 1> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+std::string ReadHolder(int file) {
+  std::array<char, kMaxRecordSize> text{};
+  const ssize_t size = pread(file, text.data(), text.size(), 0);
+  return std::string(text.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
+}
+
+// Waits a moment for a holder that has the lock and has not written its record yet.
+std::string WaitForHolder(int file) {
+  constexpr int kMaxNumTries = 20;
+  for (int i = 0;; ++i) {
+    const std::string text = DescribeLockHolder(ReadHolder(file), std::time(nullptr), HostName());
+    if (!text.empty() || i == kMaxNumTries) return text;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
 }
 
 void WriteHolder(int file) {
-  const std::time_t now = std::time(nullptr);
-  const std::string text = fmt::format("since {:%H:%M}, process {}", fmt::localtime(now), getpid());
-  const bool written = ftruncate(file, 0) == 0 && pwrite(file, text.data(), text.size(), 0) ==
-                                                      static_cast<ssize_t>(text.size());
+  const std::string record =
+      fmt::format("{} {} {}\n", std::time(nullptr), getpid(), HostName()).substr(0, kMaxRecordSize);
+  // A killed holder's record goes first: nobody is to be told of it.
+  const bool written = ftruncate(file, 0) == 0 && pwrite(file, record.data(), record.size(), 0) ==
+                                                      static_cast<ssize_t>(record.size());
   if (!written) spdlog::debug("the lock's file cannot be written");  // the lock holds all the same
 }
 
@@ -43,6 +63,21 @@ bool IsStillThere(const std::filesystem::path& path, int file) {
 
 }  // namespace
 
+std::string DescribeLockHolder(const std::string& record, std::time_t now,
+                               const std::string& host) {
+  std::istringstream words(record);
+  std::time_t since = 0;
+  long process_id = 0;
+  std::string holder_host;
+  if (!(words >> since >> process_id)) return "";
+  words >> holder_host;
+  const std::tm start = fmt::localtime(since), today = fmt::localtime(now);
+  const bool is_today = start.tm_year == today.tm_year && start.tm_yday == today.tm_yday;
+  return fmt::format("since {}{:%H:%M}, process {}{}",
+                     is_today ? "" : fmt::format("{:%Y-%m-%d} ", start), start, process_id,
+                     holder_host.empty() || holder_host == host ? "" : " on " + holder_host);
+}
+
 FileLock::FileLock(const std::filesystem::path& path, const std::string& what) : path_(path) {
   while (file_ < 0) {
     // Closed on exec, so that a COLMAP that outlives us does not hold it.
@@ -52,15 +87,16 @@ FileLock::FileLock(const std::filesystem::path& path, const std::string& what) :
     if (file < 0) return;
     if (flock(file, LOCK_EX | LOCK_NB) != 0) {
       const bool is_held = errno == EWOULDBLOCK;
-      const std::string holder = is_held ? HolderText(file) : "";
+      const std::string holder = is_held ? WaitForHolder(file) : "";
       close(file);
       if (!is_held) {
         spdlog::warn("{}: the file system has no locks; start one run at a time", path.string());
         return;
       }
-      throw InputError(fmt::format(
-          "{}: another velamap works here{}; wait until it has finished, or choose another folder",
-          what, holder));
+      throw InputError(
+          fmt::format("{}: another velamap works here{}{}; wait until it has finished, or choose "
+                      "another folder",
+                      what, holder.empty() ? "" : " ", holder));
     }
     if (IsStillThere(path, file)) {
       file_ = file;

@@ -1,5 +1,6 @@
 #include "importer/base/replacement.h"
 
+#include <ctime>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -125,6 +126,24 @@ TEST(ImageNames, MustNotLeadOut) {
     ExpectThrows<InputError>([&] { CheckImageName(name, "database.db"); },
                              {"database.db", "leads out"});
   }
+}
+
+TEST(FileLock, TheHolderIsDescribedByTimeProcessAndPlace) {
+  std::tm noon{};
+  noon.tm_year = 2026 - 1900;
+  noon.tm_mon = 10;
+  noon.tm_mday = 22;
+  noon.tm_hour = 14;
+  noon.tm_min = 2;
+  noon.tm_isdst = -1;
+  const std::time_t since = std::mktime(&noon);
+  const std::string record = std::to_string(since) + " 4711 sailboat\n";
+  EXPECT_EQ(DescribeLockHolder(record, since + 600, "sailboat"), "since 14:02, process 4711");
+  EXPECT_EQ(DescribeLockHolder(record, since + 86400, "sailboat"),
+            "since 2026-11-22 14:02, process 4711");
+  EXPECT_EQ(DescribeLockHolder(record, since, "dinghy"), "since 14:02, process 4711 on sailboat");
+  EXPECT_EQ(DescribeLockHolder("", since, "dinghy"), "");
+  EXPECT_EQ(DescribeLockHolder("someone", since, "dinghy"), "");
 }
 
 TEST(FileLock, IsHeldByOneAtATimeAndLeavesNothing) {
