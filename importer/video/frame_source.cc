@@ -20,6 +20,7 @@
 #include "importer/base/natural_order.h"
 #include "importer/base/numbers.h"
 #include "importer/video/image_file.h"
+#include "importer/video/interlacing.h"
 #include "importer/video/video_decoder.h"
 
 namespace velamap {
@@ -32,6 +33,14 @@ void SilenceOpenCv() {
   static std::once_flag once;
   std::call_once(once,
                  [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
+}
+
+// Logs a message that was not logged before: a video is opened more than once in a run.
+void LogOnce(spdlog::level::level_enum level, const std::string& message) {
+  static std::mutex mutex;
+  static std::set<std::string> logged;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (logged.insert(message).second) spdlog::log(level, message);
 }
 
 // Returns names relative to the folder in natural order, and warns of files that are no images.
@@ -102,7 +111,16 @@ class VideoFile : public FrameSource {
         known_names_(known_names.begin(), known_names.end()),
         decoder_(path, num_threads),
         num_container_frames_(decoder_.NumContainerFrames()),
-        num_frames_(CountFrames()) {
+        num_frames_(CountFrames()),
+        is_marked_interlaced_(decoder_.IsMarkedInterlaced()) {
+    if (decoder_.NumQuarterTurns() != 0) {
+      LogOnce(spdlog::level::info,
+              fmt::format(
+                  "{}: the metadata turn its pictures by {} degrees, and so they are turned; the "
+                  "calibration has to be of pictures turned alike (OpenCV 4.6 turns some "
+                  "the other way)",
+                  path_, 90 * decoder_.NumQuarterTurns()));
+    }
     decoder_.SkipTo(options_.first_frame);
   }
 
@@ -132,6 +150,7 @@ class VideoFile : public FrameSource {
 
   bool Load(Frame* frame, std::string* reason) const override {
     frame->gray = frame->picture->Gray();
+    CheckFields(*frame);
     if (!frame->gray.empty()) return true;
     *reason = "its pixel format cannot be converted to grey";
     spdlog::warn("{}: {} is skipped: {}", path_, frame->image_name, *reason);
@@ -143,6 +162,30 @@ class VideoFile : public FrameSource {
   int NumFrames() const override { return num_frames_; }
 
  private:
+  void CheckFields(const Frame& frame) const {
+    // The lines of the camera are columns where the picture has been turned on its side.
+    const bool is_on_its_side = decoder_.NumQuarterTurns() % 2 != 0;
+    const bool is_combed = IsCombed(is_on_its_side ? cv::Mat(frame.gray.t()) : frame.gray);
+    const bool is_marked = is_marked_interlaced_ || frame.picture->IsMarkedInterlaced();
+    if (!is_combed && is_marked) {
+      LogOnce(
+          spdlog::level::info,
+          path_ + ": stored as interlaced; pictures whose two fields are of one moment are used");
+    }
+    if (!is_combed) return;
+    const std::string remedy =
+        "make whole pictures of the fields with ffmpeg -i VIDEO -vf bwdif -crf 12 whole.mp4";
+    if (is_marked) {
+      throw InputError(
+          fmt::format("{}: the video is interlaced: {} weaves two fields of different moments; {}",
+                      path_, frame.image_name, remedy));
+    }
+    LogOnce(spdlog::level::warn,
+            fmt::format("{}: pictures seem to weave two fields of different moments, though the "
+                        "file does not say that it is interlaced; if they do, {}",
+                        path_, remedy));
+  }
+
   // In 64 bits, because options may be as large as an int.
   int CountFrames() const {
     if (num_container_frames_ == 0 && options_.last_frame < 0) return 0;
@@ -186,7 +229,8 @@ class VideoFile : public FrameSource {
   std::set<std::string> known_names_;
   VideoDecoder decoder_;
   int num_container_frames_;
-  int num_frames_;    // to come, at most
+  int num_frames_;  // to come, at most
+  bool is_marked_interlaced_;
   int num_read_ = 0;  // counted from the video's start, even if decoding began later
   bool ended_ = false;
 };

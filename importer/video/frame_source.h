@@ -19,8 +19,9 @@ struct Frame {
   std::string image_name;  // photographs: path relative to the folder; video: frame_000123.jpg
   std::optional<int> frame_number;  // video only, zero-based
   std::optional<double> time_s;     // video only
-  // Metadata never rotates the pixels, because COLMAP does not rotate them either. A video's
-  // colours are converted on demand only: see ColorImage() and detect/corner_colors.h.
+  // The metadata of a photograph never turn its pixels, because COLMAP does not turn them either.
+  // Those of a video do, as in players and cv::VideoCapture. A video's colours are converted on
+  // demand only: see ColorImage() and detect/corner_colors.h.
   cv::Mat gray;                         // 8 bit, once the frame is loaded
   cv::Mat color;                        // photographs only: BGR, 8 bit, once loaded
   std::optional<VideoPicture> picture;  // video only
@@ -40,7 +41,8 @@ class FrameSource {
 
   // Fills the pixels of a frame, which Next() leaves empty so that many threads can decode image
   // files and compute grey images in parallel. Thread-safe. Returns false, with a warning and the
-  // reason, if the file is not a whole image.
+  // reason, if the file is not a whole image. Throws InputError for an interlaced video whose two
+  // fields are of different moments.
   virtual bool Load(Frame* frame, std::string* reason) const = 0;
 
   virtual bool IsVideo() const = 0;

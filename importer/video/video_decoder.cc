@@ -9,6 +9,7 @@
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
+#include <libavutil/display.h>
 }
 
 #include <fmt/format.h>
@@ -122,6 +123,17 @@ class VideoDecoder::Stream {
     return rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0.0;
   }
 
+  // Angles between quarters are left alone, as in cv::VideoCapture.
+  int NumQuarterTurns() const {
+    const std::uint8_t* matrix =
+        av_stream_get_side_data(stream_, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+    if (matrix == nullptr) return 0;
+    const double clockwise_deg =
+        -av_display_rotation_get(reinterpret_cast<const std::int32_t*>(matrix));
+    const long rounded_deg = std::isfinite(clockwise_deg) ? std::lround(clockwise_deg) : 0;
+    return rounded_deg % 90 == 0 ? static_cast<int>((rounded_deg / 90 + 4) % 4) : 0;
+  }
+
   double DurationSeconds() const {
     if (stream_->duration != AV_NOPTS_VALUE) return stream_->duration * av_q2d(stream_->time_base);
     if (format_->duration != AV_NOPTS_VALUE)
@@ -209,9 +221,17 @@ VideoDecoder::VideoDecoder(const std::string& path, int num_threads)
   av_log_set_level(AV_LOG_QUIET);
   stream_ = std::make_unique<Stream>(path_);
   stream_->OpenCodec(path_, num_threads_);
+  num_quarter_turns_ = stream_->NumQuarterTurns();
 }
 
 VideoDecoder::~VideoDecoder() = default;
+
+int VideoDecoder::NumQuarterTurns() const { return num_quarter_turns_; }
+
+bool VideoDecoder::IsMarkedInterlaced() const {
+  const AVFieldOrder order = stream_->stream().codecpar->field_order;
+  return order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE;
+}
 
 int VideoDecoder::NumContainerFrames() const {
   const double count =
@@ -242,15 +262,26 @@ std::optional<VideoFrame> VideoDecoder::Next() {
   has_frame_ = false;
   const AVFrame& frame = stream_->frame();
   const AVStream& stream = stream_->stream();
-  VideoFrame result{next_number_++, std::nullopt, VideoPicture(frame)};
+  VideoFrame result{next_number_++, std::nullopt, VideoPicture(frame, num_quarter_turns_)};
   const double frames_per_second = stream_->FramesPerSecond();
   if (frame.pts != AV_NOPTS_VALUE) {
     const std::int64_t start = stream.start_time == AV_NOPTS_VALUE ? 0 : stream.start_time;
-    result.time_s = static_cast<double>(frame.pts - start) * av_q2d(stream.time_base);
+    const double time_s = static_cast<double>(frame.pts - start) * av_q2d(stream.time_base);
+    result.time_s = CountOn(time_s, frames_per_second);
   } else if (frames_per_second > 0) {
-    result.time_s = result.number / frames_per_second;
+    result.time_s = CountOn(result.number / frames_per_second, frames_per_second);
   }
   return result;
+}
+
+double VideoDecoder::CountOn(double time_s, double frames_per_second) {
+  constexpr double kUnknownPeriod_s = 0.04;
+  if (last_time_s_ && time_s + time_offset_s_ < *last_time_s_) {
+    const double period_s = frames_per_second > 0 ? 1.0 / frames_per_second : kUnknownPeriod_s;
+    time_offset_s_ = *last_time_s_ + period_s - time_s;
+  }
+  last_time_s_ = time_s + time_offset_s_;
+  return *last_time_s_;
 }
 
 int VideoDecoder::NumFramesRead() const { return next_number_; }

@@ -11,9 +11,12 @@
 namespace velamap {
 
 struct VideoFrame {
-  int number = 0;                // the number of frames that the decoder yields before it
-  std::optional<double> time_s;  // since the video's start; correct for a variable frame rate, too
-  VideoPicture picture;          // as stored, without the rotation of the metadata
+  int number = 0;  // the number of frames that the decoder yields before it
+  // Since the video's start; correct for a variable frame rate, too. Not earlier than that of the
+  // frame before: where the file's times run backwards, such as behind a cut, they are counted on
+  // by the frame rate.
+  std::optional<double> time_s;
+  VideoPicture picture;  // turned as the metadata say: NumQuarterTurns()
 };
 
 class VideoDecoder {
@@ -28,6 +31,14 @@ class VideoDecoder {
 
   // The number that the container states, which may be off by a frame or so; 0 if it states none.
   int NumContainerFrames() const;
+
+  // By how many quarters frames are turned clockwise for display, as the metadata of the video say.
+  // cv::VideoCapture turns them, too, and with it calibrations that are made from a video; but the
+  // version 4.6 does so in the wrong direction (github.com/opencv/opencv/issues/22088).
+  int NumQuarterTurns() const;
+
+  // Whether the container says that the video is interlaced. Its frames may say so, too.
+  bool IsMarkedInterlaced() const;
 
   // Skips the frames before `number` without decoding more of them than that frame needs. To be
   // called before the first Next(), which then returns that frame (the last frame if there are
@@ -44,11 +55,17 @@ class VideoDecoder {
  private:
   class Stream;
 
+  // The time, moved so that it is not before that of the last frame.
+  double CountOn(double time_s, double frames_per_second);
+
   std::string path_;
   int num_threads_;
   std::unique_ptr<Stream> stream_;
+  int num_quarter_turns_ = 0;
   int next_number_ = 0;
-  bool has_frame_ = false;  // whether the next frame is decoded already
+  std::optional<double> last_time_s_;
+  double time_offset_s_ = 0.0;  // what the times have been counted on by
+  bool has_frame_ = false;      // whether the next frame is decoded already
 };
 
 }  // namespace velamap

@@ -1,6 +1,7 @@
 #include "importer/video/video_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <new>
@@ -152,11 +153,39 @@ FramePtr Crop(const AVFrame& frame, const cv::Rect& patch) {
 
 }  // namespace
 
-VideoPicture::VideoPicture(const AVFrame& frame) : frame_(Reference(frame)) {}
+VideoPicture::VideoPicture(const AVFrame& frame, int num_quarter_turns)
+    : frame_(Reference(frame)), num_quarter_turns_(num_quarter_turns) {
+  VELAMAP_CHECK(num_quarter_turns >= 0 && num_quarter_turns < 4);
+}
+
+bool VideoPicture::IsMarkedInterlaced() const { return frame_->interlaced_frame != 0; }
+
+cv::Mat VideoPicture::Turned(const cv::Mat& stored) const {
+  constexpr std::array<cv::RotateFlags, 3> kTurns = {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
+                                                     cv::ROTATE_90_COUNTERCLOCKWISE};
+  if (num_quarter_turns_ == 0 || stored.empty()) return stored;
+  cv::Mat turned;
+  cv::rotate(stored, turned, kTurns[static_cast<std::size_t>(num_quarter_turns_ - 1)]);
+  return turned;
+}
+
+cv::Point VideoPicture::StoredPixel(const cv::Point& pixel) const {
+  const cv::Point last(frame_->width - 1, frame_->height - 1);
+  switch (num_quarter_turns_) {
+    case 1:
+      return {pixel.y, last.y - pixel.x};
+    case 2:
+      return last - pixel;
+    case 3:
+      return {last.x - pixel.y, pixel.x};
+    default:
+      return pixel;
+  }
+}
 
 cv::Mat VideoPicture::Gray() const {
   if (!HasPlainLuma(*frame_)) {
-    return Convert(*frame_, AV_PIX_FMT_GRAY8, CV_8UC1, SWS_BICUBIC);
+    return Turned(Convert(*frame_, AV_PIX_FMT_GRAY8, CV_8UC1, SWS_BICUBIC));
   }
   cv::Mat gray(frame_->height, frame_->width, CV_8UC1);
   const bool is_full_range = IsFullRange(*frame_);
@@ -169,14 +198,17 @@ cv::Mat VideoPicture::Gray() const {
       StretchLuma(luma, gray.cols, gray.ptr(y));
     }
   }
-  return gray;
+  return Turned(gray);
 }
 
-cv::Mat VideoPicture::Color() const { return ConvertToColor(*frame_); }
+cv::Mat VideoPicture::Color() const { return Turned(ConvertToColor(*frame_)); }
 
 std::optional<ChromaPlanes> VideoPicture::HalfSizeChroma() const {
-  if (!HasPlainHalfSizeChroma(*frame_)) return std::nullopt;
-  return ChromaPlanes{FullRangeChroma(*frame_, 1), FullRangeChroma(*frame_, 2)};
+  const bool has_odd_size = frame_->width % 2 != 0 || frame_->height % 2 != 0;
+  if (!HasPlainHalfSizeChroma(*frame_) || (num_quarter_turns_ != 0 && has_odd_size)) {
+    return std::nullopt;
+  }
+  return ChromaPlanes{Turned(FullRangeChroma(*frame_, 1)), Turned(FullRangeChroma(*frame_, 2))};
 }
 
 std::vector<cv::Vec3b> VideoPicture::ColorsAt(const std::vector<cv::Point>& pixels) const {
@@ -187,15 +219,16 @@ std::vector<cv::Vec3b> VideoPicture::ColorsAt(const std::vector<cv::Point>& pixe
   ScalerPtr scaler(nullptr, sws_freeContext);
   cv::Mat image;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    VELAMAP_CHECK(bounds.contains(pixels[i]));
-    const cv::Rect patch = is_whole ? bounds : PatchAround(pixels[i], bounds);
+    const cv::Point pixel = StoredPixel(pixels[i]);
+    VELAMAP_CHECK(bounds.contains(pixel));
+    const cv::Rect patch = is_whole ? bounds : PatchAround(pixel, bounds);
     const FramePtr part = Crop(*frame_, patch);
     if (image.size() != patch.size()) {
       scaler = MakeScaler(*part, AV_PIX_FMT_BGR24, SWS_BICUBIC);
       if (scaler == nullptr) return colors;
       image = MakeImage(patch.width, patch.height, CV_8UC3);
     }
-    if (Scale(scaler.get(), *part, &image)) colors[i] = image.at<cv::Vec3b>(pixels[i] - patch.tl());
+    if (Scale(scaler.get(), *part, &image)) colors[i] = image.at<cv::Vec3b>(pixel - patch.tl());
   }
   return colors;
 }

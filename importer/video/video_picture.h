@@ -21,8 +21,12 @@ struct ChromaPlanes {
 // A value that shares the decoder's memory. Many threads may read it.
 class VideoPicture {
  public:
-  // Takes a reference of its own and copies no pixels.
-  explicit VideoPicture(const AVFrame& frame);
+  // Takes a reference of its own and copies no pixels. All that follows is turned clockwise by
+  // `num_quarter_turns` (0 to 3).
+  explicit VideoPicture(const AVFrame& frame, int num_quarter_turns = 0);
+
+  // Whether the stream says that the picture consists of two fields, which may be of one moment.
+  bool IsMarkedInterlaced() const;
 
   // 8-bit grey, 0 for black and 255 for white; luma of limited range (16 to 235) is stretched.
   // Equal to grey computed from BGR to one grey level, except for colours that BGR clips because
@@ -32,14 +36,19 @@ class VideoPicture {
   // The whole picture in BGR, 8 bit. Empty if FFmpeg cannot convert the pixel format.
   cv::Mat Color() const;
 
-  // The chroma that belongs to Gray(). Nothing if the picture stores it in another way.
+  // The chroma that belongs to Gray(). Nothing if the picture stores it in another way, or is
+  // turned and has an odd size, where the turned values belong to other pixels.
   std::optional<ChromaPlanes> HalfSizeChroma() const;
 
   // Color() of single pixels, without converting the rest of the picture.
   std::vector<cv::Vec3b> ColorsAt(const std::vector<cv::Point>& pixels) const;
 
  private:
+  cv::Mat Turned(const cv::Mat& stored) const;
+  cv::Point StoredPixel(const cv::Point& pixel) const;
+
   std::shared_ptr<const AVFrame> frame_;
+  int num_quarter_turns_;
 };
 
 }  // namespace velamap

@@ -7,6 +7,13 @@ namespace velamap {
 
 std::optional<SeekPoint> FindSeekPoint(const std::vector<VideoPacket>& packets, int frame_number) {
   if (packets.empty() || frame_number < 0 || !packets.front().is_key) return std::nullopt;
+  const bool runs_backwards =
+      std::adjacent_find(packets.begin(), packets.end(),
+                         [](const VideoPacket& packet, const VideoPacket& next) {
+                           return next.decode_time != VideoPacket::kNoTime &&
+                                  next.decode_time < packet.decode_time;
+                         }) != packets.end();
+  if (runs_backwards) return std::nullopt;
   std::vector<std::int64_t> times;
   for (const VideoPacket& packet : packets) {
     if (packet.time == VideoPacket::kNoTime) return std::nullopt;

@@ -45,7 +45,8 @@ inline constexpr std::size_t kMaxReorder = 16;
 // one are decoded.
 //
 // Returns nothing if frames can be counted by decoding only: if a packet has no time or that of
-// another, or pictures are shown before the first key frame, which the decoder may leave out.
+// another, times of decoding run backwards, or pictures are shown before the first key frame, which
+// the decoder may leave out.
 std::optional<SeekPoint> FindSeekPoint(const std::vector<VideoPacket>& packets, int frame_number);
 
 }  // namespace velamap

@@ -1,0 +1,16 @@
+// Interlaced video: two fields, of the even and of the odd lines, that a camera has exposed one
+// after the other. Where something has moved in between, the woven picture has combs at its edges.
+
+#pragma once
+
+#include <opencv2/core.hpp>
+
+namespace velamap {
+
+// Whether combs show in the picture (8 bit). Lines are compared with their neighbours, which are of
+// the other field, and with the next but one, which are of their own: in a comb, only the former
+// differ; in a progressive picture, whatever its texture, the latter do so at least as often.
+// A picture in which hardly anything has moved between its fields is not combed.
+bool IsCombed(const cv::Mat& gray);
+
+}  // namespace velamap
