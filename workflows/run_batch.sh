@@ -53,6 +53,15 @@ keys=(verdict images_used images_left_out markers_reconstructed reconstruction_r
 
 csv_field() { printf '"%s"' "${1//\"/\"\"}"; }
 
+# The text without the folders of absolute paths: the summary is sent around, as velamap's logs are.
+without_folders() {
+  local text="$1" folder
+  for folder in "$(dirname "$(realpath -ms "$2")")" "$(realpath -ms "$output_path")"; do
+    [[ "$folder" == / ]] || text="${text//"$folder"\//}"
+  done
+  sed -E "s#(^|[[:space:]'\"(=:,;])/[^/[:space:]][^[:space:]'\"),;]*/#\1#g" <<<"$text"
+}
+
 mkdir -p "$output_path"
 summary="$output_path/summary.csv"
 # An earlier summary stays, under the next free number.
@@ -77,9 +86,9 @@ for input in "${inputs[@]}"; do
   "$velamap" automatic_reconstructor --image_path "$input" --workspace_path "$workspace" "$@" \
     2>&1 >"$results" | tee "$errors" >&2 || status="${PIPESTATUS[0]}"
   {
-    csv_field "$input"; printf ','
-    csv_field "$workspace"; printf ',%d,' "$status"
-    csv_field "$(sed -n 's/^error: //p' "$errors" | tail -n 1)"
+    csv_field "$(basename "$input")"; printf ','
+    csv_field "$(basename "$workspace")"; printf ',%d,' "$status"
+    csv_field "$(without_folders "$(sed -n 's/^error: //p' "$errors" | tail -n 1)" "$input")"
     for key in "${keys[@]}"; do
       printf ','
       csv_field "$(sed -n "s/^$key: //p" "$results")"

@@ -8,9 +8,11 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include "exporters/design/mesh_reader.h"
 #include "importer/base/error.h"
+#include "importer/base/parallel.h"
 #include "workflows/commands/commands.h"
 #include "workflows/run/logging.h"
 
@@ -54,6 +56,7 @@ int Main(int argc, char** argv) {
   };
   try {
     OccupyStandardStreams();
+    UseOwnThreadsOnly();
     SetUpLogging();
     Run({argv + 1, argv + argc});
     return kOk;
@@ -66,6 +69,13 @@ int Main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(kBadInput, "out of memory; use fewer images or fewer threads");
   } catch (const std::exception& error) {
+    const auto* system_error = dynamic_cast<const std::system_error*>(&error);
+    if (system_error != nullptr &&
+        system_error->code() == std::errc::resource_unavailable_try_again) {
+      return fail(kBadInput,
+                  "the system starts no more threads or processes; raise the limit of processes "
+                  "(ulimit -u), or end other programs");
+    }
     return fail(
         kBrokenInvariant,
         std::string(error.what()) +

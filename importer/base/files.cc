@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <deque>
 #include <fstream>
@@ -45,6 +44,12 @@ fs::file_type TypeOf(const fs::path& path) {
   return type;
 }
 
+void CheckReadable(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) CheckRead(std::error_code(errno, std::generic_category()), path);
+  close(file);
+}
+
 // Whether the file system could make `to` a copy that shares its blocks with `from`.
 bool ShareBlocks(const fs::path& from, const fs::path& to) {
   const int source = open(from.c_str(), O_RDONLY | O_CLOEXEC);
@@ -60,13 +65,10 @@ constexpr char kScratchName[] = "velamap_XXXXXX";
 // No workspace has a file of this name, whatever its folder is called.
 constexpr char kScratchLock[] = ".velamap.scratch.lock";
 
-// Removes a folder for temporary files of a run that was killed: nobody holds its lock. It may be
-// about to get the lock for a while after it was made.
+// Removes a folder for temporary files of a run that was killed: nobody holds its lock.
 void RemoveIfAbandoned(const fs::path& folder) {
-  constexpr auto kGrace = std::chrono::minutes(1);
   std::error_code error;
-  const auto written = fs::last_write_time(folder / kScratchLock, error);
-  if (error || fs::file_time_type::clock::now() - written < kGrace) return;
+  if (!fs::is_regular_file(fs::symlink_status(folder / kScratchLock, error))) return;
   try {
     const FileLock lock(folder / kScratchLock, folder.string());
     if (lock.IsHeld()) RemoveAll(folder);
@@ -96,6 +98,8 @@ bool IsLink(const fs::path& path) noexcept {
   std::error_code error;
   return fs::is_symlink(path, error);
 }
+
+bool IsPipe(const fs::path& path) { return TypeOf(path) == fs::file_type::fifo; }
 
 std::uintmax_t FileSize(const fs::path& path) {
   std::error_code error;
@@ -148,9 +152,12 @@ std::vector<fs::path> FilesBelow(const fs::path& folder) {
     for (const fs::path& entry : FolderEntries(current)) {
       std::error_code ignored;  // a link that leads nowhere, or to itself, is no file
       if (entry.filename().string().front() == '.') continue;
-      if (fs::is_regular_file(entry, ignored)) files.push_back(entry);
-      if (!fs::is_directory(entry, ignored)) continue;
-      (IsLink(entry) ? linked_folders : folders).push_back(entry);
+      const fs::file_status status = fs::status(entry, ignored);
+      if (fs::is_directory(status)) {
+        (IsLink(entry) ? linked_folders : folders).push_back(entry);
+      } else if (fs::status_known(status) && fs::exists(status)) {
+        files.push_back(entry);
+      }
     }
   }
   return files;
@@ -167,20 +174,28 @@ void CreateFolders(const fs::path& path) {
 TemporaryFolder::TemporaryFolder() {
   std::error_code error;
   const fs::path parent = fs::temp_directory_path(error);
-  std::string pattern = (parent / kScratchName).string();
+  if (!error) RemoveAbandoned(parent);
+  // Another run that comes between the folder and the lock takes the folder for abandoned, and
+  // removes it.
+  constexpr int kMaxNumTries = 100;
+  for (int i = 0; !error && i < kMaxNumTries; ++i) {
+    std::string pattern = (parent / kScratchName).string();
+    if (mkdtemp(pattern.data()) == nullptr) {
+      error = std::error_code(errno, std::generic_category());
+      break;
+    }
+    path_ = pattern;
+    try {
+      lock_ = std::make_unique<FileLock>(path_ / kScratchLock, pattern);
+      if (Exists(path_)) return;
+    } catch (const InputError&) {
+    }
+  }
   const char* wanted = std::getenv("TMPDIR");
-  if (!error && mkdtemp(pattern.data()) == nullptr) {
-    error = std::error_code(errno, std::generic_category());
-  }
-  if (error) {
-    throw InputError(fmt::format(
-        "TMPDIR {}: no folder for temporary files can be made there: {}; set TMPDIR to a "
-        "folder that can be written",
-        error && wanted != nullptr ? wanted : parent.string(), error.message()));
-  }
-  RemoveAbandoned(parent);
-  path_ = pattern;
-  lock_ = std::make_unique<FileLock>(path_ / kScratchLock, pattern);
+  throw InputError(
+      fmt::format("TMPDIR {}: no folder for temporary files can be made there: {}; set TMPDIR to a "
+                  "folder that can be written",
+                  wanted != nullptr ? wanted : parent.string(), error.message()));
 }
 
 TemporaryFolder::~TemporaryFolder() { RemoveAll(path_); }
@@ -191,6 +206,7 @@ bool IsSameFile(const fs::path& path1, const fs::path& path2) {
 }
 
 void CloneFile(const fs::path& from, const fs::path& to) {
+  CheckReadable(from);  // an error of the copy does not say which of the two it means
   CreateFolders(to.parent_path());
   const fs::path temporary_path = to.parent_path() / TemporaryName(to.filename().string());
   std::error_code error;

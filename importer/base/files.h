@@ -19,6 +19,7 @@ class FileLock;
 bool Exists(const std::filesystem::path& path);
 bool IsFolder(const std::filesystem::path& path);
 bool IsRegularFile(const std::filesystem::path& path);
+bool IsPipe(const std::filesystem::path& path);
 
 // Whether the path itself is a link, wherever that leads.
 bool IsLink(const std::filesystem::path& path) noexcept;
@@ -37,9 +38,9 @@ std::filesystem::path AbsoluteFolder(const std::filesystem::path& path);
 // Everything in the folder, sorted by name.
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
 
-// Regular files in the folder and below, in no particular order. Links are followed, but each
-// folder is entered once, by its own name where it has one here. Files and folders whose name
-// starts with a dot are left out.
+// Files in the folder and below, pipes and devices among them, in no particular order. Links are
+// followed, but each folder is entered once, by its own name where it has one here. Files and
+// folders whose name starts with a dot are left out.
 std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folder);
 
 // Creates the folder and its missing parents; nothing happens if it is there.
@@ -47,7 +48,8 @@ void CreateFolders(const std::filesystem::path& path);
 
 // A copy that an edit of the original does not change, nor the other way round. It takes no space
 // where the file system can share blocks. It is there as a whole or not at all, and replaces `to`.
-// Creates the missing parents of `to`.
+// Creates the missing parents of `to`. The message names `from` if that cannot be read, and else
+// `to`.
 void CloneFile(const std::filesystem::path& from, const std::filesystem::path& to);
 
 // Whether both paths lead to one file, which has several names or is reached through links. False

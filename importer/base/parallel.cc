@@ -8,7 +8,11 @@
 #include <thread>
 #include <vector>
 
+#include <opencv2/core/utility.hpp>
+
 namespace velamap {
+
+void UseOwnThreadsOnly() { cv::setNumThreads(1); }
 
 int NumThreads(int num_threads) {
   if (num_threads > 0) return num_threads;

@@ -7,6 +7,10 @@
 
 namespace velamap {
 
+// Makes OpenCV start no threads. They would compete with ours, and OpenCV's TBB throws where the
+// system refuses one.
+void UseOwnThreadsOnly();
+
 // Returns `num_threads`, or the number of cores if it is 0, but at least 1.
 int NumThreads(int num_threads);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -149,7 +150,9 @@ void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_p
   const ScratchFolder scratch;
   OrderForGauge(model->images.front().image_id, model);
   WriteModel(*model, scratch.InputPath(), ModelFormat::kBinary);
-  RunColmap(options.colmap_path, BundleAdjusterArguments(options, scratch), log_path);
+  RunColmap(options.colmap_path, BundleAdjusterArguments(options, scratch), log_path,
+            {std::chrono::duration<double, std::ratio<60>>(options.time_limit_min),
+             OptionName(&BundleAdjustmentOptions::time_limit_min)});
 
   const Model result = ReadResult(scratch.OutputPath(), log_path);
   CheckStructure(*model, result, RefinesCameras(options), log_path);

@@ -29,6 +29,8 @@ OptionGroup DescribeOptions(BundleAdjustmentOptions* options) {
             "errors below this are never outliers", AtLeast(0)},
            {"BundleAdjustment.min_track_length", &options->min_track_length, "images",
             "fewest images that have to see a corner", AtLeast(2)},
+           {"BundleAdjustment.time_limit", &options->time_limit_min, "minutes",
+            "a run of COLMAP that takes longer is ended", FromTo(0.001, 10080)},
            {"BundleAdjustment.max_mean_error", &options->max_mean_error_px, "px",
             "a result with a larger mean reprojection error is refused", AtLeast(0)}}};
 }

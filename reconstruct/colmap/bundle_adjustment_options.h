@@ -22,6 +22,7 @@ struct BundleAdjustmentOptions {
   double outlier_ratio = 6.0;
   double min_outlier_error_px = 0.5;
   int min_track_length = 2;
+  double time_limit_min = 60.0;    // of one run of COLMAP; one that takes longer is ended
   double max_mean_error_px = 5.0;  // a model with a larger mean reprojection error is refused
 
   void Check() const;  // throws InputError that names the option

@@ -1,12 +1,8 @@
 #include "reconstruct/colmap/colmap_runner.h"
 
-#include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
@@ -15,17 +11,21 @@
 #include <mutex>
 #include <optional>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/text/shown_text.h"
+#include "reconstruct/colmap/child_process.h"
 
 namespace velamap {
 namespace {
 
-namespace fs = std::filesystem;
+// No run of COLMAP writes as much, but one that has lost its way may fill the disk.
+constexpr std::size_t kMaxOutputSize = std::size_t{64} << 20;
 
 std::string CommandLine(const std::string& program, const std::vector<std::string>& arguments) {
   std::string line = program;
@@ -35,67 +35,11 @@ std::string CommandLine(const std::string& program, const std::vector<std::strin
   return line;
 }
 
-// Owns both ends of a pipe.
-class Pipe {
- public:
-  Pipe() {
-    if (pipe2(ends_.data(), O_CLOEXEC) != 0) Fail();
-    for (int& end : ends_) MoveBeyondStandardStreams(&end);
-  }
-  ~Pipe() {
-    CloseWriteEnd();
-    close(ends_[0]);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-
-  int WriteEnd() const { return ends_[1]; }
-  void CloseWriteEnd() {
-    if (ends_[1] >= 0) close(ends_[1]);
-    ends_[1] = -1;
-  }
-
-  // Waits for output. Returns an empty string once every writer has closed its end.
-  std::string Read() const {
-    std::array<char, 4096> buffer;
-    ssize_t size;
-    do {
-      size = read(ends_[0], buffer.data(), buffer.size());
-    } while (size < 0 && errno == EINTR);
-    return std::string(buffer.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
-  }
-
- private:
-  [[noreturn]] static void Fail() {
-    throw ExternalToolError(
-        fmt::format("a pipe for COLMAP's output cannot be made: {}", std::strerror(errno)));
-  }
-
-  // Where our own stdin is closed, an end of the pipe would get its number, which the child's stdin
-  // needs.
-  static void MoveBeyondStandardStreams(int* end) {
-    if (*end > STDERR_FILENO) return;
-    const int moved = fcntl(*end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-    if (moved < 0) Fail();
-    close(*end);
-    *end = moved;
-  }
-
-  std::array<int, 2> ends_{};
-};
-
-std::vector<char*> Pointers(std::vector<std::string>& strings) {
-  std::vector<char*> pointers;
-  for (std::string& string : strings) pointers.push_back(string.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
 // Our environment, with a Qt platform that needs no display, because some commands of COLMAP start
 // Qt, and with `scratch_path` for the logs that it writes into TMPDIR and leaves there.
 std::vector<std::string> ChildEnvironment(const std::string& scratch_path) {
-  std::map<std::string, std::string> own = {{"QT_QPA_PLATFORM", "offscreen"}};
-  if (!scratch_path.empty()) own["TMPDIR"] = scratch_path;
+  std::map<std::string, std::string> own = {{"QT_QPA_PLATFORM", "offscreen"},
+                                            {"TMPDIR", scratch_path}};
   std::vector<std::string> variables;
   for (const auto& [name, value] : own) variables.push_back(name + "=" + value);
   for (char** variable = environ; *variable != nullptr; ++variable) {
@@ -103,37 +47,6 @@ std::vector<std::string> ChildEnvironment(const std::string& scratch_path) {
     if (own.count(text.substr(0, text.find('='))) == 0) variables.push_back(text);
   }
   return variables;
-}
-
-// The child stays in our process group, so that an interrupt from the terminal reaches it.
-pid_t Spawn(const std::string& program, const std::vector<std::string>& arguments,
-            const std::string& scratch_path, int output_fd) {
-  std::vector<std::string> words{program};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<std::string> variables = ChildEnvironment(scratch_path);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, output_fd, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, output_fd, STDERR_FILENO);
-  pid_t pid = -1;
-  const int error = posix_spawnp(&pid, program.c_str(), &actions, nullptr, Pointers(words).data(),
-                                 Pointers(variables).data());
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) {
-    throw ExternalToolError(fmt::format(
-        "{}: cannot be started: {}; install COLMAP (apt install colmap) or name its program with "
-        "--colmap_path",
-        program, std::strerror(error)));
-  }
-  return pid;
-}
-
-int WaitFor(pid_t pid) {
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-  }
-  return status;
 }
 
 // Quotes the first line of COLMAP's output that looks like an error, else the last line.
@@ -162,39 +75,79 @@ std::string DescribeFailure(int wait_status) {
   return "";
 }
 
-std::ofstream OpenLog(const std::string& log_path) {
-  CreateFolders(AbsolutePath(log_path).parent_path());
-  std::ofstream log(log_path, std::ios::app | std::ios::binary);
-  if (!log) throw InputError(fmt::format("{}: the log cannot be written", log_path));
-  return log;
+// The log, which shows no folders (importer/text/shown_text.h).
+class Log {
+ public:
+  explicit Log(const std::string& path) {
+    CreateFolders(AbsolutePath(path).parent_path());
+    stream_.open(path, std::ios::app | std::ios::binary);
+    if (!stream_) throw InputError(fmt::format("{}: the log cannot be written", path));
+  }
+  ~Log() { stream_ << WithoutFolders(unfinished_); }
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+
+  void Write(const std::string& text) {
+    unfinished_ += text;
+    const std::size_t end = unfinished_.rfind('\n') + 1;
+    stream_ << WithoutFolders(unfinished_.substr(0, end)) << std::flush;
+    unfinished_.erase(0, end);
+  }
+
+ private:
+  std::ofstream stream_;
+  std::string unfinished_;  // the last line, which may break off within a name
+};
+
+[[noreturn]] void ThrowNotStarted(const std::string& program, const std::error_code& error) {
+  if (error == std::errc::resource_unavailable_try_again) throw std::system_error(error);
+  throw ExternalToolError(fmt::format(
+      "{}: cannot be started: {}; install COLMAP (apt install colmap) or name its program with "
+      "--colmap_path",
+      program, error.message()));
+}
+
+// Runs the program to its end. Returns how it failed; an empty string if it succeeded.
+std::string RunInto(const std::string& program, const std::vector<std::string>& arguments,
+                    const std::string& scratch_path, const ColmapLimit& limit, Log* log,
+                    std::string* output) {
+  std::vector<std::string> words{program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  try {
+    const ChildProcess child(words, ChildEnvironment(scratch_path));
+    const auto deadline = std::chrono::steady_clock::now() +
+                          std::chrono::duration_cast<std::chrono::nanoseconds>(limit.time);
+    while (output->size() <= kMaxOutputSize) {
+      const std::optional<std::string> text = child.Read(deadline);
+      if (text && !text->empty()) {
+        log->Write(*text);
+        *output += *text;
+        continue;
+      }
+      const std::optional<int> status = text ? child.Wait(deadline) : std::nullopt;
+      if (status) return DescribeFailure(*status);
+      return fmt::format("had not ended after {:.3g} minutes ({}) and was ended",
+                         std::chrono::duration<double, std::ratio<60>>(limit.time).count(),
+                         limit.set_by);
+    }
+    return fmt::format("wrote more than {} bytes and was ended", kMaxOutputSize);
+  } catch (const std::system_error& error) {
+    ThrowNotStarted(program, error.code());
+  }
 }
 
 }  // namespace
 
 ColmapRun RunColmap(const std::string& program, const std::vector<std::string>& arguments,
-                    const std::string& log_path) {
+                    const std::string& log_path, const ColmapLimit& limit) {
   const std::string command_line = CommandLine(program, arguments);
-  std::ofstream log = OpenLog(log_path);
-  log << "$ " << command_line << std::endl;
-
-  std::optional<TemporaryFolder> scratch;
-  try {
-    scratch.emplace();
-  } catch (const InputError&) {
-    // COLMAP does without.
-  }
-  Pipe pipe;
-  const pid_t pid =
-      Spawn(program, arguments, scratch ? scratch->path().string() : "", pipe.WriteEnd());
-  pipe.CloseWriteEnd();
+  Log log(log_path);
+  log.Write("$ " + command_line + "\n");
+  const TemporaryFolder scratch;
   ColmapRun run;
-  for (std::string text = pipe.Read(); !text.empty(); text = pipe.Read()) {
-    log << text << std::flush;
-    run.output += text;
-  }
-  const std::string failure = DescribeFailure(WaitFor(pid));
+  const std::string failure = RunInto(program, arguments, scratch.path(), limit, &log, &run.output);
   if (!failure.empty()) {
-    log << "(" << failure << ")\n";
+    log.Write("(" + failure + ")\n");
     throw ExternalToolError(fmt::format("COLMAP {}: {}; {}; log: {}", failure, command_line,
                                         DescribeOutput(run.output), log_path));
   }
@@ -208,7 +161,7 @@ bool ColmapHasOption(const std::string& program, const std::string& command,
   const std::lock_guard<std::mutex> lock(mutex);
   const auto key = std::make_pair(program, command);
   if (help_texts.count(key) == 0) {
-    help_texts[key] = RunColmap(program, {command, "-h"}, "/dev/null").output;
+    help_texts[key] = RunColmap(program, {command, "-h"}, "/dev/null", kColmapHelpLimit).output;
   }
   std::istringstream words(help_texts.at(key));
   for (std::string word; words >> word;) {

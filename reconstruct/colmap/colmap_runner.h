@@ -1,7 +1,8 @@
-// Runs the installed colmap program, without a shell.
+// Runs the installed colmap program, without a shell. It ends with us (child_process.h).
 
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -11,13 +12,23 @@ struct ColmapRun {
   std::string output;  // stdout and stderr
 };
 
+// A program that runs longer is ended.
+struct ColmapLimit {
+  std::chrono::duration<double> time;
+  std::string set_by;  // what the message names, such as an option
+};
+
+// For questions that COLMAP answers at once.
+inline const ColmapLimit kColmapHelpLimit = {std::chrono::minutes(2), "the limit for its help"};
+
 // Starts `program` (a name on the PATH, or a path) and waits for it. Its output is returned and
-// appended to `log_path`, whose folder is made. No display is needed. Throws ExternalToolError if
-// the program cannot be started, exits with a status other than 0, or is killed; the message holds
-// the command line and the path of the log. Throws InputError if the log cannot be written. An
-// interrupt from the terminal ends the child, too.
+// appended to `log_path`, whose folder is made; the log shows names of files without their folders
+// (importer/text/shown_text.h). No display is needed. Throws ExternalToolError if the program
+// cannot be started, exits with a status other than 0, is killed, or runs beyond the limit; the
+// message holds the command line and the path of the log. Throws InputError if the log cannot be
+// written, or no folder for temporary files can be made.
 ColmapRun RunColmap(const std::string& program, const std::vector<std::string>& arguments,
-                    const std::string& log_path);
+                    const std::string& log_path, const ColmapLimit& limit = kColmapHelpLimit);
 
 // Tells whether `colmap COMMAND -h` lists the option (given without its dashes). Options differ
 // between versions, and an unknown one is fatal. Every command is run once per process. Throws as

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 
 std::vector<BadInput> AllCases() {
   std::vector<BadInput> cases;
-  for (const auto& some : {OutputCases(), SourceCases(), InputCases()}) {
+  for (const auto& some : {OutputCases(), SourceCases(), InputCases(), ProcessCases()}) {
     cases.insert(cases.end(), some.begin(), some.end());
   }
   return cases;
@@ -55,6 +55,25 @@ TEST_P(BadInputTest, IsRefusedInOneLineAndChangesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, BadInputTest, testing::ValuesIn(AllCases()),
                          [](const auto& bad) { return bad.param.name; });
+
+// One line where no thread can be started: by the import, and by the adjustment of what is imported.
+TEST(BadSystem, RefusesThreads) {
+  const TempDir dir;
+  MakeSandbox(dir.path());
+  fs::permissions(dir.path(), fs::perms::all);
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dir.path())) {
+    fs::permissions(entry.path(), fs::perms::all);
+  }
+  ProgramLimits limits;
+  limits.has_no_threads = true;
+  for (const std::string& command : {kImport, kRerun}) {
+    const ProgramRun run = RunVelamap(ArgumentsIn(dir.path(), command), limits);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("the system starts no more threads"));
+    EXPECT_THAT(run.err, HasSubstr("(ulimit -u)"));
+  }
+}
 
 // What the cases spoil is good.
 TEST(BadInputSandbox, IsGood) {

@@ -1,8 +1,6 @@
 // Files, folders and options of the main job that are none. Each case breaks one thing of a call
 // that fails for want of markers only.
 
-#include <sys/stat.h>
-
 #include <regex>
 
 #include "tests/bad_input/sandbox.h"
@@ -47,8 +45,6 @@ std::vector<BadInput> Pictures() {
        }},
       {"VideoThatIsNone", Call("video.mp4", "camera.yml"), 2, "video.mp4",
        Write("video.mp4", "no video")},
-      {"VideoThatIsAPipe", Call("pipe.mp4", "camera.yml"), 2, "a pipe or a device",
-       [](const fs::path& dir) { mkfifo((dir / "pipe.mp4").c_str(), 0600); }},
       {"SingleImage", Call("grey/a.png", "camera.yml"), 2, "a single image"}};
 }
 
@@ -170,8 +166,6 @@ std::vector<BadInput> Numbers() {
          WriteTextFile(dir / "bad.csv", "marker_id");
          fs::resize_file(dir / "bad.csv", (std::uintmax_t{256} << 20) + 1);
        }},
-      {"AShapeThatIsAPipe", analyzed, 2, "bad.csv: the shape.csv is not a regular file",
-       [](const fs::path& dir) { mkfifo((dir / "bad.csv").c_str(), 0600); }},
       {"AFarVertex", "shape_comparer --shape_path @/workspace/shape --reference_path @/bad.obj", 2,
        "bad.obj", Write("bad.obj", "v 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n")}};
 }

@@ -33,18 +33,32 @@ void WriteLayout(const Layout& layout, const fs::path& path) {
                                   fmt::join(MarkerIds(layout), ", ")));
 }
 
-}  // namespace
-
-void MakeSandbox(const fs::path& dir) {
+SyntheticScene MakeScene(int num_frames, bool is_video) {
   SyntheticSceneOptions options;
   options.kind = SceneKind::kPlane;
   options.num_rows = 2;
   options.num_columns = 3;
-  options.num_frames = kNumImages;
-  options.video = false;
+  options.num_frames = num_frames;
+  options.video = is_video;
   options.camera = {
       CameraModel::kPinhole, kWidth, kHeight, {300.0, 300.0, kWidth / 2.0, kHeight / 2.0}};
-  const SyntheticScene scene = MakeSyntheticScene(options);
+  return MakeSyntheticScene(options);
+}
+
+}  // namespace
+
+void WriteLongClip(int num_frames, const fs::path& path) {
+  const SyntheticScene scene = MakeScene(num_frames, true);
+  cv::VideoWriter video(path.string(), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25.0,
+                        {kWidth, kHeight});
+  RenderOptions render;
+  render.supersampling = 2;
+  render.color = true;
+  for (int i = 0; i < num_frames; ++i) video << RenderFrame(scene, i, render);
+}
+
+void MakeSandbox(const fs::path& dir) {
+  const SyntheticScene scene = MakeScene(kNumImages, false);
   fs::create_directories(dir / "images");
   fs::create_directories(dir / "grey");
   cv::VideoWriter video(dir / "clip.avi", cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,

@@ -1,8 +1,8 @@
 // A folder with one good file of each kind, which the cases of bad input spoil:
 //
-//   images/ clip.avi camera.yml layout.yml      rendered pictures of a board, and the same as a
-//   video grey/ grey.yml                              pictures without a marker workspace/ what
-//   automatic_reconstructor makes of images/
+//   images/ clip.avi camera.yml layout.yml   rendered pictures of a board, and the same as a video
+//   grey/                                    pictures without a marker
+//   workspace/                               what automatic_reconstructor makes of images/
 
 #pragma once
 
@@ -41,6 +41,9 @@ inline const std::string kImport =
 // Makes the folder, which is empty before.
 void MakeSandbox(const fs::path& dir);
 
+// A clip of the board of the sandbox, for its camera and layout.
+void WriteLongClip(int num_frames, const fs::path& path);
+
 std::vector<std::string> ArgumentsIn(const fs::path& dir, const std::string& command);
 
 // The hash of each file below, by its path in `dir`; of a link where it leads.
@@ -53,5 +56,6 @@ void RunSql(const fs::path& database, const std::string& sql);
 std::vector<BadInput> OutputCases();
 std::vector<BadInput> SourceCases();
 std::vector<BadInput> InputCases();
+std::vector<BadInput> ProcessCases();
 
 }  // namespace velamap

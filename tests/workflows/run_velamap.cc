@@ -29,6 +29,12 @@ namespace {
     const rlimit limit{*limits.max_file_size, *limits.max_file_size};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (limits.has_no_threads) {
+    constexpr unsigned kUnusedId = 54321;
+    const rlimit limit{1, 1};
+    setrlimit(RLIMIT_NPROC, &limit);
+    if (geteuid() == 0 && (setgid(kUnusedId) != 0 || setuid(kUnusedId) != 0)) _exit(127);
+  }
   std::vector<char*> argv = {const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

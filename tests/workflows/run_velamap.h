@@ -19,6 +19,9 @@ struct ProgramLimits {
   // Largest file that the program may write, bytes: what a full disk looks like without needing
   // privileges.
   std::optional<unsigned long> max_file_size;
+  // The program may start no thread and no process (ulimit -u). The superuser, who has no such
+  // limit, runs it as a user without privileges.
+  bool has_no_threads = false;
 };
 
 // `program` is a path. Throws std::runtime_error if it cannot be started.

@@ -13,6 +13,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/camera/calibration_writer.h"
+#include "importer/text/shown_text.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "workflows/commands/commands.h"
@@ -39,6 +40,7 @@ struct Options {
   ShapeExporterOptions exporter;
   SurfaceFileOptions surface;
   Arguments arguments;  // as they were typed, for the report
+  bool full_paths = false;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -64,12 +66,16 @@ CommandSyntax Declare(Options* options) {
     syntax.groups.push_back(group);
   }
   syntax.groups.push_back(DescribeOptions(&options->general));
+  syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
+                                          "log and report name files with their folders; 0: "
+                                          "without, so that they can be sent around"});
   return syntax;
 }
 
 // Checks everything that can be checked without touching the workspace.
 void Validate(Options* options) {
   SetLogLevel(options->general.log_level);
+  ShowFolders(options->full_paths);
   options->importer.detection.Check();
   options->importer.video.Check();
   options->registration.random_seed = options->general.random_seed;
@@ -127,6 +133,17 @@ std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& a
   return options;
 }
 
+// The report is sent around.
+void LeaveFoldersOut(ReportInput* input) {
+  for (std::string& warning : input->warnings) warning = WithoutFolders(warning);
+  for (auto* pairs : {&input->options, &input->versions}) {
+    for (auto& [name, value] : *pairs) value = WithoutFolders(value);
+  }
+  for (auto* left_out : {&input->images_left_out, &input->markers_left_out}) {
+    for (ReportLeftOut& one : *left_out) one.reason = WithoutFolders(one.reason);
+  }
+}
+
 void WriteReportFile(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
                      ReconstructionSummary* summary) {
   const ShapeExportReport& shape = summary->shape;
@@ -151,6 +168,7 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
   LogScaleWarnings(shape.audit);
   input.options = TypedOptions(options.arguments);
   input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
+  LeaveFoldersOut(&input);
   summary->verdict = MakeVerdict(input);
   WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
 }

@@ -236,6 +236,7 @@ bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& a
   const OptionsByName options = IndexByName(groups);
   GivenValues values = ReadCommandLine(syntax, options, arguments);
   if (const auto project = values.find(kProjectPath); project != values.end()) {
+    CheckInputKind(project->second.given_as, project->second.text);
     GivenValues from_file = ReadProjectFile(syntax, options, project->second.text, known_names);
     values.merge(from_file);  // keeps what the command line has given
   }

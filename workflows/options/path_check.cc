@@ -5,10 +5,13 @@
 #include <string>
 #include <variant>
 
+#include <fmt/format.h>
+
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
 #include "importer/layout/layout.h"
+#include "importer/text/shown_text.h"
 #include "importer/video/source_file.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/run/workspace.h"
@@ -81,7 +84,24 @@ void AddUse(PathUse use, const std::string& used_by, const std::string& path, Us
   }
 }
 
+void CheckKinds(const UsedPaths& paths) {
+  for (const UsedPath& input : paths.inputs) CheckInputKind(input.used_by, input.path);
+  for (const UsedPath& output : paths.outputs) {
+    if (!IsPipe(output.path)) continue;
+    throw InputError(fmt::format("{}: {} is a pipe, whose reader would be waited for; give a file",
+                                 output.used_by, output.path.string()));
+  }
+}
+
 }  // namespace
+
+void CheckInputKind(const std::string& used_by, const fs::path& path) {
+  if (!Exists(path) || IsFolder(path) || IsRegularFile(path)) return;
+  throw InputError(fmt::format(
+      "{}: {} is a pipe or a device, which may never end; give a file, such as a copy of what it "
+      "yields",
+      used_by, path.string()));
+}
 
 void CompletePaths(const std::vector<OptionGroup>& groups) {
   UsedPaths paths;
@@ -93,9 +113,12 @@ void CompletePaths(const std::vector<OptionGroup>& groups) {
       if (path->empty() && option.beside != nullptr && !option.beside->empty()) {
         *path = (AbsoluteFolder(*option.beside).parent_path() / option.name_beside).string();
       }
-      if (!path->empty()) AddUse(option.path_use, "--" + option.name, *path, &paths);
+      if (path->empty() || option.path_use == PathUse::kNone) continue;
+      MentionPath(*path);
+      AddUse(option.path_use, "--" + option.name, *path, &paths);
     }
   }
+  CheckKinds(paths);
   CheckOutputs(paths.inputs, paths.outputs);
 }
 

@@ -2,14 +2,22 @@
 
 #pragma once
 
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "importer/base/option.h"
 
 namespace velamap {
 
+// Throws InputError for a pipe or a device. Nothing happens if the path is missing. `used_by` names
+// the option.
+void CheckInputKind(const std::string& used_by, const std::filesystem::path& path);
+
 // Once the options are set: sets outputs that are left out to the file beside another output, and
-// throws InputError where CheckOutputs() (importer/base/replacement.h) does.
+// throws InputError where CheckOutputs() (importer/base/replacement.h) does, for an input that is a
+// pipe or a device, and for an output that is a pipe. Texts that are sent around will not show the
+// folders of the paths (importer/text/shown_text.h).
 void CompletePaths(const std::vector<OptionGroup>& groups);
 
 }  // namespace velamap

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/pattern_formatter.h>
@@ -12,20 +13,22 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/text/shown_text.h"
 #include "workflows/run/progress.h"
 
 namespace velamap {
 namespace {
 
-char Printable(char character) {
+// `before` is the character before it: in UTF-8, control characters from 80 to 9F stand behind C2.
+char PrintableCharacter(char before, char character) {
   const auto code = static_cast<unsigned char>(character);
-  const bool is_control = (code < 0x20 && code != '\n' && code != '\t') || code == 0x7f;
+  const bool is_control = (code < 0x20 && code != '\n' && code != '\t') || code == 0x7f ||
+                          (before == '\xc2' && code >= 0x80 && code < 0xa0);
   return is_control ? '?' : character;
 }
 
 void WriteToTerminal(const char* text, std::size_t size) {
-  std::string printable(text, size);
-  std::transform(printable.begin(), printable.end(), printable.begin(), Printable);
+  const std::string printable = Printable({text, size});
   ClearProgressLine();
   std::fwrite(printable.data(), 1, size, stderr);
   std::fflush(stderr);
@@ -74,9 +77,24 @@ class ProblemMark : public spdlog::custom_flag_formatter {
   }
 };
 
-std::unique_ptr<spdlog::formatter> MakeFormatter(const std::string& time_pattern) {
+// The message without folders and control characters.
+class FolderlessText : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& out) override {
+    const std::string text =
+        WithoutFolders(Printable({message.payload.data(), message.payload.size()}));
+    out.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
+    return std::make_unique<FolderlessText>();
+  }
+};
+
+// %* is the mark of a problem, %& the message without folders.
+std::unique_ptr<spdlog::formatter> MakeFormatter(const std::string& pattern) {
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<ProblemMark>('*').set_pattern("[" + time_pattern + "] %*%v");
+  formatter->add_flag<ProblemMark>('*').add_flag<FolderlessText>('&').set_pattern(pattern);
   return formatter;
 }
 
@@ -95,10 +113,19 @@ void SetLevel(spdlog::level::level_enum level) {
 
 }  // namespace
 
+std::string Printable(std::string text) {
+  char before = '\0';
+  for (char& character : text) {
+    character = PrintableCharacter(std::exchange(before, character), character);
+  }
+  return text;
+}
+
 int PrintableOutput::overflow(int character) {
   if (traits_type::eq_int_type(character, traits_type::eof()))
     return traits_type::not_eof(character);
-  return out_->sputc(Printable(traits_type::to_char_type(character)));
+  const char passed = traits_type::to_char_type(character);
+  return out_->sputc(PrintableCharacter(std::exchange(before_, passed), passed));
 }
 
 void SetUpLogging() {
@@ -106,7 +133,7 @@ void SetUpLogging() {
   warnings = std::make_shared<WarningSink>();
   auto logger =
       std::make_shared<spdlog::logger>("velamap", spdlog::sinks_init_list{sink, warnings});
-  sink->set_formatter(MakeFormatter("%H:%M:%S"));
+  sink->set_formatter(MakeFormatter("[%H:%M:%S] %*%v"));
   spdlog::set_default_logger(logger);
 }
 
@@ -134,7 +161,7 @@ void AddLogFile(const std::string& path) {
     throw InputError(fmt::format("{}: the log cannot be written: {}", path, error.what()));
   }
   log_file->set_level(written_level);
-  log_file->set_formatter(MakeFormatter("%Y-%m-%d %H:%M:%S"));
+  log_file->set_formatter(MakeFormatter("[%Y-%m-%d %H:%M:%S] %*%&"));
   spdlog::default_logger()->sinks().push_back(log_file);
   spdlog::default_logger()->flush_on(spdlog::level::info);
 }

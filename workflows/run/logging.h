@@ -19,11 +19,15 @@ void SetLogLevel(LogLevel level);
 // The messages of level warning since SetUpLogging(), in order, at every log level.
 std::vector<std::string> LoggedWarnings();
 
-// Appends all later messages to this file, too. Throws InputError if it cannot be written.
+// Appends all later messages to this file, too, without the folders of files that they name
+// (importer/text/shown_text.h). Throws InputError if it cannot be written.
 void AddLogFile(const std::string& path);
 
-// Passes text on with a ? for each control character but tab and line feed, which could change what
-// a terminal shows: names of files may hold any.
+// The text with a ? for each control character but tab and line feed, which could change what a
+// terminal shows: names of files may hold any.
+std::string Printable(std::string text);
+
+// Passes text on as Printable() gives it.
 class PrintableOutput : public std::streambuf {
  public:
   explicit PrintableOutput(std::streambuf* out) : out_(out) {}
@@ -34,6 +38,7 @@ class PrintableOutput : public std::streambuf {
 
  private:
   std::streambuf* out_;
+  char before_ = '\0';
 };
 
 // Writes one line `error: ...` to stderr, and to the log file if there is one.

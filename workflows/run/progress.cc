@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "workflows/run/logging.h"
+
 namespace velamap {
 namespace {
 
@@ -28,7 +30,7 @@ std::size_t TerminalColumns() {
 void ShowProgressLine(std::string line) {
   const std::lock_guard<std::mutex> lock(terminal_mutex);
   line.resize(std::min(line.size(), TerminalColumns() - 1));
-  std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  std::fprintf(stderr, "\r\033[K%s", Printable(line).c_str());
   std::fflush(stderr);
   line_shown = true;
 }

@@ -1,9 +1,12 @@
 #include "importer/base/files.h"
 
-#include <chrono>
+#include <sys/resource.h>
+
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <iostream>
 
 #include <gmock/gmock.h>
 
@@ -96,15 +99,9 @@ TEST(TemporaryFolder, OfAKilledRunIsRemovedByTheNext) {
   const fs::path workspace = dir / "velamap_result";  // of a run that was killed, too
   for (const fs::path& folder : {killed, theirs, workspace}) fs::create_directory(folder);
   Touch(workspace / ".velamap.lock");
-  fs::last_write_time(workspace / ".velamap.lock",
-                      fs::file_time_type::clock::now() - std::chrono::hours(1));
   Touch(killed / ".velamap.scratch.lock");
-  fs::last_write_time(killed / ".velamap.scratch.lock",
-                      fs::file_time_type::clock::now() - std::chrono::hours(1));
   {
     const TemporaryFolder one;
-    fs::last_write_time(one.path() / ".velamap.scratch.lock",
-                        fs::file_time_type::clock::now() - std::chrono::hours(1));
     const TemporaryFolder other;
     EXPECT_TRUE(fs::exists(one.path()));
   }
@@ -135,6 +132,35 @@ TEST(Files, AnEditOfACloneLeavesTheOriginal) {
   CloneFile(dir / "from", dir / "a/b/to");
   EXPECT_EQ(ReadTextFile(dir / "a/b/to", "copy"), "x");
   EXPECT_EQ(FolderEntries(dir / "a/b").size(), 1u);
+}
+
+// What a full disk looks like without needing one.
+[[noreturn]] void CopyOntoAFullDisk(const fs::path& from, const fs::path& to) {
+  signal(SIGXFSZ, SIG_IGN);
+  const rlimit none{0, RLIM_INFINITY}, any{RLIM_INFINITY, RLIM_INFINITY};
+  setrlimit(RLIMIT_FSIZE, &none);
+  try {
+    CloneFile(from, to);
+  } catch (const InputError& error) {
+    setrlimit(RLIMIT_FSIZE, &any);
+    std::cerr << error.what();
+    std::_Exit(2);
+  }
+  std::_Exit(0);
+}
+
+TEST(Files, ACopyThatFailsNamesTheFileAndTheReason) {
+  const TempDir dir;
+  Touch(dir / "from");
+  ExpectThrows<InputError>([&] { CloneFile(dir / "none", dir / "to"); },
+                           {dir / "none", "cannot be read", "No such file"});
+  fs::create_directories(dir / "to/full");
+  ExpectThrows<InputError>([&] { CloneFile(dir / "from", dir / "to"); },
+                           {dir / "to", "cannot be written", "directory"});
+  EXPECT_EXIT(CopyOntoAFullDisk(dir / "from", dir / "copy"), testing::ExitedWithCode(2),
+              "copy: cannot be written: File too large");
+  EXPECT_FALSE(fs::exists(dir / "copy"));
+  EXPECT_EQ(FolderEntries(dir.path()).size(), 2u);
 }
 
 }  // namespace

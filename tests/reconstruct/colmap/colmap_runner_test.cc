@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -58,7 +59,45 @@ TEST_F(ColmapRunnerTest, BothStreamsReachTheLogWhichIsAppendedTo) {
   const std::string program = Script("echo out; echo err >&2");
   EXPECT_EQ(RunColmap(program, {"first"}, log_path_).output, "out\nerr\n");
   RunColmap(program, {"second"}, log_path_);
-  EXPECT_EQ(Log(), "$ " + program + " first\nout\nerr\n$ " + program + " second\nout\nerr\n");
+  EXPECT_EQ(Log(), "$ fake_colmap first\nout\nerr\n$ fake_colmap second\nout\nerr\n");
+}
+
+TEST_F(ColmapRunnerTest, TheLogNamesNoFolders) {
+  const std::string program = Script("printf '%s' \"$1\"; sleep 0.1; echo /c; echo /no/end");
+  RunColmap(program, {"/home/jo/a b", "/home/jo/c"}, log_path_);
+  EXPECT_THAT(Log(), testing::Not(HasSubstr("/home")));
+  EXPECT_THAT(Log(), testing::Not(HasSubstr("/no/")));
+}
+
+TEST_F(ColmapRunnerTest, ItsTemporaryFilesGoWithIt) {
+  const std::string program = Script("echo $TMPDIR; touch $TMPDIR/colmap.INFO");
+  std::string folder = RunColmap(program, {}, log_path_).output;
+  folder.pop_back();
+  EXPECT_NE(folder, fs::temp_directory_path().string());
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST_F(ColmapRunnerTest, AProgramThatDoesNotEndIsEndedWithAllThatItHasStarted) {
+  const ColmapLimit limit = {std::chrono::milliseconds(200), "--limit"};
+  const auto begin = std::chrono::steady_clock::now();
+  for (const char* body : {"sleep 100; echo", "sleep 100 & exec sleep 100",
+                           "exec >/dev/null 2>&1; sleep 100", "trap '' TERM INT HUP; sleep 100"}) {
+    const std::string program = Script(body);
+    try {
+      RunColmap(program, {}, log_path_, limit);
+      ADD_FAILURE() << body;
+    } catch (const ExternalToolError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("not ended after 0.00333 minutes (--limit)"),
+                                      HasSubstr(program), HasSubstr(log_path_)));
+    }
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+  // What has ended is not waited for, though a process that it has left holds its output.
+  EXPECT_EQ(RunColmap(Script("sleep 100 & echo done"), {}, log_path_).output, "done\n");
+}
+
+TEST_F(ColmapRunnerTest, EndlessOutputIsEnded) {
+  EXPECT_THAT(ErrorOf(Script("exec yes")), HasSubstr("wrote more than"));
 }
 
 TEST_F(ColmapRunnerTest, LongOutputIsWhole) {

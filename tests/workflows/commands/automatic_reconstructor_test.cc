@@ -102,6 +102,46 @@ TEST_F(AutomaticReconstructorTest, SecondRunReusesTheDatabaseAndGivesTheSameByte
   EXPECT_EQ(read_all(), first);
 }
 
+TEST_F(AutomaticReconstructorTest, WhatIsSentAroundNamesNoFolderAndRunsNoScript) {
+  const fs::path secret = dir_ / "Jo Doe";
+  const fs::path images = secret / "<script>alert(1)<" / "script>";
+  fs::create_directories(images.parent_path());
+  fs::copy(kStylus / "images", images);
+  WriteTextFile(images / "broken.jpg", "no picture");
+  const std::vector<std::string> arguments = {
+      "automatic_reconstructor", "--image_path",         images.string(),
+      "--camera_path",           kStylus / "camera.yml", "--layout_path",
+      kStylus / "layout.yml",    "--workspace_path",     secret / "workspace"};
+  const auto texts = [&] {
+    std::string all;
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(secret / "workspace")) {
+      const bool is_sent = entry.is_regular_file() && entry.path().filename() != "database.db";
+      if (is_sent) all += ReadFileBytes(entry.path());
+    }
+    return all;
+  };
+  const ProgramRun run = RunVelamap(arguments);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr(images.string()));  // the terminal is the user's own
+  const std::string without = texts();
+  for (const std::string& folder : {dir_.path().string(), kStylus.string(), std::string("Jo Doe"),
+                                    fs::temp_directory_path().string() + "/"}) {
+    EXPECT_EQ(without.find(folder), std::string::npos)
+        << folder << ": " << without.substr(without.find(folder) - 100, 200);
+  }
+  EXPECT_THAT(without, HasSubstr("--camera_path camera.yml"));
+  EXPECT_EQ(ReadFileBytes(secret / "workspace/report.html").find("<script>alert"),
+            std::string::npos);
+  std::vector<std::string> asked = arguments;
+  asked.insert(asked.end(), {"--full_paths", "1"});
+  ASSERT_EQ(RunVelamap(asked).exit_code, 0);
+  const std::string with = texts();
+  EXPECT_THAT(with, HasSubstr("--camera_path " + (kStylus / "camera.yml").string()));
+  EXPECT_THAT(ReadFileBytes(secret / "workspace/report.html"),
+              HasSubstr((kStylus / "camera.yml").string()));
+}
+
 TEST_F(AutomaticReconstructorTest, OtherDetectionOptionsNeedANewDatabase) {
   ASSERT_EQ(Run().exit_code, 0);
   const std::string before = ReadFileBytes(workspace() / "shape/shape.csv");

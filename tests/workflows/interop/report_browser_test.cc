@@ -178,6 +178,34 @@ TEST_F(ReportBrowser, FillsThePageWithoutErrors) {
   EXPECT_LT(std::stoi(time[1]), 15000);
 }
 
+TEST_F(ReportBrowser, NamesRunNoScript) {
+  const std::string mark = "document.documentElement.dataset.owned=1";
+  for (const std::string& name : std::vector<std::string>{
+           "<script>" + mark + "</script>", "\"'><img src=x onerror=\"" + mark + "\">",
+           "</script><script>" + mark + "</script>", "'};" + mark + ";//",
+           "--><!--\\u003cscript>"}) {
+    ReportExample example = MakeReportExample(1, 3);
+    for (LayoutPart& part : example.layout.parts) part.name = name;
+    for (ShapeMarker& marker : example.shape.markers) marker.part = name;
+    for (ModelImage& image : example.model.images) image.name = name + image.name;
+    ReportInput input = example.Input();
+    input.title = name;
+    input.images_left_out = {{name, name}};
+    input.markers_left_out = {{name, name}};
+    input.warnings = {name};
+    input.options = {{name, name}};
+    input.versions = {{name, name}};
+    std::ofstream(*dir_ / "names.html", std::ios::binary) << [&] {
+      std::ostringstream page;
+      WriteReport(input, page);
+      return page.str();
+    }();
+    const std::string dom = Open("names.html", {"--dump-dom"}).out;
+    EXPECT_THAT(dom, HasSubstr("data-ready-ms=")) << name;
+    EXPECT_THAT(dom, Not(HasSubstr("data-owned"))) << name;
+  }
+}
+
 TEST_F(ReportBrowser, TheViewTurns) {
   const cv::Mat front = Screenshot("report.html#azimuth=0&elevation=0", 1280, 1150, "front.png");
   const cv::Mat again = Screenshot("report.html#azimuth=0&elevation=0", 1280, 1150, "again.png");

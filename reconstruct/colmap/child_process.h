@@ -1,0 +1,58 @@
+// A program in a process group of its own that ends with us, however we end. No shell takes part.
+
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace velamap {
+
+// Owns both ends of a pipe.
+class Pipe {
+ public:
+  Pipe();  // throws std::system_error
+  ~Pipe();
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  int ReadEnd() const { return ends_[0]; }
+  int WriteEnd() const { return ends_[1]; }
+  void CloseWriteEnd();
+
+ private:
+  std::array<int, 2> ends_{};
+};
+
+class ChildProcess {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // Starts `words`, the program (a name on the PATH, or a path) and its arguments, with the
+  // variables `environment` ("NAME=value") only. Its standard input is empty. Throws
+  // std::system_error if the system starts no more processes. The program and whatever it starts in
+  // its group are killed when it has ended, when this object goes, and when the thread that has
+  // made it or the whole process ends.
+  ChildProcess(std::vector<std::string> words, std::vector<std::string> environment);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  // Waits for output of both streams. Empty once the program and whatever it has started have ended
+  // or closed them. Nothing at the deadline.
+  std::optional<std::string> Read(Time deadline) const;
+
+  // Waits for the end and returns the status as of waitpid(); nothing at the deadline. Throws
+  // std::system_error with the reason if the program could not be started.
+  std::optional<int> Wait(Time deadline) const;
+
+ private:
+  Pipe output_, report_;
+  pid_t watcher_ = -1;
+};
+
+}  // namespace velamap
