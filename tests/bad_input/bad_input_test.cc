@@ -56,7 +56,8 @@ TEST_P(BadInputTest, IsRefusedInOneLineAndChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Cases, BadInputTest, testing::ValuesIn(AllCases()),
                          [](const auto& bad) { return bad.param.name; });
 
-// One line where no thread can be started: by the import, and by the adjustment of what is imported.
+// One line where no thread can be started: by the import, and by the adjustment of what is
+// imported.
 TEST(BadSystem, RefusesThreads) {
   const TempDir dir;
   MakeSandbox(dir.path());

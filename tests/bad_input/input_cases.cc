@@ -108,10 +108,11 @@ std::vector<BadInput> Walls() {
         {name + "OfAByteOrderMarkAlone", call, 2, "is empty", Write("bad.yml", "\xef\xbb\xbf")});
     cases.push_back({name + "OfTwoByteOrderMarks", call, 2, "two byte order marks",
                      Write("bad.yml", "\xef\xbb\xbf\xef\xbb\xbf")});
-    cases.push_back({name + "OfManyBytes", call, 2, "check that it is the right file", [](const fs::path& dir) {
-                       WriteTextFile(dir / "bad.yml", "%YAML");
-                       fs::resize_file(dir / "bad.yml", (std::uintmax_t{16} << 20) + 1);
-                     }});
+    cases.push_back(
+        {name + "OfManyBytes", call, 2, "check that it is the right file", [](const fs::path& dir) {
+           WriteTextFile(dir / "bad.yml", "%YAML");
+           fs::resize_file(dir / "bad.yml", (std::uintmax_t{16} << 20) + 1);
+         }});
   }
   return cases;
 }
