@@ -56,9 +56,11 @@ house_folder(reconstruct/problem PUBLIC
   corner_errors corner_residuals corner_velocities error_correlation marker_adjustment_options
   marker_problem marker_state marker_uncertainty normal_equations scale_bar)
 house_folder(reconstruct/adjust PUBLIC
-  camera_adjustment marker_adjustment)
+  camera_adjustment camera_cross_validation marker_adjustment)
+house_folder(reconstruct/calibration PUBLIC
+  board_flaws board_views residual_pattern)
 house_folder(reconstruct PUBLIC
-  camera_search register_frames seed_model)
+  camera_calibration camera_search register_frames seed_model)
 house_folder(exporters/shape PUBLIC
   adjacent_distances common_corners joint_covariance known_distances marker_shape part_planes
   principal_axes sail_lines shape_frame shape_metrics shape_sigma shape_transform)
@@ -74,16 +76,20 @@ house_folder(exporters/sail PUBLIC
 house_folder(exporters/compare PUBLIC
   comparison_ply comparison_report comparison_sigma shape_comparison surface_comparison)
 house_folder(exporters/report PUBLIC
-  report_data report_sail report_writer verdict)
+  html_page report_assets report_data report_sail report_writer verdict)
+house_folder(exporters/calibration PUBLIC
+  calibration_page calibration_verdict)
 house_folder(exporters PUBLIC
   shape_exporter shape_report)
 house_folder(workflows/run PUBLIC
   central_frame_sweep logging pipeline progress stage_times summary version versions
   workspace)
 house_folder(workflows/check PUBLIC
-  clip_check clip_facts clip_limits clip_verdict)
+  clip_check clip_facts clip_frames clip_limits clip_verdict)
 house_folder(workflows/plan PUBLIC
   plan_drawing plan_writer)
+house_folder(workflows/calibrate PUBLIC
+  board_calibration)
 house_folder(workflows/options PUBLIC
   nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC

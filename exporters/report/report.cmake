@@ -9,7 +9,7 @@ set(REPORT_SCRIPT)
 foreach(name elements colours tables charts picture scene view3d main)
   list(APPEND REPORT_SCRIPT ${REPORT_DIR}/${name}.js)
 endforeach()
-set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/style.css ${REPORT_DIR}/licences.txt
+set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/calibration.html ${REPORT_DIR}/style.css ${REPORT_DIR}/licences.txt
                  ${REPORT_SCRIPT} ${REPORT_THREE} ${REPORT_CHART})
 foreach(file IN LISTS REPORT_THREE REPORT_CHART)
   if(NOT EXISTS ${file})
@@ -25,6 +25,7 @@ add_custom_command(
   OUTPUT ${REPORT_ASSETS}
   COMMAND ${CMAKE_COMMAND} -DOUTPUT=${REPORT_ASSETS}
           -DkReportPage=${REPORT_DIR}/page.html -DkReportStyle=${REPORT_DIR}/style.css
+          -DkCalibrationPage=${REPORT_DIR}/calibration.html
           "-DkReportScript=${REPORT_SCRIPT}" "-DkReportThree=${REPORT_THREE}"
           -DkReportChart=${REPORT_CHART} -DkReportLicences=${REPORT_DIR}/licences.txt
           -P ${CMAKE_CURRENT_SOURCE_DIR}/report/embed.cmake
@@ -33,6 +34,7 @@ add_custom_command(
 
 target_sources(velamap_exporters PRIVATE
   report/camera_key_numbers.cc
+  report/html_page.cc
   report/report_data.cc
   report/report_histogram.cc
   report/report_images.cc

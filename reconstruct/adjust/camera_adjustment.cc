@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
@@ -77,6 +78,54 @@ CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Lay
   CameraAdjustment other = AdjustTied(free, layout, corner_errors, std::move(tied), turned);
   if (other.explained > best.explained) best = std::move(other);
   return best;
+}
+
+namespace {
+
+// Throws DataError where the wanted model fails and another one is far better: that is the reason.
+void BlameModel(const std::vector<CameraModelScore>& scores, CameraModel wanted,
+                const DataError& failure) {
+  constexpr double kFarBetter = 0.5;
+  const auto best = std::min_element(scores.begin(), scores.end(),
+                                     [](const CameraModelScore& a, const CameraModelScore& b) {
+                                       return a.unseen_error_px < b.unseen_error_px;
+                                     });
+  const auto taken =
+      std::find_if(scores.begin(), scores.end(),
+                   [wanted](const CameraModelScore& score) { return score.model == wanted; });
+  if (taken == scores.end() || best->unseen_error_px > kFarBetter * taken->unseen_error_px) return;
+  throw DataError(fmt::format(
+      "a {} camera does not describe this lens: it leaves {:.2f} px in unseen pictures, and {} "
+      "leaves {:.2f} px; take that one ({})",
+      CameraModelName(wanted), taken->unseen_error_px, CameraModelName(best->model),
+      best->unseen_error_px, failure.what()));
+}
+
+}  // namespace
+
+CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& options,
+                                           const Layout& layout, const CornerErrors& corner_errors,
+                                           Model model, std::optional<CameraModel> wanted) {
+  MarkerAdjustmentOptions free = options;
+  free.find_camera = true;
+  free.Check();
+  CheckModel(model);
+  TieTurnedCameras(&model);
+  MarkerAdjuster begin(free, layout, corner_errors, std::move(model));
+  begin.PrepareSeed();
+  MarkerAdjuster adjuster = MarkerAdjuster::AdjustedFrom(&begin);
+  CalibrationAdjustment result;
+  result.scores = adjuster.CrossValidateCameraModel(wanted);
+  try {
+    adjuster.Finish();
+  } catch (const DataError& error) {
+    if (wanted) BlameModel(result.scores, *wanted, error);
+    throw;
+  }
+  adjuster.WidenCameraSigmas();
+  result.model = adjuster.TakeModel();
+  result.summary = adjuster.TakeSummary();
+  return result;
 }
 
 std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options,

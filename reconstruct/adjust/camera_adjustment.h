@@ -1,11 +1,14 @@
-// The cameras that explain a registration best, where no calibration is given.
+// The cameras that explain a registration best, where no calibration is given or one is wanted.
 
 #pragma once
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "importer/layout/layout.h"
+#include "reconstruct/adjust/camera_cross_validation.h"
+#include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/model/model.h"
 #include "reconstruct/problem/corner_errors.h"
@@ -26,6 +29,20 @@ struct CameraAdjustment {
 // chooses the camera model by the evidence. Throws DataError where nothing can be adjusted.
 CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Layout& layout,
                                const CornerErrors& corner_errors, const Model& model);
+
+struct CalibrationAdjustment {
+  // Metric. Pictures that were turned are turned back, so that there is one camera.
+  Model model;
+  MarkerAdjustmentSummary summary;  // with its camera
+  std::vector<CameraModelScore> scores;
+};
+
+// Adjusts a model to find its camera as well as it can be found: that model is taken that predicts
+// unseen pictures best (camera_cross_validation.h), or the `wanted` one. Throws DataError where
+// AdjustWithMarkers() does.
+CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& options,
+                                           const Layout& layout, const CornerErrors& corner_errors,
+                                           Model model, std::optional<CameraModel> wanted);
 
 // Measures a step of the focal length at `step` by an adjustment with a camera of its own for the
 // images from there on; `model` is the one before its adjustment. Nothing where the focal lengths

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include <spdlog/spdlog.h>
@@ -19,20 +18,26 @@ constexpr std::array<CameraModel, 4> kModels = {CameraModel::kSimpleRadial, Came
 
 constexpr double kMinRayLength = 0.7;  // of a fisheye, tangent
 
-// Whether any camera sees more than 35 degrees off its axis. A fisheye model has no purpose for
-// narrower lenses.
-bool IsWide(const Model& model) {
-  return std::any_of(model.cameras.begin(), model.cameras.end(),
+}  // namespace
+
+void SetCameraModel(CameraModel model, MarkerSolution* solution) {
+  for (auto& [camera_id, camera] : solution->model.cameras) camera = ConvertCamera(camera, model);
+  solution->calibration = solution->model.cameras;
+}
+
+bool SeesWideAngles(const MarkerSolution& solution) {
+  const auto& cameras = solution.model.cameras;
+  return std::any_of(cameras.begin(), cameras.end(),
                      [](const auto& entry) { return MaxRayLength(entry.second) > kMinRayLength; });
 }
 
-bool IsFolded(const MarkerSolution& solution) {
-  return std::any_of(solution.model.cameras.begin(), solution.model.cameras.end(),
+bool HasFoldedCamera(const MarkerSolution& solution) {
+  const auto& cameras = solution.model.cameras;
+  return std::any_of(cameras.begin(), cameras.end(),
                      [](const auto& entry) { return !HasMonotonicDistortion(entry.second); });
 }
 
-// Nothing where the adjustment with this model fails.
-std::optional<MarkerSolution> Refined(MarkerSolution trial, CameraModel model) {
+std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution trial) {
   try {
     SetCameraModel(model, &trial);
     Minimize(1e-4, &trial);
@@ -46,23 +51,16 @@ std::optional<MarkerSolution> Refined(MarkerSolution trial, CameraModel model) {
   }
 }
 
-}  // namespace
-
-void SetCameraModel(CameraModel model, MarkerSolution* solution) {
-  for (auto& [camera_id, camera] : solution->model.cameras) camera = ConvertCamera(camera, model);
-  solution->calibration = solution->model.cameras;
-}
-
 MarkerSolution WithBestCameraModel(const MarkerSolution& solution) {
   std::vector<MarkerSolution> trials;
   for (const CameraModel model : kModels) {
-    if (model == CameraModel::kOpenCVFisheye && !IsWide(solution.model)) continue;
-    auto trial = Refined(solution, model);
+    if (model == CameraModel::kOpenCVFisheye && !SeesWideAngles(solution)) continue;
+    auto trial = RefinedAs(model, solution);
     if (trial) trials.push_back(std::move(*trial));
   }
   if (trials.empty()) return solution;
-  if (!std::all_of(trials.begin(), trials.end(), IsFolded)) {
-    trials.erase(std::remove_if(trials.begin(), trials.end(), IsFolded), trials.end());
+  if (!std::all_of(trials.begin(), trials.end(), HasFoldedCamera)) {
+    trials.erase(std::remove_if(trials.begin(), trials.end(), HasFoldedCamera), trials.end());
   }
   double least_factor = trials.front().weights.corner_factor;
   for (const MarkerSolution& trial : trials) {

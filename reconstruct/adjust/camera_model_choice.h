@@ -2,6 +2,8 @@
 
 #pragma once
 
+#include <optional>
+
 #include "importer/camera/camera.h"
 #include "reconstruct/adjust/marker_solution.h"
 
@@ -19,5 +21,15 @@ MarkerSolution WithBestCameraModel(const MarkerSolution& solution);
 
 // The cameras as this model, with the prior of an unknown camera.
 void SetCameraModel(CameraModel model, MarkerSolution* solution);
+
+// The same, refined. Nothing where the model leads nowhere from here.
+std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution solution);
+
+// Whether any camera sees more than 35 degrees off its axis. What sees less is no fisheye, whose
+// many parameters would describe nothing there.
+bool SeesWideAngles(const MarkerSolution& solution);
+
+// Whether the distortion of any camera folds over inside the picture.
+bool HasFoldedCamera(const MarkerSolution& solution);
 
 }  // namespace velamap

@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/camera/camera_projection.h"
 #include "reconstruct/adjust/calibration_choice.h"
 #include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/adjust/camera_model_choice.h"
@@ -20,6 +21,7 @@
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/geometry/covariance_update.h"
+#include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/weak_geometry.h"
@@ -53,19 +55,18 @@ std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
     const Eigen::VectorXd variances =
         GlobalCovariance(linearization.problem, linearization.covariance, intrinsics->second.data())
             .diagonal();
-    cameras[camera_id].camera = camera;
-    for (const double variance : variances) {
-      cameras[camera_id].sigmas.push_back(std::sqrt(variance));
+    cameras[camera_id] = {camera, std::vector<double>(camera.params.size(), 0.0)};
+    const std::vector<int> free = UnknownCameraPrior(camera).free;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      cameras[camera_id].sigmas[static_cast<std::size_t>(free[i])] =
+          std::sqrt(variances[static_cast<Eigen::Index>(i)]);
     }
   }
   return cameras;
 }
 
 void WarnOfFoldedCameras(MarkerSolution* solution) {
-  const bool is_folded =
-      std::any_of(solution->model.cameras.begin(), solution->model.cameras.end(),
-                  [](const auto& entry) { return !HasMonotonicDistortion(entry.second); });
-  if (!is_folded) return;
+  if (!HasFoldedCamera(*solution)) return;
   solution->warnings.push_back(
       "the distortion that was found folds over inside the picture, where no marker was seen: do "
       "not use the camera file for other clips; move the markers through the whole picture");
@@ -179,6 +180,29 @@ std::optional<MarkerAdjuster> MarkerAdjuster::WithBetterCalibration(MarkerAdjust
   }
   ReportRefinement(refined->free, solution_.options.intrinsics_sigma, &begin.solution_);
   return begin;
+}
+
+std::vector<CameraModelScore> MarkerAdjuster::CrossValidateCameraModel(
+    std::optional<CameraModel> wanted) {
+  solution_ = WithMostFlexibleModel(solution_);
+  AdjustTightly();
+  CrossValidation result = CrossValidateCameraModels(solution_, wanted);
+  solution_ = std::move(result.best);
+  return std::move(result.scores);
+}
+
+void MarkerAdjuster::WidenCameraSigmas() {
+  for (const auto& [camera_id, sigmas] : JackknifeCameras(solution_)) {
+    std::vector<double>& widened = summary_.cameras.at(camera_id).sigmas;
+    for (std::size_t i = 0; i < sigmas.size(); ++i) widened[i] = std::max(widened[i], sigmas[i]);
+    // No picture shows whether all corners are seen too far inside; the squares are foreshortened
+    // by another angle then.
+    const Camera& camera = summary_.cameras.at(camera_id).camera;
+    const std::size_t num_focal = HasOneFocalLength(camera.model) ? 1 : 2;
+    for (std::size_t i = 0; i < num_focal; ++i) {
+      widened[i] = std::hypot(widened[i], solution_.weights.inset_as_scale * camera.params[i]);
+    }
+  }
 }
 
 void MarkerAdjuster::ChooseCameraModel() { solution_ = WithBestCameraModel(solution_); }

@@ -7,7 +7,9 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "reconstruct/adjust/camera_cross_validation.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/adjust/marker_solution.h"
 
@@ -46,6 +48,9 @@ class MarkerAdjuster {
 
   // With find_camera, after AdjustToCorners: takes the camera model that explains the images best.
   void ChooseCameraModel();
+  // The same by cross-validation (camera_cross_validation.h), or takes the `wanted` model. Corners
+  // that the most flexible model explains return.
+  std::vector<CameraModelScore> CrossValidateCameraModel(std::optional<CameraModel> wanted);
   // The cameras with their sigmas.
   std::map<CameraId, EstimatedCamera> EstimateCameras() const;
 
@@ -62,6 +67,9 @@ class MarkerAdjuster {
   // and the warnings and figures of the summary. Image points move to where they are while the
   // middle row is read.
   void Finish();
+  // After Finish: takes the sigmas of the jackknife for the cameras where they are larger, and adds
+  // what an inset of all corners does to the focal length.
+  void WidenCameraSigmas();
 
   Model TakeModel() { return std::move(solution_.model); }
   MarkerAdjustmentSummary TakeSummary();

@@ -12,6 +12,7 @@
 #include "importer/camera/camera_jacobian.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/pose_step.h"
+#include "reconstruct/model/reprojection.h"
 
 namespace velamap {
 namespace {
@@ -22,11 +23,6 @@ constexpr int kMinCorners = 8;
 struct OwnCamera {
   Rigid3 cam_from_world;
   Eigen::Vector3d change = Eigen::Vector3d::Zero();  // log focal, offset of the principal point
-};
-
-struct SeenPoint {
-  Eigen::Vector3d x_in_world;
-  Eigen::Vector2d x_in_image_px;
 };
 
 class OwnCameraProblem : public LeastSquaresProblem<kNumUnknowns> {
@@ -73,19 +69,9 @@ class OwnCameraProblem : public LeastSquaresProblem<kNumUnknowns> {
   CauchyLoss loss_;
 };
 
-std::vector<SeenPoint> PointsOf(const Model& model, const ModelImage& image) {
-  std::vector<SeenPoint> points;
-  for (const Point2D& point2D : image.points2D) {
-    const auto point = model.points3D.find(point2D.point3D_id);
-    if (point == model.points3D.end()) continue;
-    points.push_back({point->second.x_in_world, point2D.x_in_image_px});
-  }
-  return points;
-}
-
 std::optional<ImageIntrinsics> IntrinsicsOf(const Model& model, const ModelImage& image,
                                             double scale_px) {
-  const std::vector<SeenPoint> points = PointsOf(model, image);
+  const std::vector<SeenPoint> points = SeenPointsOf(model, image);
   if (points.size() < kMinCorners) return std::nullopt;
   const OwnCameraProblem problem(model.cameras.at(image.camera_id), points, scale_px);
   OwnCamera own{image.cam_from_world};

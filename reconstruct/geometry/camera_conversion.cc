@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <ceres/dynamic_autodiff_cost_function.h>
+#include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 #include <Eigen/Geometry>
@@ -68,6 +69,13 @@ Camera ConvertCamera(const Camera& camera, CameraModel model) {
     }
   }
   if (problem.NumResidualBlocks() == 0) return result;
+  if (model == CameraModel::kFullOpenCV) {
+    // Numerator and denominator can stand in for each other.
+    problem.SetManifold(result.params.data(),
+                        new ceres::SubsetManifold(static_cast<int>(result.params.size()),
+                                                  {kBeginOfDenominator, kBeginOfDenominator + 1,
+                                                   kBeginOfDenominator + 2}));
+  }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 100;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "importer/camera/camera_projection.h"
+#include "reconstruct/geometry/camera_conversion.h"
 
 namespace velamap {
 namespace {
@@ -44,7 +45,7 @@ Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
   // The denominator of the rational model works the other way.
   if (prior.model == CameraModel::kFullOpenCV) {
     for (std::size_t i = 0; i < prior.free.size(); ++i) {
-      if (prior.free[i] >= 9) gradient[static_cast<Eigen::Index>(i)] *= -1.0;
+      if (prior.free[i] >= kBeginOfDenominator) gradient[static_cast<Eigen::Index>(i)] *= -1.0;
     }
   }
   return gradient;
@@ -117,10 +118,13 @@ IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
   central.params[static_cast<std::size_t>(num_focal)] = 0.5 * camera.width_px;
   central.params[static_cast<std::size_t>(num_focal) + 1] = 0.5 * camera.height_px;
   IntrinsicsPrior prior = MakeIntrinsicsPrior(central, {true, true, true}, kRadialSigma);
-  // Coefficients that a calibration does not name are free as well.
-  prior.held.clear();
-  prior.free.resize(prior.sigmas.size());
+  // Coefficients that a calibration does not name are free as well, but for the denominator.
+  const std::size_t num_free =
+      std::min(prior.sigmas.size(), static_cast<std::size_t>(kBeginOfDenominator));
+  prior.free.resize(num_free);
+  prior.held.resize(prior.sigmas.size() - num_free);
   std::iota(prior.free.begin(), prior.free.end(), 0);
+  std::iota(prior.held.begin(), prior.held.end(), kBeginOfDenominator);
   for (int i = 0; i < static_cast<int>(prior.sigmas.size()); ++i) {
     const int distortion = i - num_focal - 2;
     double& sigma = prior.sigmas[static_cast<std::size_t>(i)];

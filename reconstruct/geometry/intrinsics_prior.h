@@ -48,8 +48,8 @@ IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrins
 // The prior of a camera that nobody calibrated: any focal length (a normal prior around that of
 // `camera`, as wide as it), the principal point in the centre to 2 % of the larger side, and no
 // distortion to 30 % at the image's farthest corner by each radial parameter and to 1 % by each
-// tangential one. All parameters are free. Nothing of `camera` but model, size and focal length
-// counts.
+// tangential one. All parameters are free but the denominator of FULL_OPENCV, which would run away
+// with the numerator. Nothing of `camera` but model, size and focal length counts.
 IntrinsicsPrior UnknownCameraPrior(const Camera& camera);
 
 // 1 sigma of the relative difference of the two focal lengths of a camera that nobody calibrated:

@@ -7,6 +7,16 @@
 
 namespace velamap {
 
+std::vector<SeenPoint> SeenPointsOf(const Model& model, const ModelImage& image) {
+  std::vector<SeenPoint> points;
+  for (const Point2D& point2D : image.points2D) {
+    const auto point = model.points3D.find(point2D.point3D_id);
+    if (point == model.points3D.end()) continue;
+    points.push_back({point->second.x_in_world, point2D.x_in_image_px});
+  }
+  return points;
+}
+
 std::vector<ObservationError> ComputeReprojectionErrors(const Model& model) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::unordered_map<ImageId, const ModelImage*> images;

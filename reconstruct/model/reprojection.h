@@ -16,6 +16,15 @@ struct ObservationError {
   double error_px = 0.0;                 // its length; infinite for a point behind the camera
 };
 
+// A point of the model that an image sees.
+struct SeenPoint {
+  Eigen::Vector3d x_in_world;
+  Eigen::Vector2d x_in_image_px;
+};
+
+// The observations of `image` whose points `model` has; the image may be that of another model.
+std::vector<SeenPoint> SeenPointsOf(const Model& model, const ModelImage& image);
+
 // Returns one entry for each observation, ordered by point, then by position in the track.
 std::vector<ObservationError> ComputeReprojectionErrors(const Model& model);
 

@@ -48,6 +48,25 @@ std::vector<BadInput> Pictures() {
       {"SingleImage", Call("grey/a.png", "camera.yml"), 2, "a single image"}};
 }
 
+std::vector<BadInput> Boards() {
+  const std::string call =
+      "camera_calibrator --output_path @/new.yml --image_path @/images --report_path @/new.html ";
+  const std::string layout = "--layout_path @/layout.yml ";
+  const auto keep_one = [](const fs::path& dir) {
+    for (const char* name : {"2.png", "3.png", "4.png"}) {
+      fs::copy(dir / "images/1.png", dir / "images" / name, fs::copy_options::overwrite_existing);
+    }
+  };
+  return {
+      {"ABoardOfAnotherDictionary", call + "--dictionary DICT_7X7_50 --marker_length 0.1", 1,
+       "no marker of DICT_7X7_50"},
+      {"ABoardOfOtherIds", call + layout, 1, "layout",
+       [](const fs::path& dir) { Replace(dir / "layout.yml", "[0, 1, 2, 3, 4, 5]", "[40, 41]"); }},
+      {"NoBoardAtAll", "camera_calibrator --output_path @/new.yml --image_path @/grey", 1,
+       "no marker of any of OpenCV's dictionaries"},
+      {"ViewsThatAreAllAlike", call + layout, 1, "pictures are alike", keep_one}};
+}
+
 std::vector<BadInput> Calibrations() {
   const std::string bad = Call("grey", "bad.yml");
   const std::string head = "%YAML:1.0\n---\nimage_width: 320\nimage_height: 240\n";
@@ -281,8 +300,8 @@ std::vector<BadInput> Options() {
 
 std::vector<BadInput> InputCases() {
   std::vector<BadInput> cases = Pictures();
-  for (const auto& more : {Calibrations(), Walls(), Numbers(), Meshes(), Markers(), PriorShapes(),
-                           Workspaces(), Options()}) {
+  for (const auto& more : {Boards(), Calibrations(), Walls(), Numbers(), Meshes(), Markers(),
+                           PriorShapes(), Workspaces(), Options()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

@@ -1,6 +1,7 @@
 # The report without a browser (tests/workflows/report_browser.cmake has one).
 velamap_test(NAME report_test LABEL unit
   SOURCES
+    calibration/calibration_page_test.cc
     report/report_data_test.cc
     report/report_example.cc
     report/report_histogram_test.cc

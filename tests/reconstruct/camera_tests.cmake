@@ -1,6 +1,7 @@
 # Cameras that are found from the pictures.
 velamap_test(NAME reconstruct_camera_test LABEL unit
   SOURCES
+    camera/camera_calibration_test.cc
     camera/camera_search_test.cc
     camera/camera_steadiness_test.cc
     camera/focal_evidence_test.cc

@@ -42,9 +42,11 @@ void PrintOverview() {
 }  // namespace
 
 std::vector<Command> AllCommands() {
-  return {MarkerGenerator(), ShootPlanner(),     ClipChecker(),    AutomaticReconstructor(),
-          MarkerImporter(),  FrameRegistrator(), BundleAdjuster(), CentralFrameSweeper(),
-          ShapeExporter(),   ShapeAnalyzer(),    ShapeComparer(),  Version()};
+  return {MarkerGenerator(),  ShootPlanner(),           CameraCalibrator(),
+          ClipChecker(),      AutomaticReconstructor(), MarkerImporter(),
+          FrameRegistrator(), BundleAdjuster(),         CentralFrameSweeper(),
+          ShapeExporter(),    ShapeAnalyzer(),          ShapeComparer(),
+          Version()};
 }
 
 std::set<std::string> AllOptionNames() {

@@ -31,6 +31,7 @@ Command MakeCommand(const std::shared_ptr<Options>& options, CommandSyntax (*dec
           }};
 }
 
+Command CameraCalibrator();
 Command ClipChecker();
 Command AutomaticReconstructor();
 Command MarkerGenerator();

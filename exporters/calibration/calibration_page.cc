@@ -1,0 +1,144 @@
+#include "exporters/calibration/calibration_page.h"
+
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "exporters/calibration/calibration_drawing.h"
+#include "exporters/calibration/calibration_verdict.h"
+#include "exporters/report/html_page.h"
+#include "exporters/report/report_assets.h"
+#include "importer/camera/camera_projection.h"
+
+namespace velamap {
+namespace {
+
+std::string Row(const std::vector<std::string>& cells, const char* tag = "td") {
+  std::string row = "<tr>";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    row += fmt::format("<{0}{1}>{2}</{0}>", tag, i == 0 ? " class=\"text\"" : "",
+                       EscapeForHtml(cells[i]));
+  }
+  return row + "</tr>";
+}
+
+std::string Items(const std::vector<std::string>& texts) {
+  std::string items;
+  for (const std::string& text : texts) items += "<li>" + EscapeForHtml(text) + "</li>";
+  return "<ul>" + items + "</ul>";
+}
+
+std::string VerdictHtml(const Verdict& verdict) {
+  const std::string level = StatusName(verdict.level);
+  const char* meaning = verdict.level == ReportStatus::kGood ? "Good: use the camera file."
+                        : verdict.level == ReportStatus::kCheck
+                            ? "Usable, and it could be better."
+                            : "Bad: do not use the camera file.";
+  std::string items;
+  for (const VerdictReason& reason : verdict.reasons) {
+    items += fmt::format("<li class=\"{}\">{}</li>", StatusName(reason.level),
+                         EscapeForHtml(reason.text));
+  }
+  return fmt::format("<div class=\"card {}\"><p class=\"value verdict\">{}</p>{}</div>", level,
+                     meaning, items.empty() ? "" : "<ul>" + items + "</ul>");
+}
+
+std::vector<std::string> ParameterNames(CameraModel model) {
+  std::vector<std::string> names;
+  if (HasOneFocalLength(model)) {
+    names = {"focal length, px"};
+  } else {
+    names = {"focal length in x, px", "focal length in y, px"};
+  }
+  names.insert(names.end(), {"principal point x, px", "principal point y, px"});
+  const bool is_fisheye = model == CameraModel::kOpenCVFisheye;
+  for (const char* name :
+       {"k1", "k2", is_fisheye ? "k3" : "p1", is_fisheye ? "k4" : "p2", "k3", "k4", "k5", "k6"}) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+std::string Parameters(const EstimatedCamera& found) {
+  const std::vector<std::string> names = ParameterNames(found.camera.model);
+  std::string rows = Row({CameraModelName(found.camera.model), "value", "sigma"}, "th");
+  for (std::size_t i = 0; i < found.camera.params.size(); ++i) {
+    const bool is_px = names[i].find("px") != std::string::npos;
+    rows += Row({names[i], fmt::format("{:.{}f}", found.camera.params[i], is_px ? 2 : 6),
+                 fmt::format("{:.{}f}", found.sigmas[i], is_px ? 2 : 6)});
+  }
+  return rows;
+}
+
+std::string Models(const CameraCalibration& calibration) {
+  std::string rows = Row({"model", "parameters", "unseen, px", "all, px"}, "th");
+  for (const CameraModelScore& score : calibration.scores) {
+    const bool is_taken = score.model == calibration.camera.camera.model;
+    rows += Row({CameraModelName(score.model) + (is_taken ? ": taken" : "") +
+                     (score.is_folded ? ": folds over inside the picture" : ""),
+                 fmt::format("{}", NumCameraParams(score.model)),
+                 fmt::format("{:.4f}", score.unseen_error_px),
+                 fmt::format("{:.4f}", score.seen_error_px)});
+  }
+  return rows;
+}
+
+std::string Views(const CameraCalibration& calibration) {
+  std::string rows = Row({"picture", "corners", "tilt, degrees", "error, px"}, "th");
+  for (const CalibrationView& view : calibration.views) {
+    rows += Row({view.view.image_name, fmt::format("{}", view.view.corners_in_image_px.size()),
+                 fmt::format("{:.0f}", view.view.tilt_deg),
+                 view.is_used ? fmt::format("{:.3f}", view.error_px) : std::string("left out")});
+  }
+  return rows;
+}
+
+std::string Part(std::string_view name, const CameraCalibration& calibration,
+                 const std::string& dictionary, const ResidualDrawing& residuals) {
+  const Camera& camera = calibration.camera.camera;
+  if (name == "STYLE") return std::string(kReportStyle);
+  if (name == "ORIGIN") {
+    return EscapeForHtml(
+        fmt::format("{} x {} px, markers of {}", camera.width_px, camera.height_px, dictionary));
+  }
+  if (name == "VERDICT") return VerdictHtml(JudgeCalibration(calibration));
+  if (name == "PARAMETERS") return Parameters(calibration.camera);
+  if (name == "MORE") {
+    const std::vector<std::string> advice = WhatToShoot(calibration);
+    return advice.empty() ? "<p>Nothing is missing.</p>" : Items(advice);
+  }
+  if (name == "COVERAGE") return DrawCoverage(calibration);
+  if (name == "RESIDUALS") return residuals.svg;
+  if (name == "RESIDUALS_CAPTION") {
+    return fmt::format(
+        "What is left of the corners' errors: {:.3f} px (RMS). Grey dots: single corners, the "
+        "larger the worse. Red: the mean of each part of the picture, {:.0f} times as long. Arrows "
+        "that point in all directions are noise; arrows in a pattern are a lens that the camera "
+        "model does not describe.",
+        calibration.error_px.rms, residuals.magnification);
+  }
+  if (name == "MODELS") return Models(calibration);
+  if (name == "BOARD") return EscapeForHtml("The board is " + DescribeBoard(calibration.board));
+  if (name == "VIEWS_CAPTION") {
+    return fmt::format(
+        "{} of the {} pictures that show markers took part; {} of their corners "
+        "were left out as outliers.",
+        calibration.UsedViews().size(), calibration.num_images, calibration.num_outliers);
+  }
+  if (name == "VIEWS") return Views(calibration);
+  throw std::logic_error("the calibration's page names an unknown part: " + std::string(name));
+}
+
+}  // namespace
+
+void WriteCalibrationPage(const CameraCalibration& calibration, const std::string& dictionary,
+                          std::ostream& out) {
+  const ResidualDrawing residuals = DrawResiduals(calibration);
+  WriteHtmlPage(
+      kCalibrationPage,
+      [&](std::string_view name) { return Part(name, calibration, dictionary, residuals); }, out);
+}
+
+}  // namespace velamap

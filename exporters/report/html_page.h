@@ -1,0 +1,21 @@
+// Pages of HTML that are made from a text with placeholders.
+
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <string_view>
+
+namespace velamap {
+
+// The text as HTML shows it, between tags.
+std::string EscapeForHtml(std::string_view text);
+
+// Writes `page` with `part(NAME)` in the place of every {{NAME}}. What is inserted is not searched,
+// because it can contain braces.
+void WriteHtmlPage(std::string_view page,
+                   const std::function<std::string(std::string_view name)>& part,
+                   std::ostream& out);
+
+}  // namespace velamap

@@ -1,0 +1,244 @@
+#include "reconstruct/adjust/camera_cross_validation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "importer/base/error.h"
+#include "importer/base/parallel.h"
+#include "importer/base/statistics.h"
+#include "importer/camera/camera_jacobian.h"
+#include "importer/geometry/least_squares.h"
+#include "importer/geometry/pose_step.h"
+#include "reconstruct/adjust/camera_model_choice.h"
+#include "reconstruct/model/reprojection.h"
+#include "reconstruct/problem/corner_velocities.h"
+
+namespace velamap {
+namespace {
+
+constexpr std::array<CameraModel, 6> kModels = {
+    CameraModel::kSimplePinhole, CameraModel::kSimpleRadial, CameraModel::kRadial,
+    CameraModel::kOpenCV,        CameraModel::kFullOpenCV,   CameraModel::kOpenCVFisheye};
+constexpr std::size_t kNumDivisions = 5;
+
+// Residuals of the points of one image, px, by its pose.
+class ImagePoseProblem : public LeastSquaresProblem<6> {
+ public:
+  using Parameters = Rigid3;  // cam_from_world
+
+  ImagePoseProblem(const Camera& camera, const std::vector<SeenPoint>& points)
+      : camera_(camera), points_(points) {}
+
+  void Evaluate(const Rigid3& cam_from_world, bool, Equations* equations) const {
+    *equations = {};
+    for (const SeenPoint& point : points_) {
+      const Eigen::Vector3d rotated = cam_from_world.rotation * point.x_in_world;
+      const Eigen::Vector3d x_in_cam = rotated + cam_from_world.translation;
+      if (!(x_in_cam.z() > 0)) return equations->Reject();
+      const RayFunction image = ImageFromRayWithJacobian(camera_.model, camera_.params.data(),
+                                                         Eigen::Vector2d(x_in_cam.hnormalized()));
+      const Eigen::Matrix<double, 2, 3> by_point = image.by_ray * RayByPoint(x_in_cam);
+      Eigen::Matrix<double, 2, 6> by_step;
+      by_step << ByRotation(by_point, rotated), by_point;
+      const Eigen::Vector2d residual_px = image.value - point.x_in_image_px;
+      equations->Add(by_step, residual_px);
+    }
+  }
+
+  Rigid3 Plus(const Rigid3& pose, const Step& step) const { return PlusPose(pose, step); }
+
+ private:
+  const Camera& camera_;
+  const std::vector<SeenPoint>& points_;
+};
+
+// Of the corners of one image.
+struct ErrorSum {
+  double squares_px2 = 0.0;
+  int num_corners = 0;
+};
+
+ErrorSum ErrorsOf(const Camera& camera, const std::vector<SeenPoint>& points, const Rigid3& pose) {
+  ImagePoseProblem::Equations equations;
+  ImagePoseProblem(camera, points).Evaluate(pose, false, &equations);
+  return {2.0 * equations.cost(), static_cast<int>(points.size())};
+}
+
+double RmsOf(const std::vector<ErrorSum>& sums) {
+  ErrorSum total;
+  for (const ErrorSum& sum : sums) {
+    total.squares_px2 += sum.squares_px2;
+    total.num_corners += sum.num_corners;
+  }
+  return total.num_corners > 0 ? std::sqrt(total.squares_px2 / total.num_corners)
+                               : std::numeric_limits<double>::infinity();
+}
+
+// Without every image whose index has this remainder, of `num_divisions`.
+MarkerSolution Without(const MarkerSolution& all, std::size_t division, std::size_t num_divisions) {
+  MarkerSolution some = all;
+  std::vector<ModelImage> kept;
+  for (std::size_t i = 0; i < all.model.images.size(); ++i) {
+    const ModelImage& image = all.model.images[i];
+    if (i % num_divisions != division) {
+      kept.push_back(image);
+      continue;
+    }
+    for (std::uint32_t idx = 0; idx < image.points2D.size(); ++idx) {
+      const Point3DId point3D_id = image.points2D[idx].point3D_id;
+      if (point3D_id != kInvalidPoint3DId) {
+        RemoveObservation(&some.model, point3D_id, {image.image_id, idx});
+      }
+    }
+  }
+  some.model.images = std::move(kept);
+  RemoveShortTracks(&some.model, some.options.min_track_length);
+  return some;
+}
+
+Model InMiddleRow(const MarkerSolution& solution) {
+  Model model = solution.model;
+  MoveToMiddleRow(solution.state.rolling_shutter_s, solution.corner_errors->velocities_px_s,
+                  &model);
+  return model;
+}
+
+std::vector<ErrorSum> ErrorsOfSeen(const MarkerSolution& trial) {
+  const Model model = InMiddleRow(trial);
+  std::vector<ErrorSum> sums;
+  for (const ModelImage& image : model.images) {
+    sums.push_back(ErrorsOf(model.cameras.at(image.camera_id), SeenPointsOf(model, image),
+                            image.cam_from_world));
+  }
+  return sums;
+}
+
+// Of the images that one division leaves out.
+void FindErrorsOfUnseen(const MarkerSolution& trial, std::size_t division,
+                        std::vector<ErrorSum>* sums) {
+  constexpr std::size_t kMinPoints = 4;
+  MarkerSolution fitted = Without(trial, division, kNumDivisions);
+  Minimize(1e-5, &fitted);
+  const Model model = InMiddleRow(trial);
+  LeastSquaresOptions options;
+  options.min_relative_decrease = 1e-6;
+  for (std::size_t i = division; i < model.images.size(); i += kNumDivisions) {
+    const ModelImage& image = model.images[i];
+    const Camera& camera = fitted.model.cameras.at(image.camera_id);
+    const std::vector<SeenPoint> points = SeenPointsOf(fitted.model, image);
+    if (points.size() < kMinPoints) continue;
+    Rigid3 pose = image.cam_from_world;
+    ImagePoseProblem::Equations equations;
+    MinimizeSquares(options, ImagePoseProblem(camera, points), &pose, &equations);
+    (*sums)[i] = ErrorsOf(camera, points, pose);
+  }
+}
+
+struct Trial {
+  MarkerSolution solution;
+  std::vector<ErrorSum> unseen;  // by image
+  CameraModelScore score;
+};
+
+std::optional<Trial> TryModel(CameraModel model, const MarkerSolution& solution) {
+  std::optional<MarkerSolution> refined = RefinedAs(model, solution);
+  if (!refined) return std::nullopt;
+  Trial trial{std::move(*refined), {}, {model, 0.0, 0.0, false}};
+  trial.unseen.resize(trial.solution.model.images.size());
+  try {
+    // Each minimization is serial, so that nothing depends on the number of threads.
+    ParallelFor(kNumDivisions, solution.options.num_threads, [&](std::size_t division) {
+      FindErrorsOfUnseen(trial.solution, division, &trial.unseen);
+    });
+  } catch (const DataError& error) {
+    spdlog::debug("camera model {}: {}", CameraModelName(model), error.what());
+    return std::nullopt;
+  }
+  trial.score.unseen_error_px = RmsOf(trial.unseen);
+  trial.score.seen_error_px = RmsOf(ErrorsOfSeen(trial.solution));
+  trial.score.is_folded = HasFoldedCamera(trial.solution);
+  spdlog::info("camera model {}: {:.4f} px in pictures that it has not seen, {:.4f} px in all{}",
+               CameraModelName(model), trial.score.unseen_error_px, trial.score.seen_error_px,
+               trial.score.is_folded ? ", folds over inside the picture" : "");
+  return trial;
+}
+
+// Whether a model with more parameters is better by more than chance: by 1 sigma of the difference,
+// by its scatter over the images.
+bool IsBetter(const Trial& trial, const Trial& taken) {
+  if (trial.score.is_folded != taken.score.is_folded) return taken.score.is_folded;
+  std::vector<double> gains_px2;
+  for (std::size_t i = 0; i < trial.unseen.size(); ++i) {
+    gains_px2.push_back(taken.unseen[i].squares_px2 - trial.unseen[i].squares_px2);
+  }
+  const Statistics gain = ComputeStatistics(gains_px2);
+  return gain.mean * std::sqrt(gain.count) > gain.standard_deviation;
+}
+
+}  // namespace
+
+CrossValidation CrossValidateCameraModels(const MarkerSolution& solution,
+                                          std::optional<CameraModel> wanted) {
+  CrossValidation result;
+  std::optional<Trial> taken;
+  for (const CameraModel model : kModels) {
+    if (model == CameraModel::kOpenCVFisheye && model != wanted && !SeesWideAngles(solution)) {
+      continue;
+    }
+    std::optional<Trial> trial = TryModel(model, solution);
+    if (!trial) continue;
+    result.scores.push_back(trial->score);
+    const bool is_taken = wanted ? model == *wanted : !taken || IsBetter(*trial, *taken);
+    if (is_taken) taken = std::move(trial);
+  }
+  if (!taken) {
+    throw DataError(
+        fmt::format("no {} camera fits these pictures; show more of the board in more pictures",
+                    wanted ? CameraModelName(*wanted) : std::string("kind of")));
+  }
+  result.best = std::move(taken->solution);
+  return result;
+}
+
+MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution) {
+  std::optional<MarkerSolution> best;
+  double least_px = std::numeric_limits<double>::infinity();
+  for (const CameraModel model : kModels) {
+    if (model == CameraModel::kOpenCVFisheye && !SeesWideAngles(solution)) continue;
+    std::optional<MarkerSolution> trial = RefinedAs(model, solution);
+    if (!trial || trial->weights.corner_factor >= least_px) continue;
+    least_px = trial->weights.corner_factor;
+    best = std::move(trial);
+  }
+  return best ? std::move(*best) : solution;
+}
+
+std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& solution) {
+  constexpr std::size_t kMaxNumGroups = 20;
+  const std::size_t num_groups = std::min(kMaxNumGroups, solution.model.images.size());
+  std::vector<std::map<CameraId, Camera>> cameras(num_groups);
+  ParallelFor(num_groups, solution.options.num_threads, [&](std::size_t group) {
+    MarkerSolution fitted = Without(solution, group, num_groups);
+    Minimize(1e-7, &fitted);
+    cameras[group] = std::move(fitted.model.cameras);
+  });
+  const double count = static_cast<double>(num_groups);
+  std::map<CameraId, std::vector<double>> sigmas;
+  for (const auto& [camera_id, camera] : solution.model.cameras) {
+    for (std::size_t i = 0; i < camera.params.size(); ++i) {
+      std::vector<double> values;
+      for (const auto& of_group : cameras) values.push_back(of_group.at(camera_id).params[i]);
+      const double deviation = ComputeStatistics(values).standard_deviation;
+      sigmas[camera_id].push_back(deviation * (count - 1.0) / std::sqrt(count));
+    }
+  }
+  return sigmas;
+}
+
+}  // namespace velamap

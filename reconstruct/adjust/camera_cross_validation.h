@@ -1,0 +1,49 @@
+// How well each camera model predicts pictures that it was not fitted to.
+
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "importer/camera/camera.h"
+#include "reconstruct/adjust/marker_solution.h"
+
+namespace velamap {
+
+struct CameraModelScore {
+  CameraModel model = CameraModel::kPinhole;
+  double unseen_error_px = 0.0;  // RMS over the corners of pictures that took no part in the fit
+  double seen_error_px = 0.0;    // RMS over all corners, where all take part
+  bool is_folded = false;        // its distortion folds over inside the picture
+};
+
+struct CrossValidation {
+  std::vector<CameraModelScore> scores;  // in the order of their numbers of parameters
+  MarkerSolution best;                   // with the model that was taken, refined
+};
+
+// Cross-validation (Stone, "Cross-validatory choice and assessment of statistical predictions",
+// 1974) of SIMPLE_PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV without a denominator and
+// OPENCV_FISHEYE: every fifth image is left out, camera and points are refined from the others, the
+// images that were left out get a pose each, and what then remains of their corners' errors is
+// pooled over the five divisions. The model with the smallest error is taken, where it is smaller
+// by more than chance than that of models with fewer parameters; one that folds over inside the
+// picture only where all do; or `wanted` whatever the errors say. A fisheye is tried where a camera
+// sees more than 35 degrees off its axis. All models are refined from `solution`, whose options
+// have find_camera, and judged by the same corners. Throws DataError where none can be refined, or
+// the wanted one cannot.
+CrossValidation CrossValidateCameraModels(const MarkerSolution& solution,
+                                          std::optional<CameraModel> wanted);
+
+// The solution with the model that leaves the least residuals, whatever it predicts. Corners that
+// contradict it are outliers, and not of a lens that a simpler model cannot describe.
+MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution);
+
+// 1 sigma of the parameters of each camera by the jackknife (Tukey 1958; groups of images are left
+// out in turn, up to twenty): how far the cameras of other pictures of the same kind would differ.
+// Other than the covariance of the adjustment it contains what the images have in common and what
+// the camera model leaves out.
+std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& solution);
+
+}  // namespace velamap

@@ -1,0 +1,93 @@
+#include "reconstruct/calibration/board_flaws.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "importer/base/statistics.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kFlat = 0.02;  // RMS distance from the plane, of the extent
+
+// The corners 1..4 of each whole marker.
+std::map<int, std::array<Eigen::Vector3d, kNumCorners>> WholeMarkers(const Model& model) {
+  std::map<int, std::array<Eigen::Vector3d, kNumCorners>> markers;
+  std::map<int, std::size_t> num_corners;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    const CornerId corner = CornerFromPoint3DId(point3D_id);
+    markers[corner.marker_id][static_cast<std::size_t>(corner.corner) - 1] = point.x_in_world;
+    ++num_corners[corner.marker_id];
+  }
+  for (const auto& [marker_id, count] : num_corners) {
+    if (count < kNumCorners) markers.erase(marker_id);
+  }
+  return markers;
+}
+
+void MeasureBend(const Model& model, const PointCovariance& points, BoardFlaws* flaws) {
+  const double count = static_cast<double>(model.points3D.size());
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const auto& [point3D_id, point] : model.points3D) middle += point.x_in_world / count;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const auto& [point3D_id, point] : model.points3D) {
+    const Eigen::Vector3d from_middle = point.x_in_world - middle;
+    scatter += from_middle * from_middle.transpose() / count;
+    for (const auto& [other_id, other] : model.points3D) {
+      flaws->extent_m = std::max(flaws->extent_m, (point.x_in_world - other.x_in_world).norm());
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
+  const Eigen::Vector3d normal = axes.eigenvectors().col(0);
+  double variance_m2 = 0.0;
+  for (const auto& [point3D_id, point] : model.points3D) {
+    flaws->max_bend_m =
+        std::max(flaws->max_bend_m, std::abs(normal.dot(point.x_in_world - middle)));
+    variance_m2 += normal.dot(PointCovarianceOf(points, point3D_id) * normal) / count;
+  }
+  flaws->bend_m = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
+  flaws->bend_sigma_m = std::sqrt(variance_m2);
+  flaws->is_flat = flaws->bend_m < kFlat * flaws->extent_m;
+}
+
+}  // namespace
+
+BoardFlaws FindBoardFlaws(const Model& model, const PointCovariance& points) {
+  BoardFlaws flaws;
+  MeasureBend(model, points, &flaws);
+  if (!flaws.is_flat) return flaws;
+  std::vector<double> sides_m;
+  double stretch_sum = 0.0;
+  PointGradient gradient;
+  const auto markers = WholeMarkers(model);
+  for (const auto& [marker_id, x] : markers) {
+    const double width_m = 0.5 * ((x[1] - x[0]).norm() + (x[2] - x[3]).norm());
+    const double height_m = 0.5 * ((x[3] - x[0]).norm() + (x[2] - x[1]).norm());
+    stretch_sum += std::log(width_m / height_m);
+    sides_m.push_back(0.5 * (width_m + height_m));
+    // Of the logarithm of width over height, by a side's end; its other end has the opposite.
+    const auto add = [&, id = marker_id](std::size_t from, std::size_t to, double by_length) {
+      const Eigen::Vector3d by_end = 0.5 * by_length * (x[to] - x[from]).normalized();
+      gradient.emplace_back(Point3DIdFromCorner({id, static_cast<int>(to) + 1}), by_end);
+      gradient.emplace_back(Point3DIdFromCorner({id, static_cast<int>(from) + 1}), -by_end);
+    };
+    add(0, 1, 1.0 / width_m);
+    add(3, 2, 1.0 / width_m);
+    add(0, 3, -1.0 / height_m);
+    add(1, 2, -1.0 / height_m);
+  }
+  if (markers.empty()) return flaws;
+  const double count = static_cast<double>(markers.size());
+  flaws.stretch = stretch_sum / count;
+  flaws.stretch_sigma = std::sqrt(VarianceOf(points, gradient)) / count;
+  const Statistics sides = ComputeStatistics(sides_m);
+  if (sides.count > 2) flaws.size_scatter = sides.standard_deviation / sides.mean;
+  return flaws;
+}
+
+}  // namespace velamap

@@ -1,0 +1,65 @@
+// Which pictures of a board serve a calibration: those that fill the picture with corners, show the
+// board tilted in different directions, and are sharp.
+
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/base/ids.h"
+#include "importer/database/colmap_database.h"
+
+namespace velamap {
+
+// Cells of equal size over a picture, row by row from the top left.
+struct PictureGrid {
+  int width_px = 0, height_px = 0;
+  int num_columns = 0, num_rows = 0;
+
+  int NumCells() const { return num_columns * num_rows; }
+  // Of the nearest cell for a position outside the picture.
+  int CellOf(const Eigen::Vector2d& x_in_image_px) const;
+};
+
+// Nearly square cells, `num_cells` along the larger side.
+PictureGrid MakePictureGrid(int width_px, int height_px, int num_cells);
+
+// The grid in which coverage is counted.
+constexpr int kNumCoverageCells = 8;
+
+struct BoardView {
+  ImageId image_id = 0;
+  std::string image_name;
+  // Median over the corners, px: small in sharp pictures of large markers.
+  double corner_sigma_px = 0.0;
+  // Between the board and the picture's plane, by how much the markers are foreshortened: within
+  // some degrees, because it needs no camera.
+  double tilt_deg = 0.0;
+  // Along which they are foreshortened in the picture, from its x towards y, 0 to 180.
+  double tilt_direction_deg = 0.0;
+  std::vector<Eigen::Vector2d> corners_in_image_px;
+
+  static constexpr int kNumTilts = 5;
+  // 0: less than 15 degrees; 1 to 4: more, along x, from top left to bottom right, along y, from
+  // top right to bottom left.
+  int Tilt() const;
+};
+
+// Of the images that show at least two markers, in their order. `unknown_sigma_px` is the sigma of
+// a corner that has none.
+std::vector<BoardView> DescribeBoardViews(const std::vector<DatabaseImage>& images,
+                                          double unknown_sigma_px);
+
+// Greedily takes the view that adds most: in every cell of `grid` and for every tilt, the logarithm
+// of one plus the corners seen there so far, each of which counts by the square of the ratio of the
+// median sigma of all corners and its own. Indices of at most `max_num_views`, ascending.
+std::vector<std::size_t> ChooseBoardViews(const std::vector<BoardView>& views,
+                                          const PictureGrid& grid, int max_num_views);
+
+// The corners in each cell.
+std::vector<int> CountInCells(const std::vector<BoardView>& views, const PictureGrid& grid);
+
+}  // namespace velamap

@@ -1,0 +1,181 @@
+#include "reconstruct/camera_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <Eigen/Geometry>
+
+#include "importer/base/error.h"
+#include "importer/camera/turned_camera.h"
+#include "reconstruct/adjust/camera_adjustment.h"
+#include "reconstruct/camera/camera_steadiness.h"
+#include "reconstruct/camera_search.h"
+#include "reconstruct/model/reprojection.h"
+#include "reconstruct/register_frames.h"
+#include "reconstruct/seed_model.h"
+
+namespace velamap {
+namespace {
+
+// Throws DataError unless all pictures can come from one camera, turned or not.
+void CheckOneCamera(const std::map<CameraId, Camera>& guesses) {
+  for (const auto& [camera_id, camera] : guesses) {
+    const Camera& first = guesses.begin()->second;
+    if (camera == first || camera == TurnCamera(first, 1) || TurnCamera(camera, 1) == first) {
+      continue;
+    }
+    throw DataError(fmt::format(
+        "the pictures come from more than one camera or zoom: {} x {} and {} x {} px, and focal "
+        "lengths of about {:.0f} and {:.0f} px by EXIF or size; calibrate each alone",
+        first.width_px, first.height_px, camera.width_px, camera.height_px, MeanFocalLength(first),
+        MeanFocalLength(camera)));
+  }
+}
+
+// Throws DataError where the board stands still in all pictures.
+void CheckMovement(const std::vector<DatabaseImage>& images, const Camera& guess) {
+  constexpr double kLeastMovement = 0.03;  // of the larger side
+  std::map<CornerId, Eigen::AlignedBox2d> places_px;
+  for (const DatabaseImage& image : images) {
+    for (const MarkerDetection& marker : image.detections.markers) {
+      for (int c = 1; c <= kNumCorners; ++c) {
+        places_px[{marker.marker_id, c}].extend(
+            marker.corners_in_image_px[static_cast<std::size_t>(c) - 1]);
+      }
+    }
+  }
+  double largest_px = 0.0;
+  for (const auto& [corner_id, box] : places_px) {
+    largest_px = std::max(largest_px, box.diagonal().norm());
+  }
+  if (largest_px >= kLeastMovement * std::max(guess.width_px, guess.height_px)) return;
+  throw DataError(fmt::format(
+      "all {} pictures are alike: nothing moves by more than {:.0f} px; move the board through the "
+      "whole picture, near and far, and tilt it by 30 to 45 degrees to all sides",
+      images.size(), largest_px));
+}
+
+std::vector<DatabaseImage> ChosenImages(const std::vector<DatabaseImage>& images,
+                                        const std::vector<BoardView>& views) {
+  std::set<ImageId> image_ids;
+  for (const BoardView& view : views) image_ids.insert(view.image_id);
+  std::vector<DatabaseImage> chosen;
+  for (const DatabaseImage& image : images) {
+    if (image_ids.count(image.image_id) > 0) chosen.push_back(image);
+  }
+  return chosen;
+}
+
+// Paper may stretch by some tenths of a per cent, and cardboard bends: the squares are hardly
+// believed, and the scale that they give is of no use to a camera.
+MarkerAdjustmentOptions BoardOptions(int num_threads) {
+  constexpr double kSquareSigma = 0.01, kFlatness = 0.02;  // of a side
+  MarkerAdjustmentOptions options;
+  options.find_camera = true;
+  options.print_tolerance = kSquareSigma;
+  options.cloth_flatness = options.rigid_flatness = kFlatness;
+  options.num_threads = num_threads;
+  return options;
+}
+
+// Throws DataError for a step of the focal length; `seed` is the model before its adjustment.
+void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
+                     const CornerErrors& corner_errors, const Model& seed, const Model& adjusted,
+                     std::vector<std::string>* warnings) {
+  const SteadinessVerdict verdict = JudgeSteadiness(adjusted);
+  if (!verdict.wandering.empty()) warnings->push_back(verdict.wandering);
+  std::optional<FocalStep> step = verdict.step;
+  if (step && !step->IsCertain()) {
+    step = step->IsSuspicious() ? MeasureFocalStep(options, layout, corner_errors, seed, *step)
+                                : std::nullopt;
+  }
+  if (step) throw DataError("the camera cannot be calibrated: " + DescribeStep(*step));
+}
+
+void CollectResiduals(const Model& model, CameraCalibration* calibration) {
+  std::map<ImageId, std::vector<double>> errors_px;
+  for (const ObservationError& error : ComputeReprojectionErrors(model)) {
+    const ModelImage& image = *model.FindImage(error.element.image_id);
+    const Eigen::Vector2d& x_px = image.points2D[error.element.point2D_idx].x_in_image_px;
+    calibration->residuals.push_back({x_px, error.residual_in_image_px});
+    errors_px[image.image_id].push_back(error.error_px);
+  }
+  for (CalibrationView& view : calibration->views) {
+    const auto found = errors_px.find(view.view.image_id);
+    if (found == errors_px.end()) continue;
+    view.is_used = true;
+    view.error_px = Rms(found->second);
+    // Where the adjustment has them: pictures that were turned are upright there.
+    view.view.corners_in_image_px.clear();
+    for (const SeenPoint& point : SeenPointsOf(model, *model.FindImage(view.view.image_id))) {
+      view.view.corners_in_image_px.push_back(point.x_in_image_px);
+    }
+  }
+}
+
+}  // namespace
+
+const CameraModelScore& CameraCalibration::Score() const {
+  const auto found = std::find_if(
+      scores.begin(), scores.end(),
+      [this](const CameraModelScore& score) { return score.model == camera.camera.model; });
+  VELAMAP_CHECK(found != scores.end());
+  return *found;
+}
+
+std::vector<BoardView> CameraCalibration::UsedViews() const {
+  std::vector<BoardView> used;
+  for (const CalibrationView& view : views) {
+    if (view.is_used) used.push_back(view.view);
+  }
+  return used;
+}
+
+CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
+                                  const std::vector<DatabaseImage>& images,
+                                  const std::map<CameraId, Camera>& guesses, const Layout& layout,
+                                  const std::optional<FormationEstimate>& formation) {
+  CheckOneCamera(guesses);
+  const Camera& guess = guesses.begin()->second;
+  CheckMovement(images, guess);
+  const MarkerAdjustmentOptions adjustment = BoardOptions(options.num_threads);
+  const std::vector<BoardView> views = DescribeBoardViews(images, adjustment.corner_sigma_px);
+  const PictureGrid grid = MakePictureGrid(guess.width_px, guess.height_px, kNumCoverageCells);
+  CameraCalibration calibration;
+  calibration.num_images = static_cast<int>(views.size());
+  std::vector<BoardView> chosen;
+  for (const std::size_t idx : ChooseBoardViews(views, grid, options.max_num_views)) {
+    chosen.push_back(views[idx]);
+    calibration.views.push_back({views[idx]});
+  }
+  const std::vector<DatabaseImage> used = ChosenImages(images, chosen);
+  spdlog::info("{} of {} pictures with markers are chosen", used.size(), images.size());
+  // The velocities of corners need the frames between.
+  const CornerErrors corner_errors = CornerErrorsOf(images, formation);
+  RegistrationOptions registration_options;
+  registration_options.num_threads = options.num_threads;
+  const std::map<CameraId, Camera> cameras =
+      FindCameras(used, guesses, layout, corner_errors, registration_options, adjustment);
+  const Registration registration = RegisterFrames(used, cameras, layout, registration_options);
+  const Model seed = MakeSeedModel(registration, used, cameras);
+  CalibrationAdjustment adjusted =
+      AdjustForCalibration(adjustment, layout, corner_errors, seed, options.camera_model);
+  calibration.warnings = std::move(adjusted.summary.warnings);
+  CheckSteadiness(adjustment, layout, corner_errors, seed, adjusted.model, &calibration.warnings);
+  calibration.camera = adjusted.summary.cameras.begin()->second;
+  calibration.scores = std::move(adjusted.scores);
+  calibration.num_outliers = static_cast<int>(adjusted.summary.removed.size());
+  calibration.error_px = adjusted.summary.error_after_px;
+  const AdjustmentUncertainty& uncertainty = adjusted.summary.uncertainty;
+  calibration.rolling_shutter_s = uncertainty.rolling_shutter_s;
+  calibration.rolling_shutter_sigma_s = uncertainty.rolling_shutter_sigma_s;
+  calibration.board = FindBoardFlaws(adjusted.model, uncertainty.points);
+  CollectResiduals(adjusted.model, &calibration);
+  return calibration;
+}
+
+}  // namespace velamap

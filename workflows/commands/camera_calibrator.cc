@@ -1,0 +1,135 @@
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "exporters/calibration/calibration_page.h"
+#include "exporters/calibration/calibration_verdict.h"
+#include "importer/base/atomic_output.h"
+#include "workflows/calibrate/board_calibration.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/shared_options.h"
+
+namespace velamap {
+namespace {
+
+enum class WantedModel { kAuto, kPinhole, kSimpleRadial, kRadial, kOpenCV, kFullOpenCV, kFisheye };
+
+struct Options {
+  PathOptions paths;
+  std::string report_path;
+  MarkerOptions markers;
+  WantedModel camera_model = WantedModel::kAuto;
+  GeneralOptions general;
+  BoardCalibrationOptions calibration;
+};
+
+CommandSyntax Declare(Options* options) {
+  PathOptions* paths = &options->paths;
+  return {"camera_calibrator",
+          "calibrates a camera from pictures of a board of markers",
+          "--image_path board.mp4 --output_path camera.yml",
+          {{"Input and output",
+            {ImagePathOption(paths),
+             Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
+                                 "camera file for --camera_path of other commands, with sigmas")),
+             BesideIfLeftOut(PathOption("report_path", PathUse::kWritesFile, &options->report_path,
+                                        "page to look at (HTML); left out: calibration.html beside "
+                                        "the camera file"),
+                             &paths->output_path, "calibration.html")}},
+           {"Calibration",
+            {{"num_views", &options->calibration.calibration.max_num_views, "count",
+              "pictures that take part at most, chosen by what they add", FromTo(5, 500)},
+             ChoiceOption("camera_model", &options->camera_model,
+                          {{WantedModel::kAuto, "auto"},
+                           {WantedModel::kPinhole, "SIMPLE_PINHOLE"},
+                           {WantedModel::kSimpleRadial, "SIMPLE_RADIAL"},
+                           {WantedModel::kRadial, "RADIAL"},
+                           {WantedModel::kOpenCV, "OPENCV"},
+                           {WantedModel::kFullOpenCV, "FULL_OPENCV"},
+                           {WantedModel::kFisheye, "OPENCV_FISHEYE"}},
+                          "auto: the one that predicts pictures best that it has not seen")}},
+           DescribeOptions(&options->markers, true),
+           DescribeOptions(&options->calibration.detection),
+           DescribeOptions(&options->calibration.video),
+           DescribeOptions(&options->general)}};
+}
+
+std::optional<CameraModel> ModelOf(WantedModel wanted) {
+  switch (wanted) {
+    case WantedModel::kAuto:
+      return std::nullopt;
+    case WantedModel::kPinhole:
+      return CameraModel::kSimplePinhole;
+    case WantedModel::kSimpleRadial:
+      return CameraModel::kSimpleRadial;
+    case WantedModel::kRadial:
+      return CameraModel::kRadial;
+    case WantedModel::kOpenCV:
+      return CameraModel::kOpenCV;
+    case WantedModel::kFullOpenCV:
+      return CameraModel::kFullOpenCV;
+    case WantedModel::kFisheye:
+      return CameraModel::kOpenCVFisheye;
+  }
+  return std::nullopt;
+}
+
+void Validate(Options* options) {
+  SetLogLevel(options->general.log_level);
+  BoardCalibrationOptions& calibration = options->calibration;
+  calibration.detection.Check();
+  calibration.video.Check();
+  calibration.image_path = options->paths.image_path;
+  calibration.calibration.camera_model = ModelOf(options->camera_model);
+  calibration.calibration.num_threads = options->general.num_threads;
+  if (HasMarkerOptions(options->markers) || !options->markers.dictionary.empty()) {
+    calibration.layout = LoadLayout(options->markers, true);
+  }
+}
+
+void Print(const CameraCalibration& calibration, std::ostream& out) {
+  PrintVerdict(JudgeCalibration(calibration), out);
+  fmt::print(out, "camera: {}\n", DescribeCamera(calibration.camera));
+  fmt::print(out, "views: {} of {} pictures with markers\n", calibration.UsedViews().size(),
+             calibration.num_images);
+  fmt::print(out, "reprojection_error_px: rms {:.4f}, median {:.4f}, max {:.3f}\n",
+             calibration.error_px.rms, calibration.error_px.median, calibration.error_px.max);
+  fmt::print(out, "outliers_removed: {} of {} corners\n", calibration.num_outliers,
+             calibration.num_outliers + static_cast<int>(calibration.residuals.size()));
+  for (const CameraModelScore& score : calibration.scores) {
+    fmt::print(out, "unseen_error_px: {:.4f} {}\n", score.unseen_error_px,
+               CameraModelName(score.model));
+  }
+  for (const std::string& advice : WhatToShoot(calibration)) {
+    fmt::print(out, "shoot_more: {}\n", advice);
+  }
+  fmt::print(out, "board: {}\n", DescribeBoard(calibration.board));
+}
+
+void Run(const Options& options) {
+  const BoardCalibration result = CalibrateWithBoard(options.calibration);
+  const CameraCalibration& calibration = result.calibration;
+  WriteCalibration(calibration.camera,
+                   fmt::format("velamap camera_calibrator: {}, {} pictures, {:.3f} px in pictures "
+                               "that it has not seen",
+                               CameraModelName(calibration.camera.camera.model),
+                               calibration.UsedViews().size(), calibration.Score().unseen_error_px),
+                   options.paths.output_path);
+  WriteFileAtomically(options.report_path, [&](std::ostream& out) {
+    WriteCalibrationPage(calibration, result.dictionary, out);
+  });
+  Print(calibration, std::cout);
+  fmt::print(std::cout, "camera_path: {}\nreport_path: {}\n", options.paths.output_path,
+             options.report_path);
+}
+
+}  // namespace
+
+Command CameraCalibrator() {
+  return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run);
+}
+
+}  // namespace velamap
