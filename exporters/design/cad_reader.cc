@@ -4,7 +4,6 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
-#include <regex>
 
 #include <fmt/format.h>
 #include <BRepBndLib.hxx>
@@ -62,10 +61,14 @@ void CheckWholeStep(const fs::path& path) {
   if (TailOf(path).find(end) == std::string::npos) ThrowCutOff(path, end);
 }
 
-// The last line of an IGES file has a T in column 73 and the number 1 up to column 80.
+// The last line of an IGES file has a T in column 73 and the number 1 in columns 74 to 80.
 void CheckWholeIges(const fs::path& path) {
-  static const std::regex terminate_section("T[ 0]{6}1[ \r\n\x1a]*$");
-  if (!std::regex_search(TailOf(path), terminate_section)) {
+  constexpr std::size_t kSize = 8;
+  const std::string tail = TailOf(path);
+  const std::size_t last = tail.find_last_not_of(" \r\n\x1a");
+  const bool has_end = last != std::string::npos && last + 1 >= kSize && tail[last] == '1';
+  const std::string end = has_end ? tail.substr(last + 1 - kSize, kSize) : "";
+  if (!has_end || end.front() != 'T' || end.find_first_not_of(" 0", 1) != kSize - 1) {
     ThrowCutOff(path, "a terminate section");
   }
 }
