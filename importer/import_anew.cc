@@ -47,11 +47,11 @@ void RemoveEarlierImport(const MarkerImporterOptions& options) {
   const fs::path folder = options.frame_output_path;
   const bool is_video = !IsFolder(options.image_path);  // else the frames may be the photographs
   if (is_video && !folder.empty()) RemoveFrames(folder, names);
-  for (const auto& [name, known] : sources) {
-    const fs::path copy = folder / name;
-    if (options.is_only_source && !name.empty() &&
-        IsOutdatedCopy(copy, fs::path(options.image_path) / name, known)) {
-      RemoveAll(copy);
+  for (const std::string& name : names) {
+    const auto known = sources.find(name);
+    if (options.is_only_source && known != sources.end() &&
+        IsOutdatedCopy(folder / name, fs::path(options.image_path) / name, known->second)) {
+      RemoveAll(folder / name);
     }
   }
   RemoveDatabase(options.database_path);
