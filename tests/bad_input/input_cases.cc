@@ -106,6 +106,7 @@ std::vector<BadInput> Walls() {
       {"YamlOfAList", "%YAML:1.0\n---\n- 1\n- 2\n"},
       {"YamlOfText", "%YAML:1.0\n---\nonly text\n"},
       {"YamlOfAliases", aliases},
+      {"YamlOfDocumentsWithoutEnd", "%Y^^ML:1.0\n---\nn\n---\n,markers: 2\nmarkersize: 3\n"},
       {"YamlOfAnAliasOfItself", "%YAML:1.0\n---\na: &a [*a, *a]\n"},
       {"JsonCutOff", "{\"image_width\": 320,"},
       {"ZeroBytes", std::string("%YAML:1.0\n---\na: \0\0\n", 19)}};
