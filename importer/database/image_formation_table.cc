@@ -28,7 +28,6 @@ CREATE TABLE IF NOT EXISTS image_formation (
     inset_sigma_px REAL NOT NULL);
 )";
 
-constexpr int kNumColumns = 13;
 constexpr char kColumns[] =
     "gamma, s_amplitude, sharpening, sharpening_radius_px, sharpens_light, ink_spread_sides,"
     " outline_corner_weight, is_inverted, quiet_zone_cells, quiet_zone_sigma_cells, num_samples, "
@@ -55,14 +54,14 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
 std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
                                                     SQLite::Database* database) {
   if (!database->tableExists("image_formation")) return std::nullopt;
-  if (database->execAndGet("SELECT COUNT(*) FROM pragma_table_info('image_formation')").getInt() !=
-      kNumColumns) {
-    throw InputError(fmt::format(
-        "{}: table image_formation is that of another version of velamap; delete the database and "
-        "import again",
-        path));
-  }
-  SQLite::Statement query(*database, fmt::format("SELECT {} FROM image_formation", kColumns));
+  // An earlier velamap had no such column, and all pixels had the same weight.
+  const bool is_earlier = database
+                              ->execAndGet(
+                                  "SELECT COUNT(*) FROM pragma_table_info('image_formation') "
+                                  "WHERE name = 'outline_corner_weight'")
+                              .getInt() == 0;
+  SQLite::Statement query(*database, fmt::format("SELECT *{} FROM image_formation",
+                                                 is_earlier ? ", 1 AS outline_corner_weight" : ""));
   if (!query.executeStep()) return std::nullopt;
   const auto number = [&](const char* name, const OptionRange& range) {
     const SQLite::Column column = query.getColumn(name);

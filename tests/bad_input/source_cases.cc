@@ -184,12 +184,6 @@ std::vector<BadInput> ImageFormations() {
                      },
                      kLog});
   }
-  cases.push_back({"ImageFormationOfAnotherVersion", kRerun, 2, "another version of velamap",
-                   [](const fs::path& dir) {
-                     RunSql(dir / "workspace/database.db",
-                            "ALTER TABLE image_formation DROP COLUMN outline_corner_weight");
-                   },
-                   kLog});
   // NULL, which SQLite stores for a NaN, where no constraint forbids it.
   cases.push_back({"ImageFormationOfNothing",
                    "bundle_adjuster --backend markers --marker_length 0.1 --input_path "

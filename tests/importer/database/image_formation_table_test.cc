@@ -1,5 +1,6 @@
 #include "importer/database/image_formation_table.h"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 
 #include "importer/database/colmap_database.h"
@@ -39,6 +40,18 @@ TEST(ImageFormationTable, HoldsOneRow) {
   EXPECT_EQ(read->num_samples, 31);
   EXPECT_EQ(read->noise_gray, 2.5);
   EXPECT_EQ(read->inset_sigma_px, 0.012);
+}
+
+// The corners of outlines had no weight of their own.
+TEST(ImageFormationTable, OfAnEarlierVersionIsRead) {
+  const TempDir dir;
+  const std::string path = dir / "database.db";
+  ColmapDatabase(path, Mode::kReadWriteCreate).WriteFormation({});
+  SQLite::Database(path, SQLite::OPEN_READWRITE)
+      .exec("ALTER TABLE image_formation DROP COLUMN outline_corner_weight");
+  const auto read = ColmapDatabase(path, Mode::kReadOnly).ReadFormation();
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->parameters.outline_corner_weight, 1.0);
 }
 
 }  // namespace
