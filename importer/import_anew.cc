@@ -27,8 +27,8 @@ void RemoveFrames(const fs::path& folder, const std::vector<std::string>& names)
 // A copy that is as the photograph was when it was imported, while the photograph is another now.
 bool IsOutdatedCopy(const fs::path& copy, const fs::path& original, const SourceFile& known) {
   return IsRegularFile(copy) && !IsLink(copy) && IsRegularFile(original) &&
-         !IsSameFile(copy, original) && HasSameContent(known, copy.string()) &&
-         !HasSameContent(known, original.string());
+         !IsSameFile(copy, original) && !HasSameContent(known, original.string()) &&
+         HasSameContent(known, copy.string());
 }
 
 }  // namespace
@@ -45,16 +45,20 @@ void RemoveEarlierImport(const MarkerImporterOptions& options) {
   OpenFrameSource(options.image_path, options.video, {}, options.num_threads);
   CheckFrameFolder(options, names);
   const fs::path folder = options.frame_output_path;
-  const bool is_video = !IsFolder(options.image_path);  // else the frames may be the photographs
-  if (is_video && !folder.empty()) RemoveFrames(folder, names);
+  std::vector<fs::path> outdated;
   for (const std::string& name : names) {
     const auto known = sources.find(name);
     if (options.is_only_source && known != sources.end() &&
         IsOutdatedCopy(folder / name, fs::path(options.image_path) / name, known->second)) {
-      RemoveAll(folder / name);
+      outdated.push_back(folder / name);
     }
   }
+  // In this order: only the database tells which copies are outdated, and frames without a database
+  // are written anew, while a database without its frames would not notice.
+  for (const fs::path& copy : outdated) RemoveAll(copy);
   RemoveDatabase(options.database_path);
+  const bool is_video = !IsFolder(options.image_path);  // else the frames may be the photographs
+  if (is_video && !folder.empty()) RemoveFrames(folder, names);
 }
 
 }  // namespace velamap

@@ -138,6 +138,9 @@ void NoteSources(const MarkerImporterOptions& options, const std::vector<std::st
     const fs::path file = fs::path(options.image_path) / name;
     if (IsRegularFile(file)) database->WriteSource(name, IdentifySource(file.string()));
   }
+  if (IsRegularFile(options.image_path)) {
+    database->WriteSource(kVideoSource, IdentifySource(options.image_path));
+  }
 }
 
 void CheckFrameFolder(const MarkerImporterOptions& options,

@@ -58,7 +58,7 @@ ResidualDrawing DrawResiduals(const CameraCalibration& calibration) {
   constexpr int kNumCells = 16, kMinCorners = 4;
   constexpr std::size_t kMaxNumDots = 4000;
   constexpr double kDotSize = 0.002, kStroke = 0.0025;  // of the larger side
-  constexpr double kDotRms = 0.15;                      // a residual of 1 RMS, of a cell
+  constexpr double kArrowOfRms = 0.15;                  // of the larger side, at most
   const PictureGrid grid = GridOf(calibration, kNumCells);
   const double side_px = std::max(grid.width_px, grid.height_px), cell_px = side_px / kNumCells;
   const std::vector<ResidualCell> cells = ResidualsInCells(calibration.residuals, grid);
@@ -68,9 +68,8 @@ ResidualDrawing DrawResiduals(const CameraCalibration& calibration) {
   }
   ResidualDrawing drawing;
   // Residuals without a pattern must look small.
-  drawing.magnification =
-      std::min(cell_px / longest_px,
-               kDotRms * kNumCells * cell_px / std::max(calibration.error_px.rms, 1e-6));
+  drawing.magnification = std::min(
+      cell_px / longest_px, kArrowOfRms * side_px / std::max(calibration.error_px.rms, 1e-6));
   std::string content;
   const std::size_t stride = calibration.residuals.size() / kMaxNumDots + 1;
   for (std::size_t i = 0; i < calibration.residuals.size(); i += stride) {

@@ -14,6 +14,7 @@ namespace velamap {
 namespace {
 
 constexpr double kGoodShare = 0.7, kBadShare = 0.3;     // of the picture covered
+constexpr std::size_t kManyEmptyParts = 3;              // of nine
 constexpr double kGoodSigma = 0.003, kBadSigma = 0.02;  // of the focal length
 constexpr double kGoodCenterSigma = 0.003;              // of the picture's larger side
 constexpr double kGoodUnseenPx = 0.5, kBadUnseenPx = 2.0;
@@ -166,7 +167,7 @@ class Judge {
         "the board was seen in {:.0f} % of the picture: move it into every corner", 100.0 * share);
     if (share < kBadShare) {
       Bad(covered);
-    } else if (share < kGoodShare) {
+    } else if (share < kGoodShare || EmptyParts(calibration_).size() >= kManyEmptyParts) {
       Check(covered);
     }
     if (calibration_.UsedViews().size() < kFewViews) {

@@ -18,6 +18,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <vector>
 
@@ -174,8 +175,8 @@ class Child {
 
  private:
   [[noreturn]] static void Fail(int error) {
-    throw std::runtime_error(
-        fmt::format("a process that reads meshes cannot be started: {}", std::strerror(error)));
+    throw std::system_error(error, std::generic_category(),
+                            "a process that reads meshes cannot be started");
   }
 
   int read_end_ = -1;
@@ -190,7 +191,7 @@ void TakeItems(std::uint64_t count, std::string_view* bytes, std::vector<Item>* 
   bytes->remove_prefix(count * sizeof(Item));
 }
 
-// Nothing unless the bytes are a whole mesh: the child may have lost its mind.
+// Nothing unless the bytes are a whole mesh: a damaged file may have made the child write anything.
 std::optional<TriangleMesh> MeshFromBytes(std::string_view bytes) {
   TriangleMesh mesh;
   std::array<std::uint64_t, 2> counts{};
@@ -213,8 +214,8 @@ std::optional<TriangleMesh> MeshFromBytes(std::string_view bytes) {
   return mesh;
 }
 
-std::string TimeText(const MeshLimits& limits) {
-  return fmt::format("reading it takes more than {} s", limits.cpu_s);
+std::string TimeText(int limit_s) {
+  return fmt::format("reading it takes more than {} s", limit_s);
 }
 
 std::string MemoryText(const MeshLimits& limits) {
@@ -224,7 +225,7 @@ std::string MemoryText(const MeshLimits& limits) {
 // Why a child that has not answered ended.
 std::string EndText(int status, const MeshLimits& limits) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-  if (signal == SIGXCPU) return TimeText(limits);
+  if (signal == SIGXCPU) return TimeText(limits.cpu_s);
   if (signal == SIGKILL) return "its reader was killed, perhaps because memory ran out";
   if (signal != 0) return fmt::format("its reader crashed on it ({})", strsignal(signal));
   return fmt::format("its reader ended without a mesh (status {})", WEXITSTATUS(status));
@@ -250,7 +251,7 @@ TriangleMesh ParseMeshInChild(const fs::path& path, const MeshReadOptions& optio
                fmt::format("{}", options.m_per_unit.value_or(0.0)), fmt::format("{}", limits.cpu_s),
                fmt::format("{}", limits.memory_bytes)});
   const auto answer = child.ReadAnswer(std::chrono::seconds(limits.wall_s));
-  if (!answer) throw fail(TimeText(limits));
+  if (!answer) throw fail(TimeText(limits.wall_s));
   const int status = child.Wait();
   const std::string_view bytes = *answer;
   if (!bytes.empty() && bytes.front() == kError) throw InputError(answer->substr(1));

@@ -71,6 +71,8 @@ std::string DescribeLockHolder(const std::string& record, std::time_t now,
   std::string holder_host;
   if (!(words >> since >> process_id)) return "";
   words >> holder_host;
+  constexpr std::time_t kDay = 24 * 60 * 60;
+  if (since < 0 || since > now + kDay) return "";  // a damaged record
   const std::tm start = fmt::localtime(since), today = fmt::localtime(now);
   const bool is_today = start.tm_year == today.tm_year && start.tm_yday == today.tm_yday;
   return fmt::format("since {}{:%H:%M}, process {}{}",

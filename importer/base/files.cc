@@ -192,6 +192,7 @@ TemporaryFolder::TemporaryFolder() {
     }
   }
   const char* wanted = std::getenv("TMPDIR");
+  if (!error) error = std::make_error_code(std::errc::resource_unavailable_try_again);
   throw InputError(
       fmt::format("TMPDIR {}: no folder for temporary files can be made there: {}; set TMPDIR to a "
                   "folder that can be written",

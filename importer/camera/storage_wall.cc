@@ -39,8 +39,11 @@ void CheckNode(const YAML::Node& node, int depth, int* num_values, const std::st
 // JSON, too: it is YAML, and OpenCV writes numbers such as 300. that only YAML allows. One document
 // is read, because yaml-cpp does not end on some texts of several.
 void CheckYaml(const std::string& text, const std::string& path) {
-  const std::size_t begin = text.find("\n---");
-  if (begin != std::string::npos && text.find("\n---", begin + 1) != std::string::npos) {
+  const std::size_t begin = text.find("\n---"), end = text.find("\n...");
+  const bool begins_twice =
+      begin != std::string::npos && text.find("\n---", begin + 1) != std::string::npos;
+  if (begins_twice ||
+      (end != std::string::npos && text.find_first_not_of(" \t\r\n.", end) != std::string::npos)) {
     Fail(path, "it holds more than one document");
   }
   YAML::Node document;

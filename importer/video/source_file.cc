@@ -73,7 +73,9 @@ SourceFile IdentifySource(const std::string& path) {
 bool HasSameContent(const SourceFile& known, const std::string& path) {
   const SourceFile now = SourceWithoutHash(path);
   if (now.size != known.size) return false;
-  if (now.path == known.path && now.changed_ns == known.changed_ns) return true;
+  if (now.path == known.path && now.changed_ns == known.changed_ns &&
+      now.modified_s == known.modified_s)
+    return true;
   return HashOfContent(path, now.size) == known.content_hash;
 }
 

@@ -124,7 +124,7 @@ void FindErrorsOfUnseen(const MarkerSolution& trial, std::size_t division,
                         std::vector<ErrorSum>* sums) {
   constexpr std::size_t kMinPoints = 4;
   MarkerSolution fitted = Without(trial, division, kNumDivisions);
-  Minimize(1e-5, &fitted);
+  Minimize(1e-9, &fitted);  // parameters that are hardly determined must forget these images, too
   const Model model = InMiddleRow(trial);
   LeastSquaresOptions options;
   options.min_relative_decrease = 1e-6;
@@ -173,6 +173,9 @@ std::optional<Trial> TryModel(CameraModel model, const MarkerSolution& solution)
 // by its scatter over the images.
 bool IsBetter(const Trial& trial, const Trial& taken) {
   if (trial.score.is_folded != taken.score.is_folded) return taken.score.is_folded;
+  if (!std::isfinite(taken.score.unseen_error_px)) {
+    return std::isfinite(trial.score.unseen_error_px);
+  }
   std::vector<double> gains_px2;
   for (std::size_t i = 0; i < trial.unseen.size(); ++i) {
     gains_px2.push_back(taken.unseen[i].squares_px2 - trial.unseen[i].squares_px2);
@@ -225,11 +228,20 @@ std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& s
   std::vector<std::map<CameraId, Camera>> cameras(num_groups);
   ParallelFor(num_groups, solution.options.num_threads, [&](std::size_t group) {
     MarkerSolution fitted = Without(solution, group, num_groups);
-    Minimize(1e-7, &fitted);
-    cameras[group] = std::move(fitted.model.cameras);
+    try {
+      Minimize(1e-9, &fitted);
+      cameras[group] = std::move(fitted.model.cameras);
+    } catch (const DataError& error) {
+      spdlog::warn("the scatter of the camera is estimated without one group of pictures: {}",
+                   error.what());
+    }
   });
-  const double count = static_cast<double>(num_groups);
+  cameras.erase(std::remove_if(cameras.begin(), cameras.end(),
+                               [](const auto& of_group) { return of_group.empty(); }),
+                cameras.end());
+  const auto count = static_cast<double>(cameras.size());
   std::map<CameraId, std::vector<double>> sigmas;
+  if (cameras.size() < 2) return sigmas;
   for (const auto& [camera_id, camera] : solution.model.cameras) {
     for (std::size_t i = 0; i < camera.params.size(); ++i) {
       std::vector<double> values;

@@ -192,7 +192,11 @@ std::vector<CameraModelScore> MarkerAdjuster::CrossValidateCameraModel(
 }
 
 void MarkerAdjuster::WidenCameraSigmas() {
-  for (const auto& [camera_id, sigmas] : JackknifeCameras(solution_)) {
+  // Finish() has moved the image points to the middle row; the fits move them themselves.
+  MarkerSolution as_recorded = solution_;
+  MoveToMiddleRow(-solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
+                  &as_recorded.model);
+  for (const auto& [camera_id, sigmas] : JackknifeCameras(as_recorded)) {
     std::vector<double>& widened = summary_.cameras.at(camera_id).sigmas;
     for (std::size_t i = 0; i < sigmas.size(); ++i) widened[i] = std::max(widened[i], sigmas[i]);
     // No picture shows whether all corners are seen too far inside; the squares are foreshortened

@@ -106,7 +106,9 @@ std::vector<BadInput> Walls() {
       {"YamlOfAList", "%YAML:1.0\n---\n- 1\n- 2\n"},
       {"YamlOfText", "%YAML:1.0\n---\nonly text\n"},
       {"YamlOfAliases", aliases},
-      {"YamlOfDocumentsWithoutEnd", "%Y^^ML:1.0\n---\nn\n---\n,markers: 2\nmarkersize: 3\n"},
+      {"YamlOfDocumentsWithoutEnd", "%YAML:1.0\n---\nn\n---\n,markers: 2\nmarkersize: 3\n"},
+      {"YamlOfADocumentAfterTheEnd",
+       "%YAML:1.0\nnmarkers: 1\n...\n---\na: " + std::string(200000, '[')},
       {"YamlOfAnAliasOfItself", "%YAML:1.0\n---\na: &a [*a, *a]\n"},
       {"JsonCutOff", "{\"image_width\": 320,"},
       {"ZeroBytes", std::string("%YAML:1.0\n---\na: \0\0\n", 19)}};
@@ -182,7 +184,7 @@ std::vector<BadInput> Numbers() {
       {"AFarCornerOfAReference",
        "shape_comparer --shape_path @/workspace/shape --reference_path @/bad.csv", 2, "bad.csv:2",
        Write("bad.csv", header + "1,1,0,-1e200,0,,,,2,\n")},
-      {"AShapeOfManyBytes", analyzed, 2, "bad.csv: 268435457 bytes are no shape.csv",
+      {"AShapeOfManyBytes", analyzed, 2, "bad.csv: 268435457 bytes are too many for a shape.csv",
        [](const fs::path& dir) {
          WriteTextFile(dir / "bad.csv", "marker_id");
          fs::resize_file(dir / "bad.csv", (std::uintmax_t{256} << 20) + 1);

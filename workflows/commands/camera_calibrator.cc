@@ -34,7 +34,7 @@ CommandSyntax Declare(Options* options) {
           {{"Input and output",
             {ImagePathOption(paths),
              Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
-                                 "camera file for --camera_path of other commands, with sigmas")),
+                                 "camera file for the other commands, with sigmas")),
              BesideIfLeftOut(PathOption("report_path", PathUse::kWritesFile, &options->report_path,
                                         "page to look at (HTML); left out: calibration.html beside "
                                         "the camera file"),

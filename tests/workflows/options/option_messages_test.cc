@@ -53,6 +53,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
     {"reconstruct/adjust/",
      {"automatic_reconstructor", "bundle_adjuster", "central_frame_sweeper"}},
     {"exporters/", {"automatic_reconstructor", "shape_exporter"}},
+    {"exporters/calibration/", {"camera_calibrator"}},
     {"exporters/compare/", {"shape_comparer"}},
     {"exporters/design/mesh_reader.cc", {"shape_comparer"}},
     {"workflows/run/pipeline.cc", {"automatic_reconstructor"}},
