@@ -71,8 +71,9 @@ BoardFlaws FindBoardFlaws(const Model& model, const PointCovariance& points) {
     stretch_sum += std::log(width_m / height_m);
     sides_m.push_back(0.5 * (width_m + height_m));
     // Of the logarithm of width over height, by a side's end; its other end has the opposite.
-    const auto add = [&, id = marker_id](std::size_t from, std::size_t to, double by_length) {
-      const Eigen::Vector3d by_end = 0.5 * by_length * (x[to] - x[from]).normalized();
+    const auto add = [&gradient, id = marker_id, corners = x](std::size_t from, std::size_t to,
+                                                              double by_length) {
+      const Eigen::Vector3d by_end = 0.5 * by_length * (corners[to] - corners[from]).normalized();
       gradient.emplace_back(Point3DIdFromCorner({id, static_cast<int>(to) + 1}), by_end);
       gradient.emplace_back(Point3DIdFromCorner({id, static_cast<int>(from) + 1}), -by_end);
     };
