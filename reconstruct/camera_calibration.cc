@@ -88,11 +88,7 @@ void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layou
                      std::vector<std::string>* warnings) {
   const SteadinessVerdict verdict = JudgeSteadiness(adjusted);
   if (!verdict.wandering.empty()) warnings->push_back(verdict.wandering);
-  std::optional<FocalStep> step = verdict.step;
-  if (step && !step->IsCertain()) {
-    step = step->IsSuspicious() ? MeasureFocalStep(options, layout, corner_errors, seed, *step)
-                                : std::nullopt;
-  }
+  const auto step = ConfirmFocalStep(options, layout, corner_errors, &seed, verdict.step);
   if (step) throw DataError("the camera cannot be calibrated: " + DescribeStep(*step));
 }
 
@@ -133,6 +129,10 @@ std::vector<BoardView> CameraCalibration::UsedViews() const {
     if (view.is_used) used.push_back(view.view);
   }
   return used;
+}
+
+PictureGrid CameraCalibration::Grid(int num_cells) const {
+  return MakePictureGrid(camera.camera.width_px, camera.camera.height_px, num_cells);
 }
 
 CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,

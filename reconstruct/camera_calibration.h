@@ -55,6 +55,8 @@ struct CameraCalibration {
   // Of the model that was taken.
   const CameraModelScore& Score() const;
   std::vector<BoardView> UsedViews() const;
+  // Of the picture, with `num_cells` along its larger side.
+  PictureGrid Grid(int num_cells) const;
 };
 
 // `guesses` are the cameras of the database. Throws DataError for pictures of several cameras or a

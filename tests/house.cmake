@@ -5,8 +5,10 @@
 house_folder(importer/base PUBLIC
   atomic_output bounded_queue csv error file_lock files ids natural_order numbers option
   parallel replacement stage_timer statistics text_file)
+house_folder(importer/process PUBLIC
+  child_process)
 house_folder(importer/text PUBLIC
-  shown_text)
+  markup shown_text)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
   rigid3 unit_square_map units)

@@ -27,17 +27,12 @@ Cell CellAt(const PictureGrid& grid, int idx) {
           height_px};
 }
 
-PictureGrid GridOf(const CameraCalibration& calibration, int num_cells) {
-  const Camera& camera = calibration.camera.camera;
-  return MakePictureGrid(camera.width_px, camera.height_px, num_cells);
-}
-
 }  // namespace
 
 std::string DrawCoverage(const CameraCalibration& calibration) {
   constexpr int kNumCells = 24;
   constexpr double kFaintest = 0.15;
-  const PictureGrid grid = GridOf(calibration, kNumCells);
+  const PictureGrid grid = calibration.Grid(kNumCells);
   const std::vector<int> counts = CountInCells(calibration.UsedViews(), grid);
   const double most = std::log1p(*std::max_element(counts.begin(), counts.end()));
   std::string content;
@@ -59,7 +54,7 @@ ResidualDrawing DrawResiduals(const CameraCalibration& calibration) {
   constexpr std::size_t kMaxNumDots = 4000;
   constexpr double kDotSize = 0.002, kStroke = 0.0025;  // of the larger side
   constexpr double kArrowOfRms = 0.15;                  // of the larger side, at most
-  const PictureGrid grid = GridOf(calibration, kNumCells);
+  const PictureGrid grid = calibration.Grid(kNumCells);
   const double side_px = std::max(grid.width_px, grid.height_px), cell_px = side_px / kNumCells;
   const std::vector<ResidualCell> cells = ResidualsInCells(calibration.residuals, grid);
   double longest_px = 1e-6;

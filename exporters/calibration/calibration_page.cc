@@ -11,6 +11,7 @@
 #include "exporters/report/html_page.h"
 #include "exporters/report/report_assets.h"
 #include "importer/camera/camera_projection.h"
+#include "importer/text/markup.h"
 
 namespace velamap {
 namespace {
@@ -19,14 +20,14 @@ std::string Row(const std::vector<std::string>& cells, const char* tag = "td") {
   std::string row = "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     row += fmt::format("<{0}{1}>{2}</{0}>", tag, i == 0 ? " class=\"text\"" : "",
-                       EscapeForHtml(cells[i]));
+                       EscapeForMarkup(cells[i]));
   }
   return row + "</tr>";
 }
 
 std::string Items(const std::vector<std::string>& texts) {
   std::string items;
-  for (const std::string& text : texts) items += "<li>" + EscapeForHtml(text) + "</li>";
+  for (const std::string& text : texts) items += "<li>" + EscapeForMarkup(text) + "</li>";
   return "<ul>" + items + "</ul>";
 }
 
@@ -39,30 +40,24 @@ std::string VerdictHtml(const Verdict& verdict) {
   std::string items;
   for (const VerdictReason& reason : verdict.reasons) {
     items += fmt::format("<li class=\"{}\">{}</li>", StatusName(reason.level),
-                         EscapeForHtml(reason.text));
+                         EscapeForMarkup(reason.text));
   }
   return fmt::format("<div class=\"card {}\"><p class=\"value verdict\">{}</p>{}</div>", level,
                      meaning, items.empty() ? "" : "<ul>" + items + "</ul>");
 }
 
-std::vector<std::string> ParameterNames(CameraModel model) {
-  std::vector<std::string> names;
-  if (HasOneFocalLength(model)) {
-    names = {"focal length, px"};
-  } else {
-    names = {"focal length in x, px", "focal length in y, px"};
-  }
+std::vector<std::string> ParameterNames(const Camera& camera) {
+  std::vector<std::string> names = {"focal length, px"};
+  if (!HasOneFocalLength(camera.model)) names = {"focal length in x, px", "focal length in y, px"};
   names.insert(names.end(), {"principal point x, px", "principal point y, px"});
-  const bool is_fisheye = model == CameraModel::kOpenCVFisheye;
-  for (const char* name :
-       {"k1", "k2", is_fisheye ? "k3" : "p1", is_fisheye ? "k4" : "p2", "k3", "k4", "k5", "k6"}) {
-    names.emplace_back(name);
+  for (std::size_t i = 0; names.size() < camera.params.size(); ++i) {
+    names.emplace_back(DistortionName(camera.model, i));
   }
   return names;
 }
 
 std::string Parameters(const EstimatedCamera& found) {
-  const std::vector<std::string> names = ParameterNames(found.camera.model);
+  const std::vector<std::string> names = ParameterNames(found.camera);
   std::string rows = Row({CameraModelName(found.camera.model), "value", "sigma"}, "th");
   for (std::size_t i = 0; i < found.camera.params.size(); ++i) {
     const bool is_px = names[i].find("px") != std::string::npos;
@@ -100,7 +95,7 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
   const Camera& camera = calibration.camera.camera;
   if (name == "STYLE") return std::string(kReportStyle);
   if (name == "ORIGIN") {
-    return EscapeForHtml(
+    return EscapeForMarkup(
         fmt::format("{} x {} px, markers of {}", camera.width_px, camera.height_px, dictionary));
   }
   if (name == "VERDICT") return VerdictHtml(JudgeCalibration(calibration));
@@ -120,7 +115,7 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
         calibration.error_px.rms, residuals.magnification);
   }
   if (name == "MODELS") return Models(calibration);
-  if (name == "BOARD") return EscapeForHtml("The board is " + DescribeBoard(calibration.board));
+  if (name == "BOARD") return EscapeForMarkup("The board is " + DescribeBoard(calibration.board));
   if (name == "VIEWS_CAPTION") {
     return fmt::format(
         "{} of the {} pictures that show markers took part; {} of their corners "

@@ -23,11 +23,6 @@ constexpr double kMaxPatternShare = 0.6, kMaxPatternPx = 0.05;
 constexpr std::size_t kFewViews = 10;
 constexpr double kMaxOutliers = 0.1;  // share
 
-PictureGrid GridOf(const CameraCalibration& calibration) {
-  const Camera& camera = calibration.camera.camera;
-  return MakePictureGrid(camera.width_px, camera.height_px, kNumCoverageCells);
-}
-
 // One of the nine parts of a picture.
 std::string PartName(int column, int row) {
   constexpr std::array<const char*, 3> kRows = {"top", "middle", "bottom"};
@@ -39,7 +34,7 @@ std::string PartName(int column, int row) {
 
 // Parts of the picture of whose cells half or more are empty.
 std::vector<std::string> EmptyParts(const CameraCalibration& calibration) {
-  const PictureGrid grid = GridOf(calibration);
+  const PictureGrid grid = calibration.Grid(kNumCoverageCells);
   const std::vector<int> counts = CountInCells(calibration.UsedViews(), grid);
   std::array<int, 9> num_cells{}, num_empty{};
   for (int i = 0; i < grid.NumCells(); ++i) {
@@ -75,20 +70,11 @@ class Judge {
     JudgeErrors();
     JudgeSigmas();
     JudgeViews();
-    for (const std::string& warning : calibration_.warnings) Check(warning);
-    std::stable_sort(
-        verdict_.reasons.begin(), verdict_.reasons.end(),
-        [](const VerdictReason& a, const VerdictReason& b) { return a.level > b.level; });
-    if (!verdict_.reasons.empty()) verdict_.level = verdict_.reasons.front().level;
-    return std::move(verdict_);
+    for (const std::string& warning : calibration_.warnings) reasons_.Check(warning);
+    return reasons_.Take();
   }
 
  private:
-  void Bad(std::string text) { verdict_.reasons.push_back({ReportStatus::kBad, std::move(text)}); }
-  void Check(std::string text) {
-    verdict_.reasons.push_back({ReportStatus::kCheck, std::move(text)});
-  }
-
   // A model that was asked for can be the wrong one.
   void JudgeModel() {
     constexpr double kMuchBetter = 0.9;
@@ -99,7 +85,7 @@ class Judge {
           return a.is_folded != b.is_folded ? b.is_folded : a.unseen_error_px < b.unseen_error_px;
         });
     if (best.unseen_error_px > kMuchBetter * taken.unseen_error_px) return;
-    Bad(fmt::format(
+    reasons_.Bad(fmt::format(
         "the residuals are {}: {} leaves {:.2f} px in unseen pictures, {} {:.2f} px; "
         "leave --camera_model out, or take {}",
         best.model == CameraModel::kOpenCVFisheye ? "those of a fisheye lens"
@@ -115,14 +101,14 @@ class Judge {
         "light, and keep it stiff",
         unseen_px);
     if (unseen_px > kBadUnseenPx) {
-      Bad(text);
+      reasons_.Bad(text);
     } else if (unseen_px > kGoodUnseenPx) {
-      Check(text);
+      reasons_.Check(text);
     }
-    const double pattern_px =
-        SystematicResidual(ResidualsInCells(calibration_.residuals, GridOf(calibration_)));
+    const double pattern_px = SystematicResidual(
+        ResidualsInCells(calibration_.residuals, calibration_.Grid(kNumCoverageCells)));
     if (pattern_px > kMaxPatternPx && pattern_px > kMaxPatternShare * calibration_.error_px.rms) {
-      Check(
+      reasons_.Check(
           fmt::format("{:.2f} px of the residuals have a pattern over the picture that no camera "
                       "model explains: was the picture stabilised or corrected by the camera? "
                       "Switch that off",
@@ -131,7 +117,7 @@ class Judge {
     const double num_corners =
         static_cast<double>(calibration_.residuals.size()) + calibration_.num_outliers;
     if (calibration_.num_outliers > kMaxOutliers * num_corners) {
-      Check(
+      reasons_.Check(
           fmt::format("{:.0f} % of the corners were left out: does the board keep its shape, and "
                       "is each marker on it once?",
                       100.0 * calibration_.num_outliers / num_corners));
@@ -146,15 +132,15 @@ class Judge {
         "all sides, near and far",
         100.0 * sigma);
     if (sigma > kBadSigma) {
-      Bad(focal);
+      reasons_.Bad(focal);
     } else if (sigma > kGoodSigma) {
-      Check(focal);
+      reasons_.Check(focal);
     }
     const std::size_t center = HasOneFocalLength(found.camera.model) ? 1 : 2;
     const double center_px = std::max(found.sigmas[center], found.sigmas[center + 1]);
     const double side_px = std::max(found.camera.width_px, found.camera.height_px);
     if (center_px > kGoodCenterSigma * side_px) {
-      Check(
+      reasons_.Check(
           fmt::format("the principal point is known to {:.1f} px: turn the board by quarters of "
                       "a turn and tilt it to all sides",
                       center_px));
@@ -166,22 +152,22 @@ class Judge {
     const std::string covered = fmt::format(
         "the board was seen in {:.0f} % of the picture: move it into every corner", 100.0 * share);
     if (share < kBadShare) {
-      Bad(covered);
+      reasons_.Bad(covered);
     } else if (share < kGoodShare || EmptyParts(calibration_).size() >= kManyEmptyParts) {
-      Check(covered);
+      reasons_.Check(covered);
     }
     if (calibration_.UsedViews().size() < kFewViews) {
-      Check(fmt::format("only {} pictures took part: take {} or more",
-                        calibration_.UsedViews().size(), 2 * kFewViews));
+      reasons_.Check(fmt::format("only {} pictures took part: take {} or more",
+                                 calibration_.UsedViews().size(), 2 * kFewViews));
     }
     const auto tilts = CountTilts(calibration_);
     if (tilts[1] + tilts[2] + tilts[3] + tilts[4] < 3) {
-      Check("the board is hardly ever tilted: tilt it by 30 to 45 degrees to all sides");
+      reasons_.Check("the board is hardly ever tilted: tilt it by 30 to 45 degrees to all sides");
     }
   }
 
   const CameraCalibration& calibration_;
-  Verdict verdict_;
+  VerdictReasons reasons_;
 };
 
 }  // namespace
@@ -204,7 +190,8 @@ std::vector<std::string> WhatToShoot(const CameraCalibration& calibration) {
 }
 
 double CoveredShare(const CameraCalibration& calibration) {
-  const std::vector<int> counts = CountInCells(calibration.UsedViews(), GridOf(calibration));
+  const std::vector<int> counts =
+      CountInCells(calibration.UsedViews(), calibration.Grid(kNumCoverageCells));
   const auto num_covered =
       std::count_if(counts.begin(), counts.end(), [](int count) { return count > 0; });
   return static_cast<double>(num_covered) / static_cast<double>(counts.size());

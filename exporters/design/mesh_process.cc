@@ -1,9 +1,6 @@
 #include "exporters/design/mesh_process.h"
 
 #include <fcntl.h>
-#include <poll.h>
-#include <spawn.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,7 +15,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <type_traits>
 #include <vector>
 
@@ -27,12 +23,12 @@
 #include "exporters/design/mesh_parser.h"
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
+#include "importer/process/child_process.h"
 
 namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr char kProgram[] = "/proc/self/exe";
 constexpr char kArgument[] = "read_mesh_for_parent";
@@ -53,12 +49,18 @@ void Limit(__rlimit_resource resource, rlim_t limit) {
 }
 
 void LimitThisProcess(const MeshLimits& limits) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_CPU, static_cast<rlim_t>(limits.cpu_s));
 #ifndef VELAMAP_SANITIZE  // the address sanitizer reserves terabytes
   Limit(RLIMIT_AS, limits.memory_bytes);
 #endif
+}
+
+// Keeps the output for the answer: the libraries write to both streams.
+bool KeepOutputForAnswer() {
+  if (dup2(STDOUT_FILENO, kAnswerFd) < 0) return false;
+  const int nowhere = open("/dev/null", O_WRONLY);
+  return dup2(nowhere, STDOUT_FILENO) >= 0 && dup2(nowhere, STDERR_FILENO) >= 0;
 }
 
 bool WriteAll(const void* data, std::size_t size) {
@@ -98,6 +100,7 @@ bool ReadForParent(char** argv) {
     return false;
   }
   if (m_per_unit > 0) options.m_per_unit = m_per_unit;
+  if (!KeepOutputForAnswer()) return false;
   LimitThisProcess(limits);
   try {
     return WriteMesh(ParseMesh(argv[2], options));
@@ -110,78 +113,37 @@ bool ReadForParent(char** argv) {
 
 // ---- the parent
 
-class Child {
- public:
-  explicit Child(std::vector<std::string> arguments) {
-    std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0) Fail(errno);
-    read_end_ = ends[0];
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], kAnswerFd);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {  // the libraries write to both
-      posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
-    }
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    const int error = posix_spawn(&pid_, kProgram, &actions, nullptr, argv.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    if (error != 0) {
-      close(read_end_);
-      Fail(error);
-    }
-  }
-  ~Child() {
-    if (pid_ > 0) {
-      kill(pid_, SIGKILL);
-      Wait();
-    }
-    close(read_end_);
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  // Nothing if the child does not end in time or answers without end.
-  std::optional<std::string> ReadAnswer(std::chrono::seconds limit) const {
-    constexpr std::size_t kMaxSize =
-        kMaxMeshElements * (sizeof(Eigen::Vector3d) + sizeof(std::array<int, 3>)) + 1024;
-    const Clock::time_point end = Clock::now() + limit;
-    std::string answer;
-    std::vector<char> buffer(1 << 16);
-    while (answer.size() <= kMaxSize) {
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
-      pollfd waited{read_end_, POLLIN, 0};
-      const int num_ready = left.count() > 0 ? poll(&waited, 1, static_cast<int>(left.count())) : 0;
-      if (num_ready == 0) return std::nullopt;
-      const ssize_t size = num_ready < 0 ? -1 : read(read_end_, buffer.data(), buffer.size());
-      if (size < 0 && errno == EINTR) continue;
-      if (size <= 0) return answer;
-      answer.append(buffer.data(), static_cast<std::size_t>(size));
-    }
-    return std::nullopt;
-  }
-
-  // The status of waitpid().
-  int Wait() {
-    int status = 0;
-    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-    }
-    pid_ = -1;
-    return status;
-  }
-
- private:
-  [[noreturn]] static void Fail(int error) {
-    throw std::system_error(error, std::generic_category(),
-                            "a process that reads meshes cannot be started");
-  }
-
-  int read_end_ = -1;
-  pid_t pid_ = -1;
+struct ChildAnswer {
+  std::string bytes;
+  int status;  // as of waitpid()
 };
+
+// Nothing if the child does not end in time or answers without end.
+std::optional<ChildAnswer> ReadAnswer(const ChildProcess& child, std::chrono::seconds limit) {
+  constexpr std::size_t kMaxSize =
+      kMaxMeshElements * (sizeof(Eigen::Vector3d) + sizeof(std::array<int, 3>)) + 1024;
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  ChildAnswer answer{};
+  while (answer.bytes.size() <= kMaxSize) {
+    const std::optional<std::string> more = child.Read(deadline);
+    if (!more) return std::nullopt;
+    if (!more->empty()) {
+      answer.bytes += *more;
+      continue;
+    }
+    const std::optional<int> status = child.Wait(deadline);
+    if (!status) return std::nullopt;
+    answer.status = *status;
+    return answer;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> OwnEnvironment() {
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) variables.push_back(*variable);
+  return variables;
+}
 
 template <typename Item>
 void TakeItems(std::uint64_t count, std::string_view* bytes, std::vector<Item>* items) {
@@ -247,19 +209,20 @@ TriangleMesh ParseMeshInChild(const fs::path& path, const MeshReadOptions& optio
     return InputError(
         fmt::format("{}: {}; export it again, the surface alone", path.string(), why));
   };
-  Child child({"velamap", kArgument, path.string(), fmt::format("{}", options.chord_deviation_mm),
-               fmt::format("{}", options.m_per_unit.value_or(0.0)), fmt::format("{}", limits.cpu_s),
-               fmt::format("{}", limits.memory_bytes)});
-  const auto answer = child.ReadAnswer(std::chrono::seconds(limits.wall_s));
+  const ChildProcess child(
+      {kProgram, kArgument, path.string(), fmt::format("{}", options.chord_deviation_mm),
+       fmt::format("{}", options.m_per_unit.value_or(0.0)), fmt::format("{}", limits.cpu_s),
+       fmt::format("{}", limits.memory_bytes)},
+      OwnEnvironment());
+  const auto answer = ReadAnswer(child, std::chrono::seconds(limits.wall_s));
   if (!answer) throw fail(TimeText(limits.wall_s));
-  const int status = child.Wait();
-  const std::string_view bytes = *answer;
-  if (!bytes.empty() && bytes.front() == kError) throw InputError(answer->substr(1));
+  const std::string_view bytes = answer->bytes;
+  if (!bytes.empty() && bytes.front() == kError) throw InputError(std::string(bytes.substr(1)));
   if (!bytes.empty() && bytes.front() == kMemory) throw fail(MemoryText(limits));
   if (!bytes.empty() && bytes.front() == kMesh) {
     if (auto mesh = MeshFromBytes(bytes.substr(1))) return *std::move(mesh);
   }
-  throw fail(EndText(status, limits));
+  throw fail(EndText(answer->status, limits));
 }
 
 }  // namespace velamap

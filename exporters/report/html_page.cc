@@ -6,26 +6,6 @@
 
 namespace velamap {
 
-std::string EscapeForHtml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
-
 void WriteHtmlPage(std::string_view page,
                    const std::function<std::string(std::string_view name)>& part,
                    std::ostream& out) {

@@ -9,9 +9,6 @@
 
 namespace velamap {
 
-// The text as HTML shows it, between tags.
-std::string EscapeForHtml(std::string_view text);
-
 // Writes `page` with `part(NAME)` in the place of every {{NAME}}. What is inserted is not searched,
 // because it can contain braces.
 void WriteHtmlPage(std::string_view page,

@@ -6,6 +6,7 @@
 
 #include "exporters/report/html_page.h"
 #include "exporters/report/report_assets.h"
+#include "importer/text/markup.h"
 
 namespace velamap {
 namespace {
@@ -24,9 +25,9 @@ void WriteReport(const ReportInput& input, std::ostream& out) {
   WriteHtmlPage(
       kReportPage,
       [&](std::string_view name) -> std::string {
-        if (name == "TITLE") return EscapeForHtml(input.title);
+        if (name == "TITLE") return EscapeForMarkup(input.title);
         if (name == "DATA") return ReportJson(input);
-        if (name == "LICENCES") return EscapeForHtml(kReportLicences);
+        if (name == "LICENCES") return EscapeForMarkup(kReportLicences);
         return std::string(Asset(name));
       },
       out);

@@ -7,6 +7,17 @@
 #include <fmt/format.h>
 
 namespace velamap {
+
+Verdict VerdictReasons::Take() {
+  Verdict verdict;
+  verdict.reasons = std::move(reasons_);
+  std::stable_sort(
+      verdict.reasons.begin(), verdict.reasons.end(),
+      [](const VerdictReason& a, const VerdictReason& b) { return a.level > b.level; });
+  if (!verdict.reasons.empty()) verdict.level = verdict.reasons.front().level;
+  return verdict;
+}
+
 Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
                     const std::vector<std::string>& warnings) {
   std::vector<KeyNumber> doubtful;
@@ -15,21 +26,16 @@ Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
   }
   std::stable_sort(doubtful.begin(), doubtful.end(),
                    [](const KeyNumber& a, const KeyNumber& b) { return a.kind < b.kind; });
-  Verdict verdict;
+  VerdictReasons reasons;
   for (const KeyNumber& number : doubtful) {
-    verdict.reasons.push_back(
-        {number.status, fmt::format("{}: {}{}{}", KeyNumberName(number.kind), number.value,
-                                    number.advice.empty() ? "" : "; ", number.advice)});
+    reasons.Add(number.status, fmt::format("{}: {}{}{}", KeyNumberName(number.kind), number.value,
+                                           number.advice.empty() ? "" : "; ", number.advice));
   }
   std::set<std::string> said;  // the log repeats a warning for each step that meets it
   for (const std::string& warning : warnings) {
-    if (said.insert(warning).second) verdict.reasons.push_back({ReportStatus::kCheck, warning});
+    if (said.insert(warning).second) reasons.Check(warning);
   }
-  std::stable_sort(
-      verdict.reasons.begin(), verdict.reasons.end(),
-      [](const VerdictReason& a, const VerdictReason& b) { return a.level > b.level; });
-  if (!verdict.reasons.empty()) verdict.level = verdict.reasons.front().level;
-  return verdict;
+  return reasons.Take();
 }
 
 Verdict MakeVerdict(const ReportInput& input) {

@@ -4,6 +4,7 @@
 
 #include <iosfwd>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exporters/report/report_data.h"
@@ -19,6 +20,20 @@ struct VerdictReason {
 struct Verdict {
   ReportStatus level = ReportStatus::kGood;  // kGood, kCheck or kBad: that of the first reason
   std::vector<VerdictReason> reasons;        // the heaviest first; empty for kGood
+};
+
+// Collects reasons in the order in which they are found.
+class VerdictReasons {
+ public:
+  void Add(ReportStatus level, std::string text) { reasons_.push_back({level, std::move(text)}); }
+  void Bad(std::string text) { Add(ReportStatus::kBad, std::move(text)); }
+  void Check(std::string text) { Add(ReportStatus::kCheck, std::move(text)); }
+
+  // The heaviest first; of the same level, in the order in which they were added.
+  Verdict Take();
+
+ private:
+  std::vector<VerdictReason> reasons_;
 };
 
 // Every key number that is not good is a reason, and every warning is a reason to check. Bad ones

@@ -12,6 +12,7 @@
 #include "exporters/sail/section_writer.h"
 #include "importer/base/csv.h"
 #include "importer/geometry/units.h"
+#include "importer/text/markup.h"
 
 namespace velamap {
 namespace {
@@ -22,33 +23,10 @@ constexpr double kLine = 15;            // height of a line of text
 constexpr int kNumberLines = 4;         // beside a profile
 constexpr std::size_t kMaxChars = 150;  // per line of text below the profiles
 
-std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return escaped;
-}
-
 void WriteText(double x, double y, const std::string& style, const std::string& text,
                std::ostream& out) {
   out << fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"{}\">{}</text>\n", x, y, style,
-                     Escaped(text));
+                     EscapeForMarkup(text));
 }
 
 // `value ± sigma`, or only the value if it has no sigma.

@@ -29,13 +29,13 @@ std::vector<double> Distortion(const std::vector<double>& all) {
 
 cv::Mat RowOf(const std::vector<double>& values) { return cv::Mat(values, true).reshape(1, 1); }
 
+}  // namespace
+
 const char* DistortionName(CameraModel model, std::size_t index) {
   constexpr std::array<const char*, 8> kBrown = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
   constexpr std::array<const char*, 4> kFisheye = {"k1", "k2", "k3", "k4"};
   return model == CameraModel::kOpenCVFisheye ? kFisheye.at(index) : kBrown.at(index);
 }
-
-}  // namespace
 
 std::string CalibrationText(const EstimatedCamera& estimate, const std::string& origin) {
   const Camera& camera = estimate.camera;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct EstimatedCamera {
   Camera camera;
   std::vector<double> sigmas;  // 1 sigma of each parameter, in the camera's order
 };
+
+// k1, k2, p1, ... of the distortion parameter at `index`.
+const char* DistortionName(CameraModel model, std::size_t index);
 
 // An OpenCV FileStorage file (YAML) with the keys of ReadCalibration(), and for readers
 // focal_length_sigma_px (x, y), principal_point_sigma_px (x, y) and distortion_sigma, by

@@ -16,7 +16,7 @@
 namespace velamap {
 namespace {
 
-constexpr int kCount = kNumFormationParameters;
+constexpr int kCount = kNumFormationParameters, kInkSpread = 4;
 using Vector = FormationVector;
 using State = FormationState;
 
@@ -234,21 +234,22 @@ Balanced WithBalancedEdges(const State& state, int num_threads) {
   for (int i = 0; i < kIterations; ++i) {
     edges = InnerEdgeShift(balanced.state);
     Vector parameters = balanced.state.parameters;
-    parameters[4] = std::clamp(parameters[4] + edges.mean_sides, kMin[4], kMax[4]);
+    parameters[kInkSpread] =
+        std::clamp(parameters[kInkSpread] + edges.mean_sides, kMin[kInkSpread], kMax[kInkSpread]);
     balanced.state = MovedTo(parameters, balanced.state, num_threads);
   }
-  const double change = balanced.state.parameters[4] - state.parameters[4];
+  const double change = balanced.state.parameters[kInkSpread] - state.parameters[kInkSpread];
   const double inset_px = MeanInset(state, balanced.state);
   if (std::abs(change) < 1e-7) return {state, 0.0};
   // James and Stein's estimate, positive part: what noise explains is not corrected.
   const double share = std::max(0.0, 1 - edges.sigma_sides * edges.sigma_sides / (change * change));
   Vector parameters = state.parameters;
-  parameters[4] += share * change;
+  parameters[kInkSpread] += share * change;
   spdlog::debug(
       "inner edges: ink spread {:+.3f} -> {:+.3f} +- {:.3f} % of the side, corners {:.3f} px "
       "outwards; half difference of the directions {:.3f} %",
-      100 * state.parameters[4], 100 * balanced.state.parameters[4], 100 * edges.sigma_sides,
-      inset_px, 100 * edges.half_difference_sides);
+      100 * state.parameters[kInkSpread], 100 * balanced.state.parameters[kInkSpread],
+      100 * edges.sigma_sides, inset_px, 100 * edges.half_difference_sides);
   const double unexplained =
       std::sqrt(std::max(0.0, edges.half_difference_sides * edges.half_difference_sides -
                                   edges.sigma_sides * edges.sigma_sides));

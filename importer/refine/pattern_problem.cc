@@ -9,6 +9,7 @@
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/unit_square_map.h"
 #include "importer/refine/pattern_picture.h"
+#include "importer/refine/pattern_pixels.h"
 
 namespace velamap {
 namespace {
@@ -24,102 +25,7 @@ constexpr double kBendOfDiagonal = 0.003;
 constexpr double kMinMargin = 0.1, kMaxMargin = 1.5;  // cells
 constexpr int kFirstPixels = 200, kPixels = 1000;
 
-// Pixels of a marker and around it, in groups.
-struct Pixels {
-  struct Group {
-    Floats x, y;  // relative to center_px of the model
-    Floats gray;
-    Floats root_weight;
-  };
-  std::vector<Group> groups;
-  int count = 0;  // the last group may be incomplete
-};
-
-// Completes the last group with copies of its first pixel.
-inline void FillUp(Pixels* pixels) {
-  for (int lane = pixels->count % kLanes; lane > 0 && lane < kLanes; ++lane) {
-    Pixels::Group& last = pixels->groups.back();
-    last.x[lane] = last.x[0];
-    last.y[lane] = last.y[0];
-    last.gray[lane] = last.gray[0];
-    last.root_weight[lane] = last.root_weight[0];
-  }
-}
-
-// Calls take(group, covered) for every group of pixels of the box, in rows; `covered` is -1 for the
-// pixels that the model covers.
-template <typename Take>
-inline void ForEachGroup(const PatternProblem& problem, const PatternPicture& picture,
-                         const Take& take) {
-  const cv::Rect& box = problem.box;
-  const Eigen::Vector2d& center = problem.model.center_px;
-  for (int row = box.y; row < box.y + box.height; ++row) {
-    const float* values = problem.patch.values.ptr<float>(row - problem.patch.origin_px.y);
-    const Floats y = AllLanes(row - center.y());
-    for (int begin = box.x; begin < box.x + box.width; begin += kLanes) {
-      Pixels::Group group{static_cast<float>(begin - center.x()) + LaneIndex(), y, {}, {}};
-      Ints covered = picture.Covers(group.x, group.y);
-      for (int lane = 0; lane < kLanes; ++lane) {
-        if (begin + lane >= box.x + box.width) covered[lane] = 0;
-        if (covered[lane]) group.gray[lane] = values[begin + lane - problem.patch.origin_px.x];
-      }
-      take(group, covered);
-    }
-  }
-}
-
-// About `max_pixels` of the pixels that the model covers with these parameters. If there are more,
-// every k-th one of those near an edge, which tell where the corners are, and a few others, which
-// tell the levels. Corners of outlines without weight are left out.
-VELAMAP_CLONE_FOR_AVX2 Pixels ChoosePixels(const PatternProblem& problem,
-                                           const P::Vector& parameters, int max_pixels) {
-  constexpr int kPartOfOthers = 5;  // one in so many pixels
-  const PatternPicture picture(problem.model, parameters);
-  const double area_px = 0.8 * problem.model.diagonal_px * problem.model.diagonal_px;
-  const bool takes_all = area_px <= max_pixels;
-  const auto reach_px = static_cast<float>(1 + 2 * parameters.segment<2>(P::kBlurU).maxCoeff());
-  Pixels near, others;
-  const auto add = [](const Pixels::Group& group, int lane, Pixels* pixels) {
-    const int place = pixels->count++ % kLanes;
-    if (place == 0) pixels->groups.emplace_back();
-    Pixels::Group& last = pixels->groups.back();
-    last.x[place] = group.x[lane];
-    last.y[place] = group.y[lane];
-    last.gray[place] = group.gray[lane];
-    last.root_weight[place] = group.root_weight[lane];
-  };
-  const double corner_weight = problem.model.outline_corner_weight;
-  ForEachGroup(problem, picture, [&](Pixels::Group group, Ints covered) {
-    if (MinLane(covered) == 0) return;
-    group.root_weight = AllLanes(1.0);
-    if (corner_weight < 1) {
-      const Ints is_at_corner = picture.IsAtOutlineCorner(group.x, group.y);
-      if (corner_weight == 0) covered &= ~is_at_corner;
-      group.root_weight = is_at_corner ? AllLanes(std::sqrt(corner_weight)) : group.root_weight;
-    }
-    const Ints is_near = takes_all ? covered : picture.IsNearEdge(group.x, group.y, reach_px);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (covered[lane]) add(group, lane, is_near[lane] ? &near : &others);
-    }
-  });
-  if (takes_all) {
-    FillUp(&near);
-    return near;
-  }
-  Pixels chosen;
-  const auto take_every = [&](double step, const Pixels& pixels) {
-    for (double i = 0.5 * step; i < pixels.count; i += std::max(1.0, step)) {
-      const int idx = static_cast<int>(i);
-      add(pixels.groups[static_cast<std::size_t>(idx / kLanes)], idx % kLanes, &chosen);
-    }
-  };
-  take_every(static_cast<double>(near.count) / max_pixels, near);
-  take_every(kPartOfOthers * static_cast<double>(others.count) / max_pixels, others);
-  FillUp(&chosen);
-  return chosen;
-}
-
-VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const Pixels& pixels,
+VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const ChosenPixels& pixels,
                                   const P::Vector& parameters, bool with_hessian,
                                   PatternEquations* equations) {
   const PatternPicture picture(problem.model, parameters);
@@ -127,7 +33,7 @@ VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const Pixels& p
   PatternPixels modelled;
   const bool is_weighted = problem.model.outline_corner_weight < 1;
   int left = pixels.count;
-  for (const Pixels::Group& group : pixels.groups) {
+  for (const ChosenPixels::Group& group : pixels.groups) {
     picture.At(group.x, group.y, &modelled);
     if (is_weighted) {
       for (Floats& derivative : modelled.jacobian) derivative *= group.root_weight;
@@ -247,7 +153,7 @@ struct PixelFit {
   using Step = P::Vector;
 
   const PatternProblem& problem;
-  const Pixels& pixels;
+  const ChosenPixels& pixels;
 
   void Evaluate(const P::Vector& parameters, bool with_hessian, Equations* equations) const {
     SumUp(problem, pixels, parameters, with_hessian, equations);
@@ -275,7 +181,7 @@ struct PixelFit {
 // for too few pixels or a singular system.
 bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px,
               PatternMinimum* minimum) {
-  const Pixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
+  const ChosenPixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
   if (pixels.count <= P::kCount) return false;
   LeastSquaresOptions options;
   options.max_iterations = 20;

@@ -157,4 +157,12 @@ std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options
   }
 }
 
+std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options,
+                                          const Layout& layout, const CornerErrors& corner_errors,
+                                          const Model* seed, const std::optional<FocalStep>& step) {
+  if (!step || step->IsCertain()) return step;
+  if (!step->IsSuspicious() || seed == nullptr) return std::nullopt;
+  return MeasureFocalStep(options, layout, corner_errors, *seed, *step);
+}
+
 }  // namespace velamap

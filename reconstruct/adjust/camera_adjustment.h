@@ -44,6 +44,13 @@ CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& option
                                            const Layout& layout, const CornerErrors& corner_errors,
                                            Model model, std::optional<CameraModel> wanted);
 
+// The step of the focal length that a verdict on steadiness (camera_steadiness.h) names, if it is
+// real: a suspicious one is measured, for which `seed` is the model before its adjustment; without
+// a seed it counts as none.
+std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options,
+                                          const Layout& layout, const CornerErrors& corner_errors,
+                                          const Model* seed, const std::optional<FocalStep>& step);
+
 // Measures a step of the focal length at `step` by an adjustment with a camera of its own for the
 // images from there on; `model` is the one before its adjustment. Nothing where the focal lengths
 // agree to 1 % or within their sigmas, or where one part alone cannot be adjusted.

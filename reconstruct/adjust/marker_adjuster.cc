@@ -7,21 +7,19 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
-#include "importer/camera/camera_projection.h"
 #include "reconstruct/adjust/calibration_choice.h"
 #include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/adjust/camera_model_choice.h"
+#include "reconstruct/adjust/found_cameras.h"
 #include "reconstruct/adjust/marker_sizes.h"
 #include "reconstruct/adjust/rolling_shutter_choice.h"
 #include "reconstruct/adjust/scale_bar_verdict.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/geometry/covariance_update.h"
-#include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/model/weak_geometry.h"
@@ -44,47 +42,6 @@ void MoveToFirstCamera(Model* model) {
   const Rigid3 first_from_world = model->images.front().cam_from_world;
   TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
   model->images.front().cam_from_world = Rigid3{};  // exactly, without rounding
-}
-
-std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
-                                              const MarkerLinearization& linearization) {
-  std::map<CameraId, EstimatedCamera> cameras;
-  for (const auto& [camera_id, camera] : model.cameras) {
-    const auto intrinsics = linearization.state.intrinsics.find(camera_id);
-    if (intrinsics == linearization.state.intrinsics.end()) continue;  // its images were left out
-    const Eigen::VectorXd variances =
-        GlobalCovariance(linearization.problem, linearization.covariance, intrinsics->second.data())
-            .diagonal();
-    cameras[camera_id] = {camera, std::vector<double>(camera.params.size(), 0.0)};
-    const std::vector<int> free = UnknownCameraPrior(camera).free;
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      cameras[camera_id].sigmas[static_cast<std::size_t>(free[i])] =
-          std::sqrt(variances[static_cast<Eigen::Index>(i)]);
-    }
-  }
-  return cameras;
-}
-
-void WarnOfFoldedCameras(MarkerSolution* solution) {
-  if (!HasFoldedCamera(*solution)) return;
-  solution->warnings.push_back(
-      "the distortion that was found folds over inside the picture, where no marker was seen: do "
-      "not use the camera file for other clips; move the markers through the whole picture");
-}
-
-// Throws DataError where the images leave the focal length open.
-void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
-                      const std::vector<std::string>& weaknesses) {
-  constexpr double kMaxSigma = 0.05;  // relative
-  for (const auto& [camera_id, found] : cameras) {
-    const double focal_px = found.camera.params.front(), sigma_px = found.sigmas.front();
-    if (sigma_px <= kMaxSigma * focal_px) continue;
-    throw DataError(fmt::format(
-        "these pictures do not determine the focal length of their camera ({:.0f} +- {:.0f} "
-        "px){}{}; film the markers tilted, from near and far and from more sides, or import them "
-        "with a calibration",
-        focal_px, sigma_px, weaknesses.empty() ? "" : ": ", fmt::join(weaknesses, "; ")));
-  }
 }
 
 }  // namespace
@@ -196,17 +153,7 @@ void MarkerAdjuster::WidenCameraSigmas() {
   MarkerSolution as_recorded = solution_;
   MoveToMiddleRow(-solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
                   &as_recorded.model);
-  for (const auto& [camera_id, sigmas] : JackknifeCameras(as_recorded)) {
-    std::vector<double>& widened = summary_.cameras.at(camera_id).sigmas;
-    for (std::size_t i = 0; i < sigmas.size(); ++i) widened[i] = std::max(widened[i], sigmas[i]);
-    // No picture shows whether all corners are seen too far inside; the squares are foreshortened
-    // by another angle then.
-    const Camera& camera = summary_.cameras.at(camera_id).camera;
-    const std::size_t num_focal = HasOneFocalLength(camera.model) ? 1 : 2;
-    for (std::size_t i = 0; i < num_focal; ++i) {
-      widened[i] = std::hypot(widened[i], solution_.weights.inset_as_scale * camera.params[i]);
-    }
-  }
+  WidenSigmas(JackknifeCameras(as_recorded), solution_.weights.inset_as_scale, &summary_.cameras);
 }
 
 void MarkerAdjuster::ChooseCameraModel() { solution_ = WithBestCameraModel(solution_); }

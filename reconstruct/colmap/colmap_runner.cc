@@ -18,8 +18,8 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/process/child_process.h"
 #include "importer/text/shown_text.h"
-#include "reconstruct/colmap/child_process.h"
 
 namespace velamap {
 namespace {

@@ -1,4 +1,5 @@
-// Runs the installed colmap program, without a shell. It ends with us (child_process.h).
+// Runs the installed colmap program, without a shell. It ends with us
+// (importer/process/child_process.h).
 
 #pragma once
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <sstream>
 
 #include "exporters/design/mesh_parser.h"
@@ -152,14 +153,16 @@ std::vector<Bytes> GoodModel(ModelFormat format, const ModelFiles& names) {
 }
 
 FuzzedReader OfModel(ModelFormat format, const ModelFiles& names) {
+  const auto folder = std::make_shared<TempDir>();  // binary files are read rather than text
+  const auto good = std::make_shared<std::vector<Bytes>>();
   const auto read = [=](const Bytes& bytes) {
-    static const std::vector<Bytes> good = GoodModel(format, names);
     if (bytes.empty()) return;
+    if (good->empty()) *good = GoodModel(format, names);
     const std::size_t replaced = static_cast<unsigned char>(bytes.front()) % names.size();
     for (std::size_t i = 0; i < names.size(); ++i) {
-      Write(Folder() / names[i], i == replaced ? bytes.substr(1) : good[i]);
+      Write(*folder / names[i], i == replaced ? bytes.substr(1) : (*good)[i]);
     }
-    ReadModel(Folder().path().string());
+    ReadModel(folder->path().string());
   };
   const auto make_seeds = [=] {
     std::vector<Bytes> seeds = GoodModel(format, names);

@@ -135,6 +135,7 @@ class Killed : public testing::Test {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> moment(0.0, duration.count());
     const std::vector<int> signals = {SIGKILL, SIGINT, SIGTERM};
+    int num_killed = 0;
     for (int i = 0; i < num_kills; ++i) {
       const int signal = signals[static_cast<std::size_t>(i) % signals.size()];
       const std::chrono::duration<double> delay(moment(random));
@@ -145,6 +146,7 @@ class Killed : public testing::Test {
       kill(pid, signal);
       const int status = WaitFor(pid);
       EXPECT_TRUE(status == -signal || status == 0) << status << ": " << Messages("");
+      num_killed += status == -signal;
       ExpectThatNoProcessIsLeft();
       ASSERT_EQ(WaitFor(Start(command, "")), 0) << Messages("");
       ExpectSameResult(undisturbed);
@@ -152,6 +154,7 @@ class Killed : public testing::Test {
       ExpectThatNoProcessIsLeft();
       if (HasFailure()) return;
     }
+    EXPECT_GT(num_killed, 0);
   }
 
   TempDir dir_;

@@ -26,29 +26,21 @@ class Judge {
     JudgeLight();
     JudgeFrames();
     JudgePrecision();
-    std::stable_sort(
-        verdict_.reasons.begin(), verdict_.reasons.end(),
-        [](const VerdictReason& a, const VerdictReason& b) { return a.level > b.level; });
-    if (!verdict_.reasons.empty()) verdict_.level = verdict_.reasons.front().level;
-    return std::move(verdict_);
+    return reasons_.Take();
   }
 
  private:
-  void Bad(std::string text) { verdict_.reasons.push_back({ReportStatus::kBad, std::move(text)}); }
-  void Check(std::string text) {
-    verdict_.reasons.push_back({ReportStatus::kCheck, std::move(text)});
-  }
-
   void JudgeDictionary() {
     if (facts_.num_frames_of_id.empty()) {
-      Bad(facts_.no_markers_because.empty()
-              ? "no marker is seen: check that the clip shows markers, and the dictionary"
-              : "the markers cannot be judged: " + facts_.no_markers_because);
+      reasons_.Bad(facts_.no_markers_because.empty()
+                       ? "no marker is seen: check that the clip shows markers, and the dictionary"
+                       : "the markers cannot be judged: " + facts_.no_markers_because);
       return;
     }
     if (facts_.num_markers_found && facts_.num_markers_of_second &&
         2 * *facts_.num_markers_of_second > *facts_.num_markers_found) {
-      Bad(fmt::format("{} and {} find about as many markers: name the dictionary of the print",
+      reasons_.Bad(
+          fmt::format("{} and {} find about as many markers: name the dictionary of the print",
                       facts_.dictionary, facts_.second_dictionary));
     }
   }
@@ -56,20 +48,20 @@ class Judge {
   void JudgeIds() {
     if (facts_.num_frames_of_id.empty()) return;
     if (!facts_.ids_never_seen.empty()) {
-      Check(fmt::format("never seen: {}: film them, or take them out of the layout",
-                        IdRanges(facts_.ids_never_seen)));
+      reasons_.Check(fmt::format("never seen: {}: film them, or take them out of the layout",
+                                 IdRanges(facts_.ids_never_seen)));
     }
     std::vector<int> rare;
     for (const auto& [marker_id, num_frames] : facts_.num_frames_of_id) {
       if (num_frames < kRarelySeen) rare.push_back(marker_id);
     }
     if (facts_.has_layout && !rare.empty() && facts_.num_frames_read >= 4 * kRarelySeen) {
-      Check(fmt::format("seen in fewer than {} of {} frames: {}: film them longer", kRarelySeen,
-                        facts_.num_frames_read, IdRanges(rare)));
+      reasons_.Check(fmt::format("seen in fewer than {} of {} frames: {}: film them longer",
+                                 kRarelySeen, facts_.num_frames_read, IdRanges(rare)));
     }
     if (!facts_.ids_not_in_layout.empty()) {
-      Check(fmt::format("not in the layout: {}: add them, or take them off the object",
-                        IdRanges(facts_.ids_not_in_layout)));
+      reasons_.Check(fmt::format("not in the layout: {}: add them, or take them off the object",
+                                 IdRanges(facts_.ids_not_in_layout)));
     }
   }
 
@@ -79,29 +71,30 @@ class Judge {
     const std::string text = fmt::format("half of the markers are smaller than {:.0f} px", side_px);
     const std::string remedy = "go closer, film at a higher resolution, or print larger markers";
     if (side_px < kBadSidePx) {
-      Bad(text + ": " + remedy);
+      reasons_.Bad(text + ": " + remedy);
     } else if (side_px < kGoodSidePx) {
-      Check(text + ": the size is known to a few tenths of a percent only; " + remedy);
+      reasons_.Check(text + ": the size is known to a few tenths of a percent only; " + remedy);
     }
   }
 
   void JudgeLight() {
     if (!facts_.white) return;
     if (*facts_.white > kMaxWhite) {
-      Check("the paper is overexposed, which moves edges: expose less");
+      reasons_.Check("the paper is overexposed, which moves edges: expose less");
     }
     if (*facts_.white - *facts_.black < kMinContrast) {
-      Check(
+      reasons_.Check(
           fmt::format("black and white differ by {:.0f} of 255 grey levels: expose more, avoid "
                       "glare",
                       *facts_.white - *facts_.black));
     }
     if (*facts_.motion_px > kMaxMotionPx) {
-      Check(fmt::format("markers move by {:.0f} px during the exposure: use a shorter shutter",
-                        *facts_.motion_px));
+      reasons_.Check(
+          fmt::format("markers move by {:.0f} px during the exposure: use a shorter shutter",
+                      *facts_.motion_px));
     }
     if (*facts_.blur_px > kMaxBlurPx) {
-      Check(
+      reasons_.Check(
           fmt::format("edges are blurred by {:.1f} px (1 sigma): focus, clean the lens, use less "
                       "compression",
                       *facts_.blur_px));
@@ -113,7 +106,7 @@ class Judge {
     const double share =
         static_cast<double>(facts_.num_frames_with_few_markers) / facts_.num_frames_read;
     if (share > kMaxShareWithFewMarkers) {
-      Check(
+      reasons_.Check(
           fmt::format("{:.0f} % of the frames show fewer than four markers: keep the object in "
                       "the picture",
                       100 * share));
@@ -123,7 +116,8 @@ class Judge {
   void JudgePrecision() {
     if (!facts_.precision) {
       if (!facts_.no_precision_because.empty() && !facts_.num_frames_of_id.empty()) {
-        Bad("no shape can be reconstructed from these frames: " + facts_.no_precision_because);
+        reasons_.Bad("no shape can be reconstructed from these frames: " +
+                     facts_.no_precision_because);
       }
       return;
     }
@@ -132,18 +126,18 @@ class Judge {
         fmt::format("the camera goes around the object by {:.0f} degrees", precision.parallax_deg);
     const std::string remedy = "move sideways by a third of the distance or more";
     if (precision.parallax_deg < kBadParallax_deg) {
-      Bad(text + " only, which leaves its depth open: " + remedy);
+      reasons_.Bad(text + " only, which leaves its depth open: " + remedy);
     } else if (precision.parallax_deg < kGoodParallax_deg) {
-      Check(text + ", which leaves depth less certain than width: " + remedy);
+      reasons_.Check(text + ", which leaves depth less certain than width: " + remedy);
     }
     for (const std::string& marker : precision.markers_left_out) {
-      Check("contradicts the layout: " + marker);
+      reasons_.Check("contradicts the layout: " + marker);
     }
-    for (const std::string& warning : precision.warnings) Check(warning);
+    for (const std::string& warning : precision.warnings) reasons_.Check(warning);
   }
 
   const ClipFacts& facts_;
-  Verdict verdict_;
+  VerdictReasons reasons_;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 #include "importer/layout/dictionary.h"
 #include "importer/print/drawing_writer.h"
 #include "importer/print/placement.h"
@@ -81,7 +82,7 @@ void Validate(Options* options) {
 // Places the markers of the options as marker_generator does, or those of the layout's lines.
 PlannedSurface PlaceMarkers(const Options& options) {
   Layout layout = options.layout;
-  const double length_mm = 1000 * layout.marker_length_m;
+  const double length_mm = kMmPerM * layout.marker_length_m;
   const int num_cells =
       LoadDictionary(layout.dictionary).aruco->markerSize + 2 * layout.border_bits;
   const double sticker_mm = MakeSticker({0, length_mm, ""}, num_cells, {}).Height();

@@ -10,7 +10,6 @@
 namespace velamap {
 namespace {
 
-constexpr double kMPerSPerKnot = 1852.0 / 3600.0;
 constexpr double kMaxLinearView_deg = 150.0;
 
 }  // namespace

@@ -10,6 +10,8 @@
 
 namespace velamap {
 
+inline constexpr double kMPerSPerKnot = 1852.0 / 3600.0;
+
 enum class LensMode {
   kLinear,  // straight lines stay straight
   kWide,    // an action camera's: angles in proportion to the distance from the picture's middle

@@ -9,6 +9,7 @@
 
 #include "importer/base/csv.h"
 #include "importer/base/statistics.h"
+#include "workflows/plan/plan_options.h"
 
 namespace velamap {
 namespace {
@@ -60,7 +61,7 @@ void PrintShutters(const ShootPlan& plan, std::ostream& out) {
   out << "speed_m_s  speed_knots  motion_px_s  longest_exposure\n";
   for (const PlannedShutter& shutter : plan.shutters) {
     fmt::print(out, "{:>9.2g}  {:>11.2g}  {:>11.0f}  {:>16}\n", shutter.speed_m_s,
-               shutter.speed_m_s * 3600 / 1852, shutter.motion_px_s,
+               shutter.speed_m_s / kMPerSPerKnot, shutter.motion_px_s,
                ExposureText(shutter.exposure_s));
   }
 }

@@ -72,16 +72,10 @@ void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
 
 void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
                      const CornerErrors& corner_errors, const Model* seed, const Model& model) {
-  SteadinessVerdict verdict = JudgeSteadiness(model);
+  const SteadinessVerdict verdict = JudgeSteadiness(model);
   if (!verdict.wandering.empty()) spdlog::warn(verdict.wandering);
-  std::optional<FocalStep> step = verdict.step;
-  if (!step || !step->IsSuspicious()) return;
-  if (seed != nullptr && !step->IsCertain()) {
-    step = MeasureFocalStep(options, layout, corner_errors, *seed, *step);
-    if (!step) return;
-  } else if (!step->IsCertain()) {
-    return;
-  }
+  const auto step = ConfirmFocalStep(options, layout, corner_errors, seed, verdict.step);
+  if (!step) return;
   if (seed != nullptr && options.find_camera) {
     throw DataError("the camera cannot be found: " + DescribeStep(*step));
   }

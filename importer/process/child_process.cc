@@ -1,4 +1,4 @@
-#include "reconstruct/colmap/child_process.h"
+#include "importer/process/child_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -60,7 +60,7 @@ void Send(const Start& start, const Report& report) {
 [[noreturn]] void RunProgram(const Start& start) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // if somebody kills the watcher
   sigprocmask(SIG_SETMASK, &start.original, nullptr);
-  const int empty = open("/dev/null", O_RDONLY);
+  const int empty = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (dup2(empty, STDIN_FILENO) >= 0 && dup2(start.output_fd, STDOUT_FILENO) >= 0 &&
       dup2(start.output_fd, STDERR_FILENO) >= 0) {
     execvpe(start.words[0], start.words, start.environment);
@@ -159,7 +159,7 @@ ChildProcess::~ChildProcess() {
 
 std::optional<std::string> ChildProcess::Read(Time deadline) const {
   if (!WaitForInput(output_.ReadEnd(), deadline)) return std::nullopt;
-  std::array<char, 4096> buffer{};
+  std::array<char, 65536> buffer;
   ssize_t size = 0;
   do {
     size = read(output_.ReadEnd(), buffer.data(), buffer.size());

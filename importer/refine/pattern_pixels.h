@@ -1,0 +1,28 @@
+// The pixels of a marker and around it that a fit uses.
+
+#pragma once
+
+#include <vector>
+
+#include "importer/refine/float_lanes.h"
+#include "importer/refine/pattern_problem.h"
+
+namespace velamap {
+
+struct ChosenPixels {
+  struct Group {
+    Floats x, y;  // relative to center_px of the model
+    Floats gray;
+    Floats root_weight;
+  };
+  std::vector<Group> groups;
+  int count = 0;  // the last group may be incomplete
+};
+
+// About `max_pixels` of the pixels that the model covers with these parameters. If there are more,
+// every k-th one of those near an edge, which tell where the corners are, and a few others, which
+// tell the levels. Corners of outlines without weight are left out.
+ChosenPixels ChoosePixels(const PatternProblem& problem,
+                          const PatternParameters::Vector& parameters, int max_pixels);
+
+}  // namespace velamap

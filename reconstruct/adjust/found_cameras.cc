@@ -1,0 +1,71 @@
+#include "reconstruct/adjust/found_cameras.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "importer/base/error.h"
+#include "importer/camera/camera_projection.h"
+#include "reconstruct/adjust/camera_model_choice.h"
+#include "reconstruct/geometry/intrinsics_prior.h"
+#include "reconstruct/problem/marker_uncertainty.h"
+
+namespace velamap {
+
+std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
+                                              const MarkerLinearization& linearization) {
+  std::map<CameraId, EstimatedCamera> cameras;
+  for (const auto& [camera_id, camera] : model.cameras) {
+    const auto intrinsics = linearization.state.intrinsics.find(camera_id);
+    if (intrinsics == linearization.state.intrinsics.end()) continue;  // its images were left out
+    const Eigen::VectorXd variances =
+        GlobalCovariance(linearization.problem, linearization.covariance, intrinsics->second.data())
+            .diagonal();
+    cameras[camera_id] = {camera, std::vector<double>(camera.params.size(), 0.0)};
+    const std::vector<int> free = UnknownCameraPrior(camera).free;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      cameras[camera_id].sigmas[static_cast<std::size_t>(free[i])] =
+          std::sqrt(variances[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  return cameras;
+}
+
+void WarnOfFoldedCameras(MarkerSolution* solution) {
+  if (!HasFoldedCamera(*solution)) return;
+  solution->warnings.push_back(
+      "the distortion that was found folds over inside the picture, where no marker was seen: do "
+      "not use the camera file for other clips; move the markers through the whole picture");
+}
+
+void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
+                      const std::vector<std::string>& weaknesses) {
+  constexpr double kMaxSigma = 0.05;  // relative
+  for (const auto& [camera_id, found] : cameras) {
+    const double focal_px = found.camera.params.front(), sigma_px = found.sigmas.front();
+    if (sigma_px <= kMaxSigma * focal_px) continue;
+    throw DataError(fmt::format(
+        "these pictures do not determine the focal length of their camera ({:.0f} +- {:.0f} "
+        "px){}{}; film the markers tilted, from near and far and from more sides, or import them "
+        "with a calibration",
+        focal_px, sigma_px, weaknesses.empty() ? "" : ": ", fmt::join(weaknesses, "; ")));
+  }
+}
+
+void WidenSigmas(const std::map<CameraId, std::vector<double>>& sigmas, double inset_as_scale,
+                 std::map<CameraId, EstimatedCamera>* cameras) {
+  for (const auto& [camera_id, least] : sigmas) {
+    EstimatedCamera& found = cameras->at(camera_id);
+    for (std::size_t i = 0; i < least.size(); ++i) {
+      found.sigmas[i] = std::max(found.sigmas[i], least[i]);
+    }
+    const std::size_t num_focal = HasOneFocalLength(found.camera.model) ? 1 : 2;
+    for (std::size_t i = 0; i < num_focal; ++i) {
+      found.sigmas[i] = std::hypot(found.sigmas[i], inset_as_scale * found.camera.params[i]);
+    }
+  }
+}
+
+}  // namespace velamap

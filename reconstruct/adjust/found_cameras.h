@@ -1,0 +1,31 @@
+// The cameras that an adjustment has found, with their sigmas.
+
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "importer/camera/calibration_writer.h"
+#include "reconstruct/adjust/marker_solution.h"
+
+namespace velamap {
+
+// The cameras of the model with sigmas from the covariance, without those whose images were left
+// out.
+std::map<CameraId, EstimatedCamera> CamerasOf(const Model& model,
+                                              const MarkerLinearization& linearization);
+
+void WarnOfFoldedCameras(MarkerSolution* solution);
+
+// Throws DataError where the images leave the focal length open.
+void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
+                      const std::vector<std::string>& weaknesses);
+
+// Raises the sigmas of the cameras to these where they are smaller, and adds to those of the focal
+// lengths what an inset of all corners does: no picture shows it, and the squares are
+// foreshortened by another angle then. `inset_as_scale`: 1 sigma of the inset, in parts of a side.
+void WidenSigmas(const std::map<CameraId, std::vector<double>>& sigmas, double inset_as_scale,
+                 std::map<CameraId, EstimatedCamera>* cameras);
+
+}  // namespace velamap
