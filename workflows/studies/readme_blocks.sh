@@ -118,11 +118,11 @@ ROWS
         " %, " of(clip, way, "num_markers", "d") " markers"
     }
     END {
-      title["stylus"] = "16 photographs of a stylus, 12.6 mm markers"
+      title["aprilgrid"] = "20 photographs of an AprilGrid, 19 mm tags"
       title["board_video"] = "57 frames of a hand-held board, 40 mm markers"
       title["sail_4k"] = "rendered 4K clip of a 3 x 6 m sail"
       title["sail_1080p"] = "the same at 1080p"
-      m = split("stylus board_video sail_4k sail_1080p", shown, " ")
+      m = split("aprilgrid board_video sail_4k sail_1080p", shown, " ")
       for (i = 1; i <= m; i++)
         printf "| %s | %s | %s |\n", title[shown[i]], result(shown[i], "global_both"), result(shown[i], "thesis")
     }'
