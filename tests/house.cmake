@@ -9,6 +9,8 @@ house_folder(importer/process PUBLIC
   child_process)
 house_folder(importer/text PUBLIC
   markup shown_text)
+house_folder(importer/lanes PUBLIC
+  float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
   rigid3 unit_square_map units)

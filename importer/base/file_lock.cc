@@ -36,7 +36,7 @@ std::string ReadHolder(int file) {
 
 // Waits a moment for a holder that has the lock and has not written its record yet.
 std::string WaitForHolder(int file) {
-  constexpr int kMaxNumTries = 20;
+  constexpr int kMaxNumTries = 200;  // a second: it may have lost its processor just then
   for (int i = 0;; ++i) {
     const std::string text = DescribeLockHolder(ReadHolder(file), std::time(nullptr), HostName());
     if (!text.empty() || i == kMaxNumTries) return text;

@@ -14,7 +14,7 @@
 
 #include <Eigen/Core>
 
-#include "importer/refine/normal_lanes.h"
+#include "importer/lanes/normal_lanes.h"
 
 namespace velamap {
 

@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "importer/geometry/least_squares.h"
-#include "importer/refine/normal_lanes.h"
+#include "importer/lanes/normal_lanes.h"
 
 namespace velamap {
 namespace {

@@ -18,8 +18,8 @@
 
 #include <Eigen/Core>
 
+#include "importer/lanes/float_lanes.h"
 #include "importer/refine/fit_equations.h"
-#include "importer/refine/float_lanes.h"
 #include "importer/refine/refined_corners.h"
 
 namespace velamap {

@@ -6,7 +6,7 @@
 
 #include "importer/detect/interpolate.h"
 #include "importer/geometry/unit_square_map.h"
-#include "importer/refine/normal_lanes.h"
+#include "importer/lanes/normal_lanes.h"
 
 namespace velamap {
 namespace {

@@ -11,7 +11,7 @@
 
 #include <Eigen/Core>
 
-#include "importer/refine/float_lanes.h"
+#include "importer/lanes/float_lanes.h"
 #include "importer/refine/refined_corners.h"
 
 namespace velamap {

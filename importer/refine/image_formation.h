@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "importer/refine/float_lanes.h"
+#include "importer/lanes/float_lanes.h"
 #include "importer/refine/formation_estimate.h"
 
 namespace velamap {

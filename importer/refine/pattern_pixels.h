@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "importer/refine/float_lanes.h"
+#include "importer/lanes/float_lanes.h"
 #include "importer/refine/pattern_problem.h"
 
 namespace velamap {

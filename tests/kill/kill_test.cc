@@ -213,10 +213,12 @@ TEST_F(Hanging, ColmapIsEndedAfterTheLimit) {
 }
 
 // One of them works; the other says who does, and touches nothing.
+// On a busy machine one run may end before the other looks for the lock; then both are good.
 TEST_F(Killed, TwoRunsAtOnce) {
   const std::string command = "automatic_reconstructor --image_path @/images" + kOptions;
   ASSERT_EQ(WaitFor(Start(command, "")), 0) << Messages("");
   const auto undisturbed = ResultIn(dir_ / "new");
+  int num_refused = 0;
   for (const bool is_new : {true, false}) {
     for (const int delay_ms : {0, 5, 50}) {
       if (is_new) fs::remove_all(dir_ / "new");
@@ -224,6 +226,9 @@ TEST_F(Killed, TwoRunsAtOnce) {
       std::this_thread::sleep_for(milliseconds(delay_ms));
       const pid_t second = Start(command, "2");
       const int first_code = WaitFor(first), second_code = WaitFor(second);
+      ExpectSameResult(undisturbed);
+      if (first_code == 0 && second_code == 0) continue;
+      ++num_refused;
       const bool is_first_good = first_code == 0;
       EXPECT_EQ(is_first_good ? second_code : first_code, 2);
       EXPECT_EQ(is_first_good ? first_code : second_code, 0);
@@ -231,9 +236,9 @@ TEST_F(Killed, TwoRunsAtOnce) {
           Messages(is_first_good ? "2" : "1"),
           ContainsRegex(fmt::format("another velamap works here since [0-9]+:[0-9]+, process {};",
                                     is_first_good ? first : second)));
-      ExpectSameResult(undisturbed);
     }
   }
+  EXPECT_GT(num_refused, 0);
 }
 
 }  // namespace

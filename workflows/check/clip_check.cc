@@ -181,6 +181,8 @@ class Checker {
   }
 
  private:
+  bool MeasuresPrecision() const { return options_.camera && options_.layout; }
+
   void Detect(const ClipFrames& clip, const VideoOptions& video, const Layout& layout,
               const ArucoDetectionOptions& detection) {
     const TemporaryFolder folder;
@@ -191,7 +193,9 @@ class Checker {
     importer.camera_path = options_.camera_path;
     importer.layout = layout;
     importer.detection = detection;
-    importer.detection.estimate_formation = false;  // it takes longer than all else
+    // Takes longer than all else; without it, however, the sides of the markers contradict the
+    // layout.
+    importer.detection.estimate_formation = MeasuresPrecision();
     importer.num_threads = options_.num_threads;
     importer.video = video;
     try {
@@ -207,7 +211,7 @@ class Checker {
     const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
     const std::vector<DatabaseImage> images = database.ReadImages();
     CollectFacts(clip, video.frame_step, layout, images);
-    if (!options_.camera || !options_.layout) return;
+    if (!MeasuresPrecision()) return;
     try {
       check_.facts.precision =
           MeasurePrecision(importer.database_path, layout, options_.num_threads);

@@ -9,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/geometry/unit_square_map.h"
+#include "importer/lanes/float_lanes.h"
 #include "importer/refine/edge_fit.h"
-#include "importer/refine/float_lanes.h"
 #include "importer/refine/pattern_fit.h"
 #include "importer/refine/pattern_picture.h"
 #include "tests/importer/refine/marker_grid.h"

@@ -7,7 +7,7 @@
 
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/units.h"
-#include "importer/refine/normal_lanes.h"
+#include "importer/lanes/normal_lanes.h"
 
 namespace velamap {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "importer/refine/float_lanes.h"
+#include "importer/lanes/float_lanes.h"
 
 namespace velamap {
 
