@@ -86,7 +86,7 @@ house_folder(exporters/calibration PUBLIC
 house_folder(exporters PUBLIC
   shape_exporter shape_report)
 house_folder(workflows/run PUBLIC
-  central_frame_sweep logging pipeline progress stage_times summary version versions
+  central_frame_sweep logging pipeline progress run_summary stage_times summary version versions
   workspace)
 house_folder(workflows/check PUBLIC
   clip_check clip_facts clip_frames clip_limits clip_verdict)

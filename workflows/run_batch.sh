@@ -34,6 +34,7 @@ done
 [[ -n "$output_path" ]] || fail "--output_path is missing"
 [[ ${#inputs[@]} -gt 0 ]] || fail "no input given"
 
+command -v jq >/dev/null || fail "jq is not installed; run: apt-get install jq"
 velamap="${VELAMAP:-$(dirname "${BASH_SOURCE[0]}")/../build/release/workflows/velamap}"
 [[ -x "$velamap" ]] || velamap="$(command -v velamap)" ||
   fail "velamap is not built; run workflows/build.sh release"
@@ -47,9 +48,10 @@ workspace_name() {
 duplicates="$(for input in "${inputs[@]}"; do workspace_name "$input"; done | sort | uniq -d)"
 [[ -z "$duplicates" ]] || fail "several inputs would go into the workspace $duplicates; rename one"
 
-keys=(verdict images_used images_left_out markers_reconstructed reconstruction_ratio reprojection_error_px
-  central_reprojection_error_px area_error_mm2 area_error_percent side_error_mm scale_m_per_unit
-  scale_spread_over_markers bounding_box_m outliers_removed)
+keys=(verdict num_images_used num_images num_markers num_layout_markers reconstruction_ratio
+  reprojection_error_px_mean reprojection_error_px_std area_error_percent_mean area_error_percent_std
+  side_error_mm_mean side_error_mm_std scale_sigma_percent length_m width_m depth_m
+  num_outliers_removed)
 
 csv_field() { printf '"%s"' "${1//\"/\"\"}"; }
 
@@ -83,19 +85,21 @@ for input in "${inputs[@]}"; do
   workspace="$output_path/$(workspace_name "$input")"
   echo "== $input -> $workspace"
   status=0
-  "$velamap" automatic_reconstructor --image_path "$input" --workspace_path "$workspace" "$@" \
-    2>&1 >"$results" | tee "$errors" >&2 || status="${PIPESTATUS[0]}"
+  "$velamap" automatic_reconstructor --image_path "$input" --workspace_path "$workspace" --summary json \
+    "$@" 2>&1 >"$results" | tee "$errors" >&2 || status="${PIPESTATUS[0]}"
   {
     csv_field "$(basename "$input")"; printf ','
     csv_field "$(basename "$workspace")"; printf ',%d,' "$status"
     csv_field "$(without_folders "$(sed -n 's/^error: //p' "$errors" | tail -n 1)" "$input")"
-    for key in "${keys[@]}"; do
+    if [[ -s "$results" ]]; then
       printf ','
-      csv_field "$(sed -n "s/^$key: //p" "$results")"
-    done
-    printf '\n'
+      jq --raw-output --args '[.[$ARGS.positional[]]] | @csv' "${keys[@]}" <"$results"
+    else
+      printf ",%.0s" "${keys[@]}"
+      printf '\n'
+    fi
   } >>"$summary"
-  cat "$results"
+  [[ ! -s "$results" ]] || echo "== verdict: $(jq --raw-output .verdict "$results")"
   if [[ $status -ne 0 ]]; then
     [[ $first_failure -ne 0 ]] || first_failure=$status
     [[ $keep_going -eq 1 ]] || break

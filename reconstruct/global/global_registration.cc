@@ -40,8 +40,9 @@ void ChooseFrames(GlobalRegistration* global) {
       chosen.insert(place, global->central_image_idx);
     }
   }
-  global->reason_of_image.assign(global->images.size(),
-                                 "not chosen: frames next to it show more markers or are sharper");
+  global->reason_of_image.assign(
+      global->images.size(),
+      std::string(kNotChosen) + "frames next to it show more markers or are sharper");
   for (const int idx : chosen) global->reason_of_image[static_cast<std::size_t>(idx)].clear();
   global->image_idx_of_frame = std::move(chosen);
 }

@@ -205,7 +205,8 @@ void LimitFrames(GlobalRegistration* global) {
   for (int idx = 0; idx < static_cast<int>(problem.frames.size()); ++idx) {
     if (global->solution.cam_from_shape[static_cast<std::size_t>(idx)] &&
         !std::binary_search(chosen.begin(), chosen.end(), idx)) {
-      global->LeaveOut(idx, "not chosen: adds less to the precision than the chosen frames");
+      global->LeaveOut(
+          idx, std::string(kNotChosen) + "adds less to the precision than the chosen frames");
     }
   }
 }

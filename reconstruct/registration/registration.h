@@ -13,6 +13,9 @@
 
 namespace velamap {
 
+// Begins the reason of a frame that would add little to those that are registered.
+inline constexpr char kNotChosen[] = "not chosen: ";
+
 struct RegisteredFrame {
   ImageId image_id = 0;
   std::string image_name;

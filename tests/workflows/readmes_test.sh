@@ -34,11 +34,11 @@ expect 0 "" "an unchanged copy"
 
 readme="$copy/README.md"
 cp "$readme" "$copy/saved"
-line="$(grep -n '^images_used: ' "$readme" | cut -d: -f1)"
-sed -i "${line}s/.*/images_used: 99 of 99/" "$readme"
+line="$(grep -n '^images: ' "$readme" | cut -d: -f1)"
+sed -i "${line}s/.*/images: 99 of 99 used/" "$readme"
 run --check
 expect 1 "README.md:$line: block sample_output" "a changed number"
-grep -q 'images_used: 99 of 99' "$readme" || fail "--check has changed a README"
+grep -q 'images: 99 of 99 used' "$readme" || fail "--check has changed a README"
 run --write
 cmp -s "$readme" "$copy/saved" || fail "--write does not bring back the stored number"
 

@@ -21,6 +21,7 @@
 #include "workflows/options/shared_options.h"
 #include "workflows/run/logging.h"
 #include "workflows/run/pipeline.h"
+#include "workflows/run/run_summary.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
 #include "workflows/run/version.h"
@@ -41,6 +42,7 @@ struct Options {
   SurfaceFileOptions surface;
   Arguments arguments;  // as they were typed, for the report
   bool full_paths = false;
+  SummaryFormat summary = SummaryFormat::kText;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -69,6 +71,10 @@ CommandSyntax Declare(Options* options) {
   syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
                                           "log and report name files with their folders; 0: "
                                           "without, so that they can be sent around"});
+  syntax.groups.back().options.push_back(ChoiceOption(
+      "summary", &options->summary,
+      {{SummaryFormat::kText, "text"}, {SummaryFormat::kJson, "json"}},
+      "what is printed at the end: text for people, or json with all figures for programs"));
   return syntax;
 }
 
@@ -244,7 +250,11 @@ void Run(const Options& options) {
   summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
   AdjustAndExport(options, paths, seed, &summary, &clock);
   WriteTimes(clock, paths);
-  PrintSummary(summary, paths, std::cout);
+  if (options.summary == SummaryFormat::kJson) {
+    WriteMetricsJson(SummaryMetrics(summary, paths), std::cout);
+  } else {
+    PrintSummary(summary, paths, std::cout);
+  }
   summary.shape.sail.ThrowSurfaceError();
 }
 

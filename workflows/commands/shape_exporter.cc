@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "exporters/report/verdict.h"
 #include "importer/base/error.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model_io.h"

@@ -216,28 +216,4 @@ void PrintRollingShutter(const AdjustmentUncertainty& uncertainty, std::ostream&
              1e3 * uncertainty.rolling_shutter_sigma_s);
 }
 
-void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
-                  std::ostream& out) {
-  PrintVerdict(summary.verdict, out);
-  fmt::print(out, "images_used: {} of {}\n", summary.num_images, summary.num_images_total);
-  fmt::print(out, "images_left_out: {}\n", LeftOutText(summary.left_out));
-  fmt::print(out, "markers_left_out: {}\n", MarkersLeftOutText(summary.dropped_markers));
-  PrintShapeSummary(summary.shape, out);
-  fmt::print(out, "outliers_removed: {} of {} observations\n", summary.adjustment.num_removed,
-             summary.adjustment.error_before_px.count);
-  if (summary.adjustment.uncertainty) PrintRollingShutter(*summary.adjustment.uncertainty, out);
-  for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
-    fmt::print(out, "camera_found: {}\n", DescribeCamera(camera));
-  }
-  if (!summary.adjustment.cameras.empty()) {
-    fmt::print(out, "camera_path: {}\n", paths.Camera().string());
-  }
-  fmt::print(out, "shape_path: {}\n", paths.Shape().string());
-  fmt::print(out, "model_path: {}\n", paths.Model().string());
-  fmt::print(out,
-             "colmap_command: colmap gui --database_path {} --image_path {} --import_path {}\n",
-             ShellQuote(paths.Database().string()), ShellQuote(paths.Images().string()),
-             ShellQuote(paths.Model().string()));
-}
-
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// The results that a run prints at its end, as `key: value` lines.
+// What commands print of a result, as `key: value` lines.
 
 #pragma once
 
@@ -9,10 +9,8 @@
 #include <Eigen/Core>
 
 #include "exporters/report/report_data.h"
-#include "exporters/report/verdict.h"
 #include "exporters/shape_exporter.h"
 #include "workflows/run/pipeline.h"
-#include "workflows/run/workspace.h"
 
 namespace velamap {
 
@@ -40,25 +38,10 @@ void LogScaleWarnings(const ScaleAudit& audit);
 // What the report shows of an exported shape; refers to both. Without log, title and origin.
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout);
 
-// Prints what shape_exporter and automatic_reconstructor share: markers, their errors, scale, size.
+// Prints what shape_exporter says of a shape: markers, their errors, scale, size, sections.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);
 
 // Prints it where it was estimated.
 void PrintRollingShutter(const AdjustmentUncertainty& uncertainty, std::ostream& out);
-
-struct ReconstructionSummary {
-  int num_images = 0;  // images used
-  int num_images_total = 0;
-  std::vector<LeftOutImage> left_out;
-  std::vector<DroppedMarker> dropped_markers;
-  AdjustmentResult adjustment;
-  ShapeExportReport shape;
-  Verdict verdict;
-};
-
-// Prints the verdict with its reasons, images, markers, errors, scale, where the results are and
-// how to open them.
-void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
-                  std::ostream& out);
 
 }  // namespace velamap

@@ -82,7 +82,7 @@ result_row() {
     num_false; do
     printf ',%s' "$(corner_value "$1" "$key")"
   done
-  printf ',%s' "$(log_value "$1" images_used)" "$(metric "$1" num_markers)" "$error" "$sigma" \
+  printf ',%s' "$(log_value "$1" images)" "$(metric "$1" num_markers)" "$error" "$sigma" \
     "$(awk -v e="$error" -v s="$sigma" 'BEGIN { if (e != "" && s > 0) printf "%.3f", e / s }')" \
     "$(metric "$1" distance_mm_rms)" "$(metric "$1" distance_after_scaling_mm_rms)" \
     "$(log_value "$1" verdict)" "$(grep -c 'warning: ' "$runs/$1/log.txt" || true)" \

@@ -7,7 +7,7 @@
 
 block_sample_output() {
   echo '```'
-  data sample_project.txt | grep -E '^(verdict|verdict_reason|images_used|markers_reconstructed|reprojection_error_px|side_error_mm|scale_sigma|sections|surface|rolling_shutter_ms|distance_mm_rms|scale_error_percent|report|cube):'
+  data sample_project.txt | grep -vE '^(==|look at:|files:|in COLMAP:|distance_(after|sigma))'
   echo '```'
 }
 

@@ -31,7 +31,7 @@ analyze_object() {
   awk -F, -v OFS=, -v object="$1" '
     NF == 4 && ($1 == "" || $1 == "parts" || $1 == "part_pairs") && $3 !~ /_ids$|_note$/ {
       print object, $0 }' "$runs/$1.csv" >>"$csv"
-  awk -F': ' -v OFS=, -v object="$1" '$1 == "images_used" { print object, "", "", $1, $2 }' \
+  awk -v OFS=, -v object="$1" '$1 == "images:" { print object, "", "", "images_used", $2 " of " $4 }' \
     "$runs/$1.txt" >>"$csv"
 }
 

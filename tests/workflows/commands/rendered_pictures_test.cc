@@ -193,8 +193,8 @@ TEST_F(RenderedPicturesTest, PhotographsGiveTheTrueShape) {
   WriteTextFile(dir_ / "photos/broken.png", "no picture");
   const ProgramRun run = Reconstruct(dir_ / "photos");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("images_used: 12 of 13\nimages_left_out: 1; 1: "));
-  EXPECT_THAT(run.out, HasSubstr("markers_reconstructed: 12\n"));
+  EXPECT_THAT(run.out, HasSubstr("images left out: 1; 1: "));
+  EXPECT_THAT(run.out, HasSubstr("images: 12 of 13 used, "));
   ExpectTrueShape(0.0005);
 
   const std::string first = ReadFileBytes(dir_ / "workspace/shape/shape.csv");
@@ -208,8 +208,8 @@ TEST_F(RenderedPicturesTest, VideoGivesTheTrueShape) {
   ExpectTrueShape(0.0005);
   // images/ holds the frames of the model and no others.
   const std::string used =
-      "images_used: " + std::to_string(ListFolder(dir_ / "workspace/images").size());
-  EXPECT_THAT(run.out, HasSubstr(used + " of 12\n"));
+      "images: " + std::to_string(ListFolder(dir_ / "workspace/images").size());
+  EXPECT_THAT(run.out, HasSubstr(used + " of 12 used, "));
 }
 
 TEST_F(RenderedPicturesTest, PriorShapeFindsWhatTheDetectorMisses) {

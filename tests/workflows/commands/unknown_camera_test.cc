@@ -81,8 +81,8 @@ TempDir* UnknownCameraTest::photos_ = nullptr;
 TEST_F(UnknownCameraTest, IsFoundAndServesTheNextRun) {
   const ProgramRun found = Reconstruct("found", {"--backend", "markers"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_THAT(found.out, HasSubstr("camera_found: "));
-  EXPECT_THAT(found.out, HasSubstr("camera_path: "));
+  EXPECT_THAT(found.out, HasSubstr("camera: found from the images, "));
+  EXPECT_THAT(found.out, HasSubstr("camera.yml serves the next clip"));
   const fs::path camera_path = dir_.path() / "found" / "camera.yml";
   const Camera camera = ReadCalibration(camera_path.string());
   EXPECT_NEAR(MeanFocalLength(camera) / MeanFocalLength(scene_->camera), 1.0, 0.01);

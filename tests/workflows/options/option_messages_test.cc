@@ -68,7 +68,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
 const std::map<std::string, Names> kOptionsOfColmap = {
     {"reconstruct/colmap/bundle_adjustment.cc", {"input_path", "output_path"}},
     {"workflows/run/pipeline.cc", {"input_path"}},
-    {"workflows/run/summary.cc", {"database_path", "image_path", "import_path"}},
+    {"workflows/run/run_summary.cc", {"database_path", "image_path", "import_path"}},
 };
 
 // Where --name and --option stand for any option.

@@ -1,0 +1,190 @@
+#include "workflows/run/run_summary.h"
+
+#include <algorithm>
+#include <ostream>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "exporters/scale/scale_audit_report.h"
+#include "exporters/shape/shape_sigma.h"
+#include "exporters/shape_report.h"
+#include "importer/base/statistics.h"
+#include "importer/geometry/units.h"
+#include "workflows/run/summary.h"
+
+namespace velamap {
+namespace {
+
+// Images that were left out for a reason that their user wants to know.
+std::vector<LeftOutImage> NeededImages(const ReconstructionSummary& summary) {
+  std::vector<LeftOutImage> images = summary.left_out;
+  images.erase(std::remove_if(images.begin(), images.end(),
+                              [](const LeftOutImage& image) {
+                                return image.reason.rfind(kNotChosen, 0) == 0;
+                              }),
+               images.end());
+  return images;
+}
+
+std::string ColmapCommand(const WorkspacePaths& paths) {
+  return fmt::format("colmap gui --database_path {} --image_path {} --import_path {}",
+                     ShellQuote(paths.Database().string()), ShellQuote(paths.Images().string()),
+                     ShellQuote(paths.Model().string()));
+}
+
+void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
+  const ShapeMetrics& metrics = summary.shape.metrics;
+  fmt::print(out, "markers: {}", metrics.num_markers);
+  if (metrics.num_layout_markers) fmt::print(out, " of {}", *metrics.num_layout_markers);
+  if (summary.shape.uncertainty) {
+    std::vector<double> sigmas_mm;
+    for (const auto& [marker_id, sigma_m] : CenterSigmas(summary.shape.uncertainty->points)) {
+      sigmas_mm.push_back(kMmPerM * sigma_m);
+    }
+    if (!sigmas_mm.empty()) {
+      fmt::print(out, ", known to {:.2g} mm (1 sigma, median)", Median(std::move(sigmas_mm)));
+    }
+  }
+  out << '\n';
+  if (!summary.dropped_markers.empty()) {
+    fmt::print(out, "markers left out: {}\n", MarkersLeftOutText(summary.dropped_markers));
+  }
+}
+
+void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
+  const Eigen::Vector3d box_m = BoundingBox(shape.shape);
+  fmt::print(out, "size: {:.3f} x {:.3f} x {:.3f} m", box_m.x(), box_m.y(), box_m.z());
+  if (shape.scale.relative_sigma) {
+    fmt::print(out, ", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
+  }
+  fmt::print(out, "; the sides of {} markers differ from their printed length by {:.2g} mm\n",
+             shape.scale.num_markers, shape.metrics.side_error_mm.mean);
+}
+
+void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
+  fmt::print(out, "images: {} of {} used, {:.2g} px mean reprojection error\n", summary.num_images,
+             summary.num_images_total, summary.shape.model_metrics.error_px.mean);
+  const std::vector<LeftOutImage> left_out = NeededImages(summary);
+  if (!left_out.empty()) fmt::print(out, "images left out: {}\n", LeftOutText(left_out));
+}
+
+void PrintSections(const SectionReport& report, std::ostream& out) {
+  for (const Section& section : report.sections) {
+    fmt::print(out, "section {} at {:.2f} m: camber {:.1f} %", section.name, section.height_m,
+               100.0 * section.camber.value);
+    if (section.draft_position)
+      fmt::print(out, " at {:.0f} %", 100.0 * section.draft_position->value);
+    fmt::print(out, ", twist {:.1f} deg\n", section.twist_deg.value);
+  }
+  for (const MissingSection& missing : report.missing) {
+    fmt::print(out, "section {} is missing: {}\n", missing.name, missing.reason);
+  }
+}
+
+void PrintSurfaces(const SailShape& sail, std::ostream& out) {
+  for (const SailSurface& surface : sail.surfaces) {
+    fmt::print(out, "surface: {}, {:.4g} m2, {:.2g} mm RMS from its markers\n", surface.part,
+               surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
+  }
+}
+
+void PrintCamera(const AdjustmentResult& adjustment, const WorkspacePaths& paths,
+                 std::ostream& out) {
+  for (const auto& [camera_id, camera] : adjustment.cameras) {
+    fmt::print(out, "camera: found from the images, {}; {} serves the next clip\n",
+               DescribeCamera(camera), paths.Camera().string());
+  }
+  if (!adjustment.uncertainty || !(adjustment.uncertainty->rolling_shutter_sigma_s > 0)) return;
+  fmt::print(out,
+             "rolling shutter: {:.2f} +- {:.2f} ms from the first to the last row, corrected\n",
+             1e3 * adjustment.uncertainty->rolling_shutter_s,
+             1e3 * adjustment.uncertainty->rolling_shutter_sigma_s);
+}
+
+// One row for each name, with why it was left out.
+template <typename Items, typename Name>
+MetricTable LeftOutTable(const std::string& table, const std::string& key, const Items& items,
+                         const Name& name) {
+  MetricTable result{table, true, {}};
+  for (const auto& item : items)
+    result.rows.push_back({{key, name(item)}, {"reason", item.reason}});
+  return result;
+}
+
+MetricTable SectionTable(const std::vector<Section>& sections) {
+  MetricTable table{"sections", true, {}};
+  for (const Section& section : sections) {
+    Metrics row = {{"part", section.part},
+                   {"section", section.name},
+                   {"height_m", section.height_m},
+                   {"chord_m", section.chord_m.value},
+                   {"camber_percent", 100.0 * section.camber.value}};
+    if (section.draft_position) {
+      row.push_back({"draft_percent", 100.0 * section.draft_position->value});
+    }
+    row.push_back({"twist_deg", section.twist_deg.value});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
+void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
+                  std::ostream& out) {
+  PrintVerdict(summary.verdict, out);
+  PrintMarkers(summary, out);
+  PrintSize(summary.shape, out);
+  PrintImages(summary, out);
+  PrintSections(summary.shape.sail.sections, out);
+  PrintSurfaces(summary.shape.sail, out);
+  PrintCamera(summary.adjustment, paths, out);
+  fmt::print(out, "look at: {} (in a browser)\n", paths.Report().string());
+  fmt::print(out, "files: {} (CSV, PLY, CAD)\n", paths.Shape().string());
+  fmt::print(out, "in COLMAP: {}\n", ColmapCommand(paths));
+}
+
+MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const WorkspacePaths& paths) {
+  MetricsReport report;
+  const ShapeExportReport& shape = summary.shape;
+  const Eigen::Vector3d box_m = BoundingBox(shape.shape);
+  report.metrics = {{"verdict", StatusName(summary.verdict.level)},
+                    {"num_images_used", summary.num_images},
+                    {"num_images", summary.num_images_total},
+                    {"num_outliers_removed", summary.adjustment.num_removed},
+                    {"length_m", box_m.x()},
+                    {"width_m", box_m.y()},
+                    {"depth_m", box_m.z()},
+                    {"workspace_path", paths.root.string()},
+                    {"colmap_command", ColmapCommand(paths)}};
+  MetricTable reasons{"verdict_reasons", true, {}};
+  for (const VerdictReason& reason : summary.verdict.reasons) {
+    reasons.rows.push_back({{"level", StatusName(reason.level)}, {"reason", reason.text}});
+  }
+  MetricTable cameras{"cameras_found", true, {}};
+  for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
+    cameras.rows.push_back(
+        {{"camera_id", static_cast<int>(camera_id)}, {"camera", DescribeCamera(camera)}});
+  }
+  report.tables = {reasons,
+                   LeftOutTable("images_left_out", "image_name", summary.left_out,
+                                [](const LeftOutImage& image) { return image.image_name; }),
+                   LeftOutTable("markers_left_out", "marker_id", summary.dropped_markers,
+                                [](const DroppedMarker& marker) { return marker.marker_id; }),
+                   SectionTable(shape.sail.sections.sections),
+                   LeftOutTable("sections_missing", "section", shape.sail.sections.missing,
+                                [](const MissingSection& missing) { return missing.name; }),
+                   cameras};
+  AddMetrics(shape.metrics, &report);
+  AddMetrics(shape.model_metrics, &report);
+  AddMetrics(shape.scale, &report);
+  AddMetrics(shape.audit, &report);
+  AddMetrics(shape.frame, &report);
+  AddMetrics(shape.sail, &report);
+  if (summary.adjustment.uncertainty) AddMetrics(*summary.adjustment.uncertainty, &report);
+  return report;
+}
+
+}  // namespace velamap

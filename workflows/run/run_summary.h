@@ -1,0 +1,37 @@
+// What a whole reconstruction prints at its end: a page for people, or all figures for programs.
+
+#pragma once
+
+#include <iosfwd>
+#include <vector>
+
+#include "exporters/formats/metrics_report.h"
+#include "exporters/report/verdict.h"
+#include "exporters/shape_exporter.h"
+#include "workflows/run/pipeline.h"
+#include "workflows/run/workspace.h"
+
+namespace velamap {
+
+enum class SummaryFormat { kText, kJson };
+
+struct ReconstructionSummary {
+  int num_images = 0;  // images used
+  int num_images_total = 0;
+  std::vector<LeftOutImage> left_out;
+  std::vector<DroppedMarker> dropped_markers;
+  AdjustmentResult adjustment;
+  ShapeExportReport shape;
+  Verdict verdict;
+};
+
+// The verdict with its reasons, then one line each for the markers, the size, the images, the
+// sections, the surfaces and the camera, and the files to open.
+void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
+                  std::ostream& out);
+
+// The same with all figures. README.md of this room lists the keys; those of the shape and the
+// model are those of shape_analyzer.
+MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const WorkspacePaths& paths);
+
+}  // namespace velamap
