@@ -53,6 +53,11 @@ void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report) {
             {"missing_marker_ids", metrics.missing_marker_ids}},
            report);
   }
+  if (metrics.num_sail_markers) {
+    Append({{"num_sail_markers", *metrics.num_sail_markers},
+            {"sail_reconstruction_ratio", metrics.sail_reconstruction_ratio.value()}},
+           report);
+  }
   Append({{"area_error_mm2", metrics.area_error_mm2},
           {"area_error_percent", metrics.area_error_percent},
           {"side_error_mm", metrics.side_error_mm}},

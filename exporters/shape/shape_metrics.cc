@@ -130,6 +130,34 @@ void CheckHasMarkersOf(const Layout& layout, const MarkerShape& shape) {
       shape.markers.size(), shape.markers.front().marker_id));
 }
 
+bool HasLines(const Layout& layout, const std::string& part_name) {
+  return std::any_of(layout.parts.begin(), layout.parts.end(), [&](const LayoutPart& part) {
+    return part.name == part_name && !(part.horizontal.empty() && part.vertical.empty());
+  });
+}
+
+// `is_whole`: by marker id, of the markers of the shape.
+void CountMarkers(const Layout& layout, const std::map<int, bool>& is_whole,
+                  ShapeMetrics* metrics) {
+  if (!layout.HasMarkers()) return;
+  int num_markers = 0, num_sail = 0, num_sail_whole = 0;
+  for (const int marker_id : MarkerIds(layout)) {
+    const auto found = is_whole.find(marker_id);
+    const bool whole = found != is_whole.end() && found->second;
+    if (!whole) metrics->missing_marker_ids.push_back(marker_id);
+    ++num_markers;
+    if (!HasLines(layout, PartOfMarker(layout, marker_id))) continue;
+    ++num_sail;
+    num_sail_whole += whole;
+  }
+  const int num_missing = static_cast<int>(metrics->missing_marker_ids.size());
+  metrics->num_layout_markers = num_markers;
+  metrics->reconstruction_ratio = static_cast<double>(num_markers - num_missing) / num_markers;
+  if (num_sail == 0) return;
+  metrics->num_sail_markers = num_sail;
+  metrics->sail_reconstruction_ratio = static_cast<double>(num_sail_whole) / num_sail;
+}
+
 }  // namespace
 
 ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
@@ -158,16 +186,7 @@ ShapeMetrics ComputeShapeMetrics(const MarkerShape& shape, const Layout& layout,
   metrics.area_sigma_mm2 = area_variance.RootOfMean();
   metrics.side_sigma_mm = Times(kMmPerM, side_variance.RootOfMean());
 
-  const std::vector<int> layout_ids = MarkerIds(layout);
-  if (!layout_ids.empty()) {
-    for (const int marker_id : layout_ids) {
-      if (!is_whole[marker_id]) metrics.missing_marker_ids.push_back(marker_id);
-    }
-    const int num_layout = static_cast<int>(layout_ids.size());
-    const int num_missing = static_cast<int>(metrics.missing_marker_ids.size());
-    metrics.num_layout_markers = num_layout;
-    metrics.reconstruction_ratio = static_cast<double>(num_layout - num_missing) / num_layout;
-  }
+  CountMarkers(layout, is_whole, &metrics);
   return metrics;
 }
 

@@ -33,8 +33,12 @@ struct ShapeMetrics {
   int num_markers = 0;            // whole markers
   std::optional<int> num_layout_markers;
   std::optional<double> reconstruction_ratio;  // of the markers that the layout names
-  std::vector<int> missing_marker_ids;         // in the layout but not whole
-  std::vector<MarkerMetrics> markers;          // whole markers, by id
+  // The same of the parts with lines of markers, as the thesis counts (4.3.2): the sail without the
+  // hull. Nothing if the layout has no lines.
+  std::optional<int> num_sail_markers;
+  std::optional<double> sail_reconstruction_ratio;
+  std::vector<int> missing_marker_ids;  // in the layout but not whole
+  std::vector<MarkerMetrics> markers;   // whole markers, by id
   // Roots of the mean variances: the rms errors that the uncertainty of the corners explains.
   std::optional<double> area_sigma_mm2;
   std::optional<double> side_sigma_mm;

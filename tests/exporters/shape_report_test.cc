@@ -31,6 +31,8 @@ TEST(ShapeReport, ShapeMetricsAndTheirMarkers) {
   EXPECT_EQ(report["num_markers"], 2);
   EXPECT_EQ(report["num_layout_markers"], 8);
   EXPECT_EQ(report["reconstruction_ratio"], 0.25);
+  EXPECT_EQ(report["num_sail_markers"], 6);
+  EXPECT_NEAR(report["sail_reconstruction_ratio"].get<double>(), 1.0 / 6.0, 1e-15);
   EXPECT_EQ(report["missing_marker_ids"], (json{2, 3, 4, 5, 6, 120}));
   EXPECT_NEAR(report["area_error_mm2_max"].get<double>(), 609.0, 1e-8);
   EXPECT_NEAR(report["area_error_percent_mean"].get<double>(), 5.025, 1e-10);
@@ -44,7 +46,8 @@ TEST(ShapeReport, WithoutAListOfMarkersThereAreNoKeysOfIt) {
   const json report = JsonOf(ComputeShapeMetrics(MarkerShape(), MakeLayout("DICT_4X4_50", 0.1)));
   EXPECT_EQ(report["num_markers"], 0);
   EXPECT_EQ(report["area_error_mm2_count"], 0);
-  for (const char* key : {"num_layout_markers", "reconstruction_ratio", "missing_marker_ids"}) {
+  for (const char* key : {"num_layout_markers", "reconstruction_ratio", "missing_marker_ids",
+                          "num_sail_markers", "sail_reconstruction_ratio"}) {
     EXPECT_FALSE(report.contains(key)) << key;
   }
 }

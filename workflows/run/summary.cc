@@ -196,6 +196,10 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   if (metrics.reconstruction_ratio) {
     fmt::print(out, "reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);
   }
+  if (metrics.sail_reconstruction_ratio) {
+    fmt::print(out, "sail_reconstruction_ratio: {:.4g} of {} markers\n",
+               *metrics.sail_reconstruction_ratio, *metrics.num_sail_markers);
+  }
   const ModelMetrics& model = report.model_metrics;
   fmt::print(out, "reprojection_error_px: {}\n", ErrorText(model.error_px));
   fmt::print(out, "central_image_name: {}\n", model.central_image_name);

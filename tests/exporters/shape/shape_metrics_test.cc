@@ -82,7 +82,18 @@ TEST(ShapeMetrics, OnlyWholeMarkersOfTheLayoutCountForTheRatio) {
   EXPECT_EQ(metrics.num_markers, 7);
   EXPECT_EQ(metrics.num_layout_markers, 8);
   EXPECT_DOUBLE_EQ(metrics.reconstruction_ratio.value(), 6.0 / 8.0);
+  EXPECT_EQ(metrics.num_sail_markers, 6);  // without the hull's two, one of which is missing
+  EXPECT_DOUBLE_EQ(metrics.sail_reconstruction_ratio.value(), 5.0 / 6.0);
   EXPECT_THAT(metrics.missing_marker_ids, ElementsAre(5, 121));
+}
+
+TEST(ShapeMetrics, WithoutLinesThereIsNoRatioOfTheSail) {
+  Layout layout = ExampleLayout();
+  layout.parts.erase(layout.parts.begin());
+  const ShapeMetrics metrics = ComputeShapeMetrics(ExampleShape(), layout);
+  EXPECT_EQ(metrics.reconstruction_ratio, 1.0);
+  EXPECT_FALSE(metrics.num_sail_markers);
+  EXPECT_FALSE(metrics.sail_reconstruction_ratio);
 }
 
 TEST(ShapeMetrics, WithoutAListOfMarkersThereIsNoRatio) {
@@ -90,6 +101,7 @@ TEST(ShapeMetrics, WithoutAListOfMarkersThereIsNoRatio) {
   EXPECT_EQ(metrics.num_markers, 8);
   EXPECT_FALSE(metrics.num_layout_markers);
   EXPECT_FALSE(metrics.reconstruction_ratio);
+  EXPECT_FALSE(metrics.sail_reconstruction_ratio);
   EXPECT_THAT(metrics.missing_marker_ids, IsEmpty());
 }
 
