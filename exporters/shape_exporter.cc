@@ -98,7 +98,7 @@ ShapeExportReport ComputeReport(const Model& model, const Layout& layout,
   if (uncertainty != nullptr) {
     report.uncertainty = *uncertainty;
   } else {
-    report.scale = EstimateScale(model, layout);
+    report.scale = EstimateScale(model, layout, options.scale_by);
     ScaleModel(report.scale, &report.metric_model);
   }
   UpdatePointErrors(&report.metric_model);

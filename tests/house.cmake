@@ -95,7 +95,7 @@ house_folder(workflows/plan PUBLIC
 house_folder(workflows/calibrate PUBLIC
   board_calibration)
 house_folder(workflows/options PUBLIC
-  nearest_name option_parser sail_options shared_options)
+  help_text nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC
   commands)
 house_folder(workflows)

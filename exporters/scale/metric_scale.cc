@@ -46,9 +46,23 @@ struct Agreement {
   std::vector<double> ratios;  // within the limit
 };
 
-Agreement FindAgreement(const std::map<int, double>& ratio_of) {
+std::vector<double> ValuesOf(const std::map<int, double>& ratio_of) {
   std::vector<double> ratios;
   for (const auto& [marker_id, ratio] : ratio_of) ratios.push_back(ratio);
+  return ratios;
+}
+
+double PrintedOverMeanSide(const std::vector<MarkerSidesMeasured>& markers, const Layout& layout) {
+  double printed = 0.0, measured = 0.0;
+  for (const MarkerSidesMeasured& marker : markers) {
+    printed += MarkerLength(layout, marker.marker_id);
+    measured += marker.Mean();
+  }
+  return printed / measured;
+}
+
+Agreement FindAgreement(const std::map<int, double>& ratio_of) {
+  const std::vector<double> ratios = ValuesOf(ratio_of);
   Agreement agreement;
   const double median = Median(ratios);
   agreement.robust_sigma = RobustSigma(ratios);
@@ -62,14 +76,17 @@ Agreement FindAgreement(const std::map<int, double>& ratio_of) {
 
 }  // namespace
 
-ScaleEstimate EstimateScale(const Model& model, const Layout& layout) {
+ScaleEstimate EstimateScale(const Model& model, const Layout& layout, ScaleMethod method) {
+  const std::vector<MarkerSidesMeasured> markers = MeasureSides(ShapeFromModel(model, layout));
   ScaleEstimate estimate;
-  estimate.m_per_unit_of = RatiosOf(MeasureSides(ShapeFromModel(model, layout)), layout);
+  estimate.m_per_unit_of = RatiosOf(markers, layout);
   if (estimate.m_per_unit_of.empty()) ThrowNoWholeMarker(model);
-  const Agreement agreement = FindAgreement(estimate.m_per_unit_of);
+  Agreement agreement = FindAgreement(estimate.m_per_unit_of);
+  if (method == ScaleMethod::kMeanSide) agreement.ratios = ValuesOf(estimate.m_per_unit_of);
   const Statistics statistics = ComputeStatistics(agreement.ratios);
   estimate.num_markers = statistics.count;
-  estimate.m_per_unit = statistics.mean;
+  estimate.m_per_unit =
+      method == ScaleMethod::kMeanSide ? PrintedOverMeanSide(markers, layout) : statistics.mean;
   estimate.relative_spread = agreement.robust_sigma / estimate.m_per_unit;
   if (statistics.count > 1) {
     estimate.relative_sigma =

@@ -11,6 +11,11 @@
 
 namespace velamap {
 
+enum class ScaleMethod {
+  kAgreeing,  // mean over the markers that agree
+  kMeanSide,  // thesis 3.5.1: the printed side divided by the mean of all sides
+};
+
 struct ScaleEstimate {
   double m_per_unit = 0.0;
   // Robust standard deviation (1.4826 MAD) of the scales that single markers give, as a fraction.
@@ -24,10 +29,12 @@ struct ScaleEstimate {
   std::map<int, double> m_per_unit_of;  // scale from each marker alone, by marker id
 };
 
-// Each whole marker gives the ratio of its printed side to the mean of its four sides. The scale is
-// the mean of the ratios within three robust sigmas of their median, which excludes misdetected
-// markers. Throws DataError without a whole marker.
-ScaleEstimate EstimateScale(const Model& model, const Layout& layout);
+// Each whole marker gives the ratio of its printed side to the mean of its four sides. kAgreeing:
+// the scale is the mean of the ratios within three robust sigmas of their median, which excludes
+// misdetected markers. kMeanSide: the sum of all printed sides divided by the sum of the measured
+// ones. Throws DataError without a whole marker.
+ScaleEstimate EstimateScale(const Model& model, const Layout& layout,
+                            ScaleMethod method = ScaleMethod::kAgreeing);
 
 // The scale of a metric model: 1, with the sigma of the uncertainty. `m_per_unit_of` are the scales
 // of single markers from the images alone (scale_audit.h).

@@ -39,6 +39,11 @@ Option PathOption(const std::string& name, PathUse use, std::string* path,
   return option;
 }
 
+Option Common(Option option) {
+  option.is_common = true;
+  return option;
+}
+
 Option BesideIfLeftOut(Option option, const std::string* folder, const std::string& name) {
   option.beside = folder;
   option.name_beside = name;

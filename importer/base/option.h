@@ -73,10 +73,15 @@ struct Option {
   // An output that is left out is the file `name_beside` beside the path that `beside` holds.
   const std::string* beside = nullptr;
   std::string name_beside = {};
+  bool is_common = false;
+  std::vector<std::string> choices = {};  // all that it takes, where these are a few names
 };
 
 Option PathOption(const std::string& name, PathUse use, std::string* path,
                   const std::string& description);
+
+// An option that most people need: --help shows it, and the required ones; --help_all shows all.
+Option Common(Option option);
 
 // The file `name` beside `folder` is meant where the option is left out.
 Option BesideIfLeftOut(Option option, const std::string* folder, const std::string& name);
@@ -153,7 +158,9 @@ Option ChoiceOption(const std::string& name, Value* value, const Choices<Value>&
     }
     *value = choices[FindChoice(text, names, option)].first;
   };
-  return {name, ParsedValue{value, ChoiceName(choices, *value), set}, unit, description};
+  Option option{name, ParsedValue{value, ChoiceName(choices, *value), set}, unit, description};
+  option.choices = names;
+  return option;
 }
 
 }  // namespace velamap

@@ -154,10 +154,12 @@ void GridPlacementOptions::Check() const { CheckRanges(*this); }
 OptionGroup DescribeOptions(SailPlacementOptions* options) {
   return {
       "Sail and hull",
-      {{"Sail.luff", &options->luff_m, "m", "length of the luff, tack to head", FromTo(0.05, 200)},
-       {"Sail.foot", &options->foot_m, "m", "length of the foot, tack to clew", FromTo(0.05, 200)},
-       {"Sail.leech", &options->leech_m, "m", "length of the leech, clew to head",
-        FromTo(0.05, 200)},
+      {Common({"Sail.luff", &options->luff_m, "m", "length of the luff, tack to head",
+               FromTo(0.05, 200)}),
+       Common({"Sail.foot", &options->foot_m, "m", "length of the foot, tack to clew",
+               FromTo(0.05, 200)}),
+       Common({"Sail.leech", &options->leech_m, "m", "length of the leech, clew to head",
+               FromTo(0.05, 200)}),
        {"Sail.lines", &options->num_lines, "count", "horizontal lines of markers", FromTo(1, 200)},
        {"Sail.markers_per_line", &options->markers_per_line, "count",
         "markers on a line; fewer near the head, where they have no room", FromTo(1, 500)},

@@ -46,17 +46,18 @@ OptionGroup DescribeOptions(PrintOptions* options) {
   dictionary.path_use = PathUse::kReadsFile;
   return {
       "Markers",
-      {ChoiceOption("arrangement", &options->arrangement, kArrangements,
-                    "markers: stickers, wherever they go; grid: stickers in rows and columns; "
-                    "sail: on lines of a sail; hull: on something rigid; board, charuco: one page "
-                    "for calibration"),
-       {"marker_length", &options->marker_length_m, "m",
-        "outer edge of the black square; board and charuco: left out, as large as fits",
-        FromTo(kMinMarkerLength_m, kMaxMarkerLength_m)},
+      {Common(ChoiceOption(
+           "arrangement", &options->arrangement, kArrangements,
+           "markers: stickers, wherever they go; grid: stickers in rows and columns; "
+           "sail: on lines of a sail; hull: on something rigid; board, charuco: one page "
+           "for calibration")),
+       Common({"marker_length", &options->marker_length_m, "m",
+               "outer edge of the black square; board and charuco: left out, as large as fits",
+               FromTo(kMinMarkerLength_m, kMaxMarkerLength_m)}),
        dictionary,
        {"border_bits", &options->border_bits, "cells", "width of the black border", FromTo(1, 8)},
-       {"num_markers", &options->num_markers, "count", "markers: how many",
-        FromTo(0, kMaxMarkerId + 1)},
+       Common({"num_markers", &options->num_markers, "count", "markers: how many",
+               FromTo(0, kMaxMarkerId + 1)}),
        {"first_id", &options->first_id, "id", "id of the first marker", FromTo(0, kMaxMarkerId)},
        {"ids", ParsedValue{&options->ids, "", set_ids}, "id,id,...",
         "print only these, such as those that were lost"}}};

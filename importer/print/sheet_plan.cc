@@ -99,21 +99,23 @@ OptionGroup DescribeOptions(PrintSheetOptions* options) {
   const auto set_paper = [options](const std::string& text, const std::string& option) {
     options->paper = ParsePaper(text, option);
   };
-  return {"Sheets",
-          {{"Sheet.paper", ParsedValue{&options->paper, options->paper.name, set_paper},
+  return {
+      "Sheets",
+      {Common(
+           {"Sheet.paper", ParsedValue{&options->paper, options->paper.name, set_paper},
             "A4|A3|Letter|WIDTHxHEIGHT in mm",
-            "paper size; also A0 to A6, Legal, Tabloid, or width x height in mm such as 330x480"},
-           {"Sheet.margin", &options->margin_mm, "mm",
-            "width of the white margin around the black square; left out: a quarter of the "
-            "square's side, and at least 1.5 cells",
-            FromTo(0, 500)},
-           {"Sheet.markers_per_sheet", &options->markers_per_sheet, "count",
-            "markers on a sheet at most; 0: as many as there is room for", AtLeast(0)},
-           {"Sheet.svg", &options->write_svg, "0|1", "also write every marker as an SVG file"},
-           {"Sheet.png", &options->write_png, "0|1", "also write every marker as a PNG file"},
-           {"Sheet.png_resolution", &options->png_dpi, "dpi",
-            "least resolution of the PNG files; a cell is a whole number of pixels",
-            FromTo(10, 10000)}}};
+            "paper size; also A0 to A6, Legal, Tabloid, or width x height in mm such as 330x480"}),
+       {"Sheet.margin", &options->margin_mm, "mm",
+        "width of the white margin around the black square; left out: a quarter of the "
+        "square's side, and at least 1.5 cells",
+        FromTo(0, 500)},
+       {"Sheet.markers_per_sheet", &options->markers_per_sheet, "count",
+        "markers on a sheet at most; 0: as many as there is room for", AtLeast(0)},
+       {"Sheet.svg", &options->write_svg, "0|1", "also write every marker as an SVG file"},
+       {"Sheet.png", &options->write_png, "0|1", "also write every marker as a PNG file"},
+       {"Sheet.png_resolution", &options->png_dpi, "dpi",
+        "least resolution of the PNG files; a cell is a whole number of pixels",
+        FromTo(10, 10000)}}};
 }
 
 PageFrame MakePageFrame(const Paper& paper, bool is_landscape) {

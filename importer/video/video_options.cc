@@ -7,13 +7,13 @@
 namespace velamap {
 
 OptionGroup DescribeOptions(VideoOptions* options) {
-  return {
-      "Video",
-      {{"Video.first_frame", &options->first_frame, "frame", "first frame to read, from 0",
-        AtLeast(0)},
-       {"Video.last_frame", &options->last_frame, "frame", "last frame to read; -1: the end",
-        AtLeast(-1)},
-       {"Video.frame_step", &options->frame_step, "frames", "read every k-th frame", AtLeast(1)}}};
+  return {"Video",
+          {Common({"Video.first_frame", &options->first_frame, "frame",
+                   "first frame to read, from 0", AtLeast(0)}),
+           Common({"Video.last_frame", &options->last_frame, "frame",
+                   "last frame to read; -1: the end", AtLeast(-1)}),
+           Common({"Video.frame_step", &options->frame_step, "frames", "read every k-th frame",
+                   AtLeast(1)})}};
 }
 
 void VideoOptions::Check() const {

@@ -200,13 +200,13 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
   Model adjusted = *model;
   BundleAdjustmentSummary summary;
   summary.error_before_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(adjusted));
-  RemoveSeedOutliers(options, &adjusted, &summary.removed);
+  if (options.remove_outliers) RemoveSeedOutliers(options, &adjusted, &summary.removed);
   while (true) {
     RemoveUnderconstrained(options.min_track_length, &adjusted, &summary.removed_images);
     CheckEnough(adjusted, num_images, summary.removed.size());
     AdjustOnce(options, log_path, &adjusted);
     ++summary.num_rounds;
-    if (summary.num_rounds == options.max_num_rounds) break;
+    if (!options.remove_outliers || summary.num_rounds == options.max_num_rounds) break;
     const int num_changes = ReviseObservations(options, &adjusted, &summary.removed);
     spdlog::debug("round {}: {} observations removed or restored", summary.num_rounds, num_changes);
     if (num_changes == 0) break;

@@ -21,6 +21,8 @@ OptionGroup DescribeOptions(BundleAdjustmentOptions* options) {
             "most iterations of a round", AtLeast(1)},
            {"BundleAdjustment.function_tolerance", &options->function_tolerance, "fraction",
             "a smaller relative change of the cost ends a round", AtLeast(0)},
+           {"BundleAdjustment.remove_outliers", &options->remove_outliers, "0|1",
+            "leave out what does not fit, and adjust again; 0: COLMAP's adjustment alone, once"},
            {"BundleAdjustment.max_num_rounds", &options->max_num_rounds, "count",
             "most rounds of adjustment and removal of outliers", AtLeast(1)},
            {"BundleAdjustment.outlier_ratio", &options->outlier_ratio, "sigmas",

@@ -15,6 +15,7 @@ struct BundleAdjustmentOptions {
   bool refine_extra_params = false;
   int max_num_iterations = 100;
   double function_tolerance = 1e-6;
+  bool remove_outliers = true;  // false: COLMAP's adjustment alone, once
   // COLMAP's adjustment has no robust loss, so observations are judged between rounds: those beyond
   // outlier_ratio robust sigmas of all residuals are left out, but never below
   // min_outlier_error_px; one that was left out and fits again returns.

@@ -10,6 +10,9 @@ const Choices<FrameOrder> kFrameOrders = {{FrameOrder::kAuto, "auto"},
                                           {FrameOrder::kTime, "time"},
                                           {FrameOrder::kUnordered, "unordered"}};
 
+const Choices<ThesisVariant> kVariants = {{ThesisVariant::kRobust, "robust"},
+                                          {ThesisVariant::kExact, "exact"}};
+
 void Append(const OptionGroup& group, OptionGroup* all) {
   all->options.insert(all->options.end(), group.options.begin(), group.options.end());
 }
@@ -43,15 +46,19 @@ OptionGroup DescribeOptions(ThesisRegistrationOptions* options) {
            {"Registration.num_mean_iterations", &options->num_mean_iterations, "count",
             "iterations of the weighted mean (thesis)", AtLeast(0)},
            {"Registration.mean_sigma", &options->mean_sigma_m, "m",
-            "width of the mean's weights (thesis)", MoreThan(0)}}};
+            "width of the mean's weights (thesis)", MoreThan(0)},
+           ChoiceOption("Registration.thesis_variant", &options->variant, kVariants,
+                        "exact: sections 3.3 to 3.5 to the letter; robust: both poses of a marker, "
+                        "a search that adapts to the video, and a mean that is refined (thesis)")}};
 }
 
 OptionGroup DescribeOptions(RegistrationOptions* options) {
   OptionGroup group = {
       "Registration of the frames",
-      {ChoiceOption("Registration.method", &options->method, kMethods,
-                    "thesis: rigid alignment around one central frame; global: resection against a "
-                    "growing map"),
+      {Common(ChoiceOption(
+           "Registration.method", &options->method, kMethods,
+           "thesis: rigid alignment around one central frame; global: resection against a "
+           "growing map")),
        ChoiceOption("Registration.frame_order", &options->frame_order, kFrameOrders,
                     "time: search around the central frame; unordered: grow from it; auto: time "
                     "for a video"),

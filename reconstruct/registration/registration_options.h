@@ -19,6 +19,12 @@ enum class FrameOrder {
   kUnordered,  // growing from the central frame
 };
 
+// How closely the thesis is followed where it leaves something to improve.
+enum class ThesisVariant {
+  kRobust,  // both poses of a marker, a search that adapts to the video, shape refined in rounds
+  kExact,   // thesis 3.3 to 3.5 to the letter: README.md of this room lists the differences
+};
+
 // Thesis, sections 3.4 and 3.5, with its symbols.
 struct ThesisRegistrationOptions {
   // n, frames on each side of the central one (time order). 0: the central frame alone, whose
@@ -30,6 +36,9 @@ struct ThesisRegistrationOptions {
   double frequency_threshold = 0.3;  // beta, part of the selected frames that see a marker (time)
   int num_mean_iterations = 30;
   double mean_sigma_m = 0.6;
+  ThesisVariant variant = ThesisVariant::kRobust;
+
+  bool IsExact() const { return variant == ThesisVariant::kExact; }
 };
 
 struct GlobalRegistrationOptions {

@@ -160,6 +160,10 @@ class AlignmentProblem {
 
 }  // namespace
 
+bool IsOutlier(const FrameAlignment& alignment, int marker_id) {
+  return std::binary_search(alignment.outlier_ids.begin(), alignment.outlier_ids.end(), marker_id);
+}
+
 int BestSolution(const FrameMarker& marker, const Rigid3& shape_from_cam,
                  const MarkerPoints& x_in_shape) {
   int best = 0;

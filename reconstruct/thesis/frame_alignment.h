@@ -29,6 +29,8 @@ struct FrameAlignment {
   double rms_error_m = 0.0;      // over the points of the inliers
 };
 
+bool IsOutlier(const FrameAlignment& alignment, int marker_id);
+
 // Thesis, equation 3.1: samples triples of marker centres and estimates the transformation from the
 // centres of all inliers. Where fewer than four markers are shared or their centres are collinear,
 // hypotheses come from the corners of single markers instead, one for each of their pose solutions,

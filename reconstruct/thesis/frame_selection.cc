@@ -84,7 +84,9 @@ void SearchOneSide(int central_idx, int direction, Search* search,
     const FrameNumber furthest = target + direction * neighborhood;
     const auto [first, last] = std::minmax(nearest, furthest);
     auto best = BestInWindow(*search, search->central, first, last, target);
-    if (!best) best = BestInWindow(*search, search->extended, first, last, target);
+    if (!best && options.extends_shape) {
+      best = BestInWindow(*search, search->extended, first, last, target);
+    }
     if (!best) {
       from_number = target;
       continue;

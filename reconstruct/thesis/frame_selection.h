@@ -28,6 +28,9 @@ struct FrameSearchOptions {
   int num_frames = 20;   // n
   int skip = 10;         // s
   int neighborhood = 5;  // m
+  // Whether a window in which no frame aligns with the central one is aligned with the markers of
+  // all frames found so far. The thesis does not.
+  bool extends_shape = true;
 };
 
 // Adapts the parameters to a video with `num_frames_on_side` frames on the longer side of the
@@ -51,8 +54,8 @@ struct SelectedFrame {
 // Thesis section 3.4.1: skips s frames from the central frame, takes the frame within m frames of
 // there that has the most RANSAC inliers, continues from it, n times on each side. Where no frame
 // of a window aligns with the central frame, the window is aligned with the markers of all frames
-// found so far; if that fails too, the window is skipped. `frames` are sorted by frame_number. The
-// result does not contain the central frame.
+// found so far if extends_shape; if that fails too, the window is skipped. `frames` are sorted by
+// frame_number. The result does not contain the central frame.
 std::vector<SelectedFrame> SearchFrames(const std::vector<FrameShape>& frames, int central_idx,
                                         const FrameSearchOptions& search, const Layout& layout,
                                         const FrameAlignmentOptions& alignment);

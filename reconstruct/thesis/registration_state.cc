@@ -14,10 +14,6 @@ constexpr int kNumRefinements = 4;
 // Images with at least this fraction of the best image's inliers are added in the same round.
 constexpr double kJoinRatio = 0.8;
 
-bool IsOutlier(const FrameAlignment& alignment, int marker_id) {
-  return std::binary_search(alignment.outlier_ids.begin(), alignment.outlier_ids.end(), marker_id);
-}
-
 // The pose solutions of every marker in the shape frame, by all registered frames in which it is no
 // outlier.
 std::map<int, std::vector<MarkerSolutions>> CollectSolutions(const RegistrationState& state) {
@@ -30,6 +26,7 @@ std::map<int, std::vector<MarkerSolutions>> CollectSolutions(const RegistrationS
       MarkerSolutions solutions;
       for (const MarkerPoints& x_in_cam : marker.x_in_cam) {
         solutions.push_back(Transform(alignment->shape_from_cam, x_in_cam));
+        if (state.options.thesis.IsExact()) break;  // the better one alone, as ArUco gives it
       }
       solutions_of[marker.marker_id].push_back(std::move(solutions));
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "importer/base/error.h"
+#include "importer/geometry/alignment.h"
 #include "reconstruct/registration/frame_order.h"
 #include "reconstruct/thesis/frame_selection.h"
 #include "reconstruct/thesis/registration_state.h"
@@ -39,7 +40,9 @@ RegisteredFrame PlaceFrame(const RegistrationState& state, std::size_t idx) {
     const auto place = state.shape.find(marker.marker_id);
     if (place == state.shape.end()) continue;
     const bool fits =
-        FitsInImage(*state.cameras[idx], *registered.cam_from_shape, marker, place->second);
+        state.options.thesis.IsExact()
+            ? !IsOutlier(*alignment, marker.marker_id)  // RANSAC decides alone (3.4.1)
+            : FitsInImage(*state.cameras[idx], *registered.cam_from_shape, marker, place->second);
     (fits ? registered.marker_ids : registered.outlier_ids).push_back(marker.marker_id);
   }
   return registered;
@@ -66,6 +69,18 @@ void DropRareMarkers(int min_num_frames, Registration* registration) {
                              [registration](int id) { return !registration->shape.count(id); }),
               ids.end());
   }
+}
+
+// Thesis, equation 3.5: aligns the centres of the frame's markers with the mean shape. A frame with
+// fewer than three markers, or with markers on one line, keeps the pose of its registration.
+void PoseByCenters(const FrameShape& frame, const ShapePoints& shape, RegisteredFrame* registered) {
+  std::vector<Eigen::Vector3d> x_in_shape, x_in_cam;
+  for (const int marker_id : registered->marker_ids) {
+    x_in_shape.push_back(shape.at(marker_id)[0]);
+    x_in_cam.push_back(frame.Find(marker_id)->x_in_cam.front()[0]);
+  }
+  if (x_in_shape.size() < 3 || !HasSpread(x_in_shape)) return;
+  registered->cam_from_shape = EstimateRigid3(x_in_shape, x_in_cam);
 }
 
 // Reduces the skip if the video is too short for the search, and adds a note.
@@ -131,13 +146,13 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
 
   Registration registration;
   FrameSearchOptions search{options.thesis.num_frames, options.thesis.skip,
-                            options.thesis.neighborhood};
+                            options.thesis.neighborhood, !options.thesis.IsExact()};
   std::optional<CentralFrame> central;
   if (!options.central_frame.empty()) {
     central = CentralFrame{FindCentralFrame(ordered, options), "named by option"};
   }
   if (time_order) {
-    if (options.thesis.num_frames > 0) {
+    if (options.thesis.num_frames > 0 && !options.thesis.IsExact()) {
       search = FitSearch(state.frames, central, search, &registration.notes);
     }
     if (!central) central = ChooseCentralVideoFrame(state.frames, search);
@@ -154,7 +169,7 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
   registration.central_image_id = state.frames[central_idx].image_id;
   registration.central_image_name = state.frames[central_idx].image_name;
   registration.central_reason = central->reason;
-  RefineShape(&state);
+  if (!options.thesis.IsExact()) RefineShape(&state);
   if (!state.alignments[central_idx] || state.NumRegistered() < min_num_registered) {
     throw DataError("no image shares enough markers with the central image " +
                     registration.central_image_name + ": at least " +
@@ -175,6 +190,11 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
                  : 0;
   const int min_num_frames = std::min(options.min_num_frames, registration.NumRegistered());
   DropRareMarkers(std::max(min_num_frames, by_frequency), &registration);
+  if (options.thesis.IsExact()) {
+    for (std::size_t idx = 0; idx < state.frames.size(); ++idx) {
+      PoseByCenters(state.frames[idx], registration.shape, &registration.frames[idx]);
+    }
+  }
   return registration;
 }
 

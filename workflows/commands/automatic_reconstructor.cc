@@ -41,6 +41,7 @@ struct Options {
   ShapeExporterOptions exporter;
   SurfaceFileOptions surface;
   Arguments arguments;  // as they were typed, for the report
+  Preset preset;
   bool full_paths = false;
   SummaryFormat summary = SummaryFormat::kText;
 };
@@ -57,7 +58,8 @@ CommandSyntax Declare(Options* options) {
          Required(PathOption(
              "workspace_path", PathUse::kWritesWorkspace, &paths->workspace_path,
              "folder of the result: new, empty, or of an earlier run, whose detections are kept")),
-         ImportAnewOption(&options->importer), BackendOption(&options->adjustment.backend)}},
+         ImportAnewOption(&options->importer), BackendOption(&options->adjustment.backend),
+         PresetOption(&options->preset)}},
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->importer.detection),
        DescribeOptions(&options->importer.video),
@@ -67,6 +69,7 @@ CommandSyntax Declare(Options* options) {
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
     syntax.groups.push_back(group);
   }
+  syntax.preset = &options->preset;
   syntax.groups.push_back(DescribeOptions(&options->general));
   syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
                                           "log and report name files with their folders; 0: "
@@ -237,6 +240,7 @@ void Run(const Options& options) {
   AddLogFile(paths.Log().string());
   spdlog::info("velamap {} automatic_reconstructor {}", kVersion,
                fmt::join(options.arguments, " "));
+  LogPreset(options.preset);
 
   ReconstructionSummary summary;
   StageClock clock;

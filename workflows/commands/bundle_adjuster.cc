@@ -24,6 +24,7 @@ struct Options {
   GeneralOptions general;
   MarkerOptions markers;
   AdjustmentOptions adjustment;
+  Preset preset;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -38,18 +39,21 @@ CommandSyntax Declare(Options* options) {
              BesideIfLeftOut(PathOption("log_path", PathUse::kWritesFile, &paths->log_path,
                                         "COLMAP's output; left out: colmap.log beside output_path"),
                              &paths->output_path, "colmap.log"),
-             BackendOption(&options->adjustment.backend),
-             PathOption("database_path", PathUse::kReadsFile, &paths->database_path,
-                        "database of the model's images, for the sigma and motion of each corner "
-                        "(markers, optional)")}},
+             BackendOption(&options->adjustment.backend), PresetOption(&options->preset),
+             Common(PathOption(
+                 "database_path", PathUse::kReadsFile, &paths->database_path,
+                 "database of the model's images, for the sigma and motion of each corner "
+                 "(markers, optional)"))}},
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->adjustment.colmap),
            DescribeOptions(&options->adjustment.markers),
-           DescribeOptions(&options->general)}};
+           DescribeOptions(&options->general)},
+          &options->preset};
 }
 
 void Validate(Options* options) {
   SetLogLevel(options->general.log_level);
+  LogPreset(options->preset);
   options->adjustment.Complete(options->general.num_threads);
 }
 

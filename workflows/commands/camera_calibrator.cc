@@ -28,33 +28,34 @@ struct Options {
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {"camera_calibrator",
-          "calibrates a camera from pictures of a board of markers",
-          "--image_path board.mp4 --output_path camera.yml",
-          {{"Input and output",
-            {ImagePathOption(paths),
-             Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
-                                 "camera file for the other commands, with sigmas")),
-             BesideIfLeftOut(PathOption("report_path", PathUse::kWritesFile, &options->report_path,
-                                        "page to look at (HTML); left out: calibration.html beside "
-                                        "the camera file"),
-                             &paths->output_path, "calibration.html")}},
-           {"Calibration",
-            {{"num_views", &options->calibration.calibration.max_num_views, "count",
-              "pictures that take part at most, chosen by what they add", FromTo(5, 500)},
-             ChoiceOption("camera_model", &options->camera_model,
-                          {{WantedModel::kAuto, "auto"},
-                           {WantedModel::kPinhole, "SIMPLE_PINHOLE"},
-                           {WantedModel::kSimpleRadial, "SIMPLE_RADIAL"},
-                           {WantedModel::kRadial, "RADIAL"},
-                           {WantedModel::kOpenCV, "OPENCV"},
-                           {WantedModel::kFullOpenCV, "FULL_OPENCV"},
-                           {WantedModel::kFisheye, "OPENCV_FISHEYE"}},
-                          "auto: the one that predicts pictures best that it has not seen")}},
-           DescribeOptions(&options->markers, true),
-           DescribeOptions(&options->calibration.detection),
-           DescribeOptions(&options->calibration.video),
-           DescribeOptions(&options->general)}};
+  return {
+      "camera_calibrator",
+      "calibrates a camera from pictures of a board of markers",
+      "--image_path board.mp4 --output_path camera.yml",
+      {{"Input and output",
+        {ImagePathOption(paths),
+         Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
+                             "camera file for the other commands, with sigmas")),
+         BesideIfLeftOut(PathOption("report_path", PathUse::kWritesFile, &options->report_path,
+                                    "page to look at (HTML); left out: calibration.html beside "
+                                    "the camera file"),
+                         &paths->output_path, "calibration.html")}},
+       {"Calibration",
+        {{"num_views", &options->calibration.calibration.max_num_views, "count",
+          "pictures that take part at most, chosen by what they add", FromTo(5, 500)},
+         Common(ChoiceOption("camera_model", &options->camera_model,
+                             {{WantedModel::kAuto, "auto"},
+                              {WantedModel::kPinhole, "SIMPLE_PINHOLE"},
+                              {WantedModel::kSimpleRadial, "SIMPLE_RADIAL"},
+                              {WantedModel::kRadial, "RADIAL"},
+                              {WantedModel::kOpenCV, "OPENCV"},
+                              {WantedModel::kFullOpenCV, "FULL_OPENCV"},
+                              {WantedModel::kFisheye, "OPENCV_FISHEYE"}},
+                             "auto: the one that predicts pictures best that it has not seen"))}},
+       DescribeOptions(&options->markers, true),
+       DescribeOptions(&options->calibration.detection),
+       DescribeOptions(&options->calibration.video),
+       DescribeOptions(&options->general)}};
 }
 
 std::optional<CameraModel> ModelOf(WantedModel wanted) {

@@ -21,6 +21,7 @@ struct Options {
   GeneralOptions general;
   MarkerOptions markers;
   CentralFrameSweepOptions sweep;
+  Preset preset;
 };
 
 // The options of the registration but for the central frame, of which the sweep tries many.
@@ -38,37 +39,41 @@ OptionGroup RegistrationGroup(RegistrationOptions* options) {
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
   CentralFrameSweepOptions* sweep = &options->sweep;
-  return {
-      "central_frame_sweeper",
-      "registers, adjusts and judges a clip around many central frames, one row each",
-      "--database_path database.db --layout_path layout.yml \\\n"
-      "    --central_frames every:10 --output_path sweep.csv",
-      {{"Input and output",
-        {DatabasePathOption(PathUse::kReadsFile, paths,
-                            "COLMAP database that marker_importer made"),
-         Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
-                             "table of all central frames, CSV")),
-         {"central_frames", &sweep->central_frames, "all|every:N|LIST",
-          "central frames: of all images with markers, of every N-th, or names or frame "
-          "numbers with commas"},
-         PathOption("models_path", PathUse::kAddsToFolder, &sweep->models_path,
-                    "folder for the metric model and shape.csv of each central frame, in a folder "
-                    "of the image's name; left out: none are written"),
-         {"warm_start", &sweep->warm_start, "0|1",
-          "start each adjustment at the result around the previous central frame"},
-         BackendOption(&sweep->adjustment.backend),
-         BesideIfLeftOut(PathOption("log_path", PathUse::kWritesFile, &paths->log_path,
-                                    "COLMAP's output; left out: colmap.log beside output_path"),
-                         &paths->output_path, "colmap.log")}},
-       DescribeOptions(&options->markers, false),
-       RegistrationGroup(&sweep->registration),
-       DescribeOptions(&sweep->adjustment.colmap),
-       DescribeOptions(&sweep->adjustment.markers),
-       DescribeOptions(&options->general)}};
+  return {"central_frame_sweeper",
+          "registers, adjusts and judges a clip around many central frames, one row each",
+          "--database_path database.db --layout_path layout.yml \\\n"
+          "    --central_frames every:10 --output_path sweep.csv",
+          {{"Input and output",
+            {DatabasePathOption(PathUse::kReadsFile, paths,
+                                "COLMAP database that marker_importer made"),
+             Required(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
+                                 "table of all central frames, CSV")),
+             Common({"central_frames", &sweep->central_frames, "all|every:N|LIST",
+                     "central frames: of all images with markers, of every N-th, or names or frame "
+                     "numbers with commas"}),
+             Common(PathOption(
+                 "models_path", PathUse::kAddsToFolder, &sweep->models_path,
+                 "folder for the metric model and shape.csv of each central frame, in a folder "
+                 "of the image's name; left out: none are written")),
+             {"warm_start", &sweep->warm_start, "0|1",
+              "start each adjustment at the result around the previous central frame"},
+             BackendOption(&sweep->adjustment.backend),
+             ScaleOption(&sweep->scale_by),
+             PresetOption(&options->preset),
+             BesideIfLeftOut(PathOption("log_path", PathUse::kWritesFile, &paths->log_path,
+                                        "COLMAP's output; left out: colmap.log beside output_path"),
+                             &paths->output_path, "colmap.log")}},
+           DescribeOptions(&options->markers, false),
+           RegistrationGroup(&sweep->registration),
+           DescribeOptions(&sweep->adjustment.colmap),
+           DescribeOptions(&sweep->adjustment.markers),
+           DescribeOptions(&options->general)},
+          &options->preset};
 }
 
 void Validate(Options* options) {
   SetLogLevel(options->general.log_level);
+  LogPreset(options->preset);
   CentralFrameSweepOptions& sweep = options->sweep;
   sweep.database_path = options->paths.database_path;
   sweep.registration.random_seed = options->general.random_seed;

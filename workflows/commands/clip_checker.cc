@@ -24,23 +24,24 @@ struct Options {
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {"clip_checker",
-          "says in seconds whether a clip will do, before any reconstruction",
-          "--image_path clip.mp4 --layout_path layout.yml --camera_path camera.yml \\\n"
-          "    --output_path frame.png",
-          {{"Input and output",
-            {ImagePathOption(paths),
-             PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
-                        "calibration of the camera; left out: the precision is not predicted"),
-             PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
-                        "PNG of the frame with most markers, with their outlines and ids; left "
-                        "out: none"),
-             {"num_frames", &options->check.num_frames, "frames",
-              "number of frames of a video to look at", FromTo(5, 1000)}}},
-           DescribeOptions(&options->markers, true),
-           DescribeOptions(&options->check.detection),
-           DescribeOptions(&options->check.video),
-           DescribeOptions(&options->general)}};
+  return {
+      "clip_checker",
+      "says in seconds whether a clip will do, before any reconstruction",
+      "--image_path clip.mp4 --layout_path layout.yml --camera_path camera.yml \\\n"
+      "    --output_path frame.png",
+      {{"Input and output",
+        {ImagePathOption(paths),
+         Common(PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
+                           "calibration of the camera; left out: the precision is not predicted")),
+         Common(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
+                           "PNG of the frame with most markers, with their outlines and ids; left "
+                           "out: none")),
+         {"num_frames", &options->check.num_frames, "frames",
+          "number of frames of a video to look at", FromTo(5, 1000)}}},
+       DescribeOptions(&options->markers, true),
+       DescribeOptions(&options->check.detection),
+       DescribeOptions(&options->check.video),
+       DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {

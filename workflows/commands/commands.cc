@@ -6,12 +6,13 @@
 #include <fmt/ostream.h>
 
 #include "importer/base/error.h"
+#include "workflows/options/help_text.h"
 #include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {
 
-bool IsHelp(const std::string& name) { return name == "help" || name == "--help" || name == "-h"; }
+bool IsHelp(const std::string& name) { return name == "help" || AskedHelp({name}).has_value(); }
 
 Command FindCommand(const std::string& name) {
   std::vector<std::string> names = {"help"};
@@ -28,10 +29,13 @@ void PrintOverview() {
   std::cout << "velamap: metric 3D shape from pictures of coded markers, through COLMAP\n\n"
                "Usage:\n"
                "  velamap COMMAND --option value ...\n"
-               "  velamap COMMAND --help\n\n"
-               "Commands:\n";
-  for (const Command& command : AllCommands()) {
-    fmt::print(std::cout, "  {:<25}{}\n", command.syntax.name, command.syntax.description);
+               "  velamap COMMAND --help       the options that most people need\n"
+               "  velamap COMMAND --help_all   all options\n";
+  for (const CommandGroup& group : CommandGroups()) {
+    fmt::print(std::cout, "\n{}:\n", group.title);
+    for (const Command& command : group.commands) {
+      fmt::print(std::cout, "  {:<25}{}\n", command.syntax.name, command.syntax.description);
+    }
   }
   fmt::print(std::cout, "  {:<25}{}\n", "help", "this list, or the options of a command");
   std::cout << "\nExample:\n"
@@ -41,12 +45,23 @@ void PrintOverview() {
 
 }  // namespace
 
+std::vector<CommandGroup> CommandGroups() {
+  return {
+      {"Before and while filming",
+       {MarkerGenerator(), ShootPlanner(), CameraCalibrator(), ClipChecker()}},
+      {"From pictures to the shape, in one call", {AutomaticReconstructor()}},
+      {"The same in steps",
+       {MarkerImporter(), FrameRegistrator(), BundleAdjuster(), ShapeExporter()}},
+      {"Judging and comparing shapes", {ShapeAnalyzer(), ShapeComparer(), CentralFrameSweeper()}},
+      {"About velamap", {Version()}}};
+}
+
 std::vector<Command> AllCommands() {
-  return {MarkerGenerator(),  ShootPlanner(),           CameraCalibrator(),
-          ClipChecker(),      AutomaticReconstructor(), MarkerImporter(),
-          FrameRegistrator(), BundleAdjuster(),         CentralFrameSweeper(),
-          ShapeExporter(),    ShapeAnalyzer(),          ShapeComparer(),
-          Version()};
+  std::vector<Command> commands;
+  for (CommandGroup& group : CommandGroups()) {
+    for (Command& command : group.commands) commands.push_back(std::move(command));
+  }
+  return commands;
 }
 
 std::set<std::string> AllOptionNames() {
@@ -60,11 +75,12 @@ void RunCommandLine(const Arguments& arguments) {
   const Arguments rest(arguments.begin() + (arguments.empty() ? 0 : 1), arguments.end());
   if (IsHelp(name)) {
     if (rest.empty() || IsHelp(rest.front())) return PrintOverview();
-    return PrintHelp(FindCommand(rest.front()).syntax, std::cout);
+    return PrintHelp(FindCommand(rest.front()).syntax, AskedHelp(rest).value_or(HelpLength::kShort),
+                     std::cout);
   }
   const Command command = FindCommand(name == "--version" ? "version" : name);
   if (!ParseOptions(command.syntax, rest, AllOptionNames())) {
-    return PrintHelp(command.syntax, std::cout);
+    return PrintHelp(command.syntax, AskedHelp(rest).value(), std::cout);
   }
   command.run(rest);
 }

@@ -45,7 +45,13 @@ Command ShapeComparer();
 Command ShootPlanner();
 Command Version();
 
+struct CommandGroup {
+  std::string title;  // when one needs them
+  std::vector<Command> commands;
+};
+
 // The registry: all commands but help, in the order in which help lists them.
+std::vector<CommandGroup> CommandGroups();
 std::vector<Command> AllCommands();
 
 // The names of the options of all commands, which a project file may hold.

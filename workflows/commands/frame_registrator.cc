@@ -22,6 +22,7 @@ struct Options {
   MarkerOptions markers;
   GeneralOptions general;
   RegistrationOptions registration;
+  Preset preset;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -38,14 +39,17 @@ CommandSyntax Declare(Options* options) {
                  PathOption("registration_path", PathUse::kWritesFile, &paths->registration_path,
                             "table of all images, CSV; left out: registration.csv beside "
                             "output_path"),
-                 &paths->output_path, "registration.csv")}},
+                 &paths->output_path, "registration.csv"),
+             PresetOption(&options->preset)}},
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->registration),
-           DescribeOptions(&options->general)}};
+           DescribeOptions(&options->general)},
+          &options->preset};
 }
 
 void Validate(Options* options) {
   SetLogLevel(options->general.log_level);
+  LogPreset(options->preset);
   options->registration.random_seed = options->general.random_seed;
   options->registration.num_threads = options->general.num_threads;
   options->registration.Check();

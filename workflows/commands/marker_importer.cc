@@ -18,6 +18,7 @@ struct Options {
   MarkerOptions markers;
   GeneralOptions general;
   MarkerImporterOptions importer;
+  Preset preset;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -34,15 +35,17 @@ CommandSyntax Declare(Options* options) {
              PathOption("frame_output_path", PathUse::kAddsToFolder, &paths->frame_output_path,
                         "folder for the frames of a video that hold markers, as JPEG; left out: "
                         "none are written"),
-             ImportAnewOption(&options->importer)}},
+             ImportAnewOption(&options->importer), PresetOption(&options->preset)}},
            DescribeOptions(&options->markers, true),
            DescribeOptions(&options->importer.detection),
            DescribeOptions(&options->importer.video),
-           DescribeOptions(&options->general)}};
+           DescribeOptions(&options->general)},
+          &options->preset};
 }
 
 void Validate(Options* options) {
   SetLogLevel(options->general.log_level);
+  LogPreset(options->preset);
   MarkerImporterOptions& importer = options->importer;
   importer.detection.Check();
   importer.video.Check();

@@ -36,16 +36,17 @@ CommandSyntax Declare(Options* options) {
       {{"Input and output",
         {Required(PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
                              "shape.csv, or the folder that holds it")),
-         PathOption("input_path", PathUse::kReadsModel, &paths->input_path,
-                    "folder of the COLMAP model that the shape is from; for reprojection "
-                    "errors"),
-         PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
-                    "shape.csv of the truth or the design; the shape is aligned with it, and "
-                    "distances of adjacent markers are compared"),
+         Common(PathOption("input_path", PathUse::kReadsModel, &paths->input_path,
+                           "folder of the COLMAP model that the shape is from; for reprojection "
+                           "errors")),
+         Common(
+             PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
+                        "shape.csv of the truth or the design; the shape is aligned with it, and "
+                        "distances of adjacent markers are compared")),
          {"part_planes", &options->part_planes, "0|1",
           "fit a plane to every part and compare the planes"},
-         PathOption("csv_path", PathUse::kWritesFile, &options->csv_path,
-                    "file for all metrics and the tables of markers and distances"),
+         Common(PathOption("csv_path", PathUse::kWritesFile, &options->csv_path,
+                           "file for all metrics and the tables of markers and distances")),
          PathOption("json_path", PathUse::kWritesFile, &options->json_path, "the same as JSON")}},
        DescribeOptions(&options->markers, false),
        DescribeOptions(&options->general)}};

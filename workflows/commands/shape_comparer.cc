@@ -54,12 +54,12 @@ OptionGroup InputGroup(Options* options) {
        Required(PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
                            "what the shape is compared with: shape.csv or its folder, or a surface "
                            "as .ply, .stl, .obj, .step or .iges")),
-       {"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
-        "unit of a .ply, .stl or .obj; left out: m for .ply, mm for .stl and .obj"},
+       Common({"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
+               "unit of a .ply, .stl or .obj; left out: m for .ply, mm for .stl and .obj"}),
        {"chord_deviation", &mesh->chord_deviation_mm, "mm",
         "how far triangles may be from the faces of a .step or .iges", MoreThan(0)},
-       PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,
-                  "layout file: names the reference part and the lines"),
+       Common(PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,
+                         "layout file: names the reference part and the lines")),
        {"part", &options->part, "name", "compare the markers of this part only"},
        PathOption("uncertainty_path", PathUse::kReadsModel, &options->uncertainty_path,
                   "folder of the shape's model with its uncertainty.bin, for sigmas with "
@@ -78,11 +78,12 @@ OptionGroup AlignmentGroup(AlignmentOptions* alignment) {
   };
   return {
       "Alignment (rigid, scale is never fitted)",
-      {{"align",
-        ParsedValue{&alignment->method, AlignmentMethodName(alignment->method), set_method},
-        "method",
-        "auto, reference_part, markers, best_fit or none; auto: the reference part where three "
-        "of its markers are in both, else best fit"},
+      {Common(
+           {"align",
+            ParsedValue{&alignment->method, AlignmentMethodName(alignment->method), set_method},
+            "method",
+            "auto, reference_part, markers, best_fit or none; auto: the reference part where three "
+            "of its markers are in both, else best fit"}),
        {"align_markers", ParsedValue{&alignment->marker_ids, "", set_ids}, "ids",
         "for --align markers, such as 120,121,122"},
        ChoiceOption("align_start", &alignment->starts_as_is, {{false, "auto"}, {true, "as_is"}},
@@ -97,15 +98,16 @@ CommandSyntax Declare(Options* options) {
       {InputGroup(options),
        AlignmentGroup(&options->alignment),
        {"Output",
-        {PathOption("output_path", PathUse::kWritesFile, &options->paths.output_path,
-                    "PLY of the markers, coloured by their signed distance"),
-         PathOption("surface_path", PathUse::kWritesFile, &options->surface_path,
-                    "PLY of the surface through the lines, coloured in the same way; needs a "
-                    "layout"),
+        {Common(PathOption("output_path", PathUse::kWritesFile, &options->paths.output_path,
+                           "PLY of the markers, coloured by their signed distance")),
+         Common(
+             PathOption("surface_path", PathUse::kWritesFile, &options->surface_path,
+                        "PLY of the surface through the lines, coloured in the same way; needs a "
+                        "layout")),
          {"color_limit", &options->color_limit_mm, "mm",
           "distance that gets the full colour; left out: the largest", MoreThan(0)},
-         PathOption("csv_path", PathUse::kWritesFile, &options->csv_path,
-                    "file for all figures and tables"),
+         Common(PathOption("csv_path", PathUse::kWritesFile, &options->csv_path,
+                           "file for all figures and tables")),
          PathOption("json_path", PathUse::kWritesFile, &options->json_path, "the same as JSON")}},
        DescribeOptions(&options->general)}};
 }

@@ -22,6 +22,7 @@ struct Options {
   GeneralOptions general;
   ShapeExporterOptions exporter;
   SurfaceFileOptions surface;
+  Preset preset;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -32,22 +33,26 @@ CommandSyntax Declare(Options* options) {
       "--input_path sparse/0 --layout_path layout.yml --output_path metric --shape_path shape",
       {{"Input and output",
         {ModelInputOption(paths),
-         PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
-                    "folder of the metric model; left out: it is not written"),
-         PathOption("shape_path", PathUse::kWritesFolder, &paths->shape_path,
-                    "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is "
-                    "written"),
-         {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"}}},
+         Common(PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
+                           "folder of the metric model; left out: it is not written")),
+         Common(PathOption(
+             "shape_path", PathUse::kWritesFolder, &paths->shape_path,
+             "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is "
+             "written")),
+         {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"},
+         PresetOption(&options->preset)}},
        DescribeOptions(&options->markers, false)}};
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
     syntax.groups.push_back(group);
   }
   syntax.groups.push_back(DescribeOptions(&options->general));
+  syntax.preset = &options->preset;
   return syntax;
 }
 
 void Validate(Options* options) {
   SetLogLevel(options->general.log_level);
+  LogPreset(options->preset);
   if (options->paths.output_path.empty() && options->paths.shape_path.empty()) {
     throw InputError(
         "--shape_path: missing; give --shape_path, --output_path or both to say what to write");

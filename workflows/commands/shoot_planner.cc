@@ -36,28 +36,30 @@ struct Options {
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
-  return {"shoot_planner",
-          "says what a shoot will give: distance, shutter, path, sigmas of the markers",
-          "--field_of_view 90 --lens wide --width 3840 --height 2160 --marker_length 0.1 \\\n"
-          "    --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 --Plan.speed_knots 3 "
-          "--output_path plan",
-          {{"Input and output",
-            {PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
-                        "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt"),
-             PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
-                        "shape.csv, or its folder, of an earlier result or a design: where the "
-                        "markers are, instead of --Plan.surface"),
-             PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
-                        "folder for plan.csv, markers.csv and plan.svg; new, empty, or as an "
-                        "earlier run left it; left out: none"),
-             ChoiceOption("Plan.surface", &options->arrangement,
-                          {{Arrangement::kSail, "sail"}, {Arrangement::kGrid, "grid"}},
-                          "that the markers are on, where marker_generator would place them")}},
-           DescribeOptions(&options->markers, true),
-           DescribeOptions(&options->plan),
-           DescribeOptions(&options->sail),
-           DescribeOptions(&options->grid),
-           DescribeOptions(&options->general)}};
+  return {
+      "shoot_planner",
+      "says what a shoot will give: distance, shutter, path, sigmas of the markers",
+      "--field_of_view 90 --lens wide --width 3840 --height 2160 --marker_length 0.1 \\\n"
+      "    --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 --Plan.speed_knots 3 "
+      "--output_path plan",
+      {{"Input and output",
+        {Common(
+             PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
+                        "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt")),
+         Common(PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
+                           "shape.csv, or its folder, of an earlier result or a design: where the "
+                           "markers are, instead of --Plan.surface")),
+         Common(PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
+                           "folder for plan.csv, markers.csv and plan.svg; new, empty, or as an "
+                           "earlier run left it; left out: none")),
+         ChoiceOption("Plan.surface", &options->arrangement,
+                      {{Arrangement::kSail, "sail"}, {Arrangement::kGrid, "grid"}},
+                      "that the markers are on, where marker_generator would place them")}},
+       DescribeOptions(&options->markers, true),
+       DescribeOptions(&options->plan),
+       DescribeOptions(&options->sail),
+       DescribeOptions(&options->grid),
+       DescribeOptions(&options->general)}};
 }
 
 void CheckCamera(const Options& options) {

@@ -19,7 +19,7 @@ Command Version() {
   return {{"version",
            "versions of velamap and of what it works with",
            "--colmap_path /usr/bin/colmap",
-           {{"Options", {ColmapPathOption(options.get())}}}},
+           {{"Options", {Common(ColmapPathOption(options.get()))}}}},
           run};
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ostream>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
 #include "importer/base/text_file.h"
+#include "workflows/options/help_text.h"
 #include "workflows/options/nearest_name.h"
 #include "workflows/options/path_check.h"
 
@@ -27,44 +27,6 @@ struct GivenValue {
   std::string text;
   std::string given_as;  // "--name" or "file: name"
 };
-
-std::string DefaultText(const OptionTarget& target) {
-  struct Visitor {
-    std::string operator()(const std::string* value) const { return *value; }
-    std::string operator()(const int* value) const { return fmt::format("{}", *value); }
-    std::string operator()(const double* value) const { return fmt::format("{}", *value); }
-    std::string operator()(const std::optional<double>* value) const {
-      return value->has_value() ? fmt::format("{}", **value) : "";
-    }
-    std::string operator()(const bool* value) const { return *value ? "1" : "0"; }
-    std::string operator()(const ParsedValue& value) const { return value.default_text; }
-  };
-  return std::visit(Visitor{}, target);
-}
-
-std::string HelpText(const Option& option) {
-  std::string text = option.description;
-  for (const std::string& name : option.short_names) text += "; in short --" + name;
-  return option.required ? text + " (required)" : text;
-}
-
-po::options_description DescribeForHelp(const OptionGroup& group) {
-  constexpr unsigned kLineLength = 100, kMinDescriptionLength = 50;
-  po::options_description description(group.title, kLineLength, kMinDescriptionLength);
-  for (const Option& option : group.options) {
-    auto* semantic = po::value<std::string>()->value_name(option.unit);
-    const std::string text = DefaultText(option.target);
-    if (!option.required && !text.empty()) semantic->default_value(text);
-    description.add_options()(option.name.c_str(), semantic, HelpText(option).c_str());
-  }
-  return description;
-}
-
-OptionGroup ProjectGroup(std::string* project_path) {
-  return {"Project file",
-          {PathOption(kProjectPath, PathUse::kReadsFile, project_path,
-                      "ini file with the same options; the command line wins over it")}};
-}
 
 using OptionsByName = std::map<std::string, Option>;    // under each of their names
 using GivenValues = std::map<std::string, GivenValue>;  // under the first name of the option
@@ -101,7 +63,7 @@ std::string HelpHint(const CommandSyntax& syntax) {
 // `dashes` stand before the names of options where the unknown one stands.
 std::string DidYouMean(const OptionsByName& options, const std::string& unknown_name,
                        const std::string& dashes) {
-  std::vector<std::string> names = {"help"};
+  std::vector<std::string> names = {"help", "help_all"};
   for (const auto& [name, option] : options) names.push_back(option.name);
   const std::string nearest = NearestName(unknown_name, names);
   return nearest.empty() ? "" : fmt::format("did you mean {}{}? ", dashes, nearest);
@@ -217,7 +179,30 @@ void SetOption(const CommandSyntax& syntax, const Option& option, const GivenVal
   CheckRange(option, given->second.given_as);
 }
 
+// Adds the values of the preset for the options of the command that are not given, and says which.
+void AddPreset(const CommandSyntax& syntax, const OptionsByName& options, GivenValues* values) {
+  if (syntax.preset == nullptr) return;
+  const Option preset = PresetOption(syntax.preset);
+  SetOption(syntax, preset, *values);
+  std::string set, given;
+  for (const auto& [name, value] : PresetValues(syntax.preset->name)) {
+    if (options.count(name) == 0) continue;
+    const auto [entry, is_set] = values->emplace(name, GivenValue{value, "--" + preset.name});
+    (is_set ? set : given) += fmt::format(" --{} {}", name, entry->second.text);
+  }
+  if (set.empty() && given.empty()) return;
+  syntax.preset->effect =
+      fmt::format("preset {} sets{}{}{}", values->at(preset.name).text,
+                  set.empty() ? " nothing" : set, given.empty() ? "" : "; given instead:", given);
+}
+
 }  // namespace
+
+OptionGroup ProjectGroup(std::string* project_path) {
+  return {"Project file",
+          {Common(PathOption(kProjectPath, PathUse::kReadsFile, project_path,
+                             "ini file with the same options; the command line wins over it"))}};
+}
 
 std::set<std::string> OptionNames(const CommandSyntax& syntax) {
   std::set<std::string> names;
@@ -227,9 +212,7 @@ std::set<std::string> OptionNames(const CommandSyntax& syntax) {
 
 bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& arguments,
                   const std::set<std::string>& known_names) {
-  for (const std::string& argument : arguments) {
-    if (argument == "--help" || argument == "-h") return false;
-  }
+  if (AskedHelp(arguments)) return false;
   std::string project_path;
   std::vector<OptionGroup> groups = syntax.groups;
   groups.push_back(ProjectGroup(&project_path));
@@ -240,20 +223,12 @@ bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& a
     GivenValues from_file = ReadProjectFile(syntax, options, project->second.text, known_names);
     values.merge(from_file);  // keeps what the command line has given
   }
+  AddPreset(syntax, options, &values);
   for (const OptionGroup& group : groups) {
     for (const Option& option : group.options) SetOption(syntax, option, values);
   }
   CompletePaths(groups);
   return true;
-}
-
-void PrintHelp(const CommandSyntax& syntax, std::ostream& out) {
-  po::options_description all;
-  std::string project_path;
-  for (const OptionGroup& group : syntax.groups) all.add(DescribeForHelp(group));
-  all.add(DescribeForHelp(ProjectGroup(&project_path)));
-  out << "velamap " << syntax.name << ": " << syntax.description << "\n\n"
-      << all << "\n\nExample:\n  velamap " << syntax.name << ' ' << syntax.example << '\n';
 }
 
 }  // namespace velamap

@@ -6,12 +6,12 @@
 
 #pragma once
 
-#include <iosfwd>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "importer/base/option.h"
+#include "workflows/options/preset.h"
 
 namespace velamap {
 
@@ -20,21 +20,24 @@ struct CommandSyntax {
   std::string description;  // one line
   std::string example;      // arguments of a typical call
   std::vector<OptionGroup> groups;
+  Preset* preset = nullptr;  // of a command with PresetOption()
 };
+
+// --project_path, which every command has beside its own options.
+OptionGroup ProjectGroup(std::string* project_path);
 
 // All names that the command's options go by.
 std::set<std::string> OptionNames(const CommandSyntax& syntax);
 
 // Sets the options that `arguments`, which follow the command's name, and their project file give.
 // The file may hold `known_names`, the options of all commands, so that one file serves them all.
-// Returns false, having set nothing, when --help or -h is among the arguments. Throws InputError:
+// What neither gives comes from the preset, whose effect is then known.
+// Returns false, having set nothing, when help is asked for (help_text.h). Throws InputError:
 // an option that is unknown (names the nearest), given twice or by two of its names, without a
 // value, with one of another type or beyond its range, or required and missing; a project file that
 // is missing or malformed, or holds an unknown key; an output that is one of the inputs
 // (path_check.h).
 bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& arguments,
                   const std::set<std::string>& known_names);
-
-void PrintHelp(const CommandSyntax& syntax, std::ostream& out);
 
 }  // namespace velamap

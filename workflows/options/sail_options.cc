@@ -1,6 +1,7 @@
 #include "workflows/options/sail_options.h"
 
 #include "exporters/sail/surface_csv.h"
+#include "workflows/options/shared_options.h"
 
 namespace velamap {
 namespace {
@@ -23,11 +24,11 @@ std::vector<OptionGroup> SailGroups(ShapeExporterOptions* exporter, SurfaceFileO
   const auto set_frame = [exporter](const std::string& text, const std::string& option) {
     exporter->frame = ParseFrameChoice(text, option);
   };
-  const Option frame = {
-      "frame", ParsedValue{&exporter->frame, "", set_frame}, "name|ids",
-      "reference_part, lines, camera, or the ids of origin, axis and plane marker such as "
-      "12,15,40; left out: as the layout says, else the first of these that can be made"};
-  return {{"Frame of the result", {frame}},
+  const Option frame =
+      Common({"frame", ParsedValue{&exporter->frame, "", set_frame}, "name|ids",
+              "reference_part, lines, camera, or the ids of origin, axis and plane marker such as "
+              "12,15,40; left out: as the layout says, else the first of these that can be made"});
+  return {{"Frame and scale of the result", {frame, ScaleOption(&exporter->scale_by)}},
           DescribeOptions(&exporter->sail.sections),
           SurfaceGroup(&exporter->sail.surface, surface)};
 }

@@ -22,9 +22,10 @@ Option ImagePathOption(PathOptions* paths) {
 }
 
 Option CameraPathOption(PathOptions* paths) {
-  return PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
-                    "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt; left "
-                    "out: the camera is found from the pictures");
+  return Common(
+      PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
+                 "camera calibration: OpenCV YAML, XML or JSON, or a COLMAP cameras.txt; left "
+                 "out: the camera is found from the pictures"));
 }
 
 Option PriorShapePathOption(PathOptions* paths) {
@@ -56,13 +57,22 @@ Option ModelInputOption(PathOptions* paths) {
 }
 
 Option BackendOption(AdjustmentBackend* backend) {
-  return ChoiceOption("backend", backend,
-                      {{AdjustmentBackend::kColmap, "colmap"},
-                       {AdjustmentBackend::kMarkers, "markers"},
-                       {AdjustmentBackend::kBoth, "both"}},
-                      "colmap: COLMAP's own program; markers: ours, which knows the markers' size "
-                      "and gives sigmas; both: one after the other",
-                      {{AdjustmentBackend::kMarkers, "ceres"}});
+  return Common(
+      ChoiceOption("backend", backend,
+                   {{AdjustmentBackend::kColmap, "colmap"},
+                    {AdjustmentBackend::kMarkers, "markers"},
+                    {AdjustmentBackend::kBoth, "both"}},
+                   "colmap: COLMAP's own program; markers: ours, which knows the markers' size "
+                   "and gives sigmas; both: one after the other",
+                   {{AdjustmentBackend::kMarkers, "ceres"}}));
+}
+
+Option ScaleOption(ScaleMethod* scale_by) {
+  return ChoiceOption(
+      "scale_by", scale_by,
+      {{ScaleMethod::kAgreeing, "agreeing_markers"}, {ScaleMethod::kMeanSide, "mean_side"}},
+      "what gives the metres after COLMAP's adjustment: the mean over the markers "
+      "that agree, or the mean side of all; the marker-aware adjustment is metric");
 }
 
 OptionGroup DescribeOptions(GeneralOptions* options) {
@@ -79,16 +89,18 @@ OptionGroup DescribeOptions(GeneralOptions* options) {
 }
 
 OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary) {
-  OptionGroup group{"Markers: a layout file, or the options that replace it",
-                    {PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,
-                                "layout file (YAML): dictionary, sizes and places of the markers"),
-                     {"marker_length", &options->marker_length_m, "m",
-                      "outer edge of the black square; replaces the layout file",
-                      FromTo(kMinMarkerLength_m, kMaxMarkerLength_m)}}};
+  OptionGroup group{
+      "Markers: a layout file, or the options that replace it",
+      {Common(PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,
+                         "layout file (YAML): dictionary, sizes and places of the markers")),
+       Common({"marker_length", &options->marker_length_m, "m",
+               "outer edge of the black square; replaces the layout file",
+               FromTo(kMinMarkerLength_m, kMaxMarkerLength_m)})}};
   if (with_dictionary) {
-    group.options.push_back({"dictionary", &options->dictionary, "name|path",
-                             "OpenCV dictionary name such as DICT_4X4_50, or dictionary file; "
-                             "goes with --marker_length"});
+    group.options.push_back(
+        Common({"dictionary", &options->dictionary, "name|path",
+                "OpenCV dictionary name such as DICT_4X4_50, or dictionary file; goes with "
+                "--marker_length"}));
     group.options.back().path_use = PathUse::kReadsFile;
   }
   return group;

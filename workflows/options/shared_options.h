@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "exporters/scale/metric_scale.h"
 #include "importer/camera/camera.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
@@ -53,6 +54,7 @@ Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& de
 Option ImportAnewOption(MarkerImporterOptions* importer);
 Option ModelInputOption(PathOptions* paths);
 Option BackendOption(AdjustmentBackend* backend);
+Option ScaleOption(ScaleMethod* scale_by);
 
 OptionGroup DescribeOptions(GeneralOptions* options);
 // A command that detects nothing has no use for a dictionary.

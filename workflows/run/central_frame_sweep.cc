@@ -158,7 +158,9 @@ class Sweep {
     AdjustmentResult result =
         AdjustModel(options_.adjustment, layout_, corner_errors_, options_.log_path, &model);
     adjusted_ = model;
-    if (!result.uncertainty) ScaleModel(EstimateScale(model, layout_), &model);
+    if (!result.uncertainty) {
+      ScaleModel(EstimateScale(model, layout_, options_.scale_by), &model);
+    }
     UpdatePointErrors(&model);
     const MarkerShape shape =
         ShapeFromModel(model, layout_, result.uncertainty ? &result.uncertainty->points : nullptr);

@@ -29,6 +29,7 @@ struct CentralFrameSweepOptions {
   RegistrationOptions registration;  // of the thesis's method; central_frame is ignored
   AdjustmentOptions adjustment;
   bool warm_start = true;
+  ScaleMethod scale_by = ScaleMethod::kAgreeing;  // where the adjustment gives no metres
   // Folder for the metric models and shapes, in a folder for each image, which is named after it
   // and replaced as a whole; empty: none are written.
   std::string models_path;

@@ -51,6 +51,15 @@ TEST(MetricScale, AnOutlierMovesNothingAndIsListed) {
   }
 }
 
+TEST(MetricScale, OfTheThesisIsPrintedSideOverTheMeanOfAllSides) {
+  Model model = ExampleModel();
+  ResizeMarker(3, 1.5, &model);
+  // Seven markers of 100 mm, one of them measured as 150 mm, and one of 50 mm.
+  const ScaleEstimate estimate = EstimateScale(model, ExampleLayout(), ScaleMethod::kMeanSide);
+  EXPECT_NEAR(estimate.m_per_unit, 0.75 / 0.80, 1e-12);
+  EXPECT_EQ(estimate.num_markers, 8);
+}
+
 TEST(MetricScale, IsTheMeanOfWhatAgreesWithARobustSpread) {
   Model model = ExampleModel();
   for (const int marker_id : {4, 5, 6, 120, 121}) {

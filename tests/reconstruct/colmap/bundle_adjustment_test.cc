@@ -125,6 +125,20 @@ TEST_F(BundleAdjustment, GrossOutliersAreRemovedAndNothingElse) {
   EXPECT_LT(MaxPointError(model, clean), 2e-3) << "as if the outliers had not been there";
 }
 
+TEST_F(BundleAdjustment, AloneItLeavesNothingOut) {
+  Model model = truth_;
+  AddImageNoise(0.3, 2, &model);
+  ASSERT_GT(AddOutliers(0.01, 3, &model).size(), 4u);
+  PerturbSeed(0.01, 1, &model);
+  BundleAdjustmentOptions options;
+  options.remove_outliers = false;
+  options.max_mean_error_px = 1e3;
+  const auto summary = Adjust(&model, options);
+  EXPECT_THAT(summary.removed, IsEmpty());
+  EXPECT_EQ(summary.num_rounds, 1);
+  EXPECT_GT(summary.error_after_px.max, 3);
+}
+
 TEST_F(BundleAdjustment, PointBehindAllCamerasIsRemoved) {
   Model model = truth_;
   PerturbSeed(0.01, 1, &model);

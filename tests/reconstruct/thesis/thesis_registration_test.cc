@@ -47,6 +47,67 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NoiseFreeRegistration,
                                          RegistrationCase{SceneKind::kPlane, true},
                                          RegistrationCase{SceneKind::kCube, false}));
 
+RegistrationOptions ExactOptions() {
+  RegistrationOptions options = ThesisOptions();
+  options.thesis.variant = ThesisVariant::kExact;
+  return options;
+}
+
+// What equation 3.5 leaves between the centre of a frame's markers and that of their mean places,
+// m: nothing, because the best translation maps one centre onto the other.
+double MaxCenterOffset(const Registration& registration, const SyntheticScene& scene) {
+  double max_offset_m = 0.0;
+  const std::vector<FrameShape> frames = FrameShapes(scene);
+  for (const RegisteredFrame& frame : registration.frames) {
+    if (!frame.cam_from_shape) continue;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const int marker_id : frame.marker_ids) {
+      const FrameMarker* marker = frames[frame.image_id - 1].Find(marker_id);
+      sum +=
+          *frame.cam_from_shape * registration.shape.at(marker_id)[0] - marker->x_in_cam.front()[0];
+    }
+    max_offset_m = std::max(max_offset_m, sum.norm());
+  }
+  return max_offset_m;
+}
+
+TEST(ExactThesis, GivesTheTruthBackWithoutNoise) {
+  const SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
+  const Registration registration = Register(scene, ExactOptions());
+  EXPECT_LT(MaxError(registration, scene), 1e-9);
+}
+
+TEST(ExactThesis, CamerasAlignTheCentersOfTheirMarkersWithTheMean) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
+  AddNoise({0.3, 0.0, 0.0, 200, 3}, &scene);
+  EXPECT_LT(MaxCenterOffset(Register(scene, ExactOptions()), scene), 1e-9);
+  EXPECT_GT(MaxCenterOffset(Register(scene), scene), 1e-6);  // robust: judges markers in the image
+}
+
+TEST(ExactThesis, DoesNotAdaptTheSkipToAShortVideo) {
+  const SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
+  const Registration exact = Register(scene, ExactOptions());
+  EXPECT_LT(exact.NumRegistered(), 12);  // a skip of 10 has room for six frames
+  EXPECT_GT(Register(scene).NumRegistered(), 20);
+}
+
+TEST(ExactThesis, MarkersThatRansacRefusesLeaveTheirFrame) {
+  SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
+  RegistrationOptions options = ExactOptions();
+  options.central_frame = "30";
+  options.thesis.skip = 1;
+  options.thesis.neighborhood = 0;
+  // Two markers of one frame change their names.
+  auto& markers = scene.frames[31].markers;
+  ASSERT_GT(markers.size(), 4u);
+  std::swap(markers.front().corners_in_image_px, markers.back().corners_in_image_px);
+  const Registration registration = Register(scene, options);
+  const RegisteredFrame& frame = registration.frames[31];
+  EXPECT_EQ(frame.outlier_ids,
+            (std::vector<int>{markers.front().marker_id, markers.back().marker_id}));
+  EXPECT_LT(MaxError(registration, scene), 1e-9);
+}
+
 TEST(Registration, ImagesThatShareNothingWithTheCentralOneAreReachedThroughOthers) {
   const SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);
   const Registration registration = Register(scene);

@@ -11,6 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::vector<std::string> kCommands = {
@@ -44,6 +45,23 @@ TEST(CommandLineTest, EveryCommandExplainsItself) {
   }
 }
 
+TEST(CommandLineTest, HelpInTwoLengths) {
+  const std::string shown = RunVelamap({"automatic_reconstructor", "--help"}).out;
+  EXPECT_THAT(shown, HasSubstr("--layout_path path"));
+  EXPECT_THAT(shown, Not(HasSubstr("--MarkerAdjustment.")));
+  EXPECT_THAT(shown, HasSubstr(" more options: velamap automatic_reconstructor --help_all\n"));
+  const std::string all = RunVelamap({"automatic_reconstructor", "--help_all"}).out;
+  EXPECT_THAT(all, HasSubstr("--MarkerAdjustment.inset_sigma px"));
+  EXPECT_THAT(all, Not(HasSubstr(" more options")));
+  EXPECT_EQ(RunVelamap({"help", "automatic_reconstructor", "--help_all"}).out, all);
+}
+
+TEST(CommandLineTest, CommandsAreListedInGroups) {
+  const std::string out = RunVelamap({"help"}).out;
+  EXPECT_THAT(out, HasSubstr("\nThe same in steps:\n  marker_importer"));
+  EXPECT_THAT(out, HasSubstr("\nAbout velamap:\n  version"));
+}
+
 TEST(CommandLineTest, HelpOfAnUnknownCommandNamesTheNearest) {
   const ProgramRun run = RunVelamap({"help", "bundle_adjustr"});
   EXPECT_EQ(run.exit_code, 2);
@@ -51,7 +69,7 @@ TEST(CommandLineTest, HelpOfAnUnknownCommandNamesTheNearest) {
 }
 
 TEST(CommandLineTest, HelpShowsDefaultsWithUnits) {
-  const std::string out = RunVelamap({"automatic_reconstructor", "--help"}).out;
+  const std::string out = RunVelamap({"automatic_reconstructor", "--help_all"}).out;
   EXPECT_THAT(out, HasSubstr("--ArucoDetection.corner_refinement none|subpix|edge (=edge)"));
   EXPECT_THAT(out, HasSubstr("--BundleAdjustment.min_outlier_error px (=0.5)"));
   EXPECT_THAT(out, HasSubstr("--Registration.mean_sigma m (=0.6)"));

@@ -89,7 +89,7 @@ class LongPathTest : public ::testing::TestWithParam<std::string> {
   // The options whose value is a path, or may be one, by the help.
   static std::vector<std::string> PathOptions(const std::string& command) {
     const std::regex option("  --(\\S+) (name\\|)?path\\b.*");
-    std::istringstream help(RunVelamap({command, "--help"}).out);
+    std::istringstream help(RunVelamap({command, "--help_all"}).out);
     std::vector<std::string> names;
     std::smatch match;
     for (std::string line; std::getline(help, line);) {

@@ -79,7 +79,7 @@ std::map<std::string, Names> OptionsOfCommands() {
   std::map<std::string, Names> options;
   for (const Command& command : AllCommands()) {
     Names names = OptionNames(command.syntax);
-    names.insert({"help", "version", "project_path"});
+    names.insert({"help", "help_all", "version", "project_path"});
     options.emplace(command.syntax.name, names);
   }
   return options;

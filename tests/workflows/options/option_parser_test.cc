@@ -9,12 +9,14 @@
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/help_text.h"
 #include "workflows/options/nearest_name.h"
 
 namespace velamap {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 enum class Gait { kWalk, kTrot };
 
@@ -208,12 +210,39 @@ TEST(OptionParserTest, HelpShowsDefaultsUnitsAndExample) {
   const CommandSyntax syntax = MakeSyntax(&values);
   EXPECT_FALSE(ParseOptions(syntax, {"--Walk.count", "wrong", "--help"}, {}));
   std::ostringstream out;
-  PrintHelp(syntax, out);
+  PrintHelp(syntax, HelpLength::kAll, out);
   EXPECT_THAT(out.str(), HasSubstr("--Walk.length m (=0.25)"));
   EXPECT_THAT(out.str(), HasSubstr("--Walk.gait walk|trot (=trot)"));
   EXPECT_THAT(out.str(), HasSubstr("--path path"));
   EXPECT_THAT(out.str(), HasSubstr("in short --p"));
   EXPECT_THAT(out.str(), HasSubstr("velamap walker --path x"));
+}
+
+TEST(OptionParserTest, ShortHelpShowsWhatIsRequiredOrCommonAndCountsTheRest) {
+  Values values;
+  CommandSyntax syntax = MakeSyntax(&values);
+  syntax.groups[1].options[2] = Common(syntax.groups[1].options[2]);
+  std::ostringstream out;
+  PrintHelp(syntax, HelpLength::kShort, out);
+  for (const char* shown : {"--path path", "--Walk.length m", "--project_path path"}) {
+    EXPECT_THAT(out.str(), HasSubstr(shown));
+  }
+  for (const char* hidden : {"--text", "--Walk.count", "--Walk.gait"}) {
+    EXPECT_THAT(out.str(), Not(HasSubstr(hidden)));
+  }
+  EXPECT_THAT(out.str(), HasSubstr("6 more options: velamap walker --help_all"));
+  syntax.groups = {{"First", {syntax.groups[0].options[0]}},
+                   {"Second", {syntax.groups[0].options[1]}}};
+  std::ostringstream without_group;
+  PrintHelp(syntax, HelpLength::kShort, without_group);
+  EXPECT_THAT(without_group.str(), Not(HasSubstr("Second")));
+}
+
+TEST(OptionParserTest, HelpIsAskedForInTwoLengths) {
+  EXPECT_EQ(AskedHelp({"--path", "p"}), std::nullopt);
+  EXPECT_EQ(AskedHelp({"--path", "p", "-h"}), HelpLength::kShort);
+  EXPECT_EQ(AskedHelp({"--help"}), HelpLength::kShort);
+  EXPECT_EQ(AskedHelp({"--help", "--help_all"}), HelpLength::kAll);
 }
 
 TEST(NearestNameTest, SuggestsOnlyWhatIsNear) {

@@ -21,6 +21,7 @@
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/help_text.h"
 
 namespace velamap {
 namespace {
@@ -95,6 +96,24 @@ TEST(OptionTables, NamesAreUniqueAndMeanTheSameEverywhere) {
       EXPECT_FALSE(option.description.empty()) << option.name;
     }
     EXPECT_EQ(OptionNames(command.syntax).size(), num_names) << command.syntax.name;
+  }
+}
+
+std::size_t NumShown(const Command& command, HelpLength length) {
+  std::size_t num_options = 0;
+  for (const ShownGroup& group : ShownOptions(command.syntax, length)) {
+    num_options += group.options.size();
+  }
+  return num_options;
+}
+
+TEST(OptionTables, ShortHelpOfEveryCommandIsShort) {
+  for (const Command& command : AllCommands()) {
+    const std::size_t num_shown = NumShown(command, HelpLength::kShort);
+    EXPECT_GE(num_shown, 2u) << command.syntax.name;  // one of its own beside --project_path
+    EXPECT_LE(num_shown, 16u) << command.syntax.name;
+    EXPECT_EQ(NumShown(command, HelpLength::kAll), OptionsOf(command).size() + 1)
+        << command.syntax.name;
   }
 }
 

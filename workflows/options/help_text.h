@@ -1,0 +1,42 @@
+// The options of a command as text, from which help, man pages and the completion of shells are
+// made.
+
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "workflows/options/option_parser.h"
+
+namespace velamap {
+
+enum class HelpLength {
+  kShort,  // --help or -h: the options that are required or common
+  kAll,    // --help_all
+};
+
+// What the arguments ask for; nothing if they ask for no help.
+std::optional<HelpLength> AskedHelp(const std::vector<std::string>& arguments);
+
+struct ShownOption {
+  std::string name;  // without dashes
+  std::string unit;
+  std::string default_text;  // empty: none
+  std::string description;   // with short names, and whether it is required
+  bool is_path = false;
+  std::vector<std::string> choices;  // all values, where these are a few
+};
+
+struct ShownGroup {
+  std::string title;
+  std::vector<ShownOption> options;
+};
+
+// The options of the command and --project_path, without groups of which nothing is shown.
+std::vector<ShownGroup> ShownOptions(const CommandSyntax& syntax, HelpLength length);
+
+void PrintHelp(const CommandSyntax& syntax, HelpLength length, std::ostream& out);
+
+}  // namespace velamap
