@@ -98,4 +98,5 @@ house_folder(workflows/options PUBLIC
   help_text nearest_name option_parser sail_options shared_options)
 house_folder(workflows/commands PUBLIC
   commands)
+house_folder(workflows/install)
 house_folder(workflows)

@@ -37,7 +37,7 @@ done
 command -v jq >/dev/null || fail "jq is not installed; run: apt-get install jq"
 velamap="${VELAMAP:-$(dirname "${BASH_SOURCE[0]}")/../build/release/workflows/velamap}"
 [[ -x "$velamap" ]] || velamap="$(command -v velamap)" ||
-  fail "velamap is not built; run workflows/build.sh release"
+  fail "velamap is neither built (workflows/build.sh release) nor on the PATH"
 
 # sail.mp4 and sail/ both become the workspace sail, so that two inputs of one name would collide.
 workspace_name() {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages on a fresh Debian 12 machine, builds velamap, and reconstructs two objects of
-# sample_project: photographs of a cube with printed markers, and a clip of a sail.
+# sample_project: photographs of a cube with printed markers, and a clip of a sail. Where velamap is
+# installed (/usr/share/velamap), nothing is built: the program on the PATH is used.
 # usage: workflows/sample.sh [FOLDER]   (default: ./workspace; workspaces FOLDER/cube and FOLDER/sail)
 # VELAMAP_PRESET: the build; default release. VELAMAP: a program that is there, instead of a build.
 set -euo pipefail
@@ -11,7 +12,9 @@ velamap="${VELAMAP:-}"
 if [[ -n "$velamap" ]]; then velamap="$(realpath "$velamap")"; fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-if [[ -z "$velamap" ]]; then
+if [[ -z "$velamap" && ! -f CMakeLists.txt ]]; then
+  velamap="$(command -v velamap)" || { echo "error: velamap is not on the PATH" >&2; exit 2; }
+elif [[ -z "$velamap" ]]; then
   workflows/setup.sh
   workflows/build.sh "$preset" velamap
   velamap="build/$preset/workflows/velamap"

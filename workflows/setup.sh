@@ -17,6 +17,7 @@ packages=(
 test_packages=(
   xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium poppler-utils librsvg2-bin
   clang libclang-rt-dev llvm clang-format-14  # llvm: names functions in the sanitizers' reports
+  man-db zsh mmdebstrap  # pages and completions that are installed; package.sh --try
 )
 
 case "${1:-}" in

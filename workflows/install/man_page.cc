@@ -1,0 +1,87 @@
+#include "workflows/install/man_page.h"
+
+#include <ostream>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "workflows/options/help_text.h"
+#include "workflows/run/version.h"
+
+namespace velamap {
+namespace {
+
+// Text as roff shows it unchanged: hyphens stay what a shell understands, and no line is a request.
+std::string Roff(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    const bool begins_line = escaped.empty() || escaped.back() == '\n';
+    if (begins_line && (c == '.' || c == '\'')) escaped += "\\&";
+    if (c == '\\') {
+      escaped += "\\e";
+    } else if (c == '-') {
+      escaped += "\\-";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+void BeginPage(const std::string& name, const std::string& description, std::ostream& out) {
+  fmt::print(out, ".TH {} 1 \"\" \"velamap {}\" \"User Commands\"\n", Roff(name), kVersion);
+  fmt::print(out, ".SH NAME\n{} \\- {}\n", Roff(name), Roff(description));
+}
+
+void WriteExample(const std::string& text, std::ostream& out) {
+  fmt::print(out, ".SH EXAMPLE\n.nf\n{}\n.fi\n", Roff(text));
+}
+
+void WriteOption(const ShownOption& option, std::ostream& out) {
+  fmt::print(out, ".TP\n\\fB\\-\\-{}\\fR \\fI{}\\fR", Roff(option.name), Roff(option.unit));
+  if (!option.default_text.empty()) fmt::print(out, " (={})", Roff(option.default_text));
+  fmt::print(out, "\n{}\n", Roff(option.description));
+}
+
+}  // namespace
+
+void WriteManPage(const CommandSyntax& syntax, std::ostream& out) {
+  BeginPage("velamap-" + syntax.name, syntax.description, out);
+  fmt::print(out, ".SH SYNOPSIS\n.B velamap {}\n[\\fIoption value\\fR ...]\n", Roff(syntax.name));
+  out << ".SH OPTIONS\nWhat stands in parentheses is meant where the option is left out.\n";
+  for (const ShownGroup& group : ShownOptions(syntax, HelpLength::kAll)) {
+    fmt::print(out, ".SS {}\n", Roff(group.title));
+    for (const ShownOption& option : group.options) WriteOption(option, out);
+  }
+  WriteExample("velamap " + syntax.name + " " + syntax.example, out);
+  out << ".SH SEE ALSO\n.BR velamap (1)\n";
+}
+
+void WriteProgramManPage(const std::vector<CommandGroup>& groups, std::ostream& out) {
+  BeginPage("velamap", "metric 3D shape from pictures of coded markers, through COLMAP", out);
+  out << ".SH SYNOPSIS\n.B velamap\n.I command\n[\\fIoption value\\fR ...]\n"
+         ".SH DESCRIPTION\nMeasures the shape of a surface that carries printed ArUco markers, "
+         "from "
+         "photographs or a video of one camera. Results go to standard output as \"key: value\", "
+         "everything else to standard error.\n.SH COMMANDS\n";
+  for (const CommandGroup& group : groups) {
+    fmt::print(out, ".SS {}\n", Roff(group.title));
+    for (const Command& command : group.commands) {
+      fmt::print(out, ".TP\n.BR velamap\\-{} (1)\n{}\n", Roff(command.syntax.name),
+                 Roff(command.syntax.description));
+    }
+  }
+  out << ".SH EXIT STATUS\n"
+         ".TP\n0\nThe result is there and is whole.\n"
+         ".TP\n1\nThe data do not support a result; standard error says why.\n"
+         ".TP\n2\nBad input or option.\n"
+         ".TP\n3\nCOLMAP is absent, failed, or its result is implausible.\n"
+         ".TP\n4\nA fault of velamap's own.\n";
+  WriteExample(
+      "velamap automatic_reconstructor --image_path clip.mp4 --camera_path camera.yml \\\n"
+      "    --layout_path layout.yml --workspace_path result",
+      out);
+  out << ".SH SEE ALSO\n.BR colmap (1)\n";
+}
+
+}  // namespace velamap
