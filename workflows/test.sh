@@ -3,6 +3,7 @@
 # usage: workflows/test.sh [CTEST_ARGUMENT...]   such as --label-regex unit
 # VELAMAP_PRESET: the build to test, default release; ci makes warnings errors, sanitize runs the unit
 # tests under the address and undefined-behaviour sanitizers.
+# VELAMAP_COLMAP: the COLMAP that the tests run; default the one on the PATH.
 set -euo pipefail
 
 preset="${VELAMAP_PRESET:-release}"
@@ -10,5 +11,12 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 workflows/setup.sh --with-tests
 workflows/build.sh "$preset"
+if [[ -n "${VELAMAP_COLMAP:-}" ]]; then
+  [[ -x "$VELAMAP_COLMAP" ]] || { echo "error: VELAMAP_COLMAP: $VELAMAP_COLMAP is no program" >&2; exit 2; }
+  programs="$(mktemp -d)"
+  trap 'rm -rf "$programs"' EXIT
+  ln -s "$(realpath "$VELAMAP_COLMAP")" "$programs/colmap"
+  export PATH="$programs:$PATH"
+fi
 echo "== test: build/$preset"
 ctest --preset "$preset" --parallel 2 "$@"

@@ -27,3 +27,13 @@ endforeach()
 target_compile_definitions(colmap_interop_test PRIVATE
   VELAMAP_GUI_SCRIPT="${CMAKE_CURRENT_SOURCE_DIR}/interop/gui_screenshot.sh"
   VELAMAP_PICTURE_DIR="${CMAKE_CURRENT_BINARY_DIR}/pictures")
+
+# interop.colmap_lines runs the lines of COLMAP that workflows/README.md gives.
+find_program(BASH_PROGRAM bash)
+if(BASH_PROGRAM)
+  add_test(NAME interop.colmap_lines
+           COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/interop/colmap_lines_test.sh
+                   ${PROJECT_SOURCE_DIR})
+  set_tests_properties(interop.colmap_lines PROPERTIES
+    LABELS colmap SKIP_RETURN_CODE 77 TIMEOUT 400 ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>")
+endif()
