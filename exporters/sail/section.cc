@@ -128,7 +128,7 @@ void AddPartSections(const PartContext& context, const std::optional<Boom>& boom
                      const SectionOptions& options, SectionReport* report) {
   const std::vector<LineCurve>& lines = context.curves.lines;
   for (const MissingLine& line : context.curves.missing) {
-    report->missing.push_back({context.part.name, line.name, line.reason});
+    report->missing.push_back({context.part.name, line.name, line.reason, line.is_by_layout});
   }
   const std::vector<std::string>& crossings = context.curves.crossings;
   report->notes.insert(report->notes.end(), crossings.begin(), crossings.end());

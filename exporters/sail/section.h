@@ -68,6 +68,9 @@ struct MissingSection {
   std::string part;
   std::string name;
   std::string reason;
+  // The layout gives the line too few markers for a section: true of every clip, and no fault of
+  // this one.
+  bool is_by_layout = false;
 };
 
 // Sections by part in the order of the layout, and from the lowest up within a part.

@@ -161,6 +161,14 @@ PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const 
     for (const int marker_id : line.marker_ids) {
       if (const auto index = centers.IndexOf(marker_id)) curve.indices.push_back(*index);
     }
+    if (static_cast<int>(line.marker_ids.size()) < min_markers) {
+      curves.missing.push_back(
+          {line.name,
+           fmt::format("the layout gives it {} marker{}; {} are needed", line.marker_ids.size(),
+                       line.marker_ids.size() == 1 ? "" : "s", min_markers),
+           true});
+      continue;
+    }
     if (static_cast<int>(curve.indices.size()) < min_markers) {
       curves.missing.push_back(
           {line.name, fmt::format("{} of its {} markers are reconstructed whole; {} are needed",

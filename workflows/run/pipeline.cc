@@ -305,7 +305,9 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
 
 void WarnOfMissingSections(const SectionReport& sections) {
   for (const MissingSection& missing : sections.missing) {
-    spdlog::warn("no section {} of {}: {}", missing.name, missing.part, missing.reason);
+    // What the layout alone decides is said, but is no reason to check this clip.
+    spdlog::log(missing.is_by_layout ? spdlog::level::info : spdlog::level::warn,
+                "no section {} of {}: {}", missing.name, missing.part, missing.reason);
   }
 }
 

@@ -342,6 +342,16 @@ TEST(Section, LineWithTooFewMarkersIsLeftOutWithTheReason) {
   ASSERT_EQ(report.missing.size(), 1u);
   EXPECT_EQ(report.missing[0].name, "h2");
   EXPECT_EQ(report.missing[0].reason, "3 of its 5 markers are reconstructed whole; 4 are needed");
+  EXPECT_FALSE(report.missing[0].is_by_layout);
+}
+
+TEST(Section, LineThatTheLayoutMakesTooShortIsNoFaultOfTheClip) {
+  Sail sail = ExampleSail(5);
+  sail.layout.parts[0].horizontal[1].marker_ids.resize(3);
+  const SectionReport report = Sections(sail);
+  ASSERT_EQ(report.missing.size(), 1u);
+  EXPECT_EQ(report.missing[0].reason, "the layout gives it 3 markers; 4 are needed");
+  EXPECT_TRUE(report.missing[0].is_by_layout);
 }
 
 TEST(Section, BadLinesAreLeftOutWithTheReason) {
