@@ -83,6 +83,16 @@ std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation&
   return residuals;
 }
 
+// Another tone curve moves edges by a part of their blur. A fit that ends further from where the
+// marker was found, as where white is clipped and tells little, has lost it.
+bool HasRunAway(const FittedSample& sample) {
+  constexpr double kMaxShiftPx = 2.0, kMaxShiftCells = 0.5;
+  const QuadCorners found_px = CornersOf(sample.problem.mean);
+  const double cell_px = QuadMeanSide(found_px) / sample.problem.model.num_cells;
+  return !(MaxCornerShift(CornersOf(sample.minimum.parameters), found_px) <=
+           std::max(kMaxShiftPx, kMaxShiftCells * cell_px));
+}
+
 }  // namespace
 
 std::optional<FittedSample> FitSample(const FormationSample& sample,
@@ -122,9 +132,14 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
     double& light = sample->minimum.parameters[index];
     light = formation.tone().Decode(before.Encode(light));
   }
-  sample->residuals = RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum)
-                          ? ResidualsOf(*sample, formation)
-                          : std::vector<float>();
+  const P::Vector start = sample->minimum.parameters;
+  if (RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum) &&
+      !HasRunAway(*sample)) {
+    sample->residuals = ResidualsOf(*sample, formation);
+  } else {
+    sample->minimum.parameters = start;
+    sample->residuals.clear();
+  }
 }
 
 }  // namespace velamap

@@ -39,7 +39,8 @@ std::optional<FittedSample> FitSample(const FormationSample& sample,
                                       const ImageFormation& formation);
 
 // Fits a sample anew, from the fit with the tone curve `before`. All pixels of most samples count
-// and the tolerance is small, so that differences of residuals give derivatives.
+// and the tolerance is small, so that differences of residuals give derivatives. A fit that fails
+// or loses the marker leaves the sample where it was, without residuals.
 void RefitSample(const ImageFormation& formation, const ToneCurve& before, FittedSample* sample);
 
 }  // namespace velamap
