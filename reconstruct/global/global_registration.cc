@@ -191,8 +191,10 @@ int ChooseCentralFrame(const GlobalRegistration& global) {
       min_num_inliers,
       doubt.empty()
           ? ""
-          : doubt + ", which happens with a wrong dictionary: first check the dictionary, its "
-                    "border_bits and whether the prints are inverted; if these are right, "));
+          : doubt + ", which happens with a wrong dictionary and in pictures too blurred or dim to "
+                    "read: first check the dictionary, its border_bits and whether the prints are "
+                    "inverted, and let velamap clip_checker judge the pictures; if these are "
+                    "right, "));
 }
 
 }  // namespace
