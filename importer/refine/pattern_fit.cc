@@ -53,7 +53,10 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners&
   PatternMinimum minimum;
   std::optional<PatternProblem> problem =
       MakePatternProblem(gray, corners_px, cells, formation, &minimum);
-  if (!problem || !FitPatternInPasses(&*problem, &minimum)) return std::nullopt;
+  if (!problem || !FitPatternInPasses(&*problem, &minimum) ||
+      !RefitWithoutForeignPixels(&*problem, &minimum)) {
+    return std::nullopt;
+  }
   return WithUncertainty(*problem, minimum);
 }
 

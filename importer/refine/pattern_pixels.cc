@@ -63,8 +63,15 @@ VELAMAP_CLONE_FOR_AVX2 ChosenPixels ChoosePixels(const PatternProblem& problem,
     last.root_weight[place] = group.root_weight[lane];
   };
   const double corner_weight = problem.model.outline_corner_weight;
+  const bool is_limited = std::isfinite(problem.max_residual_gray);
+  const Floats limit = AllLanes(problem.max_residual_gray);
+  PatternPixels modelled;
   ForEachGroup(problem, picture, [&](ChosenPixels::Group group, Ints covered) {
     if (MinLane(covered) == 0) return;
+    if (is_limited) {
+      picture.At(group.x, group.y, &modelled);
+      covered &= Abs(modelled.gray - group.gray) < limit;
+    }
     group.root_weight = AllLanes(1.0);
     if (corner_weight < 1) {
       const Ints is_at_corner = picture.IsAtOutlineCorner(group.x, group.y);
@@ -91,6 +98,22 @@ VELAMAP_CLONE_FOR_AVX2 ChosenPixels ChoosePixels(const PatternProblem& problem,
   take_every(kPartOfOthers * static_cast<double>(others.count) / max_pixels, others);
   FillUp(&chosen);
   return chosen;
+}
+
+VELAMAP_CLONE_FOR_AVX2 std::vector<double> AbsoluteResiduals(const PatternProblem& problem,
+                                                             const P::Vector& parameters,
+                                                             const ChosenPixels& pixels) {
+  const PatternPicture picture(problem.model, parameters);
+  std::vector<double> residuals;
+  residuals.reserve(static_cast<std::size_t>(pixels.count));
+  PatternPixels modelled;
+  for (const ChosenPixels::Group& group : pixels.groups) {
+    picture.At(group.x, group.y, &modelled);
+    for (int lane = 0; lane < kLanes && static_cast<int>(residuals.size()) < pixels.count; ++lane) {
+      residuals.push_back(std::abs(static_cast<double>(modelled.gray[lane] - group.gray[lane])));
+    }
+  }
+  return residuals;
 }
 
 }  // namespace velamap

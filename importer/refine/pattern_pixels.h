@@ -21,8 +21,14 @@ struct ChosenPixels {
 
 // About `max_pixels` of the pixels that the model covers with these parameters. If there are more,
 // every k-th one of those near an edge, which tell where the corners are, and a few others, which
-// tell the levels. Corners of outlines without weight are left out.
+// tell the levels. Corners of outlines without weight are left out, and pixels that the model
+// misses by more than the problem allows.
 ChosenPixels ChoosePixels(const PatternProblem& problem,
                           const PatternParameters::Vector& parameters, int max_pixels);
+
+// Absolute differences between the model and the pixels, grey levels.
+std::vector<double> AbsoluteResiduals(const PatternProblem& problem,
+                                      const PatternParameters::Vector& parameters,
+                                      const ChosenPixels& pixels);
 
 }  // namespace velamap

@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
+#include <vector>
 
+#include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/unit_square_map.h"
 #include "importer/refine/pattern_picture.h"
@@ -192,6 +195,12 @@ bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px
                          &minimum->equations) != Convergence::kFailed;
 }
 
+// Grey levels between the dark and the light cells.
+double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum) {
+  const ToneCurve& tone = *problem.model.tone;
+  return tone.Encode(minimum.parameters[P::kLight]) - tone.Encode(minimum.parameters[P::kDark]);
+}
+
 // The pixels that the quiet zone of one cell can reach; nothing where it leaves the image.
 std::optional<cv::Rect> CoveredBox(const UnitSquareMap& map, int num_cells, const cv::Mat& gray) {
   const double reach = 1.0 / num_cells;
@@ -248,6 +257,28 @@ bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* probl
   return Minimize(*problem, max_pixels, tolerance_px, minimum);
 }
 
+bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum) {
+  constexpr double kFinePx = 0.005;
+  constexpr double kContrast = 0.25, kSigmas = 5.0;  // what a foreign pixel is missed by at least
+  constexpr double kMinShare = 0.01, kMaxShare = 0.35;
+  constexpr int kRounds = 3;  // foreign pixels that have moved the first fit hide each other
+  for (int round = 0; round < kRounds; ++round) {
+    problem->max_residual_gray = std::numeric_limits<double>::infinity();
+    const std::vector<double> residuals = AbsoluteResiduals(
+        *problem, minimum->parameters, ChoosePixels(*problem, minimum->parameters, kPixels));
+    const double limit = std::max(kContrast * ContrastOf(*problem, *minimum),
+                                  kSigmas * kMadToSigma * Median(residuals));
+    const double share =
+        static_cast<double>(std::count_if(residuals.begin(), residuals.end(),
+                                          [&](double residual) { return residual > limit; })) /
+        static_cast<double>(residuals.size());
+    if (share < kMinShare || share > kMaxShare) return true;
+    problem->max_residual_gray = limit;
+    if (!RefinePatternFit(kPixels, kFinePx, problem, minimum)) return false;
+  }
+  return true;
+}
+
 // A wide blur needs another pass, because levels, blur and surroundings then depend on each other.
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
   constexpr double kCoarsePx = 0.1, kFinePx = 0.005;
@@ -259,9 +290,7 @@ bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
       !RefinePatternFit(kPixels, kFinePx, problem, minimum)) {
     return false;
   }
-  const ToneCurve& tone = *problem->model.tone;
-  const double contrast =
-      tone.Encode(minimum->parameters[P::kLight]) - tone.Encode(minimum->parameters[P::kDark]);
+  const double contrast = ContrastOf(*problem, *minimum);
   return contrast > kMinContrast && minimum->equations.Rms() < kMaxRelativeRms * contrast;
 }
 

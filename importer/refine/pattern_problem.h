@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct PatternProblem {
   cv::Rect box;  // of the pixels that the model may cover, in the image
   PatternModel model;
   PatternParameters::Vector mean, weight;  // priors
+  // Pixels that the model misses by more show something in front of the marker, and do not count.
+  double max_residual_gray = std::numeric_limits<double>::infinity();
 };
 
 // The best parameters so far, and the normal equations there.
@@ -51,5 +54,11 @@ bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* probl
 // From the initial parameters: a coarse fit to some pixels, then fine fits to more pixels. False if
 // the image does not show such a marker.
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum);
+
+// Fits again without the pixels that show something else: a rope or its shadow across the marker, a
+// glint, dirt. These are missed by far more than the noise and by a good part of the contrast.
+// Leaves the fit as it is where there are hardly any, or too many to be foreign. False for a
+// singular system.
+bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum);
 
 }  // namespace velamap

@@ -122,6 +122,42 @@ TEST(RefineCorners, ManyCellsWideQuietZoneContrastAndLight) {
   }
 }
 
+// From the left to the right side of the truth, at these heights (0 top, 1 bottom).
+void DrawRope(const QuadPx& truth, double left, double right, double gray, cv::Mat* image) {
+  constexpr double kBeyond = 0.4;  // sides
+  constexpr int kShift = 4;        // bits behind the point of cv::line's coordinates
+  const UnitSquareMap map(truth);
+  const auto to_fixed = [&](double u, double v) {
+    const Eigen::Vector2d x = map.ToImage(u, v) * (1 << kShift);
+    return cv::Point(static_cast<int>(std::lround(x.x())), static_cast<int>(std::lround(x.y())));
+  };
+  cv::line(*image, to_fixed(-kBeyond, left), to_fixed(1 + kBeyond, right), cv::Scalar(gray), 2,
+           cv::LINE_AA, kShift);
+}
+
+TEST(RefineCorners, RopeAcrossOrAlongTheMarkerMovesNoCorner) {
+  struct Rope {
+    double left, right;
+  };
+  for (const double side_px : {25.0, 45.0}) {
+    for (const Rope rope : {Rope{0.2, 0.5}, Rope{0.9, 0.4}, Rope{-0.03, -0.05}}) {
+      SCOPED_TRACE(testing::Message() << side_px << " px, rope from " << rope.left);
+      MarkerGridOptions options;
+      options.dictionary = "DICT_4X4_50";
+      options.side_px = side_px;
+      options.max_tilt_deg = 40;
+      options.rendering.noise_sigma = 2.0;
+      MarkerGrid grid = MakeMarkerGrid(options);
+      for (const QuadPx& truth : grid.truth) {
+        DrawRope(truth, rope.left, rope.right, 70, &grid.image);
+      }
+      const Quality fitted = MeasureRefineCorners(grid);
+      EXPECT_LE(fitted.num_failed, fitted.num_fitted / 20);
+      EXPECT_LT(fitted.rms_px, 0.12);
+    }
+  }
+}
+
 TEST(RefineCornersByEdges, SidesBentByTheLensMeetInTheirCorners) {
   MarkerGridOptions options = Chequered(110, 0.7);
   options.camera = {CameraModel::kOpenCV, 960, 720, {600, 600, 480, 360, -0.15, 0.02, 0, 0}};
