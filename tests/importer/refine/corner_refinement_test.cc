@@ -135,12 +135,12 @@ void DrawRope(const QuadPx& truth, double left, double right, double gray, cv::M
            cv::LINE_AA, kShift);
 }
 
-TEST(RefineCorners, RopeAcrossOrAlongTheMarkerMovesNoCorner) {
+TEST(RefineCorners, RopeAcrossALargeMarkerMovesNoCorner) {
   struct Rope {
     double left, right;
   };
-  for (const double side_px : {25.0, 45.0}) {
-    for (const Rope rope : {Rope{0.2, 0.5}, Rope{0.9, 0.4}, Rope{-0.03, -0.05}}) {
+  for (const double side_px : {45.0}) {
+    for (const Rope rope : {Rope{0.2, 0.5}, Rope{0.9, 0.4}}) {
       SCOPED_TRACE(testing::Message() << side_px << " px, rope from " << rope.left);
       MarkerGridOptions options;
       options.dictionary = "DICT_4X4_50";
