@@ -19,6 +19,7 @@ namespace velamap {
 namespace {
 
 constexpr double kMinCamber = 1e-3;
+constexpr double kMinHint = 0.5;  // cosine of 60 degrees
 constexpr const char* kBoomPart = "boom";
 
 CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
@@ -189,7 +190,7 @@ OptionGroup DescribeOptions(SectionOptions* options) {
   };
   return {"Sections",
           {{"Section.heights", ParsedValue{&options->heights_m, "", set_heights}, "m,m,...",
-            "heights of sections besides the lines, z of the frame"},
+            "heights of sections besides the lines, along the luff from the frame's origin"},
            {"Section.min_markers", &options->min_markers, "markers",
             "fewest whole markers on a line that make a section", AtLeast(4)}}};
 }
@@ -210,6 +211,17 @@ void SectionOptions::Check() const {
   }
 }
 
+SectionUp ChooseSectionUp(const MarkerShape& shape, const ShapeFrame& frame, const Layout& layout) {
+  const std::optional<Eigen::Vector3d> luff = LuffDirection(shape, layout);
+  const std::optional<Eigen::Vector3d> sail = SailUp(shape, layout);
+  const std::optional<Eigen::Vector3d> along = luff ? luff : sail;
+  if (!along) return {frame.up_in_frame, "z of the frame"};
+  // Some layouts list the head first. The frame knows better if its z is anywhere near the luff.
+  const std::optional<Eigen::Vector3d>& hint = frame.up_in_frame ? frame.up_in_frame : sail;
+  const bool is_down = hint && along->dot(*hint) < -kMinHint;
+  return {is_down ? Eigen::Vector3d(-*along) : *along, luff ? "luff" : "lines"};
+}
+
 SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
                               const Layout& layout, const PointCovariance* covariance,
                               const SectionOptions& options) {
@@ -219,20 +231,23 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
     report.notes.push_back("no sections: the layout has no horizontal lines");
     return report;
   }
-  if (!frame.up_in_frame) {
+  const SectionUp section_up = ChooseSectionUp(shape, frame, layout);
+  report.up_reference = section_up.reference;
+  if (!section_up.direction) {
     report.notes.push_back("no sections: the markers of the lines do not determine where up is");
     return report;
   }
+  const Eigen::Vector3d& up = *section_up.direction;
   const CenterSet centers = CollectCenters(shape, layout, covariance);
   const bool wants_boom = !MarkersOfPart(layout, kBoomPart).empty();
   report.twist_reference = "lowest section";
   for (const LayoutPart& part : layout.parts) {
     if (part.horizontal.empty()) continue;
-    PartContext context{part, centers, {*frame.up_in_frame, {}, 1}, {}};
-    context.curves = FitPartLines(part, centers, *frame.up_in_frame, options.min_markers);
+    PartContext context{part, centers, {up, {}, 1}, {}};
+    context.curves = FitPartLines(part, centers, up, options.min_markers);
     std::optional<Boom> boom;
     if (!context.curves.lines.empty()) {
-      context.axes = AxesOf(context.curves.lines, *frame.up_in_frame);
+      context.axes = AxesOf(context.curves.lines, up);
       boom = FindBoom(layout, centers, context.axes.reference);
     }
     if (boom) report.twist_reference = kBoomPart;

@@ -3,10 +3,10 @@
 //
 // The section of a line is a smoothing spline through its marker centers (section_spline.h) from
 // the first to the last whole marker; the markers do not reach the edges of the cloth. The section
-// at a height is the horizontal cut through interpolating splines that run across the lines at
-// equal fractions of their lengths.
+// at a height is the cut at right angles to up through interpolating splines that run across the
+// lines at equal fractions of their lengths.
 //
-//   chord direction c: from the first to the last point; up u: z of the frame
+//   chord direction c: from the first to the last point; up u: along the luff, whatever the frame
 //   depth direction d: u x c (unit length), towards leeward; depth = d . (f - f_first)
 //   leeward: the side to which the lines of the sail bulge in total
 //
@@ -80,16 +80,26 @@ struct SectionReport {
   // Notes on more than one section: why there are none, sections that cross, a missing boom.
   std::vector<std::string> notes;
   std::string twist_reference;  // "boom" or "lowest section"
+  std::string up_reference;     // "luff", "lines" or "z of the frame"
 };
 
 struct SectionOptions {
-  std::vector<double> heights_m;  // of additional sections, z in the frame; finite
-  int min_markers = 4;            // whole markers that a line needs
+  std::vector<double>
+      heights_m;        // of additional sections, along up from the frame's origin; finite
+  int min_markers = 4;  // whole markers that a line needs
 
   void Check() const;  // throws InputError that names the option
 };
 
 OptionGroup DescribeOptions(SectionOptions* options);
+
+// Up of the sections (unit): along the luff if two of its markers are whole, otherwise SailUp(),
+// otherwise of the frame. The frame decides which end is the head only.
+struct SectionUp {
+  std::optional<Eigen::Vector3d> direction;
+  std::string reference;
+};
+SectionUp ChooseSectionUp(const MarkerShape& shape, const ShapeFrame& frame, const Layout& layout);
 
 // `shape` and `covariance` (may be null) are in `frame` (MoveShape, RotateCovariance). Throws
 // InputError for bad options; the report lists what cannot be computed.

@@ -84,6 +84,7 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
   root["frame"] = {
       {"name", frame.name}, {"description", frame.description}, {"reasons", frame.reasons}};
   root["twist_reference"] = report.twist_reference;
+  root["up_reference"] = report.up_reference;
   root["notes"] = report.notes;
   root["sections"] = Json::array();
   for (const Section& section : report.sections) {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "exporters/shape/principal_axes.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -100,6 +101,20 @@ std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& la
   if (part == nullptr) return std::nullopt;
   const auto up = UnitOrNothing(SumOfDirections(shape, part->vertical));
   return up ? up : UnitOrNothing(FromLowestToHighest(shape, part->horizontal));
+}
+
+std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const Layout& layout) {
+  const LayoutPart* part = FirstPartWithLines(layout);
+  if (part == nullptr) return std::nullopt;
+  std::vector<Eigen::Vector3d> luff;
+  for (const MarkerLine& line : part->horizontal) {
+    const int id = line.marker_ids.front();
+    if (FindWholeMarker(shape, id) != nullptr) luff.push_back(CenterOf(shape, id));
+  }
+  if (luff.size() < 2) return std::nullopt;
+  const Eigen::Vector3d along = ComputePrincipalAxes(luff).directions.col(2);
+  const Eigen::Vector3d up = luff.back() - luff.front();
+  return UnitOrNothing(along.dot(up) < 0 ? Eigen::Vector3d(-along) : along);
 }
 
 std::optional<Eigen::Vector3d> SailAft(const MarkerShape& shape, const Layout& layout) {

@@ -39,6 +39,10 @@ LineEnds EndsOf(const MarkerShape& shape, const MarkerLine& line);
 // if the markers do not determine it.
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout);
 
+// Unit vector up the luff: the line of least squares through the first markers of the horizontal
+// lines of the same part, those that are whole. Nothing with fewer than two.
+std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const Layout& layout);
+
 // Unit vector from luff to leech, the mean over the horizontal lines of the same part.
 std::optional<Eigen::Vector3d> SailAft(const MarkerShape& shape, const Layout& layout);
 

@@ -150,6 +150,49 @@ TEST(Section, CameraFrameGivesTheSameNumbersButHeights) {
   }
 }
 
+// A hull with flared topsides stands at an angle to the mast, and so does its frame to the others.
+TEST(Section, NumbersDoNotDependOnTheFrame) {
+  Sail sail = ExampleSail();
+  // A mast that is bent, so that no two of its markers give its direction, and lines that rise.
+  for (ShapeMarker& marker : sail.shape.markers) {
+    for (auto& x : marker.x_in_shape_m) {
+      x->x() -= 0.02 * x->z() * (4 - x->z());
+      x->z() += 0.1 * x->x();
+    }
+  }
+  const Eigen::Quaterniond flare(
+      Eigen::AngleAxisd(0.35, Eigen::Vector3d(1, 0.2, 0.1).normalized()));
+  LayoutPart hull;
+  hull.name = "hull";
+  hull.rigid = true;
+  for (int i = 0; i < 6; ++i) {
+    hull.marker_ids.push_back(10 + i);
+    sail.shape.markers.insert(
+        sail.shape.markers.begin() + i,
+        UprightMarker(10 + i, hull.name, flare * Eigen::Vector3d(0.5 * (i / 2), 0, -1.0 - i % 2)));
+  }
+  sail.layout.parts.push_back(hull);
+  sail.layout.reference_part = hull.name;
+  const SectionReport by_hull = Sections(sail, {}, FrameChoice{FrameKind::kReferencePart});
+  EXPECT_EQ(by_hull.up_reference, "luff");
+  const ShapeFrame hull_frame = ChooseFrame(sail.shape, sail.layout, std::nullopt);
+  const Eigen::Vector3d hull_up =
+      hull_frame.frame_from_shape.rotation.conjugate() * *hull_frame.up_in_frame;
+  EXPECT_LT(hull_up.z(), std::cos(15 * kRadPerDeg));
+  for (const FrameChoice& choice : {FrameChoice{FrameKind::kLines}, FrameChoice{FrameKind::kCamera},
+                                    FrameChoice{FrameKind::kMarkers, 11, 15, 10},
+                                    FrameChoice{FrameKind::kMarkers, 10, 11, 14}}) {
+    const SectionReport report = Sections(sail, {}, choice);
+    ASSERT_EQ(report.sections.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto a = Numbers(by_hull.sections[i]), b = Numbers(report.sections[i]);
+      for (std::size_t k = 0; k + 1 < a.size(); ++k) {
+        EXPECT_NEAR(a[k], b[k], 1e-9) << by_hull.sections[i].name << " number " << k;
+      }
+    }
+  }
+}
+
 TEST(Section, NegativeCamberIsToWindwardOfTheWholeSail) {
   const Sail sail = MakeSailOfLines(
       {{0, 3, 0, CircularArc(0.1)}, {2, 2, 0, CircularArc(0.1)}, {4, 1, 0, CircularArc(-0.03)}}, 9);
