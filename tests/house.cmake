@@ -75,8 +75,10 @@ house_folder(exporters/design PUBLIC
   mesh_reader)
 house_folder(exporters/scale PUBLIC
   metric_scale metric_shape model_metrics scale_audit scale_audit_report scale_csv)
+house_folder(exporters/surface PUBLIC
+  surface surface_csv surface_input)
 house_folder(exporters/sail PUBLIC
-  sail_shape section section_writer surface surface_csv)
+  sail_shape section section_writer)
 house_folder(exporters/compare PUBLIC
   comparison_ply comparison_report comparison_sigma shape_comparison surface_comparison)
 house_folder(exporters/report PUBLIC

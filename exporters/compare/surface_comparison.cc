@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "exporters/sail/surface.h"
+#include "exporters/surface/surface.h"
 #include "importer/base/error.h"
 
 namespace velamap {

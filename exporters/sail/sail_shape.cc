@@ -10,7 +10,8 @@
 #include "exporters/formats/mesh_writer.h"
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
-#include "exporters/sail/surface_csv.h"
+#include "exporters/surface/surface_csv.h"
+#include "exporters/surface/surface_input.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 
@@ -21,10 +22,10 @@ namespace {
 constexpr int kMaxSurfaces = 20;
 
 SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, const LayoutPart& part,
-                            const PointCovariance* covariance, const SailOptions& options) {
+                            const SailOptions& options) {
   SailSurface surface;
   surface.part = part.name;
-  surface.fit = FitSurface(CollectSurfaceInput(shape, part, covariance), options.surface);
+  surface.fit = FitSurface(CollectSurfaceInput(shape, part), options.surface);
   surface.area_m2 = SurfaceArea(surface.fit.surface);
   surface.mesh = MeshSurface(
       surface.fit.surface,
@@ -61,6 +62,10 @@ std::vector<SurfaceFile> SurfaceFiles(int surface_idx) {
           {fmt::format("surface_residuals{}.csv", Suffix(surface_idx)),
            [](const SailSurface& surface, const std::string&, std::ostream& out) {
              WriteSurfaceResidualsCsv(surface.fit, out);
+           }},
+          {fmt::format("surface_edges{}.csv", Suffix(surface_idx)),
+           [](const SailSurface& surface, const std::string&, std::ostream& out) {
+             WriteSurfaceEdgesCsv(surface.fit, out);
            }}};
 }
 
@@ -101,7 +106,7 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
       continue;
     }
     try {
-      sail.surfaces.push_back(MakeSailSurface(shape, layout, part, covariance, options));
+      sail.surfaces.push_back(MakeSailSurface(shape, layout, part, options));
       for (const std::string& note : sail.surfaces.back().fit.notes) {
         sail.surface_notes.push_back(fmt::format("{}: {}", part.name, note));
       }

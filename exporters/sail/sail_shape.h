@@ -12,9 +12,9 @@
 
 #include "exporters/formats/mesh_triangles.h"
 #include "exporters/sail/section.h"
-#include "exporters/sail/surface.h"
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_frame.h"
+#include "exporters/surface/surface.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/geometry/point_covariance.h"
 
@@ -55,8 +55,8 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
                       const PointCovariance* covariance, const SailOptions& options);
 
 // Writes the tables and drawings of the sections (sections.*, section_profiles.*) and, for each
-// surface, surface.step .igs .ply .obj .stl and surface_residuals.csv. The names of a second part
-// end in _2. `folder` has to exist. Throws InputError if it is not writable.
+// surface, surface.step .igs .ply .obj .stl, surface_residuals.csv and surface_edges.csv. The names
+// of a second part end in _2. `folder` has to exist. Throws InputError if it is not writable.
 void WriteSailFiles(const SailShape& sail, const ShapeFrame& frame,
                     const std::filesystem::path& folder);
 

@@ -20,12 +20,27 @@ struct MarkerLine {
   std::vector<int> marker_ids;
 };
 
+// Where an edge of the cloth is; unknown if both are empty.
+struct ClothEdge {
+  // Distances along the surface from the centers of the outer markers to the edge, m: one for all
+  // horizontal lines, or for luff and leech one for each line.
+  std::vector<double> offsets_m;
+  std::string line;  // of luff or leech: the vertical line of markers on the edge
+
+  bool IsKnown() const { return !offsets_m.empty() || !line.empty(); }
+};
+
+struct ClothEdges {
+  ClothEdge luff, leech, foot, head;
+};
+
 struct LayoutPart {
   std::string name;
   bool rigid = false;
   std::vector<MarkerLine> horizontal;
   std::vector<MarkerLine> vertical;
   std::vector<int> marker_ids;  // on the part, on no line
+  ClothEdges edges{};
 };
 
 // A length measured by hand between two marker points (corner 0: the centre).
@@ -55,8 +70,8 @@ struct Layout {
 // Reads a layout file (YAML; importer/README.md lists the keys). The path of a dictionary file is
 // relative to the layout file. Throws InputError that names file, line and key for unknown keys, a
 // marker twice on one line or in two parts, a length that is not between 0.1 mm and 10 m, a
-// negative id, and a distance of a marker that no part names, of a point from itself, or without a
-// sigma.
+// negative id, an edge that its lines do not allow, and a distance of a marker that no part names,
+// of a point from itself, or without a sigma.
 Layout ReadLayout(const std::string& path);
 
 // The layout of --dictionary and --marker_length: no lines, and every id is accepted.

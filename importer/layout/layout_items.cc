@@ -99,6 +99,47 @@ KnownDistance ReadDistance(const YamlItem& item) {
   return distance;
 }
 
+double ReadOffset(const YamlItem& item) {
+  constexpr double kMaxOffset_m = 100.0;
+  const double offset_m = ReadMetres(item);
+  if (!(offset_m >= 0 && offset_m <= kMaxOffset_m)) {
+    item.Fail(fmt::format("{} m is out of range; give 0 to {} m", offset_m, kMaxOffset_m));
+  }
+  return offset_m;
+}
+
+// The foot or the head.
+ClothEdge ReadEndEdge(const YamlItem& item) {
+  if (!item.node.IsScalar()) item.Fail("one distance in m is expected, such as 0.12");
+  return {{ReadOffset(item)}, ""};
+}
+
+// The luff or the leech.
+ClothEdge ReadSideEdge(const YamlItem& item, const LayoutPart& part) {
+  ClothEdge edge;
+  if (item.node.IsScalar()) {
+    edge.offsets_m = {ReadOffset(item)};
+  } else if (item.node.IsSequence()) {
+    ForEachElement(item, [&](const YamlItem& v) { edge.offsets_m.push_back(ReadOffset(v)); });
+    if (edge.offsets_m.size() != part.horizontal.size()) {
+      item.Fail(
+          fmt::format("{} distances for {} horizontal lines; give one for each, or one for all",
+                      edge.offsets_m.size(), part.horizontal.size()));
+    }
+  } else {
+    ReadMap(item, {{"line", [&](const YamlItem& v) { edge.line = ReadString(v); }}});
+    const bool known = std::any_of(part.vertical.begin(), part.vertical.end(),
+                                   [&](const MarkerLine& line) { return line.name == edge.line; });
+    if (!known) {
+      item.Fail(
+          fmt::format("there is no vertical line '{}'; expected a distance in m, a list of "
+                      "them, or {{line: name}}",
+                      edge.line));
+    }
+  }
+  return edge;
+}
+
 FrameChoice ReadFrameMarkers(const YamlItem& map) {
   FrameChoice frame;
   frame.kind = FrameKind::kMarkers;
@@ -143,6 +184,16 @@ double ReadMetres(const YamlItem& item) {
         fmt::format("'{}' is not a number; expected a length in metres, such as 0.1", item.Text()));
   }
   return length_m;
+}
+
+ClothEdges ReadEdges(const YamlItem& item, const LayoutPart& part) {
+  if (part.horizontal.empty()) item.Fail("the edges of a part without horizontal lines are unused");
+  ClothEdges edges;
+  ReadMap(item, {{"luff", [&](const YamlItem& v) { edges.luff = ReadSideEdge(v, part); }},
+                 {"leech", [&](const YamlItem& v) { edges.leech = ReadSideEdge(v, part); }},
+                 {"foot", [&](const YamlItem& v) { edges.foot = ReadEndEdge(v); }},
+                 {"head", [&](const YamlItem& v) { edges.head = ReadEndEdge(v); }}});
+  return edges;
 }
 
 std::vector<KnownDistance> ReadDistances(const YamlItem& list, const Layout& layout) {

@@ -17,6 +17,9 @@ bool ParseMarkerId(const std::string& text, int* id);
 int ReadMarkerId(const YamlItem& item);
 double ReadMetres(const YamlItem& item);
 
+// The edges of a part, which has its lines.
+ClothEdges ReadEdges(const YamlItem& item, const LayoutPart& part);
+
 // The list of measured distances. `layout` has its parts.
 std::vector<KnownDistance> ReadDistances(const YamlItem& list, const Layout& layout);
 

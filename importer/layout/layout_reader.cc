@@ -77,12 +77,14 @@ std::vector<MarkerLine> ReadLines(const YamlItem& list, const std::string& part,
 LayoutPart ReadPart(const YamlItem& item, const std::string& name, PartOfId* part_of_id) {
   LayoutPart part;
   part.name = name;
+  std::optional<YamlItem> edges;
   ReadMap(item,
           {{"rigid", [&](const YamlItem& value) { part.rigid = ReadBool(value); }},
            {"horizontal",
             [&](const YamlItem& value) { part.horizontal = ReadLines(value, name, part_of_id); }},
            {"vertical",
             [&](const YamlItem& value) { part.vertical = ReadLines(value, name, part_of_id); }},
+           {"edges", [&](const YamlItem& value) { edges.emplace(value); }},
            {"markers", [&](const YamlItem& value) {
               part.marker_ids = ReadMarkerIds(value);
               ClaimMarkers(value, name, part.marker_ids, part_of_id);
@@ -90,6 +92,7 @@ LayoutPart ReadPart(const YamlItem& item, const std::string& name, PartOfId* par
   if (part.horizontal.empty() && part.vertical.empty() && part.marker_ids.empty()) {
     item.Fail("the part has no markers");
   }
+  if (edges) part.edges = ReadEdges(*edges, part);
   return part;
 }
 

@@ -30,6 +30,34 @@ void EmitLines(const char* key, const std::vector<MarkerLine>& lines, YAML::Emit
   *out << YAML::EndSeq;
 }
 
+void EmitEdge(const char* key, const ClothEdge& edge, YAML::Emitter* out) {
+  if (!edge.IsKnown()) return;
+  *out << YAML::Key << key << YAML::Value;
+  if (!edge.line.empty()) {
+    *out << YAML::BeginMap << YAML::Key << "line" << YAML::Value << edge.line << YAML::EndMap;
+  } else if (edge.offsets_m.size() == 1) {
+    *out << Number(edge.offsets_m.front());
+  } else {
+    *out << YAML::BeginSeq;
+    for (const double offset_m : edge.offsets_m) *out << Number(offset_m);
+    *out << YAML::EndSeq;
+  }
+}
+
+void EmitEdges(const ClothEdges& edges, YAML::Emitter* out) {
+  if (!edges.luff.IsKnown() && !edges.leech.IsKnown() && !edges.foot.IsKnown() &&
+      !edges.head.IsKnown()) {
+    return;
+  }
+  *out << YAML::Key << "edges" << YAML::Value << YAML::Flow << YAML::BeginMap;
+  EmitEdge("luff", edges.luff, out);
+  EmitEdge("leech", edges.leech, out);
+  EmitEdge("foot", edges.foot, out);
+  EmitEdge("head", edges.head, out);
+  *out << YAML::EndMap
+       << YAML::Comment("m, from the outer markers' centers to the edges of the cloth");
+}
+
 void EmitPart(const LayoutPart& part, YAML::Emitter* out) {
   *out << YAML::Key << part.name << YAML::Value << YAML::BeginMap;
   if (part.rigid) *out << YAML::Key << "rigid" << YAML::Value << true;
@@ -39,6 +67,7 @@ void EmitPart(const LayoutPart& part, YAML::Emitter* out) {
     *out << YAML::Key << "markers" << YAML::Value;
     EmitIds(part.marker_ids, out);
   }
+  EmitEdges(part.edges, out);
   *out << YAML::EndMap;
 }
 

@@ -105,6 +105,29 @@ PlacedLine MakeLine(const Sail& sail, const std::string& name, double height, in
   return line;
 }
 
+double RoundedMetres(double length_mm) { return std::round(length_mm) / 1000; }
+
+// Where the edges of the sail are from the outer markers, along the lines and along the luff.
+ClothEdges EdgesOf(const Sail& sail, const std::vector<PlacedLine>& lines, double sticker_mm) {
+  ClothEdges edges;
+  for (const PlacedLine& line : lines) {
+    const double length_mm = (1 - line.luff_mm / sail.luff_mm) * sail.foot_mm;
+    edges.luff.offsets_m.push_back(RoundedMetres(line.markers.front().along_mm));
+    edges.leech.offsets_m.push_back(RoundedMetres(length_mm - line.markers.back().along_mm));
+  }
+  for (ClothEdge* edge : {&edges.luff, &edges.leech}) {
+    std::vector<double>& offsets_m = edge->offsets_m;
+    if (std::count(offsets_m.begin(), offsets_m.end(), offsets_m.front()) ==
+        static_cast<std::ptrdiff_t>(offsets_m.size())) {
+      offsets_m.resize(1);
+    }
+  }
+  const double head_mm = (1 - sticker_mm / sail.foot_mm) * sail.luff_mm;
+  edges.foot.offsets_m = {RoundedMetres(lines.front().luff_mm)};
+  edges.head.offsets_m = {RoundedMetres(std::max(0.0, head_mm - lines.back().luff_mm))};
+  return edges;
+}
+
 // Vertical lines of at least two markers: column `column` of the lines from `begin` to `end`,
 // counted from the leech if negative.
 void AddColumn(const std::vector<PlacedLine>& lines, std::size_t begin, std::size_t end, int column,
@@ -176,7 +199,7 @@ Placement PlaceOnSail(const SailPlacementOptions& options, double length_mm, dou
   const Sail sail = MakeSail(options, sticker_mm);
   const LineHeights heights =
       SpaceLines(sail, options.num_lines, std::min(kMarkersOfTopLine, options.markers_per_line));
-  Placement placement{"sail", length_mm, sticker_mm, {sail.tack, sail.clew, sail.head}, {}, {}};
+  Placement placement{"sail", length_mm, sticker_mm, {sail.tack, sail.clew, sail.head}, {}, {}, {}};
   for (int i = 0; i < options.num_lines; ++i) {
     const double height = heights.first + i * heights.step;
     const int count = NumMarkersAt(sail, height, options.markers_per_line);
@@ -185,6 +208,7 @@ Placement PlaceOnSail(const SailPlacementOptions& options, double length_mm, dou
     first_id += count;
   }
   placement.vertical = MakeVerticalLines(placement.horizontal);
+  placement.edges = EdgesOf(sail, placement.horizontal, sticker_mm);
   return placement;
 }
 
@@ -203,7 +227,8 @@ Placement PlaceLinesOnSail(const SailPlacementOptions& options, const Layout& la
                                          static_cast<int>(lines.back().marker_ids.size()));
   Placement placement{part->name, 1000 * layout.marker_length_m,
                       sticker_mm, {sail.tack, sail.clew, sail.head},
-                      {},         part->vertical};
+                      {},         part->vertical,
+                      {}};
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const double height = heights.first + static_cast<double>(i) * heights.step;
     const int count = static_cast<int>(lines[i].marker_ids.size());
@@ -233,7 +258,7 @@ Placement PlaceOnGrid(const GridPlacementOptions& options, double length_mm, dou
                     OptionName(&GridPlacementOptions::spacing_m), sticker_mm, spacing_mm,
                     std::ceil(sticker_mm) / 1000));
   }
-  Placement placement{"surface", length_mm, sticker_mm, {}, {}, {}};
+  Placement placement{"surface", length_mm, sticker_mm, {}, {}, {}, {}};
   for (int row = 0; row < options.num_rows; ++row) {
     PlacedLine line{fmt::format("h{}", row + 1), {}, 0, 0};
     for (int column = 0; column < options.num_columns; ++column) {
@@ -255,6 +280,7 @@ LayoutPart PartOfPlacement(const Placement& placement) {
     for (const MarkerPlace& marker : line.markers) ids.marker_ids.push_back(marker.marker_id);
   }
   part.vertical = placement.vertical;
+  part.edges = placement.edges;
   return part;
 }
 

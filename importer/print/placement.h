@@ -57,6 +57,8 @@ struct Placement {
   std::vector<Eigen::Vector2d> sail_mm;  // tack, clew, head; empty for a grid
   std::vector<PlacedLine> horizontal;    // foot to head, each from luff to leech
   std::vector<MarkerLine> vertical;      // foot to head
+  // Of a sail that PlaceOnSail() covered, to the mm; its head ends where it is a sticker wide.
+  ClothEdges edges{};
 };
 
 // Lines parallel to the foot at equal distances, as low and as high as the stickers have room for;

@@ -1,6 +1,6 @@
 #include "workflows/options/sail_options.h"
 
-#include "exporters/sail/surface_csv.h"
+#include "exporters/surface/surface_csv.h"
 #include "workflows/options/shared_options.h"
 
 namespace velamap {

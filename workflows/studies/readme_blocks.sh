@@ -300,6 +300,42 @@ block_shooting_plan() {
         num(cell("shape_sigma_mm"), 2), num(cell("shape_mm"), 2) }'
 }
 
+# --- surface.sh ---
+
+block_surface() {
+  echo "| markers | error of a marker | error of the surface / of a marker: RMS, largest place | places up to 1.2 | error of the curvature: median, 95 %, largest | within 0.05 1/m |"
+  echo "|---|---|---|---|---|---|"
+  table surface.csv '
+    FNR > 1 {
+      markers = cell("series") == "random" ? cell("num_draws") " random sails" : cell("series")
+      printf "| %s | %s mm | %s, %s | %s %% | %s, %s, %s 1/m | %s %% |\n", markers,
+        num(cell("marker_error_mm"), 2), num(cell("error_ratio_rms"), 2), num(cell("error_ratio_max"), 2),
+        num(cell("places_below_1_2_percent"), 3), num(cell("curvature_error_median"), 2),
+        num(cell("curvature_error_95_percent"), 2), num(cell("curvature_error_max"), 2),
+        num(cell("curvature_within_0_05_percent"), 3) }'
+}
+
+# The chord of the rendered sail whose curvature wobbled when each marker bent the surface.
+block_surface_curvature() {
+  table surface_curvature.csv '
+    FNR > 1 && cell("height_m") == "3.935" {
+      clip = cell("clip")
+      if (!(clip in found)) names[++num_clips] = clip
+      if (num_clips == 1) {
+        places = places sprintf(" %d %% |", 100 * cell("along") + 0.5)
+        rule = rule "---|"
+        truth = truth " " num(cell("curvature"), 2) " |"
+      }
+      found[clip] = found[clip] " " num(cell("found_curvature"), 2) " |"
+    }
+    END {
+      print "| along the chord |" places
+      print "|---|" rule
+      print "| truth, 1/m |" truth
+      for (i = 1; i <= num_clips; i++) print "| " names[i] ", 1/m |" found[names[i]]
+    }'
+}
+
 # --- rolling_shutter.sh ---
 
 block_rolling_shutter() {

@@ -33,10 +33,11 @@ fail() {
 
 # The command that writes each result into the work folder.
 declare -A command_of
-for study in accuracy board_motions parameters repeatability rigid_objects rolling_shutter sample_project shooting; do
+for study in accuracy board_motions parameters repeatability rigid_objects rolling_shutter sample_project shooting surface; do
   command_of[$study.csv]="workflows/studies/$study.sh"
 done
 command_of[sample_project.txt]=workflows/studies/sample_project.sh
+command_of[surface_curvature.csv]=workflows/studies/surface.sh
 for table in central_frames central_frames_histogram; do
   command_of[$table.csv]=workflows/studies/central_frames.sh
 done

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "exporters/sail/surface.h"
+#include "exporters/surface/surface.h"
 
 namespace velamap {
 

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "exporters/design/cad_reader.h"
-#include "exporters/sail/surface_csv.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/shape_exporter.h"
+#include "exporters/surface/surface_csv.h"
 #include "importer/base/error.h"
 #include "reconstruct/model/gauge.h"
 #include "tests/exporters/example_model.h"

@@ -1,7 +1,8 @@
-#include "exporters/sail/surface.h"
+#include "exporters/surface/surface.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <sstream>
 
@@ -9,11 +10,12 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "exporters/sail/surface_csv.h"
+#include "exporters/surface/surface_csv.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
 #include "tests/exporters/sail/example_surface.h"
 #include "tests/support/error_matchers.h"
+#include "tests/support/sail_study.h"
 
 namespace velamap {
 namespace {
@@ -104,11 +106,12 @@ TEST(Surface, SailConvergesWithItsMarkersAndItsResidualsVanish) {
       const double distance_m = LargestDistance(fitted.surface, TwistedSail);
       if (n == 6) {
         coarse_m = distance_m;
-        EXPECT_LT(distance_m, 2e-3);
+        // Between markers that are 1.2 m apart, on lines 1.2 m apart.
+        EXPECT_LT(distance_m, options.default_sigma_m ? 2e-3 : 5e-3);
       } else {
         EXPECT_LT(distance_m, coarse_m / 6);
       }
-      EXPECT_LT(LargestResidual(fitted), 1e-8);
+      EXPECT_LT(LargestResidual(fitted), options.default_sigma_m ? 1e-8 : 2e-3);
     }
   }
 }
@@ -163,6 +166,25 @@ TEST(Surface, SigmasAndCrossValidationBothComeNearerToTheTruthThanInterpolation)
   EXPECT_LT(known, 0.0035);
 }
 
+// The vertical line has markers where no horizontal one does, which must not bend the surface more.
+TEST(Surface, IsAsCurvedAsTheSailAndNearerThanItsMarkers) {
+  constexpr double kSigma_m = 0.5e-3;
+  constexpr int kNumSails = 4;
+  std::vector<double> curvature_errors, errors_in_sigmas;
+  for (unsigned seed = 1; seed <= kNumSails; ++seed) {
+    std::mt19937 random(seed);
+    const Surface sail = DrawSail(&random);
+    const SailLines lines = DrawLines(sail, &random);
+    const auto fitted = FitSurface(DrawMarkers(sail, lines, kSigma_m, &random));
+    for (const SurfaceError& error : MeasureSurface(fitted.surface, sail, lines)) {
+      errors_in_sigmas.push_back(error.distance_m / MarkerSigma(kSigma_m, error.along));
+      if (error.is_inside) curvature_errors.push_back(error.found_curvature - error.curvature);
+    }
+  }
+  EXPECT_LT(ComputeStatistics(curvature_errors).rms, 0.05);
+  EXPECT_LT(ComputeStatistics(errors_in_sigmas).rms, 1.0);
+}
+
 TEST(Surface, AnUncertainMarkerPullsLess) {
   const auto residual = [](double sigma_m) {
     SurfaceInput input = MarkersOn(TwistedSail, 6, 7);
@@ -175,7 +197,8 @@ TEST(Surface, AnUncertainMarkerPullsLess) {
   EXPECT_EQ(residual(0.05).line, "h4");
   // y points against the normal.
   EXPECT_LT(residual(0.05).distance_m, -0.045);
-  EXPECT_GT(residual(0.001).distance_m, -0.035);
+  // Stated with a sigma of 1 mm, it contradicts the sigmas of all, and draws the surface on.
+  EXPECT_GT(residual(0.001).distance_m, residual(0.05).distance_m + 0.005);
 }
 
 // Has markers between the lines, around which an interpolating surface oscillates.
@@ -300,7 +323,7 @@ TEST(Surface, ExtensionsAreLimitedToTheSizeOfThePart) {
   options.head_extension_mm = 10;
   EXPECT_GT(SurfaceArea(FitSurface(input, options).surface),
             1.2 * SurfaceArea(FitSurface(input).surface));
-  for (double SurfaceOptions::*extension_mm :
+  for (std::optional<double> SurfaceOptions::*extension_mm :
        {&SurfaceOptions::luff_extension_mm, &SurfaceOptions::leech_extension_mm,
         &SurfaceOptions::foot_extension_mm, &SurfaceOptions::head_extension_mm}) {
     SurfaceOptions large;
@@ -330,6 +353,103 @@ TEST(Surface, ReachesTheEdgesThatAreGiven) {
     }
   }
   EXPECT_EQ(fitted.residuals.size(), 56u);  // edge points are no markers
+}
+
+// Markers inside of 8 % from luff and leech and 10 % from foot and head, with these edges.
+SurfaceInput InsideOfItsCloth(double sigma_m, int seed) {
+  const auto inner = [](double u, double v) { return TwistedSail(0.08 + 0.84 * u, 0.1 + 0.8 * v); };
+  SurfaceInput input = MarkersOn(inner, 7, 12);
+  AddNoise(sigma_m, true, seed, &input);
+  for (std::size_t j = 0; j < input.lines.size(); ++j) {
+    const double v = 0.1 + 0.8 * static_cast<double>(j) / 6;
+    input.lines[j].luff_offset_m = (TwistedSail(0.08, v) - TwistedSail(0, v)).norm();
+    input.lines[j].leech_offset_m = (TwistedSail(1, v) - TwistedSail(0.92, v)).norm();
+  }
+  input.foot_offset_m = input.head_offset_m = 0.6;
+  return input;
+}
+
+TEST(Surface, EndsAtTheEdgesOfTheClothWithAGrowingSigma) {
+  constexpr double kSigma_m = 0.5e-3;
+  const double true_area_m2 = SurfaceArea(FitSurface(MarkersOn(TwistedSail, 16, 16)).surface);
+  std::vector<double> errors_in_sigmas;
+  for (int seed = 1; seed <= 4; ++seed) {
+    const auto fitted = FitSurface(InsideOfItsCloth(kSigma_m, seed));
+    EXPECT_NEAR(SurfaceArea(fitted.surface), true_area_m2, 0.01 * true_area_m2);
+    std::vector<Eigen::Vector3d> places;
+    std::map<std::string, std::vector<double>> sigmas_m;
+    for (const SurfaceEdgePoint& point : fitted.edges) {
+      ASSERT_TRUE(point.sigma_m);
+      sigmas_m[point.edge].push_back(*point.sigma_m);
+    }
+    for (const auto& [edge, values_m] : sigmas_m) {
+      EXPECT_GT(values_m.front(), values_m[values_m.size() / 2]) << edge;
+      EXPECT_GT(Median(values_m), kSigma_m) << edge;
+    }
+    for (int k = 0; k <= 10; ++k) {
+      places.push_back(TwistedSail(0, k / 10.0));
+      places.push_back(TwistedSail(1, k / 10.0));
+    }
+    const std::vector<SurfaceFoot> feet = ProjectOnSurface(fitted.surface, places);
+    for (std::size_t k = 0; k < feet.size(); ++k) {
+      EXPECT_LT(feet[k].beyond_edge_m, 0.03);
+      const auto& of_edge = sigmas_m[k % 2 == 0 ? "luff" : "leech"];
+      errors_in_sigmas.push_back(feet[k].distance_m / of_edge[4 * (k / 2)]);
+    }
+    EXPECT_THAT(fitted.notes, Contains(HasSubstr("luff: continued beyond the markers; its sigma")));
+  }
+  EXPECT_LT(ComputeStatistics(errors_in_sigmas).rms, 3.0);
+  EXPECT_GT(ComputeStatistics(errors_in_sigmas).rms, 0.3);
+}
+
+TEST(Surface, OptionsOutrankTheEdgesOfTheLayout) {
+  const SurfaceInput input = InsideOfItsCloth(0.5e-3, 1);
+  SurfaceOptions options;
+  options.luff_extension_mm = options.leech_extension_mm = 0.0;
+  options.foot_extension_mm = options.head_extension_mm = 0.0;
+  SurfaceInput without = input;
+  for (SurfaceLine& line : without.lines) {
+    line.luff_offset_m.reset();
+    line.leech_offset_m.reset();
+  }
+  without.foot_offset_m.reset();
+  without.head_offset_m.reset();
+  EXPECT_EQ(FitSurface(input, options).surface.poles_in_shape_m,
+            FitSurface(without).surface.poles_in_shape_m);
+}
+
+TEST(Surface, SaysWhichEdgeIsOutOfReach) {
+  SurfaceInput input = InsideOfItsCloth(0.5e-3, 1);
+  input.head_offset_m = 3;
+  input.lines[2].luff_offset_m = 2;
+  for (int k = 1; k < 11; ++k) input.lines[0].markers[k].reset();
+  const auto fitted = FitSurface(input);
+  EXPECT_THAT(fitted.notes,
+              Contains(HasSubstr("head: the edge of the cloth is 3 m from the outer")));
+  EXPECT_THAT(fitted.notes, Contains(HasSubstr("luff: the edge of the cloth is 2 m from")));
+  EXPECT_THAT(fitted.notes,
+              Contains(HasSubstr("foot: the edge of the cloth is given from a line")));
+  EXPECT_THAT(fitted.notes, Contains(HasSubstr("leech: continued")));
+}
+
+// The corners of a marker lie on the cloth, and their mean within its bend.
+TEST(Surface, LiesOnTheCloth) {
+  constexpr double kSide_m = 0.3;
+  const auto mean_of_corners = [](double u, double v) -> Eigen::Vector3d {
+    const double du = kSide_m / 2 / (4 * 40 * kRadPerDeg), dv = kSide_m / 2 / 3;
+    return (CylinderSail(u - du, v - dv) + CylinderSail(u + du, v - dv) +
+            CylinderSail(u + du, v + dv) + CylinderSail(u - du, v + dv)) /
+           4;
+  };
+  SurfaceInput input = MarkersOn(mean_of_corners, 6, 8);
+  const double inside_m = LargestDistance(FitSurface(input).surface, mean_of_corners);
+  ForEachMarker(&input, [](SurfaceMarker* marker) { marker->side_m = kSide_m; });
+  const auto fitted = FitSurface(input);
+  EXPECT_LT(inside_m, 1e-3);
+  for (const double u : {0.1, 0.5, 0.9}) {
+    const Eigen::Vector3d x = EvaluatePoint(fitted.surface, u, 0.4);
+    EXPECT_NEAR(std::hypot(x.x(), x.y()), 4, 0.1 * kSide_m * kSide_m / 32);
+  }
 }
 
 TEST(Surface, TooFewLinesSayWhy) {
@@ -388,6 +508,14 @@ TEST(Surface, ResidualsAsCsv) {
             "9,,1,0.5,0.5,0.25,0\n");
 }
 
+TEST(Surface, EdgesAsCsv) {
+  FittedSurface fitted;
+  fitted.edges = {{"luff", {1, 2, 3}, 0.25}, {"luff", {1, 2, 4}, {}}};
+  std::ostringstream out;
+  WriteSurfaceEdgesCsv(fitted, out);
+  EXPECT_EQ(out.str(), "edge,x,y,z,sigma\nluff,1,2,3,0.25\nluff,1,2,4,\n");
+}
+
 TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
   MarkerShape shape;
   for (const int id : {1, 2, 3, 5, 8, 9}) {
@@ -401,6 +529,8 @@ TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
   part.horizontal = {{"h1", {1, 4, 2}}, {"h2", {9, 3}}};
   part.vertical = {{"v1", {1, 8}}};
   part.marker_ids = {5};
+  part.edges.luff.offsets_m = {0.05, 0.07};
+  part.edges.head.offsets_m = {0.2};
   const SurfaceInput input = CollectSurfaceInput(shape, part);
   ASSERT_EQ(input.lines.size(), 2u);
   EXPECT_EQ(input.lines[0].name, "h1");
@@ -413,6 +543,17 @@ TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
   ASSERT_EQ(input.markers.size(), 2u);
   EXPECT_EQ(input.markers[0].marker_id, 5);
   EXPECT_EQ(input.markers[1].marker_id, 8);
+  EXPECT_EQ(input.lines[1].luff_offset_m, 0.07);
+  EXPECT_FALSE(input.lines[1].leech_offset_m);
+  EXPECT_EQ(input.head_offset_m, 0.2);
+  EXPECT_FALSE(input.foot_offset_m);
+  // Markers 1 and 8 on the leech.
+  part.edges.leech.line = "v1";
+  const SurfaceInput with_leech = CollectSurfaceInput(shape, part);
+  ASSERT_EQ(with_leech.edges.leech.size(), 2u);
+  EXPECT_EQ(with_leech.edges.leech[1], Eigen::Vector3d(8, 0, 0));
+  ASSERT_EQ(with_leech.markers.size(), 1u);
+  EXPECT_EQ(with_leech.markers[0].marker_id, 5);
 }
 
 }  // namespace

@@ -161,6 +161,37 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAWrongDistance) {
   ExpectThrows<InputError>([&] { ReadLayout(empty); }, {empty + ":3: distances: no distance"});
 }
 
+TEST(ReadLayout, ReadsTheEdgesOfTheCloth) {
+  const TempDir dir;
+  const auto edges_of = [&](const std::string& edges) {
+    const std::string path = dir / "edges.yml";
+    std::ofstream(path) << "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  sail:\n"
+                           "    edges: {" +
+                               edges +
+                               "}\n"
+                               "    horizontal:\n      - {name: h1, markers: [1, 2]}\n"
+                               "      - {name: h2, markers: [3, 4]}\n"
+                               "    vertical:\n      - {name: v1, markers: [2, 4]}\n";
+    return ReadLayout(path).parts[0].edges;
+  };
+  const ClothEdges edges = edges_of("luff: [0.05, 0.07], leech: {line: v1}, head: 0.2");
+  EXPECT_THAT(edges.luff.offsets_m, ElementsAre(0.05, 0.07));
+  EXPECT_EQ(edges.leech.line, "v1");
+  EXPECT_FALSE(edges.foot.IsKnown());
+  EXPECT_THAT(edges.head.offsets_m, ElementsAre(0.2));
+  EXPECT_THAT(edges_of("luff: 0").luff.offsets_m, ElementsAre(0.0));
+  const auto expect = [&](const std::string& text, const std::string& error) {
+    ExpectThrows<InputError>([&] { edges_of(text); }, {"edges.yml:5: parts.sail.edges", error});
+  };
+  expect("luff: -0.01", ".luff: -0.01 m is out of range; give 0 to 100 m");
+  expect("luff: [0.1]", ".luff: 1 distances for 2 horizontal lines");
+  expect("leech: [0.1, far]", ".leech[1]: 'far' is not a number");
+  expect("leech: {line: v2}", ".leech: there is no vertical line 'v2'");
+  expect("leech: {name: v1}", "name");
+  expect("foot: [0.1, 0.2]", ".foot: one distance in m is expected");
+  expect("top: 0.1", "top");
+}
+
 TEST(ReadLayout, WithoutPartsAnyMarkerMayHaveADistance) {
   const TempDir dir;
   const Layout layout =

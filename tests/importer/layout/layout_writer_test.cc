@@ -18,6 +18,10 @@ Layout RichLayout() {
   layout.parts.push_back({"hull", true, {}, {}, {40, 41, 42}});
   layout.reference_part = "hull";
   layout.frame = FrameChoice{FrameKind::kMarkers, 1, 3, 7};
+  ClothEdges& edges = layout.parts.front().edges;
+  edges.luff.offsets_m.assign(layout.parts.front().horizontal.size(), 0.0625);
+  edges.leech.line = layout.parts.front().vertical.front().name;
+  edges.head.offsets_m = {0.1};
   layout.distances = {{1, 0, 9, 0, 2.315, 0.002, false}, {1, 1, 40, 4, 1.5, 0.001, true}};
   return layout;
 }
@@ -49,6 +53,11 @@ TEST(LayoutText, ReadsBackAsItWas) {
     ExpectEqual(read.parts[i].horizontal, layout.parts[i].horizontal);
     ExpectEqual(read.parts[i].vertical, layout.parts[i].vertical);
   }
+  const ClothEdges &edges = layout.parts.front().edges, &read_edges = read.parts.front().edges;
+  EXPECT_EQ(read_edges.luff.offsets_m, edges.luff.offsets_m);
+  EXPECT_EQ(read_edges.leech.line, edges.leech.line);
+  EXPECT_FALSE(read_edges.foot.IsKnown());
+  EXPECT_EQ(read_edges.head.offsets_m, edges.head.offsets_m);
   ASSERT_TRUE(read.frame.has_value());
   EXPECT_EQ(read.frame->plane_id, 7);
   ASSERT_EQ(read.distances.size(), 2u);

@@ -104,6 +104,32 @@ TEST(PlaceOnSail, VerticalLinesAreStraightAndEndAtTheEdges) {
   }
 }
 
+TEST(PlaceOnSail, ItsLayoutNamesTheEdgesOfTheSail) {
+  SailPlacementOptions options = Sail(6, 3, 6.2);
+  const Placement placement = PlaceOnSail(options, kLength_mm, kSticker_mm, 0);
+  const ClothEdges edges = PartOfPlacement(placement).edges;
+  ASSERT_EQ(edges.luff.offsets_m.size(), 1u);
+  ASSERT_EQ(edges.leech.offsets_m.size(), 1u);
+  const auto& corners = placement.sail_mm;  // tack, clew, head
+  const Eigen::Vector2d foot = (corners[1] - corners[0]).normalized();
+  for (const PlacedLine& line : placement.horizontal) {
+    const Eigen::Vector2d luff =
+        line.markers.front().center_mm - 1000 * edges.luff.offsets_m[0] * foot;
+    const Eigen::Vector2d leech =
+        line.markers.back().center_mm + 1000 * edges.leech.offsets_m[0] * foot;
+    EXPECT_NEAR(luff.x(), 0, 1);
+    EXPECT_NEAR(DistanceToEdge(corners, leech), 0, 1);
+  }
+  EXPECT_NEAR(1000 * edges.foot.offsets_m[0], placement.horizontal.front().luff_mm, 1);
+  // At the head the sail is a sticker wide.
+  const double head_mm = placement.horizontal.back().luff_mm + 1000 * edges.head.offsets_m[0];
+  EXPECT_NEAR(3000 * (1 - head_mm / 6000), kSticker_mm, 1);
+  // Lines of one marker in their middle.
+  options.markers_per_line = 1;
+  EXPECT_EQ(PlaceOnSail(options, kLength_mm, kSticker_mm, 0).edges.luff.offsets_m.size(),
+            static_cast<std::size_t>(options.num_lines));
+}
+
 TEST(PlaceOnSail, BadLengthsNameTheOption) {
   ExpectThrows<InputError>([] { PlaceOnSail(SailPlacementOptions(), kLength_mm, kSticker_mm, 0); },
                            {"--Sail.luff", "missing"});

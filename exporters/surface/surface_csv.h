@@ -5,14 +5,17 @@
 #include <iosfwd>
 #include <string>
 
-#include "exporters/sail/surface.h"
-#include "exporters/sail/surface_input.h"
+#include "exporters/surface/surface.h"
+#include "exporters/surface/surface_input.h"
 
 namespace velamap {
 
 // Header marker_id,line,u,v,distance,beyond_edge,is_used: the members of SurfaceResidual, one row
 // per marker of the part, by id; lengths in m.
 void WriteSurfaceResidualsCsv(const FittedSurface& surface, std::ostream& out);
+
+// Header edge,x,y,z,sigma: the edges of the surface, m.
+void WriteSurfaceEdgesCsv(const FittedSurface& surface, std::ostream& out);
 
 // Header edge,x,y,z: edge is luff or leech (points from foot to head), foot or head (points from
 // luff to leech), coordinates in m. Throws InputError naming file, line and column for another

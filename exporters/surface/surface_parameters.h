@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "exporters/sail/surface.h"
+#include "exporters/surface/surface.h"
 
 namespace velamap {
 
@@ -14,12 +14,15 @@ struct SurfaceObservation {
   std::string line;
   Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
   double u = 0.0, v = 0.0;
+  double side_m = 0.0;  // of the marker
+  // From the mean of the corners to the cloth, which is bent between them.
+  Eigen::Vector3d sag_m = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d OnCloth() const { return x_in_shape_m + sag_m; }
 };
 
 struct SurfaceParameters {
   std::vector<SurfaceObservation> observations;
-  std::vector<double> line_vs;  // v of each line and of the foot and head edges
-  bool has_markers_between = false;
   int degree_u = 3, degree_v = 3;
   Eigen::ArrayXd knots_u, knots_v;
   double mean_length_u_m = 0.0, length_v_m = 0.0;

@@ -1,4 +1,4 @@
-#include "exporters/sail/surface_csv.h"
+#include "exporters/surface/surface_csv.h"
 
 #include <cmath>
 #include <fstream>
@@ -40,6 +40,15 @@ void WriteSurfaceResidualsCsv(const FittedSurface& surface, std::ostream& out) {
   for (const SurfaceResidual& residual : surface.residuals) {
     csv.WriteRecord(residual.marker_id, residual.line, residual.u, residual.v, residual.distance_m,
                     residual.beyond_edge_m, residual.is_used);
+  }
+}
+
+void WriteSurfaceEdgesCsv(const FittedSurface& surface, std::ostream& out) {
+  CsvWriter csv(out);
+  csv.WriteRecord("edge", "x", "y", "z", "sigma");
+  for (const SurfaceEdgePoint& point : surface.edges) {
+    const Eigen::Vector3d& x = point.x_in_shape_m;
+    csv.WriteRecord(point.edge, x.x(), x.y(), x.z(), point.sigma_m);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "exporters/sail/surface.h"
+#include "exporters/surface/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,10 @@
 #include <fmt/ranges.h>
 #include <Eigen/Geometry>
 
-#include "exporters/sail/surface_parameters.h"
-#include "exporters/sail/surface_smoother.h"
+#include "exporters/surface/surface_ends.h"
+#include "exporters/surface/surface_feet.h"
+#include "exporters/surface/surface_parameters.h"
+#include "exporters/surface/surface_smoother.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -19,17 +21,10 @@ constexpr std::size_t kMinMarkers = 3, kMinLines = 2;
 // Limits of the surface's area over that of straight strips between the lines. A half cylinder has
 // a ratio of 1.57.
 constexpr double kMaxAreaRatio = 1.6, kMaxAreaRatioWithEdges = 4.0;
-// Each fit moves the feet of the markers between the lines a little.
-constexpr int kNumFits = 4;
+// The first fits are parabolas, whose feet are not moved by noise.
+constexpr int kNumParabolicFits = 3, kNumFits = 6;
 // A foot within this parameter distance of an edge counts as a foot on the edge.
 constexpr double kInside = 1e-9;
-
-struct SortedInput {
-  std::vector<SurfaceLine> lines;      // those with enough markers
-  std::vector<SurfaceMarker> markers;  // those on no such line
-  std::map<int, SurfaceMarker> by_id;  // all of them
-  std::vector<std::string> notes;
-};
 
 SortedInput SortInput(const SurfaceInput& input) {
   SortedInput sorted;
@@ -110,6 +105,25 @@ std::vector<Eigen::Vector3d> Centers(const std::vector<SurfaceMarker>& markers) 
   return centers;
 }
 
+void SetSides(const std::map<int, SurfaceMarker>& by_id, SurfaceParameters* parameters) {
+  for (SurfaceObservation& observation : parameters->observations) {
+    if (observation.marker_id >= 0) observation.side_m = by_id.at(observation.marker_id).side_m;
+  }
+}
+
+// Adds the markers between the lines at their feet.
+void AddBetween(const SortedInput& sorted, const SplineSurface& surface,
+                SurfaceParameters* parameters) {
+  const std::vector<SurfaceMarker>& markers = sorted.markers;
+  const std::vector<SurfaceFoot> feet = ProjectOnSurface(surface, Centers(markers));
+  for (std::size_t k = 0; k < feet.size(); ++k) {
+    if (!IsInside(feet[k])) continue;
+    parameters->observations.push_back(
+        {markers[k].marker_id, "", markers[k].x_in_shape_m, feet[k].u, feet[k].v});
+  }
+  SetSides(sorted.by_id, parameters);
+}
+
 std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
                                        const SurfaceParameters& parameters,
                                        const SplineSurface& surface) {
@@ -118,7 +132,11 @@ std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
     if (observation.marker_id >= 0) used[observation.marker_id] = &observation;
   }
   std::vector<SurfaceMarker> markers;
-  for (const auto& [id, marker] : sorted.by_id) markers.push_back(marker);
+  for (const auto& [id, marker] : sorted.by_id) {
+    markers.push_back(marker);
+    const auto observation = used.find(id);
+    if (observation != used.end()) markers.back().x_in_shape_m = observation->second->OnCloth();
+  }
   const std::vector<SurfaceFoot> feet = ProjectOnSurface(surface, Centers(markers));
   std::vector<SurfaceResidual> residuals;
   for (std::size_t k = 0; k < markers.size(); ++k) {
@@ -172,9 +190,14 @@ double RuledArea(const std::vector<SurfaceLine>& lines) {
 void CheckArea(const SortedInput& sorted, const SurfaceOptions& options,
                const SplineSurface& surface) {
   const SurfaceEdges& edges = options.edges;
-  const bool is_extended = options.luff_extension_mm + options.leech_extension_mm +
-                               options.foot_extension_mm + options.head_extension_mm >
-                           0;
+  bool is_extended = false;
+  for (const auto& extension_mm : {options.luff_extension_mm, options.leech_extension_mm,
+                                   options.foot_extension_mm, options.head_extension_mm}) {
+    is_extended = is_extended || extension_mm.value_or(0.0) > 0;
+  }
+  for (const SurfaceLine& line : sorted.lines) {
+    is_extended = is_extended || line.luff_offset_m || line.leech_offset_m;
+  }
   const bool has_edges =
       !edges.luff.empty() || !edges.leech.empty() || !edges.foot.empty() || !edges.head.empty();
   const double max_ratio = is_extended || has_edges ? kMaxAreaRatioWithEdges : kMaxAreaRatio;
@@ -186,16 +209,16 @@ void CheckArea(const SortedInput& sorted, const SurfaceOptions& options,
       area_m2, ruled_area_m2, is_extended ? ", or extend the surface by less" : ""));
 }
 
-void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name, double extension_mm,
-               const std::string& extension_option) {
+void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name,
+               const std::optional<double>& extension_mm, const std::string& extension_option) {
   if (edge.size() == 1) {
     throw InputError(fmt::format("the {} edge has one point; it needs two or more", name));
   }
-  if (!edge.empty() && extension_mm > 0) {
+  if (!edge.empty() && extension_mm.value_or(0.0) > 0) {
     throw InputError(
         fmt::format("{}: the surface cannot go {} mm beyond the {} and end at its given edge; give "
                     "one of the two",
-                    extension_option, extension_mm, name));
+                    extension_option, *extension_mm, name));
   }
 }
 
@@ -204,7 +227,9 @@ void CheckEdge(const std::vector<Eigen::Vector3d>& edge, const char* name, doubl
 OptionGroup DescribeOptions(SurfaceOptions* options) {
   return {"Surface",
           {{"Surface.luff_extension", &options->luff_extension_mm, "mm",
-            "how far the surface continues beyond the first markers of the lines", AtLeast(0)},
+            "how far the surface continues beyond the first markers of the lines; left out: to the "
+            "edge that the layout names, or not at all",
+            AtLeast(0)},
            {"Surface.leech_extension", &options->leech_extension_mm, "mm",
             "the same beyond the last markers of the lines", AtLeast(0)},
            {"Surface.foot_extension", &options->foot_extension_mm, "mm",
@@ -229,31 +254,37 @@ void SurfaceOptions::Check() const {
 
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options) {
   options.Check();
-  const SortedInput sorted = SortInput(input);
+  SortedInput sorted = SortInput(input);
+  const SurfaceOptions ends = WithEdgesOf(input, options, &sorted);
   const Noise noise = DescribeNoise(sorted, options);
-  SurfaceParameters parameters = AssignParameters(sorted.lines, !sorted.markers.empty(), options);
-  const std::size_t num_on_lines = parameters.observations.size();
-  SmoothSurface smooth =
-      SmoothObservations(parameters, Weights(parameters.observations, noise), noise.smoothing);
-  for (int fit = 1; fit < kNumFits && !sorted.markers.empty(); ++fit) {
-    parameters.observations.resize(num_on_lines);
-    const auto feet = ProjectOnSurface(smooth.surface, Centers(sorted.markers));
-    for (std::size_t k = 0; k < feet.size(); ++k) {
-      if (!IsInside(feet[k])) continue;
-      parameters.observations.push_back(
-          {sorted.markers[k].marker_id, "", sorted.markers[k].x_in_shape_m, feet[k].u, feet[k].v});
+  SurfaceParameters parameters = AssignParameters(sorted.lines, !sorted.markers.empty(), ends);
+  const OpenSides open = OpenSidesOf(parameters, ends.edges);
+  SetSides(sorted.by_id, &parameters);
+  // An interpolating surface keeps the chord lengths, which make the fairest curves through points.
+  const bool interpolates = noise.smoothing == Smoothing::kInterpolate;
+  SmoothSurface smooth;
+  for (int fit = 1; fit <= kNumFits; ++fit) {
+    const bool is_parabolic = fit <= kNumParabolicFits && !interpolates;
+    smooth = SmoothObservations(parameters, Weights(parameters.observations, noise),
+                                is_parabolic ? Smoothing::kParabolas : noise.smoothing);
+    if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
+    if (fit == kNumFits) break;
+    if (interpolates) {
+      MoveBetweenToFeet(smooth.surface, &parameters);
+    } else {
+      MoveToFeet(smooth.surface, open, &parameters);
     }
-    if (parameters.observations.size() == num_on_lines) break;
-    smooth =
-        SmoothObservations(parameters, Weights(parameters.observations, noise), noise.smoothing);
+    AddSag(smooth.surface, &parameters);
   }
-  CheckArea(sorted, options, smooth.surface);
+  CheckArea(sorted, ends, smooth.surface);
   FittedSurface result;
   result.surface = smooth.surface;
   result.num_effective_parameters = smooth.num_effective_parameters;
   result.residuals = Residuals(sorted, parameters, smooth.surface);
   result.notes = sorted.notes;
   result.notes.insert(result.notes.end(), parameters.notes.begin(), parameters.notes.end());
+  result.edges = EdgesOf(smooth);
+  NoteEdges(sorted, ends, result.edges, &result.notes);
   std::vector<double> distances_m;
   std::vector<int> outside;
   for (const SurfaceResidual& residual : result.residuals) {

@@ -1,4 +1,4 @@
-#include "exporters/sail/surface_parameters.h"
+#include "exporters/surface/surface_parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -113,9 +113,14 @@ struct LineEnd {
   std::optional<Eigen::Vector3d> edge_point;
 };
 
-LineEnd MakeLineEnd(const Polyline& edge, double extension_mm, double missing_m,
+double BeyondMarkers(const std::optional<double>& extension_mm,
+                     const std::optional<double>& offset_m) {
+  return extension_mm ? kMPerMm * *extension_mm : offset_m.value_or(0.0);
+}
+
+LineEnd MakeLineEnd(const Polyline& edge, double extension_m, double missing_m,
                     const Eigen::Vector3d& last, const Eigen::Vector3d& before_last) {
-  if (edge.empty()) return {missing_m + kMPerMm * extension_mm, std::nullopt};
+  if (edge.empty()) return {missing_m + extension_m, std::nullopt};
   const Eigen::Vector3d x = NearestToRay(edge, last, (last - before_last).normalized());
   const double length_m = (x - last).norm();
   if (length_m < 1e-6) return {};  // the marker lies on the edge
@@ -131,12 +136,12 @@ Row MakeRow(const SurfaceLine& line, const SurfaceOptions& options,
   const double place_spacing = lengths.back() / (present.places.back() - present.places.front());
   const std::size_t n = present.points.size();
   const LineEnd luff =
-      MakeLineEnd(options.edges.luff, options.luff_extension_mm,
+      MakeLineEnd(options.edges.luff, BeyondMarkers(options.luff_extension_mm, line.luff_offset_m),
                   place_spacing * present.places.front(), present.points[0], present.points[1]);
-  const LineEnd leech =
-      MakeLineEnd(options.edges.leech, options.leech_extension_mm,
-                  place_spacing * (line.markers.size() - 1 - present.places.back()),
-                  present.points[n - 1], present.points[n - 2]);
+  const LineEnd leech = MakeLineEnd(
+      options.edges.leech, BeyondMarkers(options.leech_extension_mm, line.leech_offset_m),
+      place_spacing * (line.markers.size() - 1 - present.places.back()), present.points[n - 1],
+      present.points[n - 2]);
   Row row{line.name, present.marker_ids, present.points, {}, 0.0};
   row.length_m = luff.length_m + lengths.back() + leech.length_m;
   for (const double length : lengths) row.us.push_back((luff.length_m + length) / row.length_m);
@@ -233,13 +238,14 @@ double MeanLength(const std::vector<SurfaceLine>& lines) {
 
 // A surface that is extrapolated by more than its own size has a shape that no marker determines,
 // and its equations lose their rank in double precision.
-void CheckExtension(const SurfaceOptions& options, double SurfaceOptions::*extension_mm,
-                    double size_m, const char* size_name) {
+void CheckExtension(const SurfaceOptions& options,
+                    std::optional<double> SurfaceOptions::*extension_mm, double size_m,
+                    const char* size_name) {
   const double max_mm = size_m / kMPerMm;
-  if (options.*extension_mm <= max_mm) return;
+  if ((options.*extension_mm).value_or(0.0) <= max_mm) return;
   throw InputError(fmt::format("{}: {:g} mm, expected at most {:.0f} mm, {}",
-                               OptionName(extension_mm), options.*extension_mm, std::floor(max_mm),
-                               size_name));
+                               OptionName(extension_mm), *(options.*extension_mm),
+                               std::floor(max_mm), size_name));
 }
 
 std::vector<Row> MakeRows(const std::vector<SurfaceLine>& lines, const SurfaceOptions& options,
@@ -257,14 +263,13 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
                                    const SurfaceOptions& options) {
   VELAMAP_CHECK(lines.size() >= 2);
   SurfaceParameters parameters;
-  parameters.has_markers_between = has_markers_between;
   const double length_m = MeanLength(lines);
   for (const auto extension_mm :
        {&SurfaceOptions::luff_extension_mm, &SurfaceOptions::leech_extension_mm}) {
     CheckExtension(options, extension_mm, length_m, "the length of the lines");
   }
   const std::vector<Row> rows = MakeRows(lines, options, &parameters.notes);
-  std::vector<double> heights_m = {kMPerMm * options.foot_extension_mm};
+  std::vector<double> heights_m = {kMPerMm * options.foot_extension_mm.value_or(0.0)};
   for (std::size_t j = 1; j < rows.size(); ++j) {
     heights_m.push_back(heights_m.back() + MeanDistance(rows[j - 1], rows[j]));
   }
@@ -274,9 +279,9 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
     CheckExtension(options, extension_mm, span_m,
                    "the distance from the lowest to the highest line");
   }
-  parameters.length_v_m = heights_m.back() + kMPerMm * options.head_extension_mm;
+  parameters.length_v_m = heights_m.back() + kMPerMm * options.head_extension_mm.value_or(0.0);
 
-  std::vector<double> all_us;
+  std::vector<double> all_us, line_vs;
   std::size_t max_points = 0;
   for (std::size_t j = 0; j < rows.size(); ++j) {
     const double v = heights_m[j] / parameters.length_v_m;
@@ -286,7 +291,7 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
                                          rows[j].points[k], rows[j].us[k], v});
       all_us.push_back(rows[j].us[k]);
     }
-    parameters.line_vs.push_back(v);
+    line_vs.push_back(v);
     parameters.mean_length_u_m += rows[j].length_m / rows.size();
     max_points = std::max(max_points, rows[j].points.size());
   }
@@ -296,7 +301,7 @@ SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool h
   parameters.degree_v = std::min(num_gaps, 3);
   parameters.knots_u = ClampedKnots(parameters.degree_u, QuantileKnots(all_us, num_spans_u));
   std::vector<double> interior_v;
-  if (parameters.degree_v == 3) interior_v = QuantileKnots(parameters.line_vs, num_spans_v);
+  if (parameters.degree_v == 3) interior_v = QuantileKnots(line_vs, num_spans_v);
   parameters.knots_v = ClampedKnots(parameters.degree_v, interior_v);
   return parameters;
 }

@@ -1,0 +1,90 @@
+// A smooth surface through the horizontal lines of markers on a sail: a tensor-product B-spline
+//
+//   min over P   sum_k w_k |S(u_k, v_k) - x_k|^2
+//                + a * integral of (|S_uuu|^2 + 3 |S_uuv|^2)
+//                + b * integral of (3 |S_uvv|^2 + |S_vvv|^2)
+//
+// First each line is a curve of constant v and each marker on it has the u of its chord length from
+// the luff (skinning; Piegl and Tiller, The NURBS Book, 1997, section 10.3). The markers then move
+// to their feet on the surface (Hoschek, "Intrinsic parametrization for approximation", 1988), so
+// that only distances along the normal are left: of parabolas first, of the surface afterwards. All
+// markers are solved in one system and bend the surface alike, on a line or between lines. A
+// penalty on third derivatives costs nothing for parabolas; the usual one on second derivatives
+// flattens the camber at luff and leech.
+//
+// If the markers have sigmas, the weights a and b minimize the expected error of the distances
+// along the normal (Mallows, "Some comments on Cp", 1973). Without sigmas, or where the distances
+// contradict them, generalized cross-validation decides (Golub, Heath and Wahba, 1979). A sigma of
+// 0 interpolates.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exporters/formats/surface_spline.h"
+#include "exporters/surface/surface_input.h"
+#include "importer/base/option.h"
+#include "importer/base/statistics.h"
+
+namespace velamap {
+
+struct SurfaceOptions {
+  // Sigma of markers that have none of their own; 0 interpolates all markers. By default the median
+  // of the other markers' sigmas. If no marker has a sigma, cross-validation estimates the noise of
+  // 30 markers or more, and fewer are interpolated.
+  std::optional<double> default_sigma_m;
+  // How far the surface continues beyond the outer markers, with the curvature it has there: at
+  // most the length of the lines (luff, leech) or the distance from the lowest to the highest line
+  // (foot, head). Without it, the surface ends where the input says that the cloth does, or else at
+  // the outer markers.
+  std::optional<double> luff_extension_mm, leech_extension_mm;
+  std::optional<double> foot_extension_mm, head_extension_mm;
+  // Edges to which the surface continues instead.
+  SurfaceEdges edges;
+
+  // Throws InputError that names the option for a value beyond its range and an edge that is both
+  // given and extended; also for a negative sigma and an edge of one point.
+  void Check() const;
+};
+
+OptionGroup DescribeOptions(SurfaceOptions* options);
+
+struct SurfaceResidual {
+  int marker_id = 0;
+  std::string line;         // empty for a marker on no line of the fit
+  double u = 0.0, v = 0.0;  // of the marker's foot on the surface
+  // Of the marker from the surface, along the normal. A marker is where the cloth is between its
+  // corners: the mean of the corners, moved out by the bend of the surface.
+  double distance_m = 0.0;
+  double beyond_edge_m = 0.0;  // how far the marker lies outside the surface's edge
+  bool is_used = false;        // false for markers outside the edge, which the fit ignores
+};
+
+// A point of an edge of the surface.
+struct SurfaceEdgePoint {
+  std::string edge;  // luff, leech, foot or head
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
+  // Of the distance along the normal. It grows with the distance from the markers. Nothing if the
+  // markers are interpolated, because nothing is known about their noise then.
+  std::optional<double> sigma_m;
+};
+
+struct FittedSurface {
+  SplineSurface surface;
+  std::vector<SurfaceResidual> residuals;  // of every marker center of the part, by marker id
+  Statistics distance_m;                   // signed, of the used markers
+  // Trace of the hat matrix. A value near the number of used markers means interpolation.
+  double num_effective_parameters = 0.0;
+  std::vector<SurfaceEdgePoint> edges;  // luff and leech from foot, foot and head from luff
+  std::vector<std::string> notes;       // lines left out and why, gaps, markers outside the edge
+};
+
+// Throws InputError for bad options and for an extension beyond its limit. Throws DataError where
+// the markers do not determine a surface: fewer than two lines with three whole markers, two
+// markers in one place, lines that cross or run in opposite directions, or a surface that
+// oscillates between its markers.
+FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options = {});
+
+}  // namespace velamap

@@ -1,0 +1,129 @@
+#include "exporters/surface/surface_ends.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "importer/geometry/units.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kMaxReach = 0.5;  // further, a parabola is a guess
+
+// Whether the surface can continue to an edge of the layout; notes why not.
+bool IsWithinReach(double offset_m, double size_m, const char* edge, SortedInput* sorted) {
+  if (offset_m <= kMaxReach * size_m) return true;
+  sorted->notes.push_back(
+      fmt::format("{}: the edge of the cloth is {:.3g} m from the outer markers, more than half of "
+                  "the {:.3g} m that they cover; the surface ends at the markers",
+                  edge, offset_m, size_m));
+  return false;
+}
+
+double LengthOf(const SurfaceLine& line) {
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& marker : line.markers) {
+    if (marker) points.push_back(marker->x_in_shape_m);
+  }
+  return (points.back() - points.front()).norm();
+}
+
+Eigen::Vector3d MiddleOf(const SurfaceLine& line) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (const auto& marker : line.markers) {
+    if (!marker) continue;
+    sum += marker->x_in_shape_m;
+    ++count;
+  }
+  return sum / count;
+}
+
+constexpr const char* kEdgeNames[] = {"luff", "leech", "foot", "head"};
+
+}  // namespace
+
+SurfaceOptions WithEdgesOf(const SurfaceInput& input, const SurfaceOptions& options,
+                           SortedInput* sorted) {
+  SurfaceOptions ends = options;
+  const auto end_side = [&](const char* name, std::vector<Eigen::Vector3d> SurfaceEdges::*edge,
+                            std::optional<double> SurfaceOptions::*extension_mm,
+                            std::optional<double> SurfaceLine::*offset_m) {
+    const bool is_given = !(options.edges.*edge).empty() || options.*extension_mm;
+    if (!is_given) ends.edges.*edge = input.edges.*edge;
+    bool is_within = !is_given;
+    for (const SurfaceLine& line : sorted->lines) {
+      const double reach_m = (line.*offset_m).value_or(0.0);
+      is_within = is_within && IsWithinReach(reach_m, LengthOf(line), name, sorted);
+    }
+    for (SurfaceLine& line : sorted->lines) {
+      if (!is_within) (line.*offset_m).reset();
+    }
+  };
+  end_side("luff", &SurfaceEdges::luff, &SurfaceOptions::luff_extension_mm,
+           &SurfaceLine::luff_offset_m);
+  end_side("leech", &SurfaceEdges::leech, &SurfaceOptions::leech_extension_mm,
+           &SurfaceLine::leech_offset_m);
+  const double span_m = (MiddleOf(sorted->lines.back()) - MiddleOf(sorted->lines.front())).norm();
+  const auto end_height = [&](const char* name, std::vector<Eigen::Vector3d> SurfaceEdges::*edge,
+                              std::optional<double> SurfaceOptions::*extension_mm,
+                              const std::optional<double>& offset_m, bool has_line) {
+    if (!(options.edges.*edge).empty() || options.*extension_mm || !offset_m) return;
+    if (!has_line) {
+      sorted->notes.push_back(
+          fmt::format("{}: the edge of the cloth is given from a line that is left out; the "
+                      "surface ends at the next one",
+                      name));
+    } else if (IsWithinReach(*offset_m, span_m, name, sorted)) {
+      ends.*extension_mm = kMmPerM * *offset_m;
+    }
+  };
+  end_height("foot", &SurfaceEdges::foot, &SurfaceOptions::foot_extension_mm, input.foot_offset_m,
+             input.lines.front().name == sorted->lines.front().name);
+  end_height("head", &SurfaceEdges::head, &SurfaceOptions::head_extension_mm, input.head_offset_m,
+             input.lines.back().name == sorted->lines.back().name);
+  return ends;
+}
+
+std::vector<SurfaceEdgePoint> EdgesOf(const SmoothSurface& smooth) {
+  constexpr int kNumPoints = 41;
+  std::vector<SurfaceEdgePoint> points;
+  for (int edge = 0; edge < 4; ++edge) {
+    for (int i = 0; i < kNumPoints; ++i) {
+      const double along = static_cast<double>(i) / (kNumPoints - 1), end = edge % 2;
+      const double u = edge < 2 ? end : along, v = edge < 2 ? along : end;
+      points.push_back(
+          {kEdgeNames[edge], EvaluatePoint(smooth.surface, u, v), SigmaAt(smooth, u, v)});
+    }
+  }
+  return points;
+}
+
+void NoteEdges(const SortedInput& sorted, const SurfaceOptions& ends,
+               const std::vector<SurfaceEdgePoint>& edges, std::vector<std::string>* notes) {
+  const auto goes_on = [&](const std::optional<double>& extension_mm,
+                           std::optional<double> SurfaceLine::*offset_m) {
+    return extension_mm.value_or(0.0) > 0 || (!extension_mm && offset_m != nullptr &&
+                                              (sorted.lines.front().*offset_m).value_or(0.0) > 0);
+  };
+  const std::map<std::string, bool> continued = {
+      {"luff", goes_on(ends.luff_extension_mm, &SurfaceLine::luff_offset_m)},
+      {"leech", goes_on(ends.leech_extension_mm, &SurfaceLine::leech_offset_m)},
+      {"foot", goes_on(ends.foot_extension_mm, nullptr)},
+      {"head", goes_on(ends.head_extension_mm, nullptr)}};
+  for (const char* name : kEdgeNames) {
+    std::vector<double> sigmas_m;
+    for (const SurfaceEdgePoint& point : edges) {
+      if (point.edge == name && point.sigma_m) sigmas_m.push_back(*point.sigma_m);
+    }
+    if (!continued.at(name) || sigmas_m.empty()) continue;
+    notes->push_back(
+        fmt::format("{}: continued beyond the markers; its sigma there is {:.1f} mm in the median, "
+                    "up to {:.1f} mm",
+                    name, kMmPerM * Median(sigmas_m),
+                    kMmPerM * *std::max_element(sigmas_m.begin(), sigmas_m.end())));
+  }
+}
+
+}  // namespace velamap

@@ -1,0 +1,93 @@
+#include "exporters/surface/surface_input.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace velamap {
+namespace {
+
+double MeanSide(const ShapeMarker& marker) {
+  double sum_m = 0.0;
+  for (int corner = 1; corner <= kNumCorners; ++corner) {
+    const auto& from = marker.x_in_shape_m[static_cast<std::size_t>(corner)];
+    const auto& to = marker.x_in_shape_m[static_cast<std::size_t>(corner % kNumCorners + 1)];
+    if (!from || !to) return 0.0;
+    sum_m += (*to - *from).norm();
+  }
+  return sum_m / kNumCorners;
+}
+
+std::optional<SurfaceMarker> Find(const std::map<int, const ShapeMarker*>& whole_markers,
+                                  int marker_id) {
+  const auto found = whole_markers.find(marker_id);
+  if (found == whole_markers.end()) return std::nullopt;
+  const ShapeMarker& marker = *found->second;
+  SurfaceMarker result{marker_id, *marker.x_in_shape_m[0], std::nullopt, MeanSide(marker)};
+  const std::optional<Eigen::Vector3d>& sigma_m = marker.sigma_m[0];
+  if (sigma_m) result.sigma_m = std::sqrt(sigma_m->squaredNorm() / 3);
+  return result;
+}
+
+std::optional<double> OffsetOf(const ClothEdge& edge, std::size_t line_idx) {
+  if (edge.offsets_m.empty()) return std::nullopt;
+  return edge.offsets_m[edge.offsets_m.size() == 1 ? 0 : line_idx];
+}
+
+// The whole markers of the vertical line on the edge; fewer than two are no edge.
+std::vector<Eigen::Vector3d> PointsOf(const ClothEdge& edge, const LayoutPart& part,
+                                      const std::map<int, const ShapeMarker*>& whole_markers) {
+  std::vector<Eigen::Vector3d> points;
+  for (const MarkerLine& line : part.vertical) {
+    if (edge.line.empty() || line.name != edge.line) continue;
+    for (const int id : line.marker_ids) {
+      const auto found = whole_markers.find(id);
+      if (found != whole_markers.end()) points.push_back(*found->second->x_in_shape_m[0]);
+    }
+  }
+  if (points.size() < 2) points.clear();
+  return points;
+}
+
+}  // namespace
+
+SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part) {
+  std::map<int, const ShapeMarker*> whole_markers;
+  for (const ShapeMarker& marker : shape.markers) {
+    if (marker.IsWhole()) whole_markers[marker.marker_id] = &marker;
+  }
+  SurfaceInput input;
+  std::set<int> on_lines, others(part.marker_ids.begin(), part.marker_ids.end());
+  for (const MarkerLine& line : part.horizontal) {
+    const std::size_t idx = input.lines.size();
+    SurfaceLine surface_line{
+        line.name, {}, OffsetOf(part.edges.luff, idx), OffsetOf(part.edges.leech, idx)};
+    for (const int marker_id : line.marker_ids) {
+      surface_line.markers.push_back(Find(whole_markers, marker_id));
+      on_lines.insert(marker_id);
+    }
+    input.lines.push_back(surface_line);
+  }
+  input.foot_offset_m = OffsetOf(part.edges.foot, 0);
+  input.head_offset_m = OffsetOf(part.edges.head, 0);
+  input.edges.luff = PointsOf(part.edges.luff, part, whole_markers);
+  input.edges.leech = PointsOf(part.edges.leech, part, whole_markers);
+  for (const MarkerLine& line : part.vertical) {
+    others.insert(line.marker_ids.begin(), line.marker_ids.end());
+  }
+  // Markers on an edge are points of the edge.
+  for (const MarkerLine& line : part.vertical) {
+    const bool is_edge = (line.name == part.edges.luff.line && !input.edges.luff.empty()) ||
+                         (line.name == part.edges.leech.line && !input.edges.leech.empty());
+    for (const int marker_id : line.marker_ids) {
+      if (is_edge) others.erase(marker_id);
+    }
+  }
+  for (const int marker_id : others) {
+    if (on_lines.count(marker_id) > 0) continue;
+    if (const auto marker = Find(whole_markers, marker_id)) input.markers.push_back(*marker);
+  }
+  return input;
+}
+
+}  // namespace velamap

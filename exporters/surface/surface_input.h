@@ -1,0 +1,52 @@
+// The marker centers that a surface is fitted to, by their lines.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "exporters/shape/marker_shape.h"
+#include "importer/layout/layout.h"
+
+namespace velamap {
+
+struct SurfaceMarker {
+  int marker_id = 0;
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // of the center
+  std::optional<double> sigma_m;                           // of each coordinate
+  double side_m = 0.0;  // 0 for a point; the center of a marker is the mean of its corners
+};
+
+// A horizontal line of the layout from luff to leech. A marker that the shape lacks keeps its place
+// in the list, so that gaps are known.
+struct SurfaceLine {
+  std::string name;
+  std::vector<std::optional<SurfaceMarker>> markers;
+  // From the first and the last marker of the layout to the edge of the cloth, where it is known.
+  std::optional<double> luff_offset_m{}, leech_offset_m{};
+};
+
+// Edges of the sail, measured or from the design, as polylines in the shape frame (m): luff and
+// leech from foot to head, foot and head from luff to leech. An unknown edge is empty.
+struct SurfaceEdges {
+  std::vector<Eigen::Vector3d> luff, leech, foot, head;
+};
+
+struct SurfaceInput {
+  std::vector<SurfaceLine> lines;      // from foot to head
+  std::vector<SurfaceMarker> markers;  // markers of the part on no horizontal line
+  // From the lowest and the highest line of the layout to the edge of the cloth.
+  std::optional<double> foot_offset_m{}, head_offset_m{};
+  SurfaceEdges edges{};  // by lines of markers on them
+};
+
+// Collects the horizontal lines of `part` in the order of the layout, its other markers, and where
+// the layout says that its edges are; whole markers only. The sigma of a marker is the root mean
+// square of the three sigmas of its center, with the errors that it shares with others: neighbors
+// share some that bend the surface, which the noise of single markers does not show.
+SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part);
+
+}  // namespace velamap

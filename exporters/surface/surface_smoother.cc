@@ -1,0 +1,267 @@
+#include "exporters/surface/surface_smoother.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+// A weight of a penalty is its ratio to the data term, as traces, in powers of ten. The least
+// ratios interpolate to far below a micrometre, and hold the equations solvable; at the largest
+// ones only the parabolas are left that no penalty counts.
+constexpr double kMinWeight = -9.0, kMaxWeight = 4.0;
+// An interpolating surface may bend more along the lines, which hold markers, than between them.
+constexpr double kMinWeightAlongLines = -11.0;
+constexpr double kFirstStep = 1.0, kLastStep = 0.25;
+// Effective parameters count so much more than they cost, because the least
+// score of a few markers is often one that follows their noise (Kim and Gu, "Smoothing spline
+// Gaussian regression: more scalable computation via efficient approximation", 2004).
+constexpr double kCostFactor = 1.4;
+// Squared residuals that exceed their expectation by more standard deviations contradict the
+// sigmas.
+constexpr double kMaxSigmas = 3.0;
+
+// Integrals of the products of the derivatives of two basis functions.
+Eigen::MatrixXd DerivativeProducts(const Eigen::ArrayXd& knots, int degree, int order) {
+  const Eigen::Index num_poles = knots.size() - degree - 1;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(num_poles, num_poles);
+  for (const QuadratureNode& node : SpanQuadrature(knots)) {
+    const Eigen::VectorXd row =
+        BasisRow(knots, degree, node.parameter, order).row(order).transpose();
+    gram += node.weight * row * row.transpose();
+  }
+  return gram;
+}
+
+void AddKronecker(double factor, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
+                  Eigen::MatrixXd* sum) {
+  for (Eigen::Index i = 0; i < left.rows(); ++i) {
+    for (Eigen::Index k = 0; k < left.cols(); ++k) {
+      sum->block(i * right.rows(), k * right.cols(), right.rows(), right.cols()) +=
+          factor * left(i, k) * right;
+    }
+  }
+}
+
+// Integrals of the squared third derivatives, with u and v as lengths on the surface: those that
+// are mainly along the lines, S_uuu and S_uuv, and those mainly across them, S_uvv and S_vvv. A
+// sail is bent more along its lines than across them, so that each pair has a weight of its own.
+struct Penalties {
+  Eigen::MatrixXd along, across;
+};
+
+Penalties PenaltyMatrices(const SurfaceParameters& parameters) {
+  const auto gram_u = [&](int order) {
+    return DerivativeProducts(parameters.knots_u, parameters.degree_u, order);
+  };
+  const auto gram_v = [&](int order) {
+    return DerivativeProducts(parameters.knots_v, parameters.degree_v, order);
+  };
+  const double u_m = parameters.mean_length_u_m, v_m = parameters.length_v_m;
+  const Eigen::Index num_poles = gram_u(0).rows() * gram_v(0).rows();
+  Penalties penalties;
+  penalties.along.setZero(num_poles, num_poles);
+  penalties.across.setZero(num_poles, num_poles);
+  // A factor of 3, as in the square of the third differential, makes the sum of all four the same
+  // in every direction of u and v.
+  const double mixed = 3.0;
+  AddKronecker(v_m / std::pow(u_m, 5), gram_u(3), gram_v(0), &penalties.along);
+  AddKronecker(mixed / (std::pow(u_m, 3) * v_m), gram_u(2), gram_v(1), &penalties.along);
+  AddKronecker(mixed / (u_m * std::pow(v_m, 3)), gram_u(1), gram_v(2), &penalties.across);
+  AddKronecker(u_m / std::pow(v_m, 5), gram_u(0), gram_v(3), &penalties.across);
+  return penalties;
+}
+
+// N_i(u) M_j(v) for all poles.
+Eigen::RowVectorXd BasisAt(const Eigen::ArrayXd& knots_u, int degree_u,
+                           const Eigen::ArrayXd& knots_v, int degree_v, double u, double v) {
+  const Eigen::RowVectorXd row_u = BasisRow(knots_u, degree_u, u, 0);
+  const Eigen::RowVectorXd row_v = BasisRow(knots_v, degree_v, v, 0);
+  Eigen::RowVectorXd basis(row_u.size() * row_v.size());
+  for (Eigen::Index i = 0; i < row_u.size(); ++i) {
+    basis.segment(i * row_v.size(), row_v.size()) = row_u(i) * row_v;
+  }
+  return basis;
+}
+
+// One row per observation, times the square root of the weight.
+Eigen::MatrixXd DesignMatrix(const SurfaceParameters& parameters,
+                             const std::vector<double>& weights) {
+  const auto& observations = parameters.observations;
+  Eigen::MatrixXd design;
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const Eigen::RowVectorXd basis =
+        BasisAt(parameters.knots_u, parameters.degree_u, parameters.knots_v, parameters.degree_v,
+                observations[k].u, observations[k].v);
+    if (design.size() == 0) design.setZero(observations.size(), basis.size());
+    design.row(k) = std::sqrt(weights[k]) * basis;
+  }
+  return design;
+}
+
+struct System {
+  Eigen::MatrixXd design, normal;
+  Penalties penalties;
+  Eigen::MatrixX3d data;
+};
+
+struct Solution {
+  Eigen::MatrixX3d poles;
+  double trace = 0.0;  // of the hat matrix
+};
+
+// Powers of ten: the weights of the two penalties.
+struct Weights {
+  double along = kMaxWeight, across = kMaxWeight;
+};
+
+struct Equations {
+  Eigen::MatrixXd penalty;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+};
+
+Equations MakeEquations(const System& system, const Weights& weights) {
+  const double data_trace = system.normal.trace();
+  const auto weigh = [&](double weight, const Eigen::MatrixXd& penalty) -> Eigen::MatrixXd {
+    const double trace = penalty.trace();  // 0 across two lines
+    const double factor = trace > 0 ? std::pow(10, weight) * data_trace / trace : 0.0;
+    return factor * penalty;
+  };
+  Equations equations;
+  equations.penalty =
+      weigh(weights.along, system.penalties.along) + weigh(weights.across, system.penalties.across);
+  equations.factor.compute(system.normal + equations.penalty);
+  if (equations.factor.info() != Eigen::Success) {
+    throw DataError("the equations of the surface are too badly conditioned to be solved");
+  }
+  return equations;
+}
+
+Solution Solve(const System& system, const Weights& weights) {
+  const auto [penalty, factor] = MakeEquations(system, weights);
+  Solution solution;
+  solution.poles = Eigen::MatrixX3d::Zero(penalty.rows(), 3);
+  // Iterative refinement restores the digits that the normal equations lose for poles that hardly
+  // any marker determines.
+  for (int step = 0; step < 4; ++step) {
+    solution.poles +=
+        factor.solve(system.design.transpose() * (system.data - system.design * solution.poles) -
+                     penalty * solution.poles);
+  }
+  solution.trace = factor.matrixL().solve(system.design.transpose()).squaredNorm();
+  return solution;
+}
+
+SplineSurface MakeSurface(const SurfaceParameters& parameters, const Solution& solution) {
+  return {parameters.degree_u, parameters.degree_v, parameters.knots_u, parameters.knots_v,
+          solution.poles};
+}
+
+// Counts the error along the normal only: along the surface, a marker may lie anywhere.
+double NormalSquaredResiduals(const System& system, const Solution& solution,
+                              const Eigen::MatrixX3d& normals) {
+  const Eigen::MatrixX3d residuals = system.data - system.design * solution.poles;
+  return residuals.cwiseProduct(normals).rowwise().sum().squaredNorm();
+}
+
+struct Choice {
+  Solution solution;
+  double score = std::numeric_limits<double>::infinity();
+  Weights weights;
+};
+
+// The weights with the lowest score, by a pattern search (Hooke and Jeeves, 1961) from the best
+// pair of equal weights.
+template <typename Score>
+Choice Search(const System& system, const Score& score_of) {
+  Choice best;
+  const auto improves = [&](const Weights& weights) {
+    if (std::min(weights.along, weights.across) < kMinWeight) return false;
+    if (std::max(weights.along, weights.across) > kMaxWeight) return false;
+    Solution solution = Solve(system, weights);
+    const double score = score_of(solution);
+    if (!(score < best.score)) return false;
+    best = {std::move(solution), score, weights};
+    return true;
+  };
+  for (double weight = kMaxWeight; weight >= kMinWeight; weight -= kFirstStep) {
+    improves({weight, weight});
+  }
+  for (double step = kFirstStep; step >= kLastStep; step /= 2) {
+    bool moved = true;
+    while (moved) {
+      const Weights center = best.weights;
+      moved = improves({center.along + step, center.across}) ||
+              improves({center.along - step, center.across}) ||
+              improves({center.along, center.across + step}) ||
+              improves({center.along, center.across - step});
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
+                                 const std::vector<double>& weights, Smoothing smoothing) {
+  const std::size_t n = parameters.observations.size();
+  VELAMAP_CHECK(weights.size() == n);
+  System system;
+  system.design = DesignMatrix(parameters, weights);
+  system.normal = system.design.transpose() * system.design;
+  system.penalties = PenaltyMatrices(parameters);
+  system.data.resize(n, 3);
+  for (std::size_t k = 0; k < n; ++k) {
+    system.data.row(k) = std::sqrt(weights[k]) * parameters.observations[k].OnCloth();
+  }
+  if (smoothing == Smoothing::kInterpolate) {
+    const Solution closest = Solve(system, {kMinWeightAlongLines, kMinWeight});
+    return {MakeSurface(parameters, closest), closest.trace, {}};
+  }
+  const Solution parabolic = Solve(system, {kMaxWeight, kMaxWeight});
+  const SplineSurface base = MakeSurface(parameters, parabolic);
+  if (smoothing == Smoothing::kParabolas) return {base, parabolic.trace, {}};
+  Eigen::MatrixX3d normals(n, 3);
+  for (std::size_t k = 0; k < n; ++k) {
+    const SurfaceObservation& observation = parameters.observations[k];
+    normals.row(k) = EvaluateJet(base, observation.u, observation.v).normal;
+  }
+  const auto squares_of = [&](const Solution& solution) {
+    return NormalSquaredResiduals(system, solution, normals);
+  };
+  const Choice chosen = Search(system, [&](const Solution& solution) {
+    if (smoothing == Smoothing::kKnownSigma) {
+      return squares_of(solution) + 2 * kCostFactor * solution.trace;
+    }
+    const double free = n - kCostFactor * solution.trace;
+    return free > 0 ? squares_of(solution) / (free * free)
+                    : std::numeric_limits<double>::infinity();
+  });
+  const double free = n - chosen.solution.trace;
+  const bool is_contradicted =
+      free < 1 || squares_of(chosen.solution) > free + kMaxSigmas * std::sqrt(2 * free);
+  if (smoothing == Smoothing::kKnownSigma && n >= kMinCrossValidated && is_contradicted) {
+    return SmoothObservations(parameters, weights, Smoothing::kCrossValidation);
+  }
+  const double variance =
+      smoothing == Smoothing::kKnownSigma ? 1.0 : squares_of(chosen.solution) / std::max(free, 1.0);
+  const Eigen::Index num_poles = system.normal.rows();
+  return {MakeSurface(parameters, chosen.solution), chosen.solution.trace,
+          variance * MakeEquations(system, chosen.weights)
+                         .factor.solve(Eigen::MatrixXd::Identity(num_poles, num_poles))};
+}
+
+std::optional<double> SigmaAt(const SmoothSurface& smooth, double u, double v) {
+  if (smooth.pole_covariance_m2.size() == 0) return std::nullopt;
+  const SplineSurface& surface = smooth.surface;
+  const Eigen::RowVectorXd basis =
+      BasisAt(surface.knots_u, surface.degree_u, surface.knots_v, surface.degree_v, u, v);
+  return std::sqrt(std::max(0.0, basis.dot(basis * smooth.pole_covariance_m2)));
+}
+
+}  // namespace velamap

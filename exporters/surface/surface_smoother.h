@@ -1,0 +1,42 @@
+// Penalized least squares of a tensor-product B-spline, and the choice of its smoothing: one weight
+// for all bends along the lines and one for those across them, over the whole surface.
+
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "exporters/surface/surface_parameters.h"
+
+namespace velamap {
+
+// How the weights of the penalties are chosen.
+enum class Smoothing {
+  kParabolas,    // the largest ones: profiles of the second degree along and across the lines
+  kInterpolate,  // the least ones that double precision allows
+  // Mallows' Cp, with weights of 1 / sigma^2. With kMinCrossValidated observations or more whose
+  // residuals contradict their sigmas, cross-validation.
+  kKnownSigma,
+  kCrossValidation,  // generalized; only the ratios of the weights count
+};
+
+constexpr std::size_t kMinCrossValidated = 30;  // fewer do not determine the noise
+
+struct SmoothSurface {
+  SplineSurface surface;
+  double num_effective_parameters = 0.0;
+  // Of the poles along each coordinate, m^2, with the penalty as prior knowledge (Wahba, "Bayesian
+  // confidence intervals for the cross-validated smoothing spline", 1983). Empty if interpolating.
+  Eigen::MatrixXd pole_covariance_m2;
+};
+
+// Sigma of the surface at a place along its normal, m; nothing if it interpolates.
+std::optional<double> SigmaAt(const SmoothSurface& smooth, double u, double v);
+
+// Takes one positive weight per observation. Throws DataError if the equations have no solution in
+// double precision.
+SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
+                                 const std::vector<double>& weights, Smoothing smoothing);
+
+}  // namespace velamap
