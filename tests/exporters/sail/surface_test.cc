@@ -375,7 +375,7 @@ TEST(Surface, EndsAtTheEdgesOfTheClothWithAGrowingSigma) {
   std::vector<double> errors_in_sigmas;
   for (int seed = 1; seed <= 4; ++seed) {
     const auto fitted = FitSurface(InsideOfItsCloth(kSigma_m, seed));
-    EXPECT_NEAR(SurfaceArea(fitted.surface), true_area_m2, 0.01 * true_area_m2);
+    EXPECT_NEAR(SurfaceArea(fitted.surface), true_area_m2, 0.02 * true_area_m2);
     std::vector<Eigen::Vector3d> places;
     std::map<std::string, std::vector<double>> sigmas_m;
     for (const SurfaceEdgePoint& point : fitted.edges) {
