@@ -73,13 +73,13 @@ Noise DescribeNoise(const SortedInput& sorted, const SurfaceOptions& options) {
   if (some_zero || (known.empty() && sorted.by_id.size() < kMinCrossValidated)) {
     noise.smoothing = Smoothing::kInterpolate;
   } else if (!known.empty()) {
-    noise.smoothing = Smoothing::kKnownSigma;
+    if (sorted.by_id.size() < kMinCrossValidated) noise.smoothing = Smoothing::kKnownSigma;
     noise.edge_sigma_m = Median(known);
   }
   for (const auto& [id, marker] : sorted.by_id) {
     const std::optional<double> sigma = marker.sigma_m ? marker.sigma_m : options.default_sigma_m;
     noise.sigma_m[id] =
-        noise.smoothing == Smoothing::kKnownSigma ? sigma.value_or(noise.edge_sigma_m) : 1.0;
+        noise.smoothing == Smoothing::kInterpolate ? 1.0 : sigma.value_or(noise.edge_sigma_m);
   }
   return noise;
 }

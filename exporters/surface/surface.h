@@ -12,10 +12,10 @@
 // penalty on third derivatives costs nothing for parabolas; the usual one on second derivatives
 // flattens the camber at luff and leech.
 //
-// If the markers have sigmas, the weights a and b minimize the expected error of the distances
-// along the normal (Mallows, "Some comments on Cp", 1973). Without sigmas, or where the distances
-// contradict them, generalized cross-validation decides (Golub, Heath and Wahba, 1979). A sigma of
-// 0 interpolates.
+// Generalized cross-validation decides on the weights a and b (Golub, Heath and Wahba, 1979);
+// sigmas weigh the markers against each other. Fewer than 30 markers with sigmas get the weights
+// that minimize the expected error of the distances along the normal (Mallows, "Some comments on
+// Cp", 1973); fewer than 30 without sigmas, or a sigma of 0, are interpolated.
 
 #pragma once
 

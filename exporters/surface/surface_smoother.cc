@@ -22,9 +22,6 @@ constexpr double kFirstStep = 1.0, kLastStep = 0.25;
 // score of a few markers is often one that follows their noise (Kim and Gu, "Smoothing spline
 // Gaussian regression: more scalable computation via efficient approximation", 2004).
 constexpr double kCostFactor = 1.4;
-// Squared residuals that exceed their expectation by more standard deviations contradict the
-// sigmas.
-constexpr double kMaxSigmas = 3.0;
 
 // Integrals of the products of the derivatives of two basis functions.
 Eigen::MatrixXd DerivativeProducts(const Eigen::ArrayXd& knots, int degree, int order) {
@@ -243,11 +240,6 @@ SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
                     : std::numeric_limits<double>::infinity();
   });
   const double free = n - chosen.solution.trace;
-  const bool is_contradicted =
-      free < 1 || squares_of(chosen.solution) > free + kMaxSigmas * std::sqrt(2 * free);
-  if (smoothing == Smoothing::kKnownSigma && n >= kMinCrossValidated && is_contradicted) {
-    return SmoothObservations(parameters, weights, Smoothing::kCrossValidation);
-  }
   const double variance =
       smoothing == Smoothing::kKnownSigma ? 1.0 : squares_of(chosen.solution) / std::max(free, 1.0);
   const Eigen::Index num_poles = system.normal.rows();

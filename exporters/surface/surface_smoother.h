@@ -13,15 +13,16 @@ namespace velamap {
 
 // How the weights of the penalties are chosen.
 enum class Smoothing {
-  kParabolas,    // the largest ones: profiles of the second degree along and across the lines
-  kInterpolate,  // the least ones that double precision allows
-  // Mallows' Cp, with weights of 1 / sigma^2. With kMinCrossValidated observations or more whose
-  // residuals contradict their sigmas, cross-validation.
-  kKnownSigma,
+  kParabolas,        // the largest ones: profiles of the second degree along and across the lines
+  kInterpolate,      // the least ones that double precision allows
+  kKnownSigma,       // Mallows' Cp, with weights of 1 / sigma^2
   kCrossValidation,  // generalized; only the ratios of the weights count
 };
 
-constexpr std::size_t kMinCrossValidated = 30;  // fewer do not determine the noise
+// Fewer observations do not determine their noise. With more, the residuals are the better
+// evidence: sigmas contain errors that markers share, such as that of the scale, which do not make
+// a surface rough.
+constexpr std::size_t kMinCrossValidated = 30;
 
 struct SmoothSurface {
   SplineSurface surface;
