@@ -50,6 +50,7 @@ MetricsReport MetricsOf(const ShapeExportReport& report) {
   const PointCovariance* covariance = CovarianceOf(report);
   AddMetrics(FitPartPlanes(report.shape, covariance), &metrics, covariance);
   AddMetrics(report.sail, &metrics);
+  AddMetrics(report.freeform, &metrics);
   return metrics;
 }
 
@@ -68,6 +69,7 @@ void WriteShapeFiles(const ShapeExportReport& report, bool ascii_ply, const fs::
   WriteFile(folder / "metrics.csv", [&](std::ostream& out) { WriteMetricsCsv(metrics, out); });
   WriteFile(folder / "metrics.json", [&](std::ostream& out) { WriteMetricsJson(metrics, out); });
   WriteSailFiles(report.sail, report.frame, folder);
+  WriteFreeformFiles(report.freeform, report.frame, folder);
 }
 
 std::map<int, double> ScalesOf(const ScaleAudit& audit) {
@@ -111,10 +113,16 @@ ShapeExportReport ComputeReport(const Model& model, const Layout& layout,
   report.metrics = ComputeShapeMetrics(report.shape, layout, covariance);
   report.model_metrics = ComputeModelMetrics(report.metric_model, MarkerIds(layout));
   report.sail = ComputeSail(report.shape, report.frame, layout, covariance, options.sail);
+  report.freeform = ComputeFreeform(report.shape, layout, covariance, options.sail.mesh);
   return report;
 }
 
 }  // namespace
+
+void ShapeExportReport::ThrowSurfaceError() const {
+  sail.ThrowSurfaceError();
+  freeform.ThrowSurfaceError();
+}
 
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
                               const ShapeExporterOptions& options,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "exporters/freeform/freeform_shape.h"
 #include "exporters/sail/sail_shape.h"
 #include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
@@ -35,16 +36,20 @@ struct ShapeExportReport {
   std::optional<AdjustmentUncertainty> uncertainty;  // in `frame`
   MarkerShape shape;
   SailShape sail;
+  FreeformShape freeform;  // parts without lines
+
+  // The first error of a surface, see SailShape::surface_error.
+  void ThrowSurfaceError() const;
   ShapeMetrics metrics;
   ModelMetrics model_metrics;
   ScaleAudit audit;
 };
 
 // Writes shape.csv, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv, metrics.json
-// and the files of WriteSailFiles() to shape_output_path, and the metric COLMAP model with true
-// point errors to model_output_path, all in the chosen frame. Each folder is written to a temporary
-// sibling and renamed when complete. An existing folder is replaced if velamap wrote every file in
-// it (importer/base/replacement.h).
+// and the files of WriteSailFiles() and WriteFreeformFiles() to shape_output_path, and the metric
+// COLMAP model with true point errors to model_output_path, all in the chosen frame. Each folder is
+// written to a temporary sibling and renamed when complete. An existing folder is replaced if
+// velamap wrote every file in it (importer/base/replacement.h).
 //
 // With `uncertainty` (ReadUncertainty of the model's folder) the model is metric already: it is not
 // scaled, all figures get their sigmas, and the folder of the metric model keeps the uncertainty.
@@ -53,7 +58,7 @@ struct ShapeExportReport {
 // Throws DataError without a marker that gives a scale or without an image, and InputError for
 // unwritable output, a folder with other files, one folder inside the other, or bad options. An
 // option of the surface that the size of the part forbids is left to the caller, see
-// SailShape::ThrowSurfaceError().
+// ShapeExportReport::ThrowSurfaceError().
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
                               const ShapeExporterOptions& options,
                               const AdjustmentUncertainty* uncertainty = nullptr);

@@ -45,6 +45,21 @@ void AddMetrics(const SailShape& sail, MetricsReport* report) {
   report->tables.push_back(std::move(table));
 }
 
+void AddMetrics(const FreeformShape& freeform, MetricsReport* report) {
+  AppendTexts("freeform_notes", freeform.notes, report);
+  if (freeform.surfaces.empty()) return;
+  MetricTable table{"freeform_surfaces", true, {}};
+  for (const PartSurface& part : freeform.surfaces) {
+    const FreeformSurface& surface = part.surface;
+    table.rows.push_back(
+        {{"part", part.part}, {"file", part.file_stem}, {"area_m2", surface.area_m2}});
+    if (surface.volume_m3) table.rows.back().push_back({"volume_m3", *surface.volume_m3});
+    table.rows.back().push_back({"surface_sigma_mm", kMmPerM * surface.rms_sigma_m});
+    table.rows.back().push_back({"distance_mm", Scaled(kMmPerM, surface.distance_m)});
+  }
+  report->tables.push_back(std::move(table));
+}
+
 void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report) {
   Append({{"num_markers", metrics.num_markers}}, report);
   if (metrics.num_layout_markers) {

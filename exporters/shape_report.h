@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exporters/formats/metrics_report.h"
+#include "exporters/freeform/freeform_shape.h"
 #include "exporters/sail/sail_shape.h"
 #include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
@@ -24,6 +25,9 @@ void AddMetrics(const ShapeFrame& frame, MetricsReport* report);
 
 // Adds section_notes, surface_notes and table surfaces. The sections have their own files.
 void AddMetrics(const SailShape& sail, MetricsReport* report);
+
+// Adds freeform_notes and table freeform_surfaces.
+void AddMetrics(const FreeformShape& freeform, MetricsReport* report);
 
 // Adds num_markers, area_error_mm2, area_error_percent, side_error_mm and table markers, and, if
 // the layout names its markers, num_layout_markers, reconstruction_ratio and missing_marker_ids.

@@ -79,6 +79,8 @@ house_folder(exporters/surface PUBLIC
   surface surface_csv surface_input)
 house_folder(exporters/sail PUBLIC
   sail_shape section section_writer)
+house_folder(exporters/freeform PUBLIC
+  freeform_shape)
 house_folder(exporters/compare PUBLIC
   comparison_ply comparison_report comparison_sigma shape_comparison surface_comparison)
 house_folder(exporters/report PUBLIC

@@ -18,6 +18,7 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3d> normals;             // one unit vector per vertex, or empty
   std::vector<Eigen::Vector2d> surface_parameters;  // one (u, v) per vertex, or empty
   std::vector<std::array<int, 3>> triangles;        // counter-clockwise seen from the outside
+  std::vector<double> sigmas_m;                     // one per vertex, along its normal, or empty
 };
 
 struct MeshOptions {

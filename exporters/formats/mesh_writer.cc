@@ -43,6 +43,10 @@ void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostrea
   add(mesh.vertices_m, PlyType::kDouble, {"x", "y", "z"});
   add(mesh.normals, PlyType::kFloat, {"nx", "ny", "nz"});
   add(mesh.surface_parameters, PlyType::kFloat, {"s", "t"});
+  if (!mesh.sigmas_m.empty()) {
+    vertices.Add("sigma", PlyType::kFloat,
+                 [&mesh](int i) { return mesh.sigmas_m[static_cast<std::size_t>(i)]; });
+  }
   PlyElement<int> faces{"face", Indices(mesh.triangles.size()), {}};
   faces.AddList("vertex_indices", PlyType::kInt, 3, [&mesh](int face, int i) {
     return mesh.triangles[static_cast<std::size_t>(face)][static_cast<std::size_t>(i)];

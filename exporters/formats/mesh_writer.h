@@ -11,8 +11,8 @@
 
 namespace velamap {
 
-// Binary little-endian: double x y z, float nx ny nz and float s t (u and v of the surface) if the
-// mesh has them, and faces with vertex_indices.
+// Binary little-endian: double x y z, float nx ny nz, float s t (u and v of the surface) and float
+// sigma if the mesh has them, and faces with vertex_indices.
 void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostream& out);
 
 void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, std::ostream& out);

@@ -83,6 +83,14 @@ std::optional<Eigen::Vector3d> PointSigma(const PointCovariance* covariance, int
   return sigma_m;
 }
 
+std::optional<PointCovariance> WithoutSharedErrors(const PointCovariance* covariance) {
+  if (covariance == nullptr) return std::nullopt;
+  PointCovariance own = *covariance;
+  own.factor.setZero(own.factor.rows(), 0);
+  own.signs.resize(0);
+  return own;
+}
+
 std::map<int, double> CenterSigmas(const PointCovariance& covariance) {
   std::map<int, double> sigmas_m;
   for (const Point3DId point3D_id : covariance.point3D_ids) {

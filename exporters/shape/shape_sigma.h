@@ -40,6 +40,9 @@ std::optional<double> SigmaOf(const PointCovariance* covariance, const PointGrad
 std::optional<Eigen::Vector3d> PointSigma(const PointCovariance* covariance, int marker_id,
                                           int corner);
 
+// The covariance without the errors that markers share, such as the scale; nothing for null.
+std::optional<PointCovariance> WithoutSharedErrors(const PointCovariance* covariance);
+
 // 1 sigma in space, the root of the trace of the covariance, of the centre of each marker whose
 // four corners are known, m; by marker id.
 std::map<int, double> CenterSigmas(const PointCovariance& covariance);

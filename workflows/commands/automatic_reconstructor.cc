@@ -259,7 +259,7 @@ void Run(const Options& options) {
   } else {
     PrintSummary(summary, paths, std::cout);
   }
-  summary.shape.sail.ThrowSurfaceError();
+  summary.shape.ThrowSurfaceError();
 }
 
 }  // namespace

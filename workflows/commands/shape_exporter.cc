@@ -87,7 +87,7 @@ void Run(const Options& options) {
   clock.End("export");
   LogStageTimes(clock);
   Print(report, layout, options.paths, std::cout);
-  report.sail.ThrowSurfaceError();
+  report.ThrowSurfaceError();
 }
 
 }  // namespace

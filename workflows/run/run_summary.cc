@@ -83,10 +83,17 @@ void PrintSections(const SectionReport& report, std::ostream& out) {
   }
 }
 
-void PrintSurfaces(const SailShape& sail, std::ostream& out) {
-  for (const SailSurface& surface : sail.surfaces) {
+void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
+  for (const SailSurface& surface : shape.sail.surfaces) {
     fmt::print(out, "surface: {}, {:.4g} m2, {:.2g} mm RMS from its markers\n", surface.part,
                surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
+  }
+  for (const PartSurface& part : shape.freeform.surfaces) {
+    const FreeformSurface& surface = part.surface;
+    fmt::print(out, "surface: {}, {:.4g} m2, ", part.part.empty() ? "all markers" : part.part,
+               surface.area_m2);
+    if (surface.volume_m3) fmt::print(out, "closed, {:.4g} m3, ", *surface.volume_m3);
+    fmt::print(out, "{:.2g} mm RMS from the corners\n", kMmPerM * surface.distance_m.rms);
   }
 }
 
@@ -139,7 +146,7 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   PrintSize(summary.shape, out);
   PrintImages(summary, out);
   PrintSections(summary.shape.sail.sections, out);
-  PrintSurfaces(summary.shape.sail, out);
+  PrintSurfaces(summary.shape, out);
   PrintCamera(summary.adjustment, paths, out);
   fmt::print(out, "look at: {} (in a browser)\n", paths.Report().string());
   fmt::print(out, "files: {} (CSV, PLY, CAD)\n", paths.Shape().string());
@@ -183,6 +190,7 @@ MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const Workspa
   AddMetrics(shape.audit, &report);
   AddMetrics(shape.frame, &report);
   AddMetrics(shape.sail, &report);
+  AddMetrics(shape.freeform, &report);
   if (summary.adjustment.uncertainty) AddMetrics(*summary.adjustment.uncertainty, &report);
   return report;
 }

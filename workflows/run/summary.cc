@@ -92,7 +92,7 @@ std::string RangeText(const std::vector<Section>& sections, double (*value)(cons
   return fmt::format("{:.1f} to {:.1f}", low, high);
 }
 
-// Prints the frame, and the sections and surfaces of a sail.
+// Prints the frame, the sections of a sail, and the surfaces.
 void PrintSail(const ShapeExportReport& report, std::ostream& out) {
   fmt::print(out, "frame: {}\n", report.frame.name);
   const std::vector<Section>& sections = report.sail.sections.sections;
@@ -111,8 +111,16 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
     fmt::print(out, "surface: {}; {:.4g} m2, markers {:.2f} mm RMS from it\n", surface.part,
                surface.area_m2, 1e3 * surface.fit.distance_m.rms);
   }
-  for (const std::string& note : report.sail.surface_notes) {
-    fmt::print(out, "surface_note: {}\n", note);
+  for (const PartSurface& part : report.freeform.surfaces) {
+    const FreeformSurface& surface = part.surface;
+    fmt::print(out, "surface: {}; {:.4g} m2, ", part.part.empty() ? "all markers" : part.part,
+               surface.area_m2);
+    if (surface.volume_m3) fmt::print(out, "closed, {:.4g} m3, ", *surface.volume_m3);
+    fmt::print(out, "corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
+               1e3 * surface.distance_m.rms, 1e3 * surface.rms_sigma_m);
+  }
+  for (const auto* notes : {&report.sail.surface_notes, &report.freeform.notes}) {
+    for (const std::string& note : *notes) fmt::print(out, "surface_note: {}\n", note);
   }
 }
 

@@ -155,6 +155,11 @@ TEST(CubeTest, ReachesTheGoals) {
   const TempDir dir;
   const ProgramRun run = Reconstruct(kCube, kCube / "images", dir / "cube");
   ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (int face = 0; face < 6; ++face) {
+    EXPECT_THAT(run.out, HasSubstr(fmt::format("surface: face{}, ", face)));
+    const std::string stem = face == 0 ? "freeform" : fmt::format("freeform_{}", face + 1);
+    EXPECT_TRUE(fs::exists(dir / ("cube/shape/" + stem + ".ply"))) << stem;
+  }
   const Model model = ReadModel((dir / "cube/sparse/0").string());
   const MarkerShape shape = ReadShapeCsv((dir / "cube/shape/shape.csv").string());
   EXPECT_GE(model.images.size(), 22u);

@@ -1,0 +1,112 @@
+#include "exporters/freeform/freeform_shape.h"
+
+#include <ostream>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "exporters/formats/mesh_writer.h"
+#include "exporters/shape/shape_sigma.h"
+#include "importer/base/atomic_output.h"
+#include "importer/base/csv.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+namespace {
+
+constexpr std::size_t kMaxSurfaces = 50;
+
+struct FreeformPart {
+  std::string name;
+  std::set<int> marker_ids;
+};
+
+std::vector<FreeformPart> FreeformParts(const MarkerShape& shape, const Layout& layout) {
+  std::vector<FreeformPart> parts;
+  for (const LayoutPart& part : layout.parts) {
+    if (!part.horizontal.empty() || !part.vertical.empty()) continue;
+    parts.push_back({part.name, {part.marker_ids.begin(), part.marker_ids.end()}});
+  }
+  if (!layout.HasMarkers()) {
+    parts.push_back({});
+    for (const ShapeMarker& marker : shape.markers) parts[0].marker_ids.insert(marker.marker_id);
+  }
+  return parts;
+}
+
+FreeformSurface FitPart(const MarkerShape& shape, const FreeformPart& part, const Layout& layout,
+                        const PointCovariance* own_covariance,
+                        const std::optional<MeshOptions>& mesh) {
+  std::vector<FreeformMarker> markers;
+  for (const int id : part.marker_ids) {
+    const ShapeMarker* marker = FindWholeMarker(shape, id);
+    if (marker != nullptr) markers.push_back(MakeFreeformMarker(*marker, own_covariance));
+  }
+  return FitFreeformSurface(markers, layout.marker_length_m, mesh);
+}
+
+void WriteResiduals(const FreeformShape& freeform, std::ostream& out) {
+  CsvWriter csv(out);
+  csv.WriteRecord("part", "marker_id", "corner", "distance", "sigma", "surface_sigma");
+  for (const PartSurface& part : freeform.surfaces) {
+    for (const FreeformResidual& residual : part.surface.residuals) {
+      csv.WriteRecord(part.part, residual.marker_id, residual.corner, residual.distance_m,
+                      residual.sigma_m, residual.surface_sigma_m);
+    }
+  }
+}
+
+}  // namespace
+
+void FreeformShape::ThrowSurfaceError() const {
+  if (surface_error) std::rethrow_exception(surface_error);
+}
+
+FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
+                              const PointCovariance* covariance,
+                              const std::optional<MeshOptions>& mesh) {
+  const std::optional<PointCovariance> own = WithoutSharedErrors(covariance);
+  FreeformShape freeform;
+  for (const FreeformPart& part : FreeformParts(shape, layout)) {
+    if (part.marker_ids.size() < kMinFreeformMarkers) continue;
+    const std::string name = part.name.empty() ? "all markers" : part.name;
+    const std::size_t number = freeform.surfaces.size() + 1;
+    if (number > kMaxSurfaces) {
+      freeform.notes.push_back(fmt::format("{}: no surface: at most {} parts without lines get one",
+                                           name, kMaxSurfaces));
+      continue;
+    }
+    try {
+      freeform.surfaces.push_back({part.name,
+                                   number == 1 ? "freeform" : fmt::format("freeform_{}", number),
+                                   FitPart(shape, part, layout, own ? &*own : nullptr, mesh)});
+      for (const std::string& note : freeform.surfaces.back().surface.notes) {
+        freeform.notes.push_back(fmt::format("{}: {}", name, note));
+      }
+    } catch (const std::exception& error) {
+      freeform.notes.push_back(fmt::format("{}: no surface: {}", name, error.what()));
+      const bool is_of_data = dynamic_cast<const DataError*>(&error) != nullptr;
+      if (!is_of_data && !freeform.surface_error) freeform.surface_error = std::current_exception();
+    }
+  }
+  return freeform;
+}
+
+void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame,
+                        const std::filesystem::path& folder) {
+  for (const PartSurface& part : freeform.surfaces) {
+    const std::string title = fmt::format("{} (frame: {})", part.part, frame.name);
+    const auto write = [&](const std::string& extension, const auto& writer) {
+      WriteFile(folder / (part.file_stem + extension), writer);
+    };
+    const TriangleMesh& mesh = part.surface.mesh;
+    write(".ply", [&](std::ostream& out) { WriteMeshPly(mesh, title, out); });
+    write(".obj", [&](std::ostream& out) { WriteMeshObj(mesh, title, out); });
+    write(".stl", [&](std::ostream& out) { WriteMeshStl(mesh, title, out); });
+  }
+  if (freeform.surfaces.empty()) return;
+  WriteFile(folder / "freeform_residuals.csv",
+            [&](std::ostream& out) { WriteResiduals(freeform, out); });
+}
+
+}  // namespace velamap

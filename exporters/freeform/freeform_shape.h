@@ -1,0 +1,48 @@
+// A surface through each part of a shape that has no lines, with its files.
+
+#pragma once
+
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exporters/formats/mesh_triangles.h"
+#include "exporters/freeform/freeform_surface.h"
+#include "exporters/shape/marker_shape.h"
+#include "exporters/shape/shape_frame.h"
+#include "importer/layout/layout.h"
+#include "reconstruct/geometry/point_covariance.h"
+
+namespace velamap {
+
+struct PartSurface {
+  std::string part;       // empty for the markers of a layout without parts
+  std::string file_stem;  // freeform, freeform_2, ...
+  FreeformSurface surface;
+};
+
+struct FreeformShape {
+  std::vector<PartSurface> surfaces;  // by part in the layout's order
+  // One line per part of enough markers without a surface, with the reason, and one per group of
+  // markers that a surface leaves out or misses.
+  std::vector<std::string> notes;
+  std::exception_ptr surface_error;  // as in SailShape
+
+  void ThrowSurfaceError() const;
+};
+
+// Takes the parts without horizontal and vertical lines that name at least kMinFreeformMarkers
+// markers; all markers for a layout without parts. `shape` and `covariance` (may be null) are in
+// one frame. `mesh` is that of SailOptions.
+FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
+                              const PointCovariance* covariance,
+                              const std::optional<MeshOptions>& mesh);
+
+// Writes .ply .obj .stl of each surface under its stem, and freeform_residuals.csv with the corners
+// of all of them. `folder` has to exist. Throws InputError if it is not writable.
+void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame,
+                        const std::filesystem::path& folder);
+
+}  // namespace velamap

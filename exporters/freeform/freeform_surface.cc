@@ -1,0 +1,288 @@
+#include "exporters/freeform/freeform_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/Geometry>
+
+#include "exporters/freeform/marker_front.h"
+#include "exporters/freeform/mesh_refinement.h"
+#include "exporters/freeform/surface_field.h"
+#include "exporters/shape/shape_sigma.h"
+#include "importer/base/error.h"
+#include "importer/geometry/units.h"
+
+namespace velamap {
+namespace {
+
+// A mesh has at least area / length^2 * kTrianglesPerArea triangles, which are equilateral then.
+constexpr double kTrianglesPerArea = 2.3;
+
+SurfaceField MakeField(const std::vector<FreeformMarker>& markers) {
+  std::vector<FieldPoint> points;
+  std::vector<FieldNormal> normals;
+  for (const FreeformMarker& marker : markers) {
+    const auto& x = marker.corners_in_shape_m;
+    for (std::size_t i = 0; i < x.size(); ++i) points.push_back({x[i], marker.sigmas_m[i]});
+    normals.push_back({(x[0] + x[1] + x[2] + x[3]) / 4, marker.normal});
+  }
+  return {points, normals};
+}
+
+SurfacePoint PointNear(const SurfaceField& field, const Eigen::Vector3d& x_in_shape_m,
+                       double reach_m) {
+  const auto x = field.Project(x_in_shape_m, reach_m);
+  if (!x) {
+    throw DataError(
+        "the markers contradict one another, or bend too sharply between their places; check them, "
+        "and make each face of a body with edges a part of its own");
+  }
+  return {*x, field.Evaluate(*x).gradient.normalized()};
+}
+
+// The corners moved to the surface, with the normals there.
+std::vector<FrontMarker> MoveToSurface(const std::vector<FreeformMarker>& markers,
+                                       const SurfaceField& field) {
+  std::vector<FrontMarker> moved(markers.size());
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    const auto& x = markers[k].corners_in_shape_m;
+    const double reach_m = (x[2] - x[0]).norm();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const SurfacePoint point = PointNear(field, x[i], reach_m);
+      moved[k].corners_in_shape_m[i] = point.x_in_shape_m;
+      moved[k].normals[i] = point.normal;
+    }
+  }
+  return moved;
+}
+
+// The markers of the largest piece.
+std::vector<FreeformMarker> LargestPiece(const std::vector<FreeformMarker>& markers,
+                                         const std::vector<int>& pieces) {
+  std::map<int, std::vector<FreeformMarker>> by_piece;
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    by_piece[pieces[kNumCorners * k]].push_back(markers[k]);
+  }
+  return std::max_element(
+             by_piece.begin(), by_piece.end(),
+             [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); })
+      ->second;
+}
+
+double AreaOf(const TriangleMesh& mesh) {
+  double area_m2 = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& x = mesh.vertices_m;
+    area_m2 += (x[b] - x[a]).cross(x[c] - x[a]).norm() / 2;
+  }
+  return area_m2;
+}
+
+// By the divergence theorem; of a body whose markers look inward as well.
+double VolumeOf(const TriangleMesh& mesh) {
+  const auto& x = mesh.vertices_m;
+  const Eigen::Vector3d origin = x.front();
+  double volume_m3 = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    volume_m3 += (x[a] - origin).dot((x[b] - origin).cross(x[c] - origin)) / 6;
+  }
+  return std::abs(volume_m3);
+}
+
+double RmsSigma(const TriangleMesh& mesh) {
+  double sum = 0.0, area = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& x = mesh.vertices_m;
+    const auto& sigma = mesh.sigmas_m;
+    const double weight = (x[b] - x[a]).cross(x[c] - x[a]).norm();
+    sum += weight * (sigma[a] * sigma[a] + sigma[b] * sigma[b] + sigma[c] * sigma[c]) / 3;
+    area += weight;
+  }
+  return std::sqrt(sum / area);
+}
+
+EdgeMeasure ByLength(double length_m) {
+  return [length_m](const TriangleMesh& mesh, int a, int b) {
+    return (mesh.vertices_m[b] - mesh.vertices_m[a]).norm() / length_m;
+  };
+}
+
+// The normals at the ends of an arc of length l turn by w, and its sagitta is l w / 8. The middle
+// of a triangle is up to 4/3 times as far from the surface as those of its sides.
+EdgeMeasure ByDeviation(double deviation_m) {
+  return [deviation_m](const TriangleMesh& mesh, int a, int b) {
+    const Eigen::Vector3d edge = mesh.vertices_m[b] - mesh.vertices_m[a];
+    const double turn = std::abs((mesh.normals[b] - mesh.normals[a]).dot(edge.normalized()));
+    return std::sqrt(edge.norm() * turn / 6 / deviation_m);
+  };
+}
+
+[[noreturn]] void RefuseMesh(const MeshOptions& options, double least_edge_m) {
+  if (options.edge_length_mm) {
+    throw InputError(
+        fmt::format("{}: {:.3g} mm would need more than {} triangles on a surface "
+                    "without lines; give {:.2g} mm or more",
+                    OptionName(&MeshOptions::edge_length_mm), *options.edge_length_mm,
+                    kMaxFreeformTriangles, kMmPerM * least_edge_m));
+  }
+  throw InputError(fmt::format(
+      "{}: {:.3g} mm would need more than {} triangles on a surface without lines; give "
+      "more",
+      OptionName(&MeshOptions::chord_deviation_mm), *options.chord_deviation_mm,
+      kMaxFreeformTriangles));
+}
+
+// Divides the triangles so far that the sigma, which has its maxima between the markers, is nearly
+// linear on each of them, and further as asked for.
+TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marker_length_m,
+                    const std::optional<MeshOptions>& options) {
+  constexpr double kSigmaTriangles = 2000, kEnoughTriangles = 1e5;
+  const double area_m2 = AreaOf(coarse);
+  const auto length_for = [area_m2](double num_triangles) {
+    return std::sqrt(kTrianglesPerArea * area_m2 / num_triangles);
+  };
+  const NearSurface near_surface = [&field](const Eigen::Vector3d& x, double reach_m) {
+    return PointNear(field, x, reach_m);
+  };
+  TriangleMesh mesh = RefineMesh(std::move(coarse), ByLength(length_for(kSigmaTriangles)),
+                                 near_surface, kMaxFreeformTriangles);
+  mesh.sigmas_m = field.Sigmas(mesh.vertices_m);
+  EdgeMeasure measure = ByLength(std::max(marker_length_m / 2, length_for(kEnoughTriangles)));
+  // Most triangles are smaller than the largest that the edge length allows.
+  const double least_edge_m = 2 * length_for(kMaxFreeformTriangles);
+  if (options && options->edge_length_mm) {
+    const double edge_m = kMPerMm * *options->edge_length_mm;
+    if (edge_m < length_for(kMaxFreeformTriangles)) RefuseMesh(*options, least_edge_m);
+    measure = ByLength(edge_m);
+  }
+  if (options && options->chord_deviation_mm) {
+    measure = ByDeviation(kMPerMm * *options->chord_deviation_mm);
+  }
+  mesh = RefineMesh(std::move(mesh), measure, near_surface, kMaxFreeformTriangles);
+  if (mesh.triangles.size() > kMaxFreeformTriangles) RefuseMesh(options.value(), least_edge_m);
+  return mesh;
+}
+
+std::vector<FreeformResidual> Residuals(const std::vector<FreeformMarker>& markers,
+                                        const std::vector<FrontMarker>& moved,
+                                        const SurfaceField& field) {
+  std::vector<Eigen::Vector3d> feet;
+  std::vector<FreeformResidual> residuals;
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    for (std::size_t i = 0; i < kNumCorners; ++i) {
+      feet.push_back(moved[k].corners_in_shape_m[i]);
+      const double distance_m =
+          moved[k].normals[i].dot(markers[k].corners_in_shape_m[i] - feet.back());
+      residuals.push_back({markers[k].marker_id, static_cast<int>(i) + 1, distance_m,
+                           field.PointSigma(kNumCorners * k + i), 0.0});
+    }
+  }
+  const std::vector<double> sigmas_m = field.Sigmas(feet);
+  for (std::size_t i = 0; i < feet.size(); ++i) residuals[i].surface_sigma_m = sigmas_m[i];
+  return residuals;
+}
+
+// One note on the markers with a corner that is far off.
+void NoteOutliers(const std::vector<FreeformMarker>& markers, FreeformSurface* surface) {
+  constexpr double kMaxSigmas = 4.0;
+  std::set<int> ids;
+  for (std::size_t i = 0; i < surface->residuals.size(); ++i) {
+    const FreeformResidual& residual = surface->residuals[i];
+    const bool has_sigma = markers[i / kNumCorners].sigmas_m[i % kNumCorners].has_value();
+    if (has_sigma && std::abs(residual.distance_m) > kMaxSigmas * residual.sigma_m) {
+      ids.insert(residual.marker_id);
+    }
+  }
+  if (ids.empty()) return;
+  surface->notes.push_back(
+      fmt::format("a corner of marker {} is more than {} sigmas off the surface",
+                  fmt::join(ids, ", "), kMaxSigmas));
+}
+
+void CheckCount(std::size_t num_markers) {
+  if (num_markers >= kMinFreeformMarkers && num_markers <= kMaxFreeformMarkers) return;
+  throw DataError(fmt::format("{} whole markers; {} to {} needed", num_markers, kMinFreeformMarkers,
+                              kMaxFreeformMarkers));
+}
+
+// Without the markers that stand apart. A half of them or more has to hang together.
+std::vector<FreeformMarker> ConnectedMarkers(const std::vector<FreeformMarker>& markers,
+                                             const std::vector<int>& pieces,
+                                             std::vector<std::string>* notes) {
+  const std::vector<FreeformMarker> connected = LargestPiece(markers, pieces);
+  if (2 * connected.size() < markers.size() || connected.size() < kMinFreeformMarkers) {
+    throw DataError(fmt::format(
+        "{} of {} markers hang together; the others are too far away for the spacing of most "
+        "markers, or look elsewhere: list each face or body as a part of its own",
+        connected.size(), markers.size()));
+  }
+  std::set<int> left_out;
+  for (const FreeformMarker& marker : markers) left_out.insert(marker.marker_id);
+  for (const FreeformMarker& marker : connected) left_out.erase(marker.marker_id);
+  notes->push_back(fmt::format("marker {} stands apart from the others and is left out",
+                               fmt::join(left_out, ", ")));
+  return connected;
+}
+
+}  // namespace
+
+FreeformMarker MakeFreeformMarker(const ShapeMarker& marker,
+                                  const PointCovariance* own_covariance) {
+  FreeformMarker result;
+  result.marker_id = marker.marker_id;
+  result.normal = MarkerNormal(marker);
+  for (int corner = 1; corner <= kNumCorners; ++corner) {
+    const auto idx = static_cast<std::size_t>(corner - 1);
+    result.corners_in_shape_m[idx] = *marker.x_in_shape_m[corner];
+    PointGradient along_normal;
+    AddPointGradient(marker.marker_id, corner, result.normal, &along_normal);
+    result.sigmas_m[idx] = SigmaOf(own_covariance, along_normal);
+    if (!result.sigmas_m[idx] && marker.sigma_m[corner]) {
+      result.sigmas_m[idx] = marker.sigma_m[corner]->cwiseProduct(result.normal).norm();
+    }
+  }
+  return result;
+}
+
+FreeformSurface FitFreeformSurface(const std::vector<FreeformMarker>& markers,
+                                   double marker_length_m,
+                                   const std::optional<MeshOptions>& options) {
+  CheckCount(markers.size());
+  const SurfaceField field = MakeField(markers);
+  const std::vector<FrontMarker> moved = MoveToSurface(markers, field);
+  TriangleMesh mesh;
+  mesh.triangles = JoinMarkers(moved);
+  const std::vector<int> pieces = PieceOfVertex(mesh.triangles, kNumCorners * markers.size());
+  FreeformSurface surface;
+  if (std::set<int>(pieces.begin(), pieces.end()).size() > 1) {
+    std::vector<std::string> notes;
+    surface =
+        FitFreeformSurface(ConnectedMarkers(markers, pieces, &notes), marker_length_m, options);
+    surface.notes.insert(surface.notes.begin(), notes.begin(), notes.end());
+    return surface;
+  }
+  for (const FrontMarker& marker : moved) {
+    const auto& x = marker.corners_in_shape_m;
+    mesh.vertices_m.insert(mesh.vertices_m.end(), x.begin(), x.end());
+    mesh.normals.insert(mesh.normals.end(), marker.normals.begin(), marker.normals.end());
+  }
+  const bool is_closed = CountOpenEdges(mesh.triangles) == 0;
+  surface.mesh = Refine(std::move(mesh), field, marker_length_m, options);
+  surface.area_m2 = AreaOf(surface.mesh);
+  if (is_closed) surface.volume_m3 = VolumeOf(surface.mesh);
+  surface.rms_sigma_m = RmsSigma(surface.mesh);
+  surface.residuals = Residuals(markers, moved, field);
+  std::vector<double> distances_m;
+  for (const FreeformResidual& residual : surface.residuals)
+    distances_m.push_back(residual.distance_m);
+  surface.distance_m = ComputeStatistics(distances_m);
+  NoteOutliers(markers, &surface);
+  return surface;
+}
+
+}  // namespace velamap

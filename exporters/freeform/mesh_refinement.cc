@@ -1,0 +1,102 @@
+#include "exporters/freeform/mesh_refinement.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "importer/base/parallel.h"
+
+namespace velamap {
+namespace {
+
+// Halving only the longest edges at a time keeps the triangles from getting slender.
+constexpr double kLongest = 0.7;
+
+using Edge = std::pair<int, int>;
+using Middles = std::map<Edge, int>;  // the vertex that halves an edge; by ascending vertices
+
+Edge Sorted(int a, int b) { return std::minmax(a, b); }
+
+Middles LongEdges(const TriangleMesh& mesh, const EdgeMeasure& measure) {
+  std::map<Edge, double> measures;
+  double longest = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    for (const Edge& edge : {Sorted(a, b), Sorted(b, c), Sorted(c, a)}) {
+      const auto [it, is_new] = measures.emplace(edge, 0.0);
+      if (is_new) it->second = measure(mesh, edge.first, edge.second);
+      longest = std::max(longest, it->second);
+    }
+  }
+  Middles middles;
+  for (const auto& [edge, value] : measures) {
+    if (value > std::max(1.0, kLongest * longest)) middles.emplace(edge, -1);
+  }
+  return middles;
+}
+
+void AddMiddles(const NearSurface& near_surface, Middles* middles, TriangleMesh* grown) {
+  TriangleMesh& mesh = *grown;
+  std::vector<Edge> edges;
+  const std::size_t first = mesh.vertices_m.size();
+  for (auto& [edge, vertex] : *middles) {
+    vertex = static_cast<int>(first + edges.size());
+    edges.push_back(edge);
+    if (mesh.sigmas_m.empty()) continue;
+    mesh.sigmas_m.push_back((mesh.sigmas_m[edge.first] + mesh.sigmas_m[edge.second]) / 2);
+  }
+  mesh.vertices_m.resize(first + edges.size());
+  mesh.normals.resize(first + edges.size());
+  ParallelFor(edges.size(), 0, [&](std::size_t i) {
+    const Eigen::Vector3d &a = mesh.vertices_m[edges[i].first],
+                          &b = mesh.vertices_m[edges[i].second];
+    const SurfacePoint point = near_surface((a + b) / 2, (b - a).norm());
+    mesh.vertices_m[first + i] = point.x_in_shape_m;
+    mesh.normals[first + i] = point.normal;
+  });
+}
+
+// The triangles that a triangle with some halved sides becomes.
+std::vector<std::array<int, 3>> Divide(std::array<int, 3> t, const Middles& middles,
+                                       const std::vector<Eigen::Vector3d>& x) {
+  const auto middle = [&middles](int a, int b) {
+    const auto found = middles.find(Sorted(a, b));
+    return found == middles.end() ? -1 : found->second;
+  };
+  std::array<int, 3> m = {middle(t[0], t[1]), middle(t[1], t[2]), middle(t[2], t[0])};
+  const auto num_halved = std::count_if(m.begin(), m.end(), [](int vertex) { return vertex >= 0; });
+  if (num_halved == 0) return {t};
+  if (num_halved == 3) {
+    return {{t[0], m[0], m[2]}, {m[0], t[1], m[1]}, {m[2], m[1], t[2]}, {m[0], m[1], m[2]}};
+  }
+  // Turned so that side 0 is the one that differs from the other two.
+  while ((m[0] >= 0) != (num_halved == 1)) {
+    std::rotate(t.begin(), t.begin() + 1, t.end());
+    std::rotate(m.begin(), m.begin() + 1, m.end());
+  }
+  if (num_halved == 1) return {{t[0], m[0], t[2]}, {m[0], t[1], t[2]}};
+  // Sides 1 and 2 are halved: the shorter diagonal of the quadrilateral that is left.
+  const std::array<int, 3> tip = {m[2], m[1], t[2]};
+  if ((x[t[0]] - x[m[1]]).norm() < (x[t[1]] - x[m[2]]).norm()) {
+    return {tip, {t[0], t[1], m[1]}, {t[0], m[1], m[2]}};
+  }
+  return {tip, {t[0], t[1], m[2]}, {t[1], m[1], m[2]}};
+}
+
+}  // namespace
+
+TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
+                        const NearSurface& near_surface, std::size_t max_triangles) {
+  while (mesh.triangles.size() <= max_triangles) {
+    Middles middles = LongEdges(mesh, measure);
+    if (middles.empty()) break;
+    AddMiddles(near_surface, &middles, &mesh);
+    std::vector<std::array<int, 3>> divided;
+    for (const auto& triangle : mesh.triangles) {
+      for (const auto& part : Divide(triangle, middles, mesh.vertices_m)) divided.push_back(part);
+    }
+    mesh.triangles = std::move(divided);
+  }
+  return mesh;
+}
+
+}  // namespace velamap

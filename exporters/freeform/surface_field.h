@@ -1,0 +1,88 @@
+// A smooth function whose zero set is the surface that points with sigmas lie on, whatever its
+// shape: open, closed, or with handles. It is near the signed distance, positive outside.
+//
+// The function is a Gaussian process: a quadratic polynomial plus the thin-plate covariance
+//
+//   k(r) = a^2 (2 r^3 - 3 D r^2 + D^3)
+//
+// (Williams and Fitzgibbon, "Gaussian process implicit surfaces", 2007), whose bending energy is
+// the integral of the squared third derivatives in space. Planes, spheres, ellipsoids, cylinders,
+// cones and saddles cost nothing. The points give values of 0 with their sigmas, and the normals
+// give a slope of about 1, which fixes sign and unit. The amplitude a maximizes the likelihood of
+// the data (Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, sections 2.7
+// and 5.4), so that the sigma of the result contains both the noise of the points and what the
+// surface may do between them.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace velamap {
+
+// A point on the surface.
+struct FieldPoint {
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
+  std::optional<double> sigma_m;  // along the normal
+};
+
+// The outward unit normal at a place near the surface.
+struct FieldNormal {
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+};
+
+struct FieldValue {
+  double value_m = 0.0;
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+};
+
+class SurfaceField {
+ public:
+  // A point without a sigma gets the median of the others; if none has one, all get the sigma that
+  // maximizes the likelihood. Sigmas below 1e-5 of the extent count as that. Time grows with the
+  // third power of the number of points. Throws DataError without a point or a normal, and for
+  // points that are all in one place.
+  SurfaceField(const std::vector<FieldPoint>& points, const std::vector<FieldNormal>& normals);
+
+  FieldValue Evaluate(const Eigen::Vector3d& x_in_shape_m) const;
+
+  // One standard deviation of the surface along its normal at each of these points on it, m.
+  std::vector<double> Sigmas(const std::vector<Eigen::Vector3d>& points_in_shape_m) const;
+
+  // Where the line of steepest slope from this point meets the surface; nothing if it ends before,
+  // or further away than `max_distance_m`.
+  std::optional<Eigen::Vector3d> Project(const Eigen::Vector3d& x_in_shape_m,
+                                         double max_distance_m) const;
+
+  // The sigma that point `idx` was given the weight of, m.
+  double PointSigma(std::size_t idx) const {
+    return sigmas_(static_cast<Eigen::Index>(idx)) * scale_m_;
+  }
+
+ private:
+  Eigen::Vector3d Normalized(const Eigen::Vector3d& x_in_shape_m) const {
+    return (x_in_shape_m - center_m_) / scale_m_;
+  }
+
+  bool IsValue(Eigen::Index row) const { return normals_.row(row).isZero(0); }
+
+  // Coordinates inside are normalized: their origin is the mean of the points, and their unit is
+  // the largest distance of a point from it. Rows are the points, then the normals.
+  Eigen::Vector3d center_m_ = Eigen::Vector3d::Zero();
+  double scale_m_ = 1.0;
+  Eigen::MatrixX3d places_;
+  Eigen::MatrixX3d normals_;  // zero rows for points
+  Eigen::VectorXd sigmas_;
+  double amplitude_ = 1.0;
+  Eigen::LLT<Eigen::MatrixXd> covariance_;
+  Eigen::MatrixXd whitened_drift_;
+  Eigen::LLT<Eigen::MatrixXd> drift_precision_;
+  Eigen::VectorXd drift_;    // coefficients of the polynomial
+  Eigen::VectorXd weights_;  // of the covariance functions
+};
+
+}  // namespace velamap
