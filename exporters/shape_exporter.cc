@@ -54,7 +54,8 @@ MetricsReport MetricsOf(const ShapeExportReport& report) {
   return metrics;
 }
 
-void WriteShapeFiles(const ShapeExportReport& report, bool ascii_ply, const fs::path& folder) {
+void WriteShapeFiles(const ShapeExportReport& report, bool ascii_ply, const SailFileOptions& files,
+                     const fs::path& folder) {
   const PlyFormat format = ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
   const std::string frame = FrameText(report.frame);
   WriteFile(folder / "shape.csv",
@@ -68,8 +69,8 @@ void WriteShapeFiles(const ShapeExportReport& report, bool ascii_ply, const fs::
   const MetricsReport metrics = MetricsOf(report);
   WriteFile(folder / "metrics.csv", [&](std::ostream& out) { WriteMetricsCsv(metrics, out); });
   WriteFile(folder / "metrics.json", [&](std::ostream& out) { WriteMetricsJson(metrics, out); });
-  WriteSailFiles(report.sail, report.frame, folder);
-  WriteFreeformFiles(report.freeform, report.frame, folder);
+  WriteSailFiles(report.sail, report.shape, report.frame, files, folder);
+  WriteFreeformFiles(report.freeform, report.frame, files.unit, folder);
 }
 
 std::map<int, double> ScalesOf(const ScaleAudit& audit) {
@@ -131,12 +132,13 @@ ShapeExportReport ExportShape(const Model& model, const Layout& layout,
   const fs::path shape_path = OutputFolder(options.shape_output_path);
   CheckOutputFolders(model_path, shape_path);
   options.sail.Check();
+  options.files.grid.Check();
   CheckFrameChoice(options.frame, layout);
   ShapeExportReport report = ComputeReport(model, layout, options, uncertainty);
   std::optional<AtomicFolder> shape_folder;
   if (!shape_path.empty()) {
     shape_folder.emplace(shape_path);
-    WriteShapeFiles(report, options.ascii_ply, shape_folder->TemporaryPath());
+    WriteShapeFiles(report, options.ascii_ply, options.files, shape_folder->TemporaryPath());
   }
   if (!model_path.empty()) {
     WriteModel(report.metric_model, model_path.string(), ModelFormat::kBinaryAndText,

@@ -27,6 +27,7 @@ struct ShapeExporterOptions {
   std::optional<FrameChoice> frame;               // without it, ChooseFrame() decides
   ScaleMethod scale_by = ScaleMethod::kAgreeing;  // of a model without uncertainty
   SailOptions sail;
+  SailFileOptions files;  // the unit is also that of parts without lines
 };
 
 struct ShapeExportReport {

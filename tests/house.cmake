@@ -69,8 +69,8 @@ house_folder(exporters/shape PUBLIC
   adjacent_distances common_corners joint_covariance known_distances marker_shape part_planes
   principal_axes sail_lines shape_frame shape_metrics shape_sigma shape_transform)
 house_folder(exporters/formats PUBLIC
-  cad_library cad_writer diverging_color mesh_triangles mesh_writer metrics_report
-  ply_writer round_number shape_csv shape_ply surface_spline)
+  cad_library cad_writer diverging_color length_unit mesh_triangles mesh_writer metrics_report
+  ply_writer round_number shape_csv shape_ply surface_grid surface_spline)
 house_folder(exporters/design PUBLIC
   mesh_reader)
 house_folder(exporters/scale PUBLIC

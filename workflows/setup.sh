@@ -16,6 +16,7 @@ packages=(
 )
 test_packages=(
   xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium poppler-utils librsvg2-bin
+  python3-vtk9 gmsh  # readers of what others mesh
   clang libclang-rt-dev llvm clang-format-14  # llvm: names functions in the sanitizers' reports
   man-db zsh mmdebstrap  # pages and completions that are installed; package.sh --try
 )

@@ -1,10 +1,13 @@
 #include "exporters/design/mesh_reader.h"
 
+#include <fstream>
+
 #include <fmt/format.h>
 
 #include "exporters/design/cad_reader.h"
 #include "exporters/design/mesh_parser.h"
 #include "exporters/design/mesh_process.h"
+#include "exporters/formats/mesh_writer.h"
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -21,7 +24,13 @@ bool IsMeshPath(const fs::path& path) {
   return extension == ".ply" || extension == ".stl" || extension == ".obj" || HasOwnUnit(path);
 }
 
-double DefaultMPerUnit(const fs::path& path) { return LowerExtension(path) == ".ply" ? 1.0 : 1e-3; }
+double DefaultMPerUnit(const fs::path& path) {
+  if (LowerExtension(path) == ".ply") return 1.0;
+  constexpr std::size_t kEnough = 80;  // the size of the header of an STL
+  std::string beginning(kEnough, '\0');
+  std::ifstream(path, std::ios::binary).read(beginning.data(), kEnough);
+  return 1.0 / UnitsPerM(UnitOfMeshFile(beginning).value_or(LengthUnit::kMillimetre));
+}
 
 double MPerUnitFromName(const std::string& name, const std::string& what) {
   if (name == "m") return 1.0;

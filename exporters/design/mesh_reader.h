@@ -24,7 +24,7 @@ bool IsMeshPath(const std::filesystem::path& path);
 // Whether the format names its unit: STEP and IGES.
 bool HasOwnUnit(const std::filesystem::path& path);
 
-// The units in which velamap writes: PLY in m, STL and OBJ in mm.
+// m for PLY; for STL and OBJ what a file of velamap names, and mm for those of other programs.
 double DefaultMPerUnit(const std::filesystem::path& path);
 
 // 1 for "m", 0.001 for "mm". Throws InputError naming `what` for any other name.

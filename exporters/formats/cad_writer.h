@@ -1,6 +1,7 @@
 // Writes spline surfaces as STEP (AP214) and IGES (5.3) with Open CASCADE. Coordinates and header
-// are in mm. The surface becomes one face with its poles and knots, without approximation. The
-// files have no time stamp, so that the same surface gives the same bytes.
+// are in mm. The surface becomes one face with its poles and knots, without approximation. The date
+// in the header is that of the writing, or that of the environment variable SOURCE_DATE_EPOCH
+// (seconds since 1970), with which the same surface gives the same bytes.
 //
 // Calls are serialized, because Open CASCADE keeps its settings in global variables.
 
@@ -8,14 +9,39 @@
 
 #include <iosfwd>
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "exporters/formats/surface_spline.h"
 
 namespace velamap {
 
-// `name`, of the part, becomes the name of the product. Throws std::logic_error if Open CASCADE
-// fails.
-void WriteStep(const SplineSurface& surface, const std::string& name, std::ostream& out);
-void WriteIges(const SplineSurface& surface, const std::string& name, std::ostream& out);
+// A B-spline with multiplicities in its knots, as SplineSurface has them.
+struct CadCurve {
+  std::string name;
+  int degree = 3;
+  Eigen::ArrayXd knots;
+  Eigen::Matrix3Xd poles_in_shape_m;
+};
+
+struct CadPoint {
+  std::string name;
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
+};
+
+// What lies beside the surface.
+struct CadExtras {
+  std::vector<CadCurve> curves;
+  std::vector<CadPoint> points;
+};
+
+// `name`, of the part, becomes the name of the product in STEP and of the surface in IGES. Curves
+// and points keep their names. STEP has them in a second product, which needs a curve. Throws
+// std::logic_error if Open CASCADE fails.
+void WriteStep(const SplineSurface& surface, const std::string& name, std::ostream& out,
+               const CadExtras& extras = {});
+void WriteIges(const SplineSurface& surface, const std::string& name, std::ostream& out,
+               const CadExtras& extras = {});
 
 }  // namespace velamap

@@ -92,13 +92,6 @@ void CheckCount(const GridSize& grid, const MeshOptions& options) {
                   OptionName(member), given, num_triangles, kMaxTriangles, 1.1 * possible));
 }
 
-// Takes the normal of a neighboring point where the surface degenerates to a point.
-Eigen::Vector3d NormalAt(const SplineSurface& surface, double u, double v, const SurfaceJet& jet) {
-  if (!jet.normal.isZero()) return jet.normal;
-  constexpr double kInward = 1e-4;
-  return EvaluateJet(surface, u + kInward * (0.5 - u), v + kInward * (0.5 - v)).normal;
-}
-
 }  // namespace
 
 OptionGroup DescribeOptions(MeshOptions* options) {
@@ -133,9 +126,8 @@ TriangleMesh MeshSurface(const SplineSurface& surface, const MeshOptions& option
   for (int i = 0; i <= num_u; ++i) {
     for (int j = 0; j <= num_v; ++j) {
       const double u = static_cast<double>(i) / num_u, v = static_cast<double>(j) / num_v;
-      const SurfaceJet jet = EvaluateJet(surface, u, v);
-      mesh.vertices_m.push_back(jet.x);
-      mesh.normals.push_back(NormalAt(surface, u, v, jet));
+      mesh.vertices_m.push_back(EvaluatePoint(surface, u, v));
+      mesh.normals.push_back(EvaluateNormal(surface, u, v));
       mesh.surface_parameters.emplace_back(u, v);
     }
   }

@@ -11,7 +11,6 @@
 #include "exporters/formats/little_endian.h"
 #include "exporters/formats/ply_writer.h"
 #include "importer/base/csv.h"
-#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -25,6 +24,10 @@ std::vector<int> Indices(std::size_t size) {
 
 void AppendFloats(const Eigen::Vector3d& values, std::string* bytes) {
   for (const double value : values) AppendLittleEndian(static_cast<float>(value), bytes);
+}
+
+std::string HeaderStart(LengthUnit unit) {
+  return fmt::format("velamap, unit {}, surface of ", ChoiceName(kLengthUnits, unit));
 }
 
 }  // namespace
@@ -55,13 +58,15 @@ void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostrea
            vertices, faces);
 }
 
-void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, std::ostream& out) {
+void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, LengthUnit unit,
+                  std::ostream& out) {
   const bool has_normals = !mesh.normals.empty();
   const bool has_parameters = !mesh.surface_parameters.empty();
-  out << "# velamap surface of " << SingleLine(name) << ", unit mm\no surface\n";
-  for (const Eigen::Vector3d& x : mesh.vertices_m) {
-    out << fmt::format("v {:.6f} {:.6f} {:.6f}\n", kMmPerM * x.x(), kMmPerM * x.y(),
-                       kMmPerM * x.z());
+  out << "# " << HeaderStart(unit) << SingleLine(name) << "\no surface\n";
+  const int digits = unit == LengthUnit::kMetre ? 9 : 6;  // nanometres
+  for (const Eigen::Vector3d& x_m : mesh.vertices_m) {
+    const Eigen::Vector3d x = UnitsPerM(unit) * x_m;
+    out << fmt::format("v {0:.{3}f} {1:.{3}f} {2:.{3}f}\n", x.x(), x.y(), x.z(), digits);
   }
   for (const Eigen::Vector2d& x : mesh.surface_parameters) {
     out << fmt::format("vt {:.7f} {:.7f}\n", x.x(), x.y());
@@ -83,10 +88,11 @@ void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, std::ostrea
   }
 }
 
-void WriteMeshStl(const TriangleMesh& mesh, const std::string& name, std::ostream& out) {
+void WriteMeshStl(const TriangleMesh& mesh, const std::string& name, LengthUnit unit,
+                  std::ostream& out) {
   constexpr std::size_t kHeaderSize = 80;
   // A binary file must not start with "solid", as an ASCII one does.
-  std::string bytes = "velamap, unit mm, surface of " + SingleLine(name);
+  std::string bytes = HeaderStart(unit) + SingleLine(name);
   bytes.resize(kHeaderSize, ' ');
   AppendLittleEndian(static_cast<std::uint32_t>(mesh.triangles.size()), &bytes);
   out << bytes;
@@ -95,10 +101,19 @@ void WriteMeshStl(const TriangleMesh& mesh, const std::string& name, std::ostrea
     const Eigen::Vector3d normal = (x[b] - x[a]).cross(x[c] - x[a]).normalized();
     bytes.clear();
     AppendFloats(normal, &bytes);
-    for (const int vertex : {a, b, c}) AppendFloats(kMmPerM * x[vertex], &bytes);
+    for (const int vertex : {a, b, c}) AppendFloats(UnitsPerM(unit) * x[vertex], &bytes);
     bytes.append(2, '\0');
     out << bytes;
   }
+}
+
+std::optional<LengthUnit> UnitOfMeshFile(const std::string& beginning) {
+  for (const auto& [unit, name] : kLengthUnits) {
+    for (const char* comment : {"", "# "}) {
+      if (beginning.rfind(comment + HeaderStart(unit), 0) == 0) return unit;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace velamap

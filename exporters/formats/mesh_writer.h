@@ -1,12 +1,14 @@
 // Writes triangle meshes as PLY, OBJ and STL. PLY is in m like all PLY files of velamap, so that
-// the mesh lies on the markers of shape.ply. OBJ and STL are for CAD programs and in mm like STEP
-// and IGES. The header names the unit and `name`, the part; line breaks in it become spaces.
+// the mesh lies on the markers of shape.ply. OBJ and STL are in the unit that is asked for. The
+// header names the unit and `name`, the part; line breaks in it become spaces.
 
 #pragma once
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 
+#include "exporters/formats/length_unit.h"
 #include "exporters/formats/mesh_triangles.h"
 
 namespace velamap {
@@ -15,9 +17,14 @@ namespace velamap {
 // sigma if the mesh has them, and faces with vertex_indices.
 void WriteMeshPly(const TriangleMesh& mesh, const std::string& name, std::ostream& out);
 
-void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, std::ostream& out);
+void WriteMeshObj(const TriangleMesh& mesh, const std::string& name, LengthUnit unit,
+                  std::ostream& out);
 
 // Binary STL: float coordinates and normals of the triangles.
-void WriteMeshStl(const TriangleMesh& mesh, const std::string& name, std::ostream& out);
+void WriteMeshStl(const TriangleMesh& mesh, const std::string& name, LengthUnit unit,
+                  std::ostream& out);
+
+// The unit that the beginning of an OBJ or STL of velamap names; nothing for other files.
+std::optional<LengthUnit> UnitOfMeshFile(const std::string& beginning);
 
 }  // namespace velamap

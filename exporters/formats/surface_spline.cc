@@ -155,6 +155,13 @@ Eigen::Vector3d EvaluatePoint(const SplineSurface& surface, double u, double v) 
                  BasisRow(surface.knots_v, surface.degree_v, v, 0).transpose());
 }
 
+Eigen::Vector3d EvaluateNormal(const SplineSurface& surface, double u, double v) {
+  const Eigen::Vector3d normal = EvaluateJet(surface, u, v).normal;
+  if (!normal.isZero()) return normal;
+  constexpr double kInward = 1e-4;
+  return EvaluateJet(surface, u + kInward * (0.5 - u), v + kInward * (0.5 - v)).normal;
+}
+
 double SurfaceArea(const SplineSurface& surface) {
   double area_m2 = 0.0;
   const auto nodes_v = SpanQuadrature(surface.knots_v);

@@ -44,6 +44,8 @@ struct SurfaceJet {
 };
 SurfaceJet EvaluateJet(const SplineSurface& surface, double u, double v);
 Eigen::Vector3d EvaluatePoint(const SplineSurface& surface, double u, double v);
+// Unit; that of a neighboring point where the surface degenerates to a point.
+Eigen::Vector3d EvaluateNormal(const SplineSurface& surface, double u, double v);
 
 double SurfaceArea(const SplineSurface& surface);  // m^2
 

@@ -92,7 +92,7 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
   return freeform;
 }
 
-void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame,
+void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame, LengthUnit unit,
                         const std::filesystem::path& folder) {
   for (const PartSurface& part : freeform.surfaces) {
     const std::string title = fmt::format("{} (frame: {})", part.part, frame.name);
@@ -101,8 +101,8 @@ void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame,
     };
     const TriangleMesh& mesh = part.surface.mesh;
     write(".ply", [&](std::ostream& out) { WriteMeshPly(mesh, title, out); });
-    write(".obj", [&](std::ostream& out) { WriteMeshObj(mesh, title, out); });
-    write(".stl", [&](std::ostream& out) { WriteMeshStl(mesh, title, out); });
+    write(".obj", [&](std::ostream& out) { WriteMeshObj(mesh, title, unit, out); });
+    write(".stl", [&](std::ostream& out) { WriteMeshStl(mesh, title, unit, out); });
   }
   if (freeform.surfaces.empty()) return;
   WriteFile(folder / "freeform_residuals.csv",

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "exporters/formats/length_unit.h"
 #include "exporters/formats/mesh_triangles.h"
 #include "exporters/freeform/freeform_surface.h"
 #include "exporters/shape/marker_shape.h"
@@ -41,8 +42,9 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
                               const std::optional<MeshOptions>& mesh);
 
 // Writes .ply .obj .stl of each surface under its stem, and freeform_residuals.csv with the corners
-// of all of them. `folder` has to exist. Throws InputError if it is not writable.
-void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame,
+// of all of them. `unit` is that of OBJ and STL. `folder` has to exist. Throws InputError if it is
+// not writable.
+void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame, LengthUnit unit,
                         const std::filesystem::path& folder);
 
 }  // namespace velamap

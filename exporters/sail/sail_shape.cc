@@ -37,48 +37,61 @@ std::string Suffix(int surface_idx) {
   return surface_idx == 0 ? "" : fmt::format("_{}", surface_idx + 1);
 }
 
-struct SurfaceFile {
-  std::string name;
-  std::function<void(const SailSurface&, const std::string& title, std::ostream&)> write;
-};
-
-std::vector<SurfaceFile> SurfaceFiles(int surface_idx) {
-  const std::string stem = "surface" + Suffix(surface_idx);
-  const auto cad = [](auto writer) {
-    return [writer](const SailSurface& surface, const std::string& title, std::ostream& out) {
-      writer(surface.fit.surface, title, out);
-    };
-  };
-  const auto mesh = [](auto writer) {
-    return [writer](const SailSurface& surface, const std::string& title, std::ostream& out) {
-      writer(surface.mesh, title, out);
-    };
-  };
-  return {{stem + ".step", cad(WriteStep)},
-          {stem + ".igs", cad(WriteIges)},
-          {stem + ".ply", mesh(WriteMeshPly)},
-          {stem + ".obj", mesh(WriteMeshObj)},
-          {stem + ".stl", mesh(WriteMeshStl)},
-          {fmt::format("surface_residuals{}.csv", Suffix(surface_idx)),
-           [](const SailSurface& surface, const std::string&, std::ostream& out) {
-             WriteSurfaceResidualsCsv(surface.fit, out);
-           }},
-          {fmt::format("surface_edges{}.csv", Suffix(surface_idx)),
-           [](const SailSurface& surface, const std::string&, std::ostream& out) {
-             WriteSurfaceEdgesCsv(surface.fit, out);
-           }}};
+// The sections of a part as curves, and the centers of its whole markers as points.
+CadExtras ExtrasOf(const std::string& part, const SectionReport& report, const MarkerShape& shape) {
+  CadExtras extras;
+  for (const Section& section : report.sections) {
+    if (section.part != part) continue;
+    extras.curves.push_back(
+        {section.name, section.curve.degree, section.curve.knots, section.curve.poles_in_shape_m});
+  }
+  for (const ShapeMarker& marker : shape.markers) {
+    if (marker.part != part || !marker.IsWhole()) continue;
+    extras.points.push_back({fmt::format("{}", marker.marker_id), *marker.x_in_shape_m[0]});
+  }
+  return extras;
 }
 
-using SectionWriter = void (*)(const SectionReport&, const ShapeFrame&, std::ostream&);
-const std::vector<std::pair<std::string, SectionWriter>>& SectionFiles() {
-  static const std::vector<std::pair<std::string, SectionWriter>> files = {
-      {"sections.csv", WriteSectionsCsv},
-      {"sections.json", WriteSectionsJson},
-      {"sections.dxf", WriteSectionsDxf},
-      {"section_profiles.csv", WriteSectionProfilesCsv},
-      {"section_profiles.dxf", WriteSectionProfilesDxf},
-      {"section_profiles.svg", WriteSectionProfilesSvg}};
-  return files;
+using Writer = std::function<void(std::ostream&)>;
+
+void WriteSurfaceFiles(const SailSurface& surface, const CadExtras& extras,
+                       const std::string& title, const std::string& suffix,
+                       const SailFileOptions& options, const std::filesystem::path& folder) {
+  const SplineSurface& spline = surface.fit.surface;
+  const SurfaceGrid grid = MakeGrid(spline, options.grid);
+  const std::string stem = "surface" + suffix;
+  const std::vector<std::pair<std::string, Writer>> files = {
+      {stem + ".step", [&](std::ostream& out) { WriteStep(spline, title, out, extras); }},
+      {stem + ".igs", [&](std::ostream& out) { WriteIges(spline, title, out, extras); }},
+      {stem + ".ply", [&](std::ostream& out) { WriteMeshPly(surface.mesh, title, out); }},
+      {stem + ".obj",
+       [&](std::ostream& out) { WriteMeshObj(surface.mesh, title, options.unit, out); }},
+      {stem + ".stl",
+       [&](std::ostream& out) { WriteMeshStl(surface.mesh, title, options.unit, out); }},
+      {stem + ".vts", [&](std::ostream& out) { WriteGridVts(grid, title, out); }},
+      {stem + ".msh", [&](std::ostream& out) { WriteGridMsh(grid, title, options.unit, out); }},
+      {stem + "_ansys.txt",
+       [&](std::ostream& out) { WriteGridAnsys(grid, title, options.unit, out); }},
+      {"surface_residuals" + suffix + ".csv",
+       [&](std::ostream& out) { WriteSurfaceResidualsCsv(surface.fit, out); }},
+      {"surface_edges" + suffix + ".csv",
+       [&](std::ostream& out) { WriteSurfaceEdgesCsv(surface.fit, out); }}};
+  for (const auto& [name, writer] : files) WriteFile(folder / name, writer);
+}
+
+void WriteSectionFiles(const SectionReport& report, const ShapeFrame& frame, LengthUnit unit,
+                       const std::filesystem::path& folder) {
+  const std::vector<std::pair<std::string, Writer>> files = {
+      {"sections.csv", [&](std::ostream& out) { WriteSectionsCsv(report, frame, out); }},
+      {"sections.json", [&](std::ostream& out) { WriteSectionsJson(report, frame, out); }},
+      {"sections.dxf", [&](std::ostream& out) { WriteSectionsDxf(report, frame, unit, out); }},
+      {"section_profiles.csv",
+       [&](std::ostream& out) { WriteSectionProfilesCsv(report, frame, out); }},
+      {"section_profiles.dxf",
+       [&](std::ostream& out) { WriteSectionProfilesDxf(report, frame, unit, out); }},
+      {"section_profiles.svg",
+       [&](std::ostream& out) { WriteSectionProfilesSvg(report, frame, out); }}};
+  for (const auto& [name, writer] : files) WriteFile(folder / name, writer);
 }
 
 }  // namespace
@@ -119,20 +132,16 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
   return sail;
 }
 
-void WriteSailFiles(const SailShape& sail, const ShapeFrame& frame,
-                    const std::filesystem::path& folder) {
+void WriteSailFiles(const SailShape& sail, const MarkerShape& shape, const ShapeFrame& frame,
+                    const SailFileOptions& options, const std::filesystem::path& folder) {
   if (!sail.sections.sections.empty() || !sail.sections.missing.empty()) {
-    for (const auto& [name, writer] : SectionFiles()) {
-      WriteFile(folder / name,
-                [&, write = writer](std::ostream& out) { write(sail.sections, frame, out); });
-    }
+    WriteSectionFiles(sail.sections, frame, options.unit, folder);
   }
   for (std::size_t i = 0; i < sail.surfaces.size(); ++i) {
     const SailSurface& surface = sail.surfaces[i];
-    const std::string title = fmt::format("{} (frame: {})", surface.part, frame.name);
-    for (const SurfaceFile& file : SurfaceFiles(static_cast<int>(i))) {
-      WriteFile(folder / file.name, [&](std::ostream& out) { file.write(surface, title, out); });
-    }
+    WriteSurfaceFiles(surface, ExtrasOf(surface.part, sail.sections, shape),
+                      fmt::format("{} (frame: {})", surface.part, frame.name),
+                      Suffix(static_cast<int>(i)), options, folder);
   }
 }
 

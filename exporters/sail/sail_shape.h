@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "exporters/formats/length_unit.h"
 #include "exporters/formats/mesh_triangles.h"
+#include "exporters/formats/surface_grid.h"
 #include "exporters/sail/section.h"
 #include "exporters/shape/marker_shape.h"
 #include "exporters/shape/shape_frame.h"
@@ -27,6 +29,11 @@ struct SailOptions {
   std::optional<MeshOptions> mesh;
 
   void Check() const;  // throws InputError like those of its members
+};
+
+struct SailFileOptions {
+  LengthUnit unit = LengthUnit::kMetre;  // of the formats that name none, and of DXF
+  GridOptions grid;
 };
 
 struct SailSurface {
@@ -55,9 +62,11 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
                       const PointCovariance* covariance, const SailOptions& options);
 
 // Writes the tables and drawings of the sections (sections.*, section_profiles.*) and, for each
-// surface, surface.step .igs .ply .obj .stl, surface_residuals.csv and surface_edges.csv. The names
-// of a second part end in _2. `folder` has to exist. Throws InputError if it is not writable.
-void WriteSailFiles(const SailShape& sail, const ShapeFrame& frame,
-                    const std::filesystem::path& folder);
+// surface, surface.step .igs .ply .obj .stl, its grid as .vts .msh and _ansys.txt, and
+// surface_residuals.csv and surface_edges.csv. STEP and IGES have the sections and markers of the
+// part beside the surface. The names of a second part end in _2. `folder` has to exist. Throws
+// InputError if it is not writable.
+void WriteSailFiles(const SailShape& sail, const MarkerShape& shape, const ShapeFrame& frame,
+                    const SailFileOptions& options, const std::filesystem::path& folder);
 
 }  // namespace velamap

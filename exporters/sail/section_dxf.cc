@@ -23,15 +23,25 @@ namespace {
 constexpr double kGapPerDepth = 0.5;  // gap between profiles over the largest depth
 constexpr double kMinGap_mm = 100.0;
 
-void Write(std::ostream& out, int code, const std::string& value) {
-  out << fmt::format("{:>3}\n{}\n", code, value);
-}
-void Write(std::ostream& out, int code, int value) { Write(out, code, std::to_string(value)); }
+struct DxfOutput {
+  std::ostream& stream;
+  LengthUnit unit;
 
-void WritePoint(std::ostream& out, const Eigen::Vector3d& x_mm) {
+  // Lengths are in mm up to here.
+  double UnitsPerMm() const { return kMPerMm * UnitsPerM(unit); }
+};
+
+void Write(const DxfOutput& out, int code, const std::string& value) {
+  out.stream << fmt::format("{:>3}\n{}\n", code, value);
+}
+void Write(const DxfOutput& out, int code, int value) { Write(out, code, std::to_string(value)); }
+
+void WritePoint(const DxfOutput& out, const Eigen::Vector3d& x_mm) {
   // Rounds to 0.0001 mm; adding 0 turns -0 into 0.
+  const int digits = out.unit == LengthUnit::kMetre ? 7 : 4;
   for (int axis = 0; axis < 3; ++axis) {
-    Write(out, 10 * (axis + 1), fmt::format("{:.4f}", std::round(x_mm[axis] * 1e4) / 1e4 + 0.0));
+    const double rounded_mm = std::round(x_mm[axis] * 1e4) / 1e4 + 0.0;
+    Write(out, 10 * (axis + 1), fmt::format("{:.{}f}", out.UnitsPerMm() * rounded_mm, digits));
   }
 }
 
@@ -63,14 +73,16 @@ std::vector<std::string> SectionLayers(const SectionReport& report) {
 }
 
 void WriteHeader(const ShapeFrame& frame, const std::vector<std::string>& layers,
-                 const Eigen::AlignedBox3d& extent_mm, std::ostream& out) {
-  Write(out, 999, "velamap sections, unit mm, frame " + SingleLine(FrameText(frame)));
+                 const Eigen::AlignedBox3d& extent_mm, const DxfOutput& out) {
+  Write(out, 999,
+        fmt::format("velamap sections, unit {}, frame {}", ChoiceName(kLengthUnits, out.unit),
+                    SingleLine(FrameText(frame))));
   Write(out, 0, "SECTION");
   Write(out, 2, "HEADER");
   Write(out, 9, "$ACADVER");
   Write(out, 1, "AC1009");
   Write(out, 9, "$INSUNITS");
-  Write(out, 70, 4);  // mm
+  Write(out, 70, out.unit == LengthUnit::kMetre ? 6 : 4);  // codes of m and mm
   if (!extent_mm.isEmpty()) {
     Write(out, 9, "$EXTMIN");
     WritePoint(out, extent_mm.min());
@@ -96,13 +108,13 @@ void WriteHeader(const ShapeFrame& frame, const std::vector<std::string>& layers
   Write(out, 2, "ENTITIES");
 }
 
-void WriteEnd(std::ostream& out) {
+void WriteEnd(const DxfOutput& out) {
   Write(out, 0, "ENDSEC");
   Write(out, 0, "EOF");
 }
 
 void WritePolyline(const std::vector<Eigen::Vector3d>& points_mm, const std::string& layer,
-                   std::ostream& out) {
+                   const DxfOutput& out) {
   Write(out, 0, "POLYLINE");
   Write(out, 8, layer);
   Write(out, 66, 1);  // vertices follow
@@ -118,17 +130,18 @@ void WritePolyline(const std::vector<Eigen::Vector3d>& points_mm, const std::str
   Write(out, 8, layer);
 }
 
-void WriteMarkerPoint(const Eigen::Vector3d& x_mm, std::ostream& out) {
+void WriteMarkerPoint(const Eigen::Vector3d& x_mm, const DxfOutput& out) {
   Write(out, 0, "POINT");
   Write(out, 8, "MARKERS");
   WritePoint(out, x_mm);
 }
 
-void WriteText(const Eigen::Vector3d& x_mm, const std::string& text, std::ostream& out) {
+void WriteText(const Eigen::Vector3d& x_mm, const std::string& text, const DxfOutput& out) {
   Write(out, 0, "TEXT");
   Write(out, 8, "NAMES");
   WritePoint(out, x_mm);
-  Write(out, 40, 40);  // height, mm
+  constexpr double kHeight_mm = 40;
+  Write(out, 40, fmt::format("{}", out.UnitsPerMm() * kHeight_mm));
   Write(out, 1, SingleLine(text));
 }
 
@@ -138,7 +151,9 @@ Eigen::Vector3d FlatPoint(const ProfilePoint& point, double base_mm) {
 
 }  // namespace
 
-void WriteSectionsDxf(const SectionReport& report, const ShapeFrame& frame, std::ostream& out) {
+void WriteSectionsDxf(const SectionReport& report, const ShapeFrame& frame, LengthUnit unit,
+                      std::ostream& stream) {
+  const DxfOutput out{stream, unit};
   const std::vector<std::string> section_layers = SectionLayers(report);
   std::vector<std::string> layers = section_layers;
   layers.push_back("MARKERS");
@@ -164,8 +179,9 @@ void WriteSectionsDxf(const SectionReport& report, const ShapeFrame& frame, std:
   WriteEnd(out);
 }
 
-void WriteSectionProfilesDxf(const SectionReport& report, const ShapeFrame& frame,
-                             std::ostream& out) {
+void WriteSectionProfilesDxf(const SectionReport& report, const ShapeFrame& frame, LengthUnit unit,
+                             std::ostream& stream) {
+  const DxfOutput out{stream, unit};
   const std::vector<std::string> section_layers = SectionLayers(report);
   std::vector<std::string> layers = section_layers;
   for (const char* layer : {"MARKERS", "CHORDS", "NAMES"}) layers.push_back(layer);

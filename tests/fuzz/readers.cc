@@ -232,12 +232,12 @@ FuzzedReader OfCad(const std::string& name, Writer* writer) {
   return {OfFile(name, ReadMeshShortly), [writer] {
             const SplineSurface surface = FitSurface(MarkersOn(BilinearPatch, 3, 4)).surface;
             return std::vector<Bytes>{
-                Written([&](std::ostream& out) { writer(surface, "sail", out); })};
+                Written([&](std::ostream& out) { writer(surface, "sail", out, CadExtras{}); })};
           }};
 }
 
 template <typename Writer>
-FuzzedReader OfMesh(const std::string& name, Writer* writer) {
+FuzzedReader OfMesh(const std::string& name, Writer writer) {
   return {
       OfFile(name, ReadMeshShortly), [writer] {
         TriangleMesh mesh;
@@ -245,6 +245,13 @@ FuzzedReader OfMesh(const std::string& name, Writer* writer) {
         mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
         return std::vector<Bytes>{Written([&](std::ostream& out) { writer(mesh, "sail", out); })};
       }};
+}
+
+template <typename Writer>
+auto InMetres(Writer* writer) {
+  return [writer](const TriangleMesh& mesh, const std::string& name, std::ostream& out) {
+    writer(mesh, name, LengthUnit::kMetre, out);
+  };
 }
 
 }  // namespace
@@ -273,8 +280,8 @@ const std::map<std::string, FuzzedReader>& FuzzedReaders() {
         UncertaintySeeds}},
       {"database", {OfFile("database.db", ReadDatabase), DatabaseSeeds}},
       {"ply", OfMesh("mesh.ply", WriteMeshPly)},
-      {"obj", OfMesh("mesh.obj", WriteMeshObj)},
-      {"stl", OfMesh("mesh.stl", WriteMeshStl)},
+      {"obj", OfMesh("mesh.obj", InMetres(WriteMeshObj))},
+      {"stl", OfMesh("mesh.stl", InMetres(WriteMeshStl))},
       {"step", OfCad("mesh.step", WriteStep)},
       {"iges", OfCad("mesh.iges", WriteIges)}};
   return readers;

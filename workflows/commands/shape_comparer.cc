@@ -55,7 +55,8 @@ OptionGroup InputGroup(Options* options) {
                            "what the shape is compared with: shape.csv or its folder, or a surface "
                            "as .ply, .stl, .obj, .step or .iges")),
        Common({"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
-               "unit of a .ply, .stl or .obj; left out: m for .ply, mm for .stl and .obj"}),
+               "unit of a .ply, .stl or .obj; left out: as velamap wrote it, else m for .ply, mm "
+               "for .stl and .obj"}),
        {"chord_deviation", &mesh->chord_deviation_mm, "mm",
         "how far triangles may be from the faces of a .step or .iges", MoreThan(0)},
        Common(PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,

@@ -1,5 +1,6 @@
 #include "workflows/options/sail_options.h"
 
+#include "exporters/formats/length_unit.h"
 #include "exporters/surface/surface_csv.h"
 #include "workflows/options/shared_options.h"
 
@@ -18,6 +19,15 @@ OptionGroup SurfaceGroup(SurfaceOptions* options, SurfaceFileOptions* file_optio
   return group;
 }
 
+OptionGroup FileGroup(SailFileOptions* files) {
+  OptionGroup group = DescribeOptions(&files->grid);
+  group.title = "Files of the surface";
+  group.options.push_back(ChoiceOption("unit", &files->unit, kLengthUnits,
+                                       "unit of OBJ, STL, DXF, MSH and ANSYS files; CSV, PLY and "
+                                       "VTS are in m, STEP and IGES name their unit"));
+  return group;
+}
+
 }  // namespace
 
 std::vector<OptionGroup> SailGroups(ShapeExporterOptions* exporter, SurfaceFileOptions* surface) {
@@ -30,7 +40,8 @@ std::vector<OptionGroup> SailGroups(ShapeExporterOptions* exporter, SurfaceFileO
               "12,15,40; left out: as the layout says, else the first of these that can be made"});
   return {{"Frame and scale of the result", {frame, ScaleOption(&exporter->scale_by)}},
           DescribeOptions(&exporter->sail.sections),
-          SurfaceGroup(&exporter->sail.surface, surface)};
+          SurfaceGroup(&exporter->sail.surface, surface),
+          FileGroup(&exporter->files)};
 }
 
 void CompleteSailOptions(const SurfaceFileOptions& surface, ShapeExporterOptions* exporter) {
@@ -41,6 +52,7 @@ void CompleteSailOptions(const SurfaceFileOptions& surface, ShapeExporterOptions
     exporter->sail.surface.edges = ReadSurfaceEdges(surface.edges_path);
   }
   exporter->sail.Check();
+  exporter->files.grid.Check();
 }
 
 }  // namespace velamap

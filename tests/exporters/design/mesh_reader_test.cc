@@ -40,12 +40,15 @@ class MeshReaderTest : public ::testing::Test {
 
 TEST_F(MeshReaderTest, ReadsBackWhatVelamapWritesInTheRightUnit) {
   const TriangleMesh mesh = SailMesh();
-  const std::vector<
-      std::pair<std::string, void (*)(const TriangleMesh&, const std::string&, std::ostream&)>>
-      writers = {{"a.ply", WriteMeshPly}, {"a.OBJ", WriteMeshObj}, {"a.stl", WriteMeshStl}};
+  constexpr LengthUnit kM = LengthUnit::kMetre, kMm = LengthUnit::kMillimetre;
+  const std::vector<std::pair<std::string, std::function<void(std::ostream&)>>> writers = {
+      {"a.ply", [&](std::ostream& out) { WriteMeshPly(mesh, "sail", out); }},
+      {"a.OBJ", [&](std::ostream& out) { WriteMeshObj(mesh, "sail", kM, out); }},
+      {"b.obj", [&](std::ostream& out) { WriteMeshObj(mesh, "unit mm", kMm, out); }},
+      {"a.stl", [&](std::ostream& out) { WriteMeshStl(mesh, "unit mm", kM, out); }},
+      {"b.stl", [&](std::ostream& out) { WriteMeshStl(mesh, "sail", kMm, out); }}};
   for (const auto& [name, writer] : writers) {
-    WriteFileAtomically(dir_ / name,
-                        [&, write = writer](std::ostream& out) { write(mesh, "sail", out); });
+    WriteFileAtomically(dir_ / name, writer);
     const TriangleMesh read = ReadMesh(dir_ / name);
     EXPECT_EQ(read.triangles.size(), mesh.triangles.size()) << name;
     EXPECT_NEAR(Area(read), Area(mesh), 1e-4) << name;
@@ -80,7 +83,7 @@ TEST_F(MeshReaderTest, CutOffFiles) {
   WriteStep(surface, "a", step);
   WriteIges(surface, "a", iges);
   WriteMeshPly(mesh, "a", ply);
-  WriteMeshStl(mesh, "a", stl);
+  WriteMeshStl(mesh, "a", LengthUnit::kMetre, stl);
   const std::vector<std::pair<std::string, std::string>> files = {
       {"a.step", step.str()}, {"a.iges", iges.str()}, {"a.ply", ply.str()}, {"a.stl", stl.str()}};
   for (const auto& [name, text] : files) {

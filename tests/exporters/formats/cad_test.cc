@@ -1,5 +1,6 @@
 // STEP and IGES, read back with Open CASCADE.
 
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -13,7 +14,9 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "tests/exporters/comma_locale.h"
+#include "tests/exporters/formats/cad_names.h"
 #include "tests/exporters/formats/mesh_area.h"
+#include "tests/exporters/formats/scoped_date.h"
 #include "tests/exporters/sail/example_surface.h"
 #include "tests/support/temp_dir.h"
 
@@ -98,6 +101,52 @@ TEST(Cad, HeadersSayMillimetresAndTheSchema) {
   EXPECT_THAT(iges, HasSubstr("4Hsail"));
 }
 
+TEST(Cad, DatesAreReal) {
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  {
+    const ScopedDate date("1700000000");
+    EXPECT_THAT(Step(surface), HasSubstr("'2023-11-14T22:13:20'"));
+    EXPECT_THAT(Iges(surface), HasSubstr("15H20231114.221320"));
+  }
+  const std::time_t now = std::time(nullptr);
+  const std::string year = std::to_string(1900 + std::gmtime(&now)->tm_year);
+  EXPECT_THAT(Step(surface), HasSubstr("'" + year + "-"));
+}
+
+// A parabola and two markers beside the surface.
+CadExtras ExampleExtras() {
+  CadCurve curve{"h1", 2, Eigen::ArrayXd(6), Eigen::Matrix3Xd(3, 3)};
+  curve.knots << 0, 0, 0, 1, 1, 1;
+  curve.poles_in_shape_m << 0, 1, 2, 0, 0.5, 0, 3, 3, 3.25;
+  CadCurve other = curve;
+  other.name = "h\xC3\xB6he 2";
+  other.poles_in_shape_m.row(2).array() += 1;
+  return {{curve, other}, {{"12", {0.25, 0.5, 3}}, {"120", {1, -2, 3.5}}}};
+}
+
+TEST(Cad, SectionsAndMarkersKeepTheirNamesBesideTheSurface) {
+  TempDir dir;
+  const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
+  std::ostringstream step, iges;
+  WriteStep(surface, "sail", step, ExampleExtras());
+  WriteIges(surface, "sail", iges, ExampleExtras());
+  WriteText(dir / "a.step", step.str());
+  WriteText(dir / "a.igs", iges.str());
+  for (const char* name : {"a.step", "a.igs"}) {
+    const CadShape shape = ReadCad(dir / name, kAnyChordMm);
+    EXPECT_EQ(shape.num_faces, 1) << name;
+    EXPECT_NEAR(shape.area_m2, SurfaceArea(surface), 1e-6) << name;
+    const CadNames read = ReadCadNames(dir / name);
+    ASSERT_EQ(read.curves.size(), 2u) << name;
+    ASSERT_EQ(read.points.size(), 2u) << name;
+    // The middle of the parabola, and the markers.
+    EXPECT_LT((read.curves.at("h1") - Eigen::Vector3d(1, 0.25, 3.0625)).norm(), 1e-9) << name;
+    EXPECT_EQ(read.curves.count("h__he 2"), 1u) << name;
+    EXPECT_LT((read.points.at("12") - Eigen::Vector3d(0.25, 0.5, 3)).norm(), 1e-9) << name;
+    EXPECT_LT((read.points.at("120") - Eigen::Vector3d(1, -2, 3.5)).norm(), 1e-9) << name;
+  }
+}
+
 TEST(Cad, UnitOfTheFileIsObeyed) {
   TempDir dir;
   const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
@@ -111,6 +160,7 @@ TEST(Cad, UnitOfTheFileIsObeyed) {
 }
 
 TEST(Cad, SameSurfaceSameBytes) {
+  const ScopedDate date("1700000000");
   const SplineSurface surface = FitSurface(MarkersOn(TwistedSail, 4, 5)).surface;
   const std::string step = Step(surface), iges = Iges(surface);
   EXPECT_EQ(step, Step(surface));

@@ -165,20 +165,20 @@ TEST(MeshWriter, PlyLeavesOutWhatTheMeshLacks) {
   EXPECT_EQ(ReadPly(out.str()).elements[0].properties.size(), 3u);
   EXPECT_THAT(out.str(), HasSubstr("surface of a b, unit m"));
   std::ostringstream obj;
-  WriteMeshObj(mesh, "a", obj);
+  WriteMeshObj(mesh, "a", LengthUnit::kMillimetre, obj);
   EXPECT_EQ(obj.str(),
-            "# velamap surface of a, unit mm\no surface\nv 0.000000 0.000000 0.000000\n"
+            "# velamap, unit mm, surface of a\no surface\nv 0.000000 0.000000 0.000000\n"
             "v 1000.000000 0.000000 0.000000\nv 0.000000 1000.000000 0.000000\nf 1 2 3\n");
 }
 
-TEST(MeshWriter, ObjIsInMillimetres) {
+TEST(MeshWriter, ObjIsInTheUnitAskedFor) {
   const TriangleMesh mesh = MeshSurface(Sail(), EdgeLength(500));
   std::ostringstream out;
-  WriteMeshObj(mesh, "sail", out);
+  WriteMeshObj(mesh, "sail", LengthUnit::kMetre, out);
   std::istringstream in(out.str());
   std::string line;
   std::getline(in, line);
-  EXPECT_EQ(line, "# velamap surface of sail, unit mm");
+  EXPECT_EQ(line, "# velamap, unit m, surface of sail");
   std::size_t num_vertices = 0, num_faces = 0;
   while (std::getline(in, line)) {
     std::istringstream words(line);
@@ -187,7 +187,7 @@ TEST(MeshWriter, ObjIsInMillimetres) {
     if (word == "v") {
       Eigen::Vector3d x;
       words >> x.x() >> x.y() >> x.z();
-      EXPECT_LT((x / 1000 - mesh.vertices_m[num_vertices++]).norm(), 2e-9);
+      EXPECT_LT((x - mesh.vertices_m[num_vertices++]).norm(), 2e-9);
     } else if (word == "f") {
       words >> word;
       EXPECT_EQ(std::stoi(word) - 1, mesh.triangles[num_faces++][0]);
@@ -197,10 +197,10 @@ TEST(MeshWriter, ObjIsInMillimetres) {
   EXPECT_EQ(num_faces, mesh.triangles.size());
 }
 
-TEST(MeshWriter, StlIsInMillimetresAndOfTheRightSize) {
+TEST(MeshWriter, StlIsInTheUnitAskedForAndOfTheRightSize) {
   const TriangleMesh mesh = MeshSurface(Sail(), EdgeLength(500));
   std::ostringstream out;
-  WriteMeshStl(mesh, "sail", out);
+  WriteMeshStl(mesh, "sail", LengthUnit::kMillimetre, out);
   const std::string bytes = out.str();
   ASSERT_EQ(bytes.size(), 84 + 50 * mesh.triangles.size());
   EXPECT_THAT(bytes, StartsWith("velamap, unit mm, surface of sail"));

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,6 +27,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
+using testing::Not;
 
 std::set<std::string> FilesIn(const std::filesystem::path& folder) {
   std::set<std::string> names;
@@ -78,15 +80,23 @@ TEST(SailShape, FilesAreThoseThatItNames) {
   const Sail sails = TwoSails();
   const ShapeFrame frame = ChooseFrame(sails.shape, sails.layout);
   const SailShape sail = ComputeSail(sails.shape, frame, sails.layout, nullptr, {});
-  WriteSailFiles(sail, frame, dir.path());
+  WriteSailFiles(sail, sails.shape, frame, {}, dir.path());
   const std::set<std::string> files = FilesIn(dir.path());
   EXPECT_THAT(files, IsSupersetOf({"sections.csv", "section_profiles.svg", "surface.step",
-                                   "surface_2.igs", "surface_residuals_2.csv", "surface_2.stl"}));
+                                   "surface_2.igs", "surface_residuals_2.csv", "surface_2.stl",
+                                   "surface.vts", "surface_2.msh", "surface_2_ansys.txt"}));
   for (const char* name : {"surface.step", "surface_2.igs"}) {
     EXPECT_NEAR(ReadCad(dir / name, 0.1).area_m2, sail.surfaces[0].area_m2, 1e-6) << name;
   }
   EXPECT_THAT(ReadBytes(dir / "surface.step"), HasSubstr("frame: lines h1 v1"));
   EXPECT_THAT(ReadBytes(dir / "surface_2.obj"), HasSubstr("jib (frame: lines h1 v1)"));
+  // The sections and markers of the jib, and none of the main.
+  const std::string step = ReadBytes(dir / "surface_2.step");
+  EXPECT_THAT(step, HasSubstr("sections and markers"));
+  EXPECT_THAT(step, HasSubstr("B_SPLINE_CURVE_WITH_KNOTS('h3'"));
+  const int main_id = sails.layout.parts[0].horizontal[0].marker_ids[0];
+  EXPECT_THAT(step, HasSubstr(fmt::format("CARTESIAN_POINT('{}'", main_id + 1000)));
+  EXPECT_THAT(step, Not(HasSubstr(fmt::format("CARTESIAN_POINT('{}'", main_id))));
 }
 
 TEST(SailShape, SaysWhyThereIsNoSurface) {
@@ -113,7 +123,7 @@ TEST(SailShape, WithoutLinesThereIsOneNote) {
   EXPECT_THAT(result.surfaces, IsEmpty());
   EXPECT_THAT(result.surface_notes, IsEmpty());
   const TempDir dir;
-  WriteSailFiles(result, {}, dir.path());
+  WriteSailFiles(result, sail.shape, {}, {}, dir.path());
   EXPECT_THAT(FilesIn(dir.path()), IsEmpty());
 }
 

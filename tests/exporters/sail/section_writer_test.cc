@@ -39,6 +39,14 @@ std::string Written(const Function& write, const Example& example) {
   return out.str();
 }
 
+using DxfWriter = void(const SectionReport&, const ShapeFrame&, LengthUnit, std::ostream&);
+std::string Dxf(const Example& example, LengthUnit unit = LengthUnit::kMetre,
+                DxfWriter* write = WriteSectionsDxf) {
+  std::ostringstream out;
+  write(example.report, example.frame, unit, out);
+  return out.str();
+}
+
 std::vector<std::map<std::string, std::string>> Rows(const std::string& csv) {
   std::istringstream in(csv);
   const std::vector<CsvRecord> records = ReadCsv(in, "test");
@@ -103,8 +111,9 @@ TEST(SectionWriter, LocaleDoesNotMatter) {
   const Example example = MakeExample();
   const auto all = [&] {
     return Written(WriteSectionsCsv, example) + Written(WriteSectionsJson, example) +
-           Written(WriteSectionProfilesCsv, example) + Written(WriteSectionsDxf, example) +
-           Written(WriteSectionProfilesDxf, example) + Written(WriteSectionProfilesSvg, example);
+           Written(WriteSectionProfilesCsv, example) + Dxf(example) +
+           Dxf(example, LengthUnit::kMetre, WriteSectionProfilesDxf) +
+           Written(WriteSectionProfilesSvg, example);
   };
   const std::string classic = all();
   const CommaLocale comma_locale;
@@ -119,7 +128,7 @@ TEST(SectionWriter, NothingToWriteIsStillAFileThatSaysWhy) {
   EXPECT_TRUE(Rows(Written(WriteSectionsCsv, example)).empty());
   EXPECT_THAT(Written(WriteSectionsCsv, example), HasSubstr("# no sections: the layout has no"));
   EXPECT_EQ(nlohmann::json::parse(Written(WriteSectionsJson, example))["notes"].size(), 1u);
-  EXPECT_THAT(Written(WriteSectionsDxf, example), HasSubstr("EOF\n"));
+  EXPECT_THAT(Dxf(example), HasSubstr("EOF\n"));
   EXPECT_THAT(Written(WriteSectionProfilesSvg, example), HasSubstr("no sections: the layout"));
 }
 
@@ -133,11 +142,11 @@ std::vector<std::pair<int, std::string>> ReadDxf(const std::string& text) {
   return groups;
 }
 
-TEST(SectionDrawing, DxfHasEverySectionInMillimetresOnALayerOfItsOwn) {
-  const Example example = MakeExample();
-  const auto groups = ReadDxf(Written(WriteSectionsDxf, example));
+// Checks a DXF against the sections in its unit.
+void ExpectSections(const Example& example, const std::string& dxf, double units_per_m,
+                    const std::string& unit_code) {
+  const auto groups = ReadDxf(dxf);
   EXPECT_EQ(groups.front().first, 999);
-  EXPECT_THAT(groups.front().second, HasSubstr("unit mm, frame lines h1 v1"));
   EXPECT_EQ(groups.back(), std::make_pair(0, std::string("EOF")));
   std::map<std::string, std::vector<Eigen::Vector3d>> vertices;
   std::string entity, layer, variable, units;
@@ -156,7 +165,7 @@ TEST(SectionDrawing, DxfHasEverySectionInMillimetresOnALayerOfItsOwn) {
     if (code == 30) vertices[layer].back().z() = std::stod(value);
   }
   EXPECT_EQ(num_points, 36);
-  EXPECT_EQ(units, "4");
+  EXPECT_EQ(units, unit_code);
   ASSERT_EQ(vertices.size(), 4u);
   ASSERT_EQ(vertices.count("SAIL_H3"), 1u);
   ASSERT_EQ(vertices.count("SAIL_Z_1"), 1u);
@@ -165,9 +174,18 @@ TEST(SectionDrawing, DxfHasEverySectionInMillimetresOnALayerOfItsOwn) {
     const auto profile = SampleProfile(section, kNumProfilePoints);
     ASSERT_EQ(vertices["SAIL_H3"].size(), profile.size());
     for (std::size_t i = 0; i < profile.size(); ++i) {
-      EXPECT_LT((vertices["SAIL_H3"][i] - 1e3 * profile[i].x_in_frame_m).norm(), 1e-4);
+      EXPECT_LT((vertices["SAIL_H3"][i] / units_per_m - profile[i].x_in_frame_m).norm(), 1.1e-7);
     }
   }
+}
+
+TEST(SectionDrawing, DxfHasEverySectionInItsUnitOnALayerOfItsOwn) {
+  const Example example = MakeExample();
+  const std::string in_m = Dxf(example), in_mm = Dxf(example, LengthUnit::kMillimetre);
+  EXPECT_THAT(in_m, HasSubstr("unit m, frame lines h1 v1"));
+  EXPECT_THAT(in_mm, HasSubstr("unit mm, frame lines h1 v1"));
+  ExpectSections(example, in_m, 1, "6");
+  ExpectSections(example, in_mm, 1e3, "4");
 }
 
 TEST(SectionDrawing, SvgIsWellFormedToOneScaleAndHasTheNumbers) {

@@ -76,11 +76,12 @@ TEST_F(ShapeExporterCommandTest, WritesSectionsAndSurfaceInTheFrameOfTheLines) {
   EXPECT_THAT(run.out,
               AllOf(HasSubstr("frame: lines h1 h3\n"), HasSubstr("sections: 4; camber "),
                     HasSubstr("section_missing: sail z=50: "), HasSubstr("surface: sail; ")));
-  EXPECT_THAT(ListFolder(path("shape")),
-              IsSupersetOf({"sections.csv", "sections.dxf", "sections.json", "section_profiles.csv",
-                            "section_profiles.dxf", "section_profiles.svg", "surface.igs",
-                            "surface.obj", "surface.ply", "surface.step", "surface.stl",
-                            "surface_edges.csv", "surface_residuals.csv"}));
+  EXPECT_THAT(
+      ListFolder(path("shape")),
+      IsSupersetOf({"sections.csv", "sections.dxf", "sections.json", "section_profiles.csv",
+                    "section_profiles.dxf", "section_profiles.svg", "surface.igs", "surface.obj",
+                    "surface.ply", "surface.step", "surface.stl", "surface.vts", "surface.msh",
+                    "surface_ansys.txt", "surface_edges.csv", "surface_residuals.csv"}));
   const MarkerShape shape = ReadShapeCsv(path("shape/shape.csv"));
   const int luff = sail_.layout.parts.front().horizontal.front().marker_ids.front();
   EXPECT_LT(FindWholeMarker(shape, luff)->x_in_shape_m[0]->norm(), 1e-9);

@@ -1,0 +1,50 @@
+// Structured grids of quadrilaterals on spline surfaces, for simulation: rows of points from luff
+// to leech, one row per section from foot to head, at equal steps of the parameters.
+
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "exporters/formats/length_unit.h"
+#include "exporters/formats/surface_spline.h"
+#include "importer/base/option.h"
+
+namespace velamap {
+
+struct GridOptions {
+  int num_sections = 41;
+  int num_points = 41;  // of each section
+
+  void Check() const;  // throws InputError that names the option
+};
+
+OptionGroup DescribeOptions(GridOptions* options);
+
+struct SurfaceGrid {
+  int num_sections = 0, num_points = 0;
+  // Point i of section j is in row j * num_points + i.
+  std::vector<Eigen::Vector3d> vertices_m;
+  std::vector<Eigen::Vector3d> normals;  // unit
+  std::vector<Eigen::Vector2d> surface_parameters;
+};
+
+SurfaceGrid MakeGrid(const SplineSurface& surface, const GridOptions& options);
+
+// VTK StructuredGrid (.vts), XML with ASCII numbers: points in m, and the point data normals, u and
+// v. The first index runs along the sections.
+void WriteGridVts(const SurfaceGrid& grid, const std::string& name, std::ostream& out);
+
+// Gmsh 2.2 ASCII: quadrilaterals, of which those with two corners in one place are triangles, in a
+// physical surface that is called `name`.
+void WriteGridMsh(const SurfaceGrid& grid, const std::string& name, LengthUnit unit,
+                  std::ostream& out);
+
+// Points as ANSYS DesignModeler reads them for curves: `group point x y z`, one group per section.
+void WriteGridAnsys(const SurfaceGrid& grid, const std::string& name, LengthUnit unit,
+                    std::ostream& out);
+
+}  // namespace velamap
