@@ -26,8 +26,12 @@ std::string DefaultText(const OptionTarget& target) {
 }
 
 ShownOption Show(const Option& option) {
-  ShownOption shown{option.name, option.unit, option.required ? "" : DefaultText(option.target),
-                    option.description, option.path_use != PathUse::kNone, option.choices};
+  ShownOption shown{option.name,
+                    option.unit,
+                    option.required ? "" : DefaultText(option.target),
+                    option.description,
+                    option.path_use != PathUse::kNone,
+                    option.choices};
   if (std::holds_alternative<bool*>(option.target)) shown.choices = {"0", "1"};
   for (const std::string& name : option.short_names) shown.description += "; in short --" + name;
   if (option.required) shown.description += " (required)";

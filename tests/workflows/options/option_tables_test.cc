@@ -152,6 +152,9 @@ void ExpectThatCheckNamesEveryNumber() {
       options = {};
       if (auto* const whole = std::get_if<int*>(&option.target)) **whole = std::stoi(value);
       if (auto* const real = std::get_if<double*>(&option.target)) **real = std::stod(value);
+      if (auto* const maybe = std::get_if<std::optional<double>*>(&option.target)) {
+        **maybe = std::stod(value);
+      }
       ExpectThrows<InputError>([&] { options.Check(); }, {"--" + option.name + ": " + value});
     }
   }
