@@ -38,12 +38,12 @@ struct ShapeExportReport {
   MarkerShape shape;
   SailShape sail;
   FreeformShape freeform;  // parts without lines
-
-  // The first error of a surface, see SailShape::surface_error.
-  void ThrowSurfaceError() const;
   ShapeMetrics metrics;
   ModelMetrics model_metrics;
   ScaleAudit audit;
+
+  // The first error of a surface, see SailShape::surface_error.
+  void ThrowSurfaceError() const;
 };
 
 // Writes shape.csv, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv, metrics.json

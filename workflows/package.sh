@@ -10,7 +10,7 @@ preset="${VELAMAP_PRESET:-release}"
 try=0 package=""
 case "${1:-}" in
   "") ;;
-  --try) try=1 package="${2:+$(realpath "$2")}" ;;
+  --try) try=1 package="${2:+$(realpath -e "$2")}" ;;
   *) echo "usage: $0 [--try [DEB]]" >&2; exit 2 ;;
 esac
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

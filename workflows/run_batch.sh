@@ -33,6 +33,11 @@ done
 [[ $# -gt 0 ]] && shift
 [[ -n "$output_path" ]] || fail "--output_path is missing"
 [[ ${#inputs[@]} -gt 0 ]] || fail "no input given"
+for option in "$@"; do
+  case "$option" in
+    --summary | --summary=* | --help | --help_all | -h) fail "$option: not for a batch; leave it out" ;;
+  esac
+done
 
 command -v jq >/dev/null || fail "jq is not installed; run: apt-get install jq"
 velamap="${VELAMAP:-$(dirname "${BASH_SOURCE[0]}")/../build/release/workflows/velamap}"

@@ -7,15 +7,19 @@
 set -euo pipefail
 
 preset="${VELAMAP_PRESET:-release}"
+colmap="${VELAMAP_COLMAP:-}"
+if [[ -n "$colmap" ]]; then
+  [[ -x "$colmap" ]] || { echo "error: VELAMAP_COLMAP: $colmap is no program" >&2; exit 2; }
+  colmap="$(realpath "$colmap")"
+fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 workflows/setup.sh --with-tests
 workflows/build.sh "$preset"
-if [[ -n "${VELAMAP_COLMAP:-}" ]]; then
-  [[ -x "$VELAMAP_COLMAP" ]] || { echo "error: VELAMAP_COLMAP: $VELAMAP_COLMAP is no program" >&2; exit 2; }
+if [[ -n "$colmap" ]]; then
   programs="$(mktemp -d)"
   trap 'rm -rf "$programs"' EXIT
-  ln -s "$(realpath "$VELAMAP_COLMAP")" "$programs/colmap"
+  ln -s "$colmap" "$programs/colmap"
   export PATH="$programs:$PATH"
 fi
 echo "== test: build/$preset"

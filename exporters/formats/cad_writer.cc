@@ -53,10 +53,15 @@ namespace {
 constexpr double kToleranceMm = 1e-5;
 
 // The current time, UTC, unless SOURCE_DATE_EPOCH sets another one
-// (https://reproducible-builds.org/specs/source-date-epoch).
+// (https://reproducible-builds.org/specs/source-date-epoch). Throws InputError if that is no time.
 std::tm TimeStamp() {
+  constexpr std::time_t kEndOfYear9999 = 253402300799;
   std::time_t time = std::time(nullptr);
-  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) ParseNumber(epoch, &time);
+  const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+  if (epoch && (!ParseNumber(epoch, &time) || time < 0 || time > kEndOfYear9999)) {
+    throw InputError(fmt::format(
+        "SOURCE_DATE_EPOCH: expected seconds since 1970, found '{}'; correct or unset it", epoch));
+  }
   return fmt::gmtime(time);
 }
 

@@ -83,7 +83,7 @@ double AreaOf(const TriangleMesh& mesh) {
   return area_m2;
 }
 
-// By the divergence theorem; of a body whose markers look inward as well.
+// By the divergence theorem; positive even if the markers are on the inside.
 double VolumeOf(const TriangleMesh& mesh) {
   const auto& x = mesh.vertices_m;
   const Eigen::Vector3d origin = x.front();
@@ -164,7 +164,13 @@ TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marke
     measure = ByDeviation(kMPerMm * *options->chord_deviation_mm);
   }
   mesh = RefineMesh(std::move(mesh), measure, near_surface, kMaxFreeformTriangles);
-  if (mesh.triangles.size() > kMaxFreeformTriangles) RefuseMesh(options.value(), least_edge_m);
+  if (mesh.triangles.size() > kMaxFreeformTriangles) {
+    if (options) RefuseMesh(*options, least_edge_m);
+    throw DataError(
+        "the surface folds between the markers; check them, and make each face of a body with "
+        "edges "
+        "a part of its own");
+  }
   return mesh;
 }
 
@@ -200,8 +206,8 @@ void NoteOutliers(const std::vector<FreeformMarker>& markers, FreeformSurface* s
   }
   if (ids.empty()) return;
   surface->notes.push_back(
-      fmt::format("a corner of marker {} is more than {} sigmas off the surface",
-                  fmt::join(ids, ", "), kMaxSigmas));
+      fmt::format("markers with a corner more than {} sigmas off the surface: {}", kMaxSigmas,
+                  fmt::join(ids, ", ")));
 }
 
 void CheckCount(std::size_t num_markers) {
@@ -224,7 +230,7 @@ std::vector<FreeformMarker> ConnectedMarkers(const std::vector<FreeformMarker>& 
   std::set<int> left_out;
   for (const FreeformMarker& marker : markers) left_out.insert(marker.marker_id);
   for (const FreeformMarker& marker : connected) left_out.erase(marker.marker_id);
-  notes->push_back(fmt::format("marker {} stands apart from the others and is left out",
+  notes->push_back(fmt::format("markers that stand apart from the others and are left out: {}",
                                fmt::join(left_out, ", ")));
   return connected;
 }

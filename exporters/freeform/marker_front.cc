@@ -24,7 +24,7 @@ constexpr double kMinNormalCosine = 0.25, kMinTriangleCosine = 0.4;
 // The largest circle over the spacing of the markers. A marker that is missing in a square grid
 // leaves a hole with a circle of 1.
 constexpr double kMaxRadiusPerSpacing = 1.5;
-constexpr double kTouching = 1e-9;  // of the squared length of an edge
+constexpr double kTouching = 1e-9;  // of the length of an edge, or of its square for areas
 
 // Most markers have at least four others within this distance.
 double Spacing(const std::vector<FrontMarker>& markers) {
@@ -62,9 +62,12 @@ class Front {
     max_radius_m_ = kMaxRadiusPerSpacing * Spacing(markers);
     for (std::size_t i = 0; i < markers.size(); ++i) {
       const int first = kNumCorners * static_cast<int>(i);
-      Add({first, first + 3, first + 2});
-      Add({first, first + 2, first + 1});
+      Insert({first, first + 3, first + 2});
+      Insert({first, first + 2, first + 1});
     }
+    // Only now, because an edge may be joined to any marker.
+    const std::vector<std::array<int, 3>> squares = triangles_;
+    for (const auto& triangle : squares) QueueOpenSides(triangle);
   }
 
   std::vector<std::array<int, 3>> Join() {
@@ -107,6 +110,11 @@ class Front {
   bool IsOpen(const Edge& edge) const { return !IsUsed(edge) && IsUsed({edge.second, edge.first}); }
 
   void Add(const std::array<int, 3>& triangle) {
+    Insert(triangle);
+    QueueOpenSides(triangle);
+  }
+
+  void Insert(const std::array<int, 3>& triangle) {
     triangles_.push_back(triangle);
     for (int i = 0; i < 3; ++i) {
       const int a = triangle[i], b = triangle[(i + 1) % 3];
@@ -117,6 +125,9 @@ class Front {
       num_open_[a] += change;
       num_open_[b] += change;
     }
+  }
+
+  void QueueOpenSides(const std::array<int, 3>& triangle) {
     for (int i = 0; i < 3; ++i) {
       const Edge outside = {triangle[(i + 1) % 3], triangle[i]};
       if (!IsOpen(outside)) continue;

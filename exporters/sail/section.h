@@ -58,7 +58,7 @@ struct Section {
   Estimate twist_deg;        // of the chord about up, from `twist_reference`; positive to leeward
   SpaceCurve curve;
   Eigen::Vector3d chord_direction = Eigen::Vector3d::UnitX();  // unit
-  Eigen::Vector3d depth_direction = Eigen::Vector3d::UnitY();  // unit, horizontal, to leeward
+  Eigen::Vector3d depth_direction = Eigen::Vector3d::UnitY();  // unit, across up, to leeward
   // Empty and 0 for a height.
   std::vector<SectionMarker> markers;
   double num_effective_parameters = 0.0;
@@ -94,7 +94,7 @@ struct SectionOptions {
 OptionGroup DescribeOptions(SectionOptions* options);
 
 // Up of the sections (unit): along the luff if two of its markers are whole, otherwise SailUp(),
-// otherwise of the frame. The frame decides which end is the head only.
+// otherwise of the frame. The frame only decides which end is the head.
 struct SectionUp {
   std::optional<Eigen::Vector3d> direction;
   std::string reference;

@@ -208,9 +208,8 @@ HeightCut CutAtHeight(const std::vector<Eigen::Matrix3Xd>& line_points, const Ei
   const double lowest_m = (up.transpose() * line_points.front()).maxCoeff();
   const double highest_m = (up.transpose() * line_points.back()).minCoeff();
   if (height_m < lowest_m - kTolerance_m || height_m > highest_m + kTolerance_m) {
-    return {std::nullopt,
-            fmt::format("the lines cover whole horizontal sections only from {:.3f} to {:.3f} m",
-                        lowest_m, highest_m)};
+    return {std::nullopt, fmt::format("the lines cover whole sections only from {:.3f} to {:.3f} m",
+                                      lowest_m, highest_m)};
   }
   const Interpolation across = MakeInterpolation(SpanParameters(line_points));
   const Eigen::Index num_fractions = line_points.front().cols();

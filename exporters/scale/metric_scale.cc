@@ -55,6 +55,7 @@ std::vector<double> ValuesOf(const std::map<int, double>& ratio_of) {
 double PrintedOverMeanSide(const std::vector<MarkerSidesMeasured>& markers, const Layout& layout) {
   double printed = 0.0, measured = 0.0;
   for (const MarkerSidesMeasured& marker : markers) {
+    if (!(marker.Mean() > 0)) continue;  // as in RatiosOf()
     printed += MarkerLength(layout, marker.marker_id);
     measured += marker.Mean();
   }

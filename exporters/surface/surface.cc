@@ -196,7 +196,8 @@ void CheckArea(const SortedInput& sorted, const SurfaceOptions& options,
     is_extended = is_extended || extension_mm.value_or(0.0) > 0;
   }
   for (const SurfaceLine& line : sorted.lines) {
-    is_extended = is_extended || line.luff_offset_m || line.leech_offset_m;
+    is_extended = is_extended || line.luff_offset_m.value_or(0.0) > 0 ||
+                  line.leech_offset_m.value_or(0.0) > 0;
   }
   const bool has_edges =
       !edges.luff.empty() || !edges.leech.empty() || !edges.foot.empty() || !edges.head.empty();

@@ -104,8 +104,9 @@ void NoteEdges(const SortedInput& sorted, const SurfaceOptions& ends,
                const std::vector<SurfaceEdgePoint>& edges, std::vector<std::string>* notes) {
   const auto goes_on = [&](const std::optional<double>& extension_mm,
                            std::optional<double> SurfaceLine::*offset_m) {
-    return extension_mm.value_or(0.0) > 0 || (!extension_mm && offset_m != nullptr &&
-                                              (sorted.lines.front().*offset_m).value_or(0.0) > 0);
+    if (extension_mm || offset_m == nullptr) return extension_mm.value_or(0.0) > 0;
+    return std::any_of(sorted.lines.begin(), sorted.lines.end(),
+                       [&](const SurfaceLine& line) { return (line.*offset_m).value_or(0.0) > 0; });
   };
   const std::map<std::string, bool> continued = {
       {"luff", goes_on(ends.luff_extension_mm, &SurfaceLine::luff_offset_m)},

@@ -6,8 +6,8 @@
 
 namespace velamap {
 
-// The sides on which u or v of the markers does not end: the surface continues there, or ends at
-// given points of the edge.
+// The sides on which the surface goes on beyond the markers: it is extended there, or ends at given
+// points of the edge.
 struct OpenSides {
   Eigen::Array<bool, 2, 1> at_least, at_greatest;  // u, v
 };

@@ -18,7 +18,7 @@ constexpr double kMinWeight = -9.0, kMaxWeight = 4.0;
 // An interpolating surface may bend more along the lines, which hold markers, than between them.
 constexpr double kMinWeightAlongLines = -11.0;
 constexpr double kFirstStep = 1.0, kLastStep = 0.25;
-// Effective parameters count so much more than they cost, because the least
+// Each effective parameter counts this many times, because the least
 // score of a few markers is often one that follows their noise (Kim and Gu, "Smoothing spline
 // Gaussian regression: more scalable computation via efficient approximation", 2004).
 constexpr double kCostFactor = 1.4;
@@ -177,6 +177,7 @@ struct Choice {
 template <typename Score>
 Choice Search(const System& system, const Score& score_of) {
   Choice best;
+  best.solution = Solve(system, best.weights);  // stays where too few observations have a score
   const auto improves = [&](const Weights& weights) {
     if (std::min(weights.along, weights.across) < kMinWeight) return false;
     if (std::max(weights.along, weights.across) > kMaxWeight) return false;

@@ -100,7 +100,7 @@ KnownDistance ReadDistance(const YamlItem& item) {
 }
 
 double ReadOffset(const YamlItem& item) {
-  constexpr double kMaxOffset_m = 100.0;
+  constexpr double kMaxOffset_m = 200.0;  // the longest luff of a printed sail
   const double offset_m = ReadMetres(item);
   if (!(offset_m >= 0 && offset_m <= kMaxOffset_m)) {
     item.Fail(fmt::format("{} m is out of range; give 0 to {} m", offset_m, kMaxOffset_m));

@@ -266,13 +266,15 @@ bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum)
     problem->max_residual_gray = std::numeric_limits<double>::infinity();
     const std::vector<double> residuals = AbsoluteResiduals(
         *problem, minimum->parameters, ChoosePixels(*problem, minimum->parameters, kPixels));
+    if (residuals.size() <= static_cast<std::size_t>(P::kCount)) return false;
     const double limit = std::max(kContrast * ContrastOf(*problem, *minimum),
                                   kSigmas * kMadToSigma * Median(residuals));
     const double share =
         static_cast<double>(std::count_if(residuals.begin(), residuals.end(),
                                           [&](double residual) { return residual > limit; })) /
         static_cast<double>(residuals.size());
-    if (share < kMinShare || share > kMaxShare) return true;
+    if (share < kMinShare) return true;
+    if (share > kMaxShare) return round == 0;  // later, the refit has lost the marker
     problem->max_residual_gray = limit;
     if (!RefinePatternFit(kPixels, kFinePx, problem, minimum)) return false;
   }

@@ -58,7 +58,7 @@ bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum);
 // Fits again without the pixels that show something else: a rope or its shadow across the marker, a
 // glint, dirt. These are missed by far more than the noise and by a good part of the contrast.
 // Leaves the fit as it is where there are hardly any, or too many to be foreign. False for a
-// singular system.
+// singular system or a refit that has lost the marker.
 bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum);
 
 }  // namespace velamap

@@ -193,9 +193,9 @@ class Checker {
     importer.camera_path = options_.camera_path;
     importer.layout = layout;
     importer.detection = detection;
-    // Takes longer than all else; without it, however, the sides of the markers contradict the
-    // layout.
-    importer.detection.estimate_formation = MeasuresPrecision();
+    // The estimate takes longer than all else, and only the precision needs it: without it, the
+    // sides of the markers contradict the layout.
+    importer.detection.estimate_formation = detection.estimate_formation && MeasuresPrecision();
     importer.num_threads = options_.num_threads;
     importer.video = video;
     try {

@@ -48,7 +48,8 @@ void WriteOption(const ShownOption& option, std::ostream& out) {
 void WriteManPage(const CommandSyntax& syntax, std::ostream& out) {
   BeginPage("velamap-" + syntax.name, syntax.description, out);
   fmt::print(out, ".SH SYNOPSIS\n.B velamap {}\n[\\fIoption value\\fR ...]\n", Roff(syntax.name));
-  out << ".SH OPTIONS\nWhat stands in parentheses is meant where the option is left out.\n";
+  out << ".SH OPTIONS\nWhere an option is left out, it has the value after the equals sign in "
+         "parentheses.\n";
   for (const ShownGroup& group : ShownOptions(syntax, HelpLength::kAll)) {
     fmt::print(out, ".SS {}\n", Roff(group.title));
     for (const ShownOption& option : group.options) WriteOption(option, out);

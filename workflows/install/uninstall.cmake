@@ -10,7 +10,7 @@ foreach(file IN LISTS files)
   file(REMOVE "${path}")
   get_filename_component(folder "${path}" DIRECTORY)
   # Only folders of velamap's own: the others belong to the system, even where they are empty.
-  while(folder MATCHES "/velamap(/|$)")
+  while(folder MATCHES "/share/(doc/)?velamap(/|$)")
     file(GLOB left LIST_DIRECTORIES true "${folder}/*" "${folder}/.*")
     list(FILTER left EXCLUDE REGEX "/\\.\\.?$")
     if(left)

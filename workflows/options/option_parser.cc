@@ -57,7 +57,7 @@ po::options_description DescribeForParsing(const OptionsByName& options) {
 }
 
 std::string HelpHint(const CommandSyntax& syntax) {
-  return fmt::format("see velamap {} --help", syntax.name);
+  return fmt::format("see velamap {} --help_all", syntax.name);
 }
 
 // `dashes` stand before the names of options where the unknown one stands.

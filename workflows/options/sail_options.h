@@ -17,7 +17,7 @@ struct SurfaceFileOptions {
   std::string edges_path;
 };
 
-// --frame, --Section.*, --Surface.* and --unit, which set `exporter` and `surface`.
+// --frame, --scale_by, --Section.*, --Surface.* and --unit, which set `exporter` and `surface`.
 std::vector<OptionGroup> SailGroups(ShapeExporterOptions* exporter, SurfaceFileOptions* surface);
 
 // Once the options are set: reads the file of the edges and checks everything. Throws InputError

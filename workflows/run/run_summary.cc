@@ -59,8 +59,9 @@ void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
   if (shape.scale.relative_sigma) {
     fmt::print(out, ", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
   }
-  fmt::print(out, "; the sides of {} markers differ from their printed length by {:.2g} mm\n",
-             shape.scale.num_markers, shape.metrics.side_error_mm.mean);
+  fmt::print(
+      out, "; the sides of the markers differ from their printed length by {:.2g} mm in the mean\n",
+      shape.metrics.side_error_mm.mean);
 }
 
 void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
@@ -72,15 +73,16 @@ void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
 
 void PrintSections(const SectionReport& report, std::ostream& out) {
   for (const Section& section : report.sections) {
-    fmt::print(out, "section {} at {:.2f} m: camber {:.1f} %", section.name, section.height_m,
-               100.0 * section.camber.value);
+    fmt::print(out, "section {} {} at {:.2f} m: camber {:.1f} %", section.part, section.name,
+               section.height_m, 100.0 * section.camber.value);
     if (section.draft_position)
       fmt::print(out, " at {:.0f} %", 100.0 * section.draft_position->value);
     fmt::print(out, ", twist {:.1f} deg\n", section.twist_deg.value);
   }
   for (const MissingSection& missing : report.missing) {
-    fmt::print(out, "section {} is missing: {}\n", missing.name, missing.reason);
+    fmt::print(out, "section {} {} is missing: {}\n", missing.part, missing.name, missing.reason);
   }
+  for (const std::string& note : report.notes) fmt::print(out, "sections: {}\n", note);
 }
 
 void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
@@ -94,6 +96,9 @@ void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
                surface.area_m2);
     if (surface.volume_m3) fmt::print(out, "closed, {:.4g} m3, ", *surface.volume_m3);
     fmt::print(out, "{:.2g} mm RMS from the corners\n", kMmPerM * surface.distance_m.rms);
+  }
+  for (const auto* notes : {&shape.sail.surface_notes, &shape.freeform.notes}) {
+    for (const std::string& note : *notes) fmt::print(out, "surface: {}\n", note);
   }
 }
 
@@ -175,15 +180,16 @@ MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const Workspa
     cameras.rows.push_back(
         {{"camera_id", static_cast<int>(camera_id)}, {"camera", DescribeCamera(camera)}});
   }
-  report.tables = {reasons,
-                   LeftOutTable("images_left_out", "image_name", summary.left_out,
-                                [](const LeftOutImage& image) { return image.image_name; }),
-                   LeftOutTable("markers_left_out", "marker_id", summary.dropped_markers,
-                                [](const DroppedMarker& marker) { return marker.marker_id; }),
-                   SectionTable(shape.sail.sections.sections),
-                   LeftOutTable("sections_missing", "section", shape.sail.sections.missing,
-                                [](const MissingSection& missing) { return missing.name; }),
-                   cameras};
+  report.tables = {
+      reasons,
+      LeftOutTable("images_left_out", "image_name", summary.left_out,
+                   [](const LeftOutImage& image) { return image.image_name; }),
+      LeftOutTable("markers_left_out", "marker_id", summary.dropped_markers,
+                   [](const DroppedMarker& marker) { return marker.marker_id; }),
+      SectionTable(shape.sail.sections.sections),
+      LeftOutTable("sections_missing", "section", shape.sail.sections.missing,
+                   [](const MissingSection& missing) { return missing.part + " " + missing.name; }),
+      cameras};
   AddMetrics(shape.metrics, &report);
   AddMetrics(shape.model_metrics, &report);
   AddMetrics(shape.scale, &report);

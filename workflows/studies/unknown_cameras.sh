@@ -40,7 +40,7 @@ run_job() {
 
 # found_focal RUN: prints model, focal length and sigma, or commas.
 found_focal() {
-  awk '$1 == "camera_found:" { sub(",", "", $2); print $2 "," $5 "," $7; found = 1 }
+  awk '/^camera: found from the images, / { sub(",", "", $6); print $6 "," $9 "," $11; found = 1 }
     END { if (!found) print ",," }' "$runs/$1/log.txt"
 }
 

@@ -139,8 +139,9 @@ TEST(SailTest, ComesBackFromItsClip) {
   const ProgramRun run = Reconstruct(kSail, kSail / "clip.mp4", dir / "workspace");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("verdict: good"));
-  EXPECT_THAT(run.out,
-              ContainsRegex("section h[0-9] at [0-9.]+ m: camber [0-9.]+ % at [0-9]+ %, twist "));
+  EXPECT_THAT(
+      run.out,
+      ContainsRegex("section sail h[0-9] at [0-9.]+ m: camber [0-9.]+ % at [0-9]+ %, twist "));
   EXPECT_TRUE(fs::exists(dir / "workspace/shape/surface.step"));
   const ShapeComparison comparison =
       CompareShapes(ReadShapeCsv((dir / "workspace/shape/shape.csv").string()),
