@@ -183,7 +183,7 @@ TEST(ReadLayout, ReadsTheEdgesOfTheCloth) {
   const auto expect = [&](const std::string& text, const std::string& error) {
     ExpectThrows<InputError>([&] { edges_of(text); }, {"edges.yml:5: parts.sail.edges", error});
   };
-  expect("luff: -0.01", ".luff: -0.01 m is out of range; give 0 to 100 m");
+  expect("luff: -0.01", ".luff: -0.01 m is out of range; give 0 to 200 m");
   expect("luff: [0.1]", ".luff: 1 distances for 2 horizontal lines");
   expect("leech: [0.1, far]", ".leech[1]: 'far' is not a number");
   expect("leech: {line: v2}", ".leech: there is no vertical line 'v2'");
