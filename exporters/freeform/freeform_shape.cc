@@ -7,6 +7,7 @@
 
 #include "exporters/formats/mesh_writer.h"
 #include "exporters/shape/shape_sigma.h"
+#include "exporters/surface/surface_attempt.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
@@ -76,18 +77,13 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
                                            name, kMaxSurfaces));
       continue;
     }
-    try {
+    const auto fit = [&] {
       freeform.surfaces.push_back({part.name,
                                    number == 1 ? "freeform" : fmt::format("freeform_{}", number),
                                    FitPart(shape, part, layout, own ? &*own : nullptr, mesh)});
-      for (const std::string& note : freeform.surfaces.back().surface.notes) {
-        freeform.notes.push_back(fmt::format("{}: {}", name, note));
-      }
-    } catch (const std::exception& error) {
-      freeform.notes.push_back(fmt::format("{}: no surface: {}", name, error.what()));
-      const bool is_of_data = dynamic_cast<const DataError*>(&error) != nullptr;
-      if (!is_of_data && !freeform.surface_error) freeform.surface_error = std::current_exception();
-    }
+      return freeform.surfaces.back().surface.notes;
+    };
+    AttemptSurface(name, fit, &freeform.notes, &freeform.surface_error);
   }
   return freeform;
 }

@@ -10,6 +10,7 @@
 #include "exporters/formats/mesh_writer.h"
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
+#include "exporters/surface/surface_attempt.h"
 #include "exporters/surface/surface_csv.h"
 #include "exporters/surface/surface_input.h"
 #include "importer/base/atomic_output.h"
@@ -118,16 +119,11 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
           fmt::format("{}: no surface: at most {} parts get one", part.name, kMaxSurfaces));
       continue;
     }
-    try {
+    const auto fit = [&] {
       sail.surfaces.push_back(MakeSailSurface(shape, layout, part, options));
-      for (const std::string& note : sail.surfaces.back().fit.notes) {
-        sail.surface_notes.push_back(fmt::format("{}: {}", part.name, note));
-      }
-    } catch (const std::exception& error) {
-      sail.surface_notes.push_back(fmt::format("{}: no surface: {}", part.name, error.what()));
-      const bool is_of_data = dynamic_cast<const DataError*>(&error) != nullptr;
-      if (!is_of_data && !sail.surface_error) sail.surface_error = std::current_exception();
-    }
+      return sail.surfaces.back().fit.notes;
+    };
+    AttemptSurface(part.name, fit, &sail.surface_notes, &sail.surface_error);
   }
   return sail;
 }

@@ -150,10 +150,7 @@ std::vector<SurfaceResidual> Residuals(const SortedInput& sorted,
 
 // The point of a polyline at a fraction of its length.
 Eigen::Vector3d PointAtFraction(const std::vector<Eigen::Vector3d>& points, double fraction) {
-  std::vector<double> lengths_m = {0.0};
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    lengths_m.push_back(lengths_m.back() + (points[i] - points[i - 1]).norm());
-  }
+  const std::vector<double> lengths_m = ChordLengths(points);
   const double wanted_m = fraction * lengths_m.back();
   std::size_t i = 1;
   while (i + 1 < points.size() && lengths_m[i] < wanted_m) ++i;

@@ -2,20 +2,15 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace velamap {
 namespace {
 
 double MeanSide(const ShapeMarker& marker) {
-  double sum_m = 0.0;
-  for (int corner = 1; corner <= kNumCorners; ++corner) {
-    const auto& from = marker.x_in_shape_m[static_cast<std::size_t>(corner)];
-    const auto& to = marker.x_in_shape_m[static_cast<std::size_t>(corner % kNumCorners + 1)];
-    if (!from || !to) return 0.0;
-    sum_m += (*to - *from).norm();
-  }
-  return sum_m / kNumCorners;
+  const auto sides_m = MarkerSides(marker);
+  return std::accumulate(sides_m.begin(), sides_m.end(), 0.0) / kNumCorners;
 }
 
 std::optional<SurfaceMarker> Find(const std::map<int, const ShapeMarker*>& whole_markers,

@@ -28,14 +28,6 @@ struct Row {
   double length_m = 0.0;
 };
 
-std::vector<double> ChordLengths(const Polyline& points) {
-  std::vector<double> lengths = {0.0};
-  for (std::size_t k = 1; k < points.size(); ++k) {
-    lengths.push_back(lengths.back() + (points[k] - points[k - 1]).norm());
-  }
-  return lengths;
-}
-
 // The point of the edge nearest to the straight continuation of a line, a ray from `start`.
 Eigen::Vector3d NearestToRay(const Polyline& edge, const Eigen::Vector3d& start,
                              const Eigen::Vector3d& direction) {
@@ -258,6 +250,14 @@ std::vector<Row> MakeRows(const std::vector<SurfaceLine>& lines, const SurfaceOp
 }
 
 }  // namespace
+
+std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<double> lengths = {0.0};
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    lengths.push_back(lengths.back() + (points[k] - points[k - 1]).norm());
+  }
+  return lengths;
+}
 
 SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool has_markers_between,
                                    const SurfaceOptions& options) {

@@ -29,6 +29,9 @@ struct SurfaceParameters {
   std::vector<std::string> notes;
 };
 
+// Length of a polyline up to each of its points, m.
+std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points);
+
 // Needs at least two lines with at least three markers each. u is the chord length from the luff
 // over the length of the whole line; v sums the mean distances between neighboring lines. A missing
 // marker at the end of a line counts with the mean spacing of the line, so that the edge of the

@@ -30,4 +30,17 @@ bool ReadToolOptions(const po::options_description& description, const std::stri
   return true;
 }
 
+int RunTool(void (*run)(int argc, char** argv), int argc, char** argv) {
+  try {
+    run(argc, argv);
+    return 0;
+  } catch (const ExternalToolError& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return 3;
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return 2;
+  }
+}
+
 }  // namespace velamap

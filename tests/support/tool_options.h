@@ -17,4 +17,8 @@ bool ReadToolOptions(const boost::program_options::options_description& descript
                      const std::string& tool, int argc, char** argv,
                      boost::program_options::variables_map* values);
 
+// Runs the tool and returns its exit code: 0, 2 for bad input, 3 if another program failed. Prints
+// what went wrong.
+int RunTool(void (*run)(int argc, char** argv), int argc, char** argv);
+
 }  // namespace velamap

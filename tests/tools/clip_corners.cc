@@ -73,12 +73,4 @@ void Run(int argc, char** argv) {
 }  // namespace
 }  // namespace velamap
 
-int main(int argc, char** argv) {
-  try {
-    velamap::Run(argc, argv);
-    return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return velamap::RunTool(velamap::Run, argc, argv); }

@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/quad.h"
 #include "tests/support/clip_files.h"
+#include "tests/support/tool_options.h"
 #include "tests/tools/render_clip_options.h"
 
 namespace velamap {
@@ -75,15 +75,4 @@ void Run(int argc, char** argv) {
 }  // namespace
 }  // namespace velamap
 
-int main(int argc, char** argv) {
-  try {
-    velamap::Run(argc, argv);
-    return 0;
-  } catch (const velamap::ExternalToolError& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return 3;
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return velamap::RunTool(velamap::Run, argc, argv); }

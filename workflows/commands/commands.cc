@@ -26,7 +26,8 @@ Command FindCommand(const std::string& name) {
 }
 
 void PrintOverview() {
-  std::cout << "velamap: metric 3D shape from pictures of coded markers, through COLMAP\n\n"
+  std::cout << "velamap: " << kProgramDescription
+            << "\n\n"
                "Usage:\n"
                "  velamap COMMAND --option value ...\n"
                "  velamap COMMAND --help       the options that most people need\n"

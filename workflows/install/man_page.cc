@@ -59,11 +59,11 @@ void WriteManPage(const CommandSyntax& syntax, std::ostream& out) {
 }
 
 void WriteProgramManPage(const std::vector<CommandGroup>& groups, std::ostream& out) {
-  BeginPage("velamap", "metric 3D shape from pictures of coded markers, through COLMAP", out);
+  BeginPage("velamap", kProgramDescription, out);
   out << ".SH SYNOPSIS\n.B velamap\n.I command\n[\\fIoption value\\fR ...]\n"
          ".SH DESCRIPTION\nMeasures the shape of a surface that carries printed ArUco markers, "
-         "from "
-         "photographs or a video of one camera. Results go to standard output as \"key: value\", "
+         "from photographs or a video of one camera. Results go to standard output as \"key: "
+         "value\", "
          "everything else to standard error.\n.SH COMMANDS\n";
   for (const CommandGroup& group : groups) {
     fmt::print(out, ".SS {}\n", Roff(group.title));

@@ -12,6 +12,9 @@
 
 namespace velamap {
 
+inline constexpr char kProgramDescription[] =
+    "metric 3D shape from pictures of coded markers, through COLMAP";
+
 enum class HelpLength {
   kShort,  // --help or -h: the options that are required or common
   kAll,    // --help_all

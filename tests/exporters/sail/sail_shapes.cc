@@ -77,6 +77,21 @@ Sail ExampleSail(int num_markers, int leeward) {
                          num_markers, leeward);
 }
 
+void AddHull(const std::vector<Eigen::Vector3d>& centers_m, Sail* sail) {
+  LayoutPart hull;
+  hull.name = "hull";
+  hull.rigid = true;
+  auto place = sail->shape.markers.begin();  // before those of the sail, by id
+  for (const Eigen::Vector3d& center_m : centers_m) {
+    hull.marker_ids.push_back(10 + static_cast<int>(hull.marker_ids.size()));
+    place = sail->shape.markers.insert(place,
+                                       UprightMarker(hull.marker_ids.back(), hull.name, center_m));
+    ++place;
+  }
+  sail->layout.parts.push_back(hull);
+  sail->layout.reference_part = hull.name;
+}
+
 MarkerShape Moved(const Rigid3& new_from_shape, const MarkerShape& shape) {
   MarkerShape moved = shape;
   for (ShapeMarker& marker : moved.markers) {

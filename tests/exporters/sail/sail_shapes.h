@@ -44,6 +44,9 @@ Sail MakeSailOfLines(const std::vector<SailLine>& lines, int num_markers, int le
 // Three lines of circular arcs whose chord, camber and twist change with height.
 Sail ExampleSail(int num_markers = 12, int leeward = 1);
 
+// Adds part "hull" as the reference part: upright markers 10, 11, ... at these centers, m.
+void AddHull(const std::vector<Eigen::Vector3d>& centers_m, Sail* sail);
+
 // Moves corners and centers; sigmas keep their axes.
 MarkerShape Moved(const Rigid3& new_from_shape, const MarkerShape& shape);
 Rigid3 OddMotion();

@@ -162,17 +162,11 @@ TEST(Section, NumbersDoNotDependOnTheFrame) {
   }
   const Eigen::Quaterniond flare(
       Eigen::AngleAxisd(0.35, Eigen::Vector3d(1, 0.2, 0.1).normalized()));
-  LayoutPart hull;
-  hull.name = "hull";
-  hull.rigid = true;
+  std::vector<Eigen::Vector3d> hull_centers_m;
   for (int i = 0; i < 6; ++i) {
-    hull.marker_ids.push_back(10 + i);
-    sail.shape.markers.insert(
-        sail.shape.markers.begin() + i,
-        UprightMarker(10 + i, hull.name, flare * Eigen::Vector3d(0.5 * (i / 2), 0, -1.0 - i % 2)));
+    hull_centers_m.push_back(flare * Eigen::Vector3d(0.5 * (i / 2), 0, -1.0 - i % 2));
   }
-  sail.layout.parts.push_back(hull);
-  sail.layout.reference_part = hull.name;
+  AddHull(hull_centers_m, &sail);
   const SectionReport by_hull = Sections(sail, {}, FrameChoice{FrameKind::kReferencePart});
   EXPECT_EQ(by_hull.up_reference, "luff");
   const ShapeFrame hull_frame = ChooseFrame(sail.shape, sail.layout, std::nullopt);

@@ -521,7 +521,7 @@ TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
   for (const int id : {1, 2, 3, 5, 8, 9}) {
     ShapeMarker marker;
     marker.marker_id = id;
-    if (id != 9) marker.x_in_shape_m[0] = Eigen::Vector3d(id, 0, 0);
+    if (id != 9) marker.x_in_shape_m.fill(Eigen::Vector3d(id, 0, 0));
     if (id == 2) marker.sigma_m[0] = Eigen::Vector3d(0.001, 0.002, 0.002);
     shape.markers.push_back(marker);
   }

@@ -20,17 +20,9 @@ using testing::HasSubstr;
 // The example sail with a hull: a strip of upright markers along y = -0.5, below the foot.
 Sail SailWithHull() {
   Sail sail = ExampleSail();
-  LayoutPart hull;
-  hull.name = "hull";
-  hull.rigid = true;
-  for (int i = 0; i < 4; ++i) {
-    hull.marker_ids.push_back(10 + i);
-    sail.shape.markers.insert(
-        sail.shape.markers.begin() + i,
-        UprightMarker(10 + i, "hull", Eigen::Vector3d(0.3 + 0.5 * i, -0.5, -0.8)));
-  }
-  sail.layout.parts.push_back(hull);
-  sail.layout.reference_part = "hull";
+  std::vector<Eigen::Vector3d> hull_centers_m;
+  for (int i = 0; i < 4; ++i) hull_centers_m.emplace_back(0.3 + 0.5 * i, -0.5, -0.8);
+  AddHull(hull_centers_m, &sail);
   return sail;
 }
 
