@@ -1,5 +1,5 @@
-// Keys of the metrics. Each function adds the figures and tables of one kind to a report. README.md
-// of this room explains the keys.
+// Keys of the metrics. Each function adds the figures and tables of one kind to a report.
+// exporters/formats/README.md explains the keys.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// Keys and tables of a comparison for stdout, CSV and JSON. README.md of this room lists them.
+// Keys and tables of a comparison for stdout, CSV and JSON. README.md of this folder lists them.
 
 #pragma once
 

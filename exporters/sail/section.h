@@ -1,5 +1,5 @@
 // Sections of a sail: the numbers that a sailmaker reads off a draft stripe, for every horizontal
-// line of the layout and at given heights. README.md of this room defines them with a drawing.
+// line of the layout and at given heights. README.md of this folder defines them with a drawing.
 //
 // The section of a line is a smoothing spline through its marker centers (section_spline.h) from
 // the first to the last whole marker; the markers do not reach the edges of the cloth. The section

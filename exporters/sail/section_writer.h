@@ -1,4 +1,4 @@
-// Section tables: sections.csv, sections.json and section_profiles.csv. README.md of this room
+// Section tables: sections.csv, sections.json and section_profiles.csv. exporters/formats/README.md
 // lists the columns. Numbers have the fewest digits that read back to the same double; an unknown
 // number is an empty field (CSV) or has no key (JSON). The CSV files begin with # lines that name
 // the frame.

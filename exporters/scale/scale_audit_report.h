@@ -1,4 +1,4 @@
-// Reports of a scale audit. README.md of this room lists the keys.
+// Reports of a scale audit. exporters/formats/README.md lists the keys.
 
 #pragma once
 

@@ -1,5 +1,5 @@
 // The tables that velamap adds to COLMAP's: marker_detections, and marker_detector with the one row
-// that says how the detections were made. importer/README.md describes their columns.
+// that says how the detections were made. README.md of this folder describes their columns.
 //
 // Errors of SQLite arrive as SQLite::Exception; ColmapDatabase turns them into input errors.
 

@@ -1,5 +1,5 @@
 // The table marker_sources that velamap adds to COLMAP's: the file that each photograph was read
-// from, or the video. importer/README.md describes its columns.
+// from, or the video. README.md of this folder describes its columns.
 //
 // Errors of SQLite arrive as SQLite::Exception; ColmapDatabase turns them into input errors.
 

@@ -67,9 +67,9 @@ struct Layout {
   bool HasMarkers() const { return !parts.empty(); }
 };
 
-// Reads a layout file (YAML; importer/README.md lists the keys). The path of a dictionary file is
-// relative to the layout file. Throws InputError that names file, line and key for unknown keys, a
-// marker twice on one line or in two parts, a length that is not between 0.1 mm and 10 m, a
+// Reads a layout file (YAML; README.md of this folder lists the keys). The path of a dictionary
+// file is relative to the layout file. Throws InputError that names file, line and key for unknown
+// keys, a marker twice on one line or in two parts, a length that is not between 0.1 mm and 10 m, a
 // negative id, an edge that its lines do not allow, and a distance of a marker that no part names,
 // of a point from itself, or without a sigma.
 Layout ReadLayout(const std::string& path);

@@ -22,7 +22,7 @@ enum class FrameOrder {
 // How closely the thesis is followed where it leaves something to improve.
 enum class ThesisVariant {
   kRobust,  // both poses of a marker, a search that adapts to the video, shape refined in rounds
-  kExact,   // thesis 3.3 to 3.5 to the letter: README.md of this room lists the differences
+  kExact,   // thesis 3.3 to 3.5 to the letter: thesis/README.md lists the differences
 };
 
 // Thesis, sections 3.4 and 3.5, with its symbols.

@@ -11,7 +11,7 @@ namespace velamap {
 
 enum class PresetName {
   kNone,
-  kThesis,  // chapter 3 of the thesis; reconstruct/README.md compares it with the defaults
+  kThesis,  // chapter 3 of the thesis; reconstruct/thesis/README.md compares it with the defaults
 };
 
 struct Preset {

@@ -30,7 +30,7 @@ struct ReconstructionSummary {
 void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& paths,
                   std::ostream& out);
 
-// The same with all figures. README.md of this room lists the keys; those of the shape and the
+// The same with all figures. README.md of this folder lists the keys; those of the shape and the
 // model are those of shape_analyzer.
 MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const WorkspacePaths& paths);
 

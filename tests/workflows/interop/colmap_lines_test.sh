@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the lines of the section "With COLMAP's own programs" of workflows/README.md as they stand there,
-# on photographs of sample_project, and looks at what they leave.
+# Runs the lines of workflows/colmap.md as they stand there, on photographs of sample_project, and
+# looks at what they leave.
 # usage: colmap_lines_test.sh REPOSITORY   (VELAMAP: the program)
 set -euo pipefail
 
@@ -36,9 +36,8 @@ for part in first second; do
     --layout_path "$stylus/layout.yml" --database_path "$part.db" --log_level error >/dev/null
 done
 
-sed -n "/^## With COLMAP's own programs/,/^## [^W]/{/^\`\`\`bash/,/^\`\`\`\$/{/^\`\`\`/d;p}}" \
-  "$repository/workflows/README.md" >lines.sh
-[[ "$(grep -c '^colmap ' lines.sh)" -ge 15 ]] || fail "the section of workflows/README.md has no lines"
+sed -n "/^\`\`\`bash/,/^\`\`\`\$/{/^\`\`\`/d;p}" "$repository/workflows/colmap.md" >lines.sh
+[[ "$(grep -c '^colmap ' lines.sh)" -ge 15 ]] || fail "workflows/colmap.md has no lines"
 bash -e lines.sh >lines.log 2>&1 || { tail -n 30 lines.log; exit 1; }
 
 # expect_model FOLDER MAX_ERROR_PX: all images, the 32 corners of 8 markers, and a small error.
