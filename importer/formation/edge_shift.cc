@@ -43,7 +43,7 @@ SampleShift ShiftOf(const FittedSample& sample) {
   SampleShift shift;
   PatternPixels pixels, moved;
   for (const SamplePlace& place : sample.places) {
-    if (place.is_at_outline_corner) continue;
+    if (place.is_at_outline_corner || IsClipped(sample, place)) continue;
     const Floats x = AllLanes(place.in_box.x + problem.box.x - problem.model.center_px.x());
     const Floats y = AllLanes(place.in_box.y + problem.box.y - problem.model.center_px.y());
     if (!picture.IsAmongInnerCells(x, y)[0]) continue;

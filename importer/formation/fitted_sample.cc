@@ -1,10 +1,12 @@
 #include "importer/formation/fitted_sample.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
 
+#include "importer/refine/clipped_pixels.h"
 #include "importer/refine/pattern_picture.h"
 
 namespace velamap {
@@ -78,7 +80,7 @@ std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation&
   std::vector<float> residuals;
   residuals.reserve(sample.places.size());
   for (const SamplePlace& place : sample.places) {
-    residuals.push_back(difference.at<float>(place.in_box));
+    residuals.push_back(IsClipped(sample, place) ? 0.0f : difference.at<float>(place.in_box));
   }
   return residuals;
 }
@@ -94,6 +96,12 @@ bool HasRunAway(const FittedSample& sample) {
 }
 
 }  // namespace
+
+bool IsClipped(const FittedSample& sample, const SamplePlace& place) {
+  const cv::Mat& is_clipped = sample.problem.patch.is_clipped;
+  return !is_clipped.empty() &&
+         is_clipped.at<std::uint8_t>(place.in_box + PatchFromBox(sample.problem)) != 0;
+}
 
 std::optional<FittedSample> FitSample(const FormationSample& sample,
                                       const ImageFormation& formation) {
@@ -133,7 +141,8 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
     light = formation.tone().Decode(before.Encode(light));
   }
   const P::Vector start = sample->minimum.parameters;
-  if (RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum) &&
+  if (RefineBeyondClipping(sample->gray, formation, kMaxPixels, kTolerancePx, &problem,
+                           &sample->minimum) &&
       !HasRunAway(*sample)) {
     sample->residuals = ResidualsOf(*sample, formation);
   } else {

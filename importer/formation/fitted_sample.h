@@ -34,6 +34,10 @@ struct FittedSample {
   std::vector<float> residuals;     // at these places; empty: the fit failed
 };
 
+// Whether the image tells only a limit of the value there, which the fit agrees with; its residual
+// is zero.
+bool IsClipped(const FittedSample& sample, const SamplePlace& place);
+
 // Nothing where the fit fails. No residuals yet: RefitSample() computes them.
 std::optional<FittedSample> FitSample(const FormationSample& sample,
                                       const ImageFormation& formation);

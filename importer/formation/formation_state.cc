@@ -17,7 +17,8 @@ double NoiseOf(const FormationState& state, bool at_outline_corners) {
   std::vector<double> values;
   for (const FittedSample& sample : state.samples) {
     for (std::size_t j = 0; j < sample.residuals.size(); ++j) {
-      if (sample.places[j].is_at_outline_corner == at_outline_corners) {
+      if (sample.places[j].is_at_outline_corner == at_outline_corners &&
+          !IsClipped(sample, sample.places[j])) {
         values.push_back(sample.residuals[j]);
       }
     }

@@ -12,7 +12,6 @@ namespace velamap {
 namespace {
 
 constexpr double kWhite = 255.0;
-constexpr int kKernelReachPx = 5;
 
 double GrayOfLight(const ImageFormationParameters& parameters, double light) {
   const double v = std::pow(std::max(light, 0.0) / kWhite, 1 / parameters.gamma);
@@ -25,7 +24,7 @@ cv::Mat MakeUnsharpeningKernel(const ImageFormationParameters& parameters) {
   constexpr int kIterations = 60;
   const double a = parameters.sharpening;
   if (a == 0) return {};
-  const int reach = 4 * kKernelReachPx, size = 2 * reach + 1;
+  const int reach = 4 * kUnsharpeningReachPx, size = 2 * reach + 1;
   cv::Mat unit(size, size, CV_32F, cv::Scalar(0));
   unit.at<float>(reach, reach) = 1;
   cv::Mat kernel = unit.clone(), blurred;
@@ -33,11 +32,20 @@ cv::Mat MakeUnsharpeningKernel(const ImageFormationParameters& parameters) {
     cv::GaussianBlur(kernel, blurred, {0, 0}, parameters.sharpening_radius_px);
     kernel = (unit + a * blurred) / (1 + a);
   }
-  const int width = 2 * kKernelReachPx + 1;
+  const int width = 2 * kUnsharpeningReachPx + 1;
   cv::Mat middle =
-      kernel(cv::Rect(reach - kKernelReachPx, reach - kKernelReachPx, width, width)).clone();
+      kernel(cv::Rect(reach - kUnsharpeningReachPx, reach - kUnsharpeningReachPx, width, width))
+          .clone();
   middle /= cv::sum(middle)[0];
   return middle;
+}
+
+void Decode(const ToneCurve& tone, cv::Mat* values) {
+  for (float& value : cv::Mat_<float>(*values)) value = static_cast<float>(tone.Decode(value));
+}
+
+void Encode(const ToneCurve& tone, cv::Mat* values) {
+  for (float& value : cv::Mat_<float>(*values)) value = static_cast<float>(tone.Encode(value));
 }
 
 }  // namespace
@@ -95,23 +103,33 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
     gray(inside).convertTo(patch.values, CV_32F);
     return patch;
   }
-  const cv::Point reach(kKernelReachPx, kKernelReachPx);
+  const cv::Point reach(kUnsharpeningReachPx, kUnsharpeningReachPx);
   const cv::Rect wide = cv::Rect(inside.tl() - reach, inside.br() + reach) & image;
+  const bool of_light = formation.parameters().sharpens_light;
   cv::Mat values, filtered;
-  if (formation.parameters().sharpens_light) {
+  if (of_light && gray.depth() == CV_8U) {
     cv::LUT(gray(wide), formation.light_of_gray(), values);
   } else {
     gray(wide).convertTo(values, CV_32F);
+    if (of_light) Decode(formation.tone(), &values);
   }
   cv::filter2D(values, filtered, CV_32F, formation.unsharpening(), {-1, -1}, 0,
                cv::BORDER_REPLICATE);
   patch.values = filtered(inside - wide.tl()).clone();
-  if (formation.parameters().sharpens_light) {
-    for (float& value : cv::Mat_<float>(patch.values)) {
-      value = static_cast<float>(formation.tone().Encode(value));
-    }
-  }
+  if (of_light) Encode(formation.tone(), &patch.values);
   return patch;
+}
+
+cv::Mat Sharpened(const cv::Mat& values, const ImageFormation& formation) {
+  const ImageFormationParameters& parameters = formation.parameters();
+  cv::Mat sharpened = values.clone(), blurred;
+  if (parameters.sharpening == 0) return sharpened;
+  if (parameters.sharpens_light) Decode(formation.tone(), &sharpened);
+  cv::GaussianBlur(sharpened, blurred, {0, 0}, parameters.sharpening_radius_px, 0,
+                   cv::BORDER_REPLICATE);
+  sharpened = (1 + parameters.sharpening) * sharpened - parameters.sharpening * blurred;
+  if (parameters.sharpens_light) Encode(formation.tone(), &sharpened);
+  return sharpened;
 }
 
 double InterpolatePatch(const GrayPatch& patch, const Eigen::Vector2d& x_px) {

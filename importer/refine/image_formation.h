@@ -73,14 +73,23 @@ class ImageFormation {
   cv::Mat light_of_gray_, unsharpening_;
 };
 
+// How far the kernel that undoes the sharpening reaches.
+constexpr int kUnsharpeningReachPx = 5;
+
 // A part of an image in grey values without the sharpening.
 struct GrayPatch {
   cv::Mat values;       // CV_32F
   cv::Point origin_px;  // of its first pixel in the image
+  // 8 bit: not zero where the image tells only a limit of the value (clipped_pixels.h). Empty: it
+  // tells all values.
+  cv::Mat is_clipped;
 };
 
-// Cuts the part of the 8-bit image within `box`, which may reach beyond the image.
+// Cuts the part of the image (8 bit or CV_32F) within `box`, which may reach beyond the image.
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation);
+
+// Grey values (CV_32F) as the camera sharpens them.
+cv::Mat Sharpened(const cv::Mat& values, const ImageFormation& formation);
 
 // Bilinear value at a place in OpenCV's pixel frame of the image; places outside the patch take the
 // nearest value inside.

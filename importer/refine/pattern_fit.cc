@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "importer/base/error.h"
+#include "importer/refine/clipped_pixels.h"
 #include "importer/refine/pattern_problem.h"
 
 namespace velamap {
@@ -54,6 +55,9 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners&
   std::optional<PatternProblem> problem =
       MakePatternProblem(gray, corners_px, cells, formation, &minimum);
   if (!problem || !FitPatternInPasses(&*problem, &minimum) ||
+      (HasClippedPixels(gray, problem->box) &&
+       !RefineBeyondClipping(gray, formation, kMaxPatternPixels, kPatternTolerancePx, &*problem,
+                             &minimum)) ||
       !RefitWithoutForeignPixels(&*problem, &minimum)) {
     return std::nullopt;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "importer/refine/pattern_picture.h"
 
@@ -22,21 +23,26 @@ inline void FillUp(ChosenPixels* pixels) {
 }
 
 // Calls take(group, covered) for every group of pixels of the box, in rows; `covered` is -1 for the
-// pixels that the model covers.
+// pixels that the model covers and that are not clipped.
 template <typename Take>
 inline void ForEachGroup(const PatternProblem& problem, const PatternPicture& picture,
                          const Take& take) {
   const cv::Rect& box = problem.box;
   const Eigen::Vector2d& center = problem.model.center_px;
   for (int row = box.y; row < box.y + box.height; ++row) {
-    const float* values = problem.patch.values.ptr<float>(row - problem.patch.origin_px.y);
+    const int patch_row = row - problem.patch.origin_px.y;
+    const float* values = problem.patch.values.ptr<float>(patch_row);
+    const std::uint8_t* clipped = problem.patch.is_clipped.empty()
+                                      ? nullptr
+                                      : problem.patch.is_clipped.ptr<std::uint8_t>(patch_row);
     const Floats y = AllLanes(row - center.y());
     for (int begin = box.x; begin < box.x + box.width; begin += kLanes) {
       ChosenPixels::Group group{static_cast<float>(begin - center.x()) + LaneIndex(), y, {}, {}};
       Ints covered = picture.Covers(group.x, group.y);
       for (int lane = 0; lane < kLanes; ++lane) {
-        if (begin + lane >= box.x + box.width) covered[lane] = 0;
-        if (covered[lane]) group.gray[lane] = values[begin + lane - problem.patch.origin_px.x];
+        const int column = begin + lane - problem.patch.origin_px.x;
+        if (begin + lane >= box.x + box.width || (clipped && clipped[column])) covered[lane] = 0;
+        if (covered[lane]) group.gray[lane] = values[column];
       }
       take(group, covered);
     }

@@ -26,7 +26,7 @@ constexpr double kMinBlurPx = 0.3, kMaxBlurPx = 4.0;
 // Usual for cloth; the label of a can has ten times as much.
 constexpr double kBendOfDiagonal = 0.003;
 constexpr double kMinMargin = 0.1, kMaxMargin = 1.5;  // cells
-constexpr int kFirstPixels = 200, kPixels = 1000;
+constexpr int kFirstPixels = 200;
 
 VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const ChosenPixels& pixels,
                                   const P::Vector& parameters, bool with_hessian,
@@ -258,14 +258,14 @@ bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* probl
 }
 
 bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum) {
-  constexpr double kFinePx = 0.005;
   constexpr double kContrast = 0.25, kSigmas = 5.0;  // what a foreign pixel is missed by at least
   constexpr double kMinShare = 0.01, kMaxShare = 0.35;
   constexpr int kRounds = 3;  // foreign pixels that have moved the first fit hide each other
   for (int round = 0; round < kRounds; ++round) {
     problem->max_residual_gray = std::numeric_limits<double>::infinity();
-    const std::vector<double> residuals = AbsoluteResiduals(
-        *problem, minimum->parameters, ChoosePixels(*problem, minimum->parameters, kPixels));
+    const std::vector<double> residuals =
+        AbsoluteResiduals(*problem, minimum->parameters,
+                          ChoosePixels(*problem, minimum->parameters, kMaxPatternPixels));
     if (residuals.size() <= static_cast<std::size_t>(P::kCount)) return false;
     const double limit = std::max(kContrast * ContrastOf(*problem, *minimum),
                                   kSigmas * kMadToSigma * Median(residuals));
@@ -276,20 +276,20 @@ bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum)
     if (share < kMinShare) return true;
     if (share > kMaxShare) return round == 0;  // later, the refit has lost the marker
     problem->max_residual_gray = limit;
-    if (!RefinePatternFit(kPixels, kFinePx, problem, minimum)) return false;
+    if (!RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) return false;
   }
   return true;
 }
 
 // A wide blur needs another pass, because levels, blur and surroundings then depend on each other.
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum) {
-  constexpr double kCoarsePx = 0.1, kFinePx = 0.005;
+  constexpr double kCoarsePx = 0.1;
   constexpr double kWideBlur = 0.3;  // cells
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
   if (!Minimize(*problem, kFirstPixels, kCoarsePx, minimum)) return false;
-  if (!RefinePatternFit(kPixels, kFinePx, problem, minimum)) return false;
+  if (!RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) return false;
   if (BlurInCells(minimum->parameters, problem->model.num_cells).maxCoeff() > kWideBlur &&
-      !RefinePatternFit(kPixels, kFinePx, problem, minimum)) {
+      !RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) {
     return false;
   }
   const double contrast = ContrastOf(*problem, *minimum);

@@ -16,6 +16,10 @@
 
 namespace velamap {
 
+// Of the last fit of a marker.
+constexpr int kMaxPatternPixels = 1000;
+constexpr double kPatternTolerancePx = 0.005;
+
 using PatternEquations = FitEquations<PatternParameters::kCount>;
 
 // The pixels around a marker, its model, and the priors of the parameters. Refers to the cells and

@@ -115,6 +115,25 @@ TEST(FormationEstimation, TellsWhetherLightOrGreyValuesAreSharpened) {
   }
 }
 
+// Paper in the sun is brighter than the camera can record, and so are halos of sharpened edges.
+TEST(FormationEstimation, ClippedWhiteDoesNotMoveSides) {
+  constexpr int kNumDraws = 4;
+  std::mt19937 random(TestSeed());
+  for (int i = 0; i < kNumDraws; ++i) {
+    MarkerGridOptions scene = DrawScene(&random);
+    scene.side_px = std::uniform_real_distribution<double>(28, 60)(random);
+    scene.rendering.white = std::uniform_real_distribution<double>(230, 400)(random);
+    const MarkerGrid grid = MakeMarkerGrid(scene);
+    const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+    ASSERT_GE(estimate.num_samples, 12);
+    const double bias_px = SideBias(grid, ImageFormation(estimate.parameters));
+    EXPECT_LT(std::abs(bias_px), 0.03) << "side " << scene.side_px << " px, white "
+                                       << scene.rendering.white << ", gamma "
+                                       << scene.rendering.camera.gamma;
+    EXPECT_LT(std::abs(bias_px), 3 * estimate.inset_sigma_px + 0.01);
+  }
+}
+
 // One marker with cells of two pixels does not show how wide its narrow margin is; all do.
 TEST(FormationEstimation, SmallMarkersTellTheirQuietZoneTogether) {
   std::mt19937 random(TestSeed());

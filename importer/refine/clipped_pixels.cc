@@ -1,0 +1,101 @@
+#include "importer/refine/clipped_pixels.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "importer/refine/pattern_picture.h"
+
+namespace velamap {
+namespace {
+
+// Compression makes clipped areas a little uneven.
+constexpr int kWhite = 252, kBlack = 3;
+
+bool IsClipped(int gray) { return gray >= kWhite || gray <= kBlack; }
+
+// The modelled grey values of the patch before the sharpening; those of the patch itself outside
+// of the problem's box.
+VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem,
+                                          const PatternParameters::Vector& parameters) {
+  const PatternPicture picture(problem.model, parameters);
+  const Eigen::Vector2d& center = problem.model.center_px;
+  const cv::Rect& box = problem.box;
+  cv::Mat modelled = problem.patch.values.clone();
+  PatternPixels pixels;
+  for (int y = box.y; y < box.y + box.height; ++y) {
+    float* values = modelled.ptr<float>(y - problem.patch.origin_px.y);
+    for (int begin = box.x; begin < box.x + box.width; begin += kLanes) {
+      picture.At(static_cast<float>(begin - center.x()) + LaneIndex(), AllLanes(y - center.y()),
+                 &pixels);
+      const int count = std::min(kLanes, box.x + box.width - begin);
+      for (int lane = 0; lane < count; ++lane) {
+        values[begin + lane - problem.patch.origin_px.x] = pixels.gray[lane];
+      }
+    }
+  }
+  return modelled;
+}
+
+// Cuts the patch of the problem anew, with the model's values for the pixels of its box that are
+// clipped and that the model has beyond their limit. False for none.
+bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
+                          const PatternParameters::Vector& parameters, PatternProblem* problem) {
+  GrayPatch& patch = problem->patch;
+  const cv::Mat expected = Sharpened(ModelPatch(*problem, parameters), formation);
+  const cv::Rect patch_box(patch.origin_px, patch.values.size());
+  const cv::Point reach(kUnsharpeningReachPx, kUnsharpeningReachPx);
+  const cv::Rect wide =
+      cv::Rect(patch_box.tl() - reach, patch_box.br() + reach) & cv::Rect({}, gray.size());
+  cv::Mat recorded;
+  gray(wide).convertTo(recorded, CV_32F);
+  cv::Mat is_clipped = cv::Mat::zeros(patch_box.size(), CV_8U);
+  bool any = false;
+  for (int y = problem->box.y; y < problem->box.y + problem->box.height; ++y) {
+    for (int x = problem->box.x; x < problem->box.x + problem->box.width; ++x) {
+      const int value = gray.at<std::uint8_t>(y, x);
+      if (!IsClipped(value)) continue;
+      const cv::Point in_patch = cv::Point(x, y) - patch_box.tl();
+      const float model = expected.at<float>(in_patch);
+      if (value >= kWhite ? model <= static_cast<float>(value)
+                          : model >= static_cast<float>(value)) {
+        continue;
+      }
+      recorded.at<float>(cv::Point(x, y) - wide.tl()) = model;
+      is_clipped.at<std::uint8_t>(in_patch) = 1;
+      any = true;
+    }
+  }
+  patch = CutPatch(recorded, patch_box - wide.tl(), formation);
+  patch.origin_px += wide.tl();
+  patch.is_clipped = is_clipped;
+  return any;
+}
+
+}  // namespace
+
+bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box) {
+  for (int row = box.y; row < box.y + box.height; ++row) {
+    const auto* values = gray.ptr<std::uint8_t>(row);
+    if (std::any_of(values + box.x, values + box.x + box.width, IsClipped)) return true;
+  }
+  return false;
+}
+
+bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, int max_pixels,
+                          double tolerance_px, PatternProblem* problem, PatternMinimum* minimum) {
+  constexpr int kMaxRounds = 6;
+  const bool has_clipped = HasClippedPixels(gray, problem->box);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const bool is_restored =
+        has_clipped && RestoreClippedPixels(gray, formation, minimum->parameters, problem);
+    const QuadCorners before_px = CornersOf(minimum->parameters);
+    if (!RefinePatternFit(max_pixels, tolerance_px, problem, minimum)) return false;
+    if (!is_restored || MaxCornerShift(CornersOf(minimum->parameters), before_px) < tolerance_px) {
+      break;
+    }
+  }
+  return true;
+}
+
+}  // namespace velamap
