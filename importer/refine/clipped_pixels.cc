@@ -9,6 +9,8 @@
 namespace velamap {
 namespace {
 
+using Vector = PatternParameters::Vector;
+
 // Compression makes clipped areas a little uneven.
 constexpr int kWhite = 252, kBlack = 3;
 
@@ -85,14 +87,25 @@ bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box) {
 bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, int max_pixels,
                           double tolerance_px, PatternProblem* problem, PatternMinimum* minimum) {
   constexpr int kMaxRounds = 6;
+  constexpr double kLeft = 3.0;  // slow rounds leave this times their last step
+  constexpr double kMinRatio = 0.2, kMaxRatio = 0.9;
   const bool has_clipped = HasClippedPixels(gray, problem->box);
+  Vector last_step = Vector::Zero();
   for (int round = 0; round < kMaxRounds; ++round) {
-    const bool is_restored =
-        has_clipped && RestoreClippedPixels(gray, formation, minimum->parameters, problem);
-    const QuadCorners before_px = CornersOf(minimum->parameters);
+    const Vector before = minimum->parameters;
+    const bool is_restored = has_clipped && RestoreClippedPixels(gray, formation, before, problem);
     if (!RefinePatternFit(max_pixels, tolerance_px, problem, minimum)) return false;
-    if (!is_restored || MaxCornerShift(CornersOf(minimum->parameters), before_px) < tolerance_px) {
-      break;
+    const Vector step = minimum->parameters - before;
+    const double step_px = step.head<2 * kNumCorners>().cwiseAbs().maxCoeff();
+    if (!is_restored || kLeft * step_px < tolerance_px) break;
+    // Aitken's extrapolation: the steps shrink by about the same ratio from round to round.
+    const Vector weight = minimum->equations.hessian().diagonal();
+    const double ratio =
+        step.dot(weight.cwiseProduct(last_step)) / last_step.dot(weight.cwiseProduct(last_step));
+    last_step = step;
+    if (ratio > kMinRatio && ratio < kMaxRatio && round + 1 < kMaxRounds) {
+      minimum->parameters += ratio / (1 - ratio) * step;
+      last_step.setZero();
     }
   }
   return true;

@@ -117,20 +117,20 @@ TEST(FormationEstimation, TellsWhetherLightOrGreyValuesAreSharpened) {
 
 // Paper in the sun is brighter than the camera can record, and so are halos of sharpened edges.
 TEST(FormationEstimation, ClippedWhiteDoesNotMoveSides) {
-  constexpr int kNumDraws = 4;
   std::mt19937 random(TestSeed());
-  for (int i = 0; i < kNumDraws; ++i) {
+  for (const double white : {250.0, 320.0}) {
     MarkerGridOptions scene = DrawScene(&random);
-    scene.side_px = std::uniform_real_distribution<double>(28, 60)(random);
-    scene.rendering.white = std::uniform_real_distribution<double>(230, 400)(random);
+    scene.side_px = 30;
+    scene.camera = {CameraModel::kPinhole, 500, 400, {800, 800, 250, 200}};
+    scene.rendering.white = white;
     const MarkerGrid grid = MakeMarkerGrid(scene);
+    ASSERT_GT(cv::countNonZero(grid.image == 255), 0);
     const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
-    ASSERT_GE(estimate.num_samples, 12);
-    const double bias_px = SideBias(grid, ImageFormation(estimate.parameters));
-    EXPECT_LT(std::abs(bias_px), 0.03) << "side " << scene.side_px << " px, white "
-                                       << scene.rendering.white << ", gamma "
-                                       << scene.rendering.camera.gamma;
-    EXPECT_LT(std::abs(bias_px), 3 * estimate.inset_sigma_px + 0.01);
+    EXPECT_GE(estimate.num_samples, 12);
+    EXPECT_LT(estimate.inset_sigma_px, 0.05);
+    EXPECT_LT(std::abs(SideBias(grid, ImageFormation(estimate.parameters))), 0.03)
+        << "white " << white << ", gamma " << scene.rendering.camera.gamma << ", sharpening "
+        << scene.rendering.camera.sharpening;
   }
 }
 
@@ -183,20 +183,6 @@ TEST(FormationEstimation, RoundedCornersDoNotMoveSides) {
     EXPECT_LT(bias_with_corners_px, bias_px) << draw;
     RecordProperty("bias_px", std::to_string(bias_px) + " " + std::to_string(bias_with_corners_px));
   }
-}
-
-// Sun on white paper: more light than the camera records.
-TEST(FormationEstimation, ClippedWhiteLeavesSidesAndTheirSigmaUsable) {
-  std::mt19937 random(TestSeed());
-  MarkerGridOptions scene = DrawScene(&random);
-  scene.side_px = 25.0;
-  scene.rendering.black = 60;
-  scene.rendering.white = 300.0;
-  const MarkerGrid grid = MakeMarkerGrid(scene);
-  const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
-  EXPECT_GT(estimate.num_samples, 0);
-  EXPECT_LT(estimate.inset_sigma_px, 0.2);
-  EXPECT_LT(std::abs(SideBias(grid, ImageFormation(estimate.parameters))), 0.2);
 }
 
 TEST(FormationEstimation, NothingIsKnownWithoutSamples) {
