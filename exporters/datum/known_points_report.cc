@@ -70,6 +70,11 @@ std::string ShortText(const ComparedPoint& point) {
                      kMmPerM * point.difference_m.norm(), point.sigmas_off);
 }
 
+// Checks that fail are worse than points of the datum, however far these are off.
+std::pair<bool, double> Badness(const ComparedPoint& point) {
+  return {point.state == PointState::kFailed, point.sigmas_off};
+}
+
 std::string GrowthText(const AskedGrowth& growth) {
   return fmt::format("{:+.3f} +- {:.3f} %", 100.0 * growth.value, 100.0 * growth.sigma);
 }
@@ -117,7 +122,7 @@ std::string KnownPointsText(const KnownPointFit& fit) {
   }
   const auto worst = std::max_element(
       fit.points.begin(), fit.points.end(),
-      [](const ComparedPoint& a, const ComparedPoint& b) { return a.sigmas_off < b.sigmas_off; });
+      [](const ComparedPoint& a, const ComparedPoint& b) { return Badness(a) < Badness(b); });
   text += ", worst " + ShortText(*worst);
   if (fit.DoubtsScale()) text += "; the points ask for " + GrowthText(*fit.growth) + " in size";
   return text;

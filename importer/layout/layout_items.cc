@@ -214,8 +214,7 @@ FrameChoice ReadFrame(const YamlItem& item, const Layout& layout) {
   if (!ParseFrameKeyword(item.Text(), &frame.kind)) {
     item.Fail(
         fmt::format("'{}' is not a frame; expected known_points, reference_part, lines, camera, or "
-                    "three markers "
-                    "such as {{origin: 12, axis: 15, plane: 40}}",
+                    "three markers such as {{origin: 12, axis: 15, plane: 40}}",
                     item.Text()));
   }
   if (frame.kind == FrameKind::kKnownPoints) {

@@ -413,7 +413,7 @@ TEST_F(KnownPoints, MetricsHaveARowOfEachPoint) {
   EXPECT_EQ(rows[7].at("result"), "not reconstructed");
   EXPECT_FALSE(rows[7].contains("distance_mm"));
   EXPECT_THAT(KnownPointsText(fit), HasSubstr("5 of 6 used"));
-  EXPECT_THAT(KnownPointsText(fit), HasSubstr("0 of 2 checks passed"));
+  EXPECT_THAT(KnownPointsText(fit), HasSubstr("0 of 2 checks passed, worst 7.1 "));
   MetricsReport none;
   AddMetrics(KnownPointFit(), &none);
   EXPECT_THAT(none.metrics, IsEmpty());
