@@ -1,5 +1,5 @@
-// Least squares for the pose of a shape by known coordinates, weighted by their joint covariance,
-// and what it tells of each point and of the six degrees of freedom.
+// What an adjusted pose tells of each point, of the six degrees of freedom, and of the size of the
+// shape, by the joint covariance of all coordinates.
 
 #pragma once
 
@@ -7,22 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "exporters/datum/datum_equations.h"
+#include "exporters/datum/datum_pose.h"
 
 namespace velamap {
-
-struct DatumPose {
-  Rigid3 pose;
-  double squared_sigmas = 0.0;  // sum of squared residuals over their variances
-};
-
-// The poses to which the search converges, the best first. More than one can fit where few
-// coordinates are given: two points and a level leave a turn to either side. The errors of the
-// points count as independent.
-std::vector<DatumPose> FindPoses(const DatumPoints& points, const PointSet& set);
-
-// The least-squares pose for the joint covariance, from one nearby.
-DatumPose AdjustPose(const DatumPoints& points, const PointSet& set, Rigid3 pose);
 
 // How far each point, in the set or not, is from where the others of the set put it. A right point
 // is beyond 3 with a probability of 0.27 %, however many of its coordinates are known: for one
