@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "exporters/datum/known_points_report.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
@@ -42,6 +43,7 @@ const PointCovariance* CovarianceOf(const ShapeExportReport& report) {
 MetricsReport MetricsOf(const ShapeExportReport& report) {
   MetricsReport metrics;
   AddMetrics(report.frame, &metrics);
+  AddMetrics(report.known_points, &metrics);
   AddMetrics(report.metrics, &metrics);
   AddMetrics(report.model_metrics, &metrics);
   AddMetrics(report.scale, &metrics);
@@ -84,7 +86,10 @@ std::map<int, double> ScalesOf(const ScaleAudit& audit) {
 // Moves the metric model and its uncertainty into the chosen frame.
 void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choice,
                    ShapeExportReport* report) {
-  report->frame = ChooseFrame(ShapeFromModel(report->metric_model, layout), layout, choice);
+  const MarkerShape shape = ShapeFromModel(report->metric_model, layout);
+  report->known_points = FitKnownPoints(shape, layout, CovarianceOf(*report),
+                                        report->scale.relative_sigma.value_or(0.0));
+  report->frame = ChooseFrame(shape, layout, choice, FrameOfKnownPoints(report->known_points));
   const Rigid3& frame_from_shape = report->frame.frame_from_shape;
   MoveModel(frame_from_shape, &report->metric_model);
   if (report->uncertainty) {

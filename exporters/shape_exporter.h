@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "exporters/datum/known_points.h"
 #include "exporters/freeform/freeform_shape.h"
 #include "exporters/sail/sail_shape.h"
 #include "exporters/scale/metric_scale.h"
@@ -32,6 +33,7 @@ struct ShapeExporterOptions {
 
 struct ShapeExportReport {
   ScaleEstimate scale;
+  KnownPointFit known_points;
   ShapeFrame frame;
   Model metric_model;                                // unit m, in `frame`
   std::optional<AdjustmentUncertainty> uncertainty;  // in `frame`

@@ -18,7 +18,7 @@ house_folder(importer/camera PUBLIC
   calibration calibration_writer camera camera_jacobian camera_projection storage_wall
   turned_camera)
 house_folder(importer/layout PUBLIC
-  code_search dictionary frame_choice layout layout_writer prior_shape)
+  code_search dictionary frame_choice known_point layout layout_writer prior_shape)
 house_folder(importer/print PUBLIC
   drawing drawing_writer marker_sheets placement print_options sheet_plan)
 house_folder(importer/video PUBLIC
@@ -71,6 +71,8 @@ house_folder(exporters/shape PUBLIC
 house_folder(exporters/formats PUBLIC
   cad_library cad_writer diverging_color length_unit mesh_triangles mesh_writer metrics_report
   ply_writer round_number shape_csv shape_ply surface_grid surface_spline)
+house_folder(exporters/datum PUBLIC
+  known_points known_points_report)
 house_folder(exporters/design PUBLIC
   mesh_reader)
 house_folder(exporters/scale PUBLIC

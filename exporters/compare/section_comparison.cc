@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "exporters/datum/known_points.h"
 #include "exporters/shape/shape_frame.h"
 #include "exporters/shape/shape_transform.h"
 #include "importer/geometry/units.h"
@@ -95,7 +96,11 @@ void AddNotes(const SectionReport& report, const char* whose, std::vector<std::s
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
                                   const Alignment& alignment, const Layout& layout,
                                   const SectionOptions& options) {
-  const ShapeFrame frame = ChooseFrame(reference.shape, layout);
+  const PointCovariance* covariance =
+      reference.covariance.IsEmpty() ? nullptr : &reference.covariance;
+  const ShapeFrame frame =
+      ChooseFrame(reference.shape, layout, std::nullopt,
+                  FrameOfKnownPoints(FitKnownPoints(reference.shape, layout, covariance)));
   const Rigid3& frame_from_reference = frame.frame_from_shape;
   const SectionReport of_reference =
       CutInFrame(frame_from_reference, frame, reference, layout, options);

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <set>
 #include <sstream>
+#include <variant>
 
 #include <fmt/format.h>
 
+#include "exporters/datum/known_points_report.h"
 #include "exporters/report/report_histogram.h"
 #include "exporters/report/report_json.h"
 #include "exporters/report/report_key_numbers.h"
@@ -97,6 +99,24 @@ Json AuditJson(const ScaleAudit& audit) {
     }
   }
   return lines;
+}
+
+// The rows of the table of the metrics.
+Json JsonOf(const KnownPointFit& fit) {
+  MetricsReport report;
+  AddMetrics(fit, &report);
+  Json rows = Json::array();
+  for (const MetricTable& table : report.tables) {
+    for (const Metrics& row : table.rows) {
+      Json json = Json::object();
+      for (const Metric& metric : row) {
+        if (const auto* text = std::get_if<std::string>(&metric.value)) json[metric.key] = *text;
+        if (const auto* value = std::get_if<double>(&metric.value)) json[metric.key] = *value;
+      }
+      rows.push_back(std::move(json));
+    }
+  }
+  return rows;
 }
 
 Json PairsJson(const std::vector<std::pair<std::string, std::string>>& pairs) {
@@ -206,6 +226,9 @@ std::string ReportJson(const ReportInput& input) {
   json["images_left_out"] = JsonOf(input.images_left_out);
   json["markers_left_out"] = JsonOf(MarkersLeftOut(input));
   if (input.audit != nullptr) json["scale_audit"] = AuditJson(*input.audit);
+  if (input.known_points != nullptr && !input.known_points->points.empty()) {
+    json["known_points"] = JsonOf(*input.known_points);
+  }
   json["options"] = PairsJson(input.options);
   json["versions"] = PairsJson(input.versions);
   json["picture"] = PictureJson(input, errors);

@@ -12,6 +12,7 @@
 //                            num_corners, error_mean_px, error_rms_px, error_max_px
 //   histograms               first_border, bin_width, counts, num_below, num_above
 //   scale                    m_per_unit, spread_percent, sigma_percent, num_markers; scale_audit
+//   known_points             rows of the table known_points of metrics.json
 //   images_left_out, markers_left_out    name, reason
 //   picture                  name, width_px, height_px, jpeg or problem, points
 //   sections                 name, height_m, chord_m, camber_percent, draft_percent, entry_deg,
@@ -28,6 +29,7 @@
 
 #include <Eigen/Core>
 
+#include "exporters/datum/known_points.h"
 #include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
 #include "exporters/scale/scale_audit.h"
@@ -87,6 +89,7 @@ struct ReportInput {
   std::optional<ReportFrame> frame = {};
   const AdjustmentUncertainty* uncertainty = nullptr;  // may be null
   const ScaleAudit* audit = nullptr;                   // may be null
+  const KnownPointFit* known_points = nullptr;         // may be null
   std::vector<EstimatedCamera> found_cameras = {};     // by the pictures; empty: calibrated
   std::vector<std::string> warnings = {};              // of the log
   int num_ids_found = 0;  // different marker ids in the images, in the shape or not; 0: unknown

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/datum/known_points_report.h"
 #include "exporters/report/camera_key_numbers.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "importer/base/statistics.h"
@@ -176,6 +177,34 @@ std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit) {
   return number;
 }
 
+// Coordinates measured by hand: checks decide, then points that contradict the others.
+std::optional<KeyNumber> KnownPointsNumber(const KnownPointFit& fit) {
+  if (fit.points.empty()) return std::nullopt;
+  KeyNumber number{
+      KeyNumberKind::kKnownPoints, KnownPointsText(fit),
+      fmt::format("points with measured coordinates; good if all are in the shape and agree, and "
+                  "checks are within {:g} sigmas of point and shape together",
+                  kMaxCheckSigmas),
+      ReportStatus::kCheck,
+      "find out whether measured coordinates or the shape are wrong before using the shape"};
+  if (fit.is_contradicted || CountPoints(fit, PointState::kFailed) > 0) {
+    number.status = ReportStatus::kBad;
+  } else if (!fit.known_from_shape) {
+    number.advice = "the result is in another frame: give more points, or film those given";
+  } else if (fit.DoubtsScale()) {
+    number.advice = "check marker_length, or measure a distance (distances, use: scale)";
+  } else if (CountPoints(fit, PointState::kLeftOut) > 0) {
+    number.advice = "check coordinates, ids and corners of the points left out";
+  } else if (CountPoints(fit, PointState::kNotInShape) > 0) {
+    number.advice = "some of them are not in the shape: film their markers";
+  } else if (fit.residual_in_sigmas || CountPoints(fit, PointState::kPassed) > 0) {
+    number.status = ReportStatus::kGood;
+  } else {
+    number.status = ReportStatus::kNone;  // nothing checks them
+  }
+  return number;
+}
+
 KeyNumber SizeNumber(const MarkerShape& shape) {
   Eigen::AlignedBox3d box;
   for (const ShapeMarker& marker : shape.markers) {
@@ -224,6 +253,9 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
   if (input.audit != nullptr) {
     if (const auto distances = DistancesNumber(*input.audit)) numbers.push_back(*distances);
   }
+  if (input.known_points != nullptr) {
+    if (const auto points = KnownPointsNumber(*input.known_points)) numbers.push_back(*points);
+  }
   if (const auto precision = PrecisionNumber(input.shape)) numbers.push_back(*precision);
   numbers.push_back(SizeNumber(input.shape));
   return numbers;
@@ -235,6 +267,8 @@ std::string KeyNumberName(KeyNumberKind kind) {
       return "Dictionary";
     case KeyNumberKind::kMeasuredDistances:
       return "Measured distances";
+    case KeyNumberKind::kKnownPoints:
+      return "Known points";
     case KeyNumberKind::kCalibration:
       return "Calibration";
     case KeyNumberKind::kCamera:

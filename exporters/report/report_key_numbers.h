@@ -21,6 +21,7 @@ enum class ReportStatus {
 enum class KeyNumberKind {
   kDictionary,
   kMeasuredDistances,
+  kKnownPoints,
   kCalibration,
   kCamera,
   kRollingShutter,

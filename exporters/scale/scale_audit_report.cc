@@ -52,10 +52,6 @@ Metrics GroupRow(Metric name, const GroupScale& group) {
   return row;
 }
 
-std::string PointName(int marker_id, int corner) {
-  return corner == 0 ? fmt::format("{}", marker_id) : fmt::format("{}.{}", marker_id, corner);
-}
-
 Metrics DistanceRow(const CheckedDistance& checked) {
   const KnownDistance& known = checked.known;
   Metrics row = {{"from", PointName(known.marker_id1, known.corner1)},

@@ -17,11 +17,6 @@ namespace {
 // Least sine of the angle between two directions that span a plane: 3 degrees.
 constexpr double kMinSine = 0.05;
 
-struct Attempt {
-  std::optional<ShapeFrame> frame;
-  std::string reason;  // why there is none
-};
-
 // x along `x_in_shape`; z orthogonal to it, in the plane of `x_in_shape` and `up_in_shape`.
 Rigid3 FrameFromAxes(const Eigen::Vector3d& origin_in_shape, const Eigen::Vector3d& x_in_shape,
                      const Eigen::Vector3d& up_in_shape) {
@@ -58,7 +53,7 @@ ShapeFrame MakeUpright(FrameKind kind, const Rigid3& frame_from_shape, const std
   return frame;
 }
 
-Attempt TryMarkers(const MarkerShape& shape, const FrameChoice& choice) {
+FrameAttempt TryMarkers(const MarkerShape& shape, const FrameChoice& choice) {
   const std::vector<int> ids = {choice.origin_id, choice.axis_id, choice.plane_id};
   const std::string missing = WhichMissing(shape, ids);
   if (!missing.empty()) return {std::nullopt, missing};
@@ -128,7 +123,7 @@ int NearestAxis(const std::array<Eigen::Vector3d, 3>& axes, const Eigen::Vector3
   return nearest;
 }
 
-Attempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
+FrameAttempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
   if (!layout.reference_part) return {std::nullopt, "the layout names no reference_part"};
   std::vector<int> ids, missing;
   for (const int id : MarkersOfPart(layout, *layout.reference_part)) {
@@ -167,7 +162,7 @@ Attempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {
           ""};
 }
 
-Attempt TryLines(const MarkerShape& shape, const Layout& layout) {
+FrameAttempt TryLines(const MarkerShape& shape, const Layout& layout) {
   const LayoutPart* part = FirstPartWithLines(layout);
   if (part == nullptr) return {std::nullopt, "the layout has no horizontal lines"};
   const std::vector<const MarkerLine*> lines = LinesWithEnds(shape, part->horizontal);
@@ -218,9 +213,11 @@ ShapeFrame CameraFrame(const MarkerShape& shape, const Layout& layout) {
   return frame;
 }
 
-Attempt Try(FrameKind kind, const FrameChoice& choice, const MarkerShape& shape,
-            const Layout& layout) {
+FrameAttempt Try(FrameKind kind, const FrameChoice& choice, const MarkerShape& shape,
+                 const Layout& layout, const FrameAttempt& known_points) {
   switch (kind) {
+    case FrameKind::kKnownPoints:
+      return known_points;
     case FrameKind::kMarkers:
       return TryMarkers(shape, choice);
     case FrameKind::kReferencePart:
@@ -246,6 +243,11 @@ std::string NameOf(FrameKind kind, const FrameChoice& choice) {
                   NameOf(choice.kind, choice), reason));
 }
 
+bool HasDatum(const Layout& layout) {
+  return std::any_of(layout.known_points.begin(), layout.known_points.end(),
+                     [](const KnownPoint& point) { return !point.is_check; });
+}
+
 std::string LeewardText(const MarkerShape& shape, const Layout& layout, const ShapeFrame& frame) {
   const Eigen::Vector3d y_in_shape =
       frame.frame_from_shape.rotation.conjugate() * Eigen::Vector3d::UnitY();
@@ -265,6 +267,11 @@ std::string FrameText(const ShapeFrame& frame) {
 
 void CheckFrameChoice(const std::optional<FrameChoice>& choice, const Layout& layout) {
   if (!choice) return;
+  if (choice->kind == FrameKind::kKnownPoints) {
+    if (layout.known_points.empty()) ThrowNotGranted(*choice, "the layout has no known_points");
+    const std::string lack = WhatDatumLacks(layout.known_points);
+    if (!lack.empty()) ThrowNotGranted(*choice, "of the layout's known_points, " + lack);
+  }
   if (choice->kind == FrameKind::kReferencePart && !layout.reference_part) {
     ThrowNotGranted(*choice, "the layout names no reference_part");
   }
@@ -281,22 +288,22 @@ void CheckFrameChoice(const std::optional<FrameChoice>& choice, const Layout& la
 }
 
 ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
-                       const std::optional<FrameChoice>& choice) {
-  const FrameChoice wanted =
-      choice.value_or(layout.frame.value_or(FrameChoice{FrameKind::kReferencePart}));
-  std::vector<FrameKind> order = {wanted.kind};
-  for (const FrameKind kind : {FrameKind::kReferencePart, FrameKind::kLines, FrameKind::kCamera}) {
-    if (kind != wanted.kind) order.push_back(kind);
-  }
+                       const std::optional<FrameChoice>& choice, const FrameAttempt& known_points) {
+  std::vector<FrameKind> order = {FrameKind::kReferencePart, FrameKind::kLines, FrameKind::kCamera};
+  if (HasDatum(layout)) order.insert(order.begin(), FrameKind::kKnownPoints);
+  const FrameChoice wanted = choice.value_or(layout.frame.value_or(FrameChoice{order.front()}));
+  order.erase(std::remove(order.begin(), order.end(), wanted.kind), order.end());
+  order.insert(order.begin(), wanted.kind);
   std::vector<std::string> reasons;
   for (const FrameKind kind : order) {
-    Attempt attempt = Try(kind, wanted, shape, layout);
+    FrameAttempt attempt = Try(kind, wanted, shape, layout, known_points);
     if (!attempt.frame) {
       if (choice) ThrowNotGranted(wanted, attempt.reason);
       reasons.push_back(fmt::format("not by {}: {}", NameOf(kind, wanted), attempt.reason));
       continue;
     }
-    if (kind != FrameKind::kCamera) {
+    // The y of a camera or of the user need not be across the sail.
+    if (kind != FrameKind::kCamera && kind != FrameKind::kKnownPoints) {
       attempt.frame->description += LeewardText(shape, layout, *attempt.frame);
     }
     attempt.frame->reasons = reasons;

@@ -16,6 +16,8 @@
 //                 up, orthogonal to x in the plane of x and a vertical line (from its first to its
 //                 last marker) or, without one, the line from the middle of the lowest to the
 //                 middle of the highest horizontal line.
+// Known points:   the frame in which the layout's known points were measured, see
+//                 exporters/datum/known_points.h.
 // Camera:         the frame of the model; velamap puts the central camera there.
 //
 // With x from luff to leech and z up, y = z x x points to starboard of a sail whose luff is
@@ -50,6 +52,12 @@ struct ShapeFrame {
   std::optional<Eigen::Vector3d> up_in_frame;
 };
 
+// A frame, or why there is none.
+struct FrameAttempt {
+  std::optional<ShapeFrame> frame;
+  std::string reason;
+};
+
 // `name: description; reasons` in one line.
 std::string FrameText(const ShapeFrame& frame);
 
@@ -58,8 +66,10 @@ void CheckFrameChoice(const std::optional<FrameChoice>& choice, const Layout& la
 
 // Returns the frame that is `choice`, and throws InputError if the markers do not allow it. Without
 // a choice, returns the first frame that the whole markers allow: the `frame` of the layout, the
-// reference part, the lines, the camera. The camera is always possible.
+// known points if it has some, the reference part, the lines, the camera. The camera is always
+// possible. `known_points` is the frame of the known points in this shape.
 ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
-                       const std::optional<FrameChoice>& choice = std::nullopt);
+                       const std::optional<FrameChoice>& choice = std::nullopt,
+                       const FrameAttempt& known_points = {});
 
 }  // namespace velamap

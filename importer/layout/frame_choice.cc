@@ -16,8 +16,9 @@
 namespace velamap {
 namespace {
 
-constexpr std::array<std::pair<const char*, FrameKind>, 3> kKeywords = {
-    {{"reference_part", FrameKind::kReferencePart},
+constexpr std::array<std::pair<const char*, FrameKind>, 4> kKeywords = {
+    {{"known_points", FrameKind::kKnownPoints},
+     {"reference_part", FrameKind::kReferencePart},
      {"lines", FrameKind::kLines},
      {"camera", FrameKind::kCamera}}};
 
@@ -54,10 +55,11 @@ FrameChoice ParseFrameChoice(const std::string& text, const std::string& what) {
   if (ParseFrameKeyword(text, &choice.kind)) return choice;
   const std::vector<int> ids = ParseIds(text);
   if (ids.size() != kNumIds || std::set<int>(ids.begin(), ids.end()).size() != kNumIds) {
-    throw InputError(fmt::format(
-        "{}: '{}' is not a frame; expected reference_part, lines, camera, or the ids of three "
-        "different markers (origin,axis,plane) such as 12,15,40",
-        what, text));
+    throw InputError(
+        fmt::format("{}: '{}' is not a frame; expected known_points, reference_part, lines, "
+                    "camera, or the ids of "
+                    "three different markers (origin,axis,plane) such as 12,15,40",
+                    what, text));
   }
   choice.kind = FrameKind::kMarkers;
   choice.origin_id = ids[0];

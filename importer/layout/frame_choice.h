@@ -9,6 +9,7 @@ namespace velamap {
 
 enum class FrameKind {
   kMarkers,        // three named markers: origin, axis, plane
+  kKnownPoints,    // the frame of the layout's known points
   kReferencePart,  // the layout's reference part, such as the hull
   kLines,          // the lowest horizontal line and a vertical line of the sail
   kCamera,         // the model's own frame, in which velamap puts the central camera
@@ -21,8 +22,8 @@ struct FrameChoice {
   int origin_id = -1, axis_id = -1, plane_id = -1;
 };
 
-// Parses "reference_part", "lines", "camera", or the ids of origin, axis and plane such as
-// "12,15,40". Throws InputError; `what` names the option.
+// Parses "known_points", "reference_part", "lines", "camera", or the ids of origin, axis and plane
+// such as "12,15,40". Throws InputError; `what` names the option.
 FrameChoice ParseFrameChoice(const std::string& text, const std::string& what);
 
 // Throws std::logic_error for kMarkers, which has no keyword.

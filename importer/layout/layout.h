@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "importer/layout/frame_choice.h"
+#include "importer/layout/known_point.h"
 
 namespace velamap {
 
@@ -61,6 +62,7 @@ struct Layout {
   std::vector<LayoutPart> parts;              // empty: all ids belong to one part
   std::optional<std::string> reference_part;  // motion is measured relative to it
   std::vector<KnownDistance> distances;
+  std::vector<KnownPoint> known_points;
   std::optional<FrameChoice> frame;  // of the result; nothing: the best available
 
   // Whether the layout lists its markers; without a list every id is accepted.
@@ -70,8 +72,9 @@ struct Layout {
 // Reads a layout file (YAML; README.md of this folder lists the keys). The path of a dictionary
 // file is relative to the layout file. Throws InputError that names file, line and key for unknown
 // keys, a marker twice on one line or in two parts, a length that is not between 0.1 mm and 10 m, a
-// negative id, an edge that its lines do not allow, and a distance of a marker that no part names,
-// of a point from itself, or without a sigma.
+// negative id, an edge that its lines do not allow, a distance of a marker that no part names, of a
+// point from itself, or without a sigma, and a known point that is given twice, of a marker that no
+// part names, or without a coordinate or a sigma.
 Layout ReadLayout(const std::string& path);
 
 // The layout of --dictionary and --marker_length: no lines, and every id is accepted.

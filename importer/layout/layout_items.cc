@@ -21,33 +21,6 @@ double ReadPositiveMetres(const YamlItem& item) {
   return length_m;
 }
 
-// A layout without parts accepts every id.
-void CheckMarkersAreNamed(const std::vector<int>& marker_ids, const Layout& layout,
-                          const YamlItem& item) {
-  if (!layout.HasMarkers()) return;
-  const std::vector<int> named_ids = MarkerIds(layout);
-  for (const int id : marker_ids) {
-    if (std::binary_search(named_ids.begin(), named_ids.end(), id)) continue;
-    item.Fail(fmt::format("marker {} is in no part; name it there or correct its id", id));
-  }
-}
-
-// "12" is the centre of marker 12, "12.1" its corner 1.
-void ReadMarkerPoint(const YamlItem& item, int* marker_id, int* corner) {
-  const std::string text = item.Text();
-  const std::size_t dot = text.find('.');
-  *corner = 0;
-  const bool is_corner =
-      dot == std::string::npos || (ParseNumber(text.substr(dot + 1), corner) && *corner >= 1 &&
-                                   *corner <= kNumCorners && text.size() == dot + 2);
-  if (!is_corner || !ParseMarkerId(text.substr(0, dot), marker_id)) {
-    item.Fail(
-        fmt::format("'{}' is not a point of a marker; expected the id for its centre, or id.corner "
-                    "(1 to 4) for a corner, such as 12 or 12.1",
-                    text));
-  }
-}
-
 // Whether the length takes part in the adjustment.
 bool ReadUse(const YamlItem& item) {
   if (item.Text() != "check" && item.Text() != "scale") {
@@ -186,6 +159,31 @@ double ReadMetres(const YamlItem& item) {
   return length_m;
 }
 
+void CheckMarkersAreNamed(const std::vector<int>& marker_ids, const Layout& layout,
+                          const YamlItem& item) {
+  if (!layout.HasMarkers()) return;
+  const std::vector<int> named_ids = MarkerIds(layout);
+  for (const int id : marker_ids) {
+    if (std::binary_search(named_ids.begin(), named_ids.end(), id)) continue;
+    item.Fail(fmt::format("marker {} is in no part; name it there or correct its id", id));
+  }
+}
+
+void ReadMarkerPoint(const YamlItem& item, int* marker_id, int* corner) {
+  const std::string text = item.Text();
+  const std::size_t dot = text.find('.');
+  *corner = 0;
+  const bool is_corner =
+      dot == std::string::npos || (ParseNumber(text.substr(dot + 1), corner) && *corner >= 1 &&
+                                   *corner <= kNumCorners && text.size() == dot + 2);
+  if (!is_corner || !ParseMarkerId(text.substr(0, dot), marker_id)) {
+    item.Fail(
+        fmt::format("'{}' is not a point of a marker; expected the id for its centre, or id.corner "
+                    "(1 to 4) for a corner, such as 12 or 12.1",
+                    text));
+  }
+}
+
 ClothEdges ReadEdges(const YamlItem& item, const LayoutPart& part) {
   if (part.horizontal.empty()) item.Fail("the edges of a part without horizontal lines are unused");
   ClothEdges edges;
@@ -214,10 +212,16 @@ FrameChoice ReadFrame(const YamlItem& item, const Layout& layout) {
   }
   FrameChoice frame;
   if (!ParseFrameKeyword(item.Text(), &frame.kind)) {
-    item.Fail(fmt::format(
-        "'{}' is not a frame; expected reference_part, lines, camera, or three markers such "
-        "as {{origin: 12, axis: 15, plane: 40}}",
-        item.Text()));
+    item.Fail(
+        fmt::format("'{}' is not a frame; expected known_points, reference_part, lines, camera, or "
+                    "three markers such as {{origin: 12, axis: 15, plane: 40}}",
+                    item.Text()));
+  }
+  if (frame.kind == FrameKind::kKnownPoints) {
+    const std::string lack = WhatDatumLacks(layout.known_points);
+    if (!lack.empty()) {
+      item.Fail("the frame of the known points needs more of them (key 'known_points'): " + lack);
+    }
   }
   if (frame.kind == FrameKind::kReferencePart && !layout.reference_part) {
     item.Fail("the frame of the reference part needs the key 'reference_part'");

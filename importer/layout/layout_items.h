@@ -20,10 +20,20 @@ double ReadMetres(const YamlItem& item);
 // The edges of a part, which has its lines.
 ClothEdges ReadEdges(const YamlItem& item, const LayoutPart& part);
 
+// "12" is the centre of marker 12 (corner 0), "12.1" its corner 1.
+void ReadMarkerPoint(const YamlItem& item, int* marker_id, int* corner);
+
+// Throws for a marker that no part of the layout names. A layout without parts accepts every id.
+void CheckMarkersAreNamed(const std::vector<int>& marker_ids, const Layout& layout,
+                          const YamlItem& item);
+
 // The list of measured distances. `layout` has its parts.
 std::vector<KnownDistance> ReadDistances(const YamlItem& list, const Layout& layout);
 
-// The frame of the result. `layout` has its parts and its reference part.
+// The list of points with measured coordinates. `layout` has its parts.
+std::vector<KnownPoint> ReadKnownPoints(const YamlItem& list, const Layout& layout);
+
+// The frame of the result. `layout` has its parts, its reference part and its known points.
 FrameChoice ReadFrame(const YamlItem& item, const Layout& layout);
 
 }  // namespace velamap

@@ -147,7 +147,7 @@ Layout ReadLayout(const std::string& path) {
   }
   const YamlItem top{path, root, ""};
   Layout layout;
-  std::optional<YamlItem> reference, distances, frame;
+  std::optional<YamlItem> reference, distances, known_points, frame;
   ReadMap(
       top,
       {{"dictionary", [&](const YamlItem& v) { layout.dictionary = ReadDictionaryName(v); }},
@@ -158,6 +158,7 @@ Layout ReadLayout(const std::string& path) {
        {"parts", [&](const YamlItem& v) { layout.parts = ReadParts(v); }},
        {"reference_part", [&](const YamlItem& v) { reference.emplace(v); }},
        {"distances", [&](const YamlItem& v) { distances.emplace(v); }},
+       {"known_points", [&](const YamlItem& v) { known_points.emplace(v); }},
        {"frame", [&](const YamlItem& v) { frame.emplace(v); }}});
   if (layout.dictionary.empty()) top.Fail("key 'dictionary' is missing, such as DICT_4X4_50");
   if (layout.marker_length_m == 0.0) top.Fail("key 'marker_length' is missing (metres)");
@@ -168,6 +169,7 @@ Layout ReadLayout(const std::string& path) {
     if (!known) reference->Fail("there is no part '" + *layout.reference_part + "'");
   }
   if (distances) layout.distances = ReadDistances(*distances, layout);
+  if (known_points) layout.known_points = ReadKnownPoints(*known_points, layout);
   if (frame) layout.frame = ReadFrame(*frame, layout);
   return layout;
 }

@@ -71,17 +71,25 @@ void EmitPart(const LayoutPart& part, YAML::Emitter* out) {
   *out << YAML::EndMap;
 }
 
-std::string PointText(int marker_id, int corner) {
-  return corner == 0 ? std::to_string(marker_id) : fmt::format("{}.{}", marker_id, corner);
-}
-
 void EmitDistance(const KnownDistance& distance, YAML::Emitter* out) {
   *out << YAML::Flow << YAML::BeginMap;
-  *out << YAML::Key << "from" << YAML::Value << PointText(distance.marker_id1, distance.corner1);
-  *out << YAML::Key << "to" << YAML::Value << PointText(distance.marker_id2, distance.corner2);
+  *out << YAML::Key << "from" << YAML::Value << PointName(distance.marker_id1, distance.corner1);
+  *out << YAML::Key << "to" << YAML::Value << PointName(distance.marker_id2, distance.corner2);
   *out << YAML::Key << "length" << YAML::Value << Number(distance.length_m);
   *out << YAML::Key << "sigma" << YAML::Value << Number(distance.sigma_m);
   if (distance.is_scale_bar) *out << YAML::Key << "use" << YAML::Value << "scale";
+  *out << YAML::EndMap;
+}
+
+void EmitKnownPoint(const KnownPoint& point, YAML::Emitter* out) {
+  *out << YAML::Flow << YAML::BeginMap;
+  *out << YAML::Key << "at" << YAML::Value << PointName(point.marker_id, point.corner);
+  for (std::size_t axis = 0; axis < point.x_m.size(); ++axis) {
+    if (!point.x_m[axis]) continue;
+    *out << YAML::Key << kAxisNames[axis] << YAML::Value << Number(*point.x_m[axis]);
+  }
+  *out << YAML::Key << "sigma" << YAML::Value << Number(point.sigma_m);
+  if (point.is_check) *out << YAML::Key << "use" << YAML::Value << "check";
   *out << YAML::EndMap;
 }
 
@@ -123,6 +131,11 @@ void EmitLayout(const Layout& layout, YAML::Emitter* out) {
   if (!layout.distances.empty()) {
     *out << YAML::Key << "distances" << YAML::Value << YAML::BeginSeq;
     for (const KnownDistance& distance : layout.distances) EmitDistance(distance, out);
+    *out << YAML::EndSeq;
+  }
+  if (!layout.known_points.empty()) {
+    *out << YAML::Key << "known_points" << YAML::Value << YAML::BeginSeq;
+    for (const KnownPoint& point : layout.known_points) EmitKnownPoint(point, out);
     *out << YAML::EndSeq;
   }
   *out << YAML::EndMap;

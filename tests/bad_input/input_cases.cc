@@ -243,6 +243,45 @@ std::vector<BadInput> Markers() {
   return cases;
 }
 
+// Points of the layout with measured coordinates.
+std::vector<BadInput> KnownPoints() {
+  const auto points = [](const std::vector<std::string>& entries, const std::string& more = "") {
+    return [=](const fs::path& dir) {
+      std::string text = ReadFileBytes(dir / "layout.yml") + "known_points:\n";
+      for (const std::string& entry : entries) text += "  - {" + entry + "}\n";
+      WriteTextFile(dir / "bad.yml", text + more);
+    };
+  };
+  const std::string call =
+      "shape_exporter --input_path @/workspace/sparse/0 --shape_path @/out --layout_path @/bad.yml";
+  const std::string wish = call + " --frame known_points";
+  const std::string zero = "at: 0, x: 0, y: 0, z: 0, sigma: 0.002";
+  const std::string one = "at: 1, x: 0.3, y: 0, z: 0, sigma: 0.002";
+  return {{"KnownPointOfAnUnknownMarker", call, 2, "known_points[0]: marker 77 is in no part",
+           points({"at: 77, x: 0, sigma: 0.002"})},
+          {"KnownPointGivenTwice", call, 2, "known_points[1]: point 0 is given twice",
+           points({zero, "at: 0, z: 1, sigma: 0.002"})},
+          {"KnownPointWithoutACoordinate", call, 2, "no coordinate is given",
+           points({"at: 0, sigma: 0.002"})},
+          {"KnownPointWithoutASigma", call, 2, "key 'sigma' is missing", points({"at: 0, x: 1"})},
+          {"KnownPointOfNegativeSigma", call, 2, ".sigma: -0.002 m is out of range",
+           points({"at: 0, x: 1, sigma: -0.002"})},
+          {"KnownPointThatIsNoNumber", call, 2, ".y: nan m is out of range",
+           points({"at: 0, y: nan, sigma: 0.002"})},
+          {"KnownPointFarOff", call, 2, ".z: 1e+200 m is out of range",
+           points({"at: 0, z: 1e200, sigma: 0.002"})},
+          {"FrameOfTooFewKnownPoints", call, 2, "frame: the frame of the known points needs more",
+           points({zero, one}, "frame: known_points\n")},
+          {"WishForTooFewKnownPoints", wish, 2, "2 points are given, three are needed",
+           points({zero, one})},
+          {"WishForLevels", wish, 2, "they have z alone",
+           points({"at: 0, z: 0, sigma: 0.002", "at: 1, z: 0, sigma: 0.002",
+                   "at: 2, z: 0, sigma: 0.002"})},
+          {"WishForKnownPointsOfAnotherSize", wish, 2, "times as far apart as in the shape",
+           points({zero, "at: 1, x: 90, y: 0, z: 0, sigma: 0.002",
+                   "at: 3, x: 0, y: 90, z: 0, sigma: 0.002"})}};
+}
+
 std::vector<BadInput> PriorShapes() {
   const std::string header = "marker_id,corner,x,y,z,sigma_x,sigma_y,sigma_z,num_frames,part\n";
   const std::string call = kCall + " --prior_shape_path @/prior.csv";
@@ -304,7 +343,7 @@ std::vector<BadInput> Options() {
 std::vector<BadInput> InputCases() {
   std::vector<BadInput> cases = Pictures();
   for (const auto& more : {Boards(), Calibrations(), Walls(), Numbers(), Meshes(), Markers(),
-                           PriorShapes(), Workspaces(), Options()}) {
+                           KnownPoints(), PriorShapes(), Workspaces(), Options()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

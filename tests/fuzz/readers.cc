@@ -117,6 +117,7 @@ const char* const kLayout =
     "      - {name: h2, markers: [4, 5, 6]}\n    vertical:\n      - {name: v1, markers: [1, 4]}\n"
     "    markers: [7]\n  hull: {markers: [20, 21, 22], rigid: true}\nreference_part: hull\n"
     "distances:\n  - {from: 20, to: 21.3, length: 0.5, sigma: 0.001, use: scale}\n"
+    "known_points:\n  - {at: 20, x: 1, z: -0.5, sigma: 0.002, use: check}\n"
     "frame: reference_part\n";
 
 const char* const kShape =

@@ -174,7 +174,7 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
     input.found_cameras.push_back(camera);
   }
   input.warnings = LoggedWarnings();  // before those that a key number says, too
-  LogScaleWarnings(shape.audit);
+  LogContradictions(shape);
   input.options = TypedOptions(options.arguments);
   input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
   LeaveFoldersOut(&input);

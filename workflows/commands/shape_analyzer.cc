@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "exporters/datum/known_points_report.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_audit_report.h"
@@ -117,6 +118,7 @@ MetricsReport Analyze(const Options& options) {
                           source.uncertainty ? &*source.uncertainty : nullptr),
                &report);
   }
+  if (layout) AddMetrics(FitKnownPoints(shape, *layout, covariance), &report);
   if (source.uncertainty) AddMetrics(*source.uncertainty, &report);
   if (options.part_planes) AddMetrics(FitPartPlanes(shape, covariance), &report, covariance);
   if (!options.paths.reference_path.empty()) {

@@ -66,7 +66,7 @@ void Print(const ShapeExportReport& report, const Layout& layout, const PathOpti
            std::ostream& out) {
   ReportInput input = MakeReportInput(report, layout);
   input.warnings = LoggedWarnings();  // before those that a key number says, too
-  LogScaleWarnings(report.audit);
+  LogContradictions(report);
   PrintVerdict(MakeVerdict(input), out);
   PrintShapeSummary(report, out);
   if (!paths.shape_path.empty()) out << "shape_path: " << paths.shape_path << '\n';

@@ -36,8 +36,9 @@ std::vector<OptionGroup> SailGroups(ShapeExporterOptions* exporter, SurfaceFileO
   };
   const Option frame =
       Common({"frame", ParsedValue{&exporter->frame, "", set_frame}, "name|ids",
-              "reference_part, lines, camera, or the ids of origin, axis and plane marker such as "
-              "12,15,40; left out: as the layout says, else the first of these that can be made"});
+              "known_points, reference_part, lines, camera, or the ids of origin, axis and plane "
+              "marker such as 12,15,40; left out: as the layout says, else the first of these that "
+              "can be made"});
   return {{"Frame and scale of the result", {frame, ScaleOption(&exporter->scale_by)}},
           DescribeOptions(&exporter->sail.sections),
           SurfaceGroup(&exporter->sail.surface, surface),

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
 #include "exporters/shape/shape_sigma.h"
 #include "exporters/shape_report.h"
@@ -149,6 +150,9 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   PrintVerdict(summary.verdict, out);
   PrintMarkers(summary, out);
   PrintSize(summary.shape, out);
+  if (!summary.shape.known_points.points.empty()) {
+    fmt::print(out, "known points: {}\n", KnownPointsText(summary.shape.known_points));
+  }
   PrintImages(summary, out);
   PrintSections(summary.shape.sail.sections, out);
   PrintSurfaces(summary.shape, out);
@@ -195,6 +199,7 @@ MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const Workspa
   AddMetrics(shape.scale, &report);
   AddMetrics(shape.audit, &report);
   AddMetrics(shape.frame, &report);
+  AddMetrics(shape.known_points, &report);
   AddMetrics(shape.sail, &report);
   AddMetrics(shape.freeform, &report);
   if (summary.adjustment.uncertainty) AddMetrics(*summary.adjustment.uncertainty, &report);

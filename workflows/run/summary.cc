@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 #include <Eigen/Eigenvalues>
 
+#include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
 
 namespace velamap {
@@ -183,8 +184,9 @@ std::string ShellQuote(const std::string& text) {
   return quoted + "'";
 }
 
-void LogScaleWarnings(const ScaleAudit& audit) {
-  for (const std::string& warning : ScaleWarnings(audit)) spdlog::warn(warning);
+void LogContradictions(const ShapeExportReport& report) {
+  for (const std::string& warning : ScaleWarnings(report.audit)) spdlog::warn(warning);
+  for (const std::string& warning : KnownPointWarnings(report.known_points)) spdlog::warn(warning);
 }
 
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout) {
@@ -192,6 +194,7 @@ ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layou
                     report.model_metrics, report.scale};
   input.uncertainty = report.uncertainty ? &*report.uncertainty : nullptr;
   input.audit = &report.audit;
+  input.known_points = &report.known_points;
   return input;
 }
 
@@ -218,6 +221,9 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   fmt::print(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
   fmt::print(out, "scale_spread_over_markers: {:.3f} %\n", 100.0 * report.scale.relative_spread);
   PrintScaleAudit(report.scale, report.audit, out);
+  if (!report.known_points.points.empty()) {
+    fmt::print(out, "known_points: {}\n", KnownPointsText(report.known_points));
+  }
   PrintSail(report, out);
   fmt::print(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
 }

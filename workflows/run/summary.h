@@ -32,8 +32,8 @@ Eigen::Vector3d BoundingBox(const MarkerShape& shape);
 // Quotes a path for a shell where that is needed.
 std::string ShellQuote(const std::string& text);
 
-// Logs what contradicts the scale of the shape.
-void LogScaleWarnings(const ScaleAudit& audit);
+// Logs which measured distances and known points contradict the shape.
+void LogContradictions(const ShapeExportReport& report);
 
 // What the report shows of an exported shape; refers to both. Without log, title and origin.
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout);

@@ -104,12 +104,23 @@ function fillTables(data) {
     {name: 'Option', value: row => row[0], isText: true},
     {name: 'Value', value: row => row[1], isText: true},
   ], [['velamap', data.version], ...data.versions, ...data.options]);
+  fillKnownPoints(data.known_points);
   if (!data.scale_audit) return;
   byId('audit').hidden = false;
   fillTable('table_audit', [
     {name: 'Figure', value: row => row[0], isText: true},
     {name: 'Value', value: row => row[1], isText: true},
   ], data.scale_audit);
+}
+
+function fillKnownPoints(points) {
+  if (!points) return;
+  byId('known_points').hidden = false;
+  fillTable('table_known_points', [
+    text('Point', 'point'), text('Use', 'use'), number('dx, mm', 'dx_mm', 2), number('dy, mm', 'dy_mm', 2),
+    number('dz, mm', 'dz_mm', 2), number('Distance, mm', 'distance_mm', 2), number('Sigmas', 'in_sigmas', 1),
+    text('Result', 'result'),
+  ], points);
 }
 
 // A figure with its standard deviation, if known.

@@ -216,6 +216,25 @@ TEST_F(ReportData, TheAuditIsThatOfTheMetrics) {
   EXPECT_FALSE(has("scale_histogram"));
 }
 
+TEST_F(ReportData, KnownPointsAreTheRowsOfTheMetrics) {
+  ReportInput input = example_.Input();
+  KnownPointFit fit;
+  input.known_points = &fit;
+  EXPECT_FALSE(json::parse(ReportJson(input)).contains("known_points"));
+  fit.points.push_back({KnownPoint{12, 3, {1.0, std::nullopt, 2.0}, 0.002, false},
+                        PointState::kUsed,
+                        {0.001, 0, -0.002},
+                        1.5});
+  fit.known_from_shape = Rigid3();
+  const json rows = json::parse(ReportJson(input)).at("known_points");
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].at("point"), "12.3");
+  EXPECT_EQ(rows[0].at("dz_mm"), -2.0);
+  EXPECT_FALSE(rows[0].contains("dy_mm"));
+  EXPECT_EQ(rows[0].at("in_sigmas"), 1.5);
+  EXPECT_EQ(rows[0].at("result"), "used");
+}
+
 TEST_F(ReportData, CanStandInsideAScript) {
   ReportInput input = example_.Input();
   input.title = "</script><!-- \xff";

@@ -79,6 +79,40 @@ TEST_F(ReportKeyNumbers, AMeasuredDistanceThatFailsIsRed) {
   EXPECT_EQ(find(KeyNumberKind::kMeasuredDistances).status, ReportStatus::kCheck);
 }
 
+TEST_F(ReportKeyNumbers, AKnownPointThatFailsIsRed) {
+  KnownPointFit fit;
+  ReportInput input = example_.Input();
+  input.known_points = &fit;
+  EXPECT_FALSE(FindIn(input, KeyNumberKind::kKnownPoints));
+  const auto status = [&input] { return FindIn(input, KeyNumberKind::kKnownPoints)->status; };
+  for (const int id : {1, 2, 3}) {
+    fit.points.push_back({KnownPoint{id, 0, {}, 0.002, false}, PointState::kUsed});
+  }
+  fit.reason = "2 points are given, three are needed";
+  EXPECT_EQ(status(), ReportStatus::kCheck);
+  EXPECT_EQ(FindIn(input, KeyNumberKind::kKnownPoints)->value, "no frame: " + fit.reason);
+  fit.is_contradicted = true;
+  EXPECT_EQ(status(), ReportStatus::kBad);
+  fit.is_contradicted = false;
+  fit.known_from_shape = Rigid3();
+  EXPECT_EQ(status(), ReportStatus::kNone);  // no redundancy
+  fit.residual_in_sigmas = 1.1;
+  EXPECT_EQ(status(), ReportStatus::kGood);
+  fit.growth = AskedGrowth{0.01, 0.004};
+  EXPECT_EQ(status(), ReportStatus::kGood);
+  fit.growth->sigma = 0.003;
+  EXPECT_EQ(status(), ReportStatus::kCheck);
+  EXPECT_THAT(FindIn(input, KeyNumberKind::kKnownPoints)->value,
+              HasSubstr("ask for +1.000 +- 0.300 % in size"));
+  fit.growth.reset();
+  fit.points[1].state = PointState::kLeftOut;
+  EXPECT_EQ(status(), ReportStatus::kCheck);
+  fit.points[1].state = PointState::kFailed;
+  EXPECT_EQ(status(), ReportStatus::kBad);
+  fit.points[1].state = PointState::kNotInShape;
+  EXPECT_EQ(status(), ReportStatus::kCheck);
+}
+
 TEST_F(ReportKeyNumbers, PartsThatDisagreeLeaveTheScaleOpen) {
   ScaleAudit audit;
   audit.parts = {{"hull", 0.0, 5, 0.005, 5e-4}, {"sail", 0.0, 20, -0.005, 5e-4}};

@@ -32,6 +32,7 @@ TEST(ParseFrameChoice, ReadsKeywordsAndMarkers) {
   EXPECT_EQ(ParseFrameChoice("reference_part", "--frame").kind, FrameKind::kReferencePart);
   EXPECT_EQ(ParseFrameChoice("lines", "--frame").kind, FrameKind::kLines);
   EXPECT_EQ(ParseFrameChoice("camera", "--frame").kind, FrameKind::kCamera);
+  EXPECT_EQ(ParseFrameChoice("known_points", "--frame").kind, FrameKind::kKnownPoints);
   const FrameChoice choice = ParseFrameChoice("12,0,40", "--frame");
   EXPECT_EQ(choice.kind, FrameKind::kMarkers);
   EXPECT_EQ(choice.origin_id, 12);
@@ -48,7 +49,8 @@ TEST(ParseFrameChoice, RefusesEverythingElse) {
 }
 
 TEST(FrameKeyword, IsWhatIsParsed) {
-  for (const FrameKind kind : {FrameKind::kReferencePart, FrameKind::kLines, FrameKind::kCamera}) {
+  for (const FrameKind kind : {FrameKind::kKnownPoints, FrameKind::kReferencePart,
+                               FrameKind::kLines, FrameKind::kCamera}) {
     FrameKind parsed = FrameKind::kMarkers;
     ASSERT_TRUE(ParseFrameKeyword(FrameKeyword(kind), &parsed));
     EXPECT_EQ(parsed, kind);

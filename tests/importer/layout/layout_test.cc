@@ -161,6 +161,74 @@ TEST(ReadLayout, NamesFileLineAndKeyOfAWrongDistance) {
   ExpectThrows<InputError>([&] { ReadLayout(empty); }, {empty + ":3: distances: no distance"});
 }
 
+TEST(ReadLayout, ReadsKnownPoints) {
+  const TempDir dir;
+  const Layout layout = ReadLayout(WriteLayout(dir, R"(dictionary: DICT_4X4_50
+marker_length: 0.1
+known_points:
+  - {at: 12, x: 0.0, y: -1.5, z: 2, sigma: 0.002}
+  - {at: 45.3, x: 2.4, z: 1.3, sigma: 0.001, use: frame}
+  - {at: 60, z: 0.0, sigma: 0.003, use: check}
+)"));
+  ASSERT_EQ(layout.known_points.size(), 3u);
+  const KnownPoint &first = layout.known_points[0], &corner = layout.known_points[1],
+                   &level = layout.known_points[2];
+  EXPECT_EQ(first.marker_id, 12);
+  EXPECT_EQ(first.corner, 0);
+  EXPECT_THAT(first.x_m, ElementsAre(0.0, -1.5, 2.0));
+  EXPECT_EQ(first.sigma_m, 0.002);
+  EXPECT_FALSE(first.is_check);
+  EXPECT_EQ(corner.corner, 3);
+  EXPECT_EQ(corner.x_m[0], 2.4);
+  EXPECT_FALSE(corner.x_m[1]);
+  EXPECT_EQ(corner.x_m[2], 1.3);
+  EXPECT_FALSE(corner.is_check);
+  EXPECT_EQ(level.NumCoordinates(), 1);
+  EXPECT_TRUE(level.is_check);
+}
+
+TEST(ReadLayout, NamesFileLineAndKeyOfAWrongKnownPoint) {
+  const TempDir dir;
+  // Line 4 is `entry`, before parts with markers 12 and 45.
+  const auto expect = [&](const std::string& entry, const std::string& part) {
+    const std::string path =
+        WriteLayout(dir, "dictionary: DICT_4X4_50\nmarker_length: 0.1\nknown_points:\n  - " +
+                             entry + "\nparts: {s: {markers: [12, 45]}}\n");
+    ExpectThrows<InputError>([&] { ReadLayout(path); }, {path + ":4: known_points[0]", part});
+  };
+  expect("{at: 46, x: 1, sigma: 0.01}", "marker 46 is in no part");
+  expect("{at: 12, sigma: 0.01}", "no coordinate is given");
+  expect("{at: 12, x: 1}", "key 'sigma' is missing");
+  expect("{x: 1, sigma: 0.01}", "key 'at' is missing");
+  expect("{at: 12.5, x: 1, sigma: 0.01}", "'12.5' is not a point of a marker");
+  expect("{at: 12, x: 1, sigma: 0.01, use: scale}", ".use: 'scale': frame");
+  expect("{at: 12, x: 1, sigma: 0.01, w: 3}", "unknown key; known here: at sigma use x y z");
+  expect("{at: 12, x: 1 m, sigma: 0.01}", ".x: '1 m' is not a number");
+  expect("[12, 1, 2, 3]", "a map");
+  for (const char* number : {"nan", "inf", "-1000000000"}) {
+    expect(std::string("{at: 12, sigma: 0.01, y: ") + number + "}", ".y: " + std::string(number));
+  }
+  for (const char* sigma : {"0", "-0.01", "nan", "inf", "2", "1e-09"}) {
+    expect(std::string("{at: 12, x: 1, sigma: ") + sigma + "}", ".sigma: " + std::string(sigma));
+  }
+  const std::string head = "dictionary: DICT_4X4_50\nmarker_length: 0.1\n";
+  const auto expect_line = [&](const std::string& text, const std::string& error) {
+    const std::string path = WriteLayout(dir, head + text);
+    ExpectThrows<InputError>([&] { ReadLayout(path); }, {path + error});
+  };
+  expect_line("known_points: []\n", ":3: known_points: no point is given");
+  expect_line("known_points:\n  - {at: 1.2, x: 1, sigma: 0.1}\n  - {at: 1.2, y: 1, sigma: 0.1}\n",
+              ":5: known_points[1]: point 1.2 is given twice");
+  expect_line("frame: known_points\n",
+              ":3: frame: the frame of the known points needs more of them (key 'known_points'): "
+              "none is given, apart from checks");
+  expect_line(
+      "known_points:\n  - {at: 1, x: 1, y: 0, z: 0, sigma: 0.1}\n"
+      "  - {at: 2, x: 1, y: 0, z: 0, sigma: 0.1}\nframe: known_points\n",
+      ":6: frame: the frame of the known points needs more of them (key 'known_points'): "
+      "2 points are given, three are needed");
+}
+
 TEST(ReadLayout, ReadsTheEdgesOfTheCloth) {
   const TempDir dir;
   const auto edges_of = [&](const std::string& edges) {

@@ -1,6 +1,7 @@
 #include "importer/layout/layout_writer.h"
 
 #include <fstream>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -23,6 +24,8 @@ Layout RichLayout() {
   edges.leech.line = layout.parts.front().vertical.front().name;
   edges.head.offsets_m = {0.1};
   layout.distances = {{1, 0, 9, 0, 2.315, 0.002, false}, {1, 1, 40, 4, 1.5, 0.001, true}};
+  layout.known_points = {{1, 0, {0.1, -2.0, 3.25}, 0.002, false},
+                         {40, 3, {std::nullopt, std::nullopt, 1e-3}, 0.001, true}};
   return layout;
 }
 
@@ -65,6 +68,14 @@ TEST(LayoutText, ReadsBackAsItWas) {
   EXPECT_EQ(read.distances[1].sigma_m, 0.001);
   EXPECT_TRUE(read.distances[1].is_scale_bar);
   EXPECT_FALSE(read.distances[0].is_scale_bar);
+  ASSERT_EQ(read.known_points.size(), layout.known_points.size());
+  for (std::size_t i = 0; i < read.known_points.size(); ++i) {
+    EXPECT_EQ(read.known_points[i].marker_id, layout.known_points[i].marker_id);
+    EXPECT_EQ(read.known_points[i].corner, layout.known_points[i].corner);
+    EXPECT_EQ(read.known_points[i].x_m, layout.known_points[i].x_m);
+    EXPECT_EQ(read.known_points[i].sigma_m, layout.known_points[i].sigma_m);
+    EXPECT_EQ(read.known_points[i].is_check, layout.known_points[i].is_check);
+  }
 }
 
 TEST(LayoutText, WithoutPartsEveryMarkerIsAccepted) {

@@ -12,6 +12,7 @@
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape/part_planes.h"
 #include "exporters/shape/shape_metrics.h"
+#include "importer/base/statistics.h"
 #include "importer/camera/calibration.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
@@ -133,6 +134,43 @@ void ExpectFacesOfACube(const std::vector<PartPlane>& planes, double scale_sigma
   EXPECT_EQ(num_neighbors, 12);
 }
 
+// Exports the shape of the workspace in the frame of the truth, of which a total station has
+// measured ten points to 2 mm, one of them wrong, and a check.
+void ExpectTheFrameOfTheTruth(const TempDir& dir) {
+  constexpr double kSigma_m = 2e-3, kMistake_m = 0.05;
+  constexpr int kWrong = 84, kCheck = 62;
+  const MarkerShape truth = ReadShapeCsv((kSail / "truth.csv").string());
+  std::string layout = ReadFileBytes(kSail / "layout.yml") + "known_points:\n";
+  std::mt19937 random(18);
+  std::normal_distribution<double> noise_m(0.0, kSigma_m);
+  for (const int id : {0, 16, 32, 44, 65, 71, 75, 95, 100, kWrong, kCheck}) {
+    Eigen::Vector3d x = *FindWholeMarker(truth, id)->x_in_shape_m[0];
+    for (double& coordinate : x) coordinate += noise_m(random);
+    if (id == kWrong) x.y() += kMistake_m;
+    layout += fmt::format("  - {{at: {}, x: {:.4f}, y: {:.4f}, z: {:.4f}, sigma: {}{}}}\n", id,
+                          x.x(), x.y(), x.z(), kSigma_m, id == kCheck ? ", use: check" : "");
+  }
+  WriteTextFile(dir / "known.yml", layout);
+  const ProgramRun run = RunVelamap(
+      {"shape_exporter", "--input_path", (dir / "workspace/sparse/0").string(), "--layout_path",
+       (dir / "known.yml").string(), "--shape_path", (dir / "known").string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("frame: known points 0 16 32 44 65 71 75 95 100\n"));
+  EXPECT_THAT(run.out, HasSubstr("known_points: 9 of 10 used, "));
+  EXPECT_THAT(run.out, HasSubstr("1 of 1 checks passed"));
+  EXPECT_THAT(run.err, HasSubstr("known point 84 is "));
+  const MarkerShape shape = ReadShapeCsv((dir / "known/shape.csv").string());
+  std::vector<double> distances_m;
+  for (const ShapeMarker& marker : shape.markers) {
+    if (!marker.IsWhole()) continue;
+    distances_m.push_back(
+        (*marker.x_in_shape_m[0] - *FindWholeMarker(truth, marker.marker_id)->x_in_shape_m[0])
+            .norm());
+  }
+  // Nine points of 2 mm fix a point among them to about 2 mm.
+  EXPECT_LT(ComputeStatistics(distances_m).rms, 3e-3);
+}
+
 // One test, because each runs in a process of its own and would reconstruct the cube again.
 TEST(SailTest, ComesBackFromItsClip) {
   const TempDir dir;
@@ -150,6 +188,7 @@ TEST(SailTest, ComesBackFromItsClip) {
   EXPECT_LT(comparison.distance_m.rms, 1e-3);
   EXPECT_LT(comparison.distance_after_scaling_m.rms, 5e-4);
   EXPECT_NEAR(comparison.scale, 1.0, 1e-3);
+  ExpectTheFrameOfTheTruth(dir);
 }
 
 TEST(CubeTest, ReachesTheGoals) {

@@ -104,6 +104,36 @@ TEST_F(ShapeExporterCommandTest, TheFrameIsTheOneAskedFor) {
   EXPECT_LT(axis.tail<2>().norm(), 1e-9);
 }
 
+TEST_F(ShapeExporterCommandTest, KnownPointsGiveTheirFrameAndPassOrFailChecks) {
+  const Rigid3 known_from_world{Eigen::Quaterniond(0.5, -0.2, 0.8, 0.1).normalized(), {7, -3, 2}};
+  const std::vector<int>& foot = sail_.layout.parts.front().horizontal.front().marker_ids;
+  const std::vector<int>& head = sail_.layout.parts.front().horizontal.back().marker_ids;
+  std::string layout = LayoutText(sail_.layout) + "known_points:\n";
+  for (const int id : {foot[0], foot[5], head[0], head[4], foot[2], head[2]}) {
+    Eigen::Vector3d x = known_from_world * sail_.x_in_world.at(id)[0];
+    const bool is_check = id == foot[2] || id == head[2];
+    if (id == head[2]) x.z() += 0.01;
+    layout += fmt::format("  - {{at: {}, x: {}, y: {}, z: {}, sigma: 0.002{}}}\n", id, x.x(), x.y(),
+                          x.z(), is_check ? ", use: check" : "");
+  }
+  WriteTextFile(dir_ / "layout.yml", layout);
+  const ProgramRun run = Export();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr(fmt::format("frame: known points {} {} {} {}\n", foot[0], foot[5],
+                                             head[0], head[4])));
+  EXPECT_THAT(run.out, AllOf(HasSubstr("known_points: 4 of 4 used"),
+                             HasSubstr("1 of 2 checks passed"), HasSubstr("verdict: bad")));
+  EXPECT_THAT(run.err, HasSubstr(fmt::format("check point {} is 10.0 mm", head[2])));
+  EXPECT_THAT(ReadFileBytes(path("shape/metrics.json")),
+              AllOf(HasSubstr("\"known_points\""), HasSubstr("\"fail\"")));
+  for (const ShapeMarker& marker : ReadShapeCsv(path("shape/shape.csv")).markers) {
+    const Eigen::Vector3d expected = known_from_world * sail_.x_in_world.at(marker.marker_id)[0];
+    EXPECT_LT((*marker.x_in_shape_m[0] - expected).norm(), 1e-9);
+  }
+  EXPECT_THAT(Export({"--frame", "lines"}).out,
+              AllOf(HasSubstr("frame: lines "), HasSubstr("known_points: 4 of 4 used")));
+}
+
 TEST_F(ShapeExporterCommandTest, ALayoutWithoutLinesIsSaidOnce) {
   WriteTextFile(
       dir_ / "layout.yml",

@@ -1,0 +1,148 @@
+#include "exporters/datum/datum_consensus.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "importer/geometry/ransac.h"
+
+namespace velamap {
+namespace {
+
+constexpr int kNumPoseParameters = 6;
+
+int NumCoordinates(const DatumPoints& points, const PointSet& set) {
+  int count = 0;
+  for (const std::size_t i : set) {
+    for (const auto& known : points.points[i].known_m) count += known.has_value();
+  }
+  return count;
+}
+
+// Whether the set fixes a pose; the pose is near it.
+bool Determines(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
+  return NumCoordinates(points, set) >= kNumPoseParameters &&
+         OpenMotions(points, set, pose).empty();
+}
+
+struct DatumHypothesis {
+  double cost = 0.0;  // truncated sum of squared sigmas
+  DatumAgreement agreement;
+};
+
+// See ransac.h.
+class DatumConsensus {
+ public:
+  struct Model {
+    PointSet sample;
+    Rigid3 pose;
+  };
+  using Hypothesis = DatumHypothesis;
+  static constexpr int kSampleSize = 3;  // points with all coordinates; more of others
+
+  DatumConsensus(const DatumPoints& points, const PointSet& candidates)
+      : points_(points), candidates_(candidates) {}
+
+  std::vector<Model> Generate(std::mt19937* generator) const {
+    PointSet rest = candidates_, sample;
+    while (!rest.empty()) {
+      const std::size_t chosen = RandomIndex(generator, rest.size());
+      sample.insert(std::lower_bound(sample.begin(), sample.end(), rest[chosen]), rest[chosen]);
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(chosen));
+      if (sample.size() < kSampleSize || NumCoordinates(points_, sample) < kNumPoseParameters) {
+        continue;
+      }
+      std::vector<Model> models;
+      for (const DatumPose& pose : FindPoses(points_, sample)) {
+        if (Determines(points_, sample, pose.pose)) models.push_back({sample, pose.pose});
+      }
+      if (!models.empty()) return models;
+    }
+    return {};
+  }
+
+  DatumHypothesis Score(const Model& model) const {
+    DatumHypothesis hypothesis;
+    hypothesis.agreement.pose = AdjustPose(points_, model.sample, model.pose);
+    hypothesis.agreement.sigmas_off =
+        SigmasOff(points_, model.sample, hypothesis.agreement.pose.pose);
+    for (const std::size_t i : candidates_) {
+      const double sigmas = hypothesis.agreement.sigmas_off[i];
+      hypothesis.cost += std::min(sigmas * sigmas, kMaxDatumSigmas * kMaxDatumSigmas);
+      if (sigmas <= kMaxDatumSigmas) hypothesis.agreement.used.push_back(i);
+    }
+    return hypothesis;
+  }
+
+  double InlierRatio(const DatumHypothesis& hypothesis) const {
+    return static_cast<double>(hypothesis.agreement.used.size()) /
+           static_cast<double>(candidates_.size());
+  }
+
+ private:
+  const DatumPoints& points_;
+  const PointSet& candidates_;
+};
+
+// Leaves out the point that contradicts the others most, one by one, then takes in those that agree
+// with the rest. A point that was left out does not come back.
+DatumAgreement Settle(const DatumPoints& points, const PointSet& candidates, PointSet set,
+                      DatumPose pose) {
+  std::set<std::size_t> left_out;
+  std::vector<double> sigmas;
+  while (set.size() >= DatumConsensus::kSampleSize) {
+    pose = AdjustPose(points, set, pose.pose);
+    sigmas = SigmasOff(points, set, pose.pose);
+    const auto worst = std::max_element(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
+      return sigmas[a] < sigmas[b];
+    });
+    if (sigmas[*worst] > kMaxDatumSigmas) {
+      left_out.insert(*worst);
+      set.erase(worst);
+      continue;
+    }
+    PointSet more = set;
+    for (const std::size_t i : candidates) {
+      const bool is_in = std::binary_search(set.begin(), set.end(), i);
+      if (!is_in && left_out.count(i) == 0 && sigmas[i] <= kMaxDatumSigmas) more.push_back(i);
+    }
+    if (more.size() == set.size()) break;
+    std::sort(more.begin(), more.end());
+    set = std::move(more);
+  }
+  return {std::move(set), pose, std::move(sigmas)};
+}
+
+bool IsSupported(const DatumPoints& points, const PointSet& candidates,
+                 const DatumAgreement& agreement) {
+  const PointSet& used = agreement.used;
+  const int redundancy = NumCoordinates(points, used) - kNumPoseParameters;
+  // Without redundancy no point is checked by others, but they may still fit nowhere.
+  const bool fits = redundancy > 0 || (used == candidates && agreement.pose.squared_sigmas <=
+                                                                 kMaxDatumSigmas * kMaxDatumSigmas);
+  return fits && 2 * used.size() > candidates.size() &&
+         Determines(points, used, agreement.pose.pose);
+}
+
+}  // namespace
+
+std::optional<DatumAgreement> FindAgreement(const DatumPoints& points, const PointSet& candidates) {
+  DatumAgreement agreement;
+  agreement.pose = AdjustPose(points, candidates, FindPoses(points, candidates).front().pose);
+  agreement.sigmas_off = SigmasOff(points, candidates, agreement.pose.pose);
+  agreement.used = candidates;
+  const bool all_agree = std::all_of(candidates.begin(), candidates.end(), [&](std::size_t i) {
+    return agreement.sigmas_off[i] <= kMaxDatumSigmas;
+  });
+  if (!all_agree) {
+    const std::vector<DatumHypothesis> hypotheses =
+        Ransac(RansacOptions(), DatumConsensus(points, candidates));
+    if (hypotheses.empty()) return std::nullopt;
+    const DatumAgreement& best = hypotheses.front().agreement;
+    agreement = Settle(points, candidates, best.used, best.pose);
+  }
+  if (!IsSupported(points, candidates, agreement)) return std::nullopt;
+  return agreement;
+}
+
+}  // namespace velamap

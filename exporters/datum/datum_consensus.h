@@ -1,0 +1,26 @@
+// The points of a datum that agree with each other and with the shape.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "exporters/datum/datum_fit.h"
+
+namespace velamap {
+
+// A point that is this many sigmas (SigmasOff()) from where the others put it contradicts them.
+constexpr double kMaxDatumSigmas = 4.0;
+
+struct DatumAgreement {
+  PointSet used;
+  DatumPose pose;                  // adjusted to them
+  std::vector<double> sigmas_off;  // of all points
+};
+
+// The largest subset of `candidates` whose points agree and which determines the pose, if it has
+// more than half of them. A subset that leaves candidates out has to have more coordinates than
+// the six that fit any place.
+std::optional<DatumAgreement> FindAgreement(const DatumPoints& points, const PointSet& candidates);
+
+}  // namespace velamap

@@ -1,0 +1,180 @@
+#include "exporters/datum/datum_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+#include "importer/layout/known_point.h"
+
+namespace velamap {
+namespace {
+
+using PoseMatrix = Eigen::Matrix<double, 6, 6>;
+using ByPose = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+
+// Least certainty of a determined motion, as a share of the radius: 3 degrees.
+constexpr double kMaxOpen = 0.05;
+
+// The directions in the span of the columns, which are orthonormal: the axes where these span it.
+std::vector<std::string> DirectionNames(const Eigen::Matrix3Xd& directions) {
+  constexpr double kAlmostOne = 0.998;  // 3.6 degrees
+  std::vector<std::string> names;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (directions.row(axis).norm() > kAlmostOne) {
+      names.push_back(kAxisNames[static_cast<std::size_t>(axis)]);
+    }
+  }
+  if (static_cast<Eigen::Index>(names.size()) == directions.cols()) return names;
+  names.clear();
+  for (const auto& direction : directions.colwise()) {
+    names.push_back(fmt::format("the direction ({:.2f} {:.2f} {:.2f})", direction.x(),
+                                direction.y(), direction.z()));
+  }
+  return names;
+}
+
+// The sum of squares of a point, of `num_coordinates` degrees of freedom, as in SigmasOff().
+double InSigmas(double squared, int num_coordinates) {
+  // Roots of the 99.73 % quantiles of chi-squared.
+  constexpr double kThreeSigmas[] = {3.0, 3.4393, 3.7625};
+  if (num_coordinates == 0) return 0.0;
+  return 3.0 * std::sqrt(std::max(0.0, squared)) / kThreeSigmas[num_coordinates - 1];
+}
+
+// The whitened equations of the set at a pose.
+struct SetSystem {
+  Eigen::MatrixXd whitener;
+  ByPose by_pose;              // whitened
+  Eigen::VectorXd residuals;   // whitened
+  PoseMatrix pose_covariance;  // of the adjusted pose, m^2
+};
+
+SetSystem MakeSystem(const DatumPoints& points, const DatumEquations& equations,
+                     const Eigen::MatrixXd& covariance) {
+  SetSystem system{Whitener(covariance), {}, {}, {}};
+  system.by_pose = system.whitener * equations.by_pose;
+  system.residuals = system.whitener * equations.residuals_m;
+  PoseMatrix normal = system.by_pose.transpose() * system.by_pose;
+  // Bounds what the equations leave open: far beyond the size of the shape, above the rounding.
+  normal.diagonal().array() += std::pow(1e3 * points.radius_m, -2) + 1e-12 * normal.trace();
+  system.pose_covariance = normal.llt().solve(PoseMatrix::Identity());
+  return system;
+}
+
+// Each point of the set against the others: the part of its residuals that the adjusted pose cannot
+// take up, over what it would be for a right point.
+std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen::Index>& begins) {
+  constexpr double kMinRedundancy = 1e-6;  // less is rounding
+  const Eigen::VectorXd adjusted =
+      system.residuals -
+      system.by_pose * (system.pose_covariance * (system.by_pose.transpose() * system.residuals));
+  const Eigen::VectorXd weighted = system.whitener.transpose() * adjusted;
+  const ByPose by_pose = system.whitener.transpose() * system.by_pose;
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    const Eigen::Index begin = begins[i], size = begins[i + 1] - begin;
+    const auto columns = system.whitener.middleCols(begin, size);
+    const Eigen::MatrixXd weight = columns.transpose() * columns;
+    const auto by_rows = by_pose.middleRows(begin, size);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> redundancy(
+        weight - by_rows * system.pose_covariance * by_rows.transpose());
+    const Eigen::VectorXd along =
+        redundancy.eigenvectors().transpose() * weighted.segment(begin, size);
+    double squared = 0.0;
+    int num_checked = 0;
+    for (Eigen::Index k = 0; k < size; ++k) {
+      if (redundancy.eigenvalues()[k] < kMinRedundancy * weight.trace()) continue;
+      squared += along[k] * along[k] / redundancy.eigenvalues()[k];
+      ++num_checked;
+    }
+    sigmas.push_back(InSigmas(squared, num_checked));
+  }
+  return sigmas;
+}
+
+}  // namespace
+
+std::vector<double> SigmasOff(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
+  const PointSet all = AllOf(points);
+  const DatumEquations equations = Linearize(points, all, pose);
+  const Eigen::MatrixXd covariance = ResidualCovariance(points, all, pose.rotation);
+  std::vector<Eigen::Index> rows;
+  for (const std::size_t i : set) {
+    for (Eigen::Index row = equations.begins[i]; row < equations.begins[i + 1]; ++row) {
+      rows.push_back(row);
+    }
+  }
+  const DatumEquations of_set = Linearize(points, set, pose);
+  const SetSystem system = MakeSystem(points, of_set, covariance(rows, rows));
+  const std::vector<double> sigmas_of_set = SigmasOfSet(system, of_set.begins);
+  // Derivative of the adjusted pose by the residuals of the set, apart from the sign.
+  const Eigen::MatrixXd pose_by_residuals =
+      system.pose_covariance * system.by_pose.transpose() * system.whitener;
+  std::vector<double> sigmas(points.points.size(), 0.0);
+  for (std::size_t i = 0; i < sigmas.size(); ++i) {
+    const auto in_set = std::lower_bound(set.begin(), set.end(), i);
+    if (in_set != set.end() && *in_set == i) {
+      sigmas[i] = sigmas_of_set[static_cast<std::size_t>(in_set - set.begin())];
+      continue;
+    }
+    const Eigen::Index begin = equations.begins[i], size = equations.begins[i + 1] - begin;
+    const auto by_pose = equations.by_pose.middleRows(begin, size);
+    const Eigen::MatrixXd with_set = covariance.middleRows(begin, size)(Eigen::all, rows) *
+                                     (by_pose * pose_by_residuals).transpose();
+    const Eigen::MatrixXd difference_covariance =
+        covariance.block(begin, begin, size, size) +
+        by_pose * system.pose_covariance * by_pose.transpose() - with_set - with_set.transpose();
+    const Eigen::VectorXd difference = equations.residuals_m.segment(begin, size);
+    const Eigen::VectorXd weighted = difference_covariance.ldlt().solve(difference);
+    sigmas[i] = InSigmas(difference.dot(weighted), static_cast<int>(size));
+  }
+  return sigmas;
+}
+
+std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
+  const SetSystem system = MakeSystem(points, Linearize(points, set, pose),
+                                      ResidualCovariance(points, set, pose.rotation));
+  const Eigen::SelfAdjointEigenSolver<PoseMatrix> motions(system.pose_covariance);
+  const double limit_m2 = std::pow(kMaxOpen * points.radius_m, 2);
+  const auto num_open = (motions.eigenvalues().array() > limit_m2).count();
+  if (num_open == 0) return "";
+  const Eigen::MatrixXd open = motions.eigenvectors().rightCols(num_open);
+  // Splits them into those with a turn and pure shifts.
+  constexpr double kMinTurn = 0.1;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> turns(open.topRows(3),
+                                                Eigen::ComputeThinU | Eigen::ComputeFullV);
+  const auto num_turns = (turns.singularValues().array() > kMinTurn).count();
+  std::vector<std::string> names;
+  const Eigen::MatrixXd shifts = open * turns.matrixV().rightCols(num_open - num_turns);
+  for (const std::string& name : DirectionNames(shifts.bottomRows(3))) {
+    names.push_back("a shift along " + name);
+  }
+  for (const std::string& name : DirectionNames(turns.matrixU().leftCols(num_turns))) {
+    names.push_back("a turn about " + name);
+  }
+  return fmt::format("{}", fmt::join(names, " and "));
+}
+
+std::optional<AskedGrowth> GrowthAskedFor(const DatumPoints& points, const PointSet& set,
+                                          const Rigid3& pose) {
+  constexpr double kMaxSigma = 0.5;
+  const DatumEquations equations = Linearize(points, set, pose);
+  const SetSystem system =
+      MakeSystem(points, equations, ResidualCovariance(points, set, pose.rotation));
+  const Eigen::VectorXd by_scale = system.whitener * equations.by_scale_m;
+  // What the pose cannot take up.
+  const auto without_pose = [&system](const Eigen::VectorXd& values) -> Eigen::VectorXd {
+    return values -
+           system.by_pose * (system.pose_covariance * (system.by_pose.transpose() * values));
+  };
+  const double weight = by_scale.dot(without_pose(by_scale));
+  if (!(weight * kMaxSigma * kMaxSigma > 1)) return std::nullopt;
+  return AskedGrowth{-by_scale.dot(without_pose(system.residuals)) / weight,
+                     1.0 / std::sqrt(weight)};
+}
+
+}  // namespace velamap

@@ -1,0 +1,35 @@
+// What an adjusted pose tells of each point, of the six degrees of freedom, and of the size of the
+// shape, by the joint covariance of all coordinates.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exporters/datum/datum_pose.h"
+
+namespace velamap {
+
+// How far each point, in the set or not, is from where the others of the set put it. A right point
+// is beyond 3 with a probability of 0.27 %, however many of its coordinates are known: for one
+// coordinate, it is the difference over its sigma. 0 for a point that the others say nothing of.
+// The pose is the adjusted one of the set (Baarda, A testing procedure for use in geodetic
+// networks, 1968).
+std::vector<double> SigmasOff(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
+
+// The motions that the set leaves undetermined, such as "a turn about z": those known to no better
+// than 3 degrees, as seen from the center of the points. Empty if there are none.
+std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
+
+// By how much of its size the shape would have to grow to fit the set best, and its sigma.
+struct AskedGrowth {
+  double value = 0.0;
+  double sigma = 0.0;
+};
+
+// Nothing where the set does not determine it.
+std::optional<AskedGrowth> GrowthAskedFor(const DatumPoints& points, const PointSet& set,
+                                          const Rigid3& pose);
+
+}  // namespace velamap

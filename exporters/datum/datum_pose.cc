@@ -1,0 +1,163 @@
+#include "exporters/datum/datum_pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include "importer/geometry/alignment.h"
+#include "importer/geometry/least_squares.h"
+#include "importer/geometry/pose_step.h"
+#include "importer/geometry/units.h"
+
+namespace velamap {
+namespace {
+
+// Whitener() for independent points whose sigma does not depend on the direction, so that it holds
+// for every pose.
+Eigen::MatrixXd PlainWhitener(const DatumPoints& points, const PointSet& set) {
+  std::vector<double> weights;
+  for (const std::size_t i : set) {
+    const DatumPoint& point = points.points[i];
+    const auto row = static_cast<Eigen::Index>(3 * i);
+    const double variance =
+        point.sigma_m * point.sigma_m + points.covariance_m2.diagonal().segment<3>(row).mean();
+    for (const auto& known : point.known_m) {
+      if (known) weights.push_back(1.0 / std::sqrt(variance));
+    }
+  }
+  return Eigen::Map<Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()))
+      .asDiagonal();
+}
+
+// See least_squares.h. Steps are those of DatumEquations::by_pose, m.
+struct DatumProblem : LeastSquaresProblem<6> {
+  using Parameters = Rigid3;
+
+  const DatumPoints& points;
+  const PointSet& set;
+  const Eigen::MatrixXd whitener;
+
+  DatumProblem(const DatumPoints& all, const PointSet& chosen, Eigen::MatrixXd whitening)
+      : points(all), set(chosen), whitener(std::move(whitening)) {}
+
+  void Evaluate(const Rigid3& pose, bool, Equations* equations) const {
+    constexpr double kRegularization = 1e-12;
+    *equations = {};
+    const DatumEquations linear = Linearize(points, set, pose);
+    const Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian = whitener * linear.by_pose;
+    const Eigen::VectorXd residuals = whitener * linear.residuals_m;
+    equations->Add(jacobian, residuals);
+    // For motions that no coordinate sees.
+    equations->AddToDiagonal(kRegularization * equations->hessian().trace());
+  }
+
+  Rigid3 Plus(const Rigid3& pose, const Step& step) const {
+    return {PlusRotation(pose.rotation, step.head<3>() / points.radius_m),
+            pose.translation + step.tail<3>()};
+  }
+};
+
+DatumPose Minimize(const DatumProblem& problem, Rigid3 pose) {
+  LeastSquaresOptions options;
+  options.max_iterations = 60;
+  options.min_step = 1e-12 * problem.points.radius_m;
+  DatumProblem::Equations equations;
+  MinimizeSquares(options, problem, &pose, &equations);
+  problem.Evaluate(pose, false, &equations);
+  return {pose, 2 * equations.cost()};
+}
+
+// The closed form, for three or more points with all coordinates that span a plane.
+std::optional<Rigid3> ClosedForm(const DatumPoints& points, const PointSet& set) {
+  std::vector<Eigen::Vector3d> x_m, known_m;
+  std::vector<double> weights;
+  for (const std::size_t i : set) {
+    const auto& known = points.points[i].known_m;
+    if (!known[0] || !known[1] || !known[2]) continue;
+    x_m.push_back(points.points[i].x_m);
+    known_m.emplace_back(*known[0], *known[1], *known[2]);
+    weights.push_back(std::pow(points.points[i].sigma_m, -2));
+  }
+  if (!HasSpread(x_m)) return std::nullopt;
+  return EstimateRigid3(x_m, known_m, weights);
+}
+
+// The 24 turns of a cube onto itself.
+std::vector<Eigen::Quaterniond> CubeRotations() {
+  const auto turn = [](int quarters, int axis) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(quarters * 0.5 * kPi, Eigen::Vector3d::Unit(axis)));
+  };
+  std::vector<Eigen::Quaterniond> rotations;
+  for (int face = 0; face < 6; ++face) {
+    const Eigen::Quaterniond to_face = face < 4 ? turn(face, 0) : turn(2 * face - 9, 1);
+    for (int quarters = 0; quarters < 4; ++quarters) {
+      rotations.push_back(to_face * turn(quarters, 2));
+    }
+  }
+  return rotations;
+}
+
+// The mean shift that the coordinates of each axis ask for after the rotation.
+Rigid3 Shifted(const DatumPoints& points, const PointSet& set, const Eigen::Quaterniond& rotation) {
+  Rigid3 pose{rotation, Eigen::Vector3d::Zero()};
+  for (int axis = 0; axis < 3; ++axis) {
+    double sum = 0.0;
+    int count = 0;
+    for (const std::size_t i : set) {
+      const auto& known = points.points[i].known_m[static_cast<std::size_t>(axis)];
+      if (!known) continue;
+      sum += *known - (rotation * points.points[i].x_m)[axis];
+      ++count;
+    }
+    if (count > 0) pose.translation[axis] = sum / count;
+  }
+  return pose;
+}
+
+}  // namespace
+
+Eigen::MatrixXd Whitener(const Eigen::MatrixXd& covariance) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  if (factor.info() != Eigen::Success) {
+    return covariance.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+  }
+  return factor.matrixL().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
+}
+
+std::vector<DatumPose> FindPoses(const DatumPoints& points, const PointSet& set) {
+  constexpr double kSameAngle = 1e-3;  // rad
+  const DatumProblem problem(points, set, PlainWhitener(points, set));
+  if (const auto closed_form = ClosedForm(points, set)) return {Minimize(problem, *closed_form)};
+  std::vector<DatumPose> found;
+  for (const Eigen::Quaterniond& rotation : CubeRotations()) {
+    found.push_back(Minimize(problem, Shifted(points, set, rotation)));
+  }
+  std::stable_sort(found.begin(), found.end(), [](const DatumPose& a, const DatumPose& b) {
+    return a.squared_sigmas < b.squared_sigmas;
+  });
+  std::vector<DatumPose> distinct;
+  for (const DatumPose& pose : found) {
+    const bool is_new = std::none_of(distinct.begin(), distinct.end(), [&](const DatumPose& other) {
+      return AngularDistance(pose.pose, other.pose) < kSameAngle;
+    });
+    if (is_new) distinct.push_back(pose);
+  }
+  return distinct;
+}
+
+DatumPose AdjustPose(const DatumPoints& points, const PointSet& set, Rigid3 pose) {
+  constexpr int kNumRounds = 2;  // the covariance hardly changes with the pose
+  DatumPose adjusted{pose, 0.0};
+  for (int round = 0; round < kNumRounds; ++round) {
+    const DatumProblem problem(points, set,
+                               Whitener(ResidualCovariance(points, set, adjusted.pose.rotation)));
+    adjusted = Minimize(problem, adjusted.pose);
+  }
+  return adjusted;
+}
+
+}  // namespace velamap

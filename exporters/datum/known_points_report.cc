@@ -1,0 +1,159 @@
+#include "exporters/datum/known_points_report.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "importer/base/statistics.h"
+#include "importer/geometry/units.h"
+
+namespace velamap {
+namespace {
+
+std::string NameOf(const ComparedPoint& point) {
+  return PointName(point.known.marker_id, point.known.corner);
+}
+
+bool IsCompared(const ComparedPoint& point) {
+  return point.state != PointState::kNotInShape && point.state != PointState::kNotCompared;
+}
+
+// Statistics of the distances of the points in this state.
+Statistics Distances(const KnownPointFit& fit, const std::vector<PointState>& states) {
+  std::vector<double> distances_mm;
+  for (const ComparedPoint& point : fit.points) {
+    if (std::find(states.begin(), states.end(), point.state) == states.end()) continue;
+    distances_mm.push_back(kMmPerM * point.difference_m.norm());
+  }
+  return ComputeStatistics(std::move(distances_mm));
+}
+
+std::string StateText(PointState state) {
+  switch (state) {
+    case PointState::kNotInShape:
+      return "not reconstructed";
+    case PointState::kNotCompared:
+      return "not compared: the known points give no frame";
+    case PointState::kUsed:
+      return "used";
+    case PointState::kLeftOut:
+      return "left out: contradicts the others";
+    case PointState::kPassed:
+      return "pass";
+    case PointState::kFailed:
+      return "fail";
+  }
+  return {};
+}
+
+Metrics RowOf(const ComparedPoint& point) {
+  Metrics row = {{"point", NameOf(point)},
+                 {"use", std::string(point.known.is_check ? "check" : "frame")},
+                 {"known_sigma_mm", kMmPerM * point.known.sigma_m}};
+  if (IsCompared(point)) {
+    for (std::size_t axis = 0; axis < kAxisNames.size(); ++axis) {
+      if (!point.known.x_m[axis]) continue;
+      row.push_back({fmt::format("d{}_mm", kAxisNames[axis]),
+                     kMmPerM * point.difference_m[static_cast<Eigen::Index>(axis)]});
+    }
+    row.push_back({"distance_mm", kMmPerM * point.difference_m.norm()});
+    row.push_back({"in_sigmas", point.sigmas_off});
+  }
+  row.push_back({"result", StateText(point.state)});
+  return row;
+}
+
+// `45.3 12.1 mm (5.2 sigmas)`.
+std::string ShortText(const ComparedPoint& point) {
+  return fmt::format("{} {:.3g} mm ({:.1f} sigmas)", NameOf(point),
+                     kMmPerM * point.difference_m.norm(), point.sigmas_off);
+}
+
+// Checks that fail are worse than points of the datum, however far these are off.
+std::pair<bool, double> Badness(const ComparedPoint& point) {
+  return {point.state == PointState::kFailed, point.sigmas_off};
+}
+
+std::string GrowthText(const AskedGrowth& growth) {
+  return fmt::format("{:+.3f} +- {:.3f} %", 100.0 * growth.value, 100.0 * growth.sigma);
+}
+
+}  // namespace
+
+void AddMetrics(const KnownPointFit& fit, MetricsReport* report) {
+  if (fit.points.empty()) return;
+  Metrics& metrics = report->metrics;
+  metrics.push_back({"known_point_residual_mm", Distances(fit, {PointState::kUsed})});
+  if (fit.residual_in_sigmas) {
+    metrics.push_back({"known_point_residual_in_sigmas", *fit.residual_in_sigmas});
+  }
+  if (fit.growth) {
+    metrics.push_back({"known_point_growth_percent", 100.0 * fit.growth->value});
+    metrics.push_back({"known_point_growth_sigma_percent", 100.0 * fit.growth->sigma});
+  }
+  metrics.push_back(
+      {"check_point_error_mm", Distances(fit, {PointState::kPassed, PointState::kFailed})});
+  metrics.push_back({"num_failed_check_points", CountPoints(fit, PointState::kFailed)});
+  if (!fit.reason.empty()) metrics.push_back({"known_points_note", fit.reason});
+  MetricTable table{"known_points", true, {}};
+  for (const ComparedPoint& point : fit.points) table.rows.push_back(RowOf(point));
+  report->tables.push_back(std::move(table));
+}
+
+int CountPoints(const KnownPointFit& fit, PointState state) {
+  return static_cast<int>(
+      std::count_if(fit.points.begin(), fit.points.end(),
+                    [state](const ComparedPoint& point) { return point.state == state; }));
+}
+
+std::string KnownPointsText(const KnownPointFit& fit) {
+  const auto num_checks = static_cast<int>(
+      std::count_if(fit.points.begin(), fit.points.end(),
+                    [](const ComparedPoint& point) { return point.known.is_check; }));
+  const int num_datum = static_cast<int>(fit.points.size()) - num_checks;
+  if (!fit.known_from_shape) return "no frame: " + fit.reason;
+  std::string text =
+      fmt::format("{} of {} used, {:.3g} mm rms", CountPoints(fit, PointState::kUsed), num_datum,
+                  Distances(fit, {PointState::kUsed}).rms);
+  if (num_checks > 0) {
+    text +=
+        fmt::format("; {} of {} checks passed", CountPoints(fit, PointState::kPassed), num_checks);
+  }
+  const auto worst = std::max_element(
+      fit.points.begin(), fit.points.end(),
+      [](const ComparedPoint& a, const ComparedPoint& b) { return Badness(a) < Badness(b); });
+  text += ", worst " + ShortText(*worst);
+  if (fit.DoubtsScale()) text += "; the points ask for " + GrowthText(*fit.growth) + " in size";
+  return text;
+}
+
+std::vector<std::string> KnownPointWarnings(const KnownPointFit& fit) {
+  std::vector<std::string> warnings;
+  if (fit.points.empty()) return warnings;
+  if (!fit.known_from_shape) {
+    warnings.push_back("the known points give no frame and no checks: " + fit.reason);
+  }
+  for (const ComparedPoint& point : fit.points) {
+    if (point.state == PointState::kFailed) {
+      warnings.push_back(fmt::format(
+          "check point {} is {:.1f} mm from its known place, {:.1f} sigmas of both; find out which "
+          "is wrong before using the shape",
+          NameOf(point), kMmPerM * point.difference_m.norm(), point.sigmas_off));
+    } else if (point.state == PointState::kLeftOut) {
+      warnings.push_back(fmt::format(
+          "known point {} is {:.1f} mm from where the others put it, {:.1f} sigmas: it is left "
+          "out; check its coordinates, id and corner",
+          NameOf(point), kMmPerM * point.difference_m.norm(), point.sigmas_off));
+    }
+  }
+  if (fit.DoubtsScale()) {
+    warnings.push_back(fmt::format(
+        "the known points ask for a shape that is larger by {}; check marker_length, or measure a "
+        "distance (distances, use: scale)",
+        GrowthText(*fit.growth)));
+  }
+  return warnings;
+}
+
+}  // namespace velamap

@@ -1,0 +1,99 @@
+// Reads known_points.
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "importer/layout/layout_items.h"
+
+namespace velamap {
+namespace {
+
+// Beyond the coordinates of national grids, in m.
+constexpr double kMaxCoordinate_m = 1e8;
+// No point of a marker is measured worse; a sigma in mm usually is beyond it.
+constexpr double kMinSigma_m = 1e-6, kMaxSigma_m = 1.0;
+
+double ReadCoordinate(const YamlItem& item) {
+  const double x_m = ReadMetres(item);
+  if (!(std::abs(x_m) <= kMaxCoordinate_m)) {
+    item.Fail(fmt::format("{} m is out of range; give a coordinate from -{:g} to {:g} m", x_m,
+                          kMaxCoordinate_m, kMaxCoordinate_m));
+  }
+  return x_m;
+}
+
+double ReadSigma(const YamlItem& item) {
+  const double sigma_m = ReadMetres(item);
+  if (!(sigma_m >= kMinSigma_m && sigma_m <= kMaxSigma_m)) {
+    item.Fail(fmt::format("{} m is out of range; give one standard deviation from {:g} to {:g} m",
+                          sigma_m, kMinSigma_m, kMaxSigma_m));
+  }
+  return sigma_m;
+}
+
+// Whether the point is a check.
+bool ReadUse(const YamlItem& item) {
+  if (item.Text() != "frame" && item.Text() != "check") {
+    item.Fail(
+        fmt::format("'{}': frame (takes part in the frame of the result) or check (compared with "
+                    "the result) is expected",
+                    item.Text()));
+  }
+  return item.Text() == "check";
+}
+
+KnownPoint ReadKnownPoint(const YamlItem& item) {
+  KnownPoint point;
+  std::set<std::string> missing = {"at", "sigma"};
+  KeyHandlers handlers = {{"at",
+                           [&](const YamlItem& v) {
+                             ReadMarkerPoint(v, &point.marker_id, &point.corner);
+                             missing.erase("at");
+                           }},
+                          {"sigma",
+                           [&](const YamlItem& v) {
+                             point.sigma_m = ReadSigma(v);
+                             missing.erase("sigma");
+                           }},
+                          {"use", [&](const YamlItem& v) { point.is_check = ReadUse(v); }}};
+  for (std::size_t axis = 0; axis < kAxisNames.size(); ++axis) {
+    handlers[kAxisNames[axis]] = [&point, axis](const YamlItem& v) {
+      point.x_m[axis] = ReadCoordinate(v);
+    };
+  }
+  ReadMap(item, handlers);
+  constexpr char kExample[] = "{at: 12, x: 2.4, y: 0.1, z: 1.3, sigma: 0.002} (m)";
+  if (!missing.empty()) {
+    item.Fail(
+        fmt::format("key '{}' is missing; expected an entry like {}", *missing.begin(), kExample));
+  }
+  if (point.NumCoordinates() == 0) {
+    item.Fail(
+        fmt::format("no coordinate is given; expected x, y, z or some of them, like {}", kExample));
+  }
+  return point;
+}
+
+}  // namespace
+
+std::vector<KnownPoint> ReadKnownPoints(const YamlItem& list, const Layout& layout) {
+  std::vector<KnownPoint> points;
+  std::set<std::pair<int, int>> seen;
+  ForEachElement(list, [&](const YamlItem& item) {
+    const KnownPoint point = ReadKnownPoint(item);
+    CheckMarkersAreNamed({point.marker_id}, layout, item);
+    if (!seen.emplace(point.marker_id, point.corner).second) {
+      item.Fail(fmt::format("point {} is given twice; give it once, with all its coordinates",
+                            PointName(point.marker_id, point.corner)));
+    }
+    points.push_back(point);
+  });
+  if (points.empty()) list.Fail("no point is given; leave the key out");
+  return points;
+}
+
+}  // namespace velamap

@@ -1,0 +1,424 @@
+#include "exporters/datum/known_points.h"
+
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "exporters/datum/known_points_report.h"
+#include "importer/base/error.h"
+#include "importer/base/statistics.h"
+#include "tests/exporters/example_covariance.h"
+#include "tests/exporters/example_model.h"
+#include "tests/support/error_matchers.h"
+#include "tests/support/test_seed.h"
+
+namespace velamap {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Markers in a box of 3 x 2 x 1 m, whose true coordinates in the user's frame are known.
+class KnownPoints : public testing::Test {
+ protected:
+  static constexpr double kSigma_m = 2e-3;
+
+  double Normal() { return std::normal_distribution<double>()(random_); }
+  Eigen::Vector3d Noise(double sigma_m) {
+    return sigma_m * Eigen::Vector3d(Normal(), Normal(), Normal());
+  }
+  Rigid3 RandomMotion() {
+    const Eigen::Quaterniond rotation(Normal(), Normal(), Normal(), Normal());
+    return {rotation.normalized(), 10 * Noise(1)};
+  }
+
+  // Ids 1, 2, ...
+  void MakeShape(int num_markers) {
+    std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+    shape_.markers.clear();
+    layout_.known_points.clear();
+    for (int id = 1; id <= num_markers; ++id) {
+      const Eigen::Vector3d center(3 * uniform(random_), 2 * uniform(random_), uniform(random_));
+      shape_.markers.push_back(SquareMarker(id, 0.1, {RandomMotion().rotation, center}));
+    }
+    known_from_shape_ = RandomMotion();
+  }
+
+  Eigen::Vector3d TrueCoordinates(int marker_id, int corner) const {
+    return known_from_shape_ *
+           FindMarker(shape_, marker_id)->x_in_shape_m[static_cast<std::size_t>(corner)].value();
+  }
+
+  // A point with noise; of the axes in `axes` only.
+  KnownPoint& Add(int marker_id, int corner, double noise_m, const std::string& axes = "xyz") {
+    const Eigen::Vector3d x = TrueCoordinates(marker_id, corner) + Noise(noise_m);
+    KnownPoint point{marker_id, corner, {}, kSigma_m, false};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (axes.find(kAxisNames[axis]) != std::string::npos) {
+        point.x_m[axis] = x[static_cast<Eigen::Index>(axis)];
+      }
+    }
+    layout_.known_points.push_back(point);
+    return layout_.known_points.back();
+  }
+
+  void AddCenters(int num_points, double noise_m) {
+    for (int id = 1; id <= num_points; ++id) Add(id, 0, noise_m);
+  }
+
+  KnownPointFit Fit(const PointCovariance* covariance = nullptr) const {
+    return FitKnownPoints(shape_, layout_, covariance);
+  }
+
+  void ExpectTheTrueFrame(double tolerance, const std::string& what) const {
+    const KnownPointFit fit = Fit();
+    ASSERT_TRUE(fit.known_from_shape) << what << ": " << fit.reason;
+    for (const ShapeMarker& marker : shape_.markers) {
+      const Eigen::Vector3d x = *marker.x_in_shape_m[0];
+      EXPECT_LT((*fit.known_from_shape * x - known_from_shape_ * x).norm(), tolerance) << what;
+    }
+  }
+
+  // A covariance of all corners, with errors that markers share.
+  PointCovariance Covariance(double sigma_m) const {
+    Model model;
+    for (const ShapeMarker& marker : shape_.markers) {
+      for (int corner = 1; corner <= kNumCorners; ++corner) {
+        model.points3D[Point3DIdFromCorner({marker.marker_id, corner})];
+      }
+    }
+    return ExampleCovariance(model, sigma_m, TestSeed());
+  }
+
+  std::mt19937 random_{TestSeed()};
+  MarkerShape shape_;
+  Layout layout_ = MakeLayout("DICT_4X4_50", 0.1);
+  Rigid3 known_from_shape_;
+};
+
+std::vector<PointState> StatesOf(const KnownPointFit& fit) {
+  std::vector<PointState> states;
+  for (const ComparedPoint& point : fit.points) states.push_back(point.state);
+  return states;
+}
+
+TEST_F(KnownPoints, ExactCoordinatesGiveTheExactFrame) {
+  for (int draw = 0; draw < 50; ++draw) {
+    MakeShape(6);
+    AddCenters(3, 0.0);
+    Add(4, 2, 0.0);
+    ExpectTheTrueFrame(1e-9, "centres and a corner");
+    EXPECT_THAT(StatesOf(Fit()), Each(PointState::kUsed));
+  }
+}
+
+TEST_F(KnownPoints, AnyCoordinatesThatDetermineItGiveTheExactFrame) {
+  for (int draw = 0; draw < 20; ++draw) {
+    MakeShape(9);
+    Add(1, 0, 0.0);
+    Add(2, 0, 0.0, "xy");
+    Add(3, 3, 0.0, "yz");
+    for (const int id : {4, 5, 6}) Add(id, 0, 0.0, "z");
+    for (const int id : {7, 8, 9}) Add(id, 1, 0.0, "x");
+    ExpectTheTrueFrame(1e-8, "levels and planes");
+  }
+}
+
+TEST_F(KnownPoints, FarOriginsLoseNoDigits) {
+  MakeShape(6);
+  known_from_shape_.translation = {5.4e5, 4.5e6, 300};
+  AddCenters(6, 0.0);
+  ExpectTheTrueFrame(1e-7, "a national grid");
+}
+
+TEST_F(KnownPoints, AnOutlierAmongSixIsNamedAndLeftOut) {
+  for (int draw = 0; draw < 40; ++draw) {
+    MakeShape(6);
+    AddCenters(6, kSigma_m);
+    const std::size_t wrong = static_cast<std::size_t>(draw) % 6;
+    *layout_.known_points[wrong].x_m[static_cast<std::size_t>(draw) % 3] += 0.04;
+    const KnownPointFit fit = Fit();
+    ASSERT_TRUE(fit.known_from_shape) << fit.reason;
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_EQ(fit.points[i].state, i == wrong ? PointState::kLeftOut : PointState::kUsed)
+          << "draw " << draw << ", point " << i;
+    }
+    EXPECT_NEAR(fit.points[wrong].difference_m.norm(), 0.04, 0.015);
+    const std::vector<std::string> warnings = KnownPointWarnings(fit);
+    ASSERT_FALSE(warnings.empty());
+    EXPECT_THAT(warnings[0], HasSubstr("known point " + std::to_string(wrong + 1) + " is "));
+  }
+}
+
+TEST_F(KnownPoints, ThreeOutliersAmongEightAreLeftOut) {
+  for (int draw = 0; draw < 20; ++draw) {
+    MakeShape(8);
+    AddCenters(8, kSigma_m);
+    for (const std::size_t wrong : {1, 4, 6}) {
+      *layout_.known_points[wrong].x_m[0] += 0.3;  // all to the same side
+      *layout_.known_points[wrong].x_m[1] -= 0.1 * static_cast<double>(wrong);
+    }
+    const KnownPointFit fit = Fit();
+    ASSERT_TRUE(fit.known_from_shape) << fit.reason;
+    for (std::size_t i = 0; i < 8; ++i) {
+      const bool is_wrong = i == 1 || i == 4 || i == 6;
+      EXPECT_EQ(fit.points[i].state, is_wrong ? PointState::kLeftOut : PointState::kUsed);
+    }
+  }
+}
+
+TEST_F(KnownPoints, ResidualsAreAsLargeAsTheSigmasSay) {
+  constexpr int kNumDraws = 200;
+  double sum = 0.0;
+  for (int draw = 0; draw < kNumDraws; ++draw) {
+    MakeShape(6);
+    AddCenters(6, kSigma_m);
+    sum += std::pow(Fit().residual_in_sigmas.value(), 2);
+  }
+  // 12 redundant coordinates: a standard deviation of 0.03.
+  EXPECT_NEAR(sum / kNumDraws, 1.0, 0.1);
+}
+
+TEST_F(KnownPoints, ChecksOfTheJointCovarianceFailAsOftenAsTheyShould) {
+  MakeShape(9);
+  const PointCovariance covariance = Covariance(kSigma_m);
+  const MarkerShape truth = shape_;
+  constexpr int kNumDraws = 400;
+  int num_failed = 0, num_checks = 0;
+  double sum_of_residuals = 0.0, sum_of_checks = 0.0;
+  SampleShapes(truth, covariance, kNumDraws, [&](const MarkerShape& sample) {
+    shape_ = truth;
+    layout_.known_points.clear();
+    AddCenters(5, kSigma_m);
+    Add(6, 0, kSigma_m, "z");
+    for (const int id : {7, 8, 9}) Add(id, id == 9 ? 2 : 0, kSigma_m).is_check = true;
+    shape_ = sample;
+    const KnownPointFit fit = Fit(&covariance);
+    ASSERT_TRUE(fit.known_from_shape) << fit.reason;
+    sum_of_residuals += std::pow(*fit.residual_in_sigmas, 2);
+    num_failed += CountPoints(fit, PointState::kFailed);
+    for (const ComparedPoint& point : fit.points) {
+      if (!point.known.is_check) continue;
+      ++num_checks;
+      // Back to chi-squared of three coordinates, whose mean is 3.
+      sum_of_checks += std::pow(point.sigmas_off * 3.7625 / 3, 2) / 3;
+    }
+  });
+  EXPECT_EQ(num_checks, 3 * kNumDraws);
+  EXPECT_NEAR(sum_of_residuals / kNumDraws, 1.0, 0.1);
+  EXPECT_NEAR(sum_of_checks / num_checks, 1.0, 0.12);
+  // 0.27 % of 1200 are 3.2.
+  EXPECT_GE(num_failed, 1);
+  EXPECT_LE(num_failed, 9);
+}
+
+TEST_F(KnownPoints, ACheckFarOffFailsAndChangesNothing) {
+  MakeShape(6);
+  AddCenters(5, kSigma_m);
+  const Rigid3 before = Fit().known_from_shape.value();
+  KnownPoint& check = Add(6, 0, 0.0);
+  check.is_check = true;
+  EXPECT_EQ(Fit().points.back().state, PointState::kPassed);
+  *check.x_m[2] += 0.02;
+  const KnownPointFit fit = Fit();
+  EXPECT_EQ(fit.points.back().state, PointState::kFailed);
+  EXPECT_NEAR(fit.points.back().difference_m.z(), -0.02, 5e-3);
+  EXPECT_LT(AngularDistance(*fit.known_from_shape, before), 1e-12);
+  EXPECT_THAT(KnownPointWarnings(fit), testing::ElementsAre(HasSubstr("check point 6 is ")));
+}
+
+TEST_F(KnownPoints, TheSizeThatTheyAskForIsReportedWithItsSigma) {
+  std::vector<double> in_sigmas;
+  for (int draw = 0; draw < 100; ++draw) {
+    MakeShape(6);
+    AddCenters(6, kSigma_m);
+    for (ShapeMarker& marker : shape_.markers) {
+      for (auto& x : marker.x_in_shape_m) *x *= 1.002;
+    }
+    const AskedGrowth growth = Fit().growth.value();
+    in_sigmas.push_back((growth.value + 0.002) / growth.sigma);
+  }
+  const Statistics statistics = ComputeStatistics(in_sigmas);
+  EXPECT_NEAR(statistics.mean, 0.0, 0.4);
+  EXPECT_NEAR(statistics.standard_deviation, 1.0, 0.25);
+}
+
+TEST_F(KnownPoints, AWrongSizeIsBlamedOnTheShapeAndNotOnThePoints) {
+  for (int draw = 0; draw < 20; ++draw) {
+    MakeShape(7);
+    AddCenters(7, kSigma_m);
+    for (ShapeMarker& marker : shape_.markers) {
+      for (auto& x : marker.x_in_shape_m) *x *= 1.03;
+    }
+    const KnownPointFit fit = Fit();
+    EXPECT_THAT(StatesOf(fit), Each(PointState::kUsed)) << fit.reason;
+    ASSERT_TRUE(fit.growth);
+    EXPECT_NEAR(fit.growth->value, -0.03, 0.01);
+    EXPECT_TRUE(fit.DoubtsScale());
+  }
+}
+
+TEST_F(KnownPoints, ProbableCausesOfContradictionsAreNamed) {
+  const auto expect_reason = [this](const std::string& words) {
+    const KnownPointFit fit = Fit();
+    EXPECT_FALSE(fit.known_from_shape);
+    EXPECT_TRUE(fit.is_contradicted);
+    EXPECT_THAT(fit.reason, HasSubstr(words));
+    EXPECT_THAT(StatesOf(fit), Each(PointState::kNotCompared));
+  };
+  MakeShape(6);
+  AddCenters(6, kSigma_m);
+  for (KnownPoint& point : layout_.known_points) *point.x_m[0] *= -1;
+  expect_reason("right-handed");
+  MakeShape(6);
+  AddCenters(6, kSigma_m);
+  for (KnownPoint& point : layout_.known_points) {
+    for (auto& x : point.x_m) *x *= 1000;
+  }
+  expect_reason("not millimetres");
+  for (KnownPoint& point : layout_.known_points) {
+    for (auto& x : point.x_m) *x *= 0.0005;
+  }
+  expect_reason(" times as far apart as in the shape: check their unit");
+  MakeShape(3);
+  AddCenters(3, kSigma_m);
+  *layout_.known_points[1].x_m[0] += 0.05;
+  *layout_.known_points[1].x_m[1] += 0.05;
+  *layout_.known_points[1].x_m[2] += 0.05;
+  expect_reason("no more than half of 3 agree");
+}
+
+TEST_F(KnownPoints, WhatIsMissingIsSaid) {
+  const auto reason = [this] {
+    const KnownPointFit fit = Fit();
+    EXPECT_FALSE(fit.known_from_shape);
+    EXPECT_FALSE(fit.is_contradicted);
+    return fit.reason;
+  };
+  MakeShape(6);
+  EXPECT_EQ(reason(), "");
+  for (const int id : {1, 2, 3, 4}) Add(id, 0, 0.0, "z");
+  EXPECT_EQ(reason(),
+            "they have z alone, which leaves shifts along x and y and a turn about z open");
+  Add(5, 0, 0.0, "xyz");
+  EXPECT_EQ(reason(), "the known points leave a turn about z open");
+  layout_.known_points.clear();
+  AddCenters(2, 0.0);
+  EXPECT_EQ(reason(), "2 points are given, three are needed");
+  Add(3, 0, 0.0, "z");
+  EXPECT_THAT(reason(), HasSubstr("fit in two places"));
+  Add(4, 0, 0.0).sigma_m = 0.02;
+  EXPECT_TRUE(Fit().known_from_shape) << Fit().reason;
+  layout_.known_points.clear();
+  for (const int id : {1, 2, 3, 4}) Add(id, 0, 0.0, "yz");
+  EXPECT_EQ(reason(), "none has x, which leaves a shift along x open");
+  layout_.known_points.clear();
+  for (const int id : {1, 2}) Add(id, 0, 0.0);
+  Add(3, 0, 0.0).marker_id = 99;
+  EXPECT_THAT(reason(), AllOf(HasSubstr("2 points are given"), HasSubstr("99 not reconstructed")));
+  Add(3, 0, 0.0).is_check = true;
+  EXPECT_THAT(reason(), HasSubstr("2 points are given"));
+}
+
+TEST_F(KnownPoints, PointsOnALineLeaveTheTurnAboutItOpen) {
+  MakeShape(5);
+  known_from_shape_.rotation.setIdentity();
+  for (ShapeMarker& marker : shape_.markers) {
+    marker = SquareMarker(marker.marker_id, 0.1, {{}, {0, 0.7 * marker.marker_id, 0}});
+  }
+  AddCenters(5, 0.0);
+  EXPECT_EQ(Fit().reason, "the known points leave a turn about y open");
+  known_from_shape_.rotation = Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitZ());
+  layout_.known_points.clear();
+  AddCenters(5, 0.0);
+  EXPECT_THAT(Fit().reason, AnyOf(HasSubstr("a turn about the direction (-0.56 0.83 "),
+                                  HasSubstr("a turn about the direction (0.56 -0.83 ")));
+}
+
+TEST_F(KnownPoints, TheNameHasWhatTheFrameRestsOn) {
+  MakeShape(7);
+  AddCenters(4, 0.0);
+  Add(5, 3, 0.0);
+  Add(6, 0, 0.0, "z");
+  Add(7, 0, 0.0).is_check = true;
+  *layout_.known_points[1].x_m[2] += 0.1;  // 2 is left out
+  const FrameAttempt attempt = FrameOfKnownPoints(Fit());
+  EXPECT_EQ(attempt.frame.value().name, "known points 1 3 4 5.3 6:z");
+  EXPECT_THAT(attempt.frame->description, HasSubstr("13 coordinates of 5"));
+  const ShapeFrame frame = ChooseFrame(shape_, layout_, std::nullopt, attempt);
+  EXPECT_EQ(frame.kind, FrameKind::kKnownPoints);
+  EXPECT_TRUE(frame.reasons.empty());
+  EXPECT_EQ(FrameText(frame), frame.name + ": " + attempt.frame->description);
+  // Another frame can still be asked for, and what is asked for is granted or refused.
+  EXPECT_EQ(ChooseFrame(shape_, layout_, FrameChoice{FrameKind::kCamera}, attempt).name, "camera");
+  const FrameChoice choice{FrameKind::kKnownPoints};
+  ExpectThrows<InputError>(
+      [&] {
+        ChooseFrame(shape_, layout_, choice, {std::nullopt, "one is on the moon"});
+      },
+      {"--frame: known_points is not possible: one is on the moon"});
+  ExpectThrows<InputError>([&] { CheckFrameChoice(choice, MakeLayout("DICT_4X4_50", 0.1)); },
+                           {"--frame: known_points", "the layout has no known_points"});
+  layout_.known_points.resize(2);
+  ExpectThrows<InputError>([&] { CheckFrameChoice(choice, layout_); },
+                           {"--frame: known_points", "2 points are given, three are needed"});
+}
+
+TEST_F(KnownPoints, WhereTheyGiveNoFrameTheNextOneIsTakenAndSaysWhy) {
+  MakeShape(3);
+  AddCenters(2, 0.0);
+  const ShapeFrame frame = ChooseFrame(shape_, layout_, std::nullopt, FrameOfKnownPoints(Fit()));
+  EXPECT_EQ(frame.kind, FrameKind::kCamera);
+  ASSERT_FALSE(frame.reasons.empty());
+  EXPECT_EQ(frame.reasons[0], "not by known_points: 2 points are given, three are needed");
+}
+
+TEST_F(KnownPoints, MetricsHaveARowOfEachPoint) {
+  MakeShape(8);
+  AddCenters(5, kSigma_m);
+  Add(6, 0, 0.0, "z");
+  Add(7, 1, 0.0).is_check = true;
+  Add(8, 0, 0.0).is_check = true;
+  *layout_.known_points[0].x_m[0] += 0.1;
+  *layout_.known_points[6].x_m[1] += 0.1;
+  layout_.known_points[7].marker_id = 99;
+  MetricsReport report;
+  const KnownPointFit fit = Fit();
+  AddMetrics(fit, &report);
+  const json metrics =
+      json::parse(Written([&](std::ostream& out) { WriteMetricsJson(report, out); }));
+  EXPECT_EQ(metrics.at("known_point_residual_mm_count"), 5);
+  EXPECT_LT(metrics.at("known_point_residual_mm_rms").get<double>(), 6);
+  EXPECT_EQ(metrics.at("check_point_error_mm_count"), 1);
+  EXPECT_NEAR(metrics.at("check_point_error_mm_max").get<double>(), 100, 15);
+  EXPECT_EQ(metrics.at("num_failed_check_points"), 1);
+  EXPECT_TRUE(metrics.contains("known_point_growth_sigma_percent"));
+  const json& rows = metrics.at("known_points");
+  ASSERT_EQ(rows.size(), 8u);
+  EXPECT_EQ(rows[0].at("result"), "left out: contradicts the others");
+  EXPECT_EQ(rows[1].at("result"), "used");
+  EXPECT_EQ(rows[1].at("use"), "frame");
+  EXPECT_TRUE(rows[5].contains("dz_mm"));
+  EXPECT_FALSE(rows[5].contains("dx_mm"));
+  EXPECT_EQ(rows[6].at("point"), "7.1");
+  EXPECT_EQ(rows[6].at("result"), "fail");
+  EXPECT_EQ(rows[7].at("result"), "not reconstructed");
+  EXPECT_FALSE(rows[7].contains("distance_mm"));
+  EXPECT_THAT(KnownPointsText(fit), HasSubstr("5 of 6 used"));
+  EXPECT_THAT(KnownPointsText(fit), HasSubstr("0 of 2 checks passed, worst 7.1 "));
+  MetricsReport none;
+  AddMetrics(KnownPointFit(), &none);
+  EXPECT_THAT(none.metrics, IsEmpty());
+  EXPECT_THAT(KnownPointWarnings({}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace velamap
