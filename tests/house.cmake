@@ -27,8 +27,11 @@ house_folder(importer/video PUBLIC
 house_folder(importer/detect PUBLIC
   corner_colors detection detection_options duplicates interpolate marker_alignment
   marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
+house_folder(importer/pattern PUBLIC
+  clipped_pixels fit_equations formation_estimate image_formation pattern_fit pattern_picture
+  pattern_problem refined_corners)
 house_folder(importer/refine PUBLIC
-  formation_estimate image_formation marker_detector pattern_picture pattern_problem)
+  marker_detector)
 house_folder(importer/track PUBLIC
   frame_detector marker_tracking)
 house_folder(importer/formation PUBLIC

@@ -18,7 +18,7 @@
 #include "importer/base/ids.h"
 #include "importer/camera/camera.h"
 #include "importer/detect/detection.h"
-#include "importer/refine/formation_estimate.h"
+#include "importer/pattern/formation_estimate.h"
 #include "importer/video/source_file.h"
 
 namespace SQLite {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "importer/refine/formation_estimate.h"
+#include "importer/pattern/formation_estimate.h"
 
 namespace SQLite {
 class Database;

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "importer/refine/pattern_picture.h"
+#include "importer/pattern/pattern_picture.h"
 
 namespace velamap {
 namespace {

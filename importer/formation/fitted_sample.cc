@@ -6,8 +6,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "importer/refine/clipped_pixels.h"
-#include "importer/refine/pattern_picture.h"
+#include "importer/pattern/clipped_pixels.h"
+#include "importer/pattern/pattern_picture.h"
 
 namespace velamap {
 namespace {

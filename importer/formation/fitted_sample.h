@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
-#include "importer/refine/image_formation.h"
-#include "importer/refine/pattern_problem.h"
+#include "importer/pattern/image_formation.h"
+#include "importer/pattern/pattern_problem.h"
 
 namespace velamap {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "importer/formation/fitted_sample.h"
-#include "importer/refine/formation_estimate.h"
+#include "importer/pattern/formation_estimate.h"
 
 namespace velamap {
 

@@ -7,9 +7,9 @@
 
 #include "importer/base/error.h"
 #include "importer/detect/marker_alignment.h"
+#include "importer/pattern/pattern_fit.h"
 #include "importer/refine/edge_fit.h"
 #include "importer/refine/edge_sampling.h"
-#include "importer/refine/pattern_fit.h"
 
 namespace velamap {
 namespace {

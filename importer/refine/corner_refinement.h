@@ -15,8 +15,8 @@
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
-#include "importer/refine/image_formation.h"
-#include "importer/refine/refined_corners.h"
+#include "importer/pattern/image_formation.h"
+#include "importer/pattern/refined_corners.h"
 
 namespace velamap {
 

@@ -19,8 +19,8 @@
 #include <Eigen/Core>
 
 #include "importer/lanes/float_lanes.h"
-#include "importer/refine/fit_equations.h"
-#include "importer/refine/refined_corners.h"
+#include "importer/pattern/fit_equations.h"
+#include "importer/pattern/refined_corners.h"
 
 namespace velamap {
 

@@ -11,7 +11,7 @@
 #include "importer/detect/detection_options.h"
 #include "importer/detect/marker_search.h"
 #include "importer/layout/dictionary.h"
-#include "importer/refine/image_formation.h"
+#include "importer/pattern/image_formation.h"
 
 namespace velamap {
 

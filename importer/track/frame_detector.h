@@ -18,7 +18,7 @@
 #include "importer/layout/dictionary.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
-#include "importer/refine/image_formation.h"
+#include "importer/pattern/image_formation.h"
 #include "importer/video/frame_source.h"
 
 namespace velamap {

@@ -5,7 +5,7 @@ velamap_test(
     refine/corner_refinement_test.cc
     refine/edge_sampling_test.cc
     formation/formation_estimation_test.cc
-    refine/fit_equations_test.cc
+    pattern/fit_equations_test.cc
     detect/interpolate_test.cc
     detect/marker_alignment_test.cc
     refine/marker_grid.cc

@@ -2,7 +2,7 @@
 //
 // Light and grey values run from 0 to 255; light is linear, and 255 is what saturates the sensor.
 // The curves are those of cameras, on purpose not of the family that
-// importer/refine/image_formation.h fits.
+// importer/pattern/image_formation.h fits.
 
 #pragma once
 

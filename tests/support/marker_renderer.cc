@@ -230,7 +230,7 @@ void Sharpen(const ImageFormationParameters& camera, cv::Mat* image) {
   *image = (1 + camera.sharpening) * *image - camera.sharpening * blurred;
 }
 
-// From light to grey values, as importer/refine/formation_estimate.h has it but computed anew.
+// From light to grey values, as importer/pattern/formation_estimate.h has it but computed anew.
 void ApplyCamera(const ImageFormationParameters& camera, cv::Mat* image) {
   if (camera.sharpens_light) Sharpen(camera, image);
   if (camera.gamma != 1 || camera.s_amplitude != 0) {

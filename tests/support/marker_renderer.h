@@ -13,7 +13,7 @@
 
 #include "importer/camera/camera.h"
 #include "importer/layout/dictionary.h"
-#include "importer/refine/image_formation.h"
+#include "importer/pattern/image_formation.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace velamap {

@@ -10,9 +10,9 @@
 
 #include "importer/geometry/unit_square_map.h"
 #include "importer/lanes/float_lanes.h"
+#include "importer/pattern/pattern_fit.h"
+#include "importer/pattern/pattern_picture.h"
 #include "importer/refine/edge_fit.h"
-#include "importer/refine/pattern_fit.h"
-#include "importer/refine/pattern_picture.h"
 #include "tests/importer/refine/marker_grid.h"
 
 namespace velamap {

@@ -9,8 +9,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "importer/refine/image_formation.h"
-#include "importer/refine/pattern_problem.h"
+#include "importer/pattern/image_formation.h"
+#include "importer/pattern/pattern_problem.h"
 
 namespace velamap {
 

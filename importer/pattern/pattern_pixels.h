@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "importer/lanes/float_lanes.h"
-#include "importer/refine/pattern_problem.h"
+#include "importer/pattern/pattern_problem.h"
 
 namespace velamap {
 

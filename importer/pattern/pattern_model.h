@@ -9,8 +9,8 @@
 
 #include "importer/geometry/quad.h"
 #include "importer/geometry/unit_square_map.h"
-#include "importer/refine/blurred_cells.h"
-#include "importer/refine/image_formation.h"
+#include "importer/pattern/blurred_cells.h"
+#include "importer/pattern/image_formation.h"
 
 namespace velamap {
 

@@ -10,9 +10,9 @@
 #include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
-#include "importer/refine/fit_equations.h"
-#include "importer/refine/image_formation.h"
-#include "importer/refine/pattern_model.h"
+#include "importer/pattern/fit_equations.h"
+#include "importer/pattern/image_formation.h"
+#include "importer/pattern/pattern_model.h"
 
 namespace velamap {
 

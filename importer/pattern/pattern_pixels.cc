@@ -1,10 +1,10 @@
-#include "importer/refine/pattern_pixels.h"
+#include "importer/pattern/pattern_pixels.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "importer/refine/pattern_picture.h"
+#include "importer/pattern/pattern_picture.h"
 
 namespace velamap {
 namespace {

@@ -12,7 +12,7 @@
 #include <Eigen/Core>
 
 #include "importer/lanes/float_lanes.h"
-#include "importer/refine/refined_corners.h"
+#include "importer/pattern/refined_corners.h"
 
 namespace velamap {
 

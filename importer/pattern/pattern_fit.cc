@@ -1,12 +1,12 @@
-#include "importer/refine/pattern_fit.h"
+#include "importer/pattern/pattern_fit.h"
 
 #include <cmath>
 
 #include <Eigen/Cholesky>
 
 #include "importer/base/error.h"
-#include "importer/refine/clipped_pixels.h"
-#include "importer/refine/pattern_problem.h"
+#include "importer/pattern/clipped_pixels.h"
+#include "importer/pattern/pattern_problem.h"
 
 namespace velamap {
 namespace {

@@ -1,4 +1,4 @@
-#include "importer/refine/pattern_problem.h"
+#include "importer/pattern/pattern_problem.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 #include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/unit_square_map.h"
-#include "importer/refine/pattern_picture.h"
-#include "importer/refine/pattern_pixels.h"
+#include "importer/pattern/pattern_picture.h"
+#include "importer/pattern/pattern_pixels.h"
 
 namespace velamap {
 namespace {

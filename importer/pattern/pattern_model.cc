@@ -1,4 +1,4 @@
-#include "importer/refine/pattern_model.h"
+#include "importer/pattern/pattern_model.h"
 
 #include <algorithm>
 #include <cmath>

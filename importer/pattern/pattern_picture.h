@@ -11,8 +11,8 @@
 #include <Eigen/Core>
 
 #include "importer/geometry/unit_square_map.h"
-#include "importer/refine/blurred_cells.h"
-#include "importer/refine/pattern_model.h"
+#include "importer/pattern/blurred_cells.h"
+#include "importer/pattern/pattern_model.h"
 
 namespace velamap {
 

@@ -1,4 +1,4 @@
-#include "importer/refine/fit_equations.h"
+#include "importer/pattern/fit_equations.h"
 
 #include <cmath>
 #include <random>

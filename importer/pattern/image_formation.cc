@@ -1,4 +1,4 @@
-#include "importer/refine/image_formation.h"
+#include "importer/pattern/image_formation.h"
 
 #include <algorithm>
 #include <cmath>

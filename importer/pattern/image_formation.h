@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/lanes/float_lanes.h"
-#include "importer/refine/formation_estimate.h"
+#include "importer/pattern/formation_estimate.h"
 
 namespace velamap {
 
