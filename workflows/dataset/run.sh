@@ -58,6 +58,8 @@ velamap="${VELAMAP:-$here/../../build/release/workflows/velamap}"
 VELAMAP="$(realpath "$velamap")"
 export VELAMAP RETRY_FAILED="$retry_failed" PYTHONDONTWRITEBYTECODE=1
 
+# A job has cores / clips threads, one at least; on a cluster, where many run, one.
+[[ $on_cluster -eq 0 ]] || cores=1
 # One run at a time; the lock ends with this process, however that ends.
 lock() {
   exec 9>>"$output/.velamap_lock"
@@ -74,7 +76,7 @@ if [[ $on_cluster -eq 0 ]]; then
 fi
 status=0
 (cd "$output" && snakemake --snakefile "$here/Snakefile" --nolock --keep-going --rerun-incomplete \
-  --rerun-triggers mtime --quiet rules "${options[@]}") >&2 || status=$?
+  --rerun-triggers mtime --scheduler greedy --quiet rules "${options[@]}") >&2 || status=$?
 [[ $only_shown -eq 0 ]] || exit "$status"
 # Without results of all jobs, the table says which are missing.
 python3 "$here/result_table.py" "$output" || status=1
