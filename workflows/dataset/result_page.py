@@ -10,6 +10,8 @@ from result_columns import STATISTICS, SWEEP_FIGURES
 Row = dict[str, Any]
 YES, NO = ("1", "x", "•", "yes", "true"), ("", "0", "no", "false")
 MAX_CATEGORIES = 12
+OVER_ALL = ("<h2>Over all clips</h2><p>A clip that does not support a result (exit 1) counts as a "
+            "ratio of 0.</p>")
 
 # Title, unit, and the columns below it with their keys.
 GROUPS = (
@@ -59,10 +61,15 @@ def cell(value: Any, css: str = "") -> str:
     return f'<td class="{css}">{shown(value)}</td>' if css else f"<td>{shown(value)}</td>"
 
 
-def tag_cell(value: str) -> str:
-    if value.lower() in YES:
-        return cell("•", "tag")
-    return cell("" if value.lower() in NO else value, "tag")
+def marks_of(rows: list[Row], tags: list[str]) -> set[str]:
+    """The tags that only say yes or no, which are shown as the dots of Table 4.1."""
+    return {tag for tag in tags if all(row["tags"][tag].lower() in YES + NO for row in rows)}
+
+
+def tag_cell(value: str, is_mark: bool) -> str:
+    if is_mark:
+        value = "•" if value.lower() in YES else ""
+    return cell(value, "tag")
 
 
 def link(address: str, text: str) -> str:
@@ -85,10 +92,10 @@ def head_of(groups: list[tuple[str, list[str]]], before: list[str],
     return [first, second]
 
 
-def clip_line(row: Row, tags: list[str]) -> str:
+def clip_line(row: Row, tags: list[str], marks: set[str]) -> str:
     name = escape(row["name"])
     line = f"<th>{link(row['report'], name) if 'report' in row else name}</th>"
-    line += "".join(tag_cell(row["tags"][tag]) for tag in tags)
+    line += "".join(tag_cell(row["tags"][tag], tag in marks) for tag in tags)
     line += cell(row.get("duration_s", ""))
     if "verdict" in row:
         reasons = "\n".join(reason["reason"] for reason in row.get("verdict_reasons", []))
@@ -101,14 +108,16 @@ def clip_line(row: Row, tags: list[str]) -> str:
         line += cell(exit_code, "text failed")
         line += f'<td class="reason" colspan="{NUM_FIGURES}">{escape(row["error"])}</td>'
         fault = ""
-    return line + cell(row["wall_s"]) + cell(row["peak_memory_mb"]) + cell(fault, "reason")
+    line += cell(row["wall_s"]) + cell(row["peak_memory_mb"])
+    return line + cell(fault, "reason" if fault else "")
 
 
 def clip_table(tags: list[str], rows: list[Row]) -> str:
     groups = [(title, [name for name, _ in columns]) for title, columns in GROUPS]
     head = head_of(groups, ["Video", *tags, "Duration, s", "Verdict"],
                    ["Wall time, s", "Peak memory, MB", "Fault"])
-    return table(head, [clip_line(row, tags) for row in rows])
+    marks = marks_of(rows, tags)
+    return table(head, [clip_line(row, tags, marks) for row in rows])
 
 
 def section_names(rows: list[Row]) -> list[tuple[str, str]]:
@@ -210,4 +219,4 @@ def page_of(version: str, tags: list[str], rows: list[Row]) -> str:
             f"<style>{STYLE}</style></head><body><h1>Data set</h1>"
             f"<p>{len(rows)} clips, {num_results} with a whole result; {escape(version)}.</p>"
             f"{clip_table(tags, rows)}{section_table(rows)}{sweep_table(rows)}"
-            f"{'<h2>Over all clips</h2>' if plots else ''}{''.join(plots)}</body></html>\n")
+            f"{OVER_ALL if plots else ''}{''.join(plots)}</body></html>\n")

@@ -134,7 +134,7 @@ def run_job(job: dict[str, Any], log_path: Path, threads: str) -> dict[str, Any]
             try:
                 command = with_frames_of_range(command)
             except ValueError as error:
-                return {"exit_code": 2, "error": str(error)}
+                return {"exit_code": 1, "error": str(error)}
         exit_code, printed = run([os.environ["VELAMAP"], *command, "--num_threads", threads], log)
     peak_memory_mb = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     return {"exit_code": exit_code,

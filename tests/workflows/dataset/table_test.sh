@@ -91,7 +91,7 @@ head -n 1 out/dataset.csv | grep -q ',[a-z0-9_]*_camber_percent,' || fail "no se
 grep -q 'velamap marker_importer --image_path .*two words' out/jobs/odd*/import.log ||
   fail "the log has no line to copy"
 ! grep -q "$folder" out/dataset.csv out/dataset.html || fail "the tables name folders"
-for text in 'odd &quot;one&quot; {x} &lt;b&gt;' '<svg' 'href="clips/sail/report.html"'; do
+for text in 'odd &quot;one&quot; {x} &lt;b&gt;' '<svg' '<td class="tag">•</td>' 'href="clips/sail/report.html"'; do
   grep -qF "$text" out/dataset.html || fail "dataset.html has no $text"
 done
 ! grep -qE '<script|<b>|(src|href)="[a-z]+:' out/dataset.html || fail "dataset.html is not self-contained"
