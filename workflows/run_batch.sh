@@ -5,6 +5,10 @@
 #
 # usage: workflows/run_batch.sh --output_path FOLDER [--keep_going] INPUT... [-- VELAMAP_OPTION...]
 #
+# For a handful of clips with the same options, and without more than jq. workflows/dataset/run.sh
+# (Snakemake) is for a data set: clips with tags and options of their own, side by side, each computed
+# once, and a page of all results.
+#
 # Options after -- go to every call of `velamap automatic_reconstructor`:
 #   workflows/run_batch.sh --output_path results sail1.mp4 sail2.mp4 -- \
 #     --camera_path camera.yml --layout_path layout.yml

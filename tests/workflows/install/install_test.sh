@@ -87,6 +87,12 @@ code=0
   --camera_path none.yml --layout_path none.yml >"$root/batch.log" 2>&1) || code=$?
 [[ $code -eq 2 && -s "$root/batch/summary.csv" ]] || fail "run_batch.sh: exit $code: $(cat "$root/batch.log")"
 
+# The data set's script checks its table wherever Snakemake is.
+code=0
+"$share/velamap/workflows/dataset/run.sh" "$root/missing.csv" "$root/dataset" 2>"$root/dataset.log" || code=$?
+refusal="$(sed -n 's/.*\(missing.csv: No such file\|apt-get install snakemake\).*/\1/p' "$root/dataset.log")"
+[[ $code -eq 2 && -n "$refusal" ]] || fail "dataset/run.sh: exit $code: $(cat "$root/dataset.log")"
+
 cmake -DMANIFEST="$manifest" -P "$repository/workflows/install/uninstall.cmake" >/dev/null 2>&1
 left="$(find "$prefix" -type f -o -name '*velamap*')"
 [[ -z "$left" ]] || fail "left after the uninstallation: $left"

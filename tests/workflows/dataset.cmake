@@ -1,0 +1,12 @@
+# dataset.table runs workflows/dataset over a few inputs cut from sample_project, dataset.slurm the same
+# workflow on a Slurm of one node.
+find_program(BASH_PROGRAM bash)
+if(BASH_PROGRAM)
+  foreach(test table slurm)
+    add_test(NAME dataset.${test}
+             COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/dataset/${test}_test.sh
+                     ${PROJECT_SOURCE_DIR})
+  endforeach()
+  set_tests_properties(dataset.table dataset.slurm PROPERTIES
+    LABELS colmap SKIP_RETURN_CODE 77 TIMEOUT 300 ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>")
+endif()

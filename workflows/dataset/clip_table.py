@@ -1,0 +1,218 @@
+"""Reads the table of clips and checks it before any work."""
+
+import csv
+import io
+import os
+import re
+import shlex
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from records import fail, key_of
+from result_columns import RESULT_COLUMNS
+
+COLUMNS = ("name", "clip", "camera", "layout", "options", "central_frames")
+REQUIRED = ("name", "clip")
+# What the workflow gives itself.
+OWN_OPTIONS = {"image_path", "camera_path", "layout_path", "workspace_path", "database_path",
+               "frame_output_path", "output_path", "models_path", "log_path", "central_frames",
+               "import_anew", "num_threads", "summary", "help", "help_all"}
+MAX_NAME_BYTES = 200
+
+
+class RowError(Exception):
+    """What is wrong with a row, with the remedy; the reader adds file and line."""
+
+
+@dataclass
+class Clip:
+    """A row of the table, or one of the clips of a row that names several."""
+    name: str
+    path: Path
+    camera: Path | None = None
+    layout: Path | None = None
+    options: list[tuple[str, str]] = field(default_factory=list)
+    central_frames: str = ""  # as written; empty: no sweep
+    tags: dict[str, str] = field(default_factory=dict)
+
+    def stages(self) -> list[str]:
+        return ["import", "reconstruct"] + (["sweep"] if self.central_frames else [])
+
+
+def read_records(path: Path) -> list[tuple[int, list[str]]]:
+    """The records with their line numbers, whatever a spreadsheet has made of the file."""
+    try:
+        data = path.read_bytes()
+        encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+        text = data.decode(encoding)
+    except OSError as error:
+        fail(f"{path}: {error.strerror}; give a table of clips (CSV)")
+    except UnicodeDecodeError:
+        fail(f"{path}: is not UTF-8; save it as \"CSV UTF-8\"")
+    header = next((line for line in text.splitlines() if line.strip()), "")
+    delimiter = max(",;\t", key=header.count)
+    records = []
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    line = 1
+    try:
+        for record in reader:
+            if any(cell.strip() for cell in record):
+                records.append((line, [cell.strip() for cell in record]))
+            line = reader.line_num + 1
+    except csv.Error as error:
+        fail(f"{path}, line {line}: {error}; close the quotes, and double those within")
+    return records
+
+
+def read_header(path: Path, record: list[str]) -> list[str]:
+    while record and not record[-1]:
+        record.pop()
+    header = ["_".join(cell.lower().split()) if "_".join(cell.lower().split()) in COLUMNS else cell
+              for cell in record]
+    for name in REQUIRED:
+        if name not in header:
+            fail(f"{path}, line 1: has no column {name}; the columns are {', '.join(COLUMNS)}, "
+                 "and any others are tags")
+    for index, name in enumerate(header):
+        if not name or name in header[:index]:
+            fail(f"{path}, line 1: column {index + 1} " +
+                 (f"is a second {name}" if name else "has no name") + "; rename it")
+        if name in RESULT_COLUMNS and name not in COLUMNS:
+            fail(f"{path}, line 1: {name} is a column of the result; rename the tag")
+    return header
+
+
+def check_name(name: str) -> None:
+    if not name:
+        raise RowError("the name is empty; give each row a name")
+    if name.startswith(".") or "/" in name or not name.isprintable():
+        raise RowError(f"name {name!r}: becomes a folder, so that it must not begin with . nor "
+                       "hold / or a control character; rename it")
+    if len(key_of(name)) > MAX_NAME_BYTES:
+        raise RowError(f"name {name[:20]}...: is too long for a folder; shorten it")
+
+
+def find_clips(cell: str, folder: Path) -> list[Path]:
+    """One clip whose name may hold anything, or several with ; or spaces between them."""
+    if not cell:
+        raise RowError("clip: is empty; give a video or a folder of photographs")
+    if (folder / cell).exists():
+        return [folder / cell]
+    try:
+        names = ([part.strip() for part in cell.split(";")] if ";" in cell else shlex.split(cell))
+    except ValueError:
+        names = [cell]
+    if any(len(name) > 0 and (folder / name).exists() for name in names):
+        for name in names:
+            if not name or not (folder / name).exists():
+                raise RowError(f"clip {name or 'without a name'}: there is no such file or folder; "
+                               "paths count from the table's folder")
+        return [folder / name for name in names]
+    raise RowError(f"clip {cell}: there is no such file or folder; paths count from the table's "
+                   "folder")
+
+
+def find_file(column: str, cell: str, folder: Path) -> Path | None:
+    if not cell:
+        return None
+    if not (folder / cell).is_file():
+        raise RowError(f"{column} {cell}: there is no such file; paths count from the table's "
+                       "folder")
+    return folder / cell
+
+
+def read_options(cell: str, folder: Path, known: set[str]) -> list[tuple[str, str]]:
+    try:
+        words = shlex.split(cell)
+    except ValueError:
+        raise RowError(f"options {cell}: a quote is not closed; close it") from None
+    options = []
+    while words:
+        word = words.pop(0)
+        name, equals, value = word[2:].partition("=")
+        if not word.startswith("--") or not name:
+            raise RowError(f"options: {word} is no option; write --name value")
+        if name in OWN_OPTIONS:
+            raise RowError(f"options: the workflow gives --{name} itself; leave it out")
+        if name not in known:
+            raise RowError(f"options: velamap has no --{name} for a reconstruction; see velamap "
+                           "automatic_reconstructor --help_all")
+        if not equals:
+            if not words or words[0].startswith("--"):
+                raise RowError(f"options: --{name} has no value; write --{name} value")
+            value = words.pop(0)
+        if (name.endswith("_path") or name == "dictionary") and (folder / value).is_file():
+            value = str(folder / value)
+        options.append((name, value))
+    return options
+
+
+def read_central_frames(cell: str) -> str:
+    """`all`, `every:N`, `FIRST:LAST:STEP` (LAST belongs to it), or frames with ; between them."""
+    text = cell.replace(" ", "")
+    number = r"\d{1,9}"
+    if not text or text == "all" or re.fullmatch(r"every:0*[1-9]\d{0,8}", text):
+        return text
+    frames = re.fullmatch(rf"({number}):({number})(?::({number}))?", text)
+    if frames:
+        first, last, step = (int(part or 1) for part in frames.groups())
+        if first <= last and step > 0:
+            return f"{first}:{last}:{step}"
+    frames_list = [part for part in re.split("[;,]", cell) if part.strip()]
+    # Photographs are named; a number, or a name with its extension.
+    if frames_list and all(re.fullmatch(rf"{number}|[^:]+\.\w+", part.strip())
+                           for part in frames_list):
+        return ",".join(part.strip() for part in frames_list)
+    raise RowError(f"central_frames {cell}: is none of all, every:10, 0:100:10 (first:last:step), "
+                   "or 12;40 (frames, or names of photographs)")
+
+
+def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
+    check_name(row["name"])
+    paths = find_clips(row["clip"], folder)
+    clips = []
+    for path in paths:
+        clip = Clip(row["name"] if len(paths) == 1 else f"{row['name']} {path.stem}", path)
+        check_name(clip.name)
+        clip.camera = find_file("camera", row.get("camera", ""), folder)
+        clip.layout = find_file("layout", row.get("layout", ""), folder)
+        clip.options = read_options(row.get("options", ""), folder, known)
+        clip.central_frames = read_central_frames(row.get("central_frames", ""))
+        clip.tags = {name: value for name, value in row.items() if name not in COLUMNS}
+        clips.append(clip)
+    names = [name for name, _ in clips[0].options]
+    if not clips[0].layout and "marker_length" not in names and "project_path" not in names:
+        raise RowError("layout: is empty; give a layout file, or --marker_length in options")
+    return clips
+
+
+def read_table(path: Path, known: set[str]) -> tuple[list[str], list[Clip]]:
+    """The tags' names and the clips. Ends with a line for each bad row."""
+    records = read_records(path)
+    if not records:
+        fail(f"{path}: is empty; give a table with the columns {', '.join(COLUMNS)}")
+    header = read_header(path, records[0][1])
+    if len(records) == 1:
+        fail(f"{path}: has no row below its header; give one for each clip")
+    folder = Path(os.path.abspath(path)).parent
+    clips: list[Clip] = []
+    lines: dict[str, int] = {}
+    errors = []
+    for line, cells in records[1:]:
+        while len(cells) > len(header) and not cells[-1]:
+            cells.pop()
+        try:
+            if len(cells) != len(header):
+                raise RowError(f"has {len(cells)} cells instead of {len(header)}; quote a cell "
+                               "that holds the separator")
+            for clip in read_row(dict(zip(header, cells)), folder, known):
+                if clip.name in lines:
+                    raise RowError(f"has the name {clip.name} of line {lines[clip.name]}; rename "
+                                   "one")
+                lines[clip.name] = line
+                clips.append(clip)
+        except RowError as error:
+            errors.append(f"{path}, line {line}: {error}")
+    if errors:
+        fail(*errors)
+    return [name for name in header if name not in COLUMNS], clips

@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Writes the jobs that Snakemake runs from the table of clips.
+
+usage: make_jobs.py TABLE OUTPUT CORES    (VELAMAP: the program; RETRY_FAILED=1)
+
+A job file is written only if its content changes, so that its time says whether the job has to be
+computed anew: it holds the command and, for each file that the command reads, size and time.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from clip_table import Clip, read_table
+from job_needs import needs_of
+from records import (MARK, PLAN, RESULT_FILES, as_json, fail, hash_of, job_file, key_of, read_json,
+                     result_file, write_whole)
+
+COMMANDS = {"import": "marker_importer", "reconstruct": "automatic_reconstructor",
+            "sweep": "central_frame_sweeper"}
+
+
+def ask_velamap(*arguments: str) -> str:
+    program = os.environ["VELAMAP"]
+    try:
+        return subprocess.run([program, *arguments], check=True, capture_output=True,
+                              text=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        fail(f"{program} {' '.join(arguments)}: fails; set VELAMAP to the program velamap")
+
+
+def options_of_commands() -> dict[str, set[str]]:
+    return {stage: set(re.findall(r"^  --([\w.]+)", ask_velamap(command, "--help_all"), re.M))
+            for stage, command in COMMANDS.items()}
+
+
+def state_of(path: Path) -> list[int]:
+    status = path.stat()
+    return [status.st_size, status.st_mtime_ns]
+
+
+def files_read(clip: Clip, options: list[tuple[str, str]]) -> list[Path]:
+    """Everything that a job reads; of a folder, all files, because one may change in place."""
+    paths = [clip.path, clip.camera, clip.layout]
+    paths += [Path(value) for name, value in options if os.path.isabs(value)]
+    if clip.layout:
+        text = clip.layout.read_text(encoding="utf-8", errors="replace")
+        for name in re.findall(r"^dictionary:\s*[\"']?([^\"'#\n]*?)[\"']?\s*(?:#.*)?$", text, re.M):
+            if name:
+                paths.append(clip.layout.parent / name)
+    files: list[Path] = []
+    for path in paths:
+        if path and path.is_dir():
+            files += sorted(Path(folder, name) for folder, _, names in os.walk(path)
+                            for name in names)
+        elif path and path.is_file():
+            files.append(path)
+    return files
+
+
+def command_of(clip: Clip, stage: str, options: list[tuple[str, str]]) -> list[str]:
+    """The command without the program and the number of threads; run in the folder OUTPUT."""
+    workspace = f"clips/{clip.name}"
+    words = [COMMANDS[stage]]
+    if stage != "sweep":
+        words += ["--image_path", str(clip.path)]
+        words += ["--camera_path", str(clip.camera)] if clip.camera else []
+    words += ["--layout_path", str(clip.layout)] if clip.layout else []
+    if stage == "import":
+        words += ["--database_path", f"{workspace}/database.db", "--import_anew", "1"]
+        if not clip.path.is_dir():
+            words += ["--frame_output_path", f"{workspace}/images"]
+    elif stage == "reconstruct":
+        words += ["--workspace_path", workspace, "--summary", "json"]
+    else:
+        words += ["--database_path", f"{workspace}/database.db", "--central_frames",
+                  clip.central_frames, "--output_path", f"jobs/{key_of(clip.name)}/sweep.csv",
+                  "--log_path", f"jobs/{key_of(clip.name)}/sweep_colmap.log"]
+    for name, value in options:
+        words += [f"--{name}", value]
+    return words
+
+
+def check_output(output: Path) -> None:
+    """Takes a new or empty folder, or one of this workflow whose results nobody has edited."""
+    if output.exists() and not output.is_dir():
+        fail(f"{output}: is a file; give a folder for the results")
+    entries = sorted(entry.name for entry in output.iterdir()) if output.exists() else []
+    if entries and MARK not in entries:
+        fail(f"{output}: holds {entries[0]} and is no data set of this workflow; give a new or "
+             "empty folder")
+    hashes = read_json(output / MARK) if entries else {}
+    for name in RESULT_FILES:
+        file = output / name
+        if file.exists() and hash_of(file.read_bytes()) not in hashes.get(name, []):
+            fail(f"{file}: was changed since the workflow wrote it, or is none of its files; move "
+                 "it away")
+
+
+def check_folders(output: Path, clips: list[Clip]) -> None:
+    for clip in clips:
+        place = output / "clips" / clip.name
+        known = output / job_file(key_of(clip.name), "import")
+        if place.exists() and not known.exists():
+            fail(f"{place}: is there and was not made by this workflow; move it away")
+        if clip.path.is_dir() and clip.path.resolve() in (output.resolve() / "x").parents:
+            fail(f"{output}: lies in the photographs of {clip.name}, {clip.path}; give another "
+                 "folder")
+
+
+def forget_lost_results(output: Path, clip: Clip, retry_failed: bool) -> None:
+    """Removes the records of results that have been deleted, or that failed and shall be tried."""
+    workspace = output / "clips" / clip.name
+    key = key_of(clip.name)
+    made = {"import": workspace / "database.db", "reconstruct": workspace / "report.html",
+            "sweep": output / "jobs" / key / "sweep.csv"}
+    for stage, file in made.items():
+        result = output / result_file(key, stage)
+        if not result.exists():
+            continue
+        failed = read_json(result)["exit_code"] != 0
+        if (failed and retry_failed) or (not failed and not file.exists()):
+            result.unlink()
+
+
+def write_jobs(output: Path, tags: list[str], clips: list[Clip], cores: int,
+               known: dict[str, set[str]]) -> None:
+    version = ask_velamap("version").splitlines()[0]
+    retry_failed = os.environ.get("RETRY_FAILED") == "1"
+    rows: list[dict[str, Any]] = []
+    for clip in clips:
+        key = key_of(clip.name)
+        for stage in clip.stages():
+            options = [option for option in clip.options if option[0] in known[stage]]
+            job = {"stage": stage, "version": version, "command": command_of(clip, stage, options),
+                   "files": {str(path): state_of(path) for path in files_read(clip, options)}}
+            write_whole(output / job_file(key, stage), as_json(job))
+        forget_lost_results(output, clip, retry_failed)
+        rows.append({"name": clip.name, "key": key, "clip": clip.path.name, "tags": clip.tags,
+                     "central_frames": clip.central_frames, "stages": clip.stages(),
+                     **needs_of(clip.path, clip.camera)})
+    threads = max(1, cores // len(rows))
+    write_whole(output / PLAN, as_json({"version": version, "tags": tags, "threads": threads,
+                                        "rows": rows}))
+
+
+def main() -> None:
+    table, output, cores = Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3])
+    known = options_of_commands()
+    tags, clips = read_table(table, set.union(*known.values()))
+    try:
+        check_output(output)
+        check_folders(output, clips)
+        if not (output / MARK).exists():
+            write_whole(output / MARK, as_json({}))
+        write_jobs(output, tags, clips, cores, known)
+    except OSError as error:  # permissions, a full disk
+        fail(f"{error.filename}: {error.strerror}")
+
+
+if __name__ == "__main__":
+    main()
