@@ -18,8 +18,7 @@ bool IsClipped(int gray) { return gray >= kWhite || gray <= kBlack; }
 
 // The modelled grey values of the patch before the sharpening; those of the patch itself outside
 // of the problem's box.
-VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem,
-                                          const PatternParameters::Vector& parameters) {
+VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem, const Vector& parameters) {
   const PatternPicture picture(problem.model, parameters);
   const Eigen::Vector2d& center = problem.model.center_px;
   const cv::Rect& box = problem.box;
@@ -42,7 +41,7 @@ VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem,
 // Cuts the patch of the problem anew, with the model's values for the pixels of its box that are
 // clipped and that the model has beyond their limit. False for none.
 bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
-                          const PatternParameters::Vector& parameters, PatternProblem* problem) {
+                          const Vector& parameters, PatternProblem* problem) {
   GrayPatch& patch = problem->patch;
   const cv::Mat expected = Sharpened(ModelPatch(*problem, parameters), formation);
   const cv::Rect patch_box(patch.origin_px, patch.values.size());
@@ -103,8 +102,10 @@ bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, 
     const double ratio =
         step.dot(weight.cwiseProduct(last_step)) / last_step.dot(weight.cwiseProduct(last_step));
     last_step = step;
-    if (ratio > kMinRatio && ratio < kMaxRatio && round + 1 < kMaxRounds) {
-      minimum->parameters += ratio / (1 - ratio) * step;
+    const Vector further = minimum->parameters + ratio / (1 - ratio) * step;
+    if (ratio > kMinRatio && ratio < kMaxRatio && round + 1 < kMaxRounds &&
+        further.segment<2>(PatternParameters::kBlurU).minCoeff() > 0) {
+      minimum->parameters = further;
       last_step.setZero();
     }
   }
