@@ -76,11 +76,16 @@ bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
 }  // namespace
 
 bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box) {
+  constexpr double kMaxShare = 0.2;
+  int num_white = 0, num_black = 0;
   for (int row = box.y; row < box.y + box.height; ++row) {
-    const auto* values = gray.ptr<std::uint8_t>(row);
-    if (std::any_of(values + box.x, values + box.x + box.width, IsClipped)) return true;
+    const auto* values = gray.ptr<std::uint8_t>(row) + box.x;
+    for (int i = 0; i < box.width; ++i) {
+      if (values[i] >= kWhite) ++num_white;
+      if (values[i] <= kBlack) ++num_black;
+    }
   }
-  return false;
+  return num_white + num_black > 0 && std::min(num_white, num_black) < kMaxShare * box.area();
 }
 
 bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, int max_pixels,
