@@ -147,6 +147,16 @@ std::optional<DatumAgreement> Agree(const DatumPoints& points, const PointSet& d
   return rigid;
 }
 
+// Whether more points agree with one axis reversed. Some of mirrored points, near a plane, fit any
+// shape.
+bool AreMirrored(const DatumPoints& points, const PointSet& datum,
+                 const std::optional<DatumAgreement>& agreement) {
+  const std::size_t num_agreeing = agreement ? agreement->used.size() : 0;
+  if (num_agreeing == datum.size()) return false;
+  const std::optional<DatumAgreement> mirrored = FindAgreement(Mirrored(points), datum);
+  return mirrored && mirrored->used.size() > num_agreeing;
+}
+
 // The probable cause if the points have another size than the shape; empty if they have not.
 std::string WrongSize(const DatumPoints& points, const PointSet& datum) {
   const std::optional<double> growth = MedianGrowth(points, datum);
@@ -170,7 +180,7 @@ void Refuse(const DatumPoints& points, const PointSet& datum, KnownPointFit* fit
       fit->reason = "the known points leave " + open + " open";
       return;
     }
-    cause = FindAgreement(Mirrored(points), datum)
+    cause = AreMirrored(points, datum, std::nullopt)
                 ? "they fit with one axis reversed: give coordinates in a right-handed frame"
                 : fmt::format(
                       "no more than half of {} agree to {:g} sigmas: check their ids, "
@@ -237,7 +247,7 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   fit.reason = Lack(fit.points, present);
   if (!fit.reason.empty()) return fit;
   const std::optional<DatumAgreement> agreement = Agree(points, present.datum);
-  if (!agreement) {
+  if (!agreement || AreMirrored(points, present.datum, agreement)) {
     Refuse(points, present.datum, &fit);
     return fit;
   }
