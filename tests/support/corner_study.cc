@@ -11,8 +11,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/geometry/units.h"
-#include "importer/refine/corner_refinement.h"
 #include "importer/pattern/pattern_picture.h"
+#include "importer/refine/corner_refinement.h"
 #include "tests/importer/refine/marker_grid.h"
 #include "tests/support/clip_scene_builder.h"
 #include "tests/support/surface_renderer.h"
