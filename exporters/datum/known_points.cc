@@ -172,7 +172,8 @@ std::string WrongSize(const DatumPoints& points, const PointSet& datum) {
 }
 
 // Sets the reason why the points do not agree, with the probable cause.
-void Refuse(const DatumPoints& points, const PointSet& datum, KnownPointFit* fit) {
+void Refuse(const DatumPoints& points, const PointSet& datum, bool are_mirrored,
+            KnownPointFit* fit) {
   std::string cause = WrongSize(points, datum);
   if (cause.empty()) {
     const std::string open = OpenMotions(points, datum, FindPoses(points, datum).front().pose);
@@ -180,7 +181,7 @@ void Refuse(const DatumPoints& points, const PointSet& datum, KnownPointFit* fit
       fit->reason = "the known points leave " + open + " open";
       return;
     }
-    cause = AreMirrored(points, datum, std::nullopt)
+    cause = are_mirrored
                 ? "they fit with one axis reversed: give coordinates in a right-handed frame"
                 : fmt::format(
                       "no more than half of {} agree to {:g} sigmas: check their ids, "
@@ -247,8 +248,9 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   fit.reason = Lack(fit.points, present);
   if (!fit.reason.empty()) return fit;
   const std::optional<DatumAgreement> agreement = Agree(points, present.datum);
-  if (!agreement || AreMirrored(points, present.datum, agreement)) {
-    Refuse(points, present.datum, &fit);
+  const bool are_mirrored = AreMirrored(points, present.datum, agreement);
+  if (!agreement || are_mirrored) {
+    Refuse(points, present.datum, are_mirrored, &fit);
     return fit;
   }
   if (IsAmbiguous(points, *agreement)) {

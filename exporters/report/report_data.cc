@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 #include <sstream>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -105,18 +104,9 @@ Json AuditJson(const ScaleAudit& audit) {
 Json JsonOf(const KnownPointFit& fit) {
   MetricsReport report;
   AddMetrics(fit, &report);
-  Json rows = Json::array();
-  for (const MetricTable& table : report.tables) {
-    for (const Metrics& row : table.rows) {
-      Json json = Json::object();
-      for (const Metric& metric : row) {
-        if (const auto* text = std::get_if<std::string>(&metric.value)) json[metric.key] = *text;
-        if (const auto* value = std::get_if<double>(&metric.value)) json[metric.key] = *value;
-      }
-      rows.push_back(std::move(json));
-    }
-  }
-  return rows;
+  std::stringstream text;
+  WriteMetricsJson(report, text);
+  return Json::parse(text).at("known_points");
 }
 
 Json PairsJson(const std::vector<std::pair<std::string, std::string>>& pairs) {

@@ -57,13 +57,6 @@ cv::Mat ToneSlopes(const PatternProblem& problem, const ToneCurve& tone) {
   return slopes;
 }
 
-void Sharpen(const ImageFormationParameters& parameters, cv::Mat* values) {
-  cv::Mat blurred;
-  cv::GaussianBlur(*values, blurred, {0, 0}, parameters.sharpening_radius_px,
-                   parameters.sharpening_radius_px, cv::BORDER_CONSTANT);
-  *values = (1 + parameters.sharpening) * *values - parameters.sharpening * blurred;
-}
-
 // Modelled less recorded grey values. The sharpening is applied to the differences again; otherwise
 // the apparent noise would depend on the sharpening.
 std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation& formation) {
@@ -72,10 +65,10 @@ std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation&
   if (parameters.sharpening != 0 && parameters.sharpens_light) {
     const cv::Mat slopes = ToneSlopes(sample.problem, formation.tone());
     cv::divide(difference, slopes, difference);
-    Sharpen(parameters, &difference);
+    Sharpen(parameters, cv::BORDER_CONSTANT, &difference);
     cv::multiply(difference, slopes, difference);
   } else if (parameters.sharpening != 0) {
-    Sharpen(parameters, &difference);
+    Sharpen(parameters, cv::BORDER_CONSTANT, &difference);
   }
   std::vector<float> residuals;
   residuals.reserve(sample.places.size());
@@ -141,9 +134,12 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
     light = formation.tone().Decode(before.Encode(light));
   }
   const P::Vector start = sample->minimum.parameters;
-  if (RefineBeyondClipping(sample->gray, formation, kMaxPixels, kTolerancePx, &problem,
-                           &sample->minimum) &&
-      !HasRunAway(*sample)) {
+  const bool is_fitted =
+      HasClippedPixels(sample->gray, problem.box)
+          ? RefineBeyondClipping(sample->gray, formation, kMaxPixels, kTolerancePx, &problem,
+                                 &sample->minimum)
+          : RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum);
+  if (is_fitted && !HasRunAway(*sample)) {
     sample->residuals = ResidualsOf(*sample, formation);
   } else {
     sample->minimum.parameters = start;

@@ -48,29 +48,17 @@ bool ReadUse(const YamlItem& item) {
 
 KnownPoint ReadKnownPoint(const YamlItem& item) {
   KnownPoint point;
-  std::set<std::string> missing = {"at", "sigma"};
-  KeyHandlers handlers = {{"at",
-                           [&](const YamlItem& v) {
-                             ReadMarkerPoint(v, &point.marker_id, &point.corner);
-                             missing.erase("at");
-                           }},
-                          {"sigma",
-                           [&](const YamlItem& v) {
-                             point.sigma_m = ReadSigma(v);
-                             missing.erase("sigma");
-                           }},
-                          {"use", [&](const YamlItem& v) { point.is_check = ReadUse(v); }}};
+  KeyHandlers handlers = {
+      {"at", [&](const YamlItem& v) { ReadMarkerPoint(v, &point.marker_id, &point.corner); }},
+      {"sigma", [&](const YamlItem& v) { point.sigma_m = ReadSigma(v); }},
+      {"use", [&](const YamlItem& v) { point.is_check = ReadUse(v); }}};
   for (std::size_t axis = 0; axis < kAxisNames.size(); ++axis) {
     handlers[kAxisNames[axis]] = [&point, axis](const YamlItem& v) {
       point.x_m[axis] = ReadCoordinate(v);
     };
   }
-  ReadMap(item, handlers);
   constexpr char kExample[] = "{at: 12, x: 2.4, y: 0.1, z: 1.3, sigma: 0.002} (m)";
-  if (!missing.empty()) {
-    item.Fail(
-        fmt::format("key '{}' is missing; expected an entry like {}", *missing.begin(), kExample));
-  }
+  ReadMap(item, handlers, {"at", "sigma"}, kExample);
   if (point.NumCoordinates() == 0) {
     item.Fail(
         fmt::format("no coordinate is given; expected x, y, z or some of them, like {}", kExample));

@@ -34,34 +34,16 @@ bool ReadUse(const YamlItem& item) {
 
 KnownDistance ReadDistance(const YamlItem& item) {
   KnownDistance distance;
-  std::set<std::string> missing = {"from", "to", "length", "sigma"};
-  ReadMap(item, {{"from",
-                  [&](const YamlItem& v) {
-                    ReadMarkerPoint(v, &distance.marker_id1, &distance.corner1);
-                    missing.erase("from");
-                  }},
-                 {"to",
-                  [&](const YamlItem& v) {
-                    ReadMarkerPoint(v, &distance.marker_id2, &distance.corner2);
-                    missing.erase("to");
-                  }},
-                 {"length",
-                  [&](const YamlItem& v) {
-                    distance.length_m = ReadPositiveMetres(v);
-                    missing.erase("length");
-                  }},
-                 {"sigma",
-                  [&](const YamlItem& v) {
-                    distance.sigma_m = ReadPositiveMetres(v);
-                    missing.erase("sigma");
-                  }},
-                 {"use", [&](const YamlItem& v) { distance.is_scale_bar = ReadUse(v); }}});
-  if (!missing.empty()) {
-    item.Fail(
-        fmt::format("key '{}' is missing; expected an entry like {{from: 12, to: 45, length: "
-                    "2.315, sigma: 0.002}} (m)",
-                    *missing.begin()));
-  }
+  ReadMap(
+      item,
+      {{"from",
+        [&](const YamlItem& v) { ReadMarkerPoint(v, &distance.marker_id1, &distance.corner1); }},
+       {"to",
+        [&](const YamlItem& v) { ReadMarkerPoint(v, &distance.marker_id2, &distance.corner2); }},
+       {"length", [&](const YamlItem& v) { distance.length_m = ReadPositiveMetres(v); }},
+       {"sigma", [&](const YamlItem& v) { distance.sigma_m = ReadPositiveMetres(v); }},
+       {"use", [&](const YamlItem& v) { distance.is_scale_bar = ReadUse(v); }}},
+      {"from", "length", "sigma", "to"}, "{from: 12, to: 45, length: 2.315, sigma: 0.002} (m)");
   if (distance.marker_id1 == distance.marker_id2 && distance.corner1 == distance.corner2) {
     item.Fail("from and to are the same point");
   }
@@ -116,19 +98,11 @@ ClothEdge ReadSideEdge(const YamlItem& item, const LayoutPart& part) {
 FrameChoice ReadFrameMarkers(const YamlItem& map) {
   FrameChoice frame;
   frame.kind = FrameKind::kMarkers;
-  ReadMap(map, {{"origin", [&](const YamlItem& v) { frame.origin_id = ReadMarkerId(v); }},
-                {"axis", [&](const YamlItem& v) { frame.axis_id = ReadMarkerId(v); }},
-                {"plane", [&](const YamlItem& v) { frame.plane_id = ReadMarkerId(v); }}});
-  for (const auto& [id, key] :
-       {std::pair(frame.origin_id, "origin"), std::pair(frame.axis_id, "axis"),
-        std::pair(frame.plane_id, "plane")}) {
-    if (id < 0) {
-      map.Fail(
-          fmt::format("key '{}' is missing; expected an entry like {{origin: 12, axis: 15, "
-                      "plane: 40}} (marker ids)",
-                      key));
-    }
-  }
+  ReadMap(map,
+          {{"origin", [&](const YamlItem& v) { frame.origin_id = ReadMarkerId(v); }},
+           {"axis", [&](const YamlItem& v) { frame.axis_id = ReadMarkerId(v); }},
+           {"plane", [&](const YamlItem& v) { frame.plane_id = ReadMarkerId(v); }}},
+          {"origin", "axis", "plane"}, "{origin: 12, axis: 15, plane: 40} (marker ids)");
   if (std::set<int>{frame.origin_id, frame.axis_id, frame.plane_id}.size() < 3) {
     map.Fail("origin, axis and plane have to be three different markers");
   }

@@ -44,6 +44,15 @@ void ReadMap(const YamlItem& map, const KeyHandlers& handlers) {
   });
 }
 
+void ReadMap(const YamlItem& map, const KeyHandlers& handlers,
+             const std::vector<std::string>& required, const std::string& example) {
+  ReadMap(map, handlers);
+  for (const std::string& key : required) {
+    if (map.node[key]) continue;
+    map.Fail(fmt::format("key '{}' is missing; expected an entry like {}", key, example));
+  }
+}
+
 void ForEachElement(const YamlItem& list, const std::function<void(const YamlItem&)>& handle) {
   if (!list.node.IsSequence()) list.Fail("a list is expected, such as [1, 2, 3]");
   for (std::size_t i = 0; i < list.node.size(); ++i) {

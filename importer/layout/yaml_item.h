@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <yaml-cpp/yaml.h>
 
@@ -34,6 +35,11 @@ using KeyHandlers = std::map<std::string, std::function<void(const YamlItem&)>>;
 // Calls the handler of every key in the map. A key without a handler is an error that lists the
 // known keys.
 void ReadMap(const YamlItem& map, const KeyHandlers& handlers);
+
+// The same for a map that has to have the keys `required`; the error for one that is missing shows
+// an example of such a map.
+void ReadMap(const YamlItem& map, const KeyHandlers& handlers,
+             const std::vector<std::string>& required, const std::string& example);
 
 void ForEachElement(const YamlItem& list, const std::function<void(const YamlItem&)>& handle);
 

@@ -93,11 +93,10 @@ bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, 
   constexpr int kMaxRounds = 6;
   constexpr double kLeft = 3.0;  // slow rounds leave this times their last step
   constexpr double kMinRatio = 0.2, kMaxRatio = 0.9;
-  const bool has_clipped = HasClippedPixels(gray, problem->box);
   Vector last_step = Vector::Zero();
   for (int round = 0; round < kMaxRounds; ++round) {
     const Vector before = minimum->parameters;
-    const bool is_restored = has_clipped && RestoreClippedPixels(gray, formation, before, problem);
+    const bool is_restored = RestoreClippedPixels(gray, formation, before, problem);
     if (!RefinePatternFit(max_pixels, tolerance_px, problem, minimum)) return false;
     const Vector step = minimum->parameters - before;
     const double step_px = step.head<2 * kNumCorners>().cwiseAbs().maxCoeff();

@@ -21,7 +21,7 @@ bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box);
 // RefinePatternFit() with the values that a camera without limits would have recorded, by the model
 // `minimum`, in place of the clipped ones, and with no weight for these pixels. Repeated until that
 // moves no corner further than `tolerance_px`. `gray` and `formation` are those that the problem
-// was made with. False for a singular system.
+// was made with; HasClippedPixels() holds for them. False for a singular system.
 bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, int max_pixels,
                           double tolerance_px, PatternProblem* problem, PatternMinimum* minimum);
 

@@ -120,14 +120,19 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
   return patch;
 }
 
+void Sharpen(const ImageFormationParameters& parameters, int border, cv::Mat* values) {
+  cv::Mat blurred;
+  cv::GaussianBlur(*values, blurred, {0, 0}, parameters.sharpening_radius_px,
+                   parameters.sharpening_radius_px, border);
+  *values = (1 + parameters.sharpening) * *values - parameters.sharpening * blurred;
+}
+
 cv::Mat Sharpened(const cv::Mat& values, const ImageFormation& formation) {
   const ImageFormationParameters& parameters = formation.parameters();
-  cv::Mat sharpened = values.clone(), blurred;
+  cv::Mat sharpened = values.clone();
   if (parameters.sharpening == 0) return sharpened;
   if (parameters.sharpens_light) Decode(formation.tone(), &sharpened);
-  cv::GaussianBlur(sharpened, blurred, {0, 0}, parameters.sharpening_radius_px, 0,
-                   cv::BORDER_REPLICATE);
-  sharpened = (1 + parameters.sharpening) * sharpened - parameters.sharpening * blurred;
+  Sharpen(parameters, cv::BORDER_REPLICATE, &sharpened);
   if (parameters.sharpens_light) Encode(formation.tone(), &sharpened);
   return sharpened;
 }

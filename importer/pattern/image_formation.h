@@ -88,6 +88,9 @@ struct GrayPatch {
 // Cuts the part of the image (8 bit or CV_32F) within `box`, which may reach beyond the image.
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation);
 
+// Sharpens values (CV_32F); `border` is one of OpenCV's kinds.
+void Sharpen(const ImageFormationParameters& parameters, int border, cv::Mat* values);
+
 // Grey values (CV_32F) as the camera sharpens them.
 cv::Mat Sharpened(const cv::Mat& values, const ImageFormation& formation);
 

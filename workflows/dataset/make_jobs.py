@@ -7,6 +7,7 @@ A job file is written only if its content changes, so that its time says whether
 computed anew: it holds the command and, for each file that the command reads, size and time.
 """
 
+import functools
 import os
 import re
 import subprocess
@@ -37,28 +38,27 @@ def options_of_commands() -> dict[str, set[str]]:
             for stage, command in COMMANDS.items()}
 
 
-def state_of(path: Path) -> list[int]:
-    status = path.stat()
-    return [status.st_size, status.st_mtime_ns]
+@functools.lru_cache(maxsize=None)
+def states_below(path: Path) -> dict[str, list[int]]:
+    """Size and time of a file, or of all files of a folder, because one may change in place."""
+    files = ([Path(folder, name) for folder, _, names in os.walk(path) for name in names]
+             if path.is_dir() else [path] if path.is_file() else [])
+    return {str(file): [file.stat().st_size, file.stat().st_mtime_ns] for file in sorted(files)}
 
 
-def files_read(clip: Clip, options: list[tuple[str, str]]) -> list[Path]:
-    """Everything that a job reads; of a folder, all files, because one may change in place."""
+@functools.lru_cache(maxsize=None)
+def dictionary_files(layout: Path) -> list[Path]:
+    text = layout.read_text(encoding="utf-8", errors="replace")
+    names = re.findall(r"^dictionary:\s*[\"']?([^\"'#\n]*?)[\"']?\s*(?:#.*)?$", text, re.M)
+    return [layout.parent / name for name in names if name]
+
+
+def files_read(clip: Clip, options: list[tuple[str, str]]) -> dict[str, list[int]]:
+    """Everything that a job reads."""
     paths = [clip.path, clip.camera, clip.layout]
     paths += [Path(value) for name, value in options if os.path.isabs(value)]
-    if clip.layout:
-        text = clip.layout.read_text(encoding="utf-8", errors="replace")
-        for name in re.findall(r"^dictionary:\s*[\"']?([^\"'#\n]*?)[\"']?\s*(?:#.*)?$", text, re.M):
-            if name:
-                paths.append(clip.layout.parent / name)
-    files: list[Path] = []
-    for path in paths:
-        if path and path.is_dir():
-            files += sorted(Path(folder, name) for folder, _, names in os.walk(path)
-                            for name in names)
-        elif path and path.is_file():
-            files.append(path)
-    return files
+    paths += dictionary_files(clip.layout) if clip.layout else []
+    return {file: state for path in paths if path for file, state in states_below(path).items()}
 
 
 def command_of(clip: Clip, stage: str, options: list[tuple[str, str]]) -> list[str]:
@@ -136,7 +136,7 @@ def write_jobs(output: Path, tags: list[str], clips: list[Clip], cores: int,
         for stage in clip.stages():
             options = [option for option in clip.options if option[0] in known[stage]]
             job = {"stage": stage, "version": version, "command": command_of(clip, stage, options),
-                   "files": {str(path): state_of(path) for path in files_read(clip, options)}}
+                   "files": files_read(clip, options)}
             write_whole(output / job_file(key, stage), as_json(job))
         forget_lost_results(output, clip, retry_failed)
         rows.append({"name": clip.name, "key": key, "clip": clip.path.name, "tags": clip.tags,
