@@ -43,6 +43,9 @@ class FrameTurns {
     bool has_ended_ = false;
   };
 
+  FrameTurns() = default;
+  explicit FrameTurns(Value value) : value_(std::move(value)) {}
+
  private:
   std::mutex mutex_;
   std::condition_variable changed_;

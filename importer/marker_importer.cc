@@ -16,6 +16,7 @@
 #include "importer/base/file_lock.h"
 #include "importer/base/files.h"
 #include "importer/base/parallel.h"
+#include "importer/continued_tracking.h"
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
 #include "importer/dictionary_hint.h"
@@ -52,16 +53,20 @@ bool HoldsMarkers(const ColmapDatabase& database) {
 class ImportRun {
  public:
   ImportRun(const MarkerImporterOptions& options, const FrameDetector& detector,
-            ColmapDatabase* database, FrameSource* source)
+            const TrackingState& tracking, ColmapDatabase* database, FrameSource* source)
       : options_(options),
         detector_(detector),
         source_(source),
+        database_(database),
+        num_searched_(tracking.num_frames),
+        tracking_(tracking),
         writes_images_(source->IsVideo() && !options.frame_output_path.empty()),
         writer_(
             DescribeDetector(detector),
             source->IsVideo() ? std::make_optional(IdentifySource(options.image_path))
                               : std::nullopt,
-            [this] { SecureImages(); }, database),
+            [this] { SecureBatch(); }, database),
+        turns_(tracking.tracks),
         held_markers_(HoldsMarkers(*database)),
         few_found_(!held_markers_) {}
 
@@ -88,6 +93,7 @@ class ImportRun {
 
   void Consume(const FrameResult& result) {
     const StageTimer timer(ImportStage::kDatabase);
+    NoteTracking(result);
     report_.times += result.times;
     reading_s_ += result.reading_s;
     const FrameDetections& detections = result.detections;
@@ -142,10 +148,11 @@ class ImportRun {
                                        FrameResult* result) const {
     std::vector<MarkerQuad> quads, seen_coarsely;
     const int interval = detector_.options.full_search_interval;
-    const bool is_full = frame_idx % interval == 0;
+    const int phase = (num_searched_ + frame_idx) % interval;
+    const bool is_full = phase == 0;
     if (is_full) {
       quads = SearchInFrame(detector_, frame.gray);
-    } else if (frame_idx % interval == (interval + 1) / 2) {
+    } else if (phase == (interval + 1) / 2) {
       seen_coarsely = SearchInFrameCoarsely(detector_, frame.gray);
     }
     MarkerTracks* tracks = turn->Wait();
@@ -162,6 +169,7 @@ class ImportRun {
         }};
     quads = is_full ? CompleteFullSearch(search, std::move(quads), frame_number, tracks)
                     : SearchTracked(search, frame_number, tracks);
+    result->tracks = *tracks;
     turn->End();
     return quads;
   }
@@ -177,9 +185,18 @@ class ImportRun {
     WriteFrameImage(frame, std::filesystem::path(options_.frame_output_path) / frame.image_name);
   }
 
+  void NoteTracking(const FrameResult& result) {
+    ++tracking_.num_frames;
+    if (const auto number = NumberOfVideoFrame(result.detections.image_name)) {
+      tracking_.last_frame = *number;
+    }
+    if (result.tracks) tracking_.tracks = *result.tracks;
+  }
+
   // A frame that the database holds is not written again by a later run, so it has to be on the
-  // disk first.
-  void SecureImages() const {
+  // disk first. The batch goes with the tracks after it.
+  void SecureBatch() const {
+    if (source_->IsVideo()) database_->WriteTracking(tracking_);
     const StageTimer timer(ImportStage::kImages);
     if (writes_images_ && Exists(options_.frame_output_path)) {
       SyncFileSystem(options_.frame_output_path);
@@ -213,6 +230,9 @@ class ImportRun {
   const MarkerImporterOptions& options_;
   const FrameDetector& detector_;
   FrameSource* source_;
+  ColmapDatabase* database_;
+  int num_searched_;        // frames before those of this run
+  TrackingState tracking_;  // after the last frame that was consumed
   bool writes_images_;
   DatabaseWriter writer_;
   FrameTurns<MarkerTracks> turns_;  // videos
@@ -242,9 +262,11 @@ ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetec
                           const std::vector<std::string>& known_names, int num_threads,
                           const ProgressCallback& progress, ColmapDatabase* database) {
   const double cpu_begin_s = ProcessCpuSeconds();
+  const TrackingState tracking = ContinuedTracking(options, *database);
   const std::unique_ptr<FrameSource> source =
-      OpenFrameSource(options.image_path, options.video, known_names, options.num_threads);
-  ImportRun run(options, detector, database, source.get());
+      OpenFrameSource(options.image_path, options.video, WithSearchedFrames(known_names, tracking),
+                      options.num_threads);
+  ImportRun run(options, detector, tracking, database, source.get());
   RunFramePipeline(
       source.get(), num_threads,
       [&](int frame_idx, Frame* frame) { return run.Process(frame_idx, frame); },

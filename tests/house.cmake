@@ -37,7 +37,7 @@ house_folder(importer/track PUBLIC
 house_folder(importer/formation PUBLIC
   formation_sampling)
 house_folder(importer/database PUBLIC
-  colmap_database correspondence database_writer source_table)
+  colmap_database correspondence database_writer source_table tracking_table)
 house_folder(importer PUBLIC
   dictionary_hint marker_importer)
 house_folder(reconstruct/geometry PUBLIC

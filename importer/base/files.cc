@@ -61,14 +61,16 @@ bool ShareBlocks(const fs::path& from, const fs::path& to) {
   return shared;
 }
 
-constexpr char kScratchName[] = "velamap_XXXXXX";
-// No workspace has a file of this name, whatever its folder is called.
-constexpr char kScratchLock[] = ".velamap.scratch.lock";
+// No folder of a user is called so.
+constexpr char kScratchName[] = ".velamap_scratch_XXXXXX";
+constexpr char kScratchPrefix[] = ".velamap_scratch_";
+constexpr char kScratchLock[] = "lock";
 
-// Removes a folder for temporary files of a run that was killed: nobody holds its lock.
+// Removes a folder for temporary files of a run that was killed: nobody holds its lock. The lock is
+// missing where the run was killed before it had made it, or while it removed the folder.
 void RemoveIfAbandoned(const fs::path& folder) {
   std::error_code error;
-  if (!fs::is_regular_file(fs::symlink_status(folder / kScratchLock, error))) return;
+  if (!fs::is_directory(fs::symlink_status(folder, error))) return;
   try {
     const FileLock lock(folder / kScratchLock, folder.string());
     if (lock.IsHeld()) RemoveAll(folder);
@@ -81,7 +83,8 @@ void RemoveAbandoned(const fs::path& parent) {
   std::error_code error;
   for (fs::directory_iterator it(parent, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    const bool is_ours = name.size() == sizeof(kScratchName) - 1 && name.rfind("velamap_", 0) == 0;
+    const bool is_ours =
+        name.size() == sizeof(kScratchName) - 1 && name.rfind(kScratchPrefix, 0) == 0;
     if (is_ours) RemoveIfAbandoned(it->path());
   }
 }

@@ -311,9 +311,20 @@ std::map<std::string, SourceFile> ColmapDatabase::ReadSources() const {
   return Guarded(path_, [&] { return ReadSourceRows(database_.get()); });
 }
 
+void ColmapDatabase::WriteTracking(const TrackingState& state) {
+  Guarded(path_, [&] { velamap::WriteTracking(state, database_.get()); });
+}
+
+std::optional<TrackingState> ColmapDatabase::ReadTracking() const {
+  return Guarded(path_, [&] { return velamap::ReadTracking(path_, database_.get()); });
+}
+
 void ColmapDatabase::ForgetSources() {
   Guarded(path_, [&] {
-    database_->exec("DROP TABLE IF EXISTS marker_sources; DROP TABLE IF EXISTS image_formation");
+    for (const char* table :
+         {"marker_sources", "image_formation", "marker_tracking", "marker_tracks"}) {
+      database_->exec(fmt::format("DROP TABLE IF EXISTS {}", table));
+    }
   });
 }
 

@@ -17,6 +17,7 @@
 
 #include "importer/base/ids.h"
 #include "importer/camera/camera.h"
+#include "importer/database/tracking_table.h"
 #include "importer/detect/detection.h"
 #include "importer/pattern/formation_estimate.h"
 #include "importer/video/source_file.h"
@@ -104,8 +105,13 @@ class ColmapDatabase {
   void WriteSource(const std::string& image_name, const SourceFile& source);
   std::map<std::string, SourceFile> ReadSources() const;
 
-  // Forgets sources and image formation, which a run that is interrupted before its first images
-  // leaves behind.
+  // How far a video has been searched.
+  void WriteTracking(const TrackingState& state);
+  // Throws InputError for values that no tracking gives.
+  std::optional<TrackingState> ReadTracking() const;
+
+  // Forgets sources, image formation and tracking, which a run that is interrupted before its first
+  // images leaves behind.
   void ForgetSources();
 
  private:

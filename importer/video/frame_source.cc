@@ -98,10 +98,6 @@ class ImageFolder : public FrameSource {
   std::size_t next_idx_ = 0;
 };
 
-std::string VideoFrameName(int frame_number) {
-  return fmt::format("frame_{:06}.jpg", frame_number);
-}
-
 class VideoFile : public FrameSource {
  public:
   VideoFile(const std::string& path, const VideoOptions& options,
@@ -133,11 +129,11 @@ class VideoFile : public FrameSource {
         break;
       }
       num_read_ = read->number + 1;
-      if (!options_.Selects(read->number) || known_names_.count(VideoFrameName(read->number)) > 0) {
+      if (!options_.Selects(read->number) || known_names_.count(NameOfVideoFrame(read->number)) > 0) {
         continue;
       }
       Frame frame;
-      frame.image_name = VideoFrameName(read->number);
+      frame.image_name = NameOfVideoFrame(read->number);
       frame.frame_number = read->number;
       frame.time_s = read->time_s;
       frame.picture = std::move(read->picture);
@@ -255,13 +251,17 @@ void CheckImagePath(const std::string& path) {
   }
 }
 
+std::string NameOfVideoFrame(int frame_number) {
+  return fmt::format("frame_{:06}.jpg", frame_number);
+}
+
 std::optional<int> NumberOfVideoFrame(const std::string& name) {
   const std::size_t begin = name.find('_') + 1, end = name.find('.');
   int number = -1;
   if (end == std::string::npos || begin > end) return std::nullopt;
   const bool is_number =
       ParseNumber(std::string_view(name).substr(begin, end - begin), &number) && number >= 0;
-  if (!is_number || VideoFrameName(number) != name) return std::nullopt;
+  if (!is_number || NameOfVideoFrame(number) != name) return std::nullopt;
   return number;
 }
 

@@ -54,6 +54,8 @@ class FrameSource {
 // Throws InputError unless `path` is a folder or a file that may be a video.
 void CheckImagePath(const std::string& path);
 
+std::string NameOfVideoFrame(int frame_number);
+
 // The number of the frame of a video that has such a name; nothing for other names.
 std::optional<int> NumberOfVideoFrame(const std::string& name);
 

@@ -175,6 +175,7 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothing) {
 
 // Markers 5 and 6 are visible in some of the frames only.
 TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
+  options_.detection.estimate_formation = false;
   options_.image_path = dir_ / "video.avi";
   {
     cv::VideoWriter writer(options_.image_path, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
@@ -212,6 +213,7 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
 }
 
 TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingInATrackedVideo) {
+  options_.detection.estimate_formation = false;
   WriteVideo(40);
   const auto run = [&](int num_threads, SearchMode search) {
     fs::remove(options_.database_path);
@@ -236,6 +238,43 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingInATrackedVideo) {
                       .norm(),
                   0.002);
       }
+    }
+  }
+}
+
+// A rope crosses marker 2 from the seventh frame on, where it is found only because it is tracked.
+TEST_F(MarkerImporterTest, AVideoThatIsImportedInPartsGivesTheSameImages) {
+  options_.image_path = dir_ / "video.avi";
+  {
+    cv::VideoWriter writer(options_.image_path, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
+                           kSize);
+    ASSERT_TRUE(writer.isOpened());
+    for (int i = 0; i < 30; ++i) {
+      cv::Mat picture =
+          Picture(i, i % 6 < 5 ? std::vector<int>{1, 2} : std::vector<int>{}, "DICT_4X4_50");
+      const int rope_x = 151 + i;
+      if (i > 5) cv::line(picture, {rope_x, 0}, {rope_x, kSize.height}, cv::Scalar::all(0), 4);
+      writer << picture;
+    }
+  }
+  options_.detection.estimate_formation = false;
+  ImportMarkers(options_);
+  const std::vector<DatabaseImage> whole = ReadImages();
+  fs::remove(options_.database_path);
+  for (const int last_frame : {12, 14, -1}) {
+    options_.video.last_frame = last_frame;
+    ImportMarkers(options_);
+  }
+  const std::vector<DatabaseImage> in_parts = ReadImages();
+  ASSERT_EQ(in_parts.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const FrameDetections& detections = in_parts[i].detections;
+    EXPECT_EQ(detections.image_name, whole[i].detections.image_name);
+    ASSERT_EQ(detections.markers.size(), whole[i].detections.markers.size());
+    for (std::size_t m = 0; m < detections.markers.size(); ++m) {
+      EXPECT_EQ(detections.markers[m].marker_id, whole[i].detections.markers[m].marker_id);
+      EXPECT_EQ(detections.markers[m].corners_in_image_px,
+                whole[i].detections.markers[m].corners_in_image_px);
     }
   }
 }

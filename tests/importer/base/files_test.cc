@@ -95,17 +95,18 @@ TEST(TemporaryFolder, OfAKilledRunIsRemovedByTheNext) {
   const char* earlier = std::getenv("TMPDIR");
   const std::string restored = earlier == nullptr ? "" : earlier;
   setenv("TMPDIR", dir.path().c_str(), 1);
-  const fs::path killed = dir / "velamap_killed", theirs = dir / "velamap_theirs";
-  const fs::path workspace = dir / "velamap_result";  // of a run that was killed, too
-  for (const fs::path& folder : {killed, theirs, workspace}) fs::create_directory(folder);
-  Touch(workspace / ".velamap.lock");
-  Touch(killed / ".velamap.scratch.lock");
+  const fs::path killed = dir / ".velamap_scratch_killed", empty = dir / ".velamap_scratch_empty0";
+  const fs::path theirs = dir / "velamap_theirs";
+  for (const fs::path& folder : {killed, empty, theirs}) fs::create_directory(folder);
+  Touch(killed / "lock");
+  Touch(killed / "file");
+  fs::create_symlink(theirs, dir / ".velamap_scratch_linked");
   {
     const TemporaryFolder one;
     const TemporaryFolder other;
     EXPECT_TRUE(fs::exists(one.path()));
   }
-  EXPECT_THAT(FolderEntries(dir.path()), ElementsAre(workspace, theirs));
+  EXPECT_THAT(FolderEntries(dir.path()), ElementsAre(dir / ".velamap_scratch_linked", theirs));
   restored.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", restored.c_str(), 1);
 }
 

@@ -1,0 +1,23 @@
+// How an import goes on where an earlier one of the same video has ended or was interrupted.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "importer/database/colmap_database.h"
+#include "importer/marker_importer.h"
+
+namespace velamap {
+
+// The tracking that the database holds; that of the first frame where the earlier import searched
+// other frames of the video, and for photographs.
+TrackingState ContinuedTracking(const MarkerImporterOptions& options,
+                                const ColmapDatabase& database);
+
+// Adds the names of the frames that have been searched: the database has no row of those without
+// markers.
+std::vector<std::string> WithSearchedFrames(std::vector<std::string> known_names,
+                                            const TrackingState& tracking);
+
+}  // namespace velamap

@@ -1,0 +1,34 @@
+// The tables marker_tracking and marker_tracks that velamap adds to COLMAP's: how far a video has
+// been searched, and the tracks of its markers there, so that an interrupted import goes on as if
+// it had not been interrupted. README.md of this folder describes the columns.
+//
+// Errors of SQLite arrive as SQLite::Exception; ColmapDatabase turns them into input errors.
+
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "importer/track/marker_tracking.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace velamap {
+
+struct TrackingState {
+  int first_frame = 0, frame_step = 1;  // of the VideoOptions
+  int last_frame = -1;                  // the number of the last frame that was searched
+  int num_frames = 0;                   // searched so far
+  MarkerTracks tracks;                  // after it
+};
+
+// Creates the tables if they are missing and replaces their rows.
+void WriteTracking(const TrackingState& state, SQLite::Database* database);
+
+// Nothing where no video was tracked. Throws InputError, naming the path, for values that no
+// tracking gives.
+std::optional<TrackingState> ReadTracking(const std::string& path, SQLite::Database* database);
+
+}  // namespace velamap
