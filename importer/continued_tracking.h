@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "importer/database/colmap_database.h"
+#include "importer/database/tracking_table.h"
 #include "importer/marker_importer.h"
 
 namespace velamap {

@@ -52,7 +52,7 @@ house_folder(reconstruct/solve PUBLIC
 house_folder(reconstruct/registration PUBLIC
   dictionary_doubt frame_order registration registration_options)
 house_folder(reconstruct/evidence PUBLIC
-  layout_evidence)
+  layout_evidence unnamed_markers)
 house_folder(reconstruct/thesis PUBLIC
   frame_selection posed_images thesis_registration)
 house_folder(reconstruct/global PUBLIC

@@ -16,6 +16,7 @@
 #include "importer/database/source_table.h"
 #include "importer/database/sqlite_blob.h"
 #include "importer/database/sqlite_errors.h"
+#include "importer/database/tracking_table.h"
 
 namespace velamap {
 namespace {

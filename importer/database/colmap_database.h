@@ -17,7 +17,6 @@
 
 #include "importer/base/ids.h"
 #include "importer/camera/camera.h"
-#include "importer/database/tracking_table.h"
 #include "importer/detect/detection.h"
 #include "importer/pattern/formation_estimate.h"
 #include "importer/video/source_file.h"
@@ -27,6 +26,8 @@ class Database;
 }
 
 namespace velamap {
+
+struct TrackingState;
 
 // One row of `images` with its detections. Keypoints are the corners of detections.markers, ordered
 // by marker id and corner: keypoint_idx = 4 * marker_idx + corner - 1.

@@ -26,6 +26,9 @@ struct MarkerDetection {
   bool is_fallback = false;
 };
 
+// The reason for leaving out an id that the layout does not name.
+inline constexpr char kNotInLayout[] = "not in layout";
+
 struct RejectedDetection {
   MarkerDetection detection;
   std::string reason;

@@ -91,9 +91,9 @@ bool HasRunAway(const FittedSample& sample) {
 }  // namespace
 
 bool IsClipped(const FittedSample& sample, const SamplePlace& place) {
-  const cv::Mat& is_clipped = sample.problem.patch.is_clipped;
-  return !is_clipped.empty() &&
-         is_clipped.at<std::uint8_t>(place.in_box + PatchFromBox(sample.problem)) != 0;
+  const cv::Mat& is_left_out = sample.problem.patch.is_left_out;
+  return !is_left_out.empty() &&
+         is_left_out.at<std::uint8_t>(place.in_box + PatchFromBox(sample.problem)) != 0;
 }
 
 std::optional<FittedSample> FitSample(const FormationSample& sample,

@@ -69,7 +69,7 @@ bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
   }
   patch = CutPatch(recorded, patch_box - wide.tl(), formation);
   patch.origin_px += wide.tl();
-  patch.is_clipped = is_clipped;
+  patch.is_left_out = is_clipped;
   return any;
 }
 

@@ -80,9 +80,9 @@ constexpr int kUnsharpeningReachPx = 5;
 struct GrayPatch {
   cv::Mat values;       // CV_32F
   cv::Point origin_px;  // of its first pixel in the image
-  // 8 bit: not zero where the image tells only a limit of the value (clipped_pixels.h). Empty: it
-  // tells all values.
-  cv::Mat is_clipped;
+  // 8 bit: not zero where a pixel does not count, because it is clipped (clipped_pixels.h) or shows
+  // something in front of the marker. Empty: all count.
+  cv::Mat is_left_out;
 };
 
 // Cuts the part of the image (8 bit or CV_32F) within `box`, which may reach beyond the image.

@@ -6,6 +6,7 @@
 
 #include "importer/base/error.h"
 #include "importer/pattern/clipped_pixels.h"
+#include "importer/pattern/foreign_pixels.h"
 #include "importer/pattern/pattern_problem.h"
 
 namespace velamap {

@@ -23,7 +23,7 @@ inline void FillUp(ChosenPixels* pixels) {
 }
 
 // Calls take(group, covered) for every group of pixels of the box, in rows; `covered` is -1 for the
-// pixels that the model covers and that are not clipped.
+// pixels that the model covers and that count.
 template <typename Take>
 inline void ForEachGroup(const PatternProblem& problem, const PatternPicture& picture,
                          const Take& take) {
@@ -32,16 +32,16 @@ inline void ForEachGroup(const PatternProblem& problem, const PatternPicture& pi
   for (int row = box.y; row < box.y + box.height; ++row) {
     const int patch_row = row - problem.patch.origin_px.y;
     const float* values = problem.patch.values.ptr<float>(patch_row);
-    const std::uint8_t* clipped = problem.patch.is_clipped.empty()
-                                      ? nullptr
-                                      : problem.patch.is_clipped.ptr<std::uint8_t>(patch_row);
+    const std::uint8_t* left_out = problem.patch.is_left_out.empty()
+                                       ? nullptr
+                                       : problem.patch.is_left_out.ptr<std::uint8_t>(patch_row);
     const Floats y = AllLanes(row - center.y());
     for (int begin = box.x; begin < box.x + box.width; begin += kLanes) {
       ChosenPixels::Group group{static_cast<float>(begin - center.x()) + LaneIndex(), y, {}, {}};
       Ints covered = picture.Covers(group.x, group.y);
       for (int lane = 0; lane < kLanes; ++lane) {
         const int column = begin + lane - problem.patch.origin_px.x;
-        if (begin + lane >= box.x + box.width || (clipped && clipped[column])) covered[lane] = 0;
+        if (begin + lane >= box.x + box.width || (left_out && left_out[column])) covered[lane] = 0;
         if (covered[lane]) group.gray[lane] = values[column];
       }
       take(group, covered);
@@ -69,15 +69,8 @@ VELAMAP_CLONE_FOR_AVX2 ChosenPixels ChoosePixels(const PatternProblem& problem,
     last.root_weight[place] = group.root_weight[lane];
   };
   const double corner_weight = problem.model.outline_corner_weight;
-  const bool is_limited = std::isfinite(problem.max_residual_gray);
-  const Floats limit = AllLanes(problem.max_residual_gray);
-  PatternPixels modelled;
   ForEachGroup(problem, picture, [&](ChosenPixels::Group group, Ints covered) {
     if (MinLane(covered) == 0) return;
-    if (is_limited) {
-      picture.At(group.x, group.y, &modelled);
-      covered &= Abs(modelled.gray - group.gray) < limit;
-    }
     group.root_weight = AllLanes(1.0);
     if (corner_weight < 1) {
       const Ints is_at_corner = picture.IsAtOutlineCorner(group.x, group.y);
@@ -106,17 +99,30 @@ VELAMAP_CLONE_FOR_AVX2 ChosenPixels ChoosePixels(const PatternProblem& problem,
   return chosen;
 }
 
-VELAMAP_CLONE_FOR_AVX2 std::vector<double> AbsoluteResiduals(const PatternProblem& problem,
-                                                             const P::Vector& parameters,
-                                                             const ChosenPixels& pixels) {
+VELAMAP_CLONE_FOR_AVX2 std::vector<PixelResidual> Residuals(const PatternProblem& problem,
+                                                            const P::Vector& parameters,
+                                                            const ChosenPixels& pixels) {
   const PatternPicture picture(problem.model, parameters);
-  std::vector<double> residuals;
+  const Eigen::Vector2d origin =
+      problem.model.center_px -
+      Eigen::Vector2d(problem.patch.origin_px.x, problem.patch.origin_px.y);
+  std::vector<PixelResidual> residuals;
   residuals.reserve(static_cast<std::size_t>(pixels.count));
   PatternPixels modelled;
   for (const ChosenPixels::Group& group : pixels.groups) {
     picture.At(group.x, group.y, &modelled);
+    // The sum over all corners is the slope of the grey levels.
+    Floats slope_x{}, slope_y{};
+    for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
+      slope_x += modelled.jacobian[i];
+      slope_y += modelled.jacobian[i + 1];
+    }
+    const Floats squared_slope = slope_x * slope_x + slope_y * slope_y;
     for (int lane = 0; lane < kLanes && static_cast<int>(residuals.size()) < pixels.count; ++lane) {
-      residuals.push_back(std::abs(static_cast<double>(modelled.gray[lane] - group.gray[lane])));
+      residuals.push_back({cv::Point(static_cast<int>(std::lround(origin.x() + group.x[lane])),
+                                     static_cast<int>(std::lround(origin.y() + group.y[lane]))),
+                           std::abs(static_cast<double>(modelled.gray[lane] - group.gray[lane])),
+                           std::sqrt(static_cast<double>(squared_slope[lane]))});
     }
   }
   return residuals;

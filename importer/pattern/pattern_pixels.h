@@ -21,14 +21,19 @@ struct ChosenPixels {
 
 // About `max_pixels` of the pixels that the model covers with these parameters. If there are more,
 // every k-th one of those near an edge, which tell where the corners are, and a few others, which
-// tell the levels. Corners of outlines without weight are left out, and pixels that the model
-// misses by more than the problem allows.
+// tell the levels. Corners of outlines without weight are left out, and pixels that do not count.
 ChosenPixels ChoosePixels(const PatternProblem& problem,
                           const PatternParameters::Vector& parameters, int max_pixels);
 
-// Absolute differences between the model and the pixels, grey levels.
-std::vector<double> AbsoluteResiduals(const PatternProblem& problem,
-                                      const PatternParameters::Vector& parameters,
-                                      const ChosenPixels& pixels);
+struct PixelResidual {
+  cv::Point in_patch;
+  double absolute_gray;    // between the model and the pixel, grey levels
+  double slope_gray_a_px;  // of the model there
+};
+
+// In the order of the pixels.
+std::vector<PixelResidual> Residuals(const PatternProblem& problem,
+                                     const PatternParameters::Vector& parameters,
+                                     const ChosenPixels& pixels);
 
 }  // namespace velamap

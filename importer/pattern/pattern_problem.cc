@@ -4,11 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
-#include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/unit_square_map.h"
 #include "importer/pattern/pattern_picture.h"
@@ -195,12 +193,6 @@ bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px
                          &minimum->equations) != Convergence::kFailed;
 }
 
-// Grey levels between the dark and the light cells.
-double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum) {
-  const ToneCurve& tone = *problem.model.tone;
-  return tone.Encode(minimum.parameters[P::kLight]) - tone.Encode(minimum.parameters[P::kDark]);
-}
-
 // The pixels that the quiet zone of one cell can reach; nothing where it leaves the image.
 std::optional<cv::Rect> CoveredBox(const UnitSquareMap& map, int num_cells, const cv::Mat& gray) {
   const double reach = 1.0 / num_cells;
@@ -245,6 +237,11 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
   return problem;
 }
 
+double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum) {
+  const ToneCurve& tone = *problem.model.tone;
+  return tone.Encode(minimum.parameters[P::kLight]) - tone.Encode(minimum.parameters[P::kDark]);
+}
+
 void SetQuietZonePrior(const ImageFormationParameters& formation, PatternProblem* problem) {
   const double weight = kPixelNoise / formation.quiet_zone_sigma_cells;
   problem->mean.segment<4>(P::kMargin).setConstant(formation.quiet_zone_cells);
@@ -255,30 +252,6 @@ bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* probl
                       PatternMinimum* minimum) {
   FillLightness(problem->patch, problem->cells, minimum->parameters, &problem->model);
   return Minimize(*problem, max_pixels, tolerance_px, minimum);
-}
-
-bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum) {
-  constexpr double kContrast = 0.25, kSigmas = 5.0;  // what a foreign pixel is missed by at least
-  constexpr double kMinShare = 0.01, kMaxShare = 0.35;
-  constexpr int kRounds = 3;  // foreign pixels that have moved the first fit hide each other
-  for (int round = 0; round < kRounds; ++round) {
-    problem->max_residual_gray = std::numeric_limits<double>::infinity();
-    const std::vector<double> residuals =
-        AbsoluteResiduals(*problem, minimum->parameters,
-                          ChoosePixels(*problem, minimum->parameters, kMaxPatternPixels));
-    if (residuals.size() <= static_cast<std::size_t>(P::kCount)) return false;
-    const double limit = std::max(kContrast * ContrastOf(*problem, *minimum),
-                                  kSigmas * kMadToSigma * Median(residuals));
-    const double share =
-        static_cast<double>(std::count_if(residuals.begin(), residuals.end(),
-                                          [&](double residual) { return residual > limit; })) /
-        static_cast<double>(residuals.size());
-    if (share < kMinShare) return true;
-    if (share > kMaxShare) return round == 0;  // later, the refit has lost the marker
-    problem->max_residual_gray = limit;
-    if (!RefinePatternFit(kMaxPatternPixels, kPatternTolerancePx, problem, minimum)) return false;
-  }
-  return true;
 }
 
 // A wide blur needs another pass, because levels, blur and surroundings then depend on each other.

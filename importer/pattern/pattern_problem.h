@@ -2,7 +2,6 @@
 
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -30,8 +29,6 @@ struct PatternProblem {
   cv::Rect box;  // of the pixels that the model may cover, in the image
   PatternModel model;
   PatternParameters::Vector mean, weight;  // priors
-  // Pixels that the model misses by more show something in front of the marker, and do not count.
-  double max_residual_gray = std::numeric_limits<double>::infinity();
 };
 
 // The best parameters so far, and the normal equations there.
@@ -47,6 +44,9 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
                                                  const ImageFormation& formation,
                                                  PatternMinimum* minimum);
 
+// Grey levels between the dark and the light cells.
+double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum);
+
 // The prior of the widths of the quiet zone, where that is known of all markers.
 void SetQuietZonePrior(const ImageFormationParameters& formation, PatternProblem* problem);
 
@@ -58,11 +58,5 @@ bool RefinePatternFit(int max_pixels, double tolerance_px, PatternProblem* probl
 // From the initial parameters: a coarse fit to some pixels, then fine fits to more pixels. False if
 // the image does not show such a marker.
 bool FitPatternInPasses(PatternProblem* problem, PatternMinimum* minimum);
-
-// Fits again without the pixels that show something else: a rope or its shadow across the marker, a
-// glint, dirt. These are missed by far more than the noise and by a good part of the contrast.
-// Leaves the fit as it is where there are hardly any, or too many to be foreign. False for a
-// singular system or a refit that has lost the marker.
-bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum);
 
 }  // namespace velamap

@@ -23,9 +23,6 @@
 
 namespace velamap {
 
-// The reason for leaving out an id that the layout does not name.
-inline constexpr char kNotInLayout[] = "not in layout";
-
 // Read by all threads and changed by none.
 struct FrameDetector {
   ArucoDetectionOptions options;

@@ -17,6 +17,7 @@
 #include "importer/base/numbers.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/colmap_runner.h"
+#include "reconstruct/evidence/unnamed_markers.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
@@ -30,8 +31,6 @@ namespace {
 
 // Corners are accurate to a few tenths of a pixel, so a larger error has another cause.
 constexpr double kSuspiciousErrorPx = 1.0;
-// Rejected detections, as a share of the accepted ones, that nobody has to look at.
-constexpr double kFewRejected = 0.01;
 
 std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
   std::set<std::string> used;
@@ -207,11 +206,8 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
   if (!options.prior_shape.empty() && report.num_frames_read > 0)
     LogPriorShapeAgreement(report.prior_shape);
   if (!report.ids_not_in_layout.empty()) {
-    // Few detections are false ones; a marker that the layout forgot is seen as often as others.
-    const bool are_few = report.num_rejected < kFewRejected * report.num_markers;
-    spdlog::log(are_few ? spdlog::level::info : spdlog::level::warn,
-                "markers left out because the layout does not name them: {}",
-                fmt::join(report.ids_not_in_layout, " "));
+    spdlog::info("ids that the layout does not name, or that were misread: {}",
+                 fmt::join(report.ids_not_in_layout, " "));
   }
   return report;
 }
@@ -241,6 +237,11 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   }
   seed.num_ids_found = static_cast<int>(ids.size());
   LogSeed(seed);
+  const std::vector<int> unnamed = FindUnnamedMarkers(images, seed.model);
+  if (!unnamed.empty()) {
+    spdlog::warn("markers left out because the layout does not name them: {}",
+                 fmt::join(unnamed, " "));
+  }
   return seed;
 }
 
