@@ -80,6 +80,21 @@ Metrics MarkerRow(const MarkerDeviation& marker, bool is_against_surface) {
   return row;
 }
 
+void DropRoundingErrors(double* value) {
+  constexpr double kLargest = 1e-9;
+  if (std::abs(*value) < kLargest) *value = 0.0;
+}
+
+void DropRoundingErrors(Metric* metric) {
+  if (auto* value = std::get_if<double>(&metric->value)) DropRoundingErrors(value);
+  if (auto* s = std::get_if<Statistics>(&metric->value)) {
+    for (double* value :
+         {&s->mean, &s->standard_deviation, &s->median, &s->min, &s->max, &s->rms}) {
+      DropRoundingErrors(value);
+    }
+  }
+}
+
 }  // namespace
 
 void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report) {
@@ -144,6 +159,15 @@ void AddMetrics(const SectionComparison& comparison, MetricsReport* report) {
     table.rows.push_back(std::move(row));
   }
   report->tables.push_back(std::move(table));
+}
+
+void DropRoundingErrors(MetricsReport* report) {
+  for (Metric& metric : report->metrics) DropRoundingErrors(&metric);
+  for (MetricTable& table : report->tables) {
+    for (Metrics& row : table.rows) {
+      for (Metric& metric : row) DropRoundingErrors(&metric);
+    }
+  }
 }
 
 }  // namespace velamap

@@ -19,4 +19,8 @@ void AddMetrics(const SurfaceComparison& comparison, MetricsReport* report);
 // Adds section_frame, num_significant_section_numbers, section_note and table section_differences.
 void AddMetrics(const SectionComparison& comparison, MetricsReport* report);
 
+// Sets figures that are smaller than rounding errors can be, below 1e-9 of their unit (m, mm, deg,
+// percent), to zero.
+void DropRoundingErrors(MetricsReport* report);
+
 }  // namespace velamap

@@ -57,7 +57,9 @@ struct DeviationGroup {
 
 struct ShapeDeviation {
   Alignment alignment;
-  MarkerShape aligned_shape;  // in the frame of the reference, without sigmas
+  // In the frame of the reference. The sigma of a point is the same along all axes, the root mean
+  // square, which a rotation does not change.
+  MarkerShape aligned_shape;
   // Scale of shape / reference from the corners of the alignment (all common ones for kNone); only
   // for two shapes, and never applied.
   std::optional<double> scale;

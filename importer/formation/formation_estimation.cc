@@ -258,6 +258,29 @@ Balanced WithBalancedEdges(const State& state, int num_threads) {
           std::abs(inset_by_spread_px) * std::hypot(share * edges.sigma_sides, unexplained)};
 }
 
+// Half the difference between the insets by two estimates, each from half of the samples and with
+// starts of its own. It tells what the scatter about one minimum does not: another minimum that
+// explains the samples about as well.
+double InsetSigmaByHalves(const std::vector<FormationSample>& samples, const State& best,
+                          int num_threads) {
+  constexpr std::size_t kMinSamples = 8;  // a half
+  std::vector<FormationSample> halves[2];
+  std::size_t count = 0;
+  for (const std::size_t i : best.sample_idxs) halves[count++ % 2].push_back(samples[i]);
+  if (halves[1].size() < kMinSamples) return 0.0;
+  const ImageFormationParameters& formation = best.formation->parameters();
+  double inset_px[2] = {0.0, 0.0};
+  for (int i = 0; i < 2; ++i) {
+    const State half =
+        Minimize(halves[i], formation.is_inverted, formation.sharpens_light, num_threads);
+    if (half.samples.empty()) return 0.0;
+    inset_px[i] = MeanInset(best, MovedTo(half.parameters, best, num_threads));
+  }
+  spdlog::debug("insets by halves of the samples: {:+.4f} and {:+.4f} px", inset_px[0],
+                inset_px[1]);
+  return 0.5 * std::abs(inset_px[0] - inset_px[1]);
+}
+
 }  // namespace
 
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
@@ -280,7 +303,8 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   const bool light_wins = cost_by_light < kClearlyLess * cost_by_gray;
   spdlog::debug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
                 cost_by_light);
-  const Balanced balanced = WithBalancedEdges(light_wins ? by_light : by_gray, num_threads);
+  const State& winner = light_wins ? by_light : by_gray;
+  const Balanced balanced = WithBalancedEdges(winner, num_threads);
   const State& best = balanced.state;
   FormationEstimate estimate;
   estimate.parameters = best.formation->parameters();
@@ -290,8 +314,10 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   estimate.noise_gray = NoiseOf(best);
   // No camera is exactly as either of the two descriptions says, and they may differ by more than
   // the noise explains.
-  estimate.inset_sigma_px = std::hypot(problem.InsetSigma(light_wins ? by_light : by_gray),
-                                       0.5 * MeanInset(by_gray, by_light), balanced.inset_sigma_px);
+  const double by_scatter_px =
+      std::max(problem.InsetSigma(winner), InsetSigmaByHalves(samples, winner, num_threads));
+  estimate.inset_sigma_px =
+      std::hypot(by_scatter_px, 0.5 * MeanInset(by_gray, by_light), balanced.inset_sigma_px);
   return estimate;
 }
 

@@ -106,11 +106,15 @@ bool SampleFrames(const FrameDetector& detector, int num_frames, int stride, int
 }
 
 // From the beginning of a video; further on, and farther apart, while too few markers are found.
+// The frames of a short one are closer together.
 std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_threads,
                                          FrameSource* source) {
   constexpr int kNumFrames = 8, kStride = 5, kMaxStride = 160;
+  const int num_in_video = source->NumFrames();  // 0: unknown
+  const int first_stride =
+      num_in_video == 0 ? kStride : std::clamp(num_in_video / kNumFrames, 1, kStride);
   std::vector<FormationSample> samples;
-  for (int stride = kStride; stride <= kMaxStride; stride *= 2) {
+  for (int stride = first_stride; stride <= kMaxStride; stride *= 2) {
     const bool has_more = SampleFrames(detector, kNumFrames, stride, kMaxSamples / kNumFrames,
                                        num_threads, source, &samples);
     if (!has_more || static_cast<int>(samples.size()) >= kMaxSamples / 2) break;

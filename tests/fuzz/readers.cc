@@ -17,6 +17,7 @@
 #include "importer/base/error.h"
 #include "importer/camera/calibration.h"
 #include "importer/database/colmap_database.h"
+#include "importer/database/tracking_table.h"
 #include "importer/detect/detection_options.h"
 #include "importer/layout/dictionary.h"
 #include "importer/layout/layout.h"
@@ -183,6 +184,7 @@ void ReadDatabase(const std::string& path) {
     database.ReadDetector();
     database.ReadFormation();
     database.ReadSources();
+    database.ReadTracking();
     database.ReadImages();
   }
 }
@@ -198,6 +200,10 @@ std::vector<Bytes> DatabaseSeeds() {
     }
     database.WriteFormation({});
     database.WriteSource("", {"/clip.mp4", 1, 2, 3, 4});
+    TrackingState tracking;
+    tracking.last_frame = 0;
+    tracking.tracks.tracks.emplace_back().corners_px.fill(Eigen::Vector2d::Zero());
+    database.WriteTracking(tracking);
     transaction.Commit();
   }
   return {BytesOf(dir / "database.db")};

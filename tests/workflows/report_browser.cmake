@@ -1,5 +1,5 @@
 # The report in headless Chromium; skipped where there is none.
-velamap_test(NAME report_browser_test LABEL browser
+velamap_test(NAME report_browser_test LABEL browser SHARDS 1
   SOURCES
     ../exporters/report/report_example.cc
     interop/report_browser_test.cc

@@ -260,6 +260,7 @@ void Write(const Options& options, const Result& result, const MetricsReport& re
 void Run(const Options& options) {
   MetricsReport report;
   const Result result = Compare(options, &report);
+  DropRoundingErrors(&report);
   Write(options, result, report);
   PrintMetrics(report, std::cout);
 }

@@ -128,6 +128,23 @@ TEST(ComparisonReport, HasTheKeysThatTheReadmeLists) {
   EXPECT_THAT(json.str(), HasSubstr("\"difference_sigma_z_mm\""));
 }
 
+TEST(ComparisonReport, AShapeIsZeroFromItself) {
+  const UncertainShape boat = Uncertain(BoatShape(0.001)),
+                       elsewhere{Moved(FarPose(), boat.shape), boat.covariance};
+  MetricsReport report;
+  AddMetrics(CompareWithShape(elsewhere, boat, BoatLayout(), {}, ""), &report);
+  DropRoundingErrors(&report);
+  for (const Metric& metric : report.metrics) {
+    if (const auto* statistics = std::get_if<Statistics>(&metric.value)) {
+      EXPECT_EQ(statistics->min, 0.0) << metric.key;
+      EXPECT_EQ(statistics->max, 0.0) << metric.key;
+    }
+    if (metric.key == "scale_difference_percent") {
+      EXPECT_EQ(std::get<double>(metric.value), 0.0);
+    }
+  }
+}
+
 TEST(ComparisonReport, OfASurfaceHasNoVectors) {
   AlignmentOptions none;
   none.method = AlignmentMethod::kNone;

@@ -1,11 +1,13 @@
 #include "exporters/compare/surface_comparison.h"
 
+#include <cmath>
 #include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "exporters/compare/comparison_ply.h"
+#include "exporters/compare/shape_comparison.h"
 #include "exporters/formats/diverging_color.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/formats/ply_reader.h"
@@ -24,6 +26,23 @@ TEST(ComparisonSurface, AShapeIsNowhereFromItself) {
   EXPECT_EQ(comparison.parts[0].statistics_m.count,
             static_cast<int>(comparison.parts[0].mesh.vertices_m.size()));
   EXPECT_LT(LargestDistance(comparison), 1e-9);
+}
+
+// The surface follows the sigmas of the markers, which an alignment has to keep.
+TEST(ComparisonSurface, AnUncertainShapeIsNowhereFromItselfElsewhere) {
+  MarkerShape shape = BoatShape(0.001);
+  double wave = 0.0;
+  for (ShapeMarker& marker : shape.markers) {
+    const double error_m = 0.005 * std::sin(wave += 1.7);
+    for (auto& x : marker.x_in_shape_m) *x += Eigen::Vector3d(0, error_m, 0);
+    for (auto& sigma_m : marker.sigma_m) *sigma_m = {0.001, 0.002 + 0.3 * std::abs(error_m), 0.004};
+  }
+  const ShapeDeviation deviation =
+      CompareWithShape({Moved(FarPose(), shape), {}}, {shape, {}}, BoatLayout(), {}, "");
+  EXPECT_LT(LargestDistance(CompareSurfaces(deviation.aligned_shape, shape, BoatLayout())), 1e-9);
+  MarkerShape certain = shape;
+  for (ShapeMarker& marker : certain.markers) marker.sigma_m = {};
+  EXPECT_GT(LargestDistance(CompareSurfaces(certain, shape, BoatLayout())), 1e-4);
 }
 
 // Moves all lines by 20 mm along the mean normal, and the middle of the sail with them.
