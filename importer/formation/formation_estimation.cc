@@ -61,7 +61,7 @@ double WeightedResidual(const State& state, std::size_t i, Eigen::Index j) {
   return RootWeight(state, i, j) * state.samples[i].residuals[static_cast<std::size_t>(j)];
 }
 
-// Derivatives of the weighted residuals of the i-th sample; zero where a fit failed.
+// Derivatives of the weighted residuals of the i-th sample; zero where a fit failed or jumped.
 Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::size_t i) {
   const auto residuals_of = [i](const State& one) {
     const std::vector<float>& residuals = one.samples[i].residuals;
@@ -71,11 +71,10 @@ Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::si
   };
   const auto count = static_cast<Eigen::Index>(state.samples[i].places.size());
   Jacobian jacobian = Jacobian::Zero(count, kCount);
-  const bool all_fitted = residuals_of(state).size() == count &&
-                          std::all_of(moved.begin(), moved.end(), [&](const State& one) {
-                            return residuals_of(one).size() == count;
-                          });
-  for (int k = 0; all_fitted && k < kCount; ++k) {
+  const bool are_alike = std::all_of(moved.begin(), moved.end(), [&](const State& one) {
+    return AreAlike(state.samples[i], one.samples[i]);
+  });
+  for (int k = 0; are_alike && k < kCount; ++k) {
     jacobian.col(k) =
         (residuals_of(moved[static_cast<std::size_t>(k)]) - residuals_of(state)) / kStep[k];
   }
@@ -113,33 +112,48 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
   // agree by chance: it is no smaller than for independent residuals.
   double InsetSigma(const State& state) const {
     const std::vector<State>& moved = MovedBySteps(state, num_threads_);
-    Equations::Matrix scatter = Equations::Matrix::Zero();
-    int num_fitted = 0;
-    for (std::size_t i = 0; i < state.samples.size(); ++i) {
-      const Jacobian jacobian = JacobianOf(state, moved, i);
-      if (jacobian.isZero(0)) continue;
-      ++num_fitted;
-      Vector gradient = Vector::Zero();
-      for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
-        const double residual = WeightedResidual(state, i, j);
-        gradient += loss_.Weight(residual * residual) * residual * jacobian.row(j).transpose();
-      }
-      scatter += gradient * gradient.transpose();
-    }
-    if (num_fitted == 0) return 0.0;
-    scatter *= static_cast<double>(num_fitted) / std::max(1, num_fitted - kCount);
-    const Vector by_prior = PriorWeight().cwiseAbs2().cwiseProduct(kSigma);
-    scatter.diagonal() += by_prior.cwiseAbs2();
     Vector inset_by;
     for (int k = 0; k < kCount; ++k) {
       inset_by[k] = MeanInset(state, moved[static_cast<std::size_t>(k)]) / kStep[k];
     }
     const Vector by_inset = SumUp(state, &moved).hessian().ldlt().solve(inset_by);
-    return std::sqrt(
-        std::max(by_inset.dot(scatter * by_inset), noise_ * noise_ * inset_by.dot(by_inset)));
+    const Vector by_prior = PriorWeight().cwiseAbs2().cwiseProduct(kSigma).cwiseProduct(by_inset);
+    const double independent = noise_ * noise_ * inset_by.dot(by_inset);
+    return std::sqrt(std::max(
+        VarianceOfSum(InfluencesOf(state, moved, by_inset)) + by_prior.squaredNorm(), independent));
   }
 
  private:
+  // How much each sample moves the mean inset.
+  std::vector<double> InfluencesOf(const State& state, const std::vector<State>& moved,
+                                   const Vector& by_inset) const {
+    std::vector<double> influences;
+    for (std::size_t i = 0; i < state.samples.size(); ++i) {
+      const Jacobian jacobian = JacobianOf(state, moved, i);
+      if (jacobian.isZero(0)) continue;
+      Vector gradient = Vector::Zero();
+      for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
+        const double residual = WeightedResidual(state, i, j);
+        gradient += loss_.Weight(residual * residual) * residual * jacobian.row(j).transpose();
+      }
+      influences.push_back(by_inset.dot(gradient));
+    }
+    return influences;
+  }
+
+  // A sample with something in front of it can have an influence that is none of the others'.
+  static double VarianceOfSum(const std::vector<double>& influences) {
+    constexpr double kSigmas = 4.0;
+    if (influences.empty()) return 0.0;
+    std::vector<double> sizes = influences;
+    for (double& size : sizes) size = std::abs(size);
+    const double limit = kSigmas * kMadToSigma * Median(sizes);
+    double sum = 0.0;
+    for (const double size : sizes) sum += std::min(size, limit) * std::min(size, limit);
+    const double num = static_cast<double>(influences.size());
+    return sum * num / std::max(1.0, num - kCount);
+  }
+
   // Without derivatives if `moved` is null.
   Equations SumUp(const State& state, const std::vector<State>* moved) const {
     Equations equations;

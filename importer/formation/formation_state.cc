@@ -102,12 +102,19 @@ FormationState WithOutlineCorners(double weight, const FormationState& state, in
   return FittedWith(formation, state.parameters, state, num_threads);
 }
 
+bool AreAlike(const FittedSample& one, const FittedSample& other) {
+  constexpr double kMaxShiftPx = 0.25;
+  return !one.residuals.empty() && !other.residuals.empty() &&
+         MaxCornerShift(CornersOf(one.minimum.parameters), CornersOf(other.minimum.parameters)) <=
+             kMaxShiftPx;
+}
+
 double MeanInset(const FormationState& one, const FormationState& other) {
   double sum = 0.0;
   int count = 0;
   for (std::size_t i = 0; i < one.samples.size(); ++i) {
     const FittedSample &a = one.samples[i], &b = other.samples[i];
-    if (a.residuals.empty() || b.residuals.empty()) continue;
+    if (!AreAlike(a, b)) continue;
     sum += 0.5 * (QuadMeanSide(CornersOf(b.minimum.parameters)) -
                   QuadMeanSide(CornersOf(a.minimum.parameters)));
     ++count;

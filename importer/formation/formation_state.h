@@ -58,8 +58,12 @@ double OutlineCornerWeight(const FormationState& state);
 
 FormationState WithOutlineCorners(double weight, const FormationState& state, int num_threads);
 
+// Whether a sample has been fitted in both states, and found about the same corners: a fit can jump
+// to another minimum, whose difference from the first is no derivative.
+bool AreAlike(const FittedSample& one, const FittedSample& other);
+
 // How much farther inside along both sides one state has the corners than another, mean of the
-// samples that both could fit, px. Both must hold the same samples.
+// samples that are alike in both, px. Both must hold the same samples.
 double MeanInset(const FormationState& one, const FormationState& other);
 
 // Drops the samples that another state has not.
