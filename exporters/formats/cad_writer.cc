@@ -1,8 +1,6 @@
 #include "exporters/formats/cad_writer.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <ctime>
 #include <ostream>
 #include <utility>
 #include <vector>
@@ -44,26 +42,13 @@
 
 #include "exporters/formats/cad_library.h"
 #include "importer/base/error.h"
-#include "importer/base/numbers.h"
 #include "importer/geometry/units.h"
+#include "importer/text/output_date.h"
 
 namespace velamap {
 namespace {
 
 constexpr double kToleranceMm = 1e-5;
-
-// The current time, UTC, unless SOURCE_DATE_EPOCH sets another one
-// (https://reproducible-builds.org/specs/source-date-epoch). Throws InputError if that is no time.
-std::tm TimeStamp() {
-  constexpr std::time_t kEndOfYear9999 = 253402300799;
-  std::time_t time = std::time(nullptr);
-  const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-  if (epoch && (!ParseNumber(epoch, &time) || time < 0 || time > kEndOfYear9999)) {
-    throw InputError(fmt::format(
-        "SOURCE_DATE_EPOCH: expected seconds since 1970, found '{}'; correct or unset it", epoch));
-  }
-  return fmt::gmtime(time);
-}
 
 struct Knots {
   std::vector<double> values;
@@ -193,7 +178,7 @@ void TransferExtras(const CadExtras& extras, STEPControl_Writer* writer) {
 void DescribeStep(const std::string& name, const Handle(StepData_StepModel) & model) {
   APIHeaderSection_MakeHeader header(model);
   header.SetName(Text(name));
-  header.SetTimeStamp(Text(fmt::format("{:%Y-%m-%dT%H:%M:%S}", TimeStamp())));
+  header.SetTimeStamp(Text(fmt::format("{:%Y-%m-%dT%H:%M:%S}", OutputDate())));
   header.SetAuthorValue(1, Text(""));
   header.SetOrganizationValue(1, Text(""));
   header.SetOriginatingSystem(Text("velamap"));
@@ -218,7 +203,7 @@ void DescribeIges(const std::string& name, IGESControl_Writer* writer) {
   header.SetInterfaceVersion(Text("velamap"));
   header.SetAuthorName(Text("velamap"));
   header.SetCompanyName(Text(""));
-  const std::string date = fmt::format("{:%Y%m%d.%H%M%S}", TimeStamp());
+  const std::string date = fmt::format("{:%Y%m%d.%H%M%S}", OutputDate());
   header.SetDate(Text(date));
   header.SetLastChangeDate(Text(date));
   writer->Model()->SetGlobalSection(header);

@@ -19,8 +19,8 @@
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"
-#include "tests/exporters/formats/scoped_date.h"
 #include "tests/exporters/golden_file.h"
+#include "tests/support/scoped_date.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

@@ -16,8 +16,8 @@
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/formats/cad_names.h"
 #include "tests/exporters/formats/mesh_area.h"
-#include "tests/exporters/formats/scoped_date.h"
 #include "tests/exporters/sail/example_surface.h"
+#include "tests/support/scoped_date.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

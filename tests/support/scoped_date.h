@@ -1,4 +1,4 @@
-// Sets the date of written CAD files while it exists.
+// Sets the date in written files while it exists.
 
 #pragma once
 

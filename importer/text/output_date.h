@@ -1,0 +1,14 @@
+// The date that files say they were written on.
+
+#pragma once
+
+#include <ctime>
+
+namespace velamap {
+
+// The current time, UTC, unless the environment variable SOURCE_DATE_EPOCH sets another one, in
+// seconds since 1970 (https://reproducible-builds.org/specs/source-date-epoch). Throws InputError
+// if that is no time.
+std::tm OutputDate();
+
+}  // namespace velamap
