@@ -56,12 +56,11 @@ MetricsReport MetricsOf(const ShapeExportReport& report) {
   return metrics;
 }
 
-void WriteShapeFiles(const ShapeExportReport& report, bool ascii_ply, const SailFileOptions& files,
+void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions& options,
                      const fs::path& folder) {
-  const PlyFormat format = ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
+  const PlyFormat format = options.ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
   const std::string frame = FrameText(report.frame);
-  WriteFile(folder / "shape.csv",
-            [&](std::ostream& out) { WriteShapeCsv(report.shape, out, frame); });
+  WriteFile(folder / "shape.csv", [&](std::ostream& out) { WriteShapeCsv(report.shape, out); });
   WriteFile(folder / "shape.ply", [&](std::ostream& out) {
     WritePointsPly(report.shape, report.metric_model, format, out, frame);
   });
@@ -71,8 +70,14 @@ void WriteShapeFiles(const ShapeExportReport& report, bool ascii_ply, const Sail
   const MetricsReport metrics = MetricsOf(report);
   WriteFile(folder / "metrics.csv", [&](std::ostream& out) { WriteMetricsCsv(metrics, out); });
   WriteFile(folder / "metrics.json", [&](std::ostream& out) { WriteMetricsJson(metrics, out); });
-  WriteSailFiles(report.sail, report.shape, report.frame, files, folder);
-  WriteFreeformFiles(report.freeform, report.frame, files.unit, folder);
+  WriteSailFiles(report.sail, report.shape, report.frame, options.files, folder);
+  WriteFreeformFiles(report.freeform, report.frame, options.files.unit, folder);
+  // The last one, because it lists the others.
+  const DescribedFiles described = DescribeShapeFiles(folder, options.files.unit);
+  WriteFile(folder / "shape.json", [&](std::ostream& out) {
+    WriteShapeJson(report.frame, report.metric_model, report.metrics.num_markers, options.origin,
+                   described, out);
+  });
 }
 
 std::map<int, double> ScalesOf(const ScaleAudit& audit) {
@@ -143,7 +148,7 @@ ShapeExportReport ExportShape(const Model& model, const Layout& layout,
   std::optional<AtomicFolder> shape_folder;
   if (!shape_path.empty()) {
     shape_folder.emplace(shape_path);
-    WriteShapeFiles(report, options.ascii_ply, options.files, shape_folder->TemporaryPath());
+    WriteShapeFiles(report, options, shape_folder->TemporaryPath());
   }
   if (!model_path.empty()) {
     WriteModel(report.metric_model, model_path.string(), ModelFormat::kBinaryAndText,

@@ -14,6 +14,7 @@
 #include "exporters/scale/scale_audit.h"
 #include "exporters/shape/shape_frame.h"
 #include "exporters/shape/shape_metrics.h"
+#include "exporters/shape_json.h"
 #include "importer/layout/frame_choice.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
@@ -29,6 +30,7 @@ struct ShapeExporterOptions {
   ScaleMethod scale_by = ScaleMethod::kAgreeing;  // of a model without uncertainty
   SailOptions sail;
   SailFileOptions files;  // the unit is also that of parts without lines
+  ShapeOrigin origin;     // for shape.json
 };
 
 struct ShapeExportReport {
@@ -48,11 +50,11 @@ struct ShapeExportReport {
   void ThrowSurfaceError() const;
 };
 
-// Writes shape.csv, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv, metrics.json
-// and the files of WriteSailFiles() and WriteFreeformFiles() to shape_output_path, and the metric
-// COLMAP model with true point errors to model_output_path, all in the chosen frame. Each folder is
-// written to a temporary sibling and renamed when complete. An existing folder is replaced if
-// velamap wrote every file in it (importer/base/replacement.h).
+// Writes shape.csv, shape.json, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv,
+// metrics.json and the files of WriteSailFiles() and WriteFreeformFiles() to shape_output_path, and
+// the metric COLMAP model with true point errors to model_output_path, all in the chosen frame.
+// Each folder is written to a temporary sibling and renamed when complete. An existing folder is
+// replaced if velamap wrote every file in it (importer/base/replacement.h).
 //
 // With `uncertainty` (ReadUncertainty of the model's folder) the model is metric already: it is not
 // scaled, all figures get their sigmas, and the folder of the metric model keeps the uncertainty.

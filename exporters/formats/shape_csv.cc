@@ -151,9 +151,8 @@ std::string CompleteCenter(ShapeMarker* marker) {
 
 }  // namespace
 
-void WriteShapeCsv(const MarkerShape& shape, std::ostream& out, const std::string& frame) {
+void WriteShapeCsv(const MarkerShape& shape, std::ostream& out) {
   CsvWriter csv(out);
-  if (!frame.empty()) csv.WriteComment("frame " + frame);
   csv.AddFields(kColumns);
   csv.EndRecord();
   for (const ShapeMarker& marker : shape.markers) {

@@ -83,11 +83,10 @@ void WriteSurfaceFiles(const SailSurface& surface, const CadExtras& extras,
 void WriteSectionFiles(const SectionReport& report, const ShapeFrame& frame, LengthUnit unit,
                        const std::filesystem::path& folder) {
   const std::vector<std::pair<std::string, Writer>> files = {
-      {"sections.csv", [&](std::ostream& out) { WriteSectionsCsv(report, frame, out); }},
+      {"sections.csv", [&](std::ostream& out) { WriteSectionsCsv(report, out); }},
       {"sections.json", [&](std::ostream& out) { WriteSectionsJson(report, frame, out); }},
       {"sections.dxf", [&](std::ostream& out) { WriteSectionsDxf(report, frame, unit, out); }},
-      {"section_profiles.csv",
-       [&](std::ostream& out) { WriteSectionProfilesCsv(report, frame, out); }},
+      {"section_profiles.csv", [&](std::ostream& out) { WriteSectionProfilesCsv(report, out); }},
       {"section_profiles.dxf",
        [&](std::ostream& out) { WriteSectionProfilesDxf(report, frame, unit, out); }},
       {"section_profiles.svg",

@@ -61,11 +61,8 @@ void WriteMissingRecord(const MissingSection& missing, CsvWriter* csv) {
 
 }  // namespace
 
-void WriteSectionsCsv(const SectionReport& report, const ShapeFrame& frame, std::ostream& out) {
+void WriteSectionsCsv(const SectionReport& report, std::ostream& out) {
   CsvWriter csv(out);
-  csv.WriteComment("frame " + FrameText(frame));
-  if (!report.twist_reference.empty()) csv.WriteComment("twist against " + report.twist_reference);
-  for (const std::string& note : report.notes) csv.WriteComment(note);
   for (const char* key : {"part", "section", "height_m", "num_markers"}) csv.AddField(key);
   for (const auto& [key, estimate] : EstimatesOf({})) {
     csv.AddField(key);
@@ -114,10 +111,8 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
   out << root.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
-void WriteSectionProfilesCsv(const SectionReport& report, const ShapeFrame& frame,
-                             std::ostream& out) {
+void WriteSectionProfilesCsv(const SectionReport& report, std::ostream& out) {
   CsvWriter csv(out);
-  csv.WriteComment("frame " + FrameText(frame));
   csv.WriteRecord("part", "section", "marker_id", "x", "y", "z", "chordwise_mm", "depth_mm");
   for (const Section& section : report.sections) {
     const auto write = [&](const std::optional<int>& marker_id, const ProfilePoint& point) {

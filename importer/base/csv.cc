@@ -112,8 +112,6 @@ std::string CsvField(const std::string& text) {
   return field + '"';
 }
 
-void CsvWriter::WriteComment(const std::string& text) { out_ << "# " << SingleLine(text) << '\n'; }
-
 void CsvWriter::Append(std::string_view field) {
   if (num_fields_++ > 0) record_ += ',';
   record_ += field;

@@ -24,7 +24,7 @@ struct CsvRecord {
 std::vector<CsvRecord> ReadCsv(std::istream& in, const std::string& name);
 
 // Replaces control characters by spaces. Names come from the layout or the file system and may hold
-// line breaks, which would end a comment or a header.
+// line breaks, which would end a line of a header or of a table.
 std::string SingleLine(std::string text);
 
 // Returns the text as a field, quoted where necessary.
@@ -38,9 +38,6 @@ std::string CsvField(const std::string& text);
 class CsvWriter {
  public:
   explicit CsvWriter(std::ostream& out) : out_(out) {}
-
-  // Writes a comment: a line that starts with "# ".
-  void WriteComment(const std::string& text);
 
   template <typename... Fields>
   void WriteRecord(const Fields&... fields) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
@@ -43,7 +44,8 @@ std::set<std::string> FilesIn(const fs::path& folder) {
   return names;
 }
 
-// Contents of a folder's files, by name. STEP and IGES have the date, which the tests set.
+// Contents of a folder's files, by name. shape.json, STEP and IGES have the
+// date, which the tests set.
 std::map<std::string, std::string> BytesIn(const fs::path& folder) {
   std::map<std::string, std::string> bytes;
   for (const std::string& name : FilesIn(folder)) bytes[name] = ReadBytes(folder / name);
@@ -171,10 +173,11 @@ TEST(ShapeExporter, FilesHoldWhatTheReportSays) {
     const ShapeExportReport report = ExportShape(model, ExampleLayout(), options);
     const PlyFormat format = ascii ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
     const fs::path shape = dir / "shape";
-    EXPECT_THAT(FilesIn(shape), IsSupersetOf({"shape.csv", "shape.ply", "markers.ply", "scale.csv",
-                                              "metrics.csv", "metrics.json", "surface.step"}));
+    EXPECT_THAT(FilesIn(shape),
+                IsSupersetOf({"shape.csv", "shape.ply", "markers.ply", "scale.csv", "metrics.csv",
+                              "metrics.json", "shape.json", "surface.step"}));
     const std::string frame = FrameText(report.frame);
-    const auto csv = [&](std::ostream& out) { WriteShapeCsv(report.shape, out, frame); };
+    const auto csv = [&](std::ostream& out) { WriteShapeCsv(report.shape, out); };
     const auto scale = [&](std::ostream& out) { WriteScaleCsv(report.scale, out); };
     const auto markers = [&](std::ostream& out) {
       WriteMarkersPly(report.shape, format, out, frame);
@@ -188,6 +191,18 @@ TEST(ShapeExporter, FilesHoldWhatTheReportSays) {
     EXPECT_EQ(ReadBytes(shape / "markers.ply"), Written(markers));
     EXPECT_EQ(ReadBytes(shape / "shape.ply"), Written(points));
   }
+}
+
+TEST(ShapeExporter, ShapeJsonListsAllFilesBesideIt) {
+  const TempDir dir;
+  ShapeExporterOptions options = OptionsIn(dir);
+  options.sail.sections.heights_m = {0.1};
+  ExportShape(ExampleModel(), ExampleLayout(), options);
+  const auto json = nlohmann::json::parse(ReadBytes(dir / "shape" / "shape.json"));
+  std::set<std::string> listed = {".velamap", "shape.json"};
+  for (const auto& [name, content] : json.at("files").items()) listed.insert(name);
+  EXPECT_EQ(listed, FilesIn(dir / "shape"));
+  EXPECT_EQ(json.at("num_markers"), 8);
 }
 
 TEST(ShapeExporter, TheModelIsMetricAndHasTrueErrorsInBothFormats) {

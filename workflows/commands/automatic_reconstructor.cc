@@ -12,6 +12,7 @@
 #include "exporters/report/report_writer.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/files.h"
 #include "importer/camera/calibration_writer.h"
 #include "importer/text/shown_text.h"
 #include "reconstruct/model/model_io.h"
@@ -153,11 +154,22 @@ void LeaveFoldersOut(ReportInput* input) {
   }
 }
 
+// The video, or the folder of photographs without a trailing slash, whose name would be empty.
+std::filesystem::path Source(const Options& options) {
+  return AbsoluteFolder(options.paths.image_path);
+}
+
+ShapeOrigin OriginOf(const Options& options, const AdjustmentResult& adjustment) {
+  const std::filesystem::path source = Source(options);
+  return {kVersion, (options.full_paths ? source : source.filename()).string(),
+          !adjustment.cameras.empty()};
+}
+
 void WriteReportFile(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
                      ReconstructionSummary* summary) {
   const ShapeExportReport& shape = summary->shape;
   ReportInput input = MakeReportInput(shape, options.importer.layout);
-  input.title = std::filesystem::path(options.paths.image_path).filename().string();
+  input.title = Source(options).filename().string();
   input.version = kVersion;
   input.image_path = paths.Images().string();
   input.frame = MakeReportFrame(shape.frame, shape.metric_model);
@@ -214,6 +226,7 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   ShapeExporterOptions exporter = options.exporter;
   exporter.model_output_path = (sparse.TemporaryPath() / "0").string();
   exporter.shape_output_path = paths.Shape().string();
+  exporter.origin = OriginOf(options, summary->adjustment);
   summary->shape =
       ExportShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
   WarnOfMissingSections(summary->shape.sail.sections);

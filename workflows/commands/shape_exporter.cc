@@ -12,6 +12,7 @@
 #include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
+#include "workflows/run/version.h"
 
 namespace velamap {
 namespace {
@@ -60,6 +61,7 @@ void Validate(Options* options) {
   CompleteSailOptions(options->surface, &options->exporter);
   options->exporter.model_output_path = options->paths.output_path;
   options->exporter.shape_output_path = options->paths.shape_path;
+  options->exporter.origin.version = kVersion;
 }
 
 void Print(const ShapeExportReport& report, const Layout& layout, const PathOptions& paths,

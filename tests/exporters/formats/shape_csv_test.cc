@@ -126,6 +126,15 @@ TEST(ShapeCsv, RowsComeInAnyOrderAndCentresMayBeLeftOut) {
   EXPECT_EQ(shape.markers[1].num_frames[0], 4);
 }
 
+// As earlier versions wrote them.
+TEST(ShapeCsv, LinesWithANumberSignMayPrecedeTheHeader) {
+  const MarkerShape shape = RandomShape(7);
+  const std::string text = Write(shape);
+  EXPECT_THAT(text, StartsWith(kHeader));
+  ExpectEqual(Read("# frame lines h1 v1: origin at marker 100, \"z\" up; no hull\n#\n" + text),
+              shape);
+}
+
 TEST(ShapeCsv, ACentreRoundedToMillimetresIsTaken) {
   const MarkerShape shape = Read(std::string(kHeader) +
                                  "1,1,0,0.101,0,,,,1,\n1,2,0.1,0.1,0,,,,1,\n"

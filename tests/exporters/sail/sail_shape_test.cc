@@ -201,8 +201,8 @@ TEST(ShapeExporterFrame, IsNamedInTheFiles) {
   ShapeExporterOptions options;
   options.shape_output_path = dir / "shape";
   ExportShape(ExampleModel(), ExampleLayout(), options);
-  for (const char* file : {"shape.csv", "shape.ply", "markers.ply", "metrics.json", "sections.csv",
-                           "surface.ply", "surface.igs"}) {
+  for (const char* file : {"shape.json", "shape.ply", "markers.ply", "metrics.json",
+                           "sections.json", "surface.ply", "surface.igs"}) {
     EXPECT_NE(ReadBytes(dir / "shape" / file).find("lines h1 h2"), std::string::npos) << file;
   }
 }

@@ -17,6 +17,7 @@ namespace velamap {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 struct Example {
   ShapeFrame frame;
@@ -32,8 +33,15 @@ Example MakeExample() {
   return {frame, ComputeSections(sail.shape, frame, sail.layout, nullptr, {{1.0}})};
 }
 
-template <typename Function>
-std::string Written(const Function& write, const Example& example) {
+using CsvTable = void(const SectionReport&, std::ostream&);
+std::string Written(CsvTable* write, const Example& example) {
+  std::ostringstream out;
+  write(example.report, out);
+  return out.str();
+}
+
+using FrameWriter = void(const SectionReport&, const ShapeFrame&, std::ostream&);
+std::string Written(FrameWriter* write, const Example& example) {
   std::ostringstream out;
   write(example.report, example.frame, out);
   return out.str();
@@ -61,11 +69,10 @@ std::vector<std::map<std::string, std::string>> Rows(const std::string& csv) {
   return rows;
 }
 
-TEST(SectionWriter, CsvHasARowASectionAndNamesTheFrame) {
+TEST(SectionWriter, CsvHasAHeaderAndARowASection) {
   const Example example = MakeExample();
   const std::string csv = Written(WriteSectionsCsv, example);
-  EXPECT_THAT(csv, HasSubstr("# frame lines h1 v1: origin at marker 100"));
-  EXPECT_THAT(csv, HasSubstr("# twist against lowest section\n"));
+  EXPECT_THAT(csv, StartsWith("part,section,height_m,num_markers,chord_m,sigma_chord_m,"));
   const auto rows = Rows(csv);
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows[0].at("section"), "h1");
@@ -84,6 +91,7 @@ TEST(SectionWriter, JsonHasTheSameNumbersAsTheCsv) {
   const auto rows = Rows(Written(WriteSectionsCsv, example));
   const auto json = nlohmann::json::parse(Written(WriteSectionsJson, example));
   EXPECT_EQ(json["frame"]["name"], "lines h1 v1");
+  EXPECT_EQ(json["twist_reference"], "lowest section");
   ASSERT_EQ(json["sections"].size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     for (const char* key : {"chord_m", "camber", "draft_position", "entry_angle_deg",
@@ -97,7 +105,9 @@ TEST(SectionWriter, JsonHasTheSameNumbersAsTheCsv) {
 
 TEST(SectionWriter, ProfilesBeginAtTheLuffAndEndAtTheLeech) {
   const Example example = MakeExample();
-  const auto rows = Rows(Written(WriteSectionProfilesCsv, example));
+  const std::string csv = Written(WriteSectionProfilesCsv, example);
+  EXPECT_THAT(csv, StartsWith("part,section,marker_id,x,y,z,chordwise_mm,depth_mm\n"));
+  const auto rows = Rows(csv);
   ASSERT_EQ(rows.size(), 4 * kNumProfilePoints + 3 * 12u);
   EXPECT_EQ(std::stod(rows[0].at("chordwise_mm")), 0);
   EXPECT_NEAR(std::stod(rows[kNumProfilePoints - 1].at("chordwise_mm")),
@@ -125,9 +135,12 @@ TEST(SectionWriter, NothingToWriteIsStillAFileThatSaysWhy) {
   sail.layout.parts.clear();
   const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
   const Example example{frame, ComputeSections(sail.shape, frame, sail.layout, nullptr)};
-  EXPECT_TRUE(Rows(Written(WriteSectionsCsv, example)).empty());
-  EXPECT_THAT(Written(WriteSectionsCsv, example), HasSubstr("# no sections: the layout has no"));
-  EXPECT_EQ(nlohmann::json::parse(Written(WriteSectionsJson, example))["notes"].size(), 1u);
+  const std::string csv = Written(WriteSectionsCsv, example);
+  EXPECT_THAT(csv, StartsWith("part,section,"));
+  EXPECT_TRUE(Rows(csv).empty());
+  const auto notes = nlohmann::json::parse(Written(WriteSectionsJson, example))["notes"];
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_THAT(notes[0], StartsWith("no sections: the layout has no"));
   EXPECT_THAT(Dxf(example), HasSubstr("EOF\n"));
   EXPECT_THAT(Written(WriteSectionProfilesSvg, example), HasSubstr("no sections: the layout"));
 }

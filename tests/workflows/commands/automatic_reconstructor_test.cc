@@ -66,7 +66,12 @@ TEST_F(AutomaticReconstructorTest, MakesTheWholeWorkspace) {
   EXPECT_THAT(ListFolder(workspace() / "sparse"), ElementsAre("0", "seed"));
   EXPECT_THAT(ListFolder(workspace() / "shape"),
               IsSupersetOf({"markers.ply", "metrics.csv", "metrics.json", "scale.csv", "shape.csv",
-                            "shape.ply"}));
+                            "shape.json", "shape.ply"}));
+  const auto json = nlohmann::json::parse(ReadFileBytes(workspace() / "shape/shape.json"));
+  EXPECT_EQ(json.at("clip"), "images");
+  EXPECT_EQ(json.at("num_markers"), 8);
+  EXPECT_EQ(json.at("cameras").at(0).at("num_images"), 16);
+  EXPECT_EQ(json.at("cameras").at(0).at("found_without_calibration"), false);
   std::vector<std::string> names;
   for (const ModelImage& image : ReadModel((workspace() / "sparse/0").string()).images) {
     names.push_back(image.name);
@@ -140,12 +145,17 @@ TEST_F(AutomaticReconstructorTest, WhatIsSentAroundNamesNoFolderAndRunsNoScript)
         << folder << ": " << without.substr(without.find(folder) - 100, 200);
   }
   EXPECT_THAT(without, HasSubstr("--camera_path camera.yml"));
+  const auto clip = [&] {
+    return nlohmann::json::parse(ReadFileBytes(secret / "workspace/shape/shape.json")).at("clip");
+  };
+  EXPECT_EQ(clip(), images.filename().string());
   EXPECT_EQ(ReadFileBytes(secret / "workspace/report.html").find("<script>alert"),
             std::string::npos);
   std::vector<std::string> asked = arguments;
   asked.insert(asked.end(), {"--full_paths", "1"});
   ASSERT_EQ(RunVelamap(asked).exit_code, 0);
   const std::string with = texts();
+  EXPECT_EQ(clip(), images.string());
   EXPECT_THAT(with, HasSubstr("--camera_path " + (kStylus / "camera.yml").string()));
   EXPECT_THAT(ReadFileBytes(secret / "workspace/report.html"),
               HasSubstr((kStylus / "camera.yml").string()));

@@ -1,12 +1,16 @@
 // shape_exporter on a sail: frame, sections and surface.
 
+#include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "exporters/formats/shape_csv.h"
+#include "importer/base/csv.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/true_model.h"
@@ -19,7 +23,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
+using ::testing::MatchesRegex;
 using ::testing::Not;
+using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
 
 // Three lines of six markers of 100 mm.
@@ -87,6 +93,46 @@ TEST_F(ShapeExporterCommandTest, WritesSectionsAndSurfaceInTheFrameOfTheLines) {
   EXPECT_LT(FindWholeMarker(shape, luff)->x_in_shape_m[0]->norm(), 1e-9);
 }
 
+// Every program reads a header and as many fields in each row; the frame is in shape.json.
+TEST_F(ShapeExporterCommandTest, TablesAreTidy) {
+  const std::vector<MarkerLine>& lines = sail_.layout.parts.front().horizontal;
+  std::string layout =
+      "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  \"#1\":\n"
+      "    horizontal:\n";
+  for (int i = 0; i < 2; ++i) {
+    layout += fmt::format("      - {{name: {}, markers: [{}]}}\n", lines[i].name,
+                          fmt::join(lines[i].marker_ids, ", "));
+  }
+  layout += fmt::format("  hull: {{markers: [{}]}}\n", fmt::join(lines[2].marker_ids, ", "));
+  WriteTextFile(dir_ / "layout.yml", layout);
+  const ProgramRun run = Export({"--Section.heights", "0.1,50"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::vector<std::string> tables;
+  for (const std::string& name : ListFolder(path("shape"))) {
+    if (std::filesystem::path(name).extension() != ".csv") continue;
+    tables.push_back(name);
+    const std::string text = ReadFileBytes(path("shape/" + name));
+    EXPECT_THAT(text.substr(0, text.find('\n')), MatchesRegex("[a-z][a-z_]*(,[a-z0-9_]+)+"))
+        << name;
+    std::istringstream in(text);
+    const std::vector<CsvRecord> records = ReadCsv(in, name);
+    EXPECT_GT(records.size(), 1u) << name;
+    // None is a comment or empty.
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<int>(records.size())) << name;
+    for (const CsvRecord& record : records) {
+      EXPECT_EQ(record.fields.size(), records.front().fields.size()) << name << ':' << record.line;
+    }
+  }
+  EXPECT_THAT(tables, UnorderedElementsAre("freeform_residuals.csv", "metrics.csv", "scale.csv",
+                                           "section_profiles.csv", "sections.csv", "shape.csv",
+                                           "surface_edges.csv", "surface_residuals.csv"));
+  const auto json = nlohmann::json::parse(ReadFileBytes(path("shape/shape.json")));
+  EXPECT_THAT(json.at("frame").at("name"), StartsWith("lines "));
+  EXPECT_TRUE(json.contains("velamap_version"));
+  EXPECT_FALSE(json.contains("clip"));  // the model does not say
+  EXPECT_EQ(json.at("files").size(), ListFolder(path("shape")).size() - 2);  // itself, .velamap
+}
+
 TEST_F(ShapeExporterCommandTest, TheFrameIsTheOneAskedFor) {
   EXPECT_THAT(Export({"--frame", "camera"}).out, HasSubstr("frame: camera\n"));
   const MarkerShape in_camera = ReadShapeCsv(path("shape/shape.csv"));
@@ -145,7 +191,7 @@ TEST_F(ShapeExporterCommandTest, ALayoutWithoutLinesIsSaidOnce) {
   EXPECT_THAT(run.out, Not(HasSubstr("surface")));
   EXPECT_THAT(ListFolder(path("shape")),
               UnorderedElementsAre(".velamap", "shape.csv", "shape.ply", "markers.ply", "scale.csv",
-                                   "metrics.csv", "metrics.json"));
+                                   "metrics.csv", "metrics.json", "shape.json"));
 }
 
 TEST_F(ShapeExporterCommandTest, SurfaceGoesOnToGivenEdges) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "exporters/formats/shape_csv.h"
@@ -86,6 +87,9 @@ TEST_F(UnknownCameraTest, IsFoundAndServesTheNextRun) {
   const fs::path camera_path = dir_.path() / "found" / "camera.yml";
   const Camera camera = ReadCalibration(camera_path.string());
   EXPECT_NEAR(MeanFocalLength(camera) / MeanFocalLength(scene_->camera), 1.0, 0.01);
+  const auto shape =
+      nlohmann::json::parse(ReadFileBytes(dir_.path() / "found" / "shape" / "shape.json"));
+  EXPECT_EQ(shape.at("cameras").at(0).at("found_without_calibration"), true);
   // The database says that its camera is a guess.
   const ColmapDatabase database((dir_.path() / "found" / "database.db").string(),
                                 ColmapDatabase::Mode::kReadOnly);
