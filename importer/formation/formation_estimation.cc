@@ -295,6 +295,18 @@ double InsetSigmaByHalves(const std::vector<FormationSample>& samples, const Sta
   return 0.5 * std::abs(inset_px[0] - inset_px[1]);
 }
 
+// Cameras denoise, sharpen and compress in ways that no parameter describes, and lenses do not blur
+// like a Gaussian. Over 23 clips of another renderer with drawn lenses, tone curves, noise and
+// compression, the insets were wrong by 2.2 % of the blur (RMS).
+double InsetSigmaByModel(const State& state) {
+  constexpr double kOfBlur = 0.02;
+  std::vector<double> blurs_px;
+  for (const FittedSample& sample : state.samples) {
+    blurs_px.push_back(sample.minimum.parameters.segment<2>(PatternParameters::kBlurU).mean());
+  }
+  return kOfBlur * Median(std::move(blurs_px));
+}
+
 }  // namespace
 
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
@@ -330,8 +342,9 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   // the noise explains.
   const double by_scatter_px =
       std::max(problem.InsetSigma(winner), InsetSigmaByHalves(samples, winner, num_threads));
-  estimate.inset_sigma_px =
-      std::hypot(by_scatter_px, 0.5 * MeanInset(by_gray, by_light), balanced.inset_sigma_px);
+  const double by_model_px =
+      std::hypot(0.5 * MeanInset(by_gray, by_light), InsetSigmaByModel(winner));
+  estimate.inset_sigma_px = std::hypot(by_scatter_px, by_model_px, balanced.inset_sigma_px);
   return estimate;
 }
 

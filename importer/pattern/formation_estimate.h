@@ -41,8 +41,9 @@ struct FormationEstimate {
   ImageFormationParameters parameters;
   int num_samples = 0;      // that could be fitted; 0: nothing is known
   double noise_gray = 0.0;  // robust standard deviation of the residuals, grey levels
-  // 1 sigma of the error that the uncertainty of the parameters causes in all corners alike: each
-  // is found so far inside (or outside) of its marker along both sides, px.
+  // 1 sigma of the error that the uncertainty of the parameters, and what no parameter describes,
+  // cause in all corners alike: each is found so far inside (or outside) of its marker along both
+  // sides, px.
   double inset_sigma_px = 0.0;
 };
 
