@@ -9,31 +9,27 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/statistics.h"
-#include "importer/formation/edge_shift.h"
+#include "importer/formation/balanced_edges.h"
 #include "importer/formation/formation_state.h"
 #include "importer/geometry/least_squares.h"
 
 namespace velamap {
 namespace {
 
-constexpr int kCount = kNumFormationParameters, kInkSpread = 4;
+constexpr int kCount = kNumFormationParameters;
 using Vector = FormationVector;
 using State = FormationState;
 
 // Priors and limits: usual cameras. The steps are for derivatives.
 const Vector kMean = (Vector() << std::log(1.6), 0.0, 0.1, 0.0, 0.0).finished();
 const Vector kSigma = (Vector() << 0.6, 0.05, 0.5, 0.3, 0.004).finished();
-const Vector kMin = (Vector() << std::log(0.8), -0.05, -0.3, std::log(0.5), -0.02).finished();
-const Vector kMax = (Vector() << std::log(3.2), 0.13, 2.0, std::log(2.5), 0.02).finished();
+const Vector kMin =
+    (Vector() << std::log(0.8), -0.05, -0.3, std::log(0.5), -kMaxInkSpread).finished();
+const Vector kMax = (Vector() << std::log(3.2), 0.13, 2.0, std::log(2.5), kMaxInkSpread).finished();
 const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004).finished();
 
 // 1 sigma of the width of a quiet zone about the mean of all, cells, while that is being found.
 constexpr double kQuietZoneSigma = 0.25;
-
-State MovedTo(const Vector& parameters, const State& state, int num_threads) {
-  return FittedWith(With(parameters, state.formation->parameters()), parameters, state,
-                    num_threads);
-}
 
 const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
   if (!state.moved) {
@@ -231,70 +227,6 @@ State Minimize(const std::vector<FormationSample>& samples, bool is_inverted, bo
   return state;
 }
 
-// A state whose ink spreads so far that inner edges lie where the model has them, and how well the
-// inset of the corners is known by that.
-struct Balanced {
-  State state;
-  double inset_sigma_px = 0.0;
-};
-
-// The best fit of all pixels may leave inner edges of both polarities beside their places where no
-// description of the camera fits the shape of its edges. The spread of ink then follows their
-// places, as far as the scatter of the samples does not explain the shift.
-Balanced WithBalancedEdges(const State& state, int num_threads) {
-  constexpr int kIterations = 3;
-  Balanced balanced{state, 0.0};
-  EdgeShift edges;
-  for (int i = 0; i < kIterations; ++i) {
-    edges = InnerEdgeShift(balanced.state);
-    Vector parameters = balanced.state.parameters;
-    parameters[kInkSpread] =
-        std::clamp(parameters[kInkSpread] + edges.mean_sides, kMin[kInkSpread], kMax[kInkSpread]);
-    balanced.state = MovedTo(parameters, balanced.state, num_threads);
-  }
-  const double change = balanced.state.parameters[kInkSpread] - state.parameters[kInkSpread];
-  const double inset_px = MeanInset(state, balanced.state);
-  if (std::abs(change) < 1e-7) return {state, 0.0};
-  // James and Stein's estimate, positive part: what noise explains is not corrected.
-  const double share = std::max(0.0, 1 - edges.sigma_sides * edges.sigma_sides / (change * change));
-  Vector parameters = state.parameters;
-  parameters[kInkSpread] += share * change;
-  spdlog::debug(
-      "inner edges: ink spread {:+.3f} -> {:+.3f} +- {:.3f} % of the side, corners {:.3f} px "
-      "outwards; half difference of the directions {:.3f} %",
-      100 * state.parameters[kInkSpread], 100 * balanced.state.parameters[kInkSpread],
-      100 * edges.sigma_sides, inset_px, 100 * edges.half_difference_sides);
-  const double unexplained =
-      std::sqrt(std::max(0.0, edges.half_difference_sides * edges.half_difference_sides -
-                                  edges.sigma_sides * edges.sigma_sides));
-  const double inset_by_spread_px = inset_px / change;
-  return {MovedTo(parameters, state, num_threads),
-          std::abs(inset_by_spread_px) * std::hypot(share * edges.sigma_sides, unexplained)};
-}
-
-// Half the difference between the insets by two estimates, each from half of the samples and with
-// starts of its own. It tells what the scatter about one minimum does not: another minimum that
-// explains the samples about as well.
-double InsetSigmaByHalves(const std::vector<FormationSample>& samples, const State& best,
-                          int num_threads) {
-  constexpr std::size_t kMinSamples = 8;  // a half
-  std::vector<FormationSample> halves[2];
-  std::size_t count = 0;
-  for (const std::size_t i : best.sample_idxs) halves[count++ % 2].push_back(samples[i]);
-  if (halves[1].size() < kMinSamples) return 0.0;
-  const ImageFormationParameters& formation = best.formation->parameters();
-  double inset_px[2] = {0.0, 0.0};
-  for (int i = 0; i < 2; ++i) {
-    const State half =
-        Minimize(halves[i], formation.is_inverted, formation.sharpens_light, num_threads);
-    if (half.samples.empty()) return 0.0;
-    inset_px[i] = MeanInset(best, MovedTo(half.parameters, best, num_threads));
-  }
-  spdlog::debug("insets by halves of the samples: {:+.4f} and {:+.4f} px", inset_px[0],
-                inset_px[1]);
-  return 0.5 * std::abs(inset_px[0] - inset_px[1]);
-}
-
 // Cameras denoise, sharpen and compress in ways that no parameter describes, and lenses do not blur
 // like a Gaussian. Over 23 clips of another renderer with drawn lenses, tone curves, noise and
 // compression, the insets were wrong by 2.2 % of the blur (RMS).
@@ -330,7 +262,7 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   spdlog::debug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
                 cost_by_light);
   const State& winner = light_wins ? by_light : by_gray;
-  const Balanced balanced = WithBalancedEdges(winner, num_threads);
+  const BalancedEdges balanced = WithBalancedEdges(winner, num_threads);
   const State& best = balanced.state;
   FormationEstimate estimate;
   estimate.parameters = best.formation->parameters();
@@ -340,11 +272,10 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   estimate.noise_gray = NoiseOf(best);
   // No camera is exactly as either of the two descriptions says, and they may differ by more than
   // the noise explains.
-  const double by_scatter_px =
-      std::max(problem.InsetSigma(winner), InsetSigmaByHalves(samples, winner, num_threads));
   const double by_model_px =
       std::hypot(0.5 * MeanInset(by_gray, by_light), InsetSigmaByModel(winner));
-  estimate.inset_sigma_px = std::hypot(by_scatter_px, by_model_px, balanced.inset_sigma_px);
+  estimate.inset_sigma_px =
+      std::hypot(problem.InsetSigma(winner), by_model_px, balanced.inset_sigma_px);
   return estimate;
 }
 

@@ -67,6 +67,12 @@ FormationState FittedWith(const ImageFormationParameters& formation,
   return moved;
 }
 
+FormationState MovedTo(const FormationVector& parameters, const FormationState& state,
+                       int num_threads) {
+  return FittedWith(With(parameters, state.formation->parameters()), parameters, state,
+                    num_threads);
+}
+
 std::vector<double> QuietZones(const FormationState& state) {
   std::vector<double> widths;
   for (const FittedSample& sample : state.samples) {

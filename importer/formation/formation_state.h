@@ -14,6 +14,8 @@
 namespace velamap {
 
 constexpr int kNumFormationParameters = 5;  // log gamma, S, sharpening, log radius, ink spread
+constexpr int kInkSpread = 4;
+constexpr double kMaxInkSpread = 0.02;  // sides, either way
 using FormationVector = Eigen::Matrix<double, kNumFormationParameters, 1>;
 
 // `formation` with the parameters of the vector.
@@ -40,6 +42,10 @@ FormationState FitSamples(const std::vector<FormationSample>& samples, const For
 FormationState FittedWith(const ImageFormationParameters& formation,
                           const FormationVector& parameters, const FormationState& state,
                           int num_threads);
+
+// The same samples fitted with other parameters of the vector.
+FormationState MovedTo(const FormationVector& parameters, const FormationState& state,
+                       int num_threads);
 
 // Widths of the quiet zones of all samples, cells.
 std::vector<double> QuietZones(const FormationState& state);
