@@ -129,7 +129,8 @@ class VideoFile : public FrameSource {
         break;
       }
       num_read_ = read->number + 1;
-      if (!options_.Selects(read->number) || known_names_.count(NameOfVideoFrame(read->number)) > 0) {
+      if (!options_.Selects(read->number) ||
+          known_names_.count(NameOfVideoFrame(read->number)) > 0) {
         continue;
       }
       Frame frame;
