@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <set>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -32,13 +34,13 @@ bool IsOurDatabase(const fs::path& path) {
 
 // The name of an entry that shows that the folder is not a workspace; "" if there is none.
 std::string ForeignEntry(const WorkspacePaths& paths, const std::string& image_path) {
-  if (Exists(paths.Log()) || IsOurDatabase(paths.Database())) return "";
-  for (const fs::path& entry : FolderEntries(paths.root)) {
-    if (entry.filename() != kLockName && !IsInside(image_path, entry)) {
-      return entry.filename().string();
-    }
-  }
-  return "";
+  const std::vector<fs::path> entries = FolderEntries(paths.root);
+  const auto foreign = std::find_if(entries.begin(), entries.end(), [&](const fs::path& entry) {
+    return entry.filename() != kLockName && !IsInside(image_path, entry);
+  });
+  // Asked last: another run may just be making the workspace, and the log is its first file.
+  if (foreign == entries.end() || Exists(paths.Log()) || IsOurDatabase(paths.Database())) return "";
+  return foreign->filename().string();
 }
 
 void CheckExisting(const WorkspacePaths& paths, const std::string& image_path) {
