@@ -12,6 +12,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -62,8 +63,8 @@ bool ShareBlocks(const fs::path& from, const fs::path& to) {
 }
 
 // No folder of a user is called so.
-constexpr char kScratchName[] = ".velamap_scratch_XXXXXX";
-constexpr char kScratchPrefix[] = ".velamap_scratch_";
+constexpr std::string_view kScratchName = ".velamap_scratch_XXXXXX";
+constexpr std::string_view kScratchPrefix = kScratchName.substr(0, kScratchName.find("XXXXXX"));
 constexpr char kScratchLock[] = "lock";
 
 // Removes a folder for temporary files of a run that was killed: nobody holds its lock. The lock is
@@ -83,8 +84,7 @@ void RemoveAbandoned(const fs::path& parent) {
   std::error_code error;
   for (fs::directory_iterator it(parent, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    const bool is_ours =
-        name.size() == sizeof(kScratchName) - 1 && name.rfind(kScratchPrefix, 0) == 0;
+    const bool is_ours = name.size() == kScratchName.size() && name.rfind(kScratchPrefix, 0) == 0;
     if (is_ours) RemoveIfAbandoned(it->path());
   }
 }

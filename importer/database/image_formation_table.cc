@@ -4,9 +4,7 @@
 #include <SQLiteCpp/VariadicBind.h>
 #include <fmt/format.h>
 
-#include "importer/base/csv.h"
-#include "importer/base/error.h"
-#include "importer/base/option.h"
+#include "importer/database/checked_number.h"
 
 namespace velamap {
 namespace {
@@ -63,15 +61,8 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   SQLite::Statement query(*database, fmt::format("SELECT *{} FROM image_formation",
                                                  is_earlier ? ", 1 AS outline_corner_weight" : ""));
   if (!query.executeStep()) return std::nullopt;
-  const auto number = [&](const char* name, const OptionRange& range) {
-    const SQLite::Column column = query.getColumn(name);
-    const bool is_number = column.isFloat() || column.isInteger();
-    const double value = column.getDouble();
-    if (is_number && value >= range.min && value <= range.max) return value;
-    throw InputError(
-        fmt::format("{}: table image_formation: {} is '{}', not a number from {} to {}; delete the "
-                    "database and import again",
-                    path, name, SingleLine(column.getString()), range.min, range.max));
+  const auto number = [&](const char* column, const OptionRange& range) {
+    return CheckedNumber({path, "image_formation"}, column, range, &query);
   };
   const OptionRange is_true = FromTo(0, 1);
   FormationEstimate estimate;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
+#include "importer/database/checked_number.h"
 #include "importer/database/sqlite_blob.h"
 
 namespace velamap {
@@ -62,73 +63,64 @@ void InsertTrack(const MarkerTrack& track, SQLite::Statement* insert) {
   insert->exec();
 }
 
-// Reads the columns of a row, and notes whether they are what a tracking gives.
+// Reads the columns of a row; throws InputError for values that no tracking gives.
 class RowReader {
  public:
-  explicit RowReader(SQLite::Statement* row) : row_(row) {}
+  RowReader(const TablePlace& place, SQLite::Statement* row) : place_(place), row_(row) {}
 
-  int Int(int column, int min) {
-    const std::int64_t value = row_->getColumn(column).getInt64();
-    Require(value >= min && value <= kMaxInt);
-    return static_cast<int>(value);
+  double Double(const char* column, double min, double max) const {
+    return CheckedNumber(place_, column, FromTo(min, max), row_);
   }
 
-  double Double(int column, double min, double max) {
-    const double value = row_->getColumn(column).getDouble();
-    Require(value >= min && value <= max);
-    return value;
+  int Int(const char* column, int min) const {
+    constexpr int kMax = 1 << 30;
+    return static_cast<int>(Double(column, min, kMax));
   }
 
-  std::vector<double> Pixels(int column) {
+  // An array of `count` places or lengths; it may be empty if `is_optional`.
+  std::vector<double> Pixels(const char* column, std::size_t count, bool is_optional) const {
+    constexpr double kMaxPx = 1e6;
     std::vector<double> values = ReadBlob<double>(row_->getColumn(column));
-    Require(std::all_of(values.begin(), values.end(),
-                        [](double value) { return std::abs(value) <= kMaxPx; }));
-    return values;
+    const bool are_possible = std::all_of(values.begin(), values.end(),
+                                          [&](double value) { return std::abs(value) <= kMaxPx; });
+    if (are_possible && (values.size() == count || (is_optional && values.empty()))) return values;
+    throw InputError(
+        fmt::format("{}: table {}: {} is not an array of {} pixels up to {:g}; delete the database "
+                    "and import again",
+                    place_.path, place_.table, column, count, kMaxPx));
   }
-
-  void Require(bool condition) { is_valid_ = is_valid_ && condition; }
-  bool IsValid() const { return is_valid_; }
 
  private:
-  static constexpr std::int64_t kMaxInt = 1 << 30;
-  static constexpr double kMaxPx = 1e6;
-
+  TablePlace place_;
   SQLite::Statement* row_;
-  bool is_valid_ = true;
 };
 
-// Nothing for a row that no tracking gives.
-std::optional<MarkerTrack> TrackOf(SQLite::Statement* row) {
-  RowReader reader(row);
+MarkerTrack TrackOf(const RowReader& row) {
   MarkerTrack track;
-  track.marker_id = reader.Int(0, 0);
-  const std::vector<double> corners = reader.Pixels(1), velocity = reader.Pixels(2);
-  track.num_lost = reader.Int(3, 0);
-  track.num_found = reader.Int(4, 0);
-  track.hit_rate = reader.Double(5, 0, 1);
-  if (corners.size() != 2 * kNumCorners || (velocity.size() != 2 && !velocity.empty()) ||
-      !reader.IsValid()) {
-    return std::nullopt;
-  }
+  track.marker_id = row.Int("marker_id", 0);
+  const std::vector<double> corners = row.Pixels("corners_px", 2 * kNumCorners, false);
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     track.corners_px[i] = {corners[2 * i], corners[2 * i + 1]};
   }
+  const std::vector<double> velocity = row.Pixels("velocity_px", 2, true);
   if (!velocity.empty()) track.velocity_px = Eigen::Vector2d(velocity[0], velocity[1]);
+  track.num_lost = row.Int("num_lost", 0);
+  track.num_found = row.Int("num_found", 0);
+  track.hit_rate = row.Double("hit_rate", 0, 1);
   return track;
 }
 
-std::optional<TrackingState> StateOf(SQLite::Statement* row) {
-  RowReader reader(row);
+TrackingState StateOf(const RowReader& row) {
   TrackingState state;
-  state.first_frame = reader.Int(0, 0);
-  state.frame_step = reader.Int(1, 1);
-  state.last_frame = reader.Int(2, 0);
-  state.num_frames = reader.Int(3, 0);
-  state.tracks.frame_number = reader.Int(4, 0);
-  state.tracks.has_new = reader.Int(5, 0) != 0;
-  const std::vector<double> inflow = reader.Pixels(6);
-  if (inflow.size() != state.tracks.inflow_px.size() || !reader.IsValid()) return std::nullopt;
-  std::copy(inflow.begin(), inflow.end(), state.tracks.inflow_px.begin());
+  state.first_frame = row.Int("first_frame", 0);
+  state.frame_step = row.Int("frame_step", 1);
+  state.last_frame = row.Int("last_frame", 0);
+  state.num_frames = row.Int("num_frames", 0);
+  state.tracks.frame_number = row.Int("tracked_frame", 0);
+  state.tracks.has_new = row.Int("has_new", 0) != 0;
+  BorderInflow& inflow_px = state.tracks.inflow_px;
+  const std::vector<double> values = row.Pixels("inflow_px", inflow_px.size(), false);
+  std::copy(values.begin(), values.end(), inflow_px.begin());
   return state;
 }
 
@@ -155,22 +147,12 @@ std::optional<TrackingState> ReadTracking(const std::string& path, SQLite::Datab
   if (!database->tableExists("marker_tracking") || !database->tableExists("marker_tracks")) {
     return std::nullopt;
   }
-  const auto fail = [&](const char* table) {
-    throw InputError(
-        fmt::format("{}: table {} holds values that no tracking of markers gives; delete the "
-                    "database and import again",
-                    path, table));
-  };
   SQLite::Statement states(*database, kReadState);
   if (!states.executeStep()) return std::nullopt;
-  std::optional<TrackingState> state = StateOf(&states);
-  if (!state) fail("marker_tracking");
+  TrackingState state = StateOf({{path, "marker_tracking"}, &states});
   SQLite::Statement tracks(*database, kReadTracks);
-  while (tracks.executeStep()) {
-    const std::optional<MarkerTrack> track = TrackOf(&tracks);
-    if (!track) fail("marker_tracks");
-    state->tracks.tracks.push_back(*track);
-  }
+  const RowReader track({path, "marker_tracks"}, &tracks);
+  while (tracks.executeStep()) state.tracks.tracks.push_back(TrackOf(track));
   return state;
 }
 

@@ -7,6 +7,7 @@
 #include "importer/base/error.h"
 #include "importer/pattern/clipped_pixels.h"
 #include "importer/pattern/foreign_pixels.h"
+#include "importer/pattern/pattern_picture.h"
 #include "importer/pattern/pattern_problem.h"
 
 namespace velamap {
@@ -17,15 +18,8 @@ using P = PatternParameters;
 // `inverse` of the Hessian.
 VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const PatternEquations& equations,
                                              const P::Matrix& inverse) {
-  return equations.Noise(inverse, [](const PatternEquations::Jacobian& jacobian) {
-    // The sum over all corners is the slope of the grey levels.
-    Floats slope_x{}, slope_y{};
-    for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
-      slope_x += jacobian[i];
-      slope_y += jacobian[i + 1];
-    }
-    return slope_x * slope_x + slope_y * slope_y;
-  });
+  return equations.Noise(
+      inverse, [](const PatternEquations::Jacobian& jacobian) { return SquaredSlope(jacobian); });
 }
 
 // The priors stabilize weak parameters but are not observations, so that their error does not

@@ -22,6 +22,16 @@ struct PatternPixels {
   FloatsArray<PatternParameters::kCount> jacobian;  // by the parameters
 };
 
+// Squared slope of the grey levels, (grey levels / px)^2: the derivatives by all corners together.
+inline Floats SquaredSlope(const FloatsArray<PatternParameters::kCount>& jacobian) {
+  Floats slope_x{}, slope_y{};
+  for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
+    slope_x += jacobian[i];
+    slope_y += jacobian[i + 1];
+  }
+  return slope_x * slope_x + slope_y * slope_y;
+}
+
 // The model with given parameters, prepared for many pixels. Places are in OpenCV's pixel frame,
 // relative to `center_px` of the model.
 class PatternPicture {

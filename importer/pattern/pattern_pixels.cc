@@ -111,13 +111,7 @@ VELAMAP_CLONE_FOR_AVX2 std::vector<PixelResidual> Residuals(const PatternProblem
   PatternPixels modelled;
   for (const ChosenPixels::Group& group : pixels.groups) {
     picture.At(group.x, group.y, &modelled);
-    // The sum over all corners is the slope of the grey levels.
-    Floats slope_x{}, slope_y{};
-    for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
-      slope_x += modelled.jacobian[i];
-      slope_y += modelled.jacobian[i + 1];
-    }
-    const Floats squared_slope = slope_x * slope_x + slope_y * slope_y;
+    const Floats squared_slope = SquaredSlope(modelled.jacobian);
     for (int lane = 0; lane < kLanes && static_cast<int>(residuals.size()) < pixels.count; ++lane) {
       residuals.push_back({cv::Point(static_cast<int>(std::lround(origin.x() + group.x[lane])),
                                      static_cast<int>(std::lround(origin.y() + group.y[lane]))),

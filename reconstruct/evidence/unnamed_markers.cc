@@ -39,6 +39,14 @@ std::vector<Eigen::Vector2d> MarkersInImage(const Model& model, const ModelImage
   return middles;
 }
 
+std::vector<const MarkerDetection*> NotInLayout(const FrameDetections& detections) {
+  std::vector<const MarkerDetection*> markers;
+  for (const RejectedDetection& rejected : detections.rejected) {
+    if (rejected.reason == kNotInLayout) markers.push_back(&rejected.detection);
+  }
+  return markers;
+}
+
 bool StandsWhereAnotherDoes(const MarkerDetection& marker,
                             const std::vector<Eigen::Vector2d>& middles_px) {
   const Eigen::Vector2d middle_px = CornerMean(marker);
@@ -55,13 +63,13 @@ std::vector<int> FindUnnamedMarkers(const std::vector<DatabaseImage>& images, co
   constexpr std::size_t kLeastImages = 2;
   std::map<int, std::set<ImageId>> seen_in;
   for (const DatabaseImage& image : images) {
-    const ModelImage* in_model = model.FindImage(image.image_id);
+    const std::vector<const MarkerDetection*> markers = NotInLayout(image.detections);
+    const ModelImage* in_model = markers.empty() ? nullptr : model.FindImage(image.image_id);
     if (in_model == nullptr) continue;
     const std::vector<Eigen::Vector2d> middles_px = MarkersInImage(model, *in_model);
-    for (const RejectedDetection& rejected : image.detections.rejected) {
-      if (rejected.reason != kNotInLayout) continue;
-      if (StandsWhereAnotherDoes(rejected.detection, middles_px)) continue;
-      seen_in[rejected.detection.marker_id].insert(image.image_id);
+    for (const MarkerDetection* marker : markers) {
+      if (StandsWhereAnotherDoes(*marker, middles_px)) continue;
+      seen_in[marker->marker_id].insert(image.image_id);
     }
   }
   const double usual = UsualNumImages(model);

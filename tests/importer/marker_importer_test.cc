@@ -213,7 +213,6 @@ TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingWithAMap) {
 }
 
 TEST_F(MarkerImporterTest, NumberOfThreadsChangesNothingInATrackedVideo) {
-  options_.detection.estimate_formation = false;
   WriteVideo(40);
   const auto run = [&](int num_threads, SearchMode search) {
     fs::remove(options_.database_path);

@@ -97,7 +97,9 @@ TEST(TemporaryFolder, OfAKilledRunIsRemovedByTheNext) {
   setenv("TMPDIR", dir.path().c_str(), 1);
   const fs::path killed = dir / ".velamap_scratch_killed", empty = dir / ".velamap_scratch_empty0";
   const fs::path theirs = dir / "velamap_theirs";
-  for (const fs::path& folder : {killed, empty, theirs}) fs::create_directory(folder);
+  const fs::path workspace = dir / "velamap_result";  // of a run that was killed, too
+  for (const fs::path& folder : {killed, empty, theirs, workspace}) fs::create_directory(folder);
+  Touch(workspace / ".velamap.lock");
   Touch(killed / "lock");
   Touch(killed / "file");
   fs::create_symlink(theirs, dir / ".velamap_scratch_linked");
@@ -106,7 +108,8 @@ TEST(TemporaryFolder, OfAKilledRunIsRemovedByTheNext) {
     const TemporaryFolder other;
     EXPECT_TRUE(fs::exists(one.path()));
   }
-  EXPECT_THAT(FolderEntries(dir.path()), ElementsAre(dir / ".velamap_scratch_linked", theirs));
+  EXPECT_THAT(FolderEntries(dir.path()),
+              ElementsAre(dir / ".velamap_scratch_linked", workspace, theirs));
   restored.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", restored.c_str(), 1);
 }
 

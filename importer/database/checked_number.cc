@@ -1,0 +1,22 @@
+#include "importer/database/checked_number.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include "importer/base/csv.h"
+#include "importer/base/error.h"
+
+namespace velamap {
+
+double CheckedNumber(const TablePlace& place, const char* column, const OptionRange& range,
+                     SQLite::Statement* row) {
+  const SQLite::Column found = row->getColumn(column);
+  const bool is_number = found.isFloat() || found.isInteger();
+  const double value = found.getDouble();
+  if (is_number && value >= range.min && value <= range.max) return value;
+  throw InputError(fmt::format(
+      "{}: table {}: {} is '{}', not a number from {} to {}; delete the database and import again",
+      place.path, place.table, column, SingleLine(found.getString()), range.min, range.max));
+}
+
+}  // namespace velamap

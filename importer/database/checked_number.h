@@ -1,0 +1,25 @@
+// Numbers from the tables of velamap, which anybody may have changed.
+
+#pragma once
+
+#include <string>
+
+#include "importer/base/option.h"
+
+namespace SQLite {
+class Statement;
+}
+
+namespace velamap {
+
+// Where a value stands, for messages.
+struct TablePlace {
+  const std::string& path;  // of the database
+  const char* table;
+};
+
+// Throws InputError for a value that is not a number within the range.
+double CheckedNumber(const TablePlace& place, const char* column, const OptionRange& range,
+                     SQLite::Statement* row);
+
+}  // namespace velamap
