@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -42,6 +43,16 @@ void MoveToFirstCamera(Model* model) {
   const Rigid3 first_from_world = model->images.front().cam_from_world;
   TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
   model->images.front().cam_from_world = Rigid3{};  // exactly, without rounding
+}
+
+// 1 sigma of the size of each marker, as a fraction, by the inset of its corners, which shortens a
+// side by two insets.
+std::map<int, double> InsetSigmas(const MarkerSolution& solution) {
+  std::map<int, double> sigmas;
+  for (const auto& [marker_id, side_px] : MeanSidesPx(solution.model)) {
+    sigmas[marker_id] = 2.0 * solution.options.inset_sigma_px / side_px;
+  }
+  return sigmas;
 }
 
 }  // namespace
@@ -100,8 +111,8 @@ void MarkerAdjuster::AdjustLoosely() {
 void MarkerAdjuster::RejectContradictingSizes() {
   const auto linearization = Linearize(solution_);
   const MarkerSizeVerdict verdict = JudgeMarkerSizes(
-      linearization->state, linearization->covariance, solution_.options.print_tolerance,
-      PrintScaleSigma(solution_.options, solution_.weights));
+      linearization->state, linearization->covariance, InsetSigmas(solution_),
+      solution_.options.print_tolerance, PrintScaleSigma(solution_.options, solution_.weights));
   solution_.weights.print_tolerance = verdict.print_tolerance;
   solution_.weights.markers_without_size = verdict.contradicting;
   solution_.weights.part_scale_sigma = verdict.part_scale_sigma;
@@ -220,6 +231,8 @@ void MarkerAdjuster::Finish() {
   uncertainty.calibration =
       TestCalibration(solution_.model, linearization->state, linearization->problem,
                       linearization->jacobian, linearization->covariance);
+  uncertainty.calibration.max_systematic_px =
+      std::hypot(kLensResidue_px, std::sqrt(2.0) * solution_.options.inset_sigma_px);
   uncertainty.calibration.shape_change_in_sigmas =
       uncertainty.calibration.shape_change_m /
       std::sqrt(Trace(uncertainty.points) /

@@ -26,11 +26,14 @@ struct MarkerSize {
   int num_sides = 0;
   double ratio = 0.0;
   double block_variance = 0.0;  // part of the ratio's variance that other markers do not share
-  Eigen::VectorXd by_factor;    // shared part: factor of the covariance times the ratio's gradient
+  // Shared part: the factor of the covariance times the ratio's gradient, and the inset last.
+  Eigen::VectorXd by_factor;
 };
 
-std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
-                                       const MarkerCovariance& covariance) {
+// The inset of a marker differs from that of the others by about as much as theirs from the truth:
+// what is behind its margin, or its blur, is its own.
+std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCovariance& covariance,
+                                       const std::map<int, double>& inset_sigmas) {
   std::vector<MarkerSize> sizes;
   for (std::size_t i = 0; i < state.markers.size(); ++i) {
     const MarkerBlock& marker = state.markers[i];
@@ -48,8 +51,12 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state,
       gradient.segment<3>(3 * a) -= weight * side.normalized();
       gradient.segment<3>(3 * b) += weight * side.normalized();
     }
-    size.block_variance = gradient.dot(covariance.marker_blocks[i] * gradient);
-    size.by_factor = covariance.FactorOf(i).transpose() * gradient;
+    const auto found = inset_sigmas.find(marker.marker_id);
+    const double inset_sigma = found == inset_sigmas.end() ? 0.0 : found->second;
+    size.block_variance =
+        gradient.dot(covariance.marker_blocks[i] * gradient) + inset_sigma * inset_sigma;
+    size.by_factor.resize(covariance.factor.cols() + 1);
+    size.by_factor << covariance.FactorOf(i).transpose() * gradient, inset_sigma;
     sizes.push_back(std::move(size));
   }
   return sizes;
@@ -258,8 +265,9 @@ double MedianScale(const MarkerState& state) {
 }
 
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
+                                   const std::map<int, double>& inset_sigmas,
                                    double print_tolerance, double print_scale_sigma) {
-  const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance);
+  const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance, inset_sigmas);
   MarkerSizeVerdict verdict;
   verdict.print_tolerance = print_tolerance;
   if (sizes.size() < 3) return verdict;  // with two markers, either may be the wrong one

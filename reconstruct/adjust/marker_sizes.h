@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,8 +28,10 @@ struct MarkerSizeVerdict {
 };
 
 // Compares the mean side of each marker with the median of all markers. `covariance` belongs to a
-// solution in which the sizes had hardly any weight. A marker contradicts the others if it deviates
-// by more than four sigmas of image noise and print tolerance together. If ten or more markers
+// solution in which the sizes had hardly any weight. `inset_sigmas` has 1 sigma of a marker's size
+// by the inset of its corners, as a fraction, which is the same in all images; markers that it does
+// not name have none. A marker contradicts the others if it deviates by more than four sigmas of
+// image noise, inset and print tolerance together. If ten or more markers
 // scatter 1.3 times as far as these sigmas explain, the print tolerance is raised.
 //
 // Where the mean of a part (of three markers or more) differs from that of the other parts by more
@@ -36,6 +39,7 @@ struct MarkerSizeVerdict {
 // print), the parts disagree: the markers are not bad prints, and each is compared with its own
 // part. Smaller differences would change the scale's sigma by less than an eighth.
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
+                                   const std::map<int, double>& inset_sigmas,
                                    double print_tolerance, double print_scale_sigma);
 
 }  // namespace velamap

@@ -22,6 +22,26 @@ double ReprojectionErrorPx(const Model& model, Point3DId point3D_id, const Track
   return (*projection - image.points2D.at(element.point2D_idx).x_in_image_px).norm();
 }
 
+// Lengths of the markers' sides in all images, px, by marker id.
+std::map<int, std::vector<double>> SidesPx(const Model& model) {
+  std::map<int, std::vector<double>> sides_px;
+  for (const ModelImage& image : model.images) {
+    std::map<Point3DId, Eigen::Vector2d> corners_px;
+    for (const Point2D& point : image.points2D) {
+      if (point.point3D_id != kInvalidPoint3DId) corners_px[point.point3D_id] = point.x_in_image_px;
+    }
+    for (const auto& [point3D_id, corner_px] : corners_px) {
+      const CornerId id = CornerFromPoint3DId(point3D_id);
+      const auto next =
+          corners_px.find(Point3DIdFromCorner({id.marker_id, id.corner % kNumCorners + 1}));
+      if (next != corners_px.end()) {
+        sides_px[id.marker_id].push_back((next->second - corner_px).norm());
+      }
+    }
+  }
+  return sides_px;
+}
+
 }  // namespace
 
 std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem) {
@@ -68,21 +88,20 @@ void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigma
   }
 }
 
-double MedianSidePx(const Model& model) {
-  std::vector<double> sides_px;
-  for (const ModelImage& image : model.images) {
-    std::map<Point3DId, Eigen::Vector2d> corners_px;
-    for (const Point2D& point : image.points2D) {
-      if (point.point3D_id != kInvalidPoint3DId) corners_px[point.point3D_id] = point.x_in_image_px;
-    }
-    for (const auto& [point3D_id, corner_px] : corners_px) {
-      const CornerId id = CornerFromPoint3DId(point3D_id);
-      const auto next =
-          corners_px.find(Point3DIdFromCorner({id.marker_id, id.corner % kNumCorners + 1}));
-      if (next != corners_px.end()) sides_px.push_back((next->second - corner_px).norm());
-    }
+std::map<int, double> MeanSidesPx(const Model& model) {
+  std::map<int, double> means_px;
+  for (const auto& [marker_id, sides_px] : SidesPx(model)) {
+    means_px[marker_id] = ComputeStatistics(sides_px).mean;
   }
-  return sides_px.empty() ? kInfinity : Median(std::move(sides_px));
+  return means_px;
+}
+
+double MedianSidePx(const Model& model) {
+  std::vector<double> all_px;
+  for (const auto& [marker_id, sides_px] : SidesPx(model)) {
+    all_px.insert(all_px.end(), sides_px.begin(), sides_px.end());
+  }
+  return all_px.empty() ? kInfinity : Median(std::move(all_px));
 }
 
 }  // namespace velamap

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "reconstruct/colmap/bundle_adjustment.h"
@@ -30,8 +31,12 @@ bool RestoreObservation(const RemovedObservation& observation, Model* model);
 void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,
                     std::vector<RemovedObservation>* removed);
 
-// Median length of the markers' sides in the images, px. Infinite where no image sees two
-// neighbouring corners.
+// Mean length of a marker's sides in the images, px, by marker id. Markers of which no image sees
+// two neighbouring corners are left out.
+std::map<int, double> MeanSidesPx(const Model& model);
+
+// Median length of all sides in the images, px. Infinite where no image sees two neighbouring
+// corners.
 double MedianSidePx(const Model& model);
 
 }  // namespace velamap

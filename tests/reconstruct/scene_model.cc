@@ -76,6 +76,21 @@ void ResizeMarker(int marker_id, double factor, SyntheticScene* scene) {
   ProjectAnew(scene);
 }
 
+void AddInset(const std::function<double(const MarkerDetection&)>& inset_px,
+              SyntheticScene* scene) {
+  for (FrameDetections& frame : scene->frames) {
+    for (MarkerDetection& marker : frame.markers) {
+      const double distance_px = inset_px(marker);
+      const auto corners = marker.corners_in_image_px;
+      for (int c = 0; c < kNumCorners; ++c) {
+        marker.corners_in_image_px[c] +=
+            distance_px * ((corners[(c + 1) % 4] - corners[c]).normalized() +
+                           (corners[(c + 3) % 4] - corners[c]).normalized());
+      }
+    }
+  }
+}
+
 void ProjectAnew(SyntheticScene* scene) {
   for (std::size_t i = 0; i < scene->frames.size(); ++i) {
     for (MarkerDetection& marker : scene->frames[i].markers) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "reconstruct/model/model.h"
 #include "tests/support/synthetic_scene.h"
@@ -22,6 +23,9 @@ SyntheticScene WithPrintErrors(const SyntheticScene& scene, double tolerance, do
 
 // Scales the world of one marker about its centre; detections are projected anew.
 void ResizeMarker(int marker_id, double factor, SyntheticScene* scene);
+
+// Moves the corners of each detection inwards, by `inset_px` of it from both sides.
+void AddInset(const std::function<double(const MarkerDetection&)>& inset_px, SyntheticScene* scene);
 
 // Projects all markers of all detections anew.
 void ProjectAnew(SyntheticScene* scene);

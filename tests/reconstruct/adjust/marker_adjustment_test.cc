@@ -176,16 +176,7 @@ TEST_F(MarkerAdjustment, InsetIsEstimatedWhereDistancesDiffer) {
   }
   ProjectAnew(&scene_);
   constexpr double kInsetPx = 0.05;
-  for (FrameDetections& frame : scene_.frames) {
-    for (MarkerDetection& marker : frame.markers) {
-      const auto corners = marker.corners_in_image_px;
-      for (int c = 0; c < kNumCorners; ++c) {
-        marker.corners_in_image_px[c] +=
-            kInsetPx * ((corners[(c + 1) % 4] - corners[c]).normalized() +
-                        (corners[(c + 3) % 4] - corners[c]).normalized());
-      }
-    }
-  }
+  AddInset([](const MarkerDetection&) { return kInsetPx; }, &scene_);
   Model model = MakeSceneModel(scene_), without = model;
   MarkerAdjustmentOptions adjustment;
   adjustment.inset_sigma_px = 0.1;

@@ -1,6 +1,10 @@
 #include "reconstruct/adjust/marker_sizes.h"
 
 #include <cmath>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -13,6 +17,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -130,6 +135,54 @@ TEST_F(PartSizes, OfThreeThatDisagreeTheOddOneIsNamed) {
   ASSERT_THAT(summary.warnings, SizeIs(1));
   EXPECT_THAT(summary.warnings[0], HasSubstr("boom and the other parts disagree by 1."));
   EXPECT_GT(summary.uncertainty.relative_scale_sigma, 0.003);
+}
+
+// What lies behind a margin, and how blurred a marker is, differ from marker to marker.
+class OwnInsets : public PartSizes {
+ protected:
+  static constexpr double kSigmaPx = 0.03;
+
+  OwnInsets() {
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal(0.0, kSigmaPx);
+    for (const auto& [marker_id, points] : scene_.x_in_world)
+      insets_px_[marker_id] = normal(random);
+  }
+
+  std::vector<std::string> Warnings(double inset_sigma_px) {
+    SyntheticScene noisy = scene_;
+    AddInset([&](const MarkerDetection& marker) { return insets_px_.at(marker.marker_id); },
+             &noisy);
+    AddNoise({0.02, 0, 0, 200, 1}, &noisy);
+    model_ = MakeSceneModel(noisy);
+    MarkerAdjustmentOptions options;
+    options.inset_sigma_px = inset_sigma_px;
+    options.print_tolerance = 1e-4;
+    return AdjustWithMarkers(options, noisy.layout, {}, &model_).warnings;
+  }
+
+  std::map<int, double> insets_px_;
+};
+
+TEST_F(OwnInsets, AreNoMisprints) {
+  EXPECT_THAT(Warnings(0), Not(IsEmpty()));
+  EXPECT_THAT(Warnings(kSigmaPx), IsEmpty());
+}
+
+TEST_F(OwnInsets, HideNoMisprint) {
+  ResizeMarker(8, 1.04, &scene_);
+  EXPECT_THAT(Warnings(kSigmaPx), ElementsAre(HasSubstr("marker 8 is")));
+}
+
+// Small markers are too small by the inset of all, large ones less so.
+TEST_F(OwnInsets, OfAllMarkersAreNoDisagreementOfParts) {
+  for (auto& [marker_id, inset_px] : insets_px_) inset_px = 2 * kSigmaPx;
+  for (const int id : scene_.layout.parts[1].marker_ids) {
+    scene_.layout.marker_lengths_m[id] = 0.03;
+    ResizeMarker(id, 0.3, &scene_);
+  }
+  EXPECT_THAT(Warnings(0), Contains(HasSubstr("disagree")));
+  EXPECT_THAT(Warnings(kSigmaPx), IsEmpty());
 }
 
 }  // namespace

@@ -198,19 +198,6 @@ class Repetitions : public testing::Test {
  protected:
   static constexpr int kNumRepetitions = 150;
   static constexpr double kCornerSigma = 0.15;
-
-  static void AddInset(double inset_px, SyntheticScene* scene) {
-    for (FrameDetections& frame : scene->frames) {
-      for (MarkerDetection& marker : frame.markers) {
-        const auto corners = marker.corners_in_image_px;
-        for (int c = 0; c < kNumCorners; ++c) {
-          marker.corners_in_image_px[c] +=
-              inset_px * ((corners[(c + 1) % 4] - corners[c]).normalized() +
-                          (corners[(c + 3) % 4] - corners[c]).normalized());
-        }
-      }
-    }
-  }
 };
 
 struct Coverage {
@@ -309,7 +296,8 @@ TEST_F(Repetitions, ErrorsAreWithinTheirSigmasAsOftenAsTheyShould) {
     SyntheticScene printed =
         WithPrintErrors(scene, options.print_tolerance, options.cloth_flatness, 1000 + seed);
     const Model truth = MakeSceneModel(printed);
-    AddInset(options.inset_sigma_px * normal(random), &printed);
+    const double inset_px = options.inset_sigma_px * normal(random);
+    AddInset([&](const MarkerDetection&) { return inset_px; }, &printed);
     AddNoise({kCornerSigma, 0, 0, 200, seed}, &printed);
     Model model = MakeSceneModel(printed);
     const auto summary = AdjustWithMarkers(options, scene.layout, {}, &model);
