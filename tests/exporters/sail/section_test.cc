@@ -35,6 +35,8 @@ std::vector<double> Numbers(const Section& section) {
           section.entry_angle_deg.value,
           section.exit_angle_deg.value,
           section.twist_deg.value,
+          section.leech_twist_deg.value,
+          section.girth_m.value,
           section.height_m};
 }
 
@@ -66,6 +68,10 @@ TEST(Section, CircularArcsGiveTheirCamberAnglesAndTwist) {
     EXPECT_NEAR(section.entry_angle_deg.value, angle_deg, 0.03);
     EXPECT_NEAR(section.exit_angle_deg.value, angle_deg, 0.03);
     EXPECT_NEAR(section.twist_deg.value, twists_deg[i], 1e-5);
+    const double radius_m = chords_m[i] / (2 * std::sin(angle_deg * kRadPerDeg));
+    EXPECT_NEAR(section.girth_m.value, 2 * radius_m * angle_deg * kRadPerDeg, 1e-5);
+    const double lowest_angle_deg = 2 * std::atan(2 * cambers[0]) * kDegPerRad;
+    EXPECT_NEAR(section.leech_twist_deg.value, twists_deg[i] - angle_deg + lowest_angle_deg, 0.05);
     EXPECT_NEAR(section.height_m, 2.0 * i, 1e-9);
     EXPECT_EQ(section.markers.size(), 12u);
     EXPECT_FALSE(section.camber.sigma);
