@@ -154,7 +154,7 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
   }
   const std::set<double> heights_m(options.heights_m.begin(), options.heights_m.end());
   for (const double height_m : heights_m) {
-    const std::string name = fmt::format("z={:.6g}", height_m);
+    const std::string name = fmt::format("z={}", height_m);
     const HeightCut cut = CutAtHeight(SampleLines(lines), context.axes.up, height_m);
     if (!cut.curve) {
       report->missing.push_back({context.part.name, name, cut.reason});

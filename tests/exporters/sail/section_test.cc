@@ -255,6 +255,13 @@ TEST(Section, HeightsBetweenLinesOfOneShapeGiveThatShape) {
   EXPECT_THAT(report.missing[0].reason, HasSubstr("from 0.000 to 3.000 m"));
 }
 
+TEST(Section, NeighbouringHeightsHaveNamesOfTheirOwn) {
+  const SectionReport report = Sections(ExampleSail(), {{1.0, 1.0000001}});
+  ASSERT_EQ(report.sections.size(), 5u);
+  EXPECT_EQ(report.sections[1].name, "z=1");
+  EXPECT_EQ(report.sections[2].name, "z=1.0000001");
+}
+
 TEST(Section, HeightOnASlopingSailIsLevel) {
   // The cut through lines that rise towards the leech is horizontal.
   Sail sail = ExampleSail();
