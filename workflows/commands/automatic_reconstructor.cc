@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -14,6 +15,7 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/camera/calibration_writer.h"
+#include "importer/text/output_date.h"
 #include "importer/text/shown_text.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
@@ -173,10 +175,13 @@ ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, con
   ReportInput input = MakeReportInput(shape, options.importer.layout);
   input.title = Source(options).filename().string();
   input.version = kVersion;
+  input.created = fmt::format("{:%Y-%m-%d %H:%M} UTC", OutputDate());
   input.image_path = paths.Images().string();
   input.frame = MakeReportFrame(shape.frame, shape.metric_model);
   input.sections = MakeReportSections(shape.sail.sections);
-  input.surface = MakeReportSurface(shape.sail);
+  input.rigs = MakeReportRigs(shape.sail.sections);
+  input.surfaces = MakeReportSurfaces(shape.sail, shape.freeform);
+  input.clip = seed.clip;
   for (const LeftOutImage& image : summary.left_out) {
     input.images_left_out.push_back({image.image_name, image.reason});
   }
