@@ -29,11 +29,18 @@ fs::path OutputFolder(const std::string& path) {
   return path.empty() ? fs::path() : AbsoluteFolder(path);
 }
 
-void CheckOutputFolders(const fs::path& model_path, const fs::path& shape_path) {
+struct OutputFolders {
+  fs::path model, shape;  // empty for none
+};
+
+OutputFolders CheckedFolders(const ShapeExporterOptions& options) {
+  OutputFolders folders{OutputFolder(options.model_output_path),
+                        OutputFolder(options.shape_output_path)};
   std::vector<UsedPath> outputs;
-  if (!model_path.empty()) outputs.push_back({"folder of the model", model_path, true});
-  if (!shape_path.empty()) outputs.push_back({"folder of the shape", shape_path, true});
+  if (!folders.model.empty()) outputs.push_back({"folder of the model", folders.model, true});
+  if (!folders.shape.empty()) outputs.push_back({"folder of the shape", folders.shape, true});
   CheckOutputs({}, outputs);
+  return folders;
 }
 
 const PointCovariance* CovarianceOf(const ShapeExportReport& report) {
@@ -57,7 +64,7 @@ MetricsReport MetricsOf(const ShapeExportReport& report) {
 }
 
 void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions& options,
-                     const fs::path& folder) {
+                     const Verdict* verdict, const fs::path& folder) {
   const PlyFormat format = options.ascii_ply ? PlyFormat::kAscii : PlyFormat::kBinaryLittleEndian;
   const std::string frame = FrameText(report.frame);
   WriteFile(folder / "shape.csv", [&](std::ostream& out) { WriteShapeCsv(report.shape, out); });
@@ -76,7 +83,7 @@ void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions
   const DescribedFiles described = DescribeShapeFiles(folder, options.files.unit);
   WriteFile(folder / "shape.json", [&](std::ostream& out) {
     WriteShapeJson(report.frame, report.metric_model, report.metrics.num_markers, options.origin,
-                   described, out);
+                   verdict, described, out);
   });
 }
 
@@ -103,31 +110,6 @@ void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choic
   }
 }
 
-ShapeExportReport ComputeReport(const Model& model, const Layout& layout,
-                                const ShapeExporterOptions& options,
-                                const AdjustmentUncertainty* uncertainty) {
-  ShapeExportReport report;
-  report.metric_model = model;
-  if (uncertainty != nullptr) {
-    report.uncertainty = *uncertainty;
-  } else {
-    report.scale = EstimateScale(model, layout, options.scale_by);
-    ScaleModel(report.scale, &report.metric_model);
-  }
-  UpdatePointErrors(&report.metric_model);
-  MoveIntoFrame(layout, options.frame, &report);
-  const AdjustmentUncertainty* in_frame = report.uncertainty ? &*report.uncertainty : nullptr;
-  const PointCovariance* covariance = CovarianceOf(report);
-  report.shape = ShapeFromModel(report.metric_model, layout, covariance);
-  report.audit = AuditScale(report.shape, layout, &report.metric_model, in_frame);
-  if (in_frame != nullptr) report.scale = MetricScale(ScalesOf(report.audit), *in_frame);
-  report.metrics = ComputeShapeMetrics(report.shape, layout, covariance);
-  report.model_metrics = ComputeModelMetrics(report.metric_model, MarkerIds(layout));
-  report.sail = ComputeSail(report.shape, report.frame, layout, covariance, options.sail);
-  report.freeform = ComputeFreeform(report.shape, layout, covariance, options.sail.mesh);
-  return report;
-}
-
 }  // namespace
 
 void ShapeExportReport::ThrowSurfaceError() const {
@@ -135,23 +117,54 @@ void ShapeExportReport::ThrowSurfaceError() const {
   freeform.ThrowSurfaceError();
 }
 
-ShapeExportReport ExportShape(const Model& model, const Layout& layout,
-                              const ShapeExporterOptions& options,
-                              const AdjustmentUncertainty* uncertainty) {
-  const fs::path model_path = OutputFolder(options.model_output_path);
-  const fs::path shape_path = OutputFolder(options.shape_output_path);
-  CheckOutputFolders(model_path, shape_path);
+ShapeExportReport MeasureShape(const Model& model, const Layout& layout,
+                               const std::optional<FrameChoice>& frame, ScaleMethod scale_by,
+                               const AdjustmentUncertainty* uncertainty) {
+  ShapeExportReport report;
+  report.metric_model = model;
+  if (uncertainty != nullptr) {
+    report.uncertainty = *uncertainty;
+  } else {
+    report.scale = EstimateScale(model, layout, scale_by);
+    ScaleModel(report.scale, &report.metric_model);
+  }
+  UpdatePointErrors(&report.metric_model);
+  MoveIntoFrame(layout, frame, &report);
+  const AdjustmentUncertainty* in_frame = report.uncertainty ? &*report.uncertainty : nullptr;
+  const PointCovariance* covariance = CovarianceOf(report);
+  report.shape = ShapeFromModel(report.metric_model, layout, covariance);
+  report.audit = AuditScale(report.shape, layout, &report.metric_model, in_frame);
+  if (in_frame != nullptr) report.scale = MetricScale(ScalesOf(report.audit), *in_frame);
+  report.metrics = ComputeShapeMetrics(report.shape, layout, covariance);
+  report.model_metrics = ComputeModelMetrics(report.metric_model, MarkerIds(layout));
+  return report;
+}
+
+ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
+                               const ShapeExporterOptions& options,
+                               const AdjustmentUncertainty* uncertainty) {
+  CheckedFolders(options);
   options.sail.Check();
   options.files.grid.Check();
   CheckFrameChoice(options.frame, layout);
-  ShapeExportReport report = ComputeReport(model, layout, options, uncertainty);
+  ShapeExportReport report =
+      MeasureShape(model, layout, options.frame, options.scale_by, uncertainty);
+  const PointCovariance* covariance = CovarianceOf(report);
+  report.sail = ComputeSail(report.shape, report.frame, layout, covariance, options.sail);
+  report.freeform = ComputeFreeform(report.shape, layout, covariance, options.sail.mesh);
+  return report;
+}
+
+void WriteShape(const ShapeExportReport& report, const ShapeExporterOptions& options,
+                const Verdict* verdict) {
+  const OutputFolders folders = CheckedFolders(options);
   std::optional<AtomicFolder> shape_folder;
-  if (!shape_path.empty()) {
-    shape_folder.emplace(shape_path);
-    WriteShapeFiles(report, options, shape_folder->TemporaryPath());
+  if (!folders.shape.empty()) {
+    shape_folder.emplace(folders.shape);
+    WriteShapeFiles(report, options, verdict, shape_folder->TemporaryPath());
   }
-  if (!model_path.empty()) {
-    WriteModel(report.metric_model, model_path.string(), ModelFormat::kBinaryAndText,
+  if (!folders.model.empty()) {
+    WriteModel(report.metric_model, folders.model.string(), ModelFormat::kBinaryAndText,
                [&](const std::string& folder) {
                  if (report.uncertainty) WriteUncertainty(*report.uncertainty, folder);
                });
@@ -159,6 +172,13 @@ ShapeExportReport ExportShape(const Model& model, const Layout& layout,
   // Committed last, so that an error while writing the model keeps the old shape beside the old
   // model.
   if (shape_folder) shape_folder->Commit();
+}
+
+ShapeExportReport ExportShape(const Model& model, const Layout& layout,
+                              const ShapeExporterOptions& options,
+                              const AdjustmentUncertainty* uncertainty) {
+  ShapeExportReport report = ComputeShape(model, layout, options, uncertainty);
+  WriteShape(report, options, nullptr);
   return report;
 }
 

@@ -8,6 +8,7 @@
 
 #include "exporters/datum/known_points.h"
 #include "exporters/freeform/freeform_shape.h"
+#include "exporters/report/verdict.h"
 #include "exporters/sail/sail_shape.h"
 #include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
@@ -50,20 +51,37 @@ struct ShapeExportReport {
   void ThrowSurfaceError() const;
 };
 
-// Writes shape.csv, shape.json, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv,
-// metrics.json and the files of WriteSailFiles() and WriteFreeformFiles() to shape_output_path, and
-// the metric COLMAP model with true point errors to model_output_path, all in the chosen frame.
-// Each folder is written to a temporary sibling and renamed when complete. An existing folder is
-// replaced if velamap wrote every file in it (importer/base/replacement.h).
+// The metric shape in its frame with its figures, but without sections and surfaces, which take
+// most of the time.
 //
 // With `uncertainty` (ReadUncertainty of the model's folder) the model is metric already: it is not
-// scaled, all figures get their sigmas, and the folder of the metric model keeps the uncertainty.
-// Without it, the model is scaled by the sides of the markers.
-//
-// Throws DataError without a marker that gives a scale or without an image, and InputError for
-// unwritable output, a folder with other files, one folder inside the other, or bad options. An
-// option of the surface that the size of the part forbids is left to the caller, see
+// scaled, and all figures get their sigmas. Without it, the model is scaled by the sides of the
+// markers. Throws DataError without a marker that gives a scale or without an image, and InputError
+// for a frame that the markers do not allow.
+ShapeExportReport MeasureShape(const Model& model, const Layout& layout,
+                               const std::optional<FrameChoice>& frame, ScaleMethod scale_by,
+                               const AdjustmentUncertainty* uncertainty = nullptr);
+
+// MeasureShape() and, besides, sections and surfaces: all that WriteShape() writes with the same
+// options. Throws InputError also for bad options, among them folders that WriteShape() would
+// refuse. An option of the surface that the size of the part forbids is left to the caller, see
 // ShapeExportReport::ThrowSurfaceError().
+ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
+                               const ShapeExporterOptions& options,
+                               const AdjustmentUncertainty* uncertainty = nullptr);
+
+// Writes shape.csv, shape.json, shape.ply (points), markers.ply (squares), scale.csv, metrics.csv,
+// metrics.json and the files of WriteSailFiles() and WriteFreeformFiles() to shape_output_path, and
+// the metric COLMAP model with true point errors and the uncertainty to model_output_path, all in
+// the chosen frame. Each folder is written to a temporary sibling and renamed when complete. An
+// existing folder is replaced if velamap wrote every file in it (importer/base/replacement.h).
+// `verdict` is for shape.json and may be null: it needs the warnings of the log, which the caller
+// has. Throws InputError for unwritable output, a folder with other files, or one folder inside the
+// other.
+void WriteShape(const ShapeExportReport& report, const ShapeExporterOptions& options,
+                const Verdict* verdict);
+
+// ComputeShape() and WriteShape() without a verdict.
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,
                               const ShapeExporterOptions& options,
                               const AdjustmentUncertainty* uncertainty = nullptr);

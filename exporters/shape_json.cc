@@ -11,6 +11,7 @@
 #include "importer/camera/calibration_writer.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/text/output_date.h"
+#include "importer/text/shown_text.h"
 
 namespace velamap {
 namespace {
@@ -86,6 +87,15 @@ Json CamerasOf(const Model& model, const std::optional<bool>& is_found) {
   return cameras;
 }
 
+// The file is sent around.
+Json JsonOf(const Verdict& verdict) {
+  Json reasons = Json::array();
+  for (const VerdictReason& reason : verdict.reasons) {
+    reasons.push_back({{"level", StatusName(reason.level)}, {"text", WithoutFolders(reason.text)}});
+  }
+  return {{"level", StatusName(verdict.level)}, {"reasons", std::move(reasons)}};
+}
+
 }  // namespace
 
 DescribedFiles DescribeShapeFiles(const std::filesystem::path& folder, LengthUnit unit) {
@@ -101,11 +111,13 @@ DescribedFiles DescribeShapeFiles(const std::filesystem::path& folder, LengthUni
 }
 
 void WriteShapeJson(const ShapeFrame& frame, const Model& model, int num_markers,
-                    const ShapeOrigin& origin, const DescribedFiles& files, std::ostream& out) {
+                    const ShapeOrigin& origin, const Verdict* verdict, const DescribedFiles& files,
+                    std::ostream& out) {
   Json root;
   if (!origin.clip.empty()) root["clip"] = origin.clip;
   root["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", OutputDate());
   if (!origin.version.empty()) root["velamap_version"] = origin.version;
+  if (verdict != nullptr) root["verdict"] = JsonOf(*verdict);
   root["frame"] = {
       {"name", frame.name}, {"description", frame.description}, {"reasons", frame.reasons}};
   root["units"] = {{"length", "m"},

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "exporters/formats/length_unit.h"
+#include "exporters/report/verdict.h"
 #include "exporters/shape/shape_frame.h"
 #include "reconstruct/model/model.h"
 
@@ -30,9 +31,10 @@ using DescribedFiles = std::vector<std::pair<std::string, std::string>>;
 // name none.
 DescribedFiles DescribeShapeFiles(const std::filesystem::path& folder, LengthUnit unit);
 
-// `model` gives the cameras, `num_markers` is the number of whole markers. The date is
-// OutputDate(), whose errors it throws.
+// `model` gives the cameras, `num_markers` is the number of whole markers, `verdict` may be null.
+// Its reasons name files without their folders. The date is OutputDate(), whose errors it throws.
 void WriteShapeJson(const ShapeFrame& frame, const Model& model, int num_markers,
-                    const ShapeOrigin& origin, const DescribedFiles& files, std::ostream& out);
+                    const ShapeOrigin& origin, const Verdict* verdict, const DescribedFiles& files,
+                    std::ostream& out);
 
 }  // namespace velamap

@@ -21,6 +21,25 @@ void Append(const Metrics& metrics, MetricsReport* report) {
 
 MetricTable LongTable(const char* name) { return {name, false, {}}; }
 
+void AddEstimate(const std::string& name, const std::string& unit,
+                 const std::optional<Estimate>& estimate, double factor, Metrics* metrics) {
+  if (!estimate) return;
+  metrics->push_back({name + '_' + unit, factor * estimate->value});
+  if (estimate->sigma) metrics->push_back({name + "_sigma_" + unit, factor * *estimate->sigma});
+}
+
+MetricTable RigTable(const std::vector<RigNumbers>& rigs) {
+  MetricTable table{"rigs", true, {}};
+  for (const RigNumbers& rig : rigs) {
+    Metrics row = {{"part", rig.part}};
+    AddEstimate("luff_bend", "mm", rig.luff_bend_m, kMmPerM, &row);
+    AddEstimate("luff_sag", "mm", rig.luff_sag_m, kMmPerM, &row);
+    AddEstimate("sheeting_angle", "deg", rig.sheeting_angle_deg, 1.0, &row);
+    if (row.size() > 1) table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 void AppendTexts(const char* key, const std::vector<std::string>& texts, MetricsReport* report) {
   if (!texts.empty()) Append({{key, fmt::format("{}", fmt::join(texts, "; "))}}, report);
 }
@@ -34,6 +53,9 @@ void AddMetrics(const ShapeFrame& frame, MetricsReport* report) {
 
 void AddMetrics(const SailShape& sail, MetricsReport* report) {
   AppendTexts("section_notes", sail.sections.notes, report);
+  if (MetricTable rigs = RigTable(sail.sections.rigs); !rigs.rows.empty()) {
+    report->tables.push_back(std::move(rigs));
+  }
   AppendTexts("surface_notes", sail.surface_notes, report);
   if (sail.surfaces.empty()) return;
   MetricTable table{"surfaces", true, {}};

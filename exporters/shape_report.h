@@ -23,7 +23,8 @@ namespace velamap {
 // Adds frame_name, frame_description, frame_reasons.
 void AddMetrics(const ShapeFrame& frame, MetricsReport* report);
 
-// Adds section_notes, surface_notes and table surfaces. The sections have their own files.
+// Adds section_notes, surface_notes and tables rigs and surfaces. The sections have their own
+// files.
 void AddMetrics(const SailShape& sail, MetricsReport* report);
 
 // Adds freeform_notes and table freeform_surfaces.

@@ -1,7 +1,6 @@
 #include "exporters/formats/surface_grid.h"
 
 #include <algorithm>
-#include <array>
 #include <ostream>
 
 #include <fmt/format.h>
@@ -35,19 +34,45 @@ void WriteParameter(const std::string& name, const SurfaceGrid& grid, int axis, 
   out << "</DataArray>\n";
 }
 
+// For each vertex, the first one of its section or its column in the same place: edges that are
+// far shorter than the others are a point, as at the head of a sail that ends in one.
+std::vector<int> SamePlaces(const SurfaceGrid& grid) {
+  constexpr double kSamePlace = 1e-3;  // of the mean length of the edges along sections
+  double mean_m = 0.0;
+  const auto count = static_cast<int>(grid.vertices_m.size());
+  const auto distance = [&grid](int a, int b) {
+    return (grid.vertices_m[static_cast<std::size_t>(a)] -
+            grid.vertices_m[static_cast<std::size_t>(b)])
+        .norm();
+  };
+  for (int k = 1; k < count; ++k) {
+    if (k % grid.num_points != 0) mean_m += distance(k - 1, k) / count;
+  }
+  std::vector<int> places(static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) {
+    int& place = places[static_cast<std::size_t>(k)];
+    place = k;
+    for (const int before : {k % grid.num_points != 0 ? k - 1 : -1, k - grid.num_points}) {
+      if (before >= 0 && distance(before, k) < kSamePlace * mean_m) {
+        place = places[static_cast<std::size_t>(before)];
+        break;
+      }
+    }
+  }
+  return places;
+}
+
 // Corners of the cells counter-clockwise seen from where the normals point, each place once.
 std::vector<std::vector<int>> Cells(const SurfaceGrid& grid) {
-  constexpr double kSamePlace_m = 1e-9;
+  const std::vector<int> places = SamePlaces(grid);
   std::vector<std::vector<int>> cells;
   for (int j = 0; j + 1 < grid.num_sections; ++j) {
     for (int i = 0; i + 1 < grid.num_points; ++i) {
       const int first = j * grid.num_points + i, above = first + grid.num_points;
-      const std::array<int, 4> corners = {first, first + 1, above + 1, above};
       std::vector<int> cell;
-      for (std::size_t k = 0; k < corners.size(); ++k) {
-        const Eigen::Vector3d &x = grid.vertices_m[corners[k]],
-                              &next = grid.vertices_m[corners[(k + 1) % corners.size()]];
-        if ((x - next).norm() > kSamePlace_m) cell.push_back(corners[k]);
+      for (const int corner : {first, first + 1, above + 1, above}) {
+        const int place = places[static_cast<std::size_t>(corner)];
+        if (std::find(cell.begin(), cell.end(), place) == cell.end()) cell.push_back(place);
       }
       if (cell.size() >= 3) cells.push_back(cell);
     }

@@ -160,6 +160,8 @@ Json JsonOf(const ReportSection& section) {
   AddFigure("entry_deg", "entry_sigma_deg", section.entry_deg, &json);
   AddFigure("exit_deg", "exit_sigma_deg", section.exit_deg, &json);
   AddFigure("twist_deg", "twist_sigma_deg", section.twist_deg, &json);
+  AddFigure("leech_twist_deg", "leech_twist_sigma_deg", section.leech_twist_deg, &json);
+  AddFigure("girth_m", "girth_sigma_m", section.girth_m, &json);
   json["profile"] = Json::array();
   for (const Eigen::Vector2d& x : section.profile_m) json["profile"].push_back({x.x(), x.y()});
   if (!section.profile_in_shape_m.empty()) {
@@ -171,16 +173,53 @@ Json JsonOf(const ReportSection& section) {
   return json;
 }
 
-// Flat lists in the format of vertex buffers.
+Json JsonOf(const ReportRig& rig) {
+  Json json = {{"part", rig.part}};
+  AddFigure("luff_bend_m", "luff_bend_sigma_m", rig.luff_bend_m, &json);
+  AddFigure("luff_sag_m", "luff_sag_sigma_m", rig.luff_sag_m, &json);
+  AddFigure("sheeting_angle_deg", "sheeting_angle_sigma_deg", rig.sheeting_angle_deg, &json);
+  return json;
+}
+
+// Flat lists in the format of vertex buffers, to 0.01 mm, which halves the file.
 Json JsonOf(const ReportSurface& surface) {
+  constexpr double kStepsPerM = 1e5;
+  Json json = {{"part", surface.part},
+               {"is_sail", surface.is_sail},
+               {"area_m2", surface.area_m2},
+               {"distance_mm", surface.distance_mm}};
+  if (surface.volume_m3) json["volume_m3"] = *surface.volume_m3;
+  if (surface.sigma_mm) json["sigma_mm"] = *surface.sigma_mm;
   Json vertices = Json::array(), triangles = Json::array();
   for (const Eigen::Vector3d& x : surface.x_in_shape_m) {
-    for (const double value : x) vertices.push_back(value);
+    for (const double value : x) vertices.push_back(std::round(kStepsPerM * value) / kStepsPerM);
   }
   for (const auto& triangle : surface.triangles) {
     for (const int vertex : triangle) triangles.push_back(vertex);
   }
-  return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}};
+  json["vertices"] = std::move(vertices);
+  json["triangles"] = std::move(triangles);
+  return json;
+}
+
+template <typename Items>
+void AddList(const std::string& name, const Items& items, Json* json) {
+  if (items.empty()) return;
+  (*json)[name] = Json::array();
+  for (const auto& item : items) (*json)[name].push_back(JsonOf(item));
+}
+
+// Camera, frame rate and duration in words.
+Json OriginJson(const ReportInput& input) {
+  const Camera& camera = input.metric_model.cameras.at(input.metric_model.images.front().camera_id);
+  Json origin = {fmt::format("camera {} x {} px, {}, focal length {:.0f} px", camera.width_px,
+                             camera.height_px, CameraModelName(camera.model),
+                             MeanFocalLength(camera))};
+  if (input.clip) {
+    origin.push_back(fmt::format("{:.4g} frames/s", input.clip->frames_per_s));
+    origin.push_back(fmt::format("{:.1f} s", input.clip->duration_s));
+  }
+  return origin;
 }
 
 // Escapes `<`, which could end the script element or begin a comment.
@@ -206,6 +245,7 @@ std::string ReportJson(const ReportInput& input) {
   const std::vector<ObservationError> errors = ComputeReprojectionErrors(input.metric_model);
   Json json = {{"title", input.title}, {"version", input.version}};
   if (!input.created.empty()) json["created"] = input.created;
+  json["origin"] = OriginJson(input);
   json["frame"] = JsonOf(input.frame.value_or(FrameOfCentralCamera(input.metric_model)));
   json["verdict"] = JsonOf(MakeVerdict(input));
   json["key_numbers"] = KeyNumbersJson(input);
@@ -222,11 +262,9 @@ std::string ReportJson(const ReportInput& input) {
   json["options"] = PairsJson(input.options);
   json["versions"] = PairsJson(input.versions);
   json["picture"] = PictureJson(input, errors);
-  if (!input.sections.empty()) {
-    json["sections"] = Json::array();
-    for (const ReportSection& section : input.sections) json["sections"].push_back(JsonOf(section));
-  }
-  if (input.surface) json["surface"] = JsonOf(*input.surface);
+  AddList("sections", input.sections, &json);
+  AddList("rigs", input.rigs, &json);
+  AddList("surfaces", input.surfaces, &json);
   // File names need not be UTF-8; invalid bytes are replaced.
   return EscapeForScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

@@ -1,7 +1,7 @@
 // Collects everything that the report shows in one JSON text, from which the page computes only
 // colors and drawings. It is the text of <script id="data"> in report.html. Keys:
 //
-//   title, version, created; options, versions
+//   title, version, created, origin (camera, frame rate, duration); options, versions
 //   frame                    name, up, forward
 //   verdict                  level, reasons (level, text)
 //   key_numbers              name, value, meaning, status
@@ -14,10 +14,14 @@
 //   scale                    m_per_unit, spread_percent, sigma_percent, num_markers; scale_audit
 //   known_points             rows of the table known_points of metrics.json
 //   images_left_out, markers_left_out    name, reason
-//   picture                  name, width_px, height_px, jpeg or problem, points
+//   picture                  name, width_px, height_px, jpeg or problem, points, rejected,
+//                            not_detected
 //   sections                 name, height_m, chord_m, camber_percent, draft_percent, entry_deg,
-//                            exit_deg, twist_deg with their sigmas, profile, profile_in_shape
-//   surface                  vertices, triangles
+//                            exit_deg, twist_deg, leech_twist_deg, girth_m with their sigmas,
+//                            profile, profile_in_shape
+//   rigs                     part, luff_bend_m, luff_sag_m, sheeting_angle_deg with their sigmas
+//   surfaces                 part, is_sail, area_m2, volume_m3, distance_mm, sigma_mm, vertices,
+//                            triangles
 
 #pragma once
 
@@ -64,14 +68,31 @@ struct ReportSection {
   std::string name;
   double height_m = 0.0;
   std::optional<ReportFigure> chord_m, camber_percent, draft_percent, entry_deg, exit_deg,
-      twist_deg;
+      twist_deg, leech_twist_deg, girth_m;
   std::vector<Eigen::Vector2d> profile_m;           // in the section's plane, x along the chord
   std::vector<Eigen::Vector3d> profile_in_shape_m;  // the same curve in 3D; can be empty
 };
 
+struct ReportRig {
+  std::string part;
+  std::optional<ReportFigure> luff_bend_m, luff_sag_m, sheeting_angle_deg;
+};
+
 struct ReportSurface {
+  std::string part;      // empty for all markers
+  bool is_sail = false;  // through lines of markers
+  double area_m2 = 0.0;
+  std::optional<double> volume_m3;  // of a closed one
+  double distance_mm = 0.0;         // of its markers, rms
+  std::optional<double> sigma_mm;   // rms over its area
   std::vector<Eigen::Vector3d> x_in_shape_m;
   std::vector<std::array<int, 3>> triangles;
+};
+
+// When the frames of a video were taken, of those that show markers.
+struct ReportClip {
+  double frames_per_s = 0.0;
+  double duration_s = 0.0;
 };
 
 struct ReportInput {
@@ -100,7 +121,9 @@ struct ReportInput {
   std::vector<std::pair<std::string, std::string>> options = {};
   std::vector<std::pair<std::string, std::string>> versions = {};
   std::vector<ReportSection> sections = {};
-  std::optional<ReportSurface> surface = {};
+  std::vector<ReportRig> rigs = {};
+  std::vector<ReportSurface> surfaces = {};
+  std::optional<ReportClip> clip = {};  // of a video
 };
 
 // Returns a JSON object in UTF-8 without line breaks. `<` is escaped, so that the text can be part

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "exporters/report/report_json.h"
 #include "exporters/report/report_picture.h"
@@ -31,6 +32,43 @@ void AddErrors(const ImageMetrics& metrics, ReportJsonValue* json) {
   (*json)["error_mean_px"] = metrics.error_px.mean;
   (*json)["error_rms_px"] = metrics.error_px.rms;
   (*json)["error_max_px"] = metrics.error_px.max;
+}
+
+// Where the corners of a marker would be seen; nothing if one is outside of the image, or if the
+// marker faces away.
+std::optional<ReportJsonValue> CornersInImage(const ShapeMarker& marker, const ModelImage& image,
+                                              const Camera& camera) {
+  const Eigen::Vector3d center_in_cam = image.cam_from_world * *marker.x_in_shape_m[0];
+  if ((image.cam_from_world.rotation * MarkerNormal(marker)).dot(center_in_cam) >= 0) {
+    return std::nullopt;
+  }
+  ReportJsonValue corners = ReportJsonValue::array();
+  for (int corner = 1; corner <= kNumCorners; ++corner) {
+    const auto x = ImageFromCam(camera, image.cam_from_world * *marker.x_in_shape_m[corner]);
+    if (!x || x->minCoeff() < 0 || x->x() > camera.width_px || x->y() > camera.height_px) {
+      return std::nullopt;
+    }
+    corners.push_back({x->x(), x->y()});
+  }
+  return corners;
+}
+
+// Whole markers that the image should show, and of which it has no corner of the shape.
+ReportJsonValue NotDetectedJson(const MarkerShape& shape, const ModelImage& image,
+                                const Camera& camera) {
+  std::set<int> detected;
+  for (const Point2D& point : image.points2D) {
+    if (!IsCornerPoint3DId(point.point3D_id)) continue;
+    detected.insert(CornerFromPoint3DId(point.point3D_id).marker_id);
+  }
+  ReportJsonValue all = ReportJsonValue::array();
+  for (const ShapeMarker& marker : shape.markers) {
+    if (!marker.IsWhole() || detected.count(marker.marker_id) > 0) continue;
+    if (auto corners = CornersInImage(marker, image, camera)) {
+      all.push_back({{"id", marker.marker_id}, {"corners", std::move(*corners)}});
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -81,6 +119,12 @@ ReportJsonValue PictureJson(const ReportInput& input, const std::vector<Observat
                       error.residual_in_image_px.y()});
   }
   json["points"] = std::move(points);
+  json["rejected"] = ReportJsonValue::array();
+  for (const Point2D& point : image.points2D) {
+    if (point.point3D_id != kInvalidPoint3DId) continue;
+    json["rejected"].push_back({point.x_in_image_px.x(), point.x_in_image_px.y()});
+  }
+  json["not_detected"] = NotDetectedJson(input.shape, image, camera);
   return json;
 }
 

@@ -10,13 +10,19 @@
 namespace velamap {
 namespace {
 
-constexpr double kMaxReportTriangles = 1e4;
-constexpr double kMinHorizontal = 0.1;  // below it, a camera looks straight up or down
+constexpr double kMaxReportTriangles = 1e4;       // of the surface of a sail
+constexpr std::size_t kMaxFreeformDrawn = 20000;  // triangles
+constexpr double kMinHorizontal = 0.1;            // below it, a camera looks straight up or down
 
 ReportFigure Figure(double factor, const Estimate& estimate) {
   ReportFigure figure{factor * estimate.value, std::nullopt};
   if (estimate.sigma) figure.sigma = factor * *estimate.sigma;
   return figure;
+}
+
+std::optional<ReportFigure> Figure(const std::optional<Estimate>& estimate) {
+  if (!estimate) return std::nullopt;
+  return Figure(1.0, *estimate);
 }
 
 ReportSection MakeSection(const Section& section, bool has_parts) {
@@ -30,6 +36,8 @@ ReportSection MakeSection(const Section& section, bool has_parts) {
   result.entry_deg = Figure(1.0, section.entry_angle_deg);
   result.exit_deg = Figure(1.0, section.exit_angle_deg);
   result.twist_deg = Figure(1.0, section.twist_deg);
+  result.leech_twist_deg = Figure(1.0, section.leech_twist_deg);
+  result.girth_m = Figure(1.0, section.girth_m);
   for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) {
     result.profile_m.emplace_back(point.chordwise_m, point.depth_m);
     result.profile_in_shape_m.push_back(point.x_in_frame_m);
@@ -63,19 +71,40 @@ std::vector<ReportSection> MakeReportSections(const SectionReport& sections) {
   return result;
 }
 
-std::optional<ReportSurface> MakeReportSurface(const SailShape& sail) {
-  if (sail.surfaces.empty()) return std::nullopt;
-  ReportSurface result;
+std::vector<ReportRig> MakeReportRigs(const SectionReport& sections) {
+  std::vector<ReportRig> result;
+  for (const RigNumbers& rig : sections.rigs) {
+    if (!rig.luff_bend_m && !rig.sheeting_angle_deg) continue;
+    result.push_back({rig.part, Figure(rig.luff_bend_m), Figure(rig.luff_sag_m),
+                      Figure(rig.sheeting_angle_deg)});
+  }
+  return result;
+}
+
+std::vector<ReportSurface> MakeReportSurfaces(const SailShape& sail,
+                                              const FreeformShape& freeform) {
+  std::vector<ReportSurface> result;
   for (const SailSurface& surface : sail.surfaces) {
     MeshOptions options;
     options.edge_length_mm = kMmPerM * std::sqrt(2 * surface.area_m2 / kMaxReportTriangles);
-    const TriangleMesh mesh = MeshSurface(surface.fit.surface, options);
-    const int first = static_cast<int>(result.x_in_shape_m.size());
-    result.x_in_shape_m.insert(result.x_in_shape_m.end(), mesh.vertices_m.begin(),
-                               mesh.vertices_m.end());
-    for (const auto& [a, b, c] : mesh.triangles) {
-      result.triangles.push_back({first + a, first + b, first + c});
-    }
+    TriangleMesh mesh = MeshSurface(surface.fit.surface, options);
+    result.push_back({surface.part, true, surface.area_m2, std::nullopt,
+                      kMmPerM * surface.fit.distance_m.rms, std::nullopt,
+                      std::move(mesh.vertices_m), std::move(mesh.triangles)});
+  }
+  for (const PartSurface& part : freeform.surfaces) {
+    const FreeformSurface& surface = part.surface;
+    result.push_back({part.part,
+                      false,
+                      surface.area_m2,
+                      surface.volume_m3,
+                      kMmPerM * surface.distance_m.rms,
+                      kMmPerM * surface.rms_sigma_m,
+                      {},
+                      {}});
+    if (surface.mesh.triangles.size() > kMaxFreeformDrawn) continue;
+    result.back().x_in_shape_m = surface.mesh.vertices_m;
+    result.back().triangles = surface.mesh.triangles;
   }
   return result;
 }

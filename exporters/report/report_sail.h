@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "exporters/freeform/freeform_shape.h"
 #include "exporters/report/report_data.h"
 #include "exporters/sail/sail_shape.h"
 #include "exporters/shape/shape_frame.h"
@@ -18,7 +19,11 @@ std::optional<ReportFrame> MakeReportFrame(const ShapeFrame& frame, const Model&
 
 std::vector<ReportSection> MakeReportSections(const SectionReport& sections);
 
-// All surfaces as one mesh, with about 10 000 triangles each; nothing without a surface.
-std::optional<ReportSurface> MakeReportSurface(const SailShape& sail);
+// Those that know something of the rig.
+std::vector<ReportRig> MakeReportRigs(const SectionReport& sections);
+
+// The surfaces of sails, with about 10 000 triangles each, then those of parts without lines. One
+// of too many triangles is listed without them.
+std::vector<ReportSurface> MakeReportSurfaces(const SailShape& sail, const FreeformShape& freeform);
 
 }  // namespace velamap

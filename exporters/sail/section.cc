@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/sail/rig_numbers.h"
 #include "exporters/sail/section_lines.h"
 #include "exporters/sail/section_numbers.h"
 #include "exporters/shape/joint_covariance.h"
@@ -21,16 +22,22 @@ namespace {
 constexpr double kMinCamber = 1e-3;
 constexpr double kMinHint = 0.5;  // cosine of 60 degrees
 constexpr const char* kBoomPart = "boom";
+constexpr const char* kCenterlinePart = "centerline";
 
 CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
                          const PointCovariance* covariance) {
   std::set<int> ids;
   for (const LayoutPart& part : layout.parts) {
-    for (const MarkerLine& line : part.horizontal) {
-      ids.insert(line.marker_ids.begin(), line.marker_ids.end());
+    if (part.horizontal.empty()) continue;
+    for (const auto* lines : {&part.horizontal, &part.vertical}) {
+      for (const MarkerLine& line : *lines) {
+        ids.insert(line.marker_ids.begin(), line.marker_ids.end());
+      }
     }
   }
-  for (const int id : MarkersOfPart(layout, kBoomPart)) ids.insert(id);
+  for (const char* part : {kBoomPart, kCenterlinePart}) {
+    for (const int id : MarkersOfPart(layout, part)) ids.insert(id);
+  }
   CenterSet centers;
   for (const int id : ids) {
     if (FindWholeMarker(shape, id) != nullptr) centers.marker_ids.push_back(id);
@@ -63,24 +70,24 @@ CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
   return centers;
 }
 
-// The two markers of the boom that are farthest apart, starting at the luff.
-std::optional<Boom> FindBoom(const Layout& layout, const CenterSet& centers,
-                             const Eigen::Vector3d& aft) {
+// The two markers of the part that are farthest apart, the forward one first.
+std::optional<MarkerPair> FindPair(const char* part, const Layout& layout, const CenterSet& centers,
+                                   const Eigen::Vector3d& aft) {
   std::vector<int> indices;
-  for (const int id : MarkersOfPart(layout, kBoomPart)) {
+  for (const int id : MarkersOfPart(layout, part)) {
     if (const auto index = centers.IndexOf(id)) indices.push_back(*index);
   }
-  std::optional<Boom> boom;
+  std::optional<MarkerPair> pair;
   double longest = 0.0;
   for (const int a : indices) {
     for (const int b : indices) {
       const Eigen::Vector3d along = centers.x_m.col(b) - centers.x_m.col(a);
       if (along.dot(aft) <= 0 || along.norm() <= longest) continue;
       longest = along.norm();
-      boom = Boom{a, b};
+      pair = MarkerPair{a, b};
     }
   }
-  return boom;
+  return pair;
 }
 
 Section DescribeSection(const PartContext& context, const SpaceCurve& curve,
@@ -102,6 +109,7 @@ Section DescribeSection(const PartContext& context, const SpaceCurve& curve,
     section.draft_position = estimate(kDraftPosition);
   section.entry_angle_deg = estimate(kEntryAngle);
   section.exit_angle_deg = estimate(kExitAngle);
+  section.girth_m = estimate(kGirth);
   return section;
 }
 
@@ -118,15 +126,16 @@ void AddMarkers(const PartContext& context, const LineCurve& line, Section* sect
   }
 }
 
-void SetTwist(const CenterSet& centers, const NumbersWithGradient& own,
-              const NumbersWithGradient& reference, Section* section) {
-  section->twist_deg.value = own.numbers[kAzimuth] - reference.numbers[kAzimuth];
-  section->twist_deg.sigma =
-      SigmaOfGradient(centers, own.gradient.row(kAzimuth) - reference.gradient.row(kAzimuth));
+// A number of a section less that of the reference.
+Estimate Difference(SectionNumber number, const CenterSet& centers, const NumbersWithGradient& own,
+                    const NumbersWithGradient& reference) {
+  return {own.numbers[number] - reference.numbers[number],
+          SigmaOfGradient(centers, own.gradient.row(number) - reference.gradient.row(number))};
 }
 
-void AddPartSections(const PartContext& context, const std::optional<Boom>& boom,
-                     const SectionOptions& options, SectionReport* report) {
+void AddPartSections(const PartContext& context, const std::optional<MarkerPair>& boom,
+                     const std::optional<MarkerPair>& centerline, const SectionOptions& options,
+                     SectionReport* report) {
   const std::vector<LineCurve>& lines = context.curves.lines;
   for (const MissingLine& line : context.curves.missing) {
     report->missing.push_back({context.part.name, line.name, line.reason, line.is_by_layout});
@@ -145,7 +154,7 @@ void AddPartSections(const PartContext& context, const std::optional<Boom>& boom
   }
   const std::set<double> heights_m(options.heights_m.begin(), options.heights_m.end());
   for (const double height_m : heights_m) {
-    const std::string name = fmt::format("z={:.6g}", height_m);
+    const std::string name = fmt::format("z={}", height_m);
     const HeightCut cut = CutAtHeight(SampleLines(lines), context.axes.up, height_m);
     if (!cut.curve) {
       report->missing.push_back({context.part.name, name, cut.reason});
@@ -157,10 +166,13 @@ void AddPartSections(const PartContext& context, const std::optional<Boom>& boom
     sections.back().is_line = false;
   }
   // The first section is the lowest line.
-  const NumbersWithGradient reference = boom ? NumbersOfBoom(context, *boom) : numbers.front();
+  const NumbersWithGradient reference = boom ? NumbersOfPair(context, *boom) : numbers.front();
   for (std::size_t i = 0; i < sections.size(); ++i) {
-    SetTwist(context.centers, numbers[i], reference, &sections[i]);
+    sections[i].twist_deg = Difference(kAzimuth, context.centers, numbers[i], reference);
+    sections[i].leech_twist_deg =
+        Difference(kLeechAzimuth, context.centers, numbers[i], numbers.front());
   }
+  report->rigs.push_back(ComputeRigNumbers(context, centerline, reference));
   std::stable_sort(sections.begin(), sections.end(),
                    [](const Section& a, const Section& b) { return a.height_m < b.height_m; });
   for (Section& section : sections) report->sections.push_back(std::move(section));
@@ -245,13 +257,14 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
     if (part.horizontal.empty()) continue;
     PartContext context{part, centers, {up, {}, 1}, {}};
     context.curves = FitPartLines(part, centers, up, options.min_markers);
-    std::optional<Boom> boom;
+    std::optional<MarkerPair> boom, centerline;
     if (!context.curves.lines.empty()) {
       context.axes = AxesOf(context.curves.lines, up);
-      boom = FindBoom(layout, centers, context.axes.reference);
+      boom = FindPair(kBoomPart, layout, centers, context.axes.reference);
+      centerline = FindPair(kCenterlinePart, layout, centers, context.axes.reference);
     }
     if (boom) report.twist_reference = kBoomPart;
-    AddPartSections(context, boom, options, &report);
+    AddPartSections(context, boom, centerline, options, &report);
   }
   if (wants_boom && report.twist_reference != kBoomPart) {
     report.notes.push_back(

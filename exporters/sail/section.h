@@ -56,6 +56,10 @@ struct Section {
   Estimate entry_angle_deg;  // between chord and curve at the luff, positive to leeward
   Estimate exit_angle_deg;   // the same at the leech, positive if the curve returns from leeward
   Estimate twist_deg;        // of the chord about up, from `twist_reference`; positive to leeward
+  // Of the direction in which the curve ends at the leech, about up, from that of the lowest line;
+  // positive to leeward.
+  Estimate leech_twist_deg;
+  Estimate girth_m;  // length of the curve
   SpaceCurve curve;
   Eigen::Vector3d chord_direction = Eigen::Vector3d::UnitX();  // unit
   Eigen::Vector3d depth_direction = Eigen::Vector3d::UnitY();  // unit, across up, to leeward
@@ -73,10 +77,25 @@ struct MissingSection {
   bool is_by_layout = false;
 };
 
+// What the markers of a part with lines tell of the rig. Unknown where the markers do not allow it.
+struct RigNumbers {
+  std::string part;
+  // Largest distances of the luff from the straight line between its ends, in the plane of that
+  // line and the fore-and-aft direction, and across this plane.
+  std::optional<Estimate> luff_bend_m;  // positive forwards: bend of the mast
+  std::optional<Estimate> luff_sag_m;   // positive to leeward: sag of the forestay
+  std::vector<int> luff_marker_ids;     // from foot to head; empty without bend and sag
+  // About up from the center line to the boom or, without one, the chord of the lowest line;
+  // positive to leeward.
+  std::optional<Estimate> sheeting_angle_deg;
+  std::string aft_reference;  // "centerline" or "lowest section"
+};
+
 // Sections by part in the order of the layout, and from the lowest up within a part.
 struct SectionReport {
   std::vector<Section> sections;
   std::vector<MissingSection> missing;
+  std::vector<RigNumbers> rigs;  // of parts with sections, in the order of the layout
   // Notes on more than one section: why there are none, sections that cross, a missing boom.
   std::vector<std::string> notes;
   std::string twist_reference;  // "boom" or "lowest section"

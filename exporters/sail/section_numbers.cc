@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "exporters/formats/surface_spline.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -14,34 +15,44 @@ namespace {
 
 constexpr int kNumSamples = 32;
 
-// Parameter of the largest unsigned depth: the best of a grid, refined to the zero of the
-// derivative.
-double ParameterOfDepth(const SpaceCurve& curve, const Eigen::Vector3d& depth_direction) {
+constexpr double kStep_m = 1e-5;
+
+// Length of the curve, m.
+double Girth(const SpaceCurve& curve) {
+  double length_m = 0.0;
+  for (const QuadratureNode& node : SpanQuadrature(curve.knots)) {
+    length_m += node.weight * EvaluateCurveJet(curve, node.parameter).x_t.norm();
+  }
+  return length_m;
+}
+
+}  // namespace
+
+// The best of a grid, refined to the zero of the derivative.
+double FarthestParameter(const SpaceCurve& curve, const Eigen::Vector3d& direction) {
   constexpr int kNumBisections = 50;
   const Eigen::Vector3d first = EvaluateCurve(curve, 0.0);
   int best = 0;
-  double best_depth = 0.0;
+  double farthest = 0.0;
   for (int i = 1; i < kNumSamples; ++i) {
     const double t = static_cast<double>(i) / kNumSamples;
-    const double depth = depth_direction.dot(EvaluateCurve(curve, t) - first);
-    if (std::abs(depth) <= std::abs(best_depth)) continue;
+    const double distance = direction.dot(EvaluateCurve(curve, t) - first);
+    if (std::abs(distance) <= std::abs(farthest)) continue;
     best = i;
-    best_depth = depth;
+    farthest = distance;
   }
-  const double sign = best_depth < 0 ? -1.0 : 1.0;
-  const auto slope = [&](double t) {
-    return sign * depth_direction.dot(EvaluateCurveJet(curve, t).x_t);
-  };
+  const double sign = farthest < 0 ? -1.0 : 1.0;
+  const auto slope = [&](double t) { return sign * direction.dot(EvaluateCurveJet(curve, t).x_t); };
   double low = std::max(0.0, (best - 1.0) / kNumSamples);
   double high = std::min(1.0, (best + 1.0) / kNumSamples);
   if (slope(low) <= 0 || slope(high) >= 0) return static_cast<double>(best) / kNumSamples;
   double t = 0.5 * (low + high);
   for (int step = 0; step < kNumBisections; ++step) {
     const CurveJet jet = EvaluateCurveJet(curve, t);
-    const double first_derivative = sign * depth_direction.dot(jet.x_t);
+    const double first_derivative = sign * direction.dot(jet.x_t);
     (first_derivative > 0 ? low : high) = t;
     // A Newton step if it stays between the bounds, otherwise bisection.
-    const double newton = t - first_derivative / (sign * depth_direction.dot(jet.x_tt));
+    const double newton = t - first_derivative / (sign * direction.dot(jet.x_tt));
     const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
     if (std::abs(next - t) < 1e-14) return next;
     t = next;
@@ -49,14 +60,9 @@ double ParameterOfDepth(const SpaceCurve& curve, const Eigen::Vector3d& depth_di
   return t;
 }
 
-constexpr double kStep_m = 1e-5;
-
-// Central differences of function(centers, index) with respect to every coordinate of the listed
-// markers.
-template <typename Function>
 Eigen::MatrixXd Differentiate(const CenterSet& centers, const std::vector<int>& indices,
-                              const Function& function) {
-  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(kNumSectionNumbers, centers.x_m.size());
+                              Eigen::Index num_numbers, const NumbersFunction& function) {
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(num_numbers, centers.x_m.size());
   const auto has_sigma = [&](int index) {
     return centers.has_sigma[static_cast<std::size_t>(index)];
   };
@@ -70,17 +76,15 @@ Eigen::MatrixXd Differentiate(const CenterSet& centers, const std::vector<int>& 
       double& coordinate = moved.x_m(axis, index);
       const double x = coordinate;
       coordinate = x + kStep_m;
-      const SectionNumbers above = function(moved, index);
+      const Eigen::VectorXd above = function(moved, index);
       coordinate = x - kStep_m;
-      const SectionNumbers below = function(moved, index);
+      const Eigen::VectorXd below = function(moved, index);
       coordinate = x;
       gradient.col(3 * index + axis) = (above - below) / (2 * kStep_m);
     }
   }
   return gradient;
 }
-
-}  // namespace
 
 double AngleAboutDeg(const Eigen::Vector3d& up, const Eigen::Vector3d& a,
                      const Eigen::Vector3d& b) {
@@ -98,7 +102,7 @@ SectionNumbers ComputeNumbers(const SpaceCurve& curve, const SectionAxes& axes) 
   const CurveJet first = EvaluateCurveJet(curve, 0.0);
   const CurveJet last = EvaluateCurveJet(curve, 1.0);
   const Eigen::Vector3d deepest =
-      EvaluateCurve(curve, ParameterOfDepth(curve, profile.depth)) - first.x;
+      EvaluateCurve(curve, FarthestParameter(curve, profile.depth)) - first.x;
   const auto slope_deg = [&](const Eigen::Vector3d& tangent) {
     return kDegPerRad * std::atan2(profile.depth.dot(tangent), profile.chord.dot(tangent));
   };
@@ -109,6 +113,8 @@ SectionNumbers ComputeNumbers(const SpaceCurve& curve, const SectionAxes& axes) 
   numbers[kEntryAngle] = slope_deg(first.x_t);
   numbers[kExitAngle] = -slope_deg(last.x_t);
   numbers[kAzimuth] = axes.leeward * AngleAboutDeg(axes.up, axes.reference, profile.chord);
+  numbers[kLeechAzimuth] = axes.leeward * AngleAboutDeg(axes.up, axes.reference, last.x_t);
+  numbers[kGirth] = Girth(curve);
   return numbers;
 }
 
@@ -124,9 +130,10 @@ double MeanDepth(const SpaceCurve& curve, const SectionAxes& axes) {
 
 NumbersWithGradient NumbersOfLine(const PartContext& context, const LineCurve& line) {
   return {ComputeNumbers(line.fit.curve, context.axes),
-          Differentiate(context.centers, line.indices, [&](const CenterSet& moved, int) {
-            return ComputeNumbers(line.Refit(moved), context.axes);
-          })};
+          Differentiate(context.centers, line.indices, kNumSectionNumbers,
+                        [&](const CenterSet& moved, int) {
+                          return ComputeNumbers(line.Refit(moved), context.axes);
+                        })};
 }
 
 std::vector<Eigen::Matrix3Xd> SampleLines(const std::vector<LineCurve>& lines) {
@@ -157,20 +164,22 @@ NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& c
     return ComputeNumbers(*moved_cut.curve, context.axes);
   };
   return {ComputeNumbers(cut, context.axes),
-          Differentiate(context.centers, {indices.begin(), indices.end()}, numbers)};
+          Differentiate(context.centers, {indices.begin(), indices.end()}, kNumSectionNumbers,
+                        numbers)};
 }
 
-NumbersWithGradient NumbersOfBoom(const PartContext& context, const Boom& boom) {
+NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& pair) {
   const auto azimuth = [&](const CenterSet& centers, int) -> SectionNumbers {
     SectionNumbers numbers = SectionNumbers::Zero();
     numbers[kAzimuth] =
         context.axes.leeward *
         AngleAboutDeg(context.axes.up, context.axes.reference,
-                      centers.x_m.col(boom.last_idx) - centers.x_m.col(boom.first_idx));
+                      centers.x_m.col(pair.last_idx) - centers.x_m.col(pair.first_idx));
     return numbers;
   };
-  return {azimuth(context.centers, 0),
-          Differentiate(context.centers, {boom.first_idx, boom.last_idx}, azimuth)};
+  return {
+      azimuth(context.centers, 0),
+      Differentiate(context.centers, {pair.first_idx, pair.last_idx}, kNumSectionNumbers, azimuth)};
 }
 
 std::optional<double> SigmaOfGradient(const CenterSet& centers,

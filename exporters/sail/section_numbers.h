@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -18,9 +19,11 @@ enum SectionNumber {
   kChord,  // m
   kCamber,
   kDraftPosition,
-  kEntryAngle,  // deg
-  kExitAngle,   // deg
-  kAzimuth,     // deg, of the chord about up, from the reference direction
+  kEntryAngle,    // deg
+  kExitAngle,     // deg
+  kAzimuth,       // deg, of the chord about up, from the reference direction
+  kLeechAzimuth,  // deg, the same of the curve's direction at the leech
+  kGirth,         // m
   kNumSectionNumbers
 };
 using SectionNumbers = Eigen::Matrix<double, kNumSectionNumbers, 1>;
@@ -45,6 +48,9 @@ double MeanDepth(const SpaceCurve& curve, const SectionAxes& axes);
 // Angle from a to b about up, -180..180.
 double AngleAboutDeg(const Eigen::Vector3d& up, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
+// Parameter of the point that is farthest from the first one along the direction, on either side.
+double FarthestParameter(const SpaceCurve& curve, const Eigen::Vector3d& direction);
+
 // Common to all sections of one part.
 struct PartContext {
   const LayoutPart& part;
@@ -53,8 +59,8 @@ struct PartContext {
   PartCurves curves;
 };
 
-// Two markers of the boom as indices into the CenterSet, from the mast aft.
-struct Boom {
+// Two markers of the boom or of the center line as indices into the CenterSet, from forward aft.
+struct MarkerPair {
   int first_idx = 0, last_idx = 0;
 };
 
@@ -69,8 +75,15 @@ NumbersWithGradient NumbersOfLine(const PartContext& context, const LineCurve& l
 // `cut` is the section at `height_m`.
 NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& cut,
                                  double height_m);
-// The azimuth of the boom; the other numbers are zero.
-NumbersWithGradient NumbersOfBoom(const PartContext& context, const Boom& boom);
+// The azimuth of the pair; the other numbers are zero.
+NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& pair);
+
+// Numbers as a function of the centers, of which only the one with this index has moved.
+using NumbersFunction = std::function<Eigen::VectorXd(const CenterSet& centers, int index)>;
+
+// Their derivatives, with respect to the listed markers by central differences; zero for others.
+Eigen::MatrixXd Differentiate(const CenterSet& centers, const std::vector<int>& indices,
+                              Eigen::Index num_numbers, const NumbersFunction& function);
 
 // Sigma of a number with this gradient; nothing if it depends on a marker without a sigma.
 std::optional<double> SigmaOfGradient(const CenterSet& centers, const Eigen::RowVectorXd& gradient);

@@ -18,8 +18,10 @@
 namespace velamap {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // Keys of the numbers in CSV and JSON. The key of a sigma starts with sigma_.
-using KeyedEstimates = std::array<std::pair<const char*, std::optional<Estimate>>, 6>;
+using KeyedEstimates = std::array<std::pair<const char*, std::optional<Estimate>>, 8>;
 
 KeyedEstimates EstimatesOf(const Section& section) {
   return {{{"chord_m", section.chord_m},
@@ -27,13 +29,30 @@ KeyedEstimates EstimatesOf(const Section& section) {
            {"draft_position", section.draft_position},
            {"entry_angle_deg", section.entry_angle_deg},
            {"exit_angle_deg", section.exit_angle_deg},
-           {"twist_deg", section.twist_deg}}};
+           {"twist_deg", section.twist_deg},
+           {"leech_twist_deg", section.leech_twist_deg},
+           {"girth_m", section.girth_m}}};
 }
 
 double ResidualRmsMm(const Section& section) {
   std::vector<double> residuals_m;
   for (const SectionMarker& marker : section.markers) residuals_m.push_back(marker.residual_m);
   return kMmPerM * Rms(residuals_m);
+}
+
+void AddEstimate(const std::string& key, const std::optional<Estimate>& estimate, Json* object) {
+  if (!estimate) return;
+  (*object)[key] = estimate->value;
+  if (estimate->sigma) (*object)["sigma_" + key] = *estimate->sigma;
+}
+
+Json JsonOf(const RigNumbers& rig) {
+  Json object = {{"part", rig.part}, {"aft_reference", rig.aft_reference}};
+  AddEstimate("luff_bend_m", rig.luff_bend_m, &object);
+  AddEstimate("luff_sag_m", rig.luff_sag_m, &object);
+  AddEstimate("sheeting_angle_deg", rig.sheeting_angle_deg, &object);
+  object["luff_markers"] = rig.luff_marker_ids;
+  return object;
 }
 
 void WriteSectionRecord(const Section& section, CsvWriter* csv) {
@@ -76,7 +95,6 @@ void WriteSectionsCsv(const SectionReport& report, std::ostream& out) {
 }
 
 void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std::ostream& out) {
-  using Json = nlohmann::ordered_json;
   Json root;
   root["frame"] = {
       {"name", frame.name}, {"description", frame.description}, {"reasons", frame.reasons}};
@@ -87,11 +105,7 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
   for (const Section& section : report.sections) {
     Json object = {
         {"part", section.part}, {"section", section.name}, {"height_m", section.height_m}};
-    for (const auto& [key, estimate] : EstimatesOf(section)) {
-      if (!estimate) continue;
-      object[key] = estimate->value;
-      if (estimate->sigma) object[fmt::format("sigma_{}", key)] = *estimate->sigma;
-    }
+    for (const auto& [key, estimate] : EstimatesOf(section)) AddEstimate(key, estimate, &object);
     if (section.is_line) {
       object["num_effective_parameters"] = section.num_effective_parameters;
       object["residual_rms_mm"] = ResidualRmsMm(section);
@@ -103,6 +117,8 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
     }
     root["sections"].push_back(std::move(object));
   }
+  root["rigs"] = Json::array();
+  for (const RigNumbers& rig : report.rigs) root["rigs"].push_back(JsonOf(rig));
   root["missing"] = Json::array();
   for (const MissingSection& missing : report.missing) {
     root["missing"].push_back(

@@ -17,7 +17,7 @@ constexpr int kNumProfilePoints = 101;  // per section in all files
 void WriteSectionsCsv(const SectionReport& report, std::ostream& out);
 
 // One object: frame, twist_reference, up_reference, notes, sections (with markers and residuals),
-// missing.
+// rigs, missing.
 void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std::ostream& out);
 
 // For each section the points of the curve, with an empty marker_id, then the markers.

@@ -7,6 +7,7 @@ velamap_test(NAME report_test LABEL unit
     report/report_histogram_test.cc
     report/report_key_numbers_test.cc
     report/report_picture_test.cc
+    report/report_sail_test.cc
     report/report_writer_test.cc
     report/verdict_test.cc
   LIBRARIES nlohmann_json::nlohmann_json

@@ -19,8 +19,10 @@ using testing::Pair;
 
 const ShapeFrame kFrame = {FrameKind::kLines, {}, "lines h1 h2", "x aft", {"no hull"}, {}};
 
-std::string Text(const Model& model, const ShapeOrigin& origin, const DescribedFiles& files = {}) {
-  return Written([&](std::ostream& out) { WriteShapeJson(kFrame, model, 7, origin, files, out); });
+std::string Text(const Model& model, const ShapeOrigin& origin, const DescribedFiles& files = {},
+                 const Verdict* verdict = nullptr) {
+  return Written(
+      [&](std::ostream& out) { WriteShapeJson(kFrame, model, 7, origin, verdict, files, out); });
 }
 
 nlohmann::json Json(const Model& model, const ShapeOrigin& origin,
@@ -51,8 +53,23 @@ TEST(ShapeJson, WhatIsUnknownHasNoKey) {
   const auto json = Json(ExampleModel(), {});
   EXPECT_FALSE(json.contains("clip"));
   EXPECT_FALSE(json.contains("velamap_version"));
+  EXPECT_FALSE(json.contains("verdict"));
   EXPECT_FALSE(json.at("cameras")[0].contains("found_without_calibration"));
   EXPECT_THAT(Text(ExampleModel(), {}), testing::Not(testing::HasSubstr("null")));
+}
+
+// The file is sent around, so that its reasons name no folder.
+TEST(ShapeJson, HasTheVerdictWithItsReasons) {
+  const Verdict verdict = {ReportStatus::kBad,
+                           {{ReportStatus::kBad, "the calibration /home/me/camera.yml is another"},
+                            {ReportStatus::kCheck, "few images"}}};
+  const std::string text = Text(ExampleModel(), {}, {}, &verdict);
+  EXPECT_EQ(nlohmann::json::parse(text).at("verdict"), nlohmann::json::parse(R"({"level": "bad",
+      "reasons": [{"level": "bad", "text": "the calibration camera.yml is another"},
+                  {"level": "check", "text": "few images"}]})"));
+  const Verdict good;
+  EXPECT_EQ(nlohmann::json::parse(Text(ExampleModel(), {}, {}, &good)).at("verdict"),
+            nlohmann::json::parse(R"({"level": "good", "reasons": []})"));
 }
 
 // The parameters of all models have COLMAP's names; a camera without an image is none of the clip.

@@ -9,4 +9,5 @@ velamap_test(NAME report_browser_test LABEL browser SHARDS 1
 # Pictures of the page stay here for whoever wants to look.
 target_compile_definitions(report_browser_test PRIVATE
   VELAMAP_PROGRAM="$<TARGET_FILE:velamap>"
+  VELAMAP_INTEROP_DIR="${CMAKE_CURRENT_SOURCE_DIR}/interop"
   VELAMAP_PICTURE_DIR="${CMAKE_CURRENT_BINARY_DIR}/pictures")

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -14,6 +15,7 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/camera/calibration_writer.h"
+#include "importer/text/output_date.h"
 #include "importer/text/shown_text.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
@@ -165,24 +167,29 @@ ShapeOrigin OriginOf(const Options& options, const AdjustmentResult& adjustment)
           !adjustment.cameras.empty()};
 }
 
-void WriteReportFile(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
-                     ReconstructionSummary* summary) {
-  const ShapeExportReport& shape = summary->shape;
+// Logs what speaks against the shape. The input refers to `summary`.
+ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
+                        const ReconstructionSummary& summary) {
+  const ShapeExportReport& shape = summary.shape;
+  WarnOfMissingSections(shape.sail.sections);
   ReportInput input = MakeReportInput(shape, options.importer.layout);
   input.title = Source(options).filename().string();
   input.version = kVersion;
+  input.created = fmt::format("{:%Y-%m-%d %H:%M} UTC", OutputDate());
   input.image_path = paths.Images().string();
   input.frame = MakeReportFrame(shape.frame, shape.metric_model);
   input.sections = MakeReportSections(shape.sail.sections);
-  input.surface = MakeReportSurface(shape.sail);
-  for (const LeftOutImage& image : summary->left_out) {
+  input.rigs = MakeReportRigs(shape.sail.sections);
+  input.surfaces = MakeReportSurfaces(shape.sail, shape.freeform);
+  input.clip = seed.clip;
+  for (const LeftOutImage& image : summary.left_out) {
     input.images_left_out.push_back({image.image_name, image.reason});
   }
   for (const DroppedMarker& marker : seed.registration.dropped_markers) {
     input.markers_left_out.push_back({std::to_string(marker.marker_id), marker.reason});
   }
   input.num_ids_found = seed.num_ids_found;
-  for (const auto& [camera_id, camera] : summary->adjustment.cameras) {
+  for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
     input.found_cameras.push_back(camera);
   }
   input.warnings = LoggedWarnings();  // before those that a key number says, too
@@ -190,8 +197,7 @@ void WriteReportFile(const Options& options, const WorkspacePaths& paths, const 
   input.options = TypedOptions(options.arguments);
   input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
   LeaveFoldersOut(&input);
-  summary->verdict = MakeVerdict(input);
-  WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
+  return input;
 }
 
 // For the next clip of the camera. Of several cameras, the one with most images.
@@ -228,14 +234,16 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   exporter.shape_output_path = paths.Shape().string();
   exporter.origin = OriginOf(options, summary->adjustment);
   summary->shape =
-      ExportShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
-  WarnOfMissingSections(summary->shape.sail.sections);
+      ComputeShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
+  const ReportInput input = JudgedInput(options, paths, seed, *summary);
+  summary->verdict = MakeVerdict(input);
+  WriteShape(summary->shape, exporter, &summary->verdict);
   sparse.Commit();
   WriteFoundCamera(summary->adjustment, model, paths);
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
   clock->End("export");
-  WriteReportFile(options, paths, seed, summary);
+  WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
   clock->End("report");
   RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
   summary->num_images = static_cast<int>(model.images.size());

@@ -53,8 +53,8 @@ CommandSyntax Declare(Options* options) {
                      "numbers with commas"}),
              Common(PathOption(
                  "models_path", PathUse::kAddsToFolder, &sweep->models_path,
-                 "folder for the metric model and shape.csv of each central frame, in a folder "
-                 "of the image's name; left out: none are written")),
+                 "folder for the metric model, shape.csv and shape.json of each central frame, in "
+                 "a folder of the image's name; left out: none are written")),
              {"warm_start", &sweep->warm_start, "0|1",
               "start each adjustment at the result around the previous central frame"},
              BackendOption(&sweep->adjustment.backend),

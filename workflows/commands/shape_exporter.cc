@@ -64,12 +64,17 @@ void Validate(Options* options) {
   options->exporter.origin.version = kVersion;
 }
 
-void Print(const ShapeExportReport& report, const Layout& layout, const PathOptions& paths,
-           std::ostream& out) {
+Verdict Judge(const ShapeExportReport& report, const Layout& layout) {
+  WarnOfMissingSections(report.sail.sections);
   ReportInput input = MakeReportInput(report, layout);
   input.warnings = LoggedWarnings();  // before those that a key number says, too
   LogContradictions(report);
-  PrintVerdict(MakeVerdict(input), out);
+  return MakeVerdict(input);
+}
+
+void Print(const ShapeExportReport& report, const Verdict& verdict, const PathOptions& paths,
+           std::ostream& out) {
+  PrintVerdict(verdict, out);
   PrintShapeSummary(report, out);
   if (!paths.shape_path.empty()) out << "shape_path: " << paths.shape_path << '\n';
   if (!paths.output_path.empty()) out << "model_path: " << paths.output_path << '\n';
@@ -84,11 +89,12 @@ void Run(const Options& options) {
     uncertainty = ReadUncertainty(options.paths.input_path);
   }
   const ShapeExportReport report =
-      ExportShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
-  WarnOfMissingSections(report.sail.sections);
+      ComputeShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
+  const Verdict verdict = Judge(report, layout);
+  WriteShape(report, options.exporter, &verdict);
   clock.End("export");
   LogStageTimes(clock);
-  Print(report, layout, options.paths, std::cout);
+  Print(report, verdict, options.paths, std::cout);
   report.ThrowSurfaceError();
 }
 

@@ -12,8 +12,8 @@
 #include <spdlog/spdlog.h>
 
 #include "exporters/formats/shape_csv.h"
-#include "exporters/scale/metric_scale.h"
-#include "exporters/scale/metric_shape.h"
+#include "exporters/report/verdict.h"
+#include "exporters/shape_exporter.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
@@ -22,9 +22,11 @@
 #include "importer/base/replacement.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/colmap/warm_start.h"
-#include "reconstruct/model/reprojection.h"
 #include "reconstruct/seed_model.h"
 #include "reconstruct/thesis/thesis_registration.h"
+#include "workflows/run/logging.h"
+#include "workflows/run/summary.h"
+#include "workflows/run/version.h"
 
 namespace velamap {
 namespace {
@@ -105,6 +107,7 @@ class Sweep {
     cameras_ = database.ReadCameras();
     posed_ = PoseImages(images_, cameras_, layout, options.registration.num_threads);
     corner_errors_ = CornerErrorsOf(images_, database.ReadFormation());
+    num_shared_warnings_ = LoggedWarnings().size();
   }
 
   const PosedImages& posed() const { return posed_; }
@@ -147,6 +150,7 @@ class Sweep {
   }
 
   void Reconstruct(SweepRow* row) {
+    const std::size_t num_warnings = LoggedWarnings().size();
     RegistrationOptions registration_options = options_.registration;
     registration_options.central_frame = row->image_name;
     const Registration registration =
@@ -158,24 +162,38 @@ class Sweep {
     AdjustmentResult result =
         AdjustModel(options_.adjustment, layout_, corner_errors_, options_.log_path, &model);
     adjusted_ = model;
-    if (!result.uncertainty) {
-      ScaleModel(EstimateScale(model, layout_, options_.scale_by), &model);
-    }
-    UpdatePointErrors(&model);
-    const MarkerShape shape =
-        ShapeFromModel(model, layout_, result.uncertainty ? &result.uncertainty->points : nullptr);
-    row->shape = ComputeShapeMetrics(shape, layout_);
-    row->model = ComputeModelMetrics(model, MarkerIds(layout_));
+    const ShapeExportReport report =
+        MeasureShape(model, layout_, FrameChoice{FrameKind::kCamera}, options_.scale_by,
+                     result.uncertainty ? &*result.uncertainty : nullptr);
+    row->shape = report.metrics;
+    row->model = report.model_metrics;
     row->num_images = static_cast<int>(model.images.size());
-    if (!options_.models_path.empty()) Write(*row, model, result, shape);
+    if (options_.models_path.empty()) return;
+    result.uncertainty = report.uncertainty;  // in the frame of the metric model
+    Write(*row, report, result, Judge(report, num_warnings));
   }
 
-  void Write(const SweepRow& row, const Model& model, const AdjustmentResult& result,
-             const MarkerShape& shape) const {
+  // By the warnings that all central frames share and those of this one, from `first_own` on.
+  Verdict Judge(const ShapeExportReport& report, std::size_t first_own) const {
+    ReportInput input = MakeReportInput(report, layout_);
+    input.warnings = LoggedWarnings();
+    const auto begin = input.warnings.begin();
+    input.warnings.erase(begin + static_cast<std::ptrdiff_t>(num_shared_warnings_),
+                         begin + static_cast<std::ptrdiff_t>(first_own));
+    return MakeVerdict(input);
+  }
+
+  void Write(const SweepRow& row, const ShapeExportReport& report, const AdjustmentResult& result,
+             const Verdict& verdict) const {
     AtomicFolder folder(fs::path(options_.models_path) / ModelFolderOf(row.image_name, posed_));
-    WriteAdjustedModel(model, result, (folder.TemporaryPath() / "sparse").string());
-    WriteFile(folder.TemporaryPath() / "shape.csv",
-              [&shape](std::ostream& out) { WriteShapeCsv(shape, out); });
+    const fs::path path = folder.TemporaryPath();
+    WriteAdjustedModel(report.metric_model, result, (path / "sparse").string());
+    WriteFile(path / "shape.csv", [&](std::ostream& out) { WriteShapeCsv(report.shape, out); });
+    const DescribedFiles files = DescribeShapeFiles(path, LengthUnit::kMetre);
+    WriteFile(path / "shape.json", [&](std::ostream& out) {
+      WriteShapeJson(report.frame, report.metric_model, report.metrics.num_markers,
+                     {kVersion, {}, {}}, &verdict, files, out);
+    });
     folder.Commit();
   }
 
@@ -185,7 +203,8 @@ class Sweep {
   std::map<CameraId, Camera> cameras_;
   PosedImages posed_;
   CornerErrors corner_errors_;
-  std::optional<Model> adjusted_;  // around the central frame before
+  std::size_t num_shared_warnings_ = 0;  // of the log, before the first central frame
+  std::optional<Model> adjusted_;        // around the central frame before
 };
 
 double Completeness(const SweepRow& row) {

@@ -49,6 +49,21 @@ std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
   return left_out;
 }
 
+// Nothing for photographs.
+std::optional<ReportClip> ClipOf(const std::vector<DatabaseImage>& images) {
+  std::map<int, double> time_of_s;  // by frame number
+  for (const DatabaseImage& image : images) {
+    const FrameDetections& frame = image.detections;
+    if (frame.frame_number && frame.time_s) time_of_s[*frame.frame_number] = *frame.time_s;
+  }
+  if (time_of_s.size() < 2) return std::nullopt;
+  const auto [first, first_s] = *time_of_s.begin();
+  const auto [last, last_s] = *time_of_s.rbegin();
+  if (!(last_s > first_s)) return std::nullopt;
+  const double frames_per_s = (last - first) / (last_s - first_s);
+  return ReportClip{frames_per_s, last_s - first_s + 1.0 / frames_per_s};
+}
+
 void LogPriorShapeAgreement(const PriorShapeAgreement& agreement) {
   if (agreement.num_known == 0) {
     spdlog::warn(
@@ -236,6 +251,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
     for (const MarkerDetection& marker : image.detections.markers) ids.insert(marker.marker_id);
   }
   seed.num_ids_found = static_cast<int>(ids.size());
+  seed.clip = ClipOf(images);
   LogSeed(seed);
   const std::vector<int> unnamed = FindUnnamedMarkers(images, seed.model);
   if (!unnamed.empty()) {

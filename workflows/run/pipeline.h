@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "exporters/report/report_data.h"
 #include "exporters/shape_exporter.h"
 #include "importer/camera/calibration_writer.h"
 #include "importer/marker_importer.h"
@@ -29,6 +30,7 @@ struct SeedResult {
   std::vector<LeftOutImage> left_out;    // images that the model does not hold
   CornerErrors corner_errors;            // from the database
   int num_ids_found = 0;                 // different marker ids in the database
+  std::optional<ReportClip> clip;        // of a video
   bool found_cameras = false;            // the database has no calibration
 };
 

@@ -80,6 +80,10 @@ void PrintSections(const SectionReport& report, std::ostream& out) {
       fmt::print(out, " at {:.0f} %", 100.0 * section.draft_position->value);
     fmt::print(out, ", twist {:.1f} deg\n", section.twist_deg.value);
   }
+  for (const RigNumbers& rig : report.rigs) {
+    const std::string text = RigText(rig);
+    if (!text.empty()) fmt::print(out, "rig: {}\n", text);
+  }
   for (const MissingSection& missing : report.missing) {
     fmt::print(out, "section {} {} is missing: {}\n", missing.part, missing.name, missing.reason);
   }
@@ -129,15 +133,20 @@ MetricTable LeftOutTable(const std::string& table, const std::string& key, const
 MetricTable SectionTable(const std::vector<Section>& sections) {
   MetricTable table{"sections", true, {}};
   for (const Section& section : sections) {
-    Metrics row = {{"part", section.part},
-                   {"section", section.name},
-                   {"height_m", section.height_m},
-                   {"chord_m", section.chord_m.value},
-                   {"camber_percent", 100.0 * section.camber.value}};
-    if (section.draft_position) {
-      row.push_back({"draft_percent", 100.0 * section.draft_position->value});
-    }
-    row.push_back({"twist_deg", section.twist_deg.value});
+    Metrics row = {
+        {"part", section.part}, {"section", section.name}, {"height_m", section.height_m}};
+    const auto add = [&row](const std::string& name, const std::string& unit, double factor,
+                            const std::optional<Estimate>& estimate) {
+      if (!estimate) return;
+      row.push_back({name + '_' + unit, factor * estimate->value});
+      if (estimate->sigma) row.push_back({name + "_sigma_" + unit, factor * *estimate->sigma});
+    };
+    add("chord", "m", 1.0, section.chord_m);
+    add("camber", "percent", 100.0, section.camber);
+    add("draft", "percent", 100.0, section.draft_position);
+    add("twist", "deg", 1.0, section.twist_deg);
+    add("leech_twist", "deg", 1.0, section.leech_twist_deg);
+    add("girth", "m", 1.0, section.girth_m);
     table.rows.push_back(std::move(row));
   }
   return table;

@@ -13,6 +13,7 @@
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -93,6 +94,18 @@ std::string RangeText(const std::vector<Section>& sections, double (*value)(cons
   return fmt::format("{:.1f} to {:.1f}", low, high);
 }
 
+// `31.2 +- 1.1`, or without a sigma `31.2`.
+std::string WithSigma(double value, double factor, const Estimate& estimate) {
+  if (!estimate.sigma) return fmt::format("{:.1f}", value);
+  return fmt::format("{:.1f} +- {:.1f}", value, factor * *estimate.sigma);
+}
+
+std::string LuffText(const Estimate& estimate_m, const char* positive, const char* negative) {
+  const double value_mm = kMmPerM * estimate_m.value;
+  return fmt::format("{} mm {}", WithSigma(std::abs(value_mm), kMmPerM, estimate_m),
+                     value_mm < 0 ? negative : positive);
+}
+
 // Prints the frame, the sections of a sail, and the surfaces.
 void PrintSail(const ShapeExportReport& report, std::ostream& out) {
   fmt::print(out, "frame: {}\n", report.frame.name);
@@ -101,6 +114,10 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
     fmt::print(out, "sections: {}; camber {} %, twist {} deg\n", sections.size(),
                RangeText(sections, [](const Section& s) { return 100.0 * s.camber.value; }),
                RangeText(sections, [](const Section& s) { return s.twist_deg.value; }));
+  }
+  for (const RigNumbers& rig : report.sail.sections.rigs) {
+    const std::string text = RigText(rig);
+    if (!text.empty()) fmt::print(out, "rig: {}\n", text);
   }
   for (const std::string& note : report.sail.sections.notes) {
     fmt::print(out, "section_note: {}\n", note);
@@ -171,6 +188,19 @@ Eigen::Vector3d BoundingBox(const MarkerShape& shape) {
   }
   std::sort(best.data(), best.data() + 3, std::greater<double>());
   return best;
+}
+
+std::string RigText(const RigNumbers& rig) {
+  std::string text;
+  if (rig.luff_bend_m && rig.luff_sag_m) {
+    text = fmt::format("luff bent {} and {}", LuffText(*rig.luff_bend_m, "forwards", "aft"),
+                       LuffText(*rig.luff_sag_m, "to leeward", "to windward"));
+  }
+  if (rig.sheeting_angle_deg) {
+    text += fmt::format("{}sheeting angle {} deg", text.empty() ? "" : ", ",
+                        WithSigma(rig.sheeting_angle_deg->value, 1.0, *rig.sheeting_angle_deg));
+  }
+  return text.empty() ? text : rig.part + ", " + text;
 }
 
 std::string ShellQuote(const std::string& text) {

@@ -29,6 +29,9 @@ std::string ErrorText(const Statistics& statistics);
 // a curved sheet as well as a cube and does not depend on the frame.
 Eigen::Vector3d BoundingBox(const MarkerShape& shape);
 
+// Bend and sag of the luff and the sheeting angle in words; empty if none is known.
+std::string RigText(const RigNumbers& rig);
+
 // Quotes a path for a shell where that is needed.
 std::string ShellQuote(const std::string& text);
 

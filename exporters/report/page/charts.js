@@ -8,12 +8,21 @@ function setChartDefaults() {
   Chart.defaults.animation = false;
   Chart.defaults.maintainAspectRatio = false;
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
-  Chart.defaults.color = '#3b4854';
-  Chart.defaults.borderColor = '#e3e8ec';
+  Chart.defaults.color = pageColour('--quiet');
+  Chart.defaults.borderColor = pageColour('--line');
   Chart.defaults.plugins.legend.display = false;
-  // A canvas keeps its size when printed; fit it to the page and back.
-  window.addEventListener('beforeprint', () => charts.forEach(chart => chart.resize()));
-  window.addEventListener('afterprint', () => charts.forEach(chart => chart.resize()));
+}
+
+// Draws all charts, or draws them anew in the colours and for the width of the page as it is now.
+function drawCharts(data) {
+  for (const chart of charts.splice(0)) {
+    chart.observer?.disconnect();
+    chart.canvas.parentElement.querySelectorAll('.save').forEach(button => button.remove());
+    chart.destroy();
+  }
+  setChartDefaults();
+  if (data.sections) sectionChart(data.sections);
+  fillCharts(data);
 }
 
 function axis(title, more) {
@@ -28,11 +37,16 @@ function addChart(id, title, config) {
   byId(id).setAttribute('aria-label', title);
   const chart = new Chart(byId(id), config);
   charts.push(chart);
-  const save = element('button', {type: 'button', className: 'save screen_only', textContent: 'PNG',
-                                  title: `save the chart "${title}" as a picture`});
-  save.addEventListener('click', () => savePicture(chart.canvas, title));
-  byId(id).parentElement.append(save);
+  addSaving(chart, 'PNG', `save the chart "${title}" as a picture`, () => savePicture(chart.canvas, title));
   return chart;
+}
+
+function addSaving(chart, textContent, title, save) {
+  const buttons = chart.canvas.parentElement.querySelectorAll('.save').length;
+  const button = element('button', {type: 'button', className: 'save screen_only', textContent, title,
+                                    style: `right:${44 * buttons}px`});
+  button.addEventListener('click', save);
+  chart.canvas.parentElement.append(button);
 }
 
 function histogramChart(id, captionId, title, unit, histogram, meaning) {
@@ -44,7 +58,7 @@ function histogramChart(id, captionId, title, unit, histogram, meaning) {
     data: {
       datasets: [{
         data: histogram.counts.map((count, i) => ({x: border(i + 0.5), y: count})),
-        backgroundColor: CHART_COLOUR, barPercentage: 1, categoryPercentage: 0.96,
+        backgroundColor: pageColour('--accent'), barPercentage: 1, categoryPercentage: 0.96,
       }],
     },
     options: {
@@ -71,12 +85,13 @@ function imageChart(id, captionId, title, unit, images, value, meaning) {
       labels: images.map(image => image.name),
       datasets: [{
         data: images.map(value),
-        backgroundColor: images.map(image => image.central ? CHART_ACCENT : CHART_COLOUR),
+        backgroundColor: images.map(image => image.central ? CHART_ACCENT : pageColour('--accent')),
       }],
     },
     options: {
       scales: {
-        x: {ticks: {maxRotation: 60, autoSkip: true, maxTicksLimit: 16}, grid: {display: false}},
+        x: {ticks: {maxRotation: 60, autoSkip: true,
+                    maxTicksLimit: byId(id).parentElement.clientWidth < 420 ? 7 : 16}, grid: {display: false}},
         y: axis(unit, {beginAtZero: true}),
       },
     },
@@ -91,14 +106,14 @@ function scaleChart(data) {
     data: {
       datasets: [{
         data: known.map(marker => ({x: marker.id, y: marker.scale_deviation_percent})),
-        backgroundColor: CHART_COLOUR, pointRadius: 3.5,
+        backgroundColor: pageColour('--accent'), pointRadius: 3.5,
       }],
     },
     options: {
       scales: {
         x: axis('marker id', {ticks: {precision: 0}}),
         y: axis('deviation, %', {grid: {
-          color: context => context.tick.value === 0 ? '#3b4854' : '#e3e8ec'}}),
+          color: context => pageColour(context.tick.value === 0 ? '--quiet' : '--line')}}),
       },
       plugins: {tooltip: {callbacks: {
         label: item => `marker ${item.raw.x}: ${fixed(item.raw.y, 2)} %`}}},
@@ -149,22 +164,79 @@ function fitEqualScales(chart) {
 // Omits ticks at the ends of an axis that are no round numbers.
 const ROUND_TICKS = {ticks: {includeBounds: false}};
 
+// The curves are wide and flat, so that the height of the chart follows from its width.
+function fitHeight(chart, points) {
+  const box = chart.canvas.parentElement;
+  const length = key => {
+    const values = points.flat().map(point => point[key]);
+    return Math.max(...values) - Math.min(...values);
+  };
+  const {width, height} = chart.chartArea;
+  const least = chart.options.plugins.legend.position === 'right' ? 18 * points.length - 30 : 50;
+  const wanted = Math.min(420, Math.max(50, least, 1.15 * width * length('y') / length('x')));
+  box.style.height = `${Math.round(box.offsetHeight - height + wanted)}px`;
+}
+
+const legendPlace = box => box.clientWidth < 560 ? 'bottom' : 'right';
+
+const sectionName = section => `${section.name}, ${fixed(section.height_m, 2)} m`;
+
+// The chart as a drawing, both axes to one scale, in mm.
+function sectionSvg(sections) {
+  const all = sections.flatMap(section => section.profile);
+  const [low, high] = [0, 1].map(i => [Math.min, Math.max].map(f => 1e3 * f(...all.map(x => x[i]))))
+      .reduce((ends, [min, max]) => [[...ends[0], min], [...ends[1], max]], [[], []]);
+  const size = Math.max(high[0] - low[0], high[1] - low[1]) / 40;
+  const height = high[1] - low[1] + (sections.length + 2) * 1.5 * size;
+  const svg = svgElement('svg', {
+    xmlns: SVG, viewBox: [low[0] - size, -high[1] - size, high[0] - low[0] + 2 * size, height + 2 * size].join(' '),
+    'font-family': 'sans-serif', 'font-size': size, fill: 'none', 'stroke-width': size / 10});
+  sections.forEach((section, i) => {
+    const stroke = PART_COLOURS[i % PART_COLOURS.length];
+    const d = section.profile.map(([x, y], k) => `${k ? 'L' : 'M'}${fixed(1e3 * x, 2)} ${fixed(-1e3 * y, 2)}`);
+    svg.append(svgElement('path', {d: d.join(''), stroke}),
+        svgElement('text', {x: low[0], y: -low[1] + (i + 2) * 1.5 * size, fill: stroke},
+            `${sectionName(section)}: camber ${fixed(section.camber_percent, 2)} %, twist ${
+              fixed(section.twist_deg, 1)}°`));
+  });
+  return svg;
+}
+
 function sectionChart(sections) {
   const points = sections.map(section => section.profile.map(([x, y]) => ({x: x * 1e3, y: y * 1e3})));
+  const position = legendPlace(byId('chart_sections').parentElement);
   const chart = addChart('chart_sections', 'Profiles, both axes to one scale', {
     type: 'scatter',
     data: {
       datasets: sections.map((section, i) => ({
-        label: section.name, data: points[i], showLine: true, pointRadius: 0, borderWidth: 2,
+        label: sectionName(section), data: points[i], showLine: true, pointRadius: 0, borderWidth: 2,
         borderColor: PART_COLOURS[i % PART_COLOURS.length],
         backgroundColor: PART_COLOURS[i % PART_COLOURS.length],
       })),
     },
     options: {
       scales: {x: axis('along the chord, mm', ROUND_TICKS), y: axis('mm', ROUND_TICKS)},
-      plugins: {legend: {display: true, position: 'right'}},
+      plugins: {legend: {display: true, position, labels: {boxWidth: 18, boxHeight: 2}}},
     },
   });
-  fitEqualScales(chart);
-  new ResizeObserver(() => fitEqualScales(chart)).observe(byId('chart_sections').parentElement);
+  const fit = () => {
+    fitHeight(chart, points);
+    chart.resize();
+    fitEqualScales(chart);
+  };
+  fit();
+  addSaving(chart, 'SVG', 'save the profiles as a drawing', () => saveSvg(sectionSvg(sections), 'profiles'));
+  // Fitting changes the height, which must not be seen as another change.
+  let width = 0;
+  chart.observer = new ResizeObserver(([{contentRect}]) => {
+    if (contentRect.width === width) return;
+    width = contentRect.width;
+    requestAnimationFrame(() => {
+      if (!charts.includes(chart)) return;
+      chart.options.plugins.legend.position = legendPlace(chart.canvas.parentElement);
+      chart.resize();
+      fit();
+    });
+  });
+  chart.observer.observe(chart.canvas.parentElement);
 }

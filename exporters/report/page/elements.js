@@ -66,3 +66,22 @@ function savePicture(canvas, name) {
   const file = `${document.title.replace(/ – .*/, '')} ${name}.png`.replace(/[^\w.-]+/g, '_');
   element('a', {href: pictureOf(canvas), download: file}).click();
 }
+
+function saveSvg(svg, name) {
+  const file = `${document.title.replace(/ – .*/, '')} ${name}.svg`.replace(/[^\w.-]+/g, '_');
+  const text = new XMLSerializer().serializeToString(svg);
+  element('a', {href: `data:image/svg+xml,${encodeURIComponent(text)}`, download: file}).click();
+}
+
+// Calls `draw` when the page becomes dark or light, which it is while it is printed.
+function onTheme(draw) {
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
+  window.addEventListener('beforeprint', () => {
+    document.documentElement.classList.add('printing');
+    draw();
+  });
+  window.addEventListener('afterprint', () => {
+    document.documentElement.classList.remove('printing');
+    draw();
+  });
+}

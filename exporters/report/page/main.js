@@ -19,10 +19,12 @@ function connectColours(view) {
 
 function connectLayers(view) {
   for (const layer of view.layers) {
-    byId('layers').append(checkBox(layer.name, layer.isOn, isOn => {
+    const label = checkBox(layer.name, layer.isOn, isOn => {
       layer.isOn = isOn;
       view.render();
-    }));
+    });
+    layer.box = label.firstChild;
+    byId('layers').append(label);
   }
   const ids = checkBox('ids', false, isOn => {
     view.idsAreOn = isOn;
@@ -32,7 +34,7 @@ function connectLayers(view) {
   byId('layers').append(ids);
 }
 
-// The first factor makes a typical ellipsoid half as large as its marker.
+// The first factor makes a typical ellipsoid as wide as its marker.
 function connectFactor(view) {
   const layer = view.layers.find(({key}) => key === 'ellipsoids');
   if (!layer) return;
@@ -62,17 +64,15 @@ function connectView(view) {
     button.addEventListener('click', () => view.setView(...VIEWS[button.dataset.view]));
   }
   byId('show_all').addEventListener('click', () => view.showAll());
-  byId('save_view').addEventListener('click', () => {
-    view.render();  // a WebGL canvas keeps its content only until the browser shows it
-    savePicture(view.renderer.domElement, 'shape');
-  });
+  byId('save_view').addEventListener('click', () => savePicture(view.picture(), 'shape'));
   view.container.addEventListener('keydown', event => {
     if (!KEYS[event.key]) return;
     event.preventDefault();
     view.turn(...KEYS[event.key]);
   });
+  byId('parallel').addEventListener('change', event => view.setParallel(event.target.checked));
   window.addEventListener('beforeprint', () => {
-    byId('view_print').src = view.renderer.domElement.toDataURL('image/png');
+    byId('view_print').src = view.picture().toDataURL('image/png');
     const isFactor = view.layers.some(({key, isOn}) => key === 'ellipsoids' && isOn);
     byId('view_print_note').textContent = isFactor
         ? `Ellipsoids: 1 sigma, drawn ${byId('factor_value').textContent} times as large.` : '';
@@ -104,6 +104,7 @@ function fillView(data) {
     return;
   }
   const view = new View3D(data, byId('view'));
+  onTheme(() => view.render());
   connectColours(view);
   connectLayers(view);
   connectFactor(view);
@@ -113,16 +114,15 @@ function fillView(data) {
 function main() {
   const data = JSON.parse(byId('data').textContent);
   byId('origin').textContent =
-      [`velamap ${data.version}`, data.created].filter(Boolean).join(', ');
+      [...data.origin, data.created, `velamap ${data.version}`].filter(Boolean).join(' · ');
   fillVerdict(data.verdict);
   fillKeyNumbers(data.key_numbers);
   fillView(data);
-  setChartDefaults();
-  if (data.sections) {
-    fillSections(data.sections);
-    sectionChart(data.sections);
-  }
-  fillCharts(data);
+  if (data.sections) fillSections(data.sections);
+  fillRigs(data.rigs);
+  fillSurfaces(data.surfaces);
+  drawCharts(data);
+  onTheme(() => drawCharts(data));
   fillPicture(data.picture);
   fillLeftOut(data);
   fillTables(data);

@@ -6,6 +6,8 @@ const PICTURE_LAYERS = [
   {name: 'detected', colour: '#ffd500', checked: true},
   {name: 'reprojected', colour: '#00b7ff', checked: true},
   {name: 'error', colour: '#ff4fa3', checked: true},
+  {name: 'rejected', colour: '#ff3b30', checked: true},
+  {name: 'not detected', colour: '#b08cff', checked: true},
   {name: 'ids', colour: '#ffffff', checked: false},
 ];
 
@@ -24,21 +26,51 @@ function picturePaths(picture, factor) {
     paths.reprojected += `M${x + dx - r} ${y + dy}h${2 * r}M${x + dx} ${y + dy - r}v${2 * r}`;
     paths.error += `M${x} ${y}l${factor * dx} ${factor * dy}`;
   }
+  paths.rejected = picture.rejected.map(([x, y]) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`).join('');
+  paths['not detected'] = picture.not_detected
+      .map(({corners}) => `M${corners.map(corner => corner.join(' ')).join('L')}Z`).join('');
   return paths;
 }
 
-// The ids at the means of the seen corners of each marker.
-function pictureIds(picture) {
+// Markers with the means of their corners in the picture.
+function pictureMarkers(picture) {
   const sums = new Map();
-  for (const [pointId, x, y] of picture.points) {
-    const id = Math.floor(pointId / 10);
+  const add = (id, x, y) => {
     const sum = sums.get(id) || {x: 0, y: 0, count: 0};
     sums.set(id, {x: sum.x + x, y: sum.y + y, count: sum.count + 1});
-  }
-  return [...sums].map(([id, sum]) => svgElement('text', {
-    x: sum.x / sum.count, y: sum.y / sum.count, 'text-anchor': 'middle',
-    'dominant-baseline': 'central',
-  }, String(id)));
+  };
+  for (const [pointId, x, y] of picture.points) add(Math.floor(pointId / 10), x, y);
+  for (const {id, corners} of picture.not_detected) corners.forEach(([x, y]) => add(id, x, y));
+  return [...sums].map(([id, sum]) => ({id, x: sum.x / sum.count, y: sum.y / sum.count}));
+}
+
+// Places of the labels of this size that cover no label before: at the marker, or the nearest free
+// place around it.
+function freePlaces(markers, size) {
+  const boxes = [];
+  return markers.map(({id, x, y}) => {
+    const width = (0.6 * String(id).length + 0.3) * size;
+    const isFree = ([left, top]) => boxes.every(([l, t, w]) =>
+        Math.abs(l - left) > (w + width) / 2 || Math.abs(t - top) > 1.1 * size);
+    const tried = [[x, y]];
+    for (let ring = 1; ring < 6; ++ring) {
+      for (let i = 0; i < 8; ++i) {
+        const angle = (i + 2) * Math.PI / 4;
+        tried.push([x + ring * 1.2 * size * Math.cos(angle), y - ring * 1.2 * size * Math.sin(angle)]);
+      }
+    }
+    const [left, top] = tried.find(isFree) || [x, y];
+    boxes.push([left, top, width]);
+    return {id, x, y, left, top};
+  });
+}
+
+// The ids beside their markers, with a line to those that are away from theirs.
+function pictureIds(picture, size) {
+  return freePlaces(pictureMarkers(picture), size).flatMap(({id, x, y, left, top}) => [
+    svgElement('path', {d: `M${x} ${y}L${left} ${top}`, stroke: '#ffffff', 'stroke-width': size / 10}),
+    svgElement('text', {x: left, y: top, 'text-anchor': 'middle', 'dominant-baseline': 'central'}, String(id)),
+  ]);
 }
 
 function pictureLayer(layer, picture, paths) {
@@ -47,7 +79,7 @@ function pictureLayer(layer, picture, paths) {
          'paint-order': 'stroke', 'font-size': picture.width_px / 85, 'font-family': 'sans-serif'}
       : {fill: 'none', stroke: layer.colour, 'stroke-width': picture.width_px / 1100});
   if (layer.name === 'ids') {
-    group.append(...pictureIds(picture));
+    group.append(...pictureIds(picture, picture.width_px / 85));
   } else {
     group.append(svgElement('path', {d: paths[layer.name]}));
   }
@@ -68,6 +100,8 @@ function fillPicture(picture) {
     const mark = svgElement('svg', {class: 'key_mark', viewBox: '0 0 22 16'},
         svgElement('rect', {width: 22, height: 16, rx: 3, fill: '#34414d'}),
         svgElement('rect', {x: 4, y: 6, width: 14, height: 4, fill: layer.colour}));
+    const isEmpty = paths[layer.name] === '';
+    if (isEmpty) continue;
     const name = layer.name === 'error' ? `error × ${factor}` : layer.name;
     byId('picture_layers').append(checkBox(name, layer.checked, show, mark));
   }
@@ -78,6 +112,8 @@ function fillPicture(picture) {
   byId('picture').append(svg);
   byId('picture_caption').textContent =
       `${picture.name}: ${picture.points.length} detected corners (circles) and their projections ` +
-      `(crosses); lines are the differences, ${factor} times as long.` +
+      `(crosses); lines are the differences, ${factor} times as long. ` +
+      `${picture.rejected.length} more corners were rejected, and ${picture.not_detected.length} markers ` +
+      'of the shape face the camera without having been detected.' +
       (picture.problem ? ` No picture: ${picture.problem}.` : '');
 }

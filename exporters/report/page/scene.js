@@ -79,7 +79,13 @@ function sectionLines(sections) {
   return lines(points, '#0b2239');
 }
 
-function surfaceMesh(surface) {
+function surfaceMesh(surfaces) {
+  const group = new THREE.Group();
+  for (const surface of surfaces) group.add(oneSurface(surface));
+  return group;
+}
+
+function oneSurface(surface) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(surface.vertices, 3));
   geometry.setIndex(surface.triangles);
@@ -89,19 +95,47 @@ function surfaceMesh(surface) {
     polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2}));
 }
 
+// Axes of the frame along three edges of the box of the points, with a tick at each round number of
+// metres; `labels` are the texts with their places.
+function boxAxes(points) {
+  const box = new THREE.Box3().setFromPoints(points);
+  const size = box.getSize(new THREE.Vector3());
+  const step = roundUp(Math.max(size.x, size.y, size.z) / 5);
+  const digits = Math.max(0, -Math.floor(Math.log10(step)));
+  const ends = [], labels = [];
+  ['x', 'y', 'z'].forEach((axis, i) => {
+    const other = ['y', 'x', 'x'][i];
+    const at = (place, aside) => {
+      const x = box.min.clone();
+      x[axis] = place;
+      x[other] -= aside;
+      return x;
+    };
+    ends.push(at(box.min[axis], 0), at(box.max[axis], 0));
+    for (let k = Math.ceil(box.min[axis] / step); k * step <= box.max[axis]; ++k) {
+      ends.push(at(k * step, 0), at(k * step, 0.1 * step));
+      if (axis === 'z' && box.max[axis] - k * step < 0.4 * step) continue;  // its name stands there
+      labels.push({text: (k * step).toFixed(digits), place: at(k * step, 0.25 * step)});
+    }
+    labels.push({text: `${axis}, m`, place: axis === 'z' ? at(box.max[axis], 0.3 * step)
+                                                           : at(box.max[axis] + 0.25 * step, 0)});
+  });
+  return {object: lines(ends.map(x => x.toArray()), '#7a8794'), labels};
+}
+
 // Layers that can be hidden: {key, name, object, isOn}.
 function makeLayers(data, markers, size) {
   const layers = [{key: 'markers', name: 'markers', object: new THREE.Group(), isOn: true}];
   layers[0].object.add(markerOutlines(markers));
-  layers.push({key: 'cameras', name: 'cameras', object: cameraLines(data.images, 0.03 * size), isOn: true});
+  layers.push({key: 'cameras', name: 'cameras', object: cameraLines(data.images, 0.03 * size), isOn: false});
   if (markers.some(marker => marker.ellipsoid)) {
     layers.push({key: 'ellipsoids', name: 'ellipsoids', object: ellipsoids(markers), isOn: true});
   }
   if (data.sections && data.sections.some(section => section.profile_in_shape)) {
     layers.push({key: 'sections', name: 'sections', object: sectionLines(data.sections), isOn: true});
   }
-  if (data.surface) {
-    layers.push({key: 'surface', name: 'surface', object: surfaceMesh(data.surface), isOn: true});
+  if (data.surfaces) {
+    layers.push({key: 'surfaces', name: 'surfaces', object: surfaceMesh(data.surfaces), isOn: true});
   }
   return layers;
 }

@@ -80,7 +80,7 @@ function fillLeftOut(data) {
       continue;
     }
     const id = `table_${key}`;
-    byId('left_out').append(element('details', {open: true},
+    byId('left_out').append(element('details', {open: data[key].length <= 8},
         element('summary', {textContent: `${name}: ${data[key].length}`}),
         element('div', {id, className: 'table'})));
     fillTable(id, [text(name.slice(0, -1), 'name'), text('Reason', 'reason')], data[key]);
@@ -108,9 +108,53 @@ function fillTables(data) {
   if (!data.scale_audit) return;
   byId('audit').hidden = false;
   fillTable('table_audit', [
-    {name: 'Figure', value: row => row[0], isText: true},
-    {name: 'Value', value: row => row[1], isText: true},
+    {name: 'Figure', value: row => inWords(row[0]), isText: true},
+    {name: 'Value', value: row => auditValue(row[1]), isText: true},
   ], data.scale_audit);
+}
+
+// A key in words, with its unit: `side_px` is `side, px`.
+function inWords(key) {
+  const units = {percent: '%', px: 'px', mm: 'mm', um: 'µm', deg: '°'};
+  const words = key.split('_');
+  const unit = units[words[words.length - 1]];
+  if (unit) words.pop();
+  const text = words.join(' ').replace(/^num /, 'number of ')
+      .replace('x over y', 'width over height less 1');
+  return (text[0].toUpperCase() + text.slice(1)) + (unit ? `, ${unit}` : '');
+}
+
+// A number with three digits; the row of a table as `name value unit`.
+function auditValue(value) {
+  if (/^-?[\d.]+(e-?\d+)?$/.test(value)) return significant(Number(value), 3);
+  if (!/^[a-z]+_[a-z]+ \S+, /.test(value)) return value;
+  return value.split(', ').map(cell => {
+    const [, key, number] = cell.match(/^([a-z_]+) (-?[\d.]+(?:e-?\d+)?)$/) || [];
+    if (!key || !key.includes('_')) return cell;
+    const [name, unit] = inWords(key).split(', ');
+    return `${name.toLowerCase()} ${significant(Number(number), 3)}${unit ? ` ${unit}` : ''}`;
+  }).join('; ');
+}
+
+function fillRigs(rigs) {
+  if (!rigs) return;
+  byId('table_rigs').hidden = byId('note_rigs').hidden = false;
+  fillTable('table_rigs', [
+    text('Rig', 'part'),
+    figure('Luff bend forwards, mm', 'luff_bend_m', 'luff_bend_sigma_m', 1, 1000),
+    figure('Luff sag to leeward, mm', 'luff_sag_m', 'luff_sag_sigma_m', 1, 1000),
+    figure('Sheeting angle, °', 'sheeting_angle_deg', 'sheeting_angle_sigma_deg', 2, 1),
+  ].filter(column => rigs.some(row => column.value(row) !== undefined)), rigs);
+}
+
+function fillSurfaces(surfaces) {
+  if (!surfaces) return;
+  byId('surfaces').hidden = false;
+  fillTable('table_surfaces', [
+    {name: 'Part', value: row => row.part || 'all markers', isText: true}, number('Area, m²', 'area_m2', 4),
+    number('Volume, m³', 'volume_m3', 5), number('From the markers (RMS), mm', 'distance_mm', 2),
+    number('Sigma, mm', 'sigma_mm', 2),
+  ].filter(column => surfaces.some(row => column.value(row) !== undefined)), surfaces);
 }
 
 function fillKnownPoints(points) {
@@ -142,5 +186,7 @@ function fillSections(sections) {
     figure('Entry, °', 'entry_deg', 'entry_sigma_deg', 1, 1),
     figure('Exit, °', 'exit_deg', 'exit_sigma_deg', 1, 1),
     figure('Twist, °', 'twist_deg', 'twist_sigma_deg', 2, 1),
+    figure('Leech twist, °', 'leech_twist_deg', 'leech_twist_sigma_deg', 1, 1),
+    figure('Girth, mm', 'girth_m', 'girth_sigma_m', 1, 1000),
   ].filter(column => sections.some(row => column.value(row) !== undefined)), sections);
 }

@@ -12,11 +12,11 @@ class View3D {
     this.images = data.images;
     this.renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-    this.renderer.setClearColor('#ffffff');
     container.prepend(this.renderer.domElement);
     this.setFrame(data.frame);
     this.makeScene(data);
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
+    this.letThePageScroll();
     this.controls.enableKeys = false;  // they would take the arrow keys from the whole page
     this.controls.screenSpacePanning = true;
     this.controls.addEventListener('change', () => this.render());
@@ -30,25 +30,80 @@ class View3D {
     this.up = new THREE.Vector3(...up);
     this.forward = new THREE.Vector3(...forward);
     this.right = new THREE.Vector3().crossVectors(this.forward, this.up);
-    this.camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
-    this.camera.up.copy(this.up);
+    this.cameras = {perspective: new THREE.PerspectiveCamera(35, 1, 0.01, 100),
+                    parallel: new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 100)};
+    for (const camera of Object.values(this.cameras)) camera.up.copy(this.up);
+    this.camera = this.cameras.perspective;
+    this.tangent = Math.tan(this.camera.fov * Math.PI / 360);
+  }
+
+  // The wheel and one finger scroll the page unless the view has the focus.
+  letThePageScroll() {
+    const change = isActive => {
+      this.controls.enableZoom = isActive;
+      this.renderer.domElement.style.touchAction = isActive ? 'none' : 'pan-y';
+    };
+    change(false);
+    this.container.addEventListener('focus', () => change(true));
+    this.container.addEventListener('blur', () => change(false));
+    // The controls keep the browser from focusing what is clicked.
+    this.renderer.domElement.addEventListener('pointerup', () => this.container.focus({preventScroll: true}));
+    this.container.addEventListener('keydown', event => {
+      if (event.key === 'Escape') this.container.blur();
+    });
+  }
+
+  // Parallel rays instead of those through the centre of a camera; the size at the target stays.
+  setParallel(isOn) {
+    const distance = this.distance();
+    const camera = isOn ? this.cameras.parallel : this.cameras.perspective;
+    camera.position.copy(this.camera.position);
+    this.camera = this.controls.object = camera;
+    this.scene.add(camera);
+    camera.add(this.lamp);
+    const offset = camera.position.clone().sub(this.controls.target).setLength(distance);
+    camera.position.copy(this.controls.target).add(offset);
+    this.fitFrustum(distance);
+    this.controls.update();
+    this.render();
+  }
+
+  // The distance at which the perspective camera shows the target as large as it is now.
+  distance() {
+    return this.camera.position.distanceTo(this.controls.target) / this.camera.zoom;
+  }
+
+  fitFrustum(distance) {
+    const half = distance * this.tangent, aspect = this.aspect || 1;
+    Object.assign(this.cameras.parallel,
+        {top: half, bottom: -half, left: -half * aspect, right: half * aspect, zoom: 1});
+    this.cameras.perspective.aspect = aspect;
+    for (const camera of Object.values(this.cameras)) camera.updateProjectionMatrix();
   }
 
   makeScene(data) {
     this.corners = this.markers.flatMap(marker => marker.corners).map(x => new THREE.Vector3(...x));
     const box = new THREE.Box3().setFromPoints(this.corners);
     const size = box.getSize(new THREE.Vector3()).length();
+    // The sail fills the view; a hull below it may be cut off.
+    const sails = (data.surfaces || []).filter(surface => surface.is_sail).map(({part}) => part);
+    const ofSails = this.markers.filter(marker => sails.includes(marker.part));
+    this.main = (ofSails.length > 0 ? ofSails : this.markers).flatMap(marker => marker.corners)
+        .map(x => new THREE.Vector3(...x));
     // Cameras can be far away; a 24-bit depth buffer allows this ratio.
-    this.camera.near = size / 500;
-    this.camera.far = size * 200;
+    for (const camera of Object.values(this.cameras)) Object.assign(camera, {near: size / 500, far: size * 200});
     this.scene = new THREE.Scene();
     this.layers = makeLayers(data, this.markers, size);
     this.mesh = markerMesh(this.markers);
     this.layers[0].object.add(this.mesh, markerBacks(this.mesh));
+    const axes = boxAxes(this.main);
+    this.axes = {key: 'axes', name: 'axes', object: axes.object, isOn: true, labels: axes.labels};
+    this.layers.push(this.axes);
+    byId('view_axes').append(...axes.labels.map(({text}) => element('span', {textContent: text})));
     for (const layer of this.layers) this.scene.add(layer.object);
-    const lamp = new THREE.DirectionalLight('#ffffff', 0.55);
-    lamp.position.set(0.3, 0.5, 1);
-    this.camera.add(lamp);
+    this.lamp = new THREE.DirectionalLight('#ffffff', 0.55);
+    this.lamp.position.set(0.3, 0.5, 1);
+    this.camera.add(this.lamp);
     this.scene.add(this.camera, new THREE.AmbientLight('#ffffff', 0.55));
     for (const marker of this.markers) {
       byId('view_ids').append(element('span', {textContent: marker.id, hidden: true}));
@@ -57,15 +112,14 @@ class View3D {
 
   // Azimuth to the right of the front view and elevation above the horizon, degrees. All points fit at
   // a zoom of 1.
-  setView(azimuth, elevation, zoom = 1, points = this.corners) {
+  setView(azimuth, elevation, zoom = 1, points = this.main) {
     const box = new THREE.Box3().setFromPoints(points);
     this.controls.target.copy(box.getCenter(new THREE.Vector3()));
     this.place(azimuth, elevation, 1);
-    const tangent = Math.tan(this.camera.fov * Math.PI / 360);
     const turned = this.camera.quaternion.clone().inverse();
     const distances = points.map(point => {
       const x = point.clone().sub(this.controls.target).applyQuaternion(turned);
-      return x.z + 1.08 * Math.max(Math.abs(x.y), Math.abs(x.x) / this.camera.aspect) / tangent;
+      return x.z + 1.08 * Math.max(Math.abs(x.y), Math.abs(x.x) / this.aspect) / this.tangent;
     });
     this.place(azimuth, elevation, Math.max(...distances) / zoom);
   }
@@ -77,6 +131,7 @@ class View3D {
         .addScaledVector(this.forward, -distance * Math.cos(e) * Math.cos(a))
         .addScaledVector(this.right, distance * Math.cos(e) * Math.sin(a))
         .addScaledVector(this.up, distance * Math.sin(e));
+    this.fitFrustum(distance);
     this.controls.update();
     this.render();
   }
@@ -85,15 +140,17 @@ class View3D {
   showAll() {
     const cameras = this.images.filter(image => image.centre)
         .map(image => new THREE.Vector3(...image.centre));
+    this.layers.find(({key}) => key === 'cameras').box.checked = true;
+    this.layers.find(({key}) => key === 'cameras').isOn = true;
     this.setView(20, 15, 1, [...this.corners, ...cameras]);
   }
 
   // Rotates the current view, degrees.
   turn(azimuth, elevation, zoom) {
     const offset = this.camera.position.clone().sub(this.controls.target);
-    const distance = offset.length();
+    const distance = this.distance();
     const nowAt = Math.atan2(offset.dot(this.right), -offset.dot(this.forward)) * 180 / Math.PI;
-    const height = Math.asin(offset.dot(this.up) / distance) * 180 / Math.PI;
+    const height = Math.asin(offset.dot(this.up) / offset.length()) * 180 / Math.PI;
     this.place(nowAt + azimuth, height + elevation, distance / zoom);
   }
 
@@ -101,15 +158,67 @@ class View3D {
     const {clientWidth: width, clientHeight: height} = this.container;
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    const distance = this.distance();
+    this.aspect = width / height;
+    this.fitFrustum(distance);
     this.render();
   }
 
   render() {
     for (const layer of this.layers) layer.object.visible = layer.isOn;
+    this.renderer.setClearColor(pageColour('--paper'));
     this.renderer.render(this.scene, this.camera);
+    this.placeAxes();
+    this.placeBar();
     if (this.idsAreOn !== undefined) this.placeIds();
+  }
+
+  placeLabel(label, place) {
+    const {clientWidth: width, clientHeight: height} = this.container;
+    const x = place.clone().project(this.camera);
+    label.at = [(x.x + 1) / 2 * width, (1 - x.y) / 2 * height];
+    label.style.transform = `translate(${label.at[0]}px,${label.at[1]}px) translate(-50%,-50%)`;
+  }
+
+  // The view with its labels and its scale bar on one canvas.
+  picture() {
+    this.resize();  // and draws: a WebGL canvas keeps its content only until the browser shows it
+    const drawn = this.renderer.domElement;
+    const canvas = element('canvas', {width: drawn.width, height: drawn.height});
+    const context = canvas.getContext('2d');
+    context.drawImage(drawn, 0, 0);
+    const ratio = drawn.width / this.container.clientWidth;
+    context.scale(ratio, ratio);
+    Object.assign(context, {font: '12px sans-serif', textAlign: 'center', textBaseline: 'middle',
+                            fillStyle: pageColour('--ink')});
+    for (const label of this.container.querySelectorAll('#view_ids span, #view_axes span')) {
+      if (!label.hidden && label.at) context.fillText(label.textContent, ...label.at);
+    }
+    const bar = byId('view_bar');
+    context.fillRect(bar.offsetLeft, bar.offsetTop + bar.offsetHeight, bar.offsetWidth, 3);
+    context.fillText(bar.textContent, bar.offsetLeft + bar.offsetWidth / 2, bar.offsetTop + 4);
+    return canvas;
+  }
+
+  placeAxes() {
+    this.axes.labels.forEach(({place}, i) => {
+      const label = byId('view_axes').children[i];
+      label.hidden = !this.axes.isOn;
+      if (!label.hidden) this.placeLabel(label, place);
+    });
+  }
+
+  // A round length at the middle of the view.
+  placeBar() {
+    const metresPerPixel = 2 * this.distance() * this.tangent / this.container.clientHeight;
+    const longest = 0.3 * Math.min(this.container.clientWidth, 500) * metresPerPixel;
+    if (!(longest > 0)) return;
+    const power = 10 ** Math.floor(Math.log10(longest));
+    const length = power * [5, 2, 1].find(factor => factor * power <= longest);
+    const bar = byId('view_bar');
+    bar.style.width = `${length / metresPerPixel}px`;
+    bar.firstElementChild.textContent = length >= 1 ? `${significant(length, 2)} m`
+                                                    : `${significant(1e3 * length, 2)} mm`;
   }
 
   colourBy(colouring) {
@@ -120,7 +229,6 @@ class View3D {
 
   // Shows the ids of the markers that face the viewer.
   placeIds() {
-    const {clientWidth: width, clientHeight: height} = this.container;
     this.markers.forEach((marker, i) => {
       const label = byId('view_ids').children[i];
       const [a, b, c] = marker.corners.map(x => new THREE.Vector3(...x));
@@ -128,10 +236,7 @@ class View3D {
       const centre = new THREE.Vector3(...marker.centre);
       const isSeen = normal.dot(this.camera.position.clone().sub(centre)) > 0;
       label.hidden = !this.idsAreOn || !isSeen;
-      if (label.hidden) return;
-      const x = centre.project(this.camera);
-      label.style.transform = `translate(${(x.x + 1) / 2 * width}px,${(1 - x.y) / 2 * height}px)` +
-          ' translate(-50%,-50%)';
+      if (!label.hidden) this.placeLabel(label, centre);
     });
   }
 

@@ -97,18 +97,20 @@ TEST(SurfaceGrid, AnsysPointsAreOneGroupPerSectionInTheUnit) {
   EXPECT_EQ(count, 12u);
 }
 
-// A head that is a point: its quadrilaterals have become triangles, and none has two equal corners.
+// A head that is a point, but for what a fit leaves of it: its quadrilaterals have become triangles
+// with one node at the head, and none has two corners in one place.
 TEST(SurfaceGrid, MshOfAPointedHeadHasTriangles) {
   SplineSurface surface = Sail();
   for (int i = 0; i < surface.NumPolesU(); ++i) {
     surface.poles_in_shape_m.row((i + 1) * surface.NumPolesV() - 1) =
-        Eigen::RowVector3d(0.5, 0.1, 6.3);
+        Eigen::RowVector3d(0.5 + 1e-6 * i, 0.1, 6.3);
   }
   std::stringstream file;
   WriteGridMsh(MakeGrid(surface, Size(4, 5)), "sail", LengthUnit::kMetre, file);
   std::string line;
   while (std::getline(file, line) && line != "$Elements") continue;
   int num_elements = 0, num_triangles = 0;
+  std::set<int> heads;
   ASSERT_TRUE(file >> num_elements);
   for (int i = 0; i < num_elements; ++i) {
     int number = 0, type = 0, num_tags = 0, tag = 0, node = 0;
@@ -120,9 +122,11 @@ TEST(SurfaceGrid, MshOfAPointedHeadHasTriangles) {
       nodes.insert(node);
     }
     EXPECT_EQ(nodes.size(), type == 2 ? 3u : 4u);
+    if (type == 2) heads.insert(*nodes.rbegin());
   }
   EXPECT_EQ(num_elements, 12);
   EXPECT_EQ(num_triangles, 4);
+  EXPECT_EQ(heads.size(), 1u);
 }
 
 // Runs a command in `dir` and returns what it wrote to result.txt.

@@ -141,6 +141,39 @@ TEST_F(ReportData, MissingMarkersHaveReasons) {
   EXPECT_EQ(left_out.at(0).at("reason"), "seen in one image");
 }
 
+// The rejected corners of a marker are not of the shape, and the marker counts as not detected.
+TEST_F(ReportData, ThePictureSaysWhatWasRejectedAndNotDetected) {
+  ReportExample example = example_;
+  EXPECT_TRUE(Parsed().at("picture").at("rejected").empty());
+  EXPECT_TRUE(Parsed().at("picture").at("not_detected").empty());
+  ModelImage& image = example.model.images.front();
+  const Point3DId first = image.points2D.front().point3D_id;
+  const int marker_id = CornerFromPoint3DId(first).marker_id;
+  std::vector<Eigen::Vector2d> corners_px;
+  for (std::size_t i = 0; i < image.points2D.size(); ++i) {
+    Point2D& point = image.points2D[i];
+    if (CornerFromPoint3DId(point.point3D_id).marker_id != marker_id) continue;
+    auto& track = example.model.points3D.at(point.point3D_id).track;
+    track.erase(std::remove_if(track.begin(), track.end(),
+                               [&](const TrackElement& element) {
+                                 return element.image_id == image.image_id &&
+                                        element.point2D_idx == i;
+                               }),
+                track.end());
+    corners_px.push_back(point.x_in_image_px);
+    point.point3D_id = kInvalidPoint3DId;
+  }
+  const json picture = json::parse(ReportJson(example.Input())).at("picture");
+  ASSERT_EQ(picture.at("rejected").size(), 4u);
+  ASSERT_EQ(picture.at("not_detected").size(), 1u);
+  EXPECT_EQ(picture.at("not_detected").at(0).at("id"), marker_id);
+  for (int i = 0; i < 4; ++i) {
+    const json& corner = picture.at("not_detected").at(0).at("corners").at(i);
+    const Eigen::Vector2d projected(Number(corner.at(0)), Number(corner.at(1)));
+    EXPECT_LT((projected - corners_px[static_cast<std::size_t>(i)]).norm(), 2.0);  // 0.2 px noise
+  }
+}
+
 TEST_F(ReportData, ThePictureHasEveryCornerOfTheCentralImage) {
   const TempDir dir;
   DrawCentralImage(example_.model, dir.path());
@@ -183,7 +216,8 @@ TEST_F(ReportData, UpAndFrontAreTheCentralCamerasUnlessGiven) {
 
 TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   EXPECT_FALSE(Parsed().contains("sections"));
-  EXPECT_FALSE(Parsed().contains("surface"));
+  EXPECT_FALSE(Parsed().contains("surfaces"));
+  EXPECT_FALSE(Parsed().contains("rigs"));
   ReportInput input = example_.Input();
   ReportSection section;
   section.name = "h1";
@@ -191,13 +225,28 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   section.chord_m = ReportFigure{2.0, 0.001};
   section.profile_m = {{0, 0}, {1, 0.2}, {2, 0}};
   input.sections = {section};
-  input.surface = ReportSurface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}};
+  ReportSurface surface;
+  surface.part = "hull";
+  surface.area_m2 = 0.5;
+  surface.volume_m3 = 0.25;
+  surface.x_in_shape_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  surface.triangles = {{{0, 1, 2}}};
+  input.surfaces = {surface};
+  input.rigs = {{"sail", ReportFigure{0.03, 0.001}, std::nullopt, std::nullopt}};
+  input.clip = ReportClip{25, 4.04};
   const json data = json::parse(ReportJson(input));
   EXPECT_EQ(data.at("sections").at(0).at("chord_sigma_m"), 0.001);
   EXPECT_EQ(data.at("sections").at(0).at("profile").size(), 3u);
   EXPECT_FALSE(data.at("sections").at(0).contains("camber_percent"));
-  EXPECT_EQ(data.at("surface").at("vertices").size(), 9u);
-  EXPECT_EQ(data.at("surface").at("triangles").size(), 3u);
+  EXPECT_EQ(data.at("surfaces").at(0).at("part"), "hull");
+  EXPECT_EQ(data.at("surfaces").at(0).at("volume_m3"), 0.25);
+  EXPECT_FALSE(data.at("surfaces").at(0).contains("sigma_mm"));
+  EXPECT_EQ(data.at("surfaces").at(0).at("vertices").size(), 9u);
+  EXPECT_EQ(data.at("surfaces").at(0).at("triangles").size(), 3u);
+  EXPECT_EQ(data.at("rigs"),
+            json::parse(R"([{"part": "sail", "luff_bend_m": 0.03, "luff_bend_sigma_m": 0.001}])"));
+  EXPECT_EQ(data.at("origin").at(1), "25 frames/s");
+  EXPECT_EQ(data.at("origin").at(2), "4.0 s");
 }
 
 TEST_F(ReportData, TheAuditIsThatOfTheMetrics) {

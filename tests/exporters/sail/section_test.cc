@@ -35,6 +35,8 @@ std::vector<double> Numbers(const Section& section) {
           section.entry_angle_deg.value,
           section.exit_angle_deg.value,
           section.twist_deg.value,
+          section.leech_twist_deg.value,
+          section.girth_m.value,
           section.height_m};
 }
 
@@ -66,6 +68,10 @@ TEST(Section, CircularArcsGiveTheirCamberAnglesAndTwist) {
     EXPECT_NEAR(section.entry_angle_deg.value, angle_deg, 0.03);
     EXPECT_NEAR(section.exit_angle_deg.value, angle_deg, 0.03);
     EXPECT_NEAR(section.twist_deg.value, twists_deg[i], 1e-5);
+    const double radius_m = chords_m[i] / (2 * std::sin(angle_deg * kRadPerDeg));
+    EXPECT_NEAR(section.girth_m.value, 2 * radius_m * angle_deg * kRadPerDeg, 1e-5);
+    const double lowest_angle_deg = 2 * std::atan(2 * cambers[0]) * kDegPerRad;
+    EXPECT_NEAR(section.leech_twist_deg.value, twists_deg[i] - angle_deg + lowest_angle_deg, 0.05);
     EXPECT_NEAR(section.height_m, 2.0 * i, 1e-9);
     EXPECT_EQ(section.markers.size(), 12u);
     EXPECT_FALSE(section.camber.sigma);
@@ -247,6 +253,13 @@ TEST(Section, HeightsBetweenLinesOfOneShapeGiveThatShape) {
   ASSERT_EQ(report.missing.size(), 1u);
   EXPECT_EQ(report.missing[0].name, "z=3.2");
   EXPECT_THAT(report.missing[0].reason, HasSubstr("from 0.000 to 3.000 m"));
+}
+
+TEST(Section, NeighbouringHeightsHaveNamesOfTheirOwn) {
+  const SectionReport report = Sections(ExampleSail(), {{1.0, 1.0000001}});
+  ASSERT_EQ(report.sections.size(), 5u);
+  EXPECT_EQ(report.sections[1].name, "z=1");
+  EXPECT_EQ(report.sections[2].name, "z=1.0000001");
 }
 
 TEST(Section, HeightOnASlopingSailIsLevel) {

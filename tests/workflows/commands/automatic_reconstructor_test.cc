@@ -111,6 +111,10 @@ TEST_F(AutomaticReconstructorTest, SecondRunReusesTheDatabaseAndGivesTheSameByte
   EXPECT_EQ(summary.at("num_markers"), 8);
   EXPECT_GT(summary.at("scale_sigma_percent"), 0.0);
   EXPECT_EQ(summary.at("verdict_reasons").empty(), summary.at("verdict") == "good");
+  const auto verdict =
+      nlohmann::json::parse(ReadFileBytes(workspace() / "shape/shape.json")).at("verdict");
+  EXPECT_EQ(verdict.at("level"), summary.at("verdict"));
+  EXPECT_EQ(verdict.at("reasons").size(), summary.at("verdict_reasons").size());
   EXPECT_EQ(summary.at("workspace_path"), workspace().string());
   EXPECT_THAT(second.err, HasSubstr("0 images added, 16 were in the database before"));
   EXPECT_EQ(read_all(), first);

@@ -172,6 +172,13 @@ TEST_F(ShapeExporterCommandTest, KnownPointsGiveTheirFrameAndPassOrFailChecks) {
   EXPECT_THAT(run.err, HasSubstr(fmt::format("check point {} is 10.0 mm", head[2])));
   EXPECT_THAT(ReadFileBytes(path("shape/metrics.json")),
               AllOf(HasSubstr("\"known_points\""), HasSubstr("\"fail\"")));
+  const auto verdict = nlohmann::json::parse(ReadFileBytes(path("shape/shape.json"))).at("verdict");
+  EXPECT_EQ(verdict.at("level"), "bad");
+  for (const auto& reason : verdict.at("reasons")) {
+    EXPECT_THAT(run.out, HasSubstr(fmt::format("verdict_reason: {}; {}\n",
+                                               reason.at("level").get<std::string>(),
+                                               reason.at("text").get<std::string>())));
+  }
   for (const ShapeMarker& marker : ReadShapeCsv(path("shape/shape.csv")).markers) {
     const Eigen::Vector3d expected = known_from_world * sail_.x_in_world.at(marker.marker_id)[0];
     EXPECT_LT((*marker.x_in_shape_m[0] - expected).norm(), 1e-9);

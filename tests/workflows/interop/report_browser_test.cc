@@ -71,6 +71,8 @@ double PartOfColour(const cv::Mat& image, const cv::Scalar& colour) {
 ReportSurface SurfaceThrough(const MarkerShape& shape) {
   constexpr int kNumColumns = 13;
   ReportSurface surface;
+  surface.part = "sail";
+  surface.is_sail = true;
   for (const ShapeMarker& marker : shape.markers) {
     surface.x_in_shape_m.push_back(marker.x_in_shape_m[0].value());
   }
@@ -104,7 +106,7 @@ class ReportBrowser : public testing::Test {
       section.profile_in_shape_m.push_back(*example.shape.markers[39 + i].x_in_shape_m[0]);
     }
     input.sections = {section};
-    input.surface = SurfaceThrough(example.shape);
+    input.surfaces = {SurfaceThrough(example.shape)};
     std::ofstream out(*dir_ / "report.html", std::ios::binary);
     WriteReport(input, out);
     WriteTextFile(*dir_ / "phone.html",
@@ -240,6 +242,43 @@ TEST_F(ReportBrowser, FitsAPhone) {
   EXPECT_GT(PartOfColour(page.colRange(384, 390), {0xf8, 0xf6, 0xf4}), 0.999);
 }
 
+std::string EscapedForAttribute(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&') {
+      escaped += "&amp;";
+    } else if (c == '"') {
+      escaped += "&quot;";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+// Sizes and places of the elements on a phone and on a large screen.
+TEST_F(ReportBrowser, NothingOverlapsOrIsCut) {
+  const std::string page = EscapedForAttribute(ReadFileBytes(*dir_ / "report.html"));
+  std::string frames;
+  for (const char* width : {"390", "1400"}) {
+    frames += std::string("<iframe width=\"") + width + "\" height=\"3000\" srcdoc=\"" + page +
+              "\"></iframe>";
+  }
+  WriteTextFile(*dir_ / "measured.html",
+                "<!DOCTYPE html><body>" + frames + "<script>" +
+                    ReadFileBytes(fs::path(VELAMAP_INTEROP_DIR) / "page_problems.js") +
+                    "</script>");
+  const std::string dom =
+      Open("measured.html", {"--dump-dom", "--window-size=1500,3000", "--virtual-time-budget=4000"})
+          .out;
+  const std::regex problems("data-problems=\"([^\"]*)\"");
+  std::vector<std::string> found;
+  for (std::sregex_iterator it(dom.begin(), dom.end(), problems), end; it != end; ++it) {
+    found.push_back((*it)[1]);
+  }
+  EXPECT_THAT(found, ElementsAre("none", "none"));
+}
+
 TEST_F(ReportBrowser, Prints) {
   const std::string path = (*dir_ / "report.pdf").string();
   Open("report.html", {"--print-to-pdf=" + path});
@@ -247,6 +286,11 @@ TEST_F(ReportBrowser, Prints) {
   EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
   // The pictures of the view and of the central image are inside.
   EXPECT_GT(pdf.size(), 100000u);
+  // Long tables print only if they are opened.
+  const std::regex page("/Type /Page[^s]");
+  const auto num_pages = std::distance(std::sregex_iterator(pdf.begin(), pdf.end(), page), {});
+  EXPECT_GE(num_pages, 2);
+  EXPECT_LE(num_pages, 5);
 }
 
 }  // namespace

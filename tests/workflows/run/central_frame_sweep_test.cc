@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape_exporter.h"
@@ -112,6 +113,15 @@ TEST_F(CentralFrameSweepTest, WritesTheModelsAndShapesOfTheRows) {
   EXPECT_EQ(static_cast<int>(model.images.size()), rows[0].num_images);
   const MarkerShape shape = ReadShapeCsv((dir_ / "models/frame_000030/shape.csv").string());
   EXPECT_EQ(ComputeShapeMetrics(shape, scene_.layout).num_markers, rows[0].shape.num_markers);
+  std::ifstream file(dir_ / "models/frame_000030/shape.json");
+  const auto json = nlohmann::json::parse(file);
+  EXPECT_EQ(json.at("frame").at("name"), "camera");
+  EXPECT_EQ(json.at("num_images"), rows[0].num_images);
+  EXPECT_EQ(json.at("num_markers"), rows[0].shape.num_markers);
+  EXPECT_EQ(json.at("cameras").size(), 1u);
+  EXPECT_TRUE(json.at("files").contains("shape.csv"));
+  EXPECT_TRUE(json.at("verdict").contains("level"));
+  EXPECT_TRUE(json.at("verdict").contains("reasons"));
 }
 
 TEST_F(CentralFrameSweepTest, ReplacesItsOwnModelsAndNoOthers) {
