@@ -1,5 +1,5 @@
 # dataset.table runs workflows/dataset over a few inputs cut from sample_project, dataset.slurm the same
-# workflow on a Slurm of one node.
+# workflow on a Slurm of one node, and workflows.run_batch the script for a few clips.
 find_program(BASH_PROGRAM bash)
 if(BASH_PROGRAM)
   foreach(test table slurm)
@@ -7,6 +7,8 @@ if(BASH_PROGRAM)
              COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/dataset/${test}_test.sh
                      ${PROJECT_SOURCE_DIR})
   endforeach()
-  set_tests_properties(dataset.table dataset.slurm PROPERTIES
+  add_test(NAME workflows.run_batch
+           COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/run_batch_test.sh ${PROJECT_SOURCE_DIR})
+  set_tests_properties(dataset.table dataset.slurm workflows.run_batch PROPERTIES
     LABELS colmap SKIP_RETURN_CODE 77 TIMEOUT 300 ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>")
 endif()

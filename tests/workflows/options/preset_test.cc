@@ -1,6 +1,8 @@
 #include "workflows/options/preset.h"
 
+#include <filesystem>
 #include <set>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -88,6 +90,20 @@ TEST(PresetTest, EveryValueIsAnOptionOfACommandThatHasThePreset) {
   EXPECT_EQ(num_commands, 6);
   for (const auto& [name, value] : PresetValues(PresetName::kThesis)) {
     EXPECT_EQ(names.count(name), 1u) << name;
+  }
+}
+
+// The table says which section of the thesis each value comes from.
+TEST(PresetTest, TheReadmeHasEveryValueOfThePreset) {
+  std::istringstream readme(
+      ReadFileBytes(std::filesystem::path(VELAMAP_SOURCE_DIR) / "reconstruct/thesis/README.md"));
+  std::string rows;
+  for (std::string line; std::getline(readme, line);) {
+    if (line.rfind("| 3.", 0) == 0 || line.rfind("| 4.", 0) == 0) rows += line + "\n";
+  }
+  for (const auto& [name, value] : PresetValues(PresetName::kThesis)) {
+    const std::string last_name = name.substr(name.find('.') + 1);
+    EXPECT_THAT(rows, HasSubstr("`" + last_name + " " + value + "`"));
   }
 }
 
