@@ -3,10 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "exporters/sail/section.h"
 #include "exporters/shape/marker_shape.h"
 #include "importer/geometry/rigid3.h"
 #include "importer/layout/layout.h"
@@ -55,5 +58,12 @@ Rigid3 OddMotion();
 void ShiftMarker(int marker_id, const Eigen::Vector3d& shift_m, MarkerShape* shape);
 void RemoveMarker(int marker_id, MarkerShape* shape);
 void SetSigma(double sigma_m, MarkerShape* shape);
+
+// Sections in the frame that `choice` or the layout gives.
+SectionReport SectionsOf(const Sail& sail, const SectionOptions& options = {},
+                         const std::optional<FrameChoice>& choice = std::nullopt);
+
+// Chord, camber, draft position (-1 for none), entry and exit angle, twist, height.
+std::vector<double> NumbersOf(const Section& section);
 
 }  // namespace velamap
