@@ -1,5 +1,6 @@
 #include "exporters/shape_exporter.h"
 
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <vector>
@@ -131,8 +132,9 @@ ShapeExportReport ComputeReport(const Model& model, const Layout& layout,
 }  // namespace
 
 void ShapeExportReport::ThrowSurfaceError() const {
-  sail.ThrowSurfaceError();
-  freeform.ThrowSurfaceError();
+  for (const std::exception_ptr& error : {sail.surface_error, freeform.surface_error}) {
+    if (error) std::rethrow_exception(error);
+  }
 }
 
 ShapeExportReport ExportShape(const Model& model, const Layout& layout,

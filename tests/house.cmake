@@ -15,7 +15,7 @@ house_folder(importer/geometry PUBLIC
   alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
   rigid3 unit_square_map units)
 house_folder(importer/camera PUBLIC
-  calibration calibration_writer camera camera_jacobian camera_projection storage_wall
+  calibration calibration_writer camera camera_jacobian camera_projection storage_check
   turned_camera)
 house_folder(importer/layout PUBLIC
   code_search dictionary frame_choice known_point layout layout_writer prior_shape)
@@ -95,8 +95,8 @@ house_folder(exporters/calibration PUBLIC
 house_folder(exporters PUBLIC
   shape_exporter shape_report)
 house_folder(workflows/run PUBLIC
-  central_frame_sweep logging pipeline progress run_summary stage_times summary version versions
-  workspace)
+  adjustment central_frame_sweep logging pipeline progress run_summary stage_times summary version
+  versions workspace)
 house_folder(workflows/check PUBLIC
   clip_check clip_facts clip_frames clip_limits clip_verdict)
 house_folder(workflows/plan PUBLIC

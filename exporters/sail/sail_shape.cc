@@ -96,10 +96,6 @@ void WriteSectionFiles(const SectionReport& report, const ShapeFrame& frame, Len
 
 }  // namespace
 
-void SailShape::ThrowSurfaceError() const {
-  if (surface_error) std::rethrow_exception(surface_error);
-}
-
 void SailOptions::Check() const {
   sections.Check();
   surface.Check();

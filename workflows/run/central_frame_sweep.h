@@ -16,7 +16,7 @@
 #include "importer/layout/layout.h"
 #include "reconstruct/registration/registration_options.h"
 #include "reconstruct/thesis/posed_images.h"
-#include "workflows/run/pipeline.h"
+#include "workflows/run/adjustment.h"
 #include "workflows/run/stage_times.h"
 
 namespace velamap {

@@ -113,12 +113,9 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
                surface.area_m2, 1e3 * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : report.freeform.surfaces) {
-    const FreeformSurface& surface = part.surface;
-    fmt::print(out, "surface: {}; {:.4g} m2, ", part.part.empty() ? "all markers" : part.part,
-               surface.area_m2);
-    if (surface.volume_m3) fmt::print(out, "closed, {:.4g} m3, ", *surface.volume_m3);
-    fmt::print(out, "corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
-               1e3 * surface.distance_m.rms, 1e3 * surface.rms_sigma_m);
+    fmt::print(out, "surface: {}; {}, corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
+               ShownName(part.part), SizeText(part.surface), 1e3 * part.surface.distance_m.rms,
+               1e3 * part.surface.rms_sigma_m);
   }
   for (const auto* notes : {&report.sail.surface_notes, &report.freeform.notes}) {
     for (const std::string& note : *notes) fmt::print(out, "surface_note: {}\n", note);
@@ -187,6 +184,14 @@ std::string ShellQuote(const std::string& text) {
 void LogContradictions(const ShapeExportReport& report) {
   for (const std::string& warning : ScaleWarnings(report.audit)) spdlog::warn(warning);
   for (const std::string& warning : KnownPointWarnings(report.known_points)) spdlog::warn(warning);
+}
+
+void WarnOfMissingSections(const SectionReport& sections) {
+  for (const MissingSection& missing : sections.missing) {
+    // What the layout alone decides is said, but is no reason to check this clip.
+    spdlog::log(missing.is_by_layout ? spdlog::level::info : spdlog::level::warn,
+                "no section {} of {}: {}", missing.name, missing.part, missing.reason);
+  }
 }
 
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout) {
