@@ -43,8 +43,8 @@ Ellipsoid MedianEllipsoid(const PointCovariance& points) {
           Median(std::move(elongations))};
 }
 
-// The covariance where the common scale is known: an unknown one makes every ellipsoid longer in
-// the direction of the middle, which says nothing about lines of sight.
+// The covariance for a known common scale. An unknown scale makes every ellipsoid longer towards
+// the middle of the object, which says nothing about lines of sight.
 PointCovariance WithoutScale(const Model& model, const PointCovariance& points) {
   std::vector<Eigen::Vector3d> x_in_world;
   for (const Point3DId point3D_id : points.point3D_ids) {
