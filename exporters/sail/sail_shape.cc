@@ -38,7 +38,7 @@ std::string Suffix(int surface_idx) {
   return surface_idx == 0 ? "" : fmt::format("_{}", surface_idx + 1);
 }
 
-// The sections of a part as curves, and the centers of its whole markers as points.
+// The sections of a part as curves, and the centres of its whole markers as points.
 CadExtras ExtrasOf(const std::string& part, const SectionReport& report, const MarkerShape& shape) {
   CadExtras extras;
   for (const Section& section : report.sections) {

@@ -204,7 +204,7 @@ TEST(Surface, MarkersThatLieScatteredBearNone) {
 }
 
 TEST(Surface, MarkersBetweenTheLinesTakePart) {
-  // The sail is 3 cm fuller half way between neighboring lines.
+  // The sail is 3 cm fuller half way between neighbouring lines.
   const auto bulging = [](double u, double v) -> Eigen::Vector3d {
     const double bulge_m = 0.03 * std::sin(kPi * u) * std::pow(std::sin(3 * kPi * v), 2);
     return TwistedSail(u, v) + Eigen::Vector3d(0, bulge_m, 0);
