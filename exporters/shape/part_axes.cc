@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "exporters/shape/principal_axes.h"
+#include "importer/geometry/principal_axes.h"
 
 namespace velamap {
 

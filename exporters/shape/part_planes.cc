@@ -8,8 +8,8 @@
 #include <Eigen/QR>
 
 #include "exporters/shape/joint_covariance.h"
-#include "exporters/shape/principal_axes.h"
 #include "exporters/shape/shape_sigma.h"
+#include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {

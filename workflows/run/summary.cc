@@ -9,10 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <spdlog/spdlog.h>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
+#include "importer/geometry/principal_axes.h"
 
 namespace velamap {
 namespace {
@@ -64,16 +65,6 @@ std::vector<Eigen::Vector3d> AllCorners(const MarkerShape& shape) {
 }
 
 // Columns are axes of unit length.
-Eigen::Matrix3d PrincipalAxes(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    scatter += (point - mean) * (point - mean).transpose();
-  }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
-}
-
 Eigen::Matrix3d MarkerAxes(const ShapeMarker& marker) {
   const Eigen::Vector3d normal = MarkerNormal(marker);
   const Eigen::Vector3d side = *marker.x_in_shape_m[2] - *marker.x_in_shape_m[1];
@@ -150,7 +141,7 @@ std::string ErrorText(const Statistics& statistics) {
 Eigen::Vector3d BoundingBox(const MarkerShape& shape) {
   const std::vector<Eigen::Vector3d> points = AllCorners(shape);
   if (points.empty()) return Eigen::Vector3d::Zero();
-  std::vector<Eigen::Matrix3d> candidates = {PrincipalAxes(points)};
+  std::vector<Eigen::Matrix3d> candidates = {ComputePrincipalAxes(points).directions};
   for (const ShapeMarker& marker : shape.markers) {
     if (marker.IsWhole()) candidates.push_back(MarkerAxes(marker));
   }
