@@ -202,7 +202,7 @@ std::string Lack(const std::vector<ComparedPoint>& points, const PresentPoints& 
     const KnownPoint& known = points[i].known;
     if (!is_found && !known.is_check) missing.push_back(PointName(known.marker_id, known.corner));
   }
-  std::string lack = WhatDatumLacks(found);
+  std::string lack = FindDatumFault(found);
   if (lack.empty() || missing.empty()) return lack;
   return fmt::format("of the known points in the shape: {} ({} not reconstructed)", lack,
                      fmt::join(missing, " "));
@@ -262,7 +262,7 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   fit.known_from_shape = {pose.rotation,
                           pose.translation - pose.rotation * points.center_in_shape_m};
   ComparePoints(present, *agreement, &fit);
-  fit.growth = GrowthAskedFor(points, agreement->used, pose);
+  fit.growth = EstimateGrowth(points, agreement->used, pose);
   if (fit.growth && covariance == nullptr) {
     fit.growth->sigma = std::hypot(fit.growth->sigma, scale_sigma);
   }
