@@ -12,7 +12,6 @@
 #include <spdlog/spdlog.h>
 
 #include "exporters/formats/shape_csv.h"
-#include "exporters/scale/metric_scale.h"
 #include "exporters/scale/metric_shape.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/csv.h"

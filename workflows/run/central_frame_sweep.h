@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
 #include "exporters/shape/shape_metrics.h"
 #include "importer/layout/layout.h"
