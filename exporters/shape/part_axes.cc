@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "exporters/shape/sail_lines.h"
 #include "importer/geometry/principal_axes.h"
 
 namespace velamap {
