@@ -9,6 +9,7 @@
 
 #include "importer/database/colmap_database.h"
 #include "importer/database/database_writer.h"
+#include "importer/database/tracking_table.h"
 #include "importer/dictionary_hint.h"
 #include "importer/frame_pipeline.h"
 #include "importer/frame_turns.h"
