@@ -202,7 +202,7 @@ std::string Lack(const std::vector<ComparedPoint>& points, const PresentPoints& 
     const KnownPoint& known = points[i].known;
     if (!is_found && !known.is_check) missing.push_back(PointName(known.marker_id, known.corner));
   }
-  std::string lack = FindDatumFault(found);
+  std::string lack = WhatDatumLacks(found);
   if (lack.empty() || missing.empty()) return lack;
   return fmt::format("of the known points in the shape: {} ({} not reconstructed)", lack,
                      fmt::join(missing, " "));

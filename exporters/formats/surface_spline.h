@@ -44,7 +44,7 @@ struct SurfaceJet {
 };
 SurfaceJet EvaluateJet(const SplineSurface& surface, double u, double v);
 Eigen::Vector3d EvaluatePoint(const SplineSurface& surface, double u, double v);
-// Unit; that of a neighbouring point where the surface degenerates to a point.
+// Unit; that of a neighboring point where the surface degenerates to a point.
 Eigen::Vector3d EvaluateNormal(const SplineSurface& surface, double u, double v);
 
 double SurfaceArea(const SplineSurface& surface);  // m^2

@@ -64,14 +64,14 @@ struct ShapeComparison {
   double scale = 1.0;     // this shape / reference, from the alignment with scale
   Statistics distance_after_scaling_m;
   // Expected distance_m.rms and distance_after_scaling_m.rms if the reference were exact: roots of
-  // the mean variance of the points after these alignments. Without a covariance, the first one
-  // follows from the sigmas of the points, if the shape has them.
+  // the mean variance of the points after these alignments. Without a covariance, the first one is
+  // that of the sigmas of the points, if the shape has them.
   std::optional<double> distance_sigma_m;
   std::optional<double> distance_after_scaling_sigma_m;
   std::vector<MarkerDistance> markers;  // by id
 };
 
-// Aligns common corners (not centres) by least squares. `covariance`, of the corners of the shape,
+// Aligns common corners (not centers) by least squares. `covariance`, of the corners of the shape,
 // is used if it has all common corners. Throws DataError with fewer than three common corners or if
 // they all lie in one point.
 ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference,

@@ -15,7 +15,7 @@ std::string PointName(int marker_id, int corner) {
   return corner == 0 ? std::to_string(marker_id) : fmt::format("{}.{}", marker_id, corner);
 }
 
-std::string FindDatumFault(const std::vector<KnownPoint>& points) {
+std::string WhatDatumLacks(const std::vector<KnownPoint>& points) {
   constexpr int kMinPoints = 3, kMinCoordinates = 6;
   int num_points = 0, num_coordinates = 0;
   std::array<int, 3> num_along{};

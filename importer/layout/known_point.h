@@ -26,6 +26,6 @@ std::string PointName(int marker_id, int corner);
 
 // Why these points cannot fix a frame wherever they are: too few points or coordinates, or an axis
 // along which none is given. Empty where that is left to their places. Checks do not count.
-std::string FindDatumFault(const std::vector<KnownPoint>& points);
+std::string WhatDatumLacks(const std::vector<KnownPoint>& points);
 
 }  // namespace velamap

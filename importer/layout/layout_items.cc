@@ -192,7 +192,7 @@ FrameChoice ReadFrame(const YamlItem& item, const Layout& layout) {
                     item.Text()));
   }
   if (frame.kind == FrameKind::kKnownPoints) {
-    const std::string lack = FindDatumFault(layout.known_points);
+    const std::string lack = WhatDatumLacks(layout.known_points);
     if (!lack.empty()) {
       item.Fail("the frame of the known points needs more of them (key 'known_points'): " + lack);
     }
