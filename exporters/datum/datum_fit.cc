@@ -159,8 +159,8 @@ std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Ri
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
-std::optional<GrowthEstimate> EstimateGrowth(const DatumPoints& points, const PointSet& set,
-                                             const Rigid3& pose) {
+std::optional<AskedGrowth> GrowthAskedFor(const DatumPoints& points, const PointSet& set,
+                                          const Rigid3& pose) {
   constexpr double kMaxSigma = 0.5;
   const DatumEquations equations = Linearize(points, set, pose);
   const SetSystem system =
@@ -173,8 +173,8 @@ std::optional<GrowthEstimate> EstimateGrowth(const DatumPoints& points, const Po
   };
   const double weight = by_scale.dot(without_pose(by_scale));
   if (!(weight * kMaxSigma * kMaxSigma > 1)) return std::nullopt;
-  return GrowthEstimate{-by_scale.dot(without_pose(system.residuals)) / weight,
-                        1.0 / std::sqrt(weight)};
+  return AskedGrowth{-by_scale.dot(without_pose(system.residuals)) / weight,
+                     1.0 / std::sqrt(weight)};
 }
 
 }  // namespace velamap

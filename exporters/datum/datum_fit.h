@@ -23,13 +23,13 @@ std::vector<double> SigmasOff(const DatumPoints& points, const PointSet& set, co
 std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
 
 // By how much of its size the shape would have to grow to fit the set best, and its sigma.
-struct GrowthEstimate {
+struct AskedGrowth {
   double value = 0.0;
   double sigma = 0.0;
 };
 
 // Nothing where the set does not determine it.
-std::optional<GrowthEstimate> EstimateGrowth(const DatumPoints& points, const PointSet& set,
-                                             const Rigid3& pose);
+std::optional<AskedGrowth> GrowthAskedFor(const DatumPoints& points, const PointSet& set,
+                                          const Rigid3& pose);
 
 }  // namespace velamap

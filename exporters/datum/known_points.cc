@@ -262,7 +262,7 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   fit.known_from_shape = {pose.rotation,
                           pose.translation - pose.rotation * points.center_in_shape_m};
   ComparePoints(present, *agreement, &fit);
-  fit.growth = EstimateGrowth(points, agreement->used, pose);
+  fit.growth = GrowthAskedFor(points, agreement->used, pose);
   if (fit.growth && covariance == nullptr) {
     fit.growth->sigma = std::hypot(fit.growth->sigma, scale_sigma);
   }

@@ -40,7 +40,7 @@ struct KnownPointFit {
   // Root of the sum of squared residuals over their variances, per redundant coordinate: 1 for
   // right sigmas. Nothing without a redundant coordinate.
   std::optional<double> residual_in_sigmas;
-  std::optional<GrowthEstimate> growth;  // that the points ask of the size of the shape
+  std::optional<AskedGrowth> growth;  // that the points ask of the size of the shape
 
   // Whether the size that the points ask for is more than three sigmas from that of the shape.
   bool DoubtsScale() const;

@@ -75,7 +75,7 @@ std::pair<bool, double> Badness(const ComparedPoint& point) {
   return {point.state == PointState::kFailed, point.sigmas_off};
 }
 
-std::string GrowthText(const GrowthEstimate& growth) {
+std::string GrowthText(const AskedGrowth& growth) {
   return fmt::format("{:+.3f} +- {:.3f} %", 100.0 * growth.value, 100.0 * growth.sigma);
 }
 

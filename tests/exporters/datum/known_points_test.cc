@@ -243,7 +243,7 @@ TEST_F(KnownPoints, TheSizeThatTheyAskForIsReportedWithItsSigma) {
     for (ShapeMarker& marker : shape_.markers) {
       for (auto& x : marker.x_in_shape_m) *x *= 1.002;
     }
-    const GrowthEstimate growth = Fit().growth.value();
+    const AskedGrowth growth = Fit().growth.value();
     in_sigmas.push_back((growth.value + 0.002) / growth.sigma);
   }
   const Statistics statistics = ComputeStatistics(in_sigmas);
