@@ -1,5 +1,6 @@
 #include "exporters/shape_exporter.h"
 
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <vector>
@@ -113,8 +114,9 @@ void MoveIntoFrame(const Layout& layout, const std::optional<FrameChoice>& choic
 }  // namespace
 
 void ShapeExportReport::ThrowSurfaceError() const {
-  sail.ThrowSurfaceError();
-  freeform.ThrowSurfaceError();
+  for (const std::exception_ptr& error : {sail.surface_error, freeform.surface_error}) {
+    if (error) std::rethrow_exception(error);
+  }
 }
 
 ShapeExportReport MeasureShape(const Model& model, const Layout& layout,

@@ -47,7 +47,8 @@ struct ShapeExportReport {
   ModelMetrics model_metrics;
   ScaleAudit audit;
 
-  // The first error of a surface, see SailShape::surface_error.
+  // Throws the first error of a surface (SailShape::surface_error), if there is one. Callers write
+  // everything else first: the shape does not depend on it.
   void ThrowSurfaceError() const;
 };
 

@@ -12,10 +12,10 @@ house_folder(importer/text PUBLIC
 house_folder(importer/lanes PUBLIC
   float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
-  alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step quad ransac
-  rigid3 unit_square_map units)
+  alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step principal_axes quad
+  ransac rigid3 unit_square_map units)
 house_folder(importer/camera PUBLIC
-  calibration calibration_writer camera camera_jacobian camera_projection storage_wall
+  calibration calibration_writer camera camera_jacobian camera_projection storage_check
   turned_camera)
 house_folder(importer/layout PUBLIC
   code_search dictionary frame_choice known_point layout layout_writer prior_shape)
@@ -70,7 +70,7 @@ house_folder(reconstruct PUBLIC
   camera_calibration camera_search register_frames seed_model)
 house_folder(exporters/shape PUBLIC
   adjacent_distances common_corners joint_covariance known_distances marker_shape part_planes
-  principal_axes sail_lines shape_frame shape_metrics shape_sigma shape_transform)
+  sail_lines shape_frame shape_metrics shape_sigma shape_transform)
 house_folder(exporters/formats PUBLIC
   cad_library cad_writer diverging_color length_unit mesh_triangles mesh_writer metrics_report
   ply_writer round_number shape_csv shape_ply surface_grid surface_spline)
@@ -95,8 +95,8 @@ house_folder(exporters/calibration PUBLIC
 house_folder(exporters PUBLIC
   shape_exporter shape_report)
 house_folder(workflows/run PUBLIC
-  central_frame_sweep logging pipeline progress run_summary stage_times summary version versions
-  workspace)
+  adjustment central_frame_sweep logging pipeline progress run_summary stage_times summary version
+  versions workspace)
 house_folder(workflows/check PUBLIC
   clip_check clip_facts clip_frames clip_limits clip_verdict)
 house_folder(workflows/plan PUBLIC

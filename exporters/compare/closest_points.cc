@@ -7,9 +7,9 @@
 
 #include <Eigen/Geometry>
 
-#include "exporters/shape/principal_axes.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/least_squares.h"
+#include "importer/geometry/principal_axes.h"
 
 namespace velamap {
 namespace {

@@ -1,7 +1,7 @@
-// The compared markers and surfaces as PLY, colored by their signed distance from the reference.
+// The compared markers and surfaces as PLY, coloured by their signed distance from the reference.
 //
 // Both files are ASCII, in the frame of the reference, in m: opened together with the reference,
-// they lie on it. Colors are those of DivergingColor(): blue, white and red for -limit, 0 and
+// they lie on it. Colours are those of DivergingColor(): blue, white and red for -limit, 0 and
 // +limit, grey for points outside the edge of the reference. `color_limit_m` is the largest
 // distance by default. Comments in the header name the limit, the sign and the alignment.
 

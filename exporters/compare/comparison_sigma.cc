@@ -27,8 +27,8 @@ Eigen::MatrixXd MarkerBlock(const ShapeMarker& marker, const std::vector<int>& c
   for (int axis = 0; axis < 3; ++axis) {
     double mean = 0.0;
     for (const int corner : corners) mean += variance(corner, axis) / num_corners;
-    // The sigma of the center gives the common part. The individual parts sum to zero, so that they
-    // do not move the center, and each has a variance of 3/4 of `own`.
+    // The sigma of the centre gives the common part. The individual parts sum to zero, so that they
+    // do not move the centre, and each has a variance of 3/4 of `own`.
     const double common = has_center ? variance(0, axis) : 0.0;
     const double own = std::max(0.0, mean - common) * 4.0 / 3.0;
     for (Eigen::Index i = 0; i < num_corners; ++i) {

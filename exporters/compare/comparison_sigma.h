@@ -15,7 +15,7 @@
 namespace velamap {
 
 // Approximates the covariance by the sigmas of a shape.csv if the joint one is not available. The
-// errors of a marker's corners have a common part, given by the sigma of the center, and an
+// errors of a marker's corners have a common part, given by the sigma of the centre, and an
 // individual part; axes and markers are independent. Errors that markers share, such as the scale
 // and long waves of the shape, are missing. Points without a sigma are left out.
 PointCovariance CovarianceFromSigmas(const MarkerShape& shape);
@@ -25,7 +25,7 @@ class AlignmentSensitivity {
  public:
   explicit AlignmentSensitivity(const Alignment& alignment);
 
-  // Covariance of (aligned center - center in the reference) of a whole marker, m^2, in the frame
+  // Covariance of (aligned centre - centre in the reference) of a whole marker, m^2, in the frame
   // of the reference. `reference` is null for a surface, which counts as exact. Nothing if a
   // covariance lacks a corner of the marker or of the alignment.
   std::optional<Eigen::Matrix3d> DifferenceCovariance(int marker_id,
@@ -44,7 +44,7 @@ class AlignmentSensitivity {
   // 1 / radius_m_.
   Vector6d MotionGradient(const Eigen::Vector3d& x_in_reference_m,
                           const Eigen::Vector3d& direction) const;
-  // Gradient of direction . (aligned center) with respect to the aligned corners.
+  // Gradient of direction . (aligned centre) with respect to the aligned corners.
   std::map<CornerId, Eigen::Vector3d> CenterGradient(int marker_id,
                                                      const Eigen::Vector3d& center_in_reference_m,
                                                      const Eigen::Vector3d& direction) const;

@@ -24,7 +24,7 @@ struct DatumPoint {
 struct DatumPoints {
   std::vector<DatumPoint> points;
   Eigen::Vector3d center_in_shape_m = Eigen::Vector3d::Zero();  // mean of the points
-  double radius_m = 1.0;                                        // rms distance from the center
+  double radius_m = 1.0;                                        // rms distance from the centre
   // 3n x 3n, of the positions in the shape; 0 where it is not known.
   Eigen::MatrixXd covariance_m2;
 };
@@ -37,7 +37,7 @@ PointSet AllOf(const DatumPoints& points);
 struct DatumEquations {
   std::vector<Eigen::Index> begins;  // of the rows of each point of the set, and the end of all
   Eigen::VectorXd residuals_m;
-  // By a turn about the center (a rotation vector applied on the left, times the radius) and a
+  // By a turn about the centre (a rotation vector applied on the left, times the radius) and a
   // shift, both in m.
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_pose;
   Eigen::VectorXd by_scale_m;  // by a relative change of the size of the shape

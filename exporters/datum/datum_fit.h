@@ -19,7 +19,7 @@ namespace velamap {
 std::vector<double> SigmasOff(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
 
 // The motions that the set leaves undetermined, such as "a turn about z": those known to no better
-// than 3 degrees, as seen from the center of the points. Empty if there are none.
+// than 3 degrees, as seen from the centre of the points. Empty if there are none.
 std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
 
 // By how much of its size the shape would have to grow to fit the set best, and its sigma.

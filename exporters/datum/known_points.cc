@@ -147,8 +147,8 @@ std::optional<DatumAgreement> Agree(const DatumPoints& points, const PointSet& d
   return rigid;
 }
 
-// Whether more points agree with one axis reversed. Some of mirrored points, near a plane, fit any
-// shape.
+// Whether more points agree with one axis reversed. Compares numbers, because a few mirrored points
+// near a plane fit any shape.
 bool AreMirrored(const DatumPoints& points, const PointSet& datum,
                  const std::optional<DatumAgreement>& agreement) {
   const std::size_t num_agreeing = agreement ? agreement->used.size() : 0;

@@ -34,7 +34,7 @@ double MPerUnitFromName(const std::string& name, const std::string& what);
 // a mesh, it does so and ends.
 void ServeMeshReader(int argc, char** argv);
 
-// Divides polygons into triangles and ignores points, lines, normals and colors. Throws InputError
+// Divides polygons into triangles and ignores points, lines, normals and colours. Throws InputError
 // naming the file if it is missing, has another extension, is too large (mesh_parser.h), cannot be
 // read, has no triangles, or has a coordinate that is not finite; also if reading it crashes, or
 // takes more time or memory than MeshLimits (mesh_process.h) allow.

@@ -79,7 +79,7 @@ GridSize ChooseGrid(const SplineSurface& surface, const MeshOptions& options) {
 void CheckCount(const GridSize& grid, const MeshOptions& options) {
   const double num_triangles = 2 * grid.num_u * grid.num_v;
   if (num_triangles <= kMaxTriangles) return;
-  // Of roots, because the number may be infinite.
+  // Multiplies roots, because the number itself may be infinite.
   const double root_of_excess = std::sqrt(grid.num_u) * std::sqrt(2 * grid.num_v / kMaxTriangles);
   const auto member =
       options.edge_length_mm ? &MeshOptions::edge_length_mm : &MeshOptions::chord_deviation_mm;

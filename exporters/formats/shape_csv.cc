@@ -129,8 +129,8 @@ void AddRow(const Row& row, const RecordReader& reader, bool is_new, ShapeMarker
   marker->num_frames[row.corner] = row.num_frames;
 }
 
-// Fills in the center if all corners are known, as marker_shape.h requires. Returns what is wrong
-// with a center of the file, or an empty text.
+// Fills in the centre if all corners are known, as marker_shape.h requires. Returns what is wrong
+// with a centre of the file, or an empty text.
 std::string CompleteCenter(ShapeMarker* marker) {
   auto& x = marker->x_in_shape_m;
   if (!std::all_of(x.begin() + 1, x.end(), [](const auto& corner) { return bool(corner); })) {

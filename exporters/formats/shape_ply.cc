@@ -88,7 +88,7 @@ Rgb VertexColor(const Model& model, const Vertex& vertex) {
   return mean;
 }
 
-// One color per part in the order of their names, from a palette for all kinds of color vision
+// One colour per part in the order of their names, from a palette for all kinds of colour vision
 // (Okabe and Ito, "Color universal design", 2008).
 std::map<std::string, Rgb> PartColors(const MarkerShape& shape) {
   constexpr std::array<Rgb, 7> kPalette = {{{0, 114, 178},

@@ -15,16 +15,16 @@
 
 namespace velamap {
 
-// Writes every corner and center as a vertex: double x y z, float nx ny nz (the normal of the
-// marker, zero if it is not whole), uchar red green blue (of the model's points; a center gets the
+// Writes every corner and centre as a vertex: double x y z, float nx ny nz (the normal of the
+// marker, zero if it is not whole), uchar red green blue (of the model's points; a centre gets the
 // mean of its corners), int marker_id, int corner.
 void WritePointsPly(const MarkerShape& shape, const Model& metric_model, PlyFormat format,
                     std::ostream& out, const std::string& frame = "");
 
 // Writes every whole marker as a quadrilateral that is counter-clockwise seen from the front, so
 // that its normal is the outward one: four vertices with double x y z, float nx ny nz, uchar red
-// green blue (one color per part), int marker_id, int corner, and faces with vertex_indices and int
-// marker_id.
+// green blue (one colour per part), int marker_id, int corner, and faces with vertex_indices and
+// int marker_id.
 void WriteMarkersPly(const MarkerShape& shape, PlyFormat format, std::ostream& out,
                      const std::string& frame = "");
 

@@ -59,8 +59,12 @@ void WriteResiduals(const FreeformShape& freeform, std::ostream& out) {
 
 }  // namespace
 
-void FreeformShape::ThrowSurfaceError() const {
-  if (surface_error) std::rethrow_exception(surface_error);
+std::string ShownName(const std::string& part) { return part.empty() ? "all markers" : part; }
+
+std::string SizeText(const FreeformSurface& surface) {
+  const std::string area = fmt::format("{:.4g} m2", surface.area_m2);
+  if (!surface.volume_m3) return area;
+  return fmt::format("{}, closed, {:.4g} m3", area, *surface.volume_m3);
 }
 
 FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
@@ -70,7 +74,7 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
   FreeformShape freeform;
   for (const FreeformPart& part : FreeformParts(shape, layout)) {
     if (part.marker_ids.size() < kMinFreeformMarkers) continue;
-    const std::string name = part.name.empty() ? "all markers" : part.name;
+    const std::string name = ShownName(part.name);
     const std::size_t number = freeform.surfaces.size() + 1;
     if (number > kMaxSurfaces) {
       freeform.notes.push_back(fmt::format("{}: no surface: at most {} parts without lines get one",

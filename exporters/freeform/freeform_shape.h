@@ -30,9 +30,13 @@ struct FreeformShape {
   // markers that a surface leaves out or misses.
   std::vector<std::string> notes;
   std::exception_ptr surface_error;  // as in SailShape
-
-  void ThrowSurfaceError() const;
 };
+
+// What messages call the part: its name, or "all markers" where a layout without parts has none.
+std::string ShownName(const std::string& part);
+
+// "0.3139 m2", or "0.3139 m2, closed, 0.0214 m3".
+std::string SizeText(const FreeformSurface& surface);
 
 // Takes the parts without horizontal and vertical lines that name at least kMinFreeformMarkers
 // markers; all markers for a layout without parts. `shape` and `covariance` (may be null) are in

@@ -43,6 +43,7 @@ target_sources(velamap_exporters PRIVATE
   report/report_picture.cc
   report/report_sail.cc
   report/report_writer.cc
+  report/scale_key_numbers.cc
   report/verdict.cc
   ${REPORT_ASSETS}
 )

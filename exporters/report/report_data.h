@@ -1,5 +1,5 @@
 // Collects everything that the report shows in one JSON text, from which the page computes only
-// colors and drawings. It is the text of <script id="data"> in report.html. Keys:
+// colours and drawings. It is the text of <script id="data"> in report.html. Keys:
 //
 //   title, version, created, origin (camera, frame rate, duration); options, versions
 //   frame                    name, up, forward

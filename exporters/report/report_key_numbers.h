@@ -16,8 +16,8 @@ enum class ReportStatus {
   kBad,    // find the cause before using the shape
 };
 
-// The heaviest first: of two that are equally bad, a verdict names the earlier one first. What was
-// measured outside of the images comes before causes, and these before effects.
+// In order of weight: of two key numbers that are equally bad, a verdict names the earlier one
+// first. Measurements from outside of the images come before causes, and these before effects.
 enum class KeyNumberKind {
   kDictionary,
   kMeasuredDistances,

@@ -28,7 +28,7 @@ std::map<int, CornerErrors> ErrorsByMarker(const std::vector<ObservationError>& 
   return errors_of;
 }
 
-// Joint covariance of the center, m^2; nothing if that of a corner is unknown.
+// Joint covariance of the centre, m^2; nothing if that of a corner is unknown.
 std::optional<Eigen::Matrix3d> CenterCovariance(const PointCovariance& points, int marker_id) {
   std::vector<PointGradient> gradients(3);
   for (int axis = 0; axis < 3; ++axis) {
@@ -39,7 +39,7 @@ std::optional<Eigen::Matrix3d> CenterCovariance(const PointCovariance& points, i
   return Eigen::Matrix3d(JointCovarianceOf(points, gradients));
 }
 
-// Columns are the half axes of the 1 sigma ellipsoid of the center, m, longest last. Without a
+// Columns are the half axes of the 1 sigma ellipsoid of the centre, m, longest last. Without a
 // joint covariance they are along x, y and z.
 std::optional<Eigen::Matrix3d> CenterEllipsoid(const ReportInput& input,
                                                const ShapeMarker& marker) {

@@ -38,7 +38,7 @@ std::string Suffix(int surface_idx) {
   return surface_idx == 0 ? "" : fmt::format("_{}", surface_idx + 1);
 }
 
-// The sections of a part as curves, and the centers of its whole markers as points.
+// The sections of a part as curves, and the centres of its whole markers as points.
 CadExtras ExtrasOf(const std::string& part, const SectionReport& report, const MarkerShape& shape) {
   CadExtras extras;
   for (const Section& section : report.sections) {
@@ -95,10 +95,6 @@ void WriteSectionFiles(const SectionReport& report, const ShapeFrame& frame, Len
 }
 
 }  // namespace
-
-void SailShape::ThrowSurfaceError() const {
-  if (surface_error) std::rethrow_exception(surface_error);
-}
 
 void SailOptions::Check() const {
   sections.Check();

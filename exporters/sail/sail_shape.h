@@ -51,9 +51,6 @@ struct SailShape {
   // The first error of a surface that the markers are not to blame for, such as an option beyond
   // the limit that the size of the part sets; null without one.
   std::exception_ptr surface_error;
-
-  // Throws surface_error. Callers write everything else first: the shape does not depend on it.
-  void ThrowSurfaceError() const;
 };
 
 // `shape` and `covariance` (may be null) are in `frame`. A layout without horizontal lines gives a

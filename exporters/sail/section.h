@@ -1,7 +1,7 @@
 // Sections of a sail: the numbers that a sailmaker reads off a draft stripe, for every horizontal
 // line of the layout and at given heights. README.md of this folder defines them with a drawing.
 //
-// The section of a line is a smoothing spline through its marker centers (section_spline.h) from
+// The section of a line is a smoothing spline through its marker centres (section_spline.h) from
 // the first to the last whole marker; the markers do not reach the edges of the cloth. The section
 // at a height is the cut at right angles to up through interpolating splines that run across the
 // lines at equal fractions of their lengths.
@@ -10,7 +10,7 @@
 //   depth direction d: u x c (unit length), towards leeward; depth = d . (f - f_first)
 //   leeward: the side to which the lines of the sail bulge in total
 //
-// Standard deviations are propagated linearly from the joint covariance of the marker centers, or
+// Standard deviations are propagated linearly from the joint covariance of the marker centres, or
 // without one from their sigmas as if independent, by central differences of the whole computation
 // at constant smoothing. A section that depends on a marker without a sigma has no sigmas.
 

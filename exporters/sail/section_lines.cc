@@ -81,7 +81,7 @@ double ParameterAtHeight(const SpaceCurve& curve, const Eigen::Vector3d& up, dou
   return t;
 }
 
-// Cumulative mean distances between neighboring lines, normalized to 1.
+// Cumulative mean distances between neighbouring lines, normalized to 1.
 Eigen::ArrayXd SpanParameters(const std::vector<Eigen::Matrix3Xd>& samples) {
   Eigen::ArrayXd parameters(static_cast<Eigen::Index>(samples.size()));
   parameters[0] = 0.0;

@@ -15,7 +15,7 @@
 
 namespace velamap {
 
-// Marker centers and their noise, shared by all sections.
+// Marker centres and their noise, shared by all sections.
 struct CenterSet {
   std::vector<int> marker_ids;    // ascending
   Eigen::Matrix3Xd x_m;           // by index

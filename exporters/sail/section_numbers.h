@@ -1,4 +1,4 @@
-// The numbers of one section curve, and their derivatives with respect to the marker centers for
+// The numbers of one section curve, and their derivatives with respect to the marker centres for
 // their sigmas. Private to the sections.
 
 #pragma once
@@ -64,7 +64,7 @@ struct MarkerPair {
   int first_idx = 0, last_idx = 0;
 };
 
-// One row per number, one column per coordinate of the marker centers. NaN if no marker of the
+// One row per number, one column per coordinate of the marker centres. NaN if no marker of the
 // section has a sigma.
 struct NumbersWithGradient {
   SectionNumbers numbers;

@@ -33,7 +33,7 @@ Eigen::Vector3d EvaluateCurve(const SpaceCurve& curve, double t);
 CurveJet EvaluateCurveJet(const SpaceCurve& curve, double t);
 
 // Chord lengths from the first point, normalized to 1. Needs at least two points and distinct
-// neighbors.
+// neighbours.
 Eigen::ArrayXd ChordLengthParameters(const Eigen::Matrix3Xd& points_in_shape_m);
 
 // Points of one curve, in order, and the covariance of their noise: 3n x 3n (x y z of each point in

@@ -14,8 +14,8 @@ namespace velamap {
 // shape frame.
 void ScaleModel(const ScaleEstimate& scale, Model* model);
 
-// Collects the corners of a metric model (unit m) and computes the centers. Ignores points whose id
-// is no corner. Sigmas come from `covariance` (may be null); the sigma of a center takes the
+// Collects the corners of a metric model (unit m) and computes the centres. Ignores points whose id
+// is no corner. Sigmas come from `covariance` (may be null); the sigma of a centre takes the
 // correlation of its corners into account.
 MarkerShape ShapeFromModel(const Model& metric_model, const Layout& layout,
                            const PointCovariance* covariance = nullptr);

@@ -20,7 +20,7 @@ struct AdjacentDistance {
   std::optional<double> sigma_m = std::nullopt;
 };
 
-// Returns every pair that is adjacent in the layout's graph (neighbors on a line, all markers of a
+// Returns every pair that is adjacent in the layout's graph (neighbours on a line, all markers of a
 // rigid part) and whole in both shapes, sorted by ids. The shapes may be in different frames. Empty
 // for a layout without lines or rigid parts.
 std::vector<AdjacentDistance> CompareAdjacentDistances(const MarkerShape& shape,

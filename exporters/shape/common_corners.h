@@ -17,7 +17,7 @@ struct CommonCorners {
   std::vector<Eigen::Vector3d> x_in_reference_m;
 };
 
-// Without centers. `marker_ids` selects markers; an empty list selects all.
+// Without centres. `marker_ids` selects markers; an empty list selects all.
 CommonCorners FindCommonCorners(const MarkerShape& shape, const MarkerShape& reference,
                                 const std::vector<int>& marker_ids = {});
 

@@ -8,8 +8,8 @@
 #include <Eigen/QR>
 
 #include "exporters/shape/joint_covariance.h"
-#include "exporters/shape/principal_axes.h"
 #include "exporters/shape/shape_sigma.h"
+#include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -52,7 +52,7 @@ void AddCentroidGradient(const PartPlane& plane, const Eigen::Vector3d& weight,
   }
 }
 
-// Root of the mean variance of the distances of the centers from their own plane, to first order.
+// Root of the mean variance of the distances of the centres from their own plane, to first order.
 // The plane absorbs displacements along the normal that are linear in the plane.
 std::optional<double> CenterDistanceSigma(const std::vector<int>& marker_ids,
                                           const std::vector<Eigen::Vector3d>& centers,

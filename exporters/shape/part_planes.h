@@ -25,8 +25,8 @@ struct PartPlane {
   Eigen::Vector3d normal =
       Eigen::Vector3d::UnitZ();   // unit, towards the side that the markers face
   Statistics corner_distance_mm;  // of the corners, without sign
-  // Plane projected error of thesis section 4.1: unsigned distances of the centers from the plane
-  // of the centers. Empty with fewer than four markers, because three centers always lie in a
+  // Plane projected error of thesis section 4.1: unsigned distances of the centres from the plane
+  // of the centres. Empty with fewer than four markers, because three centres always lie in a
   // plane.
   Statistics center_distance_mm;
   // Orientation error of thesis section 4.1: angles between each marker's vector and their mean.

@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "exporters/shape/principal_axes.h"
 #include "importer/base/error.h"
+#include "importer/geometry/principal_axes.h"
 
 namespace velamap {
 namespace {

@@ -1,5 +1,5 @@
 // Directions of a reconstructed sail from the lines of the layout: ends, up, aft, and the side to
-// which the sail bulges. All functions use the centers of whole markers, in the shape frame, m.
+// which the sail bulges. All functions use the centres of whole markers, in the shape frame, m.
 
 #pragma once
 

@@ -7,15 +7,12 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include "exporters/shape/principal_axes.h"
+#include "exporters/shape/part_axes.h"
 #include "exporters/shape/sail_lines.h"
 #include "importer/base/error.h"
 
 namespace velamap {
 namespace {
-
-// Least sine of the angle between two directions that span a plane: 3 degrees.
-constexpr double kMinSine = 0.05;
 
 // x along `x_in_shape`; z orthogonal to it, in the plane of `x_in_shape` and `up_in_shape`.
 Rigid3 FrameFromAxes(const Eigen::Vector3d& origin_in_shape, const Eigen::Vector3d& x_in_shape,
@@ -26,10 +23,6 @@ Rigid3 FrameFromAxes(const Eigen::Vector3d& origin_in_shape, const Eigen::Vector
   axes << x, y, x.cross(y);
   const Eigen::Quaterniond frame_from_shape(Eigen::Matrix3d(axes.transpose()));
   return {frame_from_shape, -(frame_from_shape * origin_in_shape)};
-}
-
-bool SpanPlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return a.cross(b).norm() > kMinSine * a.norm() * b.norm();
 }
 
 std::string WhichMissing(const MarkerShape& shape, const std::vector<int>& ids) {
@@ -68,59 +61,6 @@ FrameAttempt TryMarkers(const MarkerShape& shape, const FrameChoice& choice) {
                       fmt::format("origin at marker {}, x to marker {}, z on the side of marker {}",
                                   ids[0], ids[1], ids[2])),
           ""};
-}
-
-// Three orthogonal directions of a rigid part.
-struct PartAxes {
-  Eigen::Vector3d center;
-  std::array<Eigen::Vector3d, 3> axes;  // first to last marker, normal, across
-  Eigen::Vector3d marker_up;            // sum of the markers' own y axes
-  bool is_flat = true;                  // if false, the normal is the mean of the markers' normals
-};
-
-std::optional<PartAxes> FitPartAxes(const MarkerShape& shape, const std::vector<int>& ids) {
-  PartAxes part{Eigen::Vector3d::Zero(), {}, Eigen::Vector3d::Zero()};
-  Eigen::Vector3d facing = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> corners;
-  for (const int id : ids) {
-    const auto& x = FindWholeMarker(shape, id)->x_in_shape_m;
-    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) corners.push_back(*x[corner]);
-    facing += MarkerNormal(*FindWholeMarker(shape, id));
-    part.marker_up += (*x[1] - *x[4] + *x[2] - *x[3]).normalized();
-  }
-  const PrincipalAxes principal = ComputePrincipalAxes(corners);
-  part.center = principal.mean;
-  const Eigen::Vector3d along = CenterOf(shape, ids.back()) - CenterOf(shape, ids.front());
-  // A strip around a curved side is about as thick as it is wide, so that noise would turn its
-  // plane.
-  constexpr double kMinSpreadRatio = 4.0;  // of variances
-  part.is_flat = principal.sums_of_squares[1] >= kMinSpreadRatio * principal.sums_of_squares[0];
-  const Eigen::Vector3d normal =
-      part.is_flat ? principal.directions.col(0).eval() : facing.normalized();
-  if (!SpanPlane(along, normal)) return std::nullopt;
-  if (part.is_flat) {
-    part.axes[1] = normal;
-    part.axes[0] = (along - normal.dot(along) * normal).normalized();
-  } else {
-    part.axes[0] = along.normalized();
-    part.axes[1] = (normal - part.axes[0].dot(normal) * part.axes[0]).normalized();
-  }
-  part.axes[2] = part.axes[1].cross(part.axes[0]);
-  return part;
-}
-
-// Index of the axis with the smallest angle to the direction, up to its sign.
-int NearestAxis(const std::array<Eigen::Vector3d, 3>& axes, const Eigen::Vector3d& direction,
-                int except) {
-  int nearest = -1;
-  for (int i = 0; i < 3; ++i) {
-    if (i == except) continue;
-    const auto closeness = [&](int axis) {
-      return std::abs(axes[static_cast<std::size_t>(axis)].dot(direction));
-    };
-    if (nearest < 0 || closeness(i) > closeness(nearest)) nearest = i;
-  }
-  return nearest;
 }
 
 FrameAttempt TryReferencePart(const MarkerShape& shape, const Layout& layout) {

@@ -11,11 +11,11 @@
 
 namespace velamap {
 
-// Adds the gradient of `weight` . x for a corner (1..4) or the center (0), the mean of the corners.
+// Adds the gradient of `weight` . x for a corner (1..4) or the centre (0), the mean of the corners.
 void AddPointGradient(int marker_id, int corner, const Eigen::Vector3d& weight,
                       PointGradient* gradient);
 
-// Gradient of the distance between two points of the shape (corner 0 is the center), which have to
+// Gradient of the distance between two points of the shape (corner 0 is the centre), which have to
 // be known. A distance of zero has no direction and gets an empty gradient.
 PointGradient DistanceGradient(const ShapeMarker& marker1, int corner1, const ShapeMarker& marker2,
                                int corner2);
@@ -36,7 +36,7 @@ bool HasPointsOf(const PointGradient& gradient, const PointCovariance* covarianc
 // with one that lacks a point, and for an empty gradient.
 std::optional<double> SigmaOf(const PointCovariance* covariance, const PointGradient& gradient);
 
-// 1 sigma of a corner or the center along x, y and z, m.
+// 1 sigma of a corner or the centre along x, y and z, m.
 std::optional<Eigen::Vector3d> PointSigma(const PointCovariance* covariance, int marker_id,
                                           int corner);
 

@@ -1,4 +1,4 @@
-// The marker centers that a surface is fitted to, by their lines.
+// The marker centres that a surface is fitted to, by their lines.
 
 #pragma once
 
@@ -15,9 +15,9 @@ namespace velamap {
 
 struct SurfaceMarker {
   int marker_id = 0;
-  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // of the center
+  Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();  // of the centre
   std::optional<double> sigma_m;                           // of each coordinate
-  double side_m = 0.0;  // 0 for a point; the center of a marker is the mean of its corners
+  double side_m = 0.0;  // 0 for a point; the centre of a marker is the mean of its corners
 };
 
 // A horizontal line of the layout from luff to leech. A marker that the shape lacks keeps its place
@@ -45,7 +45,7 @@ struct SurfaceInput {
 
 // Collects the horizontal lines of `part` in the order of the layout, its other markers, and where
 // the layout says that its edges are; whole markers only. The sigma of a marker is the root mean
-// square of the three sigmas of its center, with the errors that it shares with others: neighbors
+// square of the three sigmas of its centre, with the errors that it shares with others: neighbours
 // share some that bend the surface, which the noise of single markers does not show.
 SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& part);
 

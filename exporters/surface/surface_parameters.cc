@@ -16,7 +16,7 @@ namespace {
 using Polyline = std::vector<Eigen::Vector3d>;
 
 constexpr int kMaxSpans = 20;     // in each direction; no sail has more markers on a line
-constexpr int kLineSamples = 9;   // at which neighboring lines are compared
+constexpr int kLineSamples = 9;   // at which neighbouring lines are compared
 constexpr double kWideGap = 2.5;  // in mean spacings; wider gaps get a note
 
 // A line, or a foot or head edge, with u of its points.
@@ -167,7 +167,7 @@ Eigen::Vector3d PointAtU(const Row& row, double u) {
   return row.points[k - 1] + part * (row.points[k] - row.points[k - 1]);
 }
 
-// Mean distance between two neighboring lines over their common range of u.
+// Mean distance between two neighbouring lines over their common range of u.
 double MeanDistance(const Row& lower, const Row& upper) {
   const double first = std::max(lower.us.front(), upper.us.front());
   const double last = std::min(lower.us.back(), upper.us.back());

@@ -47,7 +47,7 @@ std::string WaitForHolder(int file) {
 void WriteHolder(int file) {
   const std::string record =
       fmt::format("{} {} {}\n", std::time(nullptr), getpid(), HostName()).substr(0, kMaxRecordSize);
-  // A killed holder's record goes first: nobody is to be told of it.
+  // Removes the record of a holder that was killed first, so that no other run is told of it.
   const bool written = ftruncate(file, 0) == 0 && pwrite(file, record.data(), record.size(), 0) ==
                                                       static_cast<ssize_t>(record.size());
   if (!written) spdlog::debug("the lock's file cannot be written");  // the lock holds all the same

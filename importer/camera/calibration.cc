@@ -11,7 +11,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/text_file.h"
-#include "importer/camera/storage_wall.h"
+#include "importer/camera/storage_check.h"
 
 namespace velamap {
 namespace {

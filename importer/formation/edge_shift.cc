@@ -27,7 +27,7 @@ struct ShiftSums {
   double shift_sides() const { return squares > 0 ? by_residual / squares : 0.0; }
 };
 
-// Of the edges that the rows of the image cross, and of those that its columns cross.
+// Sums over the edges that the rows of the image cross, and over those that its columns cross.
 struct SampleShift {
   ShiftSums across_rows, across_columns;
 };

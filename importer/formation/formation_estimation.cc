@@ -28,7 +28,7 @@ const Vector kMin =
 const Vector kMax = (Vector() << std::log(3.2), 0.13, 2.0, std::log(2.5), kMaxInkSpread).finished();
 const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004).finished();
 
-// 1 sigma of the width of a quiet zone about the mean of all, cells, while that is being found.
+// 1 sigma of the width of one quiet zone around the mean width, cells, while the mean is unknown.
 constexpr double kQuietZoneSigma = 0.25;
 
 const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
@@ -137,7 +137,8 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
     return influences;
   }
 
-  // A sample with something in front of it can have an influence that is none of the others'.
+  // Limits the influence of single samples, because one with something in front of it says nothing
+  // about the others.
   static double VarianceOfSum(const std::vector<double>& influences) {
     constexpr double kSigmas = 4.0;
     if (influences.empty()) return 0.0;

@@ -58,8 +58,8 @@ FormationState WithPooledQuietZone(FormationState state, int num_threads);
 // infinite without any.
 double NoiseOf(const FormationState& state);
 
-// The weight of the pixels at the corners of outlines that their residuals ask for, compared with
-// the others.
+// The weight that the residuals of the pixels at the corners of outlines ask for, compared with the
+// residuals of the others.
 double OutlineCornerWeight(const FormationState& state);
 
 FormationState WithOutlineCorners(double weight, const FormationState& state, int num_threads);
@@ -68,11 +68,11 @@ FormationState WithOutlineCorners(double weight, const FormationState& state, in
 // to another minimum, whose difference from the first is no derivative.
 bool AreAlike(const FittedSample& one, const FittedSample& other);
 
-// How much farther inside along both sides one state has the corners than another, mean of the
-// samples that are alike in both, px. Both must hold the same samples.
+// By how much `one` has the corners farther inside their markers than `other`, along both sides:
+// the mean over the samples that are alike in both, px. Both must hold the same samples.
 double MeanInset(const FormationState& one, const FormationState& other);
 
-// Drops the samples that another state has not.
+// Drops all samples but these.
 void KeepOnly(const std::set<std::size_t>& sample_idxs, FormationState* state);
 
 }  // namespace velamap

@@ -1,9 +1,9 @@
 #include "importer/geometry/alignment.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
 #include "importer/base/error.h"
+#include "importer/geometry/principal_axes.h"
 
 namespace velamap {
 namespace {
@@ -76,16 +76,8 @@ Sim3 EstimateSim3(const std::vector<Eigen::Vector3d>& x_in_a,
 
 bool HasSpread(const std::vector<Eigen::Vector3d>& points, double min_ratio) {
   if (points.size() < 3) return false;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    covariance += (point - mean) * (point - mean).transpose();
-  }
-  const Eigen::Vector3d variances =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
-          .eigenvalues();  // ascending
-  return variances[1] >= min_ratio * min_ratio * variances[2] && variances[2] > 0;
+  const Eigen::Vector3d sums = ComputePrincipalAxes(points).sums_of_squares;
+  return sums[1] >= min_ratio * min_ratio * sums[2] && sums[2] > 0;
 }
 
 }  // namespace velamap

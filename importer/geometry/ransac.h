@@ -91,4 +91,22 @@ typename Estimator::Hypothesis RefineHypothesis(const Estimator& estimator, int 
   return hypothesis;
 }
 
+// At most `max_count` hypotheses by ascending cost, without those that are nearly the same as a
+// better one: is_same(a, b) tells.
+template <typename Hypothesis, typename IsSame>
+std::vector<Hypothesis> DistinctHypotheses(std::vector<Hypothesis> hypotheses,
+                                           const IsSame& is_same, std::size_t max_count) {
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.cost < b.cost; });
+  std::vector<Hypothesis> distinct;
+  for (Hypothesis& hypothesis : hypotheses) {
+    if (distinct.size() == max_count) break;
+    if (std::none_of(distinct.begin(), distinct.end(),
+                     [&](const Hypothesis& better) { return is_same(better, hypothesis); })) {
+      distinct.push_back(std::move(hypothesis));
+    }
+  }
+  return distinct;
+}
+
 }  // namespace velamap

@@ -81,7 +81,7 @@ VELAMAP_CLONE_FOR_POPCNT bool ChooseGreedily(const CodeSpace& space, std::size_t
   return codes->size() == num_codes;
 }
 
-// Sets of codes with what is missing to a wanted distance, for each code and as a whole.
+// A set of codes, and by how much each of them and the whole set fall short of a wanted distance.
 class Annealing {
  public:
   Annealing(const CodeSpace& space, int distance, std::vector<Rotations> codes)
@@ -175,7 +175,8 @@ CodeSet MakeCodeSet(int bits_per_side, const std::vector<Rotations>& codes) {
   return set;
 }
 
-// Those without symmetry, then those that look the same after half a turn, then after a quarter.
+// All codes: first those without symmetry, then those that look the same after half a turn, then
+// those that do after a quarter.
 std::vector<Rotations> AllBySymmetry(const CodeSpace& space) {
   std::vector<Rotations> codes = space.All();
   std::stable_sort(codes.begin(), codes.end(), [](const Rotations& a, const Rotations& b) {
@@ -187,7 +188,7 @@ std::vector<Rotations> AllBySymmetry(const CodeSpace& space) {
   return codes;
 }
 
-// All codes without symmetry are too few; n of all codes.
+// For more codes than there are without symmetry: takes symmetric ones as well.
 CodeSet TakeSymmetricCodesToo(const CodeSearchOptions& options) {
   const int bits = options.bits_per_side;
   std::vector<Rotations> codes;

@@ -17,9 +17,9 @@ namespace {
 
 using P = PatternParameters;
 
-// What a foreign pixel is missed by at least, grey levels. The noise is that of the pixels on
-// edges, so that a model that misses all edges a little finds nothing foreign there. Nothing for
-// too few pixels.
+// The least residual of a foreign pixel, grey levels. Its unit is the noise of the pixels on edges,
+// so that a model that misses all edges a little finds nothing foreign there. Nothing for too few
+// pixels.
 std::optional<double> ForeignLimit(const std::vector<PixelResidual>& residuals, double contrast) {
   constexpr double kContrast = 0.1, kSigmas = 6.0;
   constexpr double kEdgeSlope = 0.05;  // of the contrast a pixel
@@ -40,8 +40,8 @@ double ShareBeyond(double limit, const std::vector<PixelResidual>& residuals) {
   return static_cast<double>(count) / static_cast<double>(residuals.size());
 }
 
-// The pixels of the patch (8 bit) that are missed by more than the limit, and those around into
-// which the blur mixes them.
+// Marks (8 bit) the pixels of the patch whose residual exceeds the limit, and the pixels around
+// them into which the blur mixes them.
 cv::Mat ForeignPixels(const PatternProblem& problem, const P::Vector& parameters, double limit) {
   constexpr double kReach = 2.0;  // blur sigmas
   constexpr int kMaxReachPx = 4;

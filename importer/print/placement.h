@@ -46,7 +46,7 @@ struct MarkerPlace {
 struct PlacedLine {
   std::string name;
   std::vector<MarkerPlace> markers;
-  // Of a sail: where the line meets the luff, from the tack, and the leech, from the clew.
+  // On a sail: where the line meets the luff, from the tack, and the leech, from the clew.
   double luff_mm = 0.0, leech_mm = 0.0;
 };
 
@@ -57,7 +57,8 @@ struct Placement {
   std::vector<Eigen::Vector2d> sail_mm;  // tack, clew, head; empty for a grid
   std::vector<PlacedLine> horizontal;    // foot to head, each from luff to leech
   std::vector<MarkerLine> vertical;      // foot to head
-  // Of a sail that PlaceOnSail() covered, to the mm; its head ends where it is a sticker wide.
+  // The edges of a sail that PlaceOnSail() covered, to the mm. The head ends where the sail is a
+  // sticker wide.
   ClothEdges edges{};
 };
 

@@ -1,4 +1,5 @@
-// A program in a process group of its own that ends with us, however we end. No shell takes part.
+// A program in a process group of its own. It ends with this process, however that ends. No shell
+// takes part.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// Texts that are meant to be sent around, such as logs and the report: they name files without the
-// folders that they lie in, which are nobody's business, unless the user has asked for them.
+// Texts that are meant to be sent around, such as logs and the report: they name files without
+// their folders, which are private, unless the user has asked for them.
 
 #pragma once
 

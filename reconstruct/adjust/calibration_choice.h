@@ -11,15 +11,16 @@ namespace velamap {
 
 struct RefinedIntrinsics {
   FreeIntrinsics free;
-  // Of the prior: a calibration that the images contradict counts less than an ordinary one.
+  // 1 sigma of the prior, as a fraction: a calibration that the images contradict counts less than
+  // an ordinary one.
   double sigma = 0.0;
 };
 
-// Frees the intrinsics of a solution that holds the calibration. Nothing unless the sum of squares
-// falls by more than the Bayesian information criterion (Schwarz 1978) and the errors that corners
-// have in common explain, or unless the images determine what they need clearly better than the
-// calibration does. Nothing without refine_calibration either, or where the options free
-// intrinsics.
+// Chooses the intrinsics to free in a solution that holds the calibration. Returns nothing unless
+// the sum of squares falls by more than the Bayesian information criterion (Schwarz 1978) and
+// correlated errors explain, and unless the images determine these intrinsics clearly better than
+// the calibration does. Returns nothing either without refine_calibration, or where the options
+// free intrinsics.
 std::optional<RefinedIntrinsics> ChooseIntrinsics(const MarkerSolution& solution);
 
 // Says how far the cameras of the solution are from their calibration: in the log where

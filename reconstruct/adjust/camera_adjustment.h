@@ -37,16 +37,16 @@ struct CalibrationAdjustment {
   std::vector<CameraModelScore> scores;
 };
 
-// Adjusts a model to find its camera as well as it can be found: that model is taken that predicts
-// unseen pictures best (camera_cross_validation.h), or the `wanted` one. Throws DataError where
+// Adjusts a model for the sake of its camera. The camera model is the one that predicts unseen
+// pictures best (camera_cross_validation.h), or the `wanted` one. Throws DataError where
 // AdjustWithMarkers() does.
 CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& options,
                                            const Layout& layout, const CornerErrors& corner_errors,
                                            Model model, std::optional<CameraModel> wanted);
 
-// The step of the focal length that a verdict on steadiness (camera_steadiness.h) names, if it is
-// real: a suspicious one is measured, for which `seed` is the model before its adjustment; without
-// a seed it counts as none.
+// Returns `step`, the step of the focal length that a verdict on steadiness (camera_steadiness.h)
+// names, if it is real. A suspicious one is measured on `seed`, the model before its adjustment;
+// without a seed it is not taken for real.
 std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           const Model* seed, const std::optional<FocalStep>& step);

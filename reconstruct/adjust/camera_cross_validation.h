@@ -25,25 +25,25 @@ struct CrossValidation {
 
 // Cross-validation (Stone, "Cross-validatory choice and assessment of statistical predictions",
 // 1974) of SIMPLE_PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV without a denominator and
-// OPENCV_FISHEYE: every fifth image is left out, camera and points are refined from the others, the
-// images that were left out get a pose each, and what then remains of their corners' errors is
-// pooled over the five divisions. The model with the smallest error is taken, where it is smaller
-// by more than chance than that of models with fewer parameters; one that folds over inside the
-// picture only where all do; or `wanted` whatever the errors say. A fisheye is tried where a camera
-// sees more than 35 degrees off its axis. All models are refined from `solution`, whose options
-// have find_camera, and judged by the same corners. Throws DataError where none can be refined, or
-// the wanted one cannot.
+// OPENCV_FISHEYE: every fifth image is left out, camera and points are refined from the others, and
+// each image that was left out gets a pose. The errors that remain at its corners are pooled over
+// the five divisions. Chooses the model with the smallest error, but one with more parameters only
+// if it is better by more than chance, and one that folds over inside the picture only if all do.
+// Chooses `wanted` whatever the errors say. A fisheye is tried where a camera sees more than 35
+// degrees off its axis. All models are refined from `solution`, whose options have find_camera, and
+// judged by the same corners. Throws DataError where none can be refined, or the wanted one cannot.
 CrossValidation CrossValidateCameraModels(const MarkerSolution& solution,
                                           std::optional<CameraModel> wanted);
 
 // The solution with the model that leaves the least residuals, whatever it predicts. Corners that
-// contradict it are outliers, and not of a lens that a simpler model cannot describe.
+// contradict even this model are outliers; those that contradict a simpler one may be right, of a
+// lens that it cannot describe.
 MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution);
 
 // 1 sigma of the parameters of each camera by the jackknife (Tukey 1958; groups of images are left
 // out in turn, up to twenty): how far the cameras of other pictures of the same kind would differ.
-// Other than the covariance of the adjustment it contains what the images have in common and what
-// the camera model leaves out.
+// Unlike the covariance of the adjustment, it contains errors that images have in common and those
+// of the camera model.
 std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& solution);
 
 }  // namespace velamap

@@ -22,11 +22,11 @@ MarkerSolution WithBestCameraModel(const MarkerSolution& solution);
 // The cameras as this model, with the prior of an unknown camera.
 void SetCameraModel(CameraModel model, MarkerSolution* solution);
 
-// The same, refined. Nothing where the model leads nowhere from here.
+// The same, refined. Nothing if the refinement fails.
 std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution solution);
 
-// Whether any camera sees more than 35 degrees off its axis. What sees less is no fisheye, whose
-// many parameters would describe nothing there.
+// Whether any camera sees more than 35 degrees off its axis. With less, a fisheye's many parameters
+// would describe nothing.
 bool SeesWideAngles(const MarkerSolution& solution);
 
 // Whether the distortion of any camera folds over inside the picture.

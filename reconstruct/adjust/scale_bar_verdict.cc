@@ -216,7 +216,7 @@ ScaleBarVerdict JudgeScaleBars(const std::vector<ScaleBar>& bars, const MarkerSt
   }
   if (std::abs(common.mean) <= kMaxChanceSigmas * sigma) return verdict;
   verdict.scale = std::exp(common.mean);
-  // The variance with which this deviation would be an ordinary one.
+  // With this variance, a deviation of one sigma explains the contradiction.
   verdict.print_scale_sigma =
       std::sqrt(std::max(std::pow(verdict.scale - 1.0, 2) - common.variance, markers.variance));
   verdict.warnings.push_back(OverruledText(common, consensus.set.size()));

@@ -6,9 +6,10 @@
 #include <map>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/principal_axes.h"
 
 namespace velamap {
 namespace {
@@ -32,25 +33,22 @@ std::map<int, std::array<Eigen::Vector3d, kNumCorners>> WholeMarkers(const Model
 
 void MeasureBend(const Model& model, const PointCovariance& points, BoardFlaws* flaws) {
   const double count = static_cast<double>(model.points3D.size());
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const auto& [point3D_id, point] : model.points3D) middle += point.x_in_world / count;
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const auto& [point3D_id, point] : model.points3D) {
-    const Eigen::Vector3d from_middle = point.x_in_world - middle;
-    scatter += from_middle * from_middle.transpose() / count;
-    for (const auto& [other_id, other] : model.points3D) {
-      flaws->extent_m = std::max(flaws->extent_m, (point.x_in_world - other.x_in_world).norm());
+  std::vector<Eigen::Vector3d> points_m;
+  for (const auto& [point3D_id, point] : model.points3D) points_m.push_back(point.x_in_world);
+  for (const Eigen::Vector3d& a : points_m) {
+    for (const Eigen::Vector3d& b : points_m) {
+      flaws->extent_m = std::max(flaws->extent_m, (a - b).norm());
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
-  const Eigen::Vector3d normal = axes.eigenvectors().col(0);
+  const PrincipalAxes axes = ComputePrincipalAxes(points_m);
+  const Eigen::Vector3d normal = axes.directions.col(0);
   double variance_m2 = 0.0;
   for (const auto& [point3D_id, point] : model.points3D) {
     flaws->max_bend_m =
-        std::max(flaws->max_bend_m, std::abs(normal.dot(point.x_in_world - middle)));
+        std::max(flaws->max_bend_m, std::abs(normal.dot(point.x_in_world - axes.mean)));
     variance_m2 += normal.dot(PointCovarianceOf(points, point3D_id) * normal) / count;
   }
-  flaws->bend_m = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
+  flaws->bend_m = std::sqrt(std::max(0.0, axes.sums_of_squares[0]) / count);
   flaws->bend_sigma_m = std::sqrt(variance_m2);
   flaws->is_flat = flaws->bend_m < kFlat * flaws->extent_m;
 }
@@ -70,7 +68,8 @@ BoardFlaws FindBoardFlaws(const Model& model, const PointCovariance& points) {
     const double height_m = 0.5 * ((x[3] - x[0]).norm() + (x[2] - x[1]).norm());
     stretch_sum += std::log(width_m / height_m);
     sides_m.push_back(0.5 * (width_m + height_m));
-    // Of the logarithm of width over height, by a side's end; its other end has the opposite.
+    // Adds the derivative of log(width / height) by one end of a side; the other end has the
+    // opposite.
     const auto add = [&gradient, id = marker_id, corners = x](std::size_t from, std::size_t to,
                                                               double by_length) {
       const Eigen::Vector3d by_end = 0.5 * by_length * (corners[to] - corners[from]).normalized();

@@ -20,7 +20,7 @@ struct PictureGrid {
   int num_columns = 0, num_rows = 0;
 
   int NumCells() const { return num_columns * num_rows; }
-  // Of the nearest cell for a position outside the picture.
+  // Index of the cell at the position, or of the nearest cell if it lies outside the picture.
   int CellOf(const Eigen::Vector2d& x_in_image_px) const;
 };
 

@@ -137,8 +137,8 @@ double EstimateStep(const std::vector<LinePoint>& points) {
 
 double SmallestStep(const std::vector<LinePoint>& points) { return NearSteps(points).front(); }
 
-bool AreAsFarAsTheLineSays(const LinePoint& a, const LinePoint& b, double step_m,
-                           double num_uneven_steps) {
+bool AreWithinSteps(const LinePoint& a, const LinePoint& b, double step_m,
+                    double num_uneven_steps) {
   return Distance(a, b) <= (Gap(a, b) + num_uneven_steps) * step_m;
 }
 
@@ -156,13 +156,12 @@ std::vector<std::size_t> FindStrayPoints(const std::vector<LinePoint>& points, d
   const auto is_confirmed = [&](std::size_t idx) {
     const LinePoint& point = points[idx];
     const auto after = std::lower_bound(way.begin(), way.end(), idx);
-    return (after != way.end() && AreAsFarAsTheLineSays(point, points[*after], step_m)) ||
-           (after != way.begin() &&
-            AreAsFarAsTheLineSays(points[*std::prev(after)], point, step_m)) ||
+    return (after != way.end() && AreWithinSteps(point, points[*after], step_m)) ||
+           (after != way.begin() && AreWithinSteps(points[*std::prev(after)], point, step_m)) ||
            (idx > 0 && !is_on_way(idx - 1) &&
-            AreAsFarAsTheLineSays(points[idx - 1], point, step_m, kUnevenInPiece)) ||
+            AreWithinSteps(points[idx - 1], point, step_m, kUnevenInPiece)) ||
            (idx + 1 < points.size() && !is_on_way(idx + 1) &&
-            AreAsFarAsTheLineSays(point, points[idx + 1], step_m, kUnevenInPiece));
+            AreWithinSteps(point, points[idx + 1], step_m, kUnevenInPiece));
   };
   std::vector<std::size_t> stray_idxs;
   for (std::size_t i = 0; i < points.size(); ++i) {

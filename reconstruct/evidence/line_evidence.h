@@ -43,8 +43,8 @@ double SmallestStep(const std::vector<LinePoint>& points);
 
 // Whether two points, given in the order of the line, are no farther apart than their places allow.
 // One of the steps may be longer by `num_uneven_steps`.
-bool AreAsFarAsTheLineSays(const LinePoint& a, const LinePoint& b, double step_m,
-                           double num_uneven_steps = 0.5);
+bool AreWithinSteps(const LinePoint& a, const LinePoint& b, double step_m,
+                    double num_uneven_steps = 0.5);
 
 // Ascending indices of the points that do not belong on the line. Empty if these would be half of
 // the points or more, because the layout is then likely to list the line wrongly. A point that its

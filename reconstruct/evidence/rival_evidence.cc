@@ -56,7 +56,7 @@ struct LineVotes {
 bool FitOnLine(const LinePoint& a, const LinePoint& b, double step_m) {
   constexpr double kFolded = 0.5;
   const bool a_is_first = a.place_on_line < b.place_on_line;
-  return AreAsFarAsTheLineSays(a_is_first ? a : b, a_is_first ? b : a, step_m) &&
+  return AreWithinSteps(a_is_first ? a : b, a_is_first ? b : a, step_m) &&
          (a.x_in_shape_m - b.x_in_shape_m).norm() >
              kFolded * step_m * std::abs(a.place_on_line - b.place_on_line);
 }

@@ -49,7 +49,7 @@ IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrins
 // `camera`, as wide as it), the principal point in the centre to 2 % of the larger side, and no
 // distortion to 30 % at the image's farthest corner by each radial parameter and to 1 % by each
 // tangential one. All parameters are free but the denominator of FULL_OPENCV, which would run away
-// with the numerator. Nothing of `camera` but model, size and focal length counts.
+// with the numerator. Depends only on the model, the size and the focal length of `camera`.
 IntrinsicsPrior UnknownCameraPrior(const Camera& camera);
 
 // 1 sigma of the relative difference of the two focal lengths of a camera that nobody calibrated:
@@ -62,11 +62,12 @@ bool HasUnnamedDistortion(const Camera& calibration);
 // The camera as the model with radial distortion that contains it, where it has none.
 Camera WithDistortionParams(const Camera& camera);
 
-// The groups of `free` that are clearly better known than by the calibration. `covariance` is that
-// of the prior's free parameters, `refined` their estimate. Judged are every focal length, both
-// coordinates of the principal point, and the radial distortion at 0.7 of the way to the image's
-// farthest corner: the sigma must be a third or less of the prior's (for the distortion, of one
-// parameter's), or of the group's change where this is larger and contradicts the prior.
+// The groups of `free` that the images determine clearly better than the calibration does.
+// `refined` is the estimate of the prior's free parameters and `covariance` its covariance. The
+// test looks at every focal length, both coordinates of the principal point, and the radial
+// distortion at 0.7 of the way to the image's farthest corner: the sigma must be at most a third of
+// the prior's (for the distortion, of one parameter's), or of the group's change where this is
+// larger and contradicts the prior.
 //
 // None where the ratio of the focal lengths changes by more than a third of the prior's sigma: the
 // pixels of a sensor keep their shape, but a rolling shutter squeezes rows.

@@ -155,13 +155,13 @@ void RemoveOutliers(const Layout& layout, GlobalRegistration* global) {
   global->noise = EstimateNoise(problem, global->solution);
   LeaveOutBlurredFrames(global);
   MarkFinalFits(problem, global->noise, &global->solution);
-  DropRest(global);
+  DropUnsupported(global);
   for (const double tolerance : {1e-3, 1e-6}) {
     AdjustMap(problem, {50, tolerance}, &global->solution);
     global->noise = EstimateNoise(problem, global->solution);
     MarkFinalFits(problem, global->noise, &global->solution);
     DropContradictions(layout, global);
-    DropRest(global);
+    DropUnsupported(global);
   }
 }
 

@@ -211,7 +211,7 @@ void LimitFrames(GlobalRegistration* global) {
   }
 }
 
-void DropRest(GlobalRegistration* global) {
+void DropUnsupported(GlobalRegistration* global) {
   const int min_num_frames =
       std::min(global->options.min_num_frames, global->solution.NumRegistered());
   for (bool changed = true; changed;) {

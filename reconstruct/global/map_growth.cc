@@ -124,7 +124,7 @@ int RegisterBatch(const MapProblem& problem, const std::vector<int>& frame_idxs,
     if (!poses[i]) continue;
     solution->cam_from_shape[static_cast<std::size_t>(candidates[i].frame_idx)] = poses[i];
     ++num_joined;
-    // One of an ambiguous pair may settle the rest.
+    // A frame that has joined may settle the other ambiguous ones.
     if (accept_ambiguous) break;
   }
   return num_joined;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "importer/geometry/alignment.h"
+#include "importer/geometry/ransac.h"
 #include "reconstruct/global/map_refinement.h"
 
 namespace velamap {
@@ -114,63 +115,54 @@ std::vector<Sim3> Candidates(const MapProblem& problem, const std::vector<View>&
   return candidates;
 }
 
-bool IsSame(const Sim3& a, const Sim3& b, double length_m) {
-  return (a.translation - b.translation).norm() < kSamePlaceInSides * length_m * a.scale &&
-         a.rotation.angularDistance(b.rotation) < kSameRotation;
-}
+// Refines a place to the views that agree with it, see RefineHypothesis() in ransac.h.
+struct PlaceConsensus {
+  using Hypothesis = PlaceHypothesis;
 
-std::vector<PlaceHypothesis> Distinct(std::vector<PlaceHypothesis> hypotheses, double length_m,
-                                      std::size_t max_count) {
-  std::stable_sort(
-      hypotheses.begin(), hypotheses.end(),
-      [](const PlaceHypothesis& a, const PlaceHypothesis& b) { return a.cost < b.cost; });
-  std::vector<PlaceHypothesis> distinct;
-  for (PlaceHypothesis& hypothesis : hypotheses) {
-    if (distinct.size() == max_count) break;
-    const bool is_new =
-        std::none_of(distinct.begin(), distinct.end(), [&](const PlaceHypothesis& other) {
-          return IsSame(other.shape_from_marker, hypothesis.shape_from_marker, length_m);
-        });
-    if (is_new) distinct.push_back(std::move(hypothesis));
+  PlaceHypothesis Score(const Sim3& shape_from_marker) const {
+    return Evaluate(problem, views, tolerance_factor, shape_from_marker);
   }
-  return distinct;
-}
-
-PlaceHypothesis Refine(const MapProblem& problem, const MapSolution& solution,
-                       const std::vector<View>& views, double tolerance_factor,
-                       PlaceHypothesis hypothesis) {
-  constexpr int kMaxRounds = 4;
-  for (int round = 0; round < kMaxRounds && !hypothesis.observation_idxs.empty(); ++round) {
-    PlaceHypothesis refined =
-        Evaluate(problem, views, tolerance_factor,
-                 RefineMarkerPlace(problem, solution, hypothesis.observation_idxs,
+  PlaceHypothesis Refine(const PlaceHypothesis& hypothesis) const {
+    if (hypothesis.observation_idxs.empty()) return hypothesis;
+    return Score(RefineMarkerPlace(problem, solution, hypothesis.observation_idxs,
                                    hypothesis.shape_from_marker));
-    if (!(refined.cost < hypothesis.cost)) break;
-    const bool is_settled = refined.observation_idxs == hypothesis.observation_idxs;
-    hypothesis = std::move(refined);
-    if (is_settled) break;
   }
-  return hypothesis;
-}
+  bool HasSameInliers(const PlaceHypothesis& a, const PlaceHypothesis& b) const {
+    return a.observation_idxs == b.observation_idxs;
+  }
+
+  const MapProblem& problem;
+  const MapSolution& solution;
+  const std::vector<View>& views;
+  double tolerance_factor;
+};
 
 std::vector<PlaceHypothesis> RankPlaces(const MapProblem& problem, const MapSolution& solution,
                                         const std::vector<View>& views, double tolerance_factor) {
   constexpr double kCoarse = 3.0;  // before candidates are refined
+  constexpr int kMaxRounds = 4;
   const double length_m =
       2 * problem.Marker(views.front().observation->marker_idx).corners_in_marker[1].x();
+  const auto is_same = [length_m](const PlaceHypothesis& a, const PlaceHypothesis& b) {
+    const Sim3 &place_a = a.shape_from_marker, &place_b = b.shape_from_marker;
+    return (place_a.translation - place_b.translation).norm() <
+               kSamePlaceInSides * length_m * place_a.scale &&
+           place_a.rotation.angularDistance(place_b.rotation) < kSameRotation;
+  };
+  const PlaceConsensus coarse{problem, solution, views, kCoarse * tolerance_factor};
+  const PlaceConsensus fine{problem, solution, views, tolerance_factor};
   std::vector<PlaceHypothesis> hypotheses;
   for (const Sim3& candidate : Candidates(problem, views)) {
-    hypotheses.push_back(Evaluate(problem, views, kCoarse * tolerance_factor, candidate));
+    hypotheses.push_back(coarse.Score(candidate));
   }
   std::vector<PlaceHypothesis> refined;
-  for (PlaceHypothesis& hypothesis : Distinct(std::move(hypotheses), length_m, kMaxRefined)) {
-    const Sim3 coarse =
-        Refine(problem, solution, views, kCoarse * tolerance_factor, std::move(hypothesis))
-            .shape_from_marker;
-    refined.push_back(Refine(problem, solution, views, tolerance_factor,
-                             Evaluate(problem, views, tolerance_factor, coarse)));
+  for (PlaceHypothesis& hypothesis :
+       DistinctHypotheses(std::move(hypotheses), is_same, kMaxRefined)) {
+    const Sim3 place =
+        RefineHypothesis(coarse, kMaxRounds, std::move(hypothesis)).shape_from_marker;
+    refined.push_back(RefineHypothesis(fine, kMaxRounds, fine.Score(place)));
   }
-  return Distinct(std::move(refined), length_m, kMaxRefined);
+  return DistinctHypotheses(std::move(refined), is_same, kMaxRefined);
 }
 
 }  // namespace

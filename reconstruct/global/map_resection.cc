@@ -155,27 +155,11 @@ RansacOptions SamplingOptions(const std::vector<KnownMarker>& known, std::uint32
   return options;
 }
 
-bool IsSame(const Rigid3& a, const Rigid3& b) {
-  return AngularDistance(a, b) < kSameRotation &&
-         (a.translation - b.translation).norm() < kSameTranslation * a.translation.norm();
-}
-
-// Keeps the best of hypotheses that are nearly the same; by ascending cost.
-std::vector<PoseHypothesis> Distinct(std::vector<PoseHypothesis> hypotheses,
-                                     std::size_t max_count) {
-  std::stable_sort(
-      hypotheses.begin(), hypotheses.end(),
-      [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.cost < b.cost; });
-  std::vector<PoseHypothesis> distinct;
-  for (PoseHypothesis& hypothesis : hypotheses) {
-    if (distinct.size() == max_count) break;
-    const bool is_new =
-        std::none_of(distinct.begin(), distinct.end(), [&hypothesis](const PoseHypothesis& other) {
-          return IsSame(other.cam_from_shape, hypothesis.cam_from_shape);
-        });
-    if (is_new) distinct.push_back(std::move(hypothesis));
-  }
-  return distinct;
+bool IsSame(const PoseHypothesis& a, const PoseHypothesis& b) {
+  const Rigid3 &pose_a = a.cam_from_shape, &pose_b = b.cam_from_shape;
+  return AngularDistance(pose_a, pose_b) < kSameRotation &&
+         (pose_a.translation - pose_b.translation).norm() <
+             kSameTranslation * pose_a.translation.norm();
 }
 
 }  // namespace
@@ -191,14 +175,15 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
   const FrameConsensus coarse(problem, known, ranking, kCoarse * tolerance_factor);
   const FrameConsensus fine(problem, known, known, tolerance_factor);
   std::vector<PoseHypothesis> refined;
-  for (PoseHypothesis& hypothesis : Distinct(Ransac(SamplingOptions(known, random_seed), coarse,
-                                                    SingleMarkerPoses(Thinned(known, kMaxSingles))),
-                                             kMaxRefined)) {
+  for (PoseHypothesis& hypothesis :
+       DistinctHypotheses(Ransac(SamplingOptions(known, random_seed), coarse,
+                                 SingleMarkerPoses(Thinned(known, kMaxSingles))),
+                          IsSame, kMaxRefined)) {
     const Rigid3 cam_from_shape =
         RefineHypothesis(coarse, kMaxRounds, std::move(hypothesis)).cam_from_shape;
     refined.push_back(RefineHypothesis(fine, kMaxRounds, fine.Score(cam_from_shape)));
   }
-  return Distinct(std::move(refined), kMaxHypotheses);
+  return DistinctHypotheses(std::move(refined), IsSame, kMaxHypotheses);
 }
 
 bool IsAmbiguous(const std::vector<PoseHypothesis>& hypotheses) {

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <set>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/global/map_adjustment.h"
 #include "reconstruct/global/map_intersection.h"
@@ -155,23 +156,13 @@ double ExplainedObservations(const MapProblem& problem, const MapSolution& solut
 }
 
 MapSolution ReversedRelief(const MapSolution& solution) {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  int num_markers = 0;
+  std::vector<Eigen::Vector3d> centers;
   for (const auto& places : solution.shape_from_marker) {
-    if (places.empty()) continue;
-    center += places.front().translation;
-    ++num_markers;
+    if (!places.empty()) centers.push_back(places.front().translation);
   }
-  if (num_markers == 0) return solution;
-  center /= num_markers;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const auto& places : solution.shape_from_marker) {
-    if (places.empty()) continue;
-    const Eigen::Vector3d offset = places.front().translation - center;
-    covariance += offset * offset.transpose();
-  }
-  const Eigen::Vector3d normal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(0);
+  if (centers.empty()) return solution;
+  const PrincipalAxes axes = ComputePrincipalAxes(centers);
+  const Eigen::Vector3d center = axes.mean, normal = axes.directions.col(0);
   const Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity() - 2 * normal * normal.transpose();
   const Eigen::DiagonalMatrix<double, 3> flip(1, 1, -1);
   MapSolution reversed = solution;

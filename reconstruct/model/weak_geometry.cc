@@ -9,6 +9,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/geometry/covariance_update.h"
 
@@ -43,8 +44,8 @@ Ellipsoid MedianEllipsoid(const PointCovariance& points) {
           Median(std::move(elongations))};
 }
 
-// The covariance where the common scale is known: an unknown one makes every ellipsoid longer in
-// the direction of the middle, which says nothing about lines of sight.
+// The covariance for a known common scale. An unknown scale makes every ellipsoid longer towards
+// the middle of the object, which says nothing about lines of sight.
 PointCovariance WithoutScale(const Model& model, const PointCovariance& points) {
   std::vector<Eigen::Vector3d> x_in_world;
   for (const Point3DId point3D_id : points.point3D_ids) {
@@ -95,22 +96,17 @@ Views DescribeViews(const Model& model) {
   for (const ModelImage& image : model.images) {
     centers.push_back(Inverse(image.cam_from_world).translation);
   }
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  const double count = static_cast<double>(model.points3D.size());
-  for (const auto& [point3D_id, point] : model.points3D) middle += point.x_in_world / count;
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const auto& [point3D_id, point] : model.points3D) {
-    const Eigen::Vector3d offset = point.x_in_world - middle;
-    scatter += offset * offset.transpose() / count;
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& [point3D_id, point] : model.points3D) points.push_back(point.x_in_world);
+  const PrincipalAxes axes = ComputePrincipalAxes(points);
+  const Eigen::Vector3d variances = axes.sums_of_squares / static_cast<double>(points.size());
   Views views;
-  views.object_extent_m = std::sqrt(scatter.trace());
-  views.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < kFlat * views.object_extent_m;
+  views.object_extent_m = std::sqrt(variances.sum());
+  views.is_flat = std::sqrt(std::max(0.0, variances[0])) < kFlat * views.object_extent_m;
   std::vector<double> distances_m;
   for (const Eigen::Vector3d& center : centers) {
-    distances_m.push_back((center - middle).norm());
-    const double angle = Angle(center - middle, axes.eigenvectors().col(0));
+    distances_m.push_back((center - axes.mean).norm());
+    const double angle = Angle(center - axes.mean, axes.directions.col(0));
     views.max_tilt_rad = std::max(views.max_tilt_rad, std::min(angle, kPi - angle));
     for (const Eigen::Vector3d& other : centers) {
       views.camera_extent_m = std::max(views.camera_extent_m, (center - other).norm());

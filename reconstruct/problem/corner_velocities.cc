@@ -64,7 +64,7 @@ std::optional<Eigen::Vector2d> MeasureVelocity(const FrameWindow& window,
 
 struct AffineField {
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
-  Eigen::Vector2d value_px_s = Eigen::Vector2d::Zero();  // at the center
+  Eigen::Vector2d value_px_s = Eigen::Vector2d::Zero();  // at the centre
   Eigen::Matrix2d gradient_1_s = Eigen::Matrix2d::Zero();
 
   Eigen::Vector2d At(const Eigen::Vector2d& x_in_image_px) const {

@@ -39,23 +39,23 @@ struct MarkerAdjustmentOptions {
   // a rendered sail 0.031 +- 0.006 px are found where the truth is 0.013 px, and the scale gets
   // worse.
   bool estimate_inset = false;
-  // What is refined has the calibration as its prior. Of the extra parameters only those are
-  // refined that the calibration names.
+  // The calibration is the prior of what is refined. Only those extra parameters are refined that
+  // it names.
   bool refine_focal_length = false;
   bool refine_principal_point = false;
   bool refine_extra_params = false;
-  // Where none of these is set: what the images determine clearly better than the calibration is
-  // refined if it explains the corners significantly better.
+  // If none of these is set: refine what the images determine clearly better than the calibration,
+  // if that explains the corners significantly better.
   bool refine_calibration = true;
   // As a fraction, see MakeIntrinsicsPrior.
   double intrinsics_sigma = 0.01;
-  // The cameras are not known: all parameters are refined, from any start, and their prior is what
-  // holds for any camera (UnknownCameraPrior) instead of a calibration.
+  // The cameras are unknown: refine all parameters, with the prior of an unknown camera
+  // (UnknownCameraPrior) in place of the calibration.
   bool find_camera = false;
   // The rows of a frame are read one after another over this time, while the corners move as the
   // frames before and after say. Negative: from the bottom up. 0: unknown.
   double rolling_shutter_s = 0.0;
-  // Where it is unknown: it is estimated if the frames show it.
+  // Estimate that time where it is unknown and the frames show it.
   bool estimate_rolling_shutter = true;
   int max_num_iterations = 100;
   int min_track_length = 2;

@@ -129,6 +129,30 @@ void ReturnToCentralFrame(int central_idx, RegistrationState* state) {
   for (auto& [marker_id, points] : state->shape) points = Transform(central_from_shape, points);
 }
 
+// Chooses the central frame unless the options name it, and registers the others around it.
+CentralFrame RegisterFromCentralFrame(const std::vector<const DatabaseImage*>& ordered,
+                                      bool time_order, RegistrationState* state,
+                                      std::vector<std::string>* notes) {
+  const RegistrationOptions& options = state->options;
+  std::optional<CentralFrame> central;
+  if (!options.central_frame.empty()) {
+    central = CentralFrame{FindCentralFrame(ordered, options), "named by option"};
+  }
+  if (!time_order) {
+    if (!central) central = ChooseCentralFrame(state->frames);
+    GrowFromCentralFrame(central->frame_idx, state);
+    return *central;
+  }
+  FrameSearchOptions search{options.thesis.num_frames, options.thesis.skip,
+                            options.thesis.neighborhood, !options.thesis.IsExact()};
+  if (options.thesis.num_frames > 0 && !options.thesis.IsExact()) {
+    search = FitSearch(state->frames, central, search, notes);
+  }
+  if (!central) central = ChooseCentralVideoFrame(state->frames, search);
+  SearchInTimeOrder(central->frame_idx, search, state, notes);
+  return *central;
+}
+
 }  // namespace
 
 Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& layout,
@@ -145,30 +169,12 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
   }
 
   Registration registration;
-  FrameSearchOptions search{options.thesis.num_frames, options.thesis.skip,
-                            options.thesis.neighborhood, !options.thesis.IsExact()};
-  std::optional<CentralFrame> central;
-  if (!options.central_frame.empty()) {
-    central = CentralFrame{FindCentralFrame(ordered, options), "named by option"};
-  }
-  if (time_order) {
-    if (options.thesis.num_frames > 0 && !options.thesis.IsExact()) {
-      search = FitSearch(state.frames, central, search, &registration.notes);
-    }
-    if (!central) central = ChooseCentralVideoFrame(state.frames, search);
-  } else if (!central) {
-    central = ChooseCentralFrame(state.frames);
-  }
-
-  if (time_order) {
-    SearchInTimeOrder(central->frame_idx, search, &state, &registration.notes);
-  } else {
-    GrowFromCentralFrame(central->frame_idx, &state);
-  }
-  const std::size_t central_idx = static_cast<std::size_t>(central->frame_idx);
+  const CentralFrame central =
+      RegisterFromCentralFrame(ordered, time_order, &state, &registration.notes);
+  const std::size_t central_idx = static_cast<std::size_t>(central.frame_idx);
   registration.central_image_id = state.frames[central_idx].image_id;
   registration.central_image_name = state.frames[central_idx].image_name;
-  registration.central_reason = central->reason;
+  registration.central_reason = central.reason;
   if (!options.thesis.IsExact()) RefineShape(&state);
   if (!state.alignments[central_idx] || state.NumRegistered() < min_num_registered) {
     throw DataError("no image shares enough markers with the central image " +
@@ -176,7 +182,7 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
                     std::to_string(options.min_num_inliers) +
                     " markers must be seen together in two images");
   }
-  ReturnToCentralFrame(central->frame_idx, &state);
+  ReturnToCentralFrame(central.frame_idx, &state);
   for (std::size_t idx = 0; idx < state.frames.size(); ++idx) {
     registration.frames.push_back(PlaceFrame(state, idx));
     if (!state.alignments[idx]) {

@@ -23,7 +23,7 @@ AdjustmentUncertainty ExampleUncertainty(const Model& model);
 Eigen::MatrixXd DenseCovariance(const PointCovariance& covariance);
 
 // Samples shapes whose corners scatter about those of `shape` with `covariance`, computes their
-// centers, and passes them to `visit`.
+// centres, and passes them to `visit`.
 void SampleShapes(const MarkerShape& shape, const PointCovariance& covariance, int num_samples,
                   const std::function<void(const MarkerShape&)>& visit);
 

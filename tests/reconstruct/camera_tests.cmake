@@ -1,8 +1,8 @@
 # Cameras that are found from the pictures.
 velamap_test(NAME reconstruct_camera_test LABEL unit
   SOURCES
-    camera/camera_calibration_test.cc
-    camera/camera_search_test.cc
+    camera_calibration_test.cc
+    camera_search_test.cc
     camera/camera_steadiness_test.cc
     camera/focal_evidence_test.cc
     model/turned_model_test.cc

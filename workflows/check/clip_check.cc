@@ -193,8 +193,8 @@ class Checker {
     importer.camera_path = options_.camera_path;
     importer.layout = layout;
     importer.detection = detection;
-    // The estimate takes longer than all else, and only the precision needs it: without it, the
-    // sides of the markers contradict the layout.
+    // The estimate takes longer than everything else. Only the precision needs it: without it, the
+    // sides of the markers would contradict the layout.
     importer.detection.estimate_formation = detection.estimate_formation && MeasuresPrecision();
     importer.num_threads = options_.num_threads;
     importer.video = video;

@@ -22,6 +22,7 @@
 #include "workflows/commands/commands.h"
 #include "workflows/options/sail_options.h"
 #include "workflows/options/shared_options.h"
+#include "workflows/run/adjustment.h"
 #include "workflows/run/logging.h"
 #include "workflows/run/pipeline.h"
 #include "workflows/run/run_summary.h"
@@ -34,17 +35,13 @@
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  MarkerOptions markers;
-  GeneralOptions general;
+struct Options : CommandOptions {
   MarkerImporterOptions importer;
   RegistrationOptions registration;
   AdjustmentOptions adjustment;
   ShapeExporterOptions exporter;
   SurfaceFileOptions surface;
   Arguments arguments;  // as they were typed, for the report
-  Preset preset;
   bool full_paths = false;
   SummaryFormat summary = SummaryFormat::kText;
 };
@@ -86,13 +83,8 @@ CommandSyntax Declare(Options* options) {
 
 // Checks everything that can be checked without touching the workspace.
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   ShowFolders(options->full_paths);
-  options->importer.detection.Check();
-  options->importer.video.Check();
-  options->registration.random_seed = options->general.random_seed;
-  options->registration.num_threads = options->general.num_threads;
-  options->registration.Check();
+  CompleteRegistration(options->general, &options->registration);
   if (options->paths.camera_path.empty()) {
     if (!options->adjustment.UsesMarkers()) {
       throw InputError(
@@ -103,15 +95,10 @@ void Validate(Options* options) {
   }
   options->adjustment.Complete(options->general.num_threads);
   CompleteSailOptions(options->surface, &options->exporter);
-  options->importer.layout = LoadLayout(options->markers, true);
+  CompleteImporter(*options, &options->importer);
   CheckFrameChoice(options->exporter.frame, options->importer.layout);
-  options->importer.camera = LoadCalibration(options->paths);
-  options->importer.camera_path = options->paths.camera_path;
-  options->importer.prior_shape = LoadPriorShape(options->paths.prior_shape_path);
-  options->importer.image_path = options->paths.image_path;
   options->importer.allowed_frames = options->importer.video;
   options->importer.video = NarrowToReach(options->importer.video, options->registration);
-  options->importer.num_threads = options->general.num_threads;
   if (options->adjustment.UsesColmap()) CheckColmap(options->adjustment.colmap.colmap_path);
 }
 

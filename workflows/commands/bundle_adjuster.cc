@@ -12,19 +12,15 @@
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
-#include "workflows/run/pipeline.h"
+#include "workflows/run/adjustment.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
 
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  GeneralOptions general;
-  MarkerOptions markers;
+struct Options : CommandOptions {
   AdjustmentOptions adjustment;
-  Preset preset;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -36,10 +32,8 @@ CommandSyntax Declare(Options* options) {
             {ModelInputOption(paths),
              Required(PathOption("output_path", PathUse::kWritesFolder, &paths->output_path,
                                  "folder of the adjusted model")),
-             BesideIfLeftOut(PathOption("log_path", PathUse::kWritesFile, &paths->log_path,
-                                        "COLMAP's output; left out: colmap.log beside output_path"),
-                             &paths->output_path, "colmap.log"),
-             BackendOption(&options->adjustment.backend), PresetOption(&options->preset),
+             ColmapLogOption(paths), BackendOption(&options->adjustment.backend),
+             PresetOption(&options->preset),
              Common(PathOption(
                  "database_path", PathUse::kReadsFile, &paths->database_path,
                  "database of the model's images, for the sigma and motion of each corner "
@@ -52,7 +46,6 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   LogPreset(options->preset);
   options->adjustment.Complete(options->general.num_threads);
 }

@@ -17,12 +17,9 @@ namespace {
 
 enum class WantedModel { kAuto, kPinhole, kSimpleRadial, kRadial, kOpenCV, kFullOpenCV, kFisheye };
 
-struct Options {
-  PathOptions paths;
+struct Options : CommandOptions {
   std::string report_path;
-  MarkerOptions markers;
   WantedModel camera_model = WantedModel::kAuto;
-  GeneralOptions general;
   BoardCalibrationOptions calibration;
 };
 
@@ -79,16 +76,13 @@ std::optional<CameraModel> ModelOf(WantedModel wanted) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   BoardCalibrationOptions& calibration = options->calibration;
   calibration.detection.Check();
   calibration.video.Check();
   calibration.image_path = options->paths.image_path;
   calibration.calibration.camera_model = ModelOf(options->camera_model);
   calibration.calibration.num_threads = options->general.num_threads;
-  if (HasMarkerOptions(options->markers) || !options->markers.dictionary.empty()) {
-    calibration.layout = LoadLayout(options->markers, true);
-  }
+  calibration.layout = LoadGivenLayout(options->markers, true);
 }
 
 void Print(const CameraCalibration& calibration, std::ostream& out) {

@@ -16,12 +16,8 @@
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  GeneralOptions general;
-  MarkerOptions markers;
+struct Options : CommandOptions {
   CentralFrameSweepOptions sweep;
-  Preset preset;
 };
 
 // The options of the registration but for the central frame, of which the sweep tries many.
@@ -60,9 +56,7 @@ CommandSyntax Declare(Options* options) {
              BackendOption(&sweep->adjustment.backend),
              ScaleOption(&sweep->scale_by),
              PresetOption(&options->preset),
-             BesideIfLeftOut(PathOption("log_path", PathUse::kWritesFile, &paths->log_path,
-                                        "COLMAP's output; left out: colmap.log beside output_path"),
-                             &paths->output_path, "colmap.log")}},
+             ColmapLogOption(paths)}},
            DescribeOptions(&options->markers, false),
            RegistrationGroup(&sweep->registration),
            DescribeOptions(&sweep->adjustment.colmap),
@@ -72,13 +66,10 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   LogPreset(options->preset);
   CentralFrameSweepOptions& sweep = options->sweep;
   sweep.database_path = options->paths.database_path;
-  sweep.registration.random_seed = options->general.random_seed;
-  sweep.registration.num_threads = options->general.num_threads;
-  sweep.registration.Check();
+  CompleteRegistration(options->general, &sweep.registration);
   sweep.adjustment.Complete(options->general.num_threads);
   sweep.log_path = options->paths.log_path;
   if (sweep.adjustment.UsesColmap()) CheckColmap(sweep.adjustment.colmap.colmap_path);

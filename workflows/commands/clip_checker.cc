@@ -15,10 +15,7 @@
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  MarkerOptions markers;
-  GeneralOptions general;
+struct Options : CommandOptions {
   ClipCheckOptions check;
 };
 
@@ -45,15 +42,12 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   ClipCheckOptions& check = options->check;
   check.detection.Check();
   check.video.Check();
   check.image_path = options->paths.image_path;
   check.num_threads = options->general.num_threads;
-  if (HasMarkerOptions(options->markers) || !options->markers.dictionary.empty()) {
-    check.layout = LoadLayout(options->markers, true);
-  }
+  check.layout = LoadGivenLayout(options->markers, true);
   check.camera = LoadCalibration(options->paths);
   check.camera_path = options->paths.camera_path;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "workflows/options/option_parser.h"
+#include "workflows/run/logging.h"
 
 namespace velamap {
 
@@ -20,12 +21,13 @@ struct Command {
   std::function<void(const Arguments& arguments)> run;  // `arguments` as they were typed
 };
 
-// The command whose options are `options`: declared at once; when it runs, validated and used. The
-// command keeps them.
+// The command whose options are `options`: declared at once; when it runs, validated and used, at
+// the log level that they name. The command keeps them.
 template <typename Options>
 Command MakeCommand(const std::shared_ptr<Options>& options, CommandSyntax (*declare)(Options*),
                     void (*validate)(Options*), void (*run)(const Options&)) {
   return {declare(options.get()), [=](const Arguments&) {
+            SetLogLevel(options->general.log_level);
             validate(options.get());
             run(*options);
           }};

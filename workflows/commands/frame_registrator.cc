@@ -17,12 +17,8 @@
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  MarkerOptions markers;
-  GeneralOptions general;
+struct Options : CommandOptions {
   RegistrationOptions registration;
-  Preset preset;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -48,11 +44,8 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   LogPreset(options->preset);
-  options->registration.random_seed = options->general.random_seed;
-  options->registration.num_threads = options->general.num_threads;
-  options->registration.Check();
+  CompleteRegistration(options->general, &options->registration);
 }
 
 void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) {

@@ -40,7 +40,6 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   options->print.seed = static_cast<std::uint32_t>(options->general.random_seed);
   if (!options->print.layout_path.empty()) {
     options->print.layout = ReadLayout(options->print.layout_path);

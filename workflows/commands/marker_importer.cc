@@ -13,12 +13,8 @@
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  MarkerOptions markers;
-  GeneralOptions general;
+struct Options : CommandOptions {
   MarkerImporterOptions importer;
-  Preset preset;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -44,19 +40,11 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   LogPreset(options->preset);
   MarkerImporterOptions& importer = options->importer;
-  importer.detection.Check();
-  importer.video.Check();
-  importer.layout = LoadLayout(options->markers, true);
-  importer.camera = LoadCalibration(options->paths);
-  importer.camera_path = options->paths.camera_path;
-  importer.prior_shape = LoadPriorShape(options->paths.prior_shape_path);
-  importer.image_path = options->paths.image_path;
+  CompleteImporter(*options, &importer);
   importer.database_path = options->paths.database_path;
   importer.frame_output_path = options->paths.frame_output_path;
-  importer.num_threads = options->general.num_threads;
 }
 
 void Print(const ImportReport& report, const PathOptions& paths, std::ostream& out) {

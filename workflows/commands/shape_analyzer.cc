@@ -19,10 +19,7 @@
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  MarkerOptions markers;
-  GeneralOptions general;
+struct Options : CommandOptions {
   bool part_planes = false;
   std::string csv_path;
   std::string json_path;
@@ -35,8 +32,7 @@ CommandSyntax Declare(Options* options) {
       "judges a shape by its markers, its images and a reference",
       "--shape_path shape --layout_path layout.yml --input_path sparse/0",
       {{"Input and output",
-        {Required(PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
-                             "shape.csv, or the folder that holds it")),
+        {ShapeInputOption(paths),
          Common(PathOption("input_path", PathUse::kReadsModel, &paths->input_path,
                            "folder of the COLMAP model that the shape is from; for reprojection "
                            "errors")),
@@ -54,7 +50,6 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   const PathOptions& paths = options->paths;
   if (!HasMarkerOptions(options->markers) && paths.reference_path.empty() &&
       paths.input_path.empty() && !options->part_planes) {
@@ -104,8 +99,7 @@ ModelOfShape LoadModel(const MarkerShape& shape, const PathOptions& paths) {
 
 MetricsReport Analyze(const Options& options) {
   const MarkerShape shape = ReadShapeCsv(ShapeFile(options.paths.shape_path));
-  std::optional<Layout> layout;
-  if (HasMarkerOptions(options.markers)) layout = LoadLayout(options.markers, false);
+  const std::optional<Layout> layout = LoadGivenLayout(options.markers, false);
   const ModelOfShape source = LoadModel(shape, options.paths);
   const PointCovariance* covariance = source.Covariance();
   MetricsReport report;

@@ -26,9 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
-  PathOptions paths;
-  GeneralOptions general;
+struct Options : CommandOptions {
   AlignmentOptions alignment;
   MeshReadOptions mesh;
   std::string layout_path;
@@ -49,8 +47,7 @@ OptionGroup InputGroup(Options* options) {
   PathOptions* paths = &options->paths;
   return {
       "Input",
-      {Required(PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
-                           "shape.csv, or the folder that holds it")),
+      {ShapeInputOption(paths),
        Required(PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
                            "what the shape is compared with: shape.csv or its folder, or a surface "
                            "as .ply, .stl, .obj, .step or .iges")),
@@ -114,7 +111,6 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   if (!options->surface_path.empty() && options->layout_path.empty()) {
     throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
   }

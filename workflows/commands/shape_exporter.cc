@@ -9,7 +9,6 @@
 #include "workflows/commands/commands.h"
 #include "workflows/options/sail_options.h"
 #include "workflows/options/shared_options.h"
-#include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
 #include "workflows/run/version.h"
@@ -17,13 +16,9 @@
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  MarkerOptions markers;
-  GeneralOptions general;
+struct Options : CommandOptions {
   ShapeExporterOptions exporter;
   SurfaceFileOptions surface;
-  Preset preset;
 };
 
 CommandSyntax Declare(Options* options) {
@@ -52,7 +47,6 @@ CommandSyntax Declare(Options* options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   LogPreset(options->preset);
   if (options->paths.output_path.empty() && options->paths.shape_path.empty()) {
     throw InputError(

@@ -23,13 +23,10 @@
 namespace velamap {
 namespace {
 
-struct Options {
-  PathOptions paths;
-  MarkerOptions markers;
+struct Options : CommandOptions {
   Arrangement arrangement = Arrangement::kSail;
   SailPlacementOptions sail;
   GridPlacementOptions grid;
-  GeneralOptions general;
   ShootPlanOptions plan;
   Layout layout;
 };
@@ -54,7 +51,7 @@ CommandSyntax Declare(Options* options) {
                            "earlier run left it; left out: none")),
          ChoiceOption("Plan.surface", &options->arrangement,
                       {{Arrangement::kSail, "sail"}, {Arrangement::kGrid, "grid"}},
-                      "that the markers are on, where marker_generator would place them")}},
+                      "what the markers are on, placed as marker_generator places them")}},
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->plan),
        DescribeOptions(&options->sail),
@@ -68,7 +65,6 @@ void CheckCamera(const Options& options) {
 }
 
 void Validate(Options* options) {
-  SetLogLevel(options->general.log_level);
   options->plan.seed = static_cast<std::uint32_t>(options->general.random_seed);
   options->plan.num_threads = options->general.num_threads;
   options->plan.Check();

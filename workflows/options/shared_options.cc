@@ -56,6 +56,17 @@ Option ModelInputOption(PathOptions* paths) {
                              "folder of the COLMAP model to read"));
 }
 
+Option ShapeInputOption(PathOptions* paths) {
+  return Required(PathOption("shape_path", PathUse::kReadsShape, &paths->shape_path,
+                             "shape.csv, or the folder that holds it"));
+}
+
+Option ColmapLogOption(PathOptions* paths) {
+  return BesideIfLeftOut(PathOption("log_path", PathUse::kWritesFile, &paths->log_path,
+                                    "COLMAP's output; left out: colmap.log beside output_path"),
+                         &paths->output_path, "colmap.log");
+}
+
 Option BackendOption(AdjustmentBackend* backend) {
   return Common(
       ChoiceOption("backend", backend,
@@ -107,7 +118,8 @@ OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary) {
 }
 
 bool HasMarkerOptions(const MarkerOptions& options) {
-  return !options.layout_path.empty() || options.marker_length_m.has_value();
+  return !options.layout_path.empty() || options.marker_length_m.has_value() ||
+         !options.dictionary.empty();
 }
 
 Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
@@ -125,6 +137,11 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
                                  with_dictionary ? " and --dictionary" : ""));
   }
   return MakeLayout(options.dictionary, *options.marker_length_m);
+}
+
+std::optional<Layout> LoadGivenLayout(const MarkerOptions& options, bool with_dictionary) {
+  if (!HasMarkerOptions(options)) return std::nullopt;
+  return LoadLayout(options, with_dictionary);
 }
 
 std::string ShapeFile(const std::string& path) {
@@ -154,6 +171,23 @@ PriorShape LoadPriorShape(const std::string& prior_shape_path) {
                     file));
   }
   return prior_shape;
+}
+
+void CompleteImporter(const CommandOptions& options, MarkerImporterOptions* importer) {
+  importer->detection.Check();
+  importer->video.Check();
+  importer->layout = LoadLayout(options.markers, true);
+  importer->camera = LoadCalibration(options.paths);
+  importer->camera_path = options.paths.camera_path;
+  importer->prior_shape = LoadPriorShape(options.paths.prior_shape_path);
+  importer->image_path = options.paths.image_path;
+  importer->num_threads = options.general.num_threads;
+}
+
+void CompleteRegistration(const GeneralOptions& options, RegistrationOptions* registration) {
+  registration->random_seed = options.random_seed;
+  registration->num_threads = options.num_threads;
+  registration->Check();
 }
 
 }  // namespace velamap

@@ -9,9 +9,12 @@
 #include "importer/camera/camera.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
+#include "importer/marker_importer.h"
+#include "reconstruct/registration/registration_options.h"
 #include "workflows/options/option_parser.h"
+#include "workflows/options/preset.h"
+#include "workflows/run/adjustment.h"
 #include "workflows/run/logging.h"
-#include "workflows/run/pipeline.h"
 
 namespace velamap {
 
@@ -44,6 +47,14 @@ struct MarkerOptions {
   std::optional<double> marker_length_m;
 };
 
+// What most commands have; the options of a command derive from it.
+struct CommandOptions {
+  PathOptions paths;
+  MarkerOptions markers;
+  GeneralOptions general;
+  Preset preset;
+};
+
 Option Required(Option option);
 
 Option ImagePathOption(PathOptions* paths);
@@ -53,6 +64,8 @@ Option PriorShapePathOption(PathOptions* paths);
 Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& description);
 Option ImportAnewOption(MarkerImporterOptions* importer);
 Option ModelInputOption(PathOptions* paths);
+Option ShapeInputOption(PathOptions* paths);
+Option ColmapLogOption(PathOptions* paths);
 Option BackendOption(AdjustmentBackend* backend);
 Option ScaleOption(ScaleMethod* scale_by);
 
@@ -60,7 +73,7 @@ OptionGroup DescribeOptions(GeneralOptions* options);
 // A command that detects nothing has no use for a dictionary.
 OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary);
 
-// Whether any option says how large the markers are.
+// Whether any option says what the markers are.
 bool HasMarkerOptions(const MarkerOptions& options);
 
 // Nothing without a path. Throws InputError where ReadCalibration() does.
@@ -70,11 +83,19 @@ std::optional<Camera> LoadCalibration(const PathOptions& paths);
 // needed) is given, and where ReadLayout() does.
 Layout LoadLayout(const MarkerOptions& options, bool with_dictionary);
 
+// The same; nothing where no option says what the markers are.
+std::optional<Layout> LoadGivenLayout(const MarkerOptions& options, bool with_dictionary);
+
 // `path`, or the shape.csv in it if it is a folder.
 std::string ShapeFile(const std::string& path);
 
 // Reads the whole markers of an earlier shape; none for an empty path. Throws InputError for a file
 // that is not a shape.csv or has no whole marker.
 PriorShape LoadPriorShape(const std::string& prior_shape_path);
+
+// Once the options are set: completes those of a stage by what the command's options and the files
+// that they name say, and checks them. Throws InputError where a file or a value is bad.
+void CompleteImporter(const CommandOptions& options, MarkerImporterOptions* importer);
+void CompleteRegistration(const GeneralOptions& options, RegistrationOptions* registration);
 
 }  // namespace velamap

@@ -18,40 +18,39 @@ OptionGroup DescribeOptions(ShootPlanOptions* options) {
   return {
       "Plan",
       {Common({"field_of_view", &options->field_of_view_deg, "deg",
-               "from the left border of the picture to the right; replaces --camera_path",
+               "angle from the left border of the picture to the right; replaces --camera_path",
                FromTo(0.1, 200)}),
        Common(ChoiceOption(
            "lens", &options->lens, {{LensMode::kLinear, "linear"}, {LensMode::kWide, "wide"}},
            "with --field_of_view: linear keeps straight lines straight; wide bends them, "
            "as an action camera's")),
-       Common({"width", &options->width_px, "px", "of the picture, with --field_of_view",
+       Common({"width", &options->width_px, "px", "width of the picture, with --field_of_view",
                FromTo(320, 20000)}),
-       Common({"height", &options->height_px, "px", "of the picture, with --field_of_view",
+       Common({"height", &options->height_px, "px", "height of the picture, with --field_of_view",
                FromTo(240, 20000)}),
        Common({"Plan.distance", &options->distance_m, "m",
-               "of the camera from the middle of the markers; left out: as near as the picture "
-               "holds them",
+               "distance of the camera from the middle of the markers; left out: as near as the "
+               "picture holds them",
                FromTo(0.01, 10000)}),
-       {"Plan.arc", &options->arc_deg, "deg", "that the camera goes around the markers",
+       {"Plan.arc", &options->arc_deg, "deg", "angle by which the camera goes around the markers",
         FromTo(0, 160)},
        {"Plan.height", &options->height_m, "m",
-        "of the camera over the lowest marker; left out: 1, or the middle of the markers if that "
-        "is "
-        "lower",
+        "height of the camera over the lowest marker; left out: 1, or the middle of the markers if "
+        "that is lower",
         FromTo(-100, 1000)},
        {"Plan.num_views", &options->num_views, "frames",
-        "that the adjustment uses, evenly along the arc", FromTo(2, 400)},
-       {"Plan.speed", &options->speed_m_s, "m/s", "of the camera against the markers; left out: 1",
-        FromTo(0, 100)},
+        "views that the adjustment uses, evenly along the arc", FromTo(2, 400)},
+       {"Plan.speed", &options->speed_m_s, "m/s",
+        "speed of the camera against the markers; left out: 1", FromTo(0, 100)},
        Common({"Plan.speed_knots", &options->speed_knots, "knots", "replaces --Plan.speed",
                FromTo(0, 200)}),
        {"Plan.turn_rate", &options->turn_rate_deg_s, "deg/s",
-        "of the camera, by hand and waves, while the shutter is open", FromTo(0, 1000)},
+        "rotation of the camera, by hand and waves, while the shutter is open", FromTo(0, 1000)},
        {"Plan.corner_sigma", &options->corner_sigma_px, "px",
         "1 sigma of a corner's coordinate on a marker of 20 px", FromTo(0.001, 5)},
        {"Plan.camber", &options->camber, "fraction", "depth of the planned sail, part of its chord",
         FromTo(0, 0.4)},
-       {"Plan.twist", &options->twist_deg, "deg", "of the planned sail, from foot to head",
+       {"Plan.twist", &options->twist_deg, "deg", "twist of the planned sail, from foot to head",
         FromTo(-60, 60)}}};
 }
 

@@ -11,12 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
 #include "exporters/shape/shape_metrics.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/registration/registration_options.h"
 #include "reconstruct/thesis/posed_images.h"
-#include "workflows/run/pipeline.h"
+#include "workflows/run/adjustment.h"
 #include "workflows/run/stage_times.h"
 
 namespace velamap {

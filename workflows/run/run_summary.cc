@@ -96,11 +96,8 @@ void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
                surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : shape.freeform.surfaces) {
-    const FreeformSurface& surface = part.surface;
-    fmt::print(out, "surface: {}, {:.4g} m2, ", part.part.empty() ? "all markers" : part.part,
-               surface.area_m2);
-    if (surface.volume_m3) fmt::print(out, "closed, {:.4g} m3, ", *surface.volume_m3);
-    fmt::print(out, "{:.2g} mm RMS from the corners\n", kMmPerM * surface.distance_m.rms);
+    fmt::print(out, "surface: {}, {}, {:.2g} mm RMS from the corners\n", ShownName(part.part),
+               SizeText(part.surface), kMmPerM * part.surface.distance_m.rms);
   }
   for (const auto* notes : {&shape.sail.surface_notes, &shape.freeform.notes}) {
     for (const std::string& note : *notes) fmt::print(out, "surface: {}\n", note);

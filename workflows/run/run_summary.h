@@ -8,6 +8,7 @@
 #include "exporters/formats/metrics_report.h"
 #include "exporters/report/verdict.h"
 #include "exporters/shape_exporter.h"
+#include "workflows/run/adjustment.h"
 #include "workflows/run/pipeline.h"
 #include "workflows/run/workspace.h"
 

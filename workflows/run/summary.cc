@@ -9,10 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <spdlog/spdlog.h>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
+#include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -65,16 +66,6 @@ std::vector<Eigen::Vector3d> AllCorners(const MarkerShape& shape) {
 }
 
 // Columns are axes of unit length.
-Eigen::Matrix3d PrincipalAxes(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) mean += point / static_cast<double>(points.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    scatter += (point - mean) * (point - mean).transpose();
-  }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
-}
-
 Eigen::Matrix3d MarkerAxes(const ShapeMarker& marker) {
   const Eigen::Vector3d normal = MarkerNormal(marker);
   const Eigen::Vector3d side = *marker.x_in_shape_m[2] - *marker.x_in_shape_m[1];
@@ -130,12 +121,9 @@ void PrintSail(const ShapeExportReport& report, std::ostream& out) {
                surface.area_m2, 1e3 * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : report.freeform.surfaces) {
-    const FreeformSurface& surface = part.surface;
-    fmt::print(out, "surface: {}; {:.4g} m2, ", part.part.empty() ? "all markers" : part.part,
-               surface.area_m2);
-    if (surface.volume_m3) fmt::print(out, "closed, {:.4g} m3, ", *surface.volume_m3);
-    fmt::print(out, "corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
-               1e3 * surface.distance_m.rms, 1e3 * surface.rms_sigma_m);
+    fmt::print(out, "surface: {}; {}, corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
+               ShownName(part.part), SizeText(part.surface), 1e3 * part.surface.distance_m.rms,
+               1e3 * part.surface.rms_sigma_m);
   }
   for (const auto* notes : {&report.sail.surface_notes, &report.freeform.notes}) {
     for (const std::string& note : *notes) fmt::print(out, "surface_note: {}\n", note);
@@ -170,7 +158,7 @@ std::string ErrorText(const Statistics& statistics) {
 Eigen::Vector3d BoundingBox(const MarkerShape& shape) {
   const std::vector<Eigen::Vector3d> points = AllCorners(shape);
   if (points.empty()) return Eigen::Vector3d::Zero();
-  std::vector<Eigen::Matrix3d> candidates = {PrincipalAxes(points)};
+  std::vector<Eigen::Matrix3d> candidates = {ComputePrincipalAxes(points).directions};
   for (const ShapeMarker& marker : shape.markers) {
     if (marker.IsWhole()) candidates.push_back(MarkerAxes(marker));
   }
@@ -217,6 +205,14 @@ std::string ShellQuote(const std::string& text) {
 void LogContradictions(const ShapeExportReport& report) {
   for (const std::string& warning : ScaleWarnings(report.audit)) spdlog::warn(warning);
   for (const std::string& warning : KnownPointWarnings(report.known_points)) spdlog::warn(warning);
+}
+
+void WarnOfMissingSections(const SectionReport& sections) {
+  for (const MissingSection& missing : sections.missing) {
+    // What the layout alone decides is said, but is no reason to check this clip.
+    spdlog::log(missing.is_by_layout ? spdlog::level::info : spdlog::level::warn,
+                "no section {} of {}: {}", missing.name, missing.part, missing.reason);
+  }
 }
 
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout) {

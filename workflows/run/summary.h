@@ -38,6 +38,9 @@ std::string ShellQuote(const std::string& text);
 // Logs which measured distances and known points contradict the shape.
 void LogContradictions(const ShapeExportReport& report);
 
+// Warns of lines and heights that have no section, with the reason.
+void WarnOfMissingSections(const SectionReport& sections);
+
 // What the report shows of an exported shape; refers to both. Without log, title and origin.
 ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout);
 

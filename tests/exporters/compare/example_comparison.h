@@ -16,11 +16,11 @@ namespace velamap {
 // Sail: lines h1..h5 of six markers each, 11..16 to 51..56; hull, the reference part: 120..125.
 Layout BoatLayout();
 
-// Markers on the surface of the sail; x aft, y to leeward, z up, m. Corners and centers have a
+// Markers on the surface of the sail; x aft, y to leeward, z up, m. Corners and centres have a
 // sigma if `sigma_m` is positive.
 MarkerShape BoatShape(double sigma_m = 0.0);
 
-// The surface of the sail's markers up to `margin_m` beyond the outer centers.
+// The surface of the sail's markers up to `margin_m` beyond the outer centres.
 TriangleMesh SailMesh(double margin_m = 0.3);
 
 MarkerShape Moved(const Rigid3& b_from_a, MarkerShape shape);

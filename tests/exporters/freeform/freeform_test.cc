@@ -276,7 +276,8 @@ TEST(FreeformShape, ALayoutWithoutPartsIsOneSurface) {
   absurd.edge_length_mm = 1e-3;
   const FreeformShape refused = ComputeFreeform(shape, layout, nullptr, absurd);
   EXPECT_THAT(refused.surfaces, IsEmpty());
-  EXPECT_THROW(refused.ThrowSurfaceError(), InputError);
+  ASSERT_TRUE(refused.surface_error);
+  EXPECT_THROW(std::rethrow_exception(refused.surface_error), InputError);
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ TEST_F(ReportData, HistogramsCountAllMarkersAndCorners) {
 TEST_F(ReportData, EllipsoidsHaveTheCovarianceOfTheCentre) {
   ReportExample example = example_;
   const int marker_id = example.shape.markers.front().marker_id;
-  // All corners have the same error, so that the center has their covariance.
+  // All corners have the same error, so that the centre has their covariance.
   AdjustmentUncertainty uncertainty;
   Eigen::Matrix3d factor;
   factor << 3e-3, 0, 0, 1e-3, 2e-3, 0, 0.5e-3, 0, 1e-3;

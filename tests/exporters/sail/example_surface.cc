@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "importer/geometry/units.h"
 
 namespace velamap {
-namespace {}  // namespace
 
 Eigen::Vector3d BilinearPatch(double u, double v) {
   const Eigen::Vector3d a(0, 0, 0), b(3, 0.2, 0), c(0.3, -0.1, 5), d(2.5, 1, 5.2);
@@ -42,6 +42,25 @@ SurfaceInput MarkersOn(const SurfaceTruth& truth, int num_lines, int num_markers
     input.lines.push_back(line);
   }
   return input;
+}
+
+SurfaceOptions Interpolating() {
+  SurfaceOptions options;
+  options.default_sigma_m = 0.0;
+  return options;
+}
+
+void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, sigma_m);
+  ForEachMarker(input, [&](SurfaceMarker* marker) {
+    for (double& x : marker->x_in_shape_m) x += normal(random);
+    if (with_sigma) marker->sigma_m = sigma_m;
+  });
+}
+
+double LargestResidual(const FittedSurface& fitted) {
+  return std::max(-fitted.distance_m.min, fitted.distance_m.max);
 }
 
 double LargestDistance(const SplineSurface& surface, const SurfaceTruth& truth) {

@@ -26,6 +26,23 @@ Eigen::Vector3d TwistedSail(double u, double v);
 // sigmas.
 SurfaceInput MarkersOn(const SurfaceTruth& truth, int num_lines, int num_markers);
 
+// Options by which the surface goes through all markers without a sigma.
+SurfaceOptions Interpolating();
+
+template <typename Function>
+void ForEachMarker(SurfaceInput* input, const Function& function) {
+  for (SurfaceLine& line : input->lines) {
+    for (auto& marker : line.markers) function(&*marker);
+  }
+  for (SurfaceMarker& marker : input->markers) function(&marker);
+}
+
+// Moves all markers by normal noise, which becomes their sigma if `with_sigma`.
+void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input);
+
+// The largest distance of a marker in use from the surface, m.
+double LargestResidual(const FittedSurface& fitted);
+
 // The largest distance of the true points of a dense grid from the surface, m.
 double LargestDistance(const SplineSurface& surface, const SurfaceTruth& truth);
 

@@ -55,13 +55,6 @@ Sail BentSail(int leeward = 1) {
   return sail;
 }
 
-SectionReport Sections(const Sail& sail, const std::optional<FrameChoice>& choice = std::nullopt) {
-  const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout, choice);
-  MarkerShape shape = sail.shape;
-  MoveShape(frame.frame_from_shape, nullptr, &shape);
-  return ComputeSections(shape, frame, sail.layout, nullptr);
-}
-
 // The luff of a sail whose fore-and-aft direction is at this angle to the lowest chord.
 void ExpectLuff(const RigNumbers& rig, double aft_deg) {
   const double c = std::cos(aft_deg * kRadPerDeg), s = std::sin(aft_deg * kRadPerDeg);
@@ -72,7 +65,7 @@ void ExpectLuff(const RigNumbers& rig, double aft_deg) {
 
 TEST(RigNumbers, ABentLuffAndTheSheetingAngleAreThoseOfTheSail) {
   for (const int leeward : {1, -1}) {
-    const SectionReport report = Sections(BentSail(leeward));
+    const SectionReport report = SectionsOf(BentSail(leeward));
     ASSERT_EQ(report.rigs.size(), 1u);
     const RigNumbers& rig = report.rigs[0];
     EXPECT_EQ(rig.part, "sail");
@@ -88,9 +81,9 @@ TEST(RigNumbers, ABentLuffAndTheSheetingAngleAreThoseOfTheSail) {
 TEST(RigNumbers, WithoutABoomAndACenterLineTheLowestChordStandsIn) {
   Sail sail = BentSail();
   RemoveMarker(51, &sail.shape);
-  EXPECT_NEAR(Sections(sail).rigs.at(0).sheeting_angle_deg->value, -kCenterline_deg, 1e-4);
+  EXPECT_NEAR(SectionsOf(sail).rigs.at(0).sheeting_angle_deg->value, -kCenterline_deg, 1e-4);
   RemoveMarker(62, &sail.shape);
-  const RigNumbers rig = Sections(sail).rigs.at(0);
+  const RigNumbers rig = SectionsOf(sail).rigs.at(0);
   EXPECT_EQ(rig.aft_reference, "lowest section");
   EXPECT_FALSE(rig.sheeting_angle_deg);
   ExpectLuff(rig, 0);
@@ -99,11 +92,11 @@ TEST(RigNumbers, WithoutABoomAndACenterLineTheLowestChordStandsIn) {
 TEST(RigNumbers, NoNumberDependsOnTheFrame) {
   Sail sail = BentSail();
   SetSigma(0.001, &sail.shape);
-  const RigNumbers by_lines = Sections(sail).rigs.at(0);
+  const RigNumbers by_lines = SectionsOf(sail).rigs.at(0);
   sail.shape = Moved(OddMotion(), sail.shape);
   for (const FrameChoice& choice :
        {FrameChoice{FrameKind::kCamera}, FrameChoice{FrameKind::kMarkers, 51, 308, 500}}) {
-    const RigNumbers rig = Sections(sail, choice).rigs.at(0);
+    const RigNumbers rig = SectionsOf(sail, {}, choice).rigs.at(0);
     EXPECT_NEAR(rig.luff_bend_m->value, by_lines.luff_bend_m->value, 1e-9);
     EXPECT_NEAR(rig.luff_sag_m->value, by_lines.luff_sag_m->value, 1e-9);
     EXPECT_NEAR(rig.sheeting_angle_deg->value, by_lines.sheeting_angle_deg->value, 1e-7);
@@ -124,7 +117,7 @@ TEST(RigNumbers, AVerticalLineOnTheLuffIsOfTheLuff) {
   part.vertical.push_back({"middle", {104, 204, 304, 404, 504}});
   sail.shape.markers.push_back(UprightMarker(600, "sail", luff_m(1.6)));
   sail.shape.markers.push_back(UprightMarker(601, "sail", luff_m(2.3)));
-  const RigNumbers rig = Sections(sail).rigs.at(0);
+  const RigNumbers rig = SectionsOf(sail).rigs.at(0);
   EXPECT_THAT(rig.luff_marker_ids, ElementsAre(100, 200, 600, 300, 601, 400, 500));
   ExpectLuff(rig, kCenterline_deg);
 }
@@ -132,9 +125,9 @@ TEST(RigNumbers, AVerticalLineOnTheLuffIsOfTheLuff) {
 TEST(RigNumbers, TooFewMarkersOfTheLuffGiveNoBend) {
   Sail sail = BentSail();
   RemoveMarker(200, &sail.shape);
-  EXPECT_THAT(Sections(sail).rigs.at(0).luff_marker_ids, ElementsAre(100, 300, 400, 500));
+  EXPECT_THAT(SectionsOf(sail).rigs.at(0).luff_marker_ids, ElementsAre(100, 300, 400, 500));
   RemoveMarker(400, &sail.shape);
-  const RigNumbers rig = Sections(sail).rigs.at(0);
+  const RigNumbers rig = SectionsOf(sail).rigs.at(0);
   EXPECT_FALSE(rig.luff_bend_m || rig.luff_sag_m);
   EXPECT_TRUE(rig.luff_marker_ids.empty());
   EXPECT_TRUE(rig.sheeting_angle_deg);
@@ -145,7 +138,7 @@ TEST(RigNumbers, ALineThatWasLeftOutIsNotBelieved) {
   sail.layout.parts[0].vertical.clear();
   auto& line = sail.layout.parts[0].horizontal[2].marker_ids;
   std::reverse(line.begin(), line.end());  // its first marker is at the leech
-  EXPECT_THAT(Sections(sail).rigs.at(0).luff_marker_ids, ElementsAre(100, 200, 400, 500));
+  EXPECT_THAT(SectionsOf(sail).rigs.at(0).luff_marker_ids, ElementsAre(100, 200, 400, 500));
 }
 
 // The numbers of which the test below compares the sigma with the scatter.
@@ -166,7 +159,7 @@ TEST(RigNumbers, SigmasAgreeWithMonteCarlo) {
   Sail sail = BentSail();
   SetSigma(kSigma_m, &sail.shape);
   const FrameChoice camera{FrameKind::kCamera};
-  const std::vector<Estimate> stated = Estimates(Sections(sail, camera));
+  const std::vector<Estimate> stated = Estimates(SectionsOf(sail, {}, camera));
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0, kSigma_m);
   std::vector<double> squares(stated.size(), 0.0);
@@ -176,7 +169,7 @@ TEST(RigNumbers, SigmasAgreeWithMonteCarlo) {
       const Eigen::Vector3d shift(noise(random), noise(random), noise(random));
       ShiftMarker(marker.marker_id, shift, &noisy.shape);
     }
-    const std::vector<Estimate> drawn = Estimates(Sections(noisy, camera));
+    const std::vector<Estimate> drawn = Estimates(SectionsOf(noisy, {}, camera));
     for (std::size_t i = 0; i < stated.size(); ++i) {
       squares[i] += std::pow(drawn[i].value - stated[i].value, 2) / kNumRuns;
     }

@@ -136,7 +136,8 @@ TEST(SailShape, ResolutionIsAsAskedForAndNotAbsurd) {
   const SailShape refused = Compute(ExampleSail(), options);
   EXPECT_THAT(refused.surfaces, IsEmpty());
   EXPECT_EQ(refused.sections.sections.size(), 3u);
-  ExpectThrows<InputError>([&] { refused.ThrowSurfaceError(); }, {"triangles"});
+  ASSERT_TRUE(refused.surface_error);
+  ExpectThrows<InputError>([&] { std::rethrow_exception(refused.surface_error); }, {"triangles"});
   options.mesh->chord_deviation_mm = 1.0;
   EXPECT_THROW(options.Check(), InputError);
 }

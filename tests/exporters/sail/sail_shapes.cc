@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/shape/shape_transform.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -126,6 +127,26 @@ void SetSigma(double sigma_m, MarkerShape* shape) {
   for (ShapeMarker& marker : shape->markers) {
     for (auto& sigma : marker.sigma_m) sigma = Eigen::Vector3d::Constant(sigma_m);
   }
+}
+
+SectionReport SectionsOf(const Sail& sail, const SectionOptions& options,
+                         const std::optional<FrameChoice>& choice) {
+  const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout, choice);
+  MarkerShape shape = sail.shape;
+  MoveShape(frame.frame_from_shape, nullptr, &shape);
+  return ComputeSections(shape, frame, sail.layout, nullptr, options);
+}
+
+std::vector<double> NumbersOf(const Section& section) {
+  return {section.chord_m.value,
+          section.camber.value,
+          section.draft_position ? section.draft_position->value : -1,
+          section.entry_angle_deg.value,
+          section.exit_angle_deg.value,
+          section.twist_deg.value,
+          section.leech_twist_deg.value,
+          section.girth_m.value,
+          section.height_m};
 }
 
 }  // namespace velamap

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "exporters/sail/section.h"
 #include "exporters/shape/marker_shape.h"
 #include "importer/geometry/rigid3.h"
 #include "importer/layout/layout.h"
@@ -21,7 +24,7 @@ UnitProfile CircularArc(double camber);
 // Camber line of the four-digit NACA sections, at equal steps of x.
 UnitProfile NacaCamberLine(double camber, double position);
 
-// An upright marker of 100 mm with this center; z is up.
+// An upright marker of 100 mm with this centre; z is up.
 ShapeMarker UprightMarker(int marker_id, const std::string& part, const Eigen::Vector3d& center_m);
 
 struct SailLine {
@@ -44,16 +47,23 @@ Sail MakeSailOfLines(const std::vector<SailLine>& lines, int num_markers, int le
 // Three lines of circular arcs whose chord, camber and twist change with height.
 Sail ExampleSail(int num_markers = 12, int leeward = 1);
 
-// Adds part "hull" as the reference part: upright markers 10, 11, ... at these centers, m.
+// Adds part "hull" as the reference part: upright markers 10, 11, ... at these centres, m.
 void AddHull(const std::vector<Eigen::Vector3d>& centers_m, Sail* sail);
 
-// Moves corners and centers; sigmas keep their axes.
+// Moves corners and centres; sigmas keep their axes.
 MarkerShape Moved(const Rigid3& new_from_shape, const MarkerShape& shape);
 Rigid3 OddMotion();
 
-// Moves corners and center.
+// Moves corners and centre.
 void ShiftMarker(int marker_id, const Eigen::Vector3d& shift_m, MarkerShape* shape);
 void RemoveMarker(int marker_id, MarkerShape* shape);
 void SetSigma(double sigma_m, MarkerShape* shape);
+
+// Sections in the frame that `choice` or the layout gives.
+SectionReport SectionsOf(const Sail& sail, const SectionOptions& options = {},
+                         const std::optional<FrameChoice>& choice = std::nullopt);
+
+// Chord, camber, draft position (-1 for none), entry and exit angle, twist, height.
+std::vector<double> NumbersOf(const Section& section);
 
 }  // namespace velamap

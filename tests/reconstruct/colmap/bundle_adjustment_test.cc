@@ -252,8 +252,8 @@ TEST_F(BundleAdjustment, ErrorsAboveTheLimitAreADataError) {
   }
 }
 
-// COLMAP 3.8 fixes x of the second image's translation. Where the truth of it is zero, a seed's
-// error fixes a wrong one, and only an infinite scale can make good for it. (DESIGN.md, section 5)
+// COLMAP 3.8 fixes x of the second image's translation. Where its true value is zero, an error of
+// the seed fixes a wrong value, and only an infinite scale makes up for it.
 class GaugeTrap : public BundleAdjustment {
  protected:
   struct Run {

@@ -80,7 +80,7 @@ TEST(Cleanup, TakesNothingOutOfAGoodMap) {
   DropContradictions(grown.map.scene.layout, &grown.global);
   LeaveOutBlurredFrames(&grown.global);
   LimitFrames(&grown.global);
-  DropRest(&grown.global);
+  DropUnsupported(&grown.global);
   EXPECT_THAT(grown.DroppedIds(), IsEmpty());
   EXPECT_THAT(grown.LeftOutFrames(), IsEmpty());
 }
@@ -313,7 +313,7 @@ TEST(DropContradictions, MisreadIdAtThePlaceOfAnotherMarkerGoes) {
               HasSubstr("a misread id: it stands where marker 21 stands"));
 }
 
-TEST(DropRest, GoesOnUntilAllThatIsLeftHasEnough) {
+TEST(DropUnsupported, GoesOnUntilAllThatIsLeftHasEnough) {
   GrownMap grown(MakeScene(SceneKind::kSail, 12, false));
   GlobalRegistration& global = grown.global;
   grown.options.min_num_frames = 4;
@@ -321,7 +321,7 @@ TEST(DropRest, GoesOnUntilAllThatIsLeftHasEnough) {
   // A random third of the observations fits, so that one loss brings on another.
   std::mt19937 generator(TestSeed());
   for (char& fits : global.solution.fits) fits = generator() % 3 == 0;
-  DropRest(&global);
+  DropUnsupported(&global);
   EXPECT_FALSE(grown.DroppedIds().empty());
   ASSERT_GT(global.solution.NumRegistered(), 4);
   for (std::size_t idx = 0; idx < global.problem.markers.size(); ++idx) {
@@ -334,12 +334,12 @@ TEST(DropRest, GoesOnUntilAllThatIsLeftHasEnough) {
   }
   const auto dropped_ids = grown.DroppedIds();
   const auto left_out = grown.LeftOutFrames();
-  DropRest(&global);
+  DropUnsupported(&global);
   EXPECT_EQ(grown.DroppedIds(), dropped_ids);
   EXPECT_EQ(grown.LeftOutFrames(), left_out);
 }
 
-TEST(DropRest, OneLossBringsOnAnother) {
+TEST(DropUnsupported, OneLossBringsOnAnother) {
   GrownMap grown(MakeScene(SceneKind::kSail, 6, false));
   GlobalRegistration& global = grown.global;
   grown.options.min_num_frames = 2;
@@ -357,7 +357,7 @@ TEST(DropRest, OneLossBringsOnAnother) {
       global.solution.fits[static_cast<std::size_t>(idx)] = 0;
     }
   }
-  DropRest(&global);
+  DropUnsupported(&global);
   EXPECT_THAT(grown.DroppedIds(), ElementsAre(global.problem.Marker(marker_a).marker_id));
   EXPECT_THAT(grown.LeftOutFrames(), ElementsAre(2));
   EXPECT_THAT(global.dropped_markers.at(marker_a).reason, HasSubstr("2 are needed"));

@@ -56,6 +56,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
     {"exporters/calibration/", {"camera_calibrator"}},
     {"exporters/compare/", {"shape_comparer"}},
     {"exporters/design/mesh_reader.cc", {"shape_comparer"}},
+    {"workflows/run/adjustment.cc", {"automatic_reconstructor", "central_frame_sweeper"}},
     {"workflows/run/pipeline.cc", {"automatic_reconstructor"}},
     {"workflows/run/workspace.cc", {"automatic_reconstructor"}},
     {"workflows/run/central_frame_sweep.cc", {"central_frame_sweeper"}},
@@ -67,7 +68,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
 // Arguments of COLMAP's own programs.
 const std::map<std::string, Names> kOptionsOfColmap = {
     {"reconstruct/colmap/bundle_adjustment.cc", {"input_path", "output_path"}},
-    {"workflows/run/pipeline.cc", {"input_path"}},
+    {"workflows/run/adjustment.cc", {"input_path"}},
     {"workflows/run/run_summary.cc", {"database_path", "image_path", "import_path"}},
 };
 

@@ -18,6 +18,7 @@
 #include "tests/support/error_matchers.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
+#include "workflows/run/pipeline.h"
 
 namespace velamap {
 namespace {

@@ -1,5 +1,5 @@
-// A wall before OpenCV's FileStorage, whose parsers of YAML, XML and JSON crash on files that are
-// cut off or nested deeply.
+// Checks files before OpenCV's FileStorage reads them, because its parsers of YAML, XML and JSON
+// crash on files that are cut off or nested deeply.
 
 #pragma once
 

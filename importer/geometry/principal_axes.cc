@@ -1,4 +1,4 @@
-#include "exporters/shape/principal_axes.h"
+#include "importer/geometry/principal_axes.h"
 
 #include <Eigen/Eigenvalues>
 

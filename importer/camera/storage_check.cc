@@ -1,4 +1,4 @@
-#include "importer/camera/storage_wall.h"
+#include "importer/camera/storage_check.h"
 
 #include <cstring>
 #include <utility>

@@ -1,0 +1,134 @@
+#include "exporters/report/scale_key_numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "exporters/datum/known_points_report.h"
+#include "exporters/report/camera_key_numbers.h"
+#include "exporters/scale/scale_audit_report.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kGoodScaleSpread_percent = 1, kBadScaleSpread_percent = 3;
+
+// Whether parts differ by more than the scale's sigma says and no distance decides between them.
+bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
+  const auto decides = [](const CheckedDistance& checked) { return checked.known.is_scale_bar; };
+  if (!audit.parts_disagree ||
+      std::any_of(audit.distances.begin(), audit.distances.end(), decides)) {
+    return false;
+  }
+  return std::any_of(audit.parts.begin(), audit.parts.end(), [&scale](const GroupScale& part) {
+    return std::abs(part.deviation) > scale.relative_sigma.value_or(0.0);
+  });
+}
+
+}  // namespace
+
+KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
+                      const AdjustmentUncertainty* uncertainty) {
+  const double spread_percent = 100 * scale.relative_spread;
+  std::string value = fmt::format("{:.2f} % spread", spread_percent);
+  if (scale.relative_sigma) {
+    value = fmt::format("\u00b1{:.3f} %, {}", 100 * *scale.relative_sigma, value);
+  }
+  KeyNumber number{
+      KeyNumberKind::kScale, value,
+      fmt::format("standard deviations of the metric scale and of the scales from each of {} "
+                  "markers alone; good up to {:g} % spread",
+                  scale.num_markers, kGoodScaleSpread_percent),
+      LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent),
+      "the sizes of the markers contradict each other: check their prints and marker_length, and "
+      "measure a distance (distances, use: scale)"};
+  if (audit != nullptr && !FailedChecks(*audit).empty()) {
+    number.meaning += "; measured distances contradict it";
+    number.status = ReportStatus::kBad;
+    number.advice = "find out which is wrong, the measured distances or the shape, before using it";
+  } else if (audit != nullptr && number.status == ReportStatus::kGood &&
+             PartsLeaveScaleOpen(scale, *audit)) {
+    number.meaning += "; parts disagree: measure a distance on one of them";
+    number.status = ReportStatus::kCheck;
+    number.advice = "parts disagree: measure a distance on one of them (distances, use: scale)";
+  }
+  const bool is_calibration_doubted =
+      uncertainty != nullptr && StatusOf(uncertainty->calibration) > ReportStatus::kGood;
+  if (number.status == ReportStatus::kGood && is_calibration_doubted) {
+    number.meaning += "; the calibration is in doubt, and this with it";
+    number.status = ReportStatus::kCheck;
+    number.advice = "its sigma takes the calibration for granted, which is in doubt";
+  }
+  return number;
+}
+
+std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit) {
+  if (audit.distances.empty()) return std::nullopt;
+  const CheckedDistance* worst = nullptr;
+  int num_found = 0;
+  for (const CheckedDistance& checked : audit.distances) {
+    if (!checked.distance_m) continue;
+    ++num_found;
+    const bool is_worse =
+        worst == nullptr ||
+        std::make_pair(checked.FailsAsCheck(), std::abs(checked.DifferenceInSigmas())) >
+            std::make_pair(worst->FailsAsCheck(), std::abs(worst->DifferenceInSigmas()));
+    if (is_worse) worst = &checked;
+  }
+  const auto num_failed = static_cast<int>(FailedChecks(audit).size());
+  const int num_checks = NumChecks(audit), num_all = static_cast<int>(audit.distances.size());
+  KeyNumber number{KeyNumberKind::kMeasuredDistances,
+                   num_failed > 0 ? fmt::format("{} of {} checks failed", num_failed, num_checks)
+                                  : fmt::format("{} of {}", num_found, num_all),
+                   fmt::format("{} of {} distances are in the shape, {} of them as checks of it; "
+                               "good within {:g} sigmas of distance and shape together",
+                               num_found, num_all, num_checks, kMaxCheckSigmas),
+                   ReportStatus::kNone,
+                   "find out whether a measured distance or the shape is wrong before using the "
+                   "shape"};
+  if (worst == nullptr) {
+    number.status = ReportStatus::kCheck;
+    return number;
+  }
+  number.value += ", worst " + ShortText(*worst);
+  if (num_failed > 0) {
+    number.status = ReportStatus::kBad;
+  } else if (num_found < num_all || std::abs(worst->DifferenceInSigmas()) > kMaxCheckSigmas) {
+    number.status = ReportStatus::kCheck;
+  } else if (num_checks > 0) {
+    number.status = ReportStatus::kGood;
+  }
+  return number;
+}
+
+std::optional<KeyNumber> KnownPointsNumber(const KnownPointFit& fit) {
+  if (fit.points.empty()) return std::nullopt;
+  KeyNumber number{
+      KeyNumberKind::kKnownPoints, KnownPointsText(fit),
+      fmt::format("points with measured coordinates; good if all are in the shape and agree, and "
+                  "checks are within {:g} sigmas of point and shape together",
+                  kMaxCheckSigmas),
+      ReportStatus::kCheck,
+      "find out whether measured coordinates or the shape are wrong before using the shape"};
+  if (fit.is_contradicted || CountPoints(fit, PointState::kFailed) > 0) {
+    number.status = ReportStatus::kBad;
+  } else if (!fit.known_from_shape) {
+    number.advice = "the result is in another frame: give more points, or film those given";
+  } else if (fit.DoubtsScale()) {
+    number.advice = "check marker_length, or measure a distance (distances, use: scale)";
+  } else if (CountPoints(fit, PointState::kLeftOut) > 0) {
+    number.advice = "check coordinates, ids and corners of the points left out";
+  } else if (CountPoints(fit, PointState::kNotInShape) > 0) {
+    number.advice = "some of them are not in the shape: film their markers";
+  } else if (fit.residual_in_sigmas || CountPoints(fit, PointState::kPassed) > 0) {
+    number.status = ReportStatus::kGood;
+  } else {
+    number.status = ReportStatus::kNone;  // nothing checks them
+  }
+  return number;
+}
+
+}  // namespace velamap

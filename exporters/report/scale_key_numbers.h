@@ -1,0 +1,23 @@
+// The key numbers that judge the size of the shape: its scale, and what was measured by hand.
+
+#pragma once
+
+#include <optional>
+
+#include "exporters/report/report_key_numbers.h"
+
+namespace velamap {
+
+// `audit` and `uncertainty` may be null.
+KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
+                      const AdjustmentUncertainty* uncertainty);
+
+// Distances measured by hand. Those that the adjustment used prove nothing, unless it left them
+// out. Nothing for a layout without distances.
+std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit);
+
+// Coordinates measured by hand: checks decide, then points that contradict the others. Nothing for
+// a layout without known points.
+std::optional<KeyNumber> KnownPointsNumber(const KnownPointFit& fit);
+
+}  // namespace velamap

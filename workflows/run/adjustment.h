@@ -1,0 +1,58 @@
+// The adjustment of a model by COLMAP's program, by the marker-aware adjustment, or by both.
+
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "importer/camera/calibration_writer.h"
+#include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/colmap/bundle_adjustment.h"
+#include "reconstruct/model/model.h"
+
+namespace velamap {
+
+enum class AdjustmentBackend {
+  kColmap,   // COLMAP's own program
+  kMarkers,  // ours, which knows the size of the markers
+  kBoth,     // COLMAP's, then ours
+};
+
+struct AdjustmentOptions {
+  AdjustmentBackend backend = AdjustmentBackend::kBoth;
+  BundleAdjustmentOptions colmap;
+  MarkerAdjustmentOptions markers;
+
+  bool UsesColmap() const { return backend != AdjustmentBackend::kMarkers; }
+  bool UsesMarkers() const { return backend != AdjustmentBackend::kColmap; }
+  // Copies the parameters that both adjustments have to `markers`. Throws InputError that names the
+  // option for a bad one.
+  void Complete(int num_threads);
+};
+
+struct AdjustmentResult {
+  Statistics error_before_px;
+  Statistics error_after_px;
+  int num_removed = 0;                               // observations
+  std::optional<AdjustmentUncertainty> uncertainty;  // of the marker-aware adjustment
+  std::map<CameraId, EstimatedCamera> cameras;       // found from the pictures; else none
+};
+
+// Throws ExternalToolError if COLMAP's program cannot be started. Called first, so that nobody
+// waits for the detection in vain.
+void CheckColmap(const std::string& colmap_path);
+
+// Adjusts the model and logs how it went. Warns where the images were not taken by one steady
+// camera; with find_camera that is a DataError, unless only the principal point wanders. The
+// marker-aware adjustment needs `layout` and takes `corner_errors`; `log_path` gets COLMAP's
+// output.
+AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& layout,
+                             const CornerErrors& corner_errors, const std::string& log_path,
+                             Model* model);
+
+// Writes the model, and beside it the uncertainty if there is one.
+void WriteAdjustedModel(const Model& model, const AdjustmentResult& result,
+                        const std::string& path);
+
+}  // namespace velamap
