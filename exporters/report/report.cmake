@@ -6,7 +6,7 @@ set(REPORT_THREE ${JAVASCRIPT_DIR}/three/three.min.js
                  ${JAVASCRIPT_DIR}/three/examples/js/controls/OrbitControls.js)
 set(REPORT_CHART ${JAVASCRIPT_DIR}/chart.js/chart.min.js)
 set(REPORT_SCRIPT)
-foreach(name elements colours tables charts picture scene view3d main)
+foreach(name elements colours tables charts picture scene view3d controls main)
   list(APPEND REPORT_SCRIPT ${REPORT_DIR}/${name}.js)
 endforeach()
 set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/calibration.html ${REPORT_DIR}/style.css ${REPORT_DIR}/licences.txt

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "exporters/datum/known_points_report.h"
+#include "exporters/report/html_page.h"
 #include "exporters/report/report_histogram.h"
 #include "exporters/report/report_json.h"
 #include "exporters/report/report_key_numbers.h"
@@ -181,20 +182,6 @@ Json JsonOf(const ReportSurface& surface) {
     for (const int vertex : triangle) triangles.push_back(vertex);
   }
   return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}};
-}
-
-// Escapes `<`, which could end the script element or begin a comment.
-std::string EscapeForScript(const std::string& json) {
-  std::string escaped;
-  escaped.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<') {
-      escaped += "\\u003c";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
 }
 
 }  // namespace
