@@ -87,9 +87,11 @@ house_folder(exporters/sail PUBLIC
 house_folder(exporters/freeform PUBLIC
   freeform_shape)
 house_folder(exporters/compare PUBLIC
-  comparison_ply comparison_report comparison_sigma shape_comparison surface_comparison)
+  comparison comparison_ply comparison_sigma shape_comparison)
 house_folder(exporters/report PUBLIC
   html_page report_assets report_data report_sail report_writer verdict)
+house_folder(exporters/comparison_page PUBLIC
+  comparison_page)
 house_folder(exporters/calibration PUBLIC
   calibration_page calibration_verdict)
 house_folder(exporters PUBLIC
@@ -104,7 +106,7 @@ house_folder(workflows/plan PUBLIC
 house_folder(workflows/calibrate PUBLIC
   board_calibration)
 house_folder(workflows/options PUBLIC
-  help_text nearest_name option_parser sail_options shared_options)
+  help_text nearest_name option_parser path_check sail_options shared_options)
 house_folder(workflows/commands PUBLIC
   commands)
 house_folder(workflows/install)

@@ -195,6 +195,16 @@ void MeshDistance::Index::FindBorder() {
   }
 }
 
+OptionGroup DescribeOptions(EdgeOptions* options) {
+  return {"Edge of a surface",
+          {{"edge_tolerance", &options->tolerance_mm, "mm",
+            "how far markers may lie beyond the edge of the reference's surface and still count, "
+            "by their distance along its normal there; or 3 sigmas, if these are more",
+            AtLeast(0)}}};
+}
+
+void EdgeOptions::Check() const { CheckRanges(*this); }
+
 MeshDistance::MeshDistance(const TriangleMesh& mesh) : index_(std::make_unique<Index>()) {
   VELAMAP_CHECK(!mesh.triangles.empty());
   Eigen::Vector3d low = mesh.vertices_m.front(), high = low;

@@ -12,8 +12,22 @@
 #include <Eigen/Core>
 
 #include "exporters/formats/mesh_triangles.h"
+#include "importer/base/option.h"
 
 namespace velamap {
+
+// Which points beyond the border of a surface still count. Noise, and the cloth beyond the design's
+// edge, take about half of the markers on luff, leech, foot and head there. Their distance is the
+// one along the normal at the border, as if the surface went on straight: 20 mm beyond the border
+// of a surface that bends by 1/m, it is 0.2 mm off.
+struct EdgeOptions {
+  double tolerance_mm = 20.0;
+  double num_sigmas = 3.0;  // of the marker's place across the border, where this is more
+
+  void Check() const;  // throws InputError that names the option
+};
+
+OptionGroup DescribeOptions(EdgeOptions* options);
 
 struct MeshFoot {
   Eigen::Vector3d x_m = Eigen::Vector3d::Zero();      // nearest point of the mesh
@@ -26,6 +40,11 @@ struct MeshFoot {
   // Whether the line to the foot is along the normal, to 1e-4 of the mesh's diagonal. Otherwise the
   // point lies beside the surface and has no distance from it.
   bool IsOverSurface(double diagonal_m) const { return beside_m <= 1e-4 * diagonal_m; }
+
+  // The same for points up to `reach_m` beyond the border.
+  bool IsWithin(double reach_m, double diagonal_m) const {
+    return beside_m <= reach_m || IsOverSurface(diagonal_m);
+  }
 };
 
 // Moments of the surface, weighted by area.

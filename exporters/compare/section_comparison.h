@@ -9,6 +9,7 @@
 
 #include "exporters/compare/shape_comparison.h"
 #include "exporters/sail/section.h"
+#include "importer/geometry/rigid3.h"
 #include "importer/layout/layout.h"
 
 namespace velamap {
@@ -31,15 +32,28 @@ struct SectionDifference {
 
 struct SectionComparison {
   std::string frame_name;  // of the sections: the reference's, by ChooseFrame()
+  Rigid3 frame_from_reference;
+  SectionReport of_shape, of_reference;  // in that frame
   std::vector<SectionDifference> differences;
   // Sections that one of the shapes lacks, with the reason; twists that cannot be compared.
   std::vector<std::string> notes;
 };
 
+// Null without such a section.
+const Section* FindSection(const SectionReport& report, const std::string& part,
+                           const std::string& name);
+
 // Cuts both shapes in the frame of the reference after `alignment`, so that a change of height or
 // heading of the whole sail does not change a section.
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
                                   const Alignment& alignment, const Layout& layout,
+                                  const SectionOptions& options = {});
+
+// The sections of a design are those of the markers' feet on its surface, which counts as exact:
+// the same markers on the same cloth, had it the shape of the design. `deviation` is that of
+// CompareWithMesh(); markers beside the surface are missing.
+SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
+                                  const ShapeDeviation& deviation, const Layout& layout,
                                   const SectionOptions& options = {});
 
 }  // namespace velamap

@@ -121,6 +121,20 @@ double ScaleOf(const Alignment& alignment, const MarkerShape& shape, const Marke
   return CompareShapes(Keep(shape, counts), Keep(reference, counts)).scale;
 }
 
+// How far a marker may lie beyond the edge, m.
+double ReachOf(const MeshFoot& foot, const Eigen::Vector3d& x_m,
+               const std::optional<Eigen::Matrix3d>& covariance_m2, const EdgeOptions& edge) {
+  double reach_m = kMPerMm * edge.tolerance_mm;
+  const Eigen::Vector3d from_foot = x_m - foot.x_m;
+  const Eigen::Vector3d across = from_foot - from_foot.dot(foot.normal) * foot.normal;
+  if (covariance_m2 && across.norm() > 0) {
+    const Eigen::Vector3d direction = across.normalized();
+    const double variance_m2 = direction.dot(*covariance_m2 * direction);
+    reach_m = std::max(reach_m, edge.num_sigmas * std::sqrt(std::max(0.0, variance_m2)));
+  }
+  return reach_m;
+}
+
 // Diagonal of the bounding box of all corners, m.
 double DiagonalOf(const MarkerShape& shape) {
   std::optional<Eigen::Vector3d> low, high;
@@ -192,7 +206,8 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
 
 ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& mesh,
                                const Layout& layout, const AlignmentOptions& options,
-                               const std::string& part) {
+                               const std::string& part, const EdgeOptions& edge) {
+  edge.Check();
   ShapeDeviation deviation;
   const MarkerShape compared = OnPart(shape.shape, layout, part);
   deviation.alignment = AlignToMesh(compared, mesh, options);
@@ -208,10 +223,14 @@ ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& 
     result.normal = foot.normal;
     result.distance_m = foot.distance_m;
     result.beside_m = foot.beside_m;
-    result.is_over_surface = foot.IsOverSurface(mesh.Diagonal_m());
-    SetSigma(sensitivity.DifferenceCovariance(marker.marker_id, result.x_in_reference_m,
-                                              shape.covariance, nullptr),
-             &result);
+    const auto covariance_m2 = sensitivity.DifferenceCovariance(
+        marker.marker_id, result.x_in_reference_m, shape.covariance, nullptr);
+    const double reach_m = ReachOf(foot, result.x_in_reference_m, covariance_m2, edge);
+    result.is_over_surface = foot.IsWithin(reach_m, mesh.Diagonal_m());
+    if (result.is_over_surface && !foot.IsOverSurface(mesh.Diagonal_m())) {
+      ++deviation.num_beyond_edge;
+    }
+    SetSigma(covariance_m2, &result);
     deviation.markers.push_back(std::move(result));
   }
   Summarize(layout, &deviation);

@@ -41,8 +41,9 @@ struct MarkerDeviation {
   // Center in the shape minus center in the reference; only for two shapes.
   std::optional<Eigen::Vector3d> difference_m;
   std::optional<Eigen::Vector3d> difference_sigma_m;  // along the axes
-  // Distance of the marker beside the surface, see MeshFoot; only for a surface. Such a marker has
-  // no meaningful distance and is not part of any statistic.
+  // Distance of the marker beyond the edge of the surface, see MeshFoot; only for a surface. Beyond
+  // the reach of EdgeOptions, a marker is not over the surface: it has no meaningful distance and
+  // is not part of any statistic.
   double beside_m = 0.0;
   bool is_over_surface = true;
 };
@@ -68,6 +69,7 @@ struct ShapeDeviation {
   Statistics difference_m;               // lengths of the vectors; only for two shapes
   int num_significant = 0;               // above kSignificantSigmas
   int num_with_sigma = 0;
+  int num_beyond_edge = 0;            // beyond the edge of the surface, yet within reach
   int num_beside = 0;                 // beside the surface
   std::vector<DeviationGroup> parts;  // by name
   std::vector<DeviationGroup> lines;  // lines of the layout with a marker, in its order
@@ -89,7 +91,7 @@ ShapeDeviation CompareWithShape(const UncertainShape& shape, const UncertainShap
 // AlignToMesh(), and DataError if no whole marker lies over the surface.
 ShapeDeviation CompareWithMesh(const UncertainShape& shape, const MeshDistance& mesh,
                                const Layout& layout, const AlignmentOptions& options,
-                               const std::string& part = "");
+                               const std::string& part = "", const EdgeOptions& edge = {});
 
 // The factor, 1000 or 0.001, that corrects a mesh read in the wrong one of the units m and mm,
 // according to the sizes of shape and mesh; nothing if the sizes are similar.

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "exporters/shape/sail_lines.h"
 #include "exporters/surface/surface.h"
 #include "importer/base/error.h"
+#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -16,15 +19,32 @@ TriangleMesh MeshOf(const MarkerShape& shape, const LayoutPart& part, const Layo
   return MeshSurface(surface, DefaultMeshOptions(surface, layout.marker_length_m));
 }
 
-SurfaceDeviation Measure(const std::string& part, TriangleMesh mesh,
-                         const MeshDistance& reference) {
+// The surface of the reference, turned so that its triangles face as most of the markers do.
+TriangleMesh FacingMesh(const MarkerShape& reference, const LayoutPart& part,
+                        const Layout& layout) {
+  TriangleMesh mesh = MeshOf(reference, part, layout);
+  const MeshDistance surface(mesh);
+  double agreement = 0.0;
+  for (const int marker_id : MarkersOfPart(layout, part.name)) {
+    const ShapeMarker* marker = FindWholeMarker(reference, marker_id);
+    if (marker == nullptr) continue;
+    agreement += surface.Project(*marker->x_in_shape_m[0]).normal.dot(MarkerNormal(*marker));
+  }
+  if (agreement >= 0) return mesh;
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  return mesh;
+}
+
+SurfaceDeviation Measure(const std::string& part, TriangleMesh mesh, const MeshDistance& reference,
+                         const EdgeOptions& edge) {
+  const double reach_m = kMPerMm * edge.tolerance_mm;
   SurfaceDeviation deviation;
   deviation.part = part;
   std::vector<double> known_m;
   for (const Eigen::Vector3d& x : mesh.vertices_m) {
     const MeshFoot foot = reference.Project(x);
     deviation.distance_m.emplace_back();
-    if (!foot.IsOverSurface(reference.Diagonal_m())) continue;
+    if (!foot.IsWithin(reach_m, reference.Diagonal_m())) continue;
     deviation.distance_m.back() = foot.distance_m;
     known_m.push_back(foot.distance_m);
   }
@@ -53,16 +73,18 @@ SurfaceComparison CompareEachPart(const MarkerShape& shape, const Layout& layout
 }  // namespace
 
 SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MarkerShape& reference,
-                                  const Layout& layout, const std::string& part) {
+                                  const Layout& layout, const std::string& part,
+                                  const EdgeOptions& edge) {
   return CompareEachPart(aligned_shape, layout, part, [&](const LayoutPart& p, TriangleMesh mesh) {
-    return Measure(p.name, std::move(mesh), MeshDistance(MeshOf(reference, p, layout)));
+    return Measure(p.name, std::move(mesh), MeshDistance(FacingMesh(reference, p, layout)), edge);
   });
 }
 
 SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MeshDistance& reference,
-                                  const Layout& layout, const std::string& part) {
+                                  const Layout& layout, const std::string& part,
+                                  const EdgeOptions& edge) {
   return CompareEachPart(aligned_shape, layout, part, [&](const LayoutPart& p, TriangleMesh mesh) {
-    return Measure(p.name, std::move(mesh), reference);
+    return Measure(p.name, std::move(mesh), reference, edge);
   });
 }
 

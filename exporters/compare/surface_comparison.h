@@ -18,7 +18,7 @@ struct SurfaceDeviation {
   std::string part;
   TriangleMesh mesh;  // of the compared shape, in the reference's frame
   // One per vertex: along the normal of the reference, positive on the side to which it points;
-  // nothing where the vertex lies outside the edge of the reference.
+  // nothing where the vertex lies beside the reference, beyond the reach of EdgeOptions.
   std::vector<std::optional<double>> distance_m;
   Statistics statistics_m;  // of the known distances
 };
@@ -30,11 +30,14 @@ struct SurfaceComparison {
 
 // Compares the surface of FitSurface() through each part with horizontal lines, at the vertices of
 // the mesh that shape_exporter writes. `aligned_shape` is in the frame of the reference
-// (ShapeDeviation::aligned_shape). An empty `part` means all parts.
+// (ShapeDeviation::aligned_shape). Between two shapes, distances are positive on the side to which
+// the markers of the reference face. An empty `part` means all parts.
 SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MarkerShape& reference,
-                                  const Layout& layout, const std::string& part = "");
+                                  const Layout& layout, const std::string& part = "",
+                                  const EdgeOptions& edge = {});
 SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MeshDistance& reference,
-                                  const Layout& layout, const std::string& part = "");
+                                  const Layout& layout, const std::string& part = "",
+                                  const EdgeOptions& edge = {});
 
 // The largest known distance without sign, m.
 double LargestDistance(const SurfaceComparison& comparison);

@@ -26,11 +26,9 @@ void WriteArray(const std::string& name, const std::vector<Eigen::Vector3d>& val
   out << "</DataArray>\n";
 }
 
-void WriteParameter(const std::string& name, const SurfaceGrid& grid, int axis, std::ostream& out) {
+void WriteArray(const std::string& name, const std::vector<double>& values, std::ostream& out) {
   out << fmt::format("<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", name);
-  for (const Eigen::Vector2d& parameters : grid.surface_parameters) {
-    out << fmt::format("{}\n", parameters[axis]);
-  }
+  for (const double value : values) out << fmt::format("{}\n", value + 0.0);
   out << "</DataArray>\n";
 }
 
@@ -60,6 +58,14 @@ std::vector<int> SamePlaces(const SurfaceGrid& grid) {
     }
   }
   return places;
+}
+
+void WriteParameter(const std::string& name, const SurfaceGrid& grid, int axis, std::ostream& out) {
+  std::vector<double> values;
+  for (const Eigen::Vector2d& parameters : grid.surface_parameters) {
+    values.push_back(parameters[axis]);
+  }
+  WriteArray(name, values, out);
 }
 
 // Corners of the cells counter-clockwise seen from where the normals point, each place once.
@@ -120,7 +126,8 @@ SurfaceGrid MakeGrid(const SplineSurface& surface, const GridOptions& options) {
   return grid;
 }
 
-void WriteGridVts(const SurfaceGrid& grid, const std::string& name, std::ostream& out) {
+void WriteGridVts(const SurfaceGrid& grid, const std::string& name, std::ostream& out,
+                  const GridData& data) {
   const std::string extent =
       fmt::format("0 {} 0 {} 0 0", grid.num_points - 1, grid.num_sections - 1);
   out << "<?xml version=\"1.0\"?>\n"
@@ -131,6 +138,8 @@ void WriteGridVts(const SurfaceGrid& grid, const std::string& name, std::ostream
   WriteArray("normals", grid.normals, out);
   WriteParameter("u", grid, 0, out);
   WriteParameter("v", grid, 1, out);
+  for (const auto& [array, values] : data.vectors) WriteArray(array, values, out);
+  for (const auto& [array, values] : data.scalars) WriteArray(array, values, out);
   out << "</PointData>\n<Points>\n";
   WriteArray("points", grid.vertices_m, out);
   out << "</Points>\n</Piece>\n</StructuredGrid>\n</VTKFile>\n";

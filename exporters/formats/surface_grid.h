@@ -5,6 +5,7 @@
 
 #include <iosfwd>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,9 +35,16 @@ struct SurfaceGrid {
 
 SurfaceGrid MakeGrid(const SplineSurface& surface, const GridOptions& options);
 
-// VTK StructuredGrid (.vts), XML with ASCII numbers: points in m, and the point data normals, u and
-// v. The first index runs along the sections.
-void WriteGridVts(const SurfaceGrid& grid, const std::string& name, std::ostream& out);
+// More data of the points of a grid, by name; finite.
+struct GridData {
+  std::vector<std::pair<std::string, std::vector<Eigen::Vector3d>>> vectors;
+  std::vector<std::pair<std::string, std::vector<double>>> scalars;
+};
+
+// VTK StructuredGrid (.vts), XML with ASCII numbers: points in m, and the point data normals, u, v
+// and `data`. The first index runs along the sections.
+void WriteGridVts(const SurfaceGrid& grid, const std::string& name, std::ostream& out,
+                  const GridData& data = {});
 
 // Gmsh 2.2 ASCII: quadrilaterals, of which those with two corners in one place are triangles, in a
 // physical surface that is called `name`.

@@ -18,4 +18,17 @@ void WriteHtmlPage(std::string_view page,
   out << page;
 }
 
+std::string EscapeForScript(const std::string& json) {
+  std::string escaped;
+  escaped.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      escaped += "\\u003c";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
 }  // namespace velamap

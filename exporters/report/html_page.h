@@ -15,4 +15,8 @@ void WriteHtmlPage(std::string_view page,
                    const std::function<std::string(std::string_view name)>& part,
                    std::ostream& out);
 
+// A JSON text as the content of a script element: escapes `<`, which could end the element or begin
+// a comment.
+std::string EscapeForScript(const std::string& json);
+
 }  // namespace velamap

@@ -6,10 +6,15 @@ set(REPORT_THREE ${JAVASCRIPT_DIR}/three/three.min.js
                  ${JAVASCRIPT_DIR}/three/examples/js/controls/OrbitControls.js)
 set(REPORT_CHART ${JAVASCRIPT_DIR}/chart.js/chart.min.js)
 set(REPORT_SCRIPT)
-foreach(name elements colours tables charts picture scene view3d main)
+foreach(name elements colours tables charts picture scene view3d controls main)
   list(APPEND REPORT_SCRIPT ${REPORT_DIR}/${name}.js)
 endforeach()
-set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/calibration.html ${REPORT_DIR}/style.css ${REPORT_DIR}/licences.txt
+# The page of a comparison has parts of the report's script.
+set(COMPARISON_SCRIPT)
+foreach(name elements colours tables scene view3d controls profiles comparison)
+  list(APPEND COMPARISON_SCRIPT ${REPORT_DIR}/${name}.js)
+endforeach()
+set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/comparison.html ${COMPARISON_SCRIPT} ${REPORT_DIR}/calibration.html ${REPORT_DIR}/style.css ${REPORT_DIR}/licences.txt
                  ${REPORT_SCRIPT} ${REPORT_THREE} ${REPORT_CHART})
 foreach(file IN LISTS REPORT_THREE REPORT_CHART)
   if(NOT EXISTS ${file})
@@ -19,6 +24,7 @@ foreach(file IN LISTS REPORT_THREE REPORT_CHART)
 endforeach()
 
 string(REPLACE ";" "|" REPORT_SCRIPT "${REPORT_SCRIPT}")
+string(REPLACE ";" "|" COMPARISON_SCRIPT "${COMPARISON_SCRIPT}")
 string(REPLACE ";" "|" REPORT_THREE "${REPORT_THREE}")
 set(REPORT_ASSETS ${CMAKE_CURRENT_BINARY_DIR}/report_assets.cc)
 add_custom_command(
@@ -26,6 +32,7 @@ add_custom_command(
   COMMAND ${CMAKE_COMMAND} -DOUTPUT=${REPORT_ASSETS}
           -DkReportPage=${REPORT_DIR}/page.html -DkReportStyle=${REPORT_DIR}/style.css
           -DkCalibrationPage=${REPORT_DIR}/calibration.html
+          -DkComparisonPage=${REPORT_DIR}/comparison.html "-DkComparisonScript=${COMPARISON_SCRIPT}"
           "-DkReportScript=${REPORT_SCRIPT}" "-DkReportThree=${REPORT_THREE}"
           -DkReportChart=${REPORT_CHART} -DkReportLicences=${REPORT_DIR}/licences.txt
           -P ${CMAKE_CURRENT_SOURCE_DIR}/report/embed.cmake

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "exporters/datum/known_points_report.h"
+#include "exporters/report/html_page.h"
 #include "exporters/report/report_histogram.h"
 #include "exporters/report/report_json.h"
 #include "exporters/report/report_key_numbers.h"
@@ -220,20 +221,6 @@ Json OriginJson(const ReportInput& input) {
     origin.push_back(fmt::format("{:.1f} s", input.clip->duration_s));
   }
   return origin;
-}
-
-// Escapes `<`, which could end the script element or begin a comment.
-std::string EscapeForScript(const std::string& json) {
-  std::string escaped;
-  escaped.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<') {
-      escaped += "\\u003c";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
 }
 
 }  // namespace

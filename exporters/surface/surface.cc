@@ -250,6 +250,10 @@ void SurfaceOptions::Check() const {
   CheckEdge(edges.head, "head", head_extension_mm, OptionName(&SurfaceOptions::head_extension_mm));
 }
 
+std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v) {
+  return SigmaAt(fit.surface, fit.pole_covariance_m2, u, v);
+}
+
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options) {
   options.Check();
   SortedInput sorted = SortInput(input);
@@ -277,6 +281,7 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   CheckArea(sorted, ends, smooth.surface);
   FittedSurface result;
   result.surface = smooth.surface;
+  result.pole_covariance_m2 = smooth.pole_covariance_m2;
   result.num_effective_parameters = smooth.num_effective_parameters;
   result.residuals = Residuals(sorted, parameters, smooth.surface);
   result.notes = sorted.notes;

@@ -77,9 +77,14 @@ struct FittedSurface {
   Statistics distance_m;                   // signed, of the used markers
   // Trace of the hat matrix. A value near the number of used markers means interpolation.
   double num_effective_parameters = 0.0;
+  // Of the poles along each coordinate (surface_smoother.h); empty if the markers are interpolated.
+  Eigen::MatrixXd pole_covariance_m2;
   std::vector<SurfaceEdgePoint> edges;  // luff and leech from foot, foot and head from luff
   std::vector<std::string> notes;       // lines left out and why, gaps, markers outside the edge
 };
+
+// Sigma of the surface at a place along its normal, m; nothing if the markers are interpolated.
+std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v);
 
 // Throws InputError for bad options and for an extension beyond its limit. Throws DataError where
 // the markers do not determine a surface: fewer than two lines with three whole markers, two

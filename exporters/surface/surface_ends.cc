@@ -93,8 +93,8 @@ std::vector<SurfaceEdgePoint> EdgesOf(const SmoothSurface& smooth) {
     for (int i = 0; i < kNumPoints; ++i) {
       const double along = static_cast<double>(i) / (kNumPoints - 1), end = edge % 2;
       const double u = edge < 2 ? end : along, v = edge < 2 ? along : end;
-      points.push_back(
-          {kEdgeNames[edge], EvaluatePoint(smooth.surface, u, v), SigmaAt(smooth, u, v)});
+      points.push_back({kEdgeNames[edge], EvaluatePoint(smooth.surface, u, v),
+                        SigmaAt(smooth.surface, smooth.pole_covariance_m2, u, v)});
     }
   }
   return points;

@@ -249,12 +249,12 @@ SmoothSurface SmoothObservations(const SurfaceParameters& parameters,
                          .factor.solve(Eigen::MatrixXd::Identity(num_poles, num_poles))};
 }
 
-std::optional<double> SigmaAt(const SmoothSurface& smooth, double u, double v) {
-  if (smooth.pole_covariance_m2.size() == 0) return std::nullopt;
-  const SplineSurface& surface = smooth.surface;
+std::optional<double> SigmaAt(const SplineSurface& surface,
+                              const Eigen::MatrixXd& pole_covariance_m2, double u, double v) {
+  if (pole_covariance_m2.size() == 0) return std::nullopt;
   const Eigen::RowVectorXd basis =
       BasisAt(surface.knots_u, surface.degree_u, surface.knots_v, surface.degree_v, u, v);
-  return std::sqrt(std::max(0.0, basis.dot(basis * smooth.pole_covariance_m2)));
+  return std::sqrt(std::max(0.0, basis.dot(basis * pole_covariance_m2)));
 }
 
 }  // namespace velamap

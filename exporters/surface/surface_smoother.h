@@ -32,8 +32,9 @@ struct SmoothSurface {
   Eigen::MatrixXd pole_covariance_m2;
 };
 
-// Sigma of the surface at a place along its normal, m; nothing if it interpolates.
-std::optional<double> SigmaAt(const SmoothSurface& smooth, double u, double v);
+// Sigma of a smooth surface at a place along its normal, m; nothing if it interpolates.
+std::optional<double> SigmaAt(const SplineSurface& surface,
+                              const Eigen::MatrixXd& pole_covariance_m2, double u, double v);
 
 // Takes one positive weight per observation. Throws DataError if the equations have no solution in
 // double precision.

@@ -1,43 +1,65 @@
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "exporters/compare/comparison.h"
 #include "exporters/compare/comparison_ply.h"
-#include "exporters/compare/comparison_report.h"
-#include "exporters/compare/comparison_sigma.h"
-#include "exporters/compare/shape_comparison.h"
-#include "exporters/compare/surface_comparison.h"
+#include "exporters/comparison_page/comparison_page.h"
 #include "exporters/design/mesh_reader.h"
-#include "exporters/formats/shape_csv.h"
-#include "exporters/shape/shape_sigma.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
-#include "reconstruct/model/adjustment_uncertainty.h"
+#include "importer/base/replacement.h"
+#include "importer/text/output_date.h"
+#include "importer/text/shown_text.h"
 #include "workflows/commands/commands.h"
+#include "workflows/commands/compared_shapes.h"
+#include "workflows/options/path_check.h"
 #include "workflows/options/shared_options.h"
+#include "workflows/run/version.h"
 
 namespace velamap {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Options : CommandOptions {
-  AlignmentOptions alignment;
+  ComparisonOptions comparison;
   MeshReadOptions mesh;
+  std::vector<std::string> series_paths;
   std::string layout_path;
-  std::string part;
   std::string uncertainty_path;
   std::string reference_uncertainty_path;
   std::string csv_path;
   std::string json_path;
   std::string surface_path;
+  std::string comparison_path;
   std::optional<double> color_limit_mm;
+
+  std::vector<std::string> ShapePaths() const {
+    std::vector<std::string> shape_paths = {paths.shape_path};
+    shape_paths.insert(shape_paths.end(), series_paths.begin(), series_paths.end());
+    return shape_paths;
+  }
 };
+
+std::vector<std::string> PathsFromText(const std::string& text, const std::string& option) {
+  std::vector<std::string> result;
+  std::istringstream list(text + ",");
+  for (std::string path; std::getline(list, path, ',');) {
+    if (path.empty() || !Exists(path)) {
+      throw InputError(
+          fmt::format("{}: '{}' does not exist; give shapes separated by commas, such "
+                      "as trim2/shape,trim3/shape",
+                      option, path));
+    }
+    MentionPath(path);
+    result.push_back(path);
+  }
+  return result;
+}
 
 OptionGroup InputGroup(Options* options) {
   MeshReadOptions* mesh = &options->mesh;
@@ -45,12 +67,19 @@ OptionGroup InputGroup(Options* options) {
     mesh->m_per_unit = MPerUnitFromName(text, option);
   };
   PathOptions* paths = &options->paths;
+  std::vector<std::string>* series_paths = &options->series_paths;
+  const auto set_series = [series_paths](const std::string& text, const std::string& option) {
+    *series_paths = PathsFromText(text, option);
+  };
   return {
       "Input",
       {ShapeInputOption(paths),
        Required(PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
                            "what the shape is compared with: shape.csv or its folder, or a surface "
                            "as .ply, .stl, .obj, .step or .iges")),
+       Common({"series_paths", ParsedValue{series_paths, "", set_series}, "paths",
+               "more shapes for the same comparison, such as the other trims of a series: "
+               "trim2/shape,trim3/shape"}),
        Common({"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
                "unit of a .ply, .stl or .obj; left out: as velamap wrote it, else m for .ply, mm "
                "for .stl and .obj"}),
@@ -58,7 +87,7 @@ OptionGroup InputGroup(Options* options) {
         "how far triangles may be from the faces of a .step or .iges", MoreThan(0)},
        Common(PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,
                          "layout file: names the reference part and the lines")),
-       {"part", &options->part, "name", "compare the markers of this part only"},
+       {"part", &options->comparison.part, "name", "compare the markers of this part only"},
        PathOption("uncertainty_path", PathUse::kReadsModel, &options->uncertainty_path,
                   "folder of the shape's model with its uncertainty.bin, for sigmas with "
                   "correlations between the markers; left out: ../sparse/0 of a shape folder, else "
@@ -88,158 +117,119 @@ OptionGroup AlignmentGroup(AlignmentOptions* alignment) {
                     "best fit onto a surface: from several starts, or from where the shape is")}};
 }
 
-CommandSyntax Declare(Options* options) {
+OptionGroup OutputGroup(Options* options) {
   return {
-      "shape_comparer",
-      "compares a shape with another one or with the surface of a design",
-      "--shape_path shape --reference_path design.step --layout_path layout.yml",
-      {InputGroup(options),
-       AlignmentGroup(&options->alignment),
-       {"Output",
-        {Common(PathOption("output_path", PathUse::kWritesFile, &options->paths.output_path,
-                           "PLY of the markers, coloured by their signed distance")),
-         Common(
-             PathOption("surface_path", PathUse::kWritesFile, &options->surface_path,
-                        "PLY of the surface through the lines, coloured in the same way; needs a "
-                        "layout")),
-         {"color_limit", &options->color_limit_mm, "mm",
-          "distance that gets the full colour; left out: the largest", MoreThan(0)},
-         Common(PathOption("csv_path", PathUse::kWritesFile, &options->csv_path,
-                           "file for all figures and tables")),
-         PathOption("json_path", PathUse::kWritesFile, &options->json_path, "the same as JSON")}},
-       DescribeOptions(&options->general)}};
+      "Output",
+      {Common(PathOption("comparison_path", PathUse::kWritesFolder, &options->comparison_path,
+                         "folder for comparison.html, a page with profiles, sections, the coloured "
+                         "surface and markers; with a layout also for deflection.csv and "
+                         "deflection.vts, a vector for each point of a grid on the sail")),
+       Common(PathOption("output_path", PathUse::kWritesFile, &options->paths.output_path,
+                         "PLY of the markers, coloured by their signed distance")),
+       Common(PathOption("surface_path", PathUse::kWritesFile, &options->surface_path,
+                         "PLY of the surface through the lines, coloured in the same way; needs a "
+                         "layout")),
+       {"color_limit", &options->color_limit_mm, "mm",
+        "distance that gets the full colour; left out: the largest", MoreThan(0)},
+       Common(PathOption("csv_path", PathUse::kWritesFile, &options->csv_path,
+                         "file for all figures and tables")),
+       PathOption("json_path", PathUse::kWritesFile, &options->json_path, "the same as JSON")}};
+}
+
+CommandSyntax Declare(Options* options) {
+  return {"shape_comparer",
+          "compares shapes with another one or with the surface of a design",
+          "--shape_path trim2/shape --series_paths trim3/shape,trim4/shape --reference_path "
+          "trim1/shape --layout_path layout.yml --comparison_path comparison",
+          {InputGroup(options), AlignmentGroup(&options->comparison.alignment),
+           DescribeOptions(&options->comparison.edge), OutputGroup(options),
+           DescribeOptions(&options->comparison.grid), DescribeOptions(&options->general)}};
+}
+
+// The check of ParseOptions() knows options of one path only.
+void CheckSeries(const Options& options) {
+  if (options.series_paths.empty()) return;
+  for (const auto& [option, path] : {std::pair{"--output_path", options.paths.output_path},
+                                     std::pair{"--surface_path", options.surface_path},
+                                     std::pair{"--uncertainty_path", options.uncertainty_path}}) {
+    if (path.empty()) continue;
+    throw InputError(fmt::format(
+        "{}: is for one shape; leave out --series_paths, or give --comparison_path for all of them",
+        option));
+  }
+  std::vector<UsedPath> inputs, outputs;
+  for (const std::string& path : options.series_paths) {
+    inputs.push_back({"--series_paths", ShapeFile(path)});
+    CheckInputKind("--series_paths", ShapeFile(path));
+  }
+  const auto add = [&](const char* option, const std::string& path, bool is_folder) {
+    if (!path.empty()) outputs.push_back({option, path, is_folder});
+  };
+  add("--csv_path", options.csv_path, false);
+  add("--json_path", options.json_path, false);
+  add("--comparison_path", options.comparison_path, true);
+  CheckOutputs(inputs, outputs);
 }
 
 void Validate(Options* options) {
   if (!options->surface_path.empty() && options->layout_path.empty()) {
     throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
   }
-  if (!options->alignment.marker_ids.empty() &&
-      options->alignment.method != AlignmentMethod::kMarkers) {
+  const AlignmentOptions& alignment = options->comparison.alignment;
+  if (!alignment.marker_ids.empty() && alignment.method != AlignmentMethod::kMarkers) {
     throw InputError("--align_markers: goes with --align markers only");
   }
+  options->comparison.with_deflections = !options->comparison_path.empty();
+  CheckSeries(*options);
 }
 
-// Whether the covariance belongs to the shape, by the sigmas of both.
-bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
-  constexpr double kTolerance = 1e-3;
-  for (const ShapeMarker& marker : shape.markers) {
-    for (int corner = 1; corner <= kNumCorners; ++corner) {
-      const auto idx = static_cast<std::size_t>(corner);
-      if (!marker.x_in_shape_m[idx]) continue;
-      const auto sigma_m = PointSigma(&covariance, marker.marker_id, corner);
-      if (!sigma_m || !marker.sigma_m[idx] ||
-          (*sigma_m - *marker.sigma_m[idx]).norm() > kTolerance * sigma_m->norm()) {
-        return false;
-      }
+std::vector<Comparison> CompareAll(const Options& options, const Layout& layout,
+                                   std::optional<UncertainShape>* reference) {
+  const std::vector<std::string> paths = options.ShapePaths(), names = NamesOfShapes(paths);
+  const std::string& reference_path = options.paths.reference_path;
+  std::vector<UncertainShape> shapes;
+  for (const std::string& path : paths) {
+    shapes.push_back(ReadUncertainShape(path, options.uncertainty_path, "--uncertainty_path"));
+  }
+  std::optional<MeshDistance> mesh;
+  if (IsMeshPath(reference_path)) {
+    mesh.emplace(ReadMesh(reference_path, options.mesh));
+    for (const UncertainShape& shape : shapes) {
+      CheckUnit(reference_path, options.mesh, shape.shape, *mesh);
+    }
+    CheckFaces(reference_path, *mesh);
+  } else {
+    *reference = ReadUncertainShape(reference_path, options.reference_uncertainty_path,
+                                    "--reference_uncertainty_path");
+  }
+  std::vector<Comparison> series;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    try {
+      series.push_back(mesh
+                           ? Compare(names[i], shapes[i], *mesh, layout, options.comparison)
+                           : Compare(names[i], shapes[i], **reference, layout, options.comparison));
+    } catch (const DataError& error) {
+      if (shapes.size() == 1) throw;
+      throw DataError(fmt::format("{}: {}", paths[i], error.what()));
     }
   }
-  return true;
+  return series;
 }
 
-// `option` gives `uncertainty_path` and stands in messages.
-UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
-                                  const std::string& option) {
-  const bool is_folder = IsFolder(path);
-  UncertainShape result;
-  result.shape = ReadShapeCsv(is_folder ? (fs::path(path) / "shape.csv").string() : path);
-  fs::path folder = uncertainty_path;
-  if (folder.empty() && is_folder) {
-    folder = AbsoluteFolder(path).parent_path() / "sparse" / "0";
-  }
-  if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
-    throw InputError(
-        fmt::format("{}: {} holds no {}; give the folder of a model that velamap bundle_adjuster "
-                    "--backend markers has adjusted",
-                    option, uncertainty_path, kUncertaintyFileName));
-  }
-  if (!folder.empty() && HasUncertainty(folder.string())) {
-    const PointCovariance covariance = ReadUncertainty(folder.string()).points;
-    if (BelongsTo(covariance, result.shape)) {
-      spdlog::info("{}: joint uncertainty from {}", path, folder.string());
-      result.covariance = covariance;
-      return result;
-    }
-    if (!uncertainty_path.empty()) {
-      throw InputError(
-          fmt::format("{}: the uncertainty in {} does not belong to {}: the sigmas differ", option,
-                      uncertainty_path, path));
-    }
-  }
-  result.covariance = CovarianceFromSigmas(result.shape);
-  return result;
+void WriteComparisonFolder(const Options& options, const Layout& layout,
+                           const std::optional<UncertainShape>& reference,
+                           const std::vector<Comparison>& series) {
+  ComparisonPageInput input{series, reference ? &reference->shape : nullptr, layout};
+  input.reference_name = NamesOfShapes({options.paths.reference_path}).front();
+  input.version = kVersion;
+  input.created = fmt::format("{:%Y-%m-%d %H:%M} UTC", OutputDate());
+  input.color_limit_mm = options.color_limit_mm;
+  AtomicFolder folder(options.comparison_path);
+  WriteComparisonFiles(input, folder.TemporaryPath());
+  folder.Commit();
 }
 
-void CheckUnit(const Options& options, const MarkerShape& shape, const MeshDistance& mesh) {
-  const std::optional<double> factor = UnitHint(shape, mesh);
-  if (!factor) return;
-  const std::string& path = options.paths.reference_path;
-  const std::string what = fmt::format("{}: is {:.3g} m across, which does not match the shape",
-                                       path, mesh.Diagonal_m());
-  if (HasOwnUnit(path) || options.mesh.m_per_unit) {
-    spdlog::warn("{}; is its unit right?", what);
-    return;
-  }
-  throw InputError(
-      fmt::format("{}; if its unit is {}, give --reference_unit {}; if it is right as "
-                  "it is, --reference_unit {}",
-                  what, *factor > 1 ? "m" : "mm", *factor > 1 ? "m" : "mm",
-                  DefaultMPerUnit(path) == 1.0 ? "m" : "mm"));
-}
-
-struct Result {
-  ShapeDeviation deviation;
-  SurfaceComparison surfaces;  // empty without a layout
-};
-
-Result CompareWithSurface(const Options& options, const UncertainShape& shape,
-                          const Layout& layout) {
-  const std::string& path = options.paths.reference_path;
-  const MeshDistance mesh(ReadMesh(path, options.mesh));
-  CheckUnit(options, shape.shape, mesh);
-  if (mesh.NumFlippedEdges() > 0) {
-    spdlog::warn(
-        "{}: the triangles at {} edges face opposite sides, where the signs of distances are "
-        "arbitrary",
-        path, mesh.NumFlippedEdges());
-  }
-  Result result;
-  result.deviation = CompareWithMesh(shape, mesh, layout, options.alignment, options.part);
-  result.surfaces = CompareSurfaces(result.deviation.aligned_shape, mesh, layout, options.part);
-  return result;
-}
-
-Result CompareWithOther(const Options& options, const UncertainShape& shape, const Layout& layout,
-                        MetricsReport* report) {
-  const UncertainShape reference =
-      ReadUncertainShape(options.paths.reference_path, options.reference_uncertainty_path,
-                         "--reference_uncertainty_path");
-  Result result;
-  result.deviation = CompareWithShape(shape, reference, layout, options.alignment, options.part);
-  AddMetrics(result.deviation, report);
-  if (options.layout_path.empty()) return result;
-  AddMetrics(CompareSections(shape, reference, result.deviation.alignment, layout), report);
-  result.surfaces =
-      CompareSurfaces(result.deviation.aligned_shape, reference.shape, layout, options.part);
-  AddMetrics(result.surfaces, report);
-  return result;
-}
-
-Result Compare(const Options& options, MetricsReport* report) {
-  Layout layout;
-  if (!options.layout_path.empty()) layout = ReadLayout(options.layout_path);
-  const UncertainShape shape =
-      ReadUncertainShape(options.paths.shape_path, options.uncertainty_path, "--uncertainty_path");
-  if (!IsMeshPath(options.paths.reference_path)) {
-    return CompareWithOther(options, shape, layout, report);
-  }
-  Result result = CompareWithSurface(options, shape, layout);
-  AddMetrics(result.deviation, report);
-  if (!options.layout_path.empty()) AddMetrics(result.surfaces, report);
-  return result;
-}
-
-void Write(const Options& options, const Result& result, const MetricsReport& report) {
+void Write(const Options& options, const Comparison& first, const MetricsReport& report) {
   const auto write = [](const std::string& path, const auto& writer) {
     if (!path.empty()) WriteFileAtomically(path, writer);
   };
@@ -248,16 +238,21 @@ void Write(const Options& options, const Result& result, const MetricsReport& re
   write(options.csv_path, [&](std::ostream& out) { WriteMetricsCsv(report, out); });
   write(options.json_path, [&](std::ostream& out) { WriteMetricsJson(report, out); });
   write(options.paths.output_path,
-        [&](std::ostream& out) { WriteComparisonPly(result.deviation, limit_m, out); });
+        [&](std::ostream& out) { WriteComparisonPly(first.deviation, limit_m, out); });
   write(options.surface_path,
-        [&](std::ostream& out) { WriteComparisonSurfacePly(result.surfaces, limit_m, out); });
+        [&](std::ostream& out) { WriteComparisonSurfacePly(first.surfaces, limit_m, out); });
 }
 
 void Run(const Options& options) {
-  MetricsReport report;
-  const Result result = Compare(options, &report);
-  DropRoundingErrors(&report);
-  Write(options, result, report);
+  Layout layout;
+  if (!options.layout_path.empty()) layout = ReadLayout(options.layout_path);
+  std::optional<UncertainShape> reference;
+  const std::vector<Comparison> series = CompareAll(options, layout, &reference);
+  const MetricsReport report = MakeReport(series);
+  Write(options, series.front(), report);
+  if (!options.comparison_path.empty()) {
+    WriteComparisonFolder(options, layout, reference, series);
+  }
   PrintMetrics(report, std::cout);
 }
 

@@ -127,7 +127,9 @@ function boxAxes(points) {
 function makeLayers(data, markers, size) {
   const layers = [{key: 'markers', name: 'markers', object: new THREE.Group(), isOn: true}];
   layers[0].object.add(markerOutlines(markers));
-  layers.push({key: 'cameras', name: 'cameras', object: cameraLines(data.images, 0.03 * size), isOn: false});
+  if (data.images.length > 0) {
+    layers.push({key: 'cameras', name: 'cameras', object: cameraLines(data.images, 0.03 * size), isOn: false});
+  }
   if (markers.some(marker => marker.ellipsoid)) {
     layers.push({key: 'ellipsoids', name: 'ellipsoids', object: ellipsoids(markers), isOn: true});
   }

@@ -6,8 +6,10 @@ const FACTORS = [1, 2, 5].flatMap(f => [0, 1, 2, 3, 4, 5].map(power => f * 10 **
     .sort((a, b) => a - b);
 
 class View3D {
-  constructor(data, container) {
+  // `describe` gives the text of a marker that is pointed at.
+  constructor(data, container, describe = markerText) {
     this.container = container;
+    this.describe = describe;
     this.markers = data.markers.filter(whole);
     this.images = data.images;
     this.renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
@@ -140,8 +142,8 @@ class View3D {
   showAll() {
     const cameras = this.images.filter(image => image.centre)
         .map(image => new THREE.Vector3(...image.centre));
-    this.layers.find(({key}) => key === 'cameras').box.checked = true;
-    this.layers.find(({key}) => key === 'cameras').isOn = true;
+    const layer = this.layers.find(({key}) => key === 'cameras');
+    if (layer) layer.isOn = layer.box.checked = true;
     this.setView(20, 15, 1, [...this.corners, ...cameras]);
   }
 
@@ -257,7 +259,7 @@ class View3D {
       const marker = this.layers[0].isOn && event.buttons === 0 && this.markerAt(event);
       tip.hidden = !marker;
       if (!marker) return;
-      tip.textContent = markerText(marker);
+      tip.textContent = this.describe(marker);
       const frame = this.container.getBoundingClientRect();
       const x = Math.min(event.clientX - frame.left + 14, frame.width - tip.offsetWidth - 4);
       const y = Math.min(event.clientY - frame.top + 14, frame.height - tip.offsetHeight - 4);

@@ -128,6 +128,53 @@ TEST(ShapeComparisonMesh, MarkersBesideTheSurfaceAreNotMeasured) {
       {"none of the 30 whole markers", "best_fit"});
 }
 
+// The design ends at the outer markers, as a surface through markers does, and noise takes half of
+// those beyond its edge.
+TEST(ShapeComparisonMesh, MarkersAtTheEdgeOfADesignCount) {
+  const MeshDistance mesh(SailMesh(0.0));
+  const MarkerShape sail = MarkersOnPart(BoatShape(0.004), BoatLayout(), "sail");
+  const PointCovariance covariance = CovarianceFromSigmas(sail);
+  const EdgeOptions none{0.0, 0.0};
+  int num_beside = 0, num_counted = 0, num_beyond = 0, num_far = 0;
+  SampleShapes(sail, covariance, 20, [&](const MarkerShape& sample) {
+    const auto compare = [&](const EdgeOptions& edge) {
+      return CompareWithMesh({sample, covariance}, mesh, BoatLayout(), By(AlignmentMethod::kNone),
+                             "", edge);
+    };
+    num_beside += compare(none).num_beside;
+    const ShapeDeviation deviation = compare({});
+    num_counted += deviation.distance_m.count;
+    num_beyond += deviation.num_beyond_edge;
+    for (const MarkerDeviation& marker : deviation.markers) {
+      // Of the marker's own noise, whether the foot is on the edge or not.
+      const Eigen::Vector3d noise_m =
+          marker.x_in_reference_m - *FindWholeMarker(sail, marker.marker_id)->x_in_shape_m[0];
+      EXPECT_NEAR(marker.distance_m, marker.normal.dot(noise_m), 4e-4) << marker.marker_id;
+      num_far += std::abs(*marker.significance) > 3 ? 1 : 0;
+    }
+    EXPECT_EQ(compare({0.0, 5.0}).num_beside, 0);
+    EXPECT_GT(compare({0.0, 0.5}).num_beside, 0);
+  });
+  // 18 of the 30 markers stand on the edge.
+  EXPECT_GT(num_beside, 20 * 6);
+  EXPECT_EQ(num_counted, 20 * 30);
+  EXPECT_EQ(num_beyond, num_beside);
+  EXPECT_LE(num_far, 6);  // of 600, 0.27 %
+}
+
+TEST(ShapeComparisonMesh, MarkersFarBeyondTheEdgeAreBeside) {
+  const MeshDistance mesh(SailMesh(-0.05));
+  const MarkerShape sail = MarkersOnPart(BoatShape(), BoatLayout(), "sail");
+  const auto num_beside = [&](double tolerance_mm) {
+    return CompareWithMesh(Exact(sail), mesh, BoatLayout(), By(AlignmentMethod::kNone), "",
+                           {tolerance_mm, 3.0})
+        .num_beside;
+  };
+  EXPECT_EQ(num_beside(20.0), 18);
+  EXPECT_EQ(num_beside(80.0), 0);
+  ExpectThrows<InputError>([&] { num_beside(-1.0); }, {"--edge_tolerance"});
+}
+
 TEST(ShapeComparisonMesh, SaysWhichMotionsTheSurfaceLeavesOpen) {
   const ShapeDeviation ball =
       CompareWithMesh(Exact(Ball(1.0)), MeshDistance(SphereMesh(1.0, 40)), {}, {});

@@ -62,6 +62,20 @@ TEST(ComparisonSurface, APushedSailIsAsFarOffAllOver) {
   EXPECT_GT(aft.statistics_m.count, static_cast<int>(0.5 * aft.mesh.vertices_m.size()));
 }
 
+TEST(ComparisonSurface, IsPositiveWhereTheMarkersFace) {
+  MarkerShape turned = BoatShape();
+  for (ShapeMarker& marker : turned.markers) {
+    std::swap(marker.x_in_shape_m[1], marker.x_in_shape_m[2]);
+    std::swap(marker.x_in_shape_m[4], marker.x_in_shape_m[3]);
+  }
+  for (const MarkerShape& reference : {BoatShape(), turned}) {
+    const Eigen::Vector3d push = 0.02 * MarkerNormal(*FindWholeMarker(reference, 33));
+    const SurfaceComparison comparison =
+        CompareSurfaces(Shifted(IdsOf("sail"), push, reference), reference, BoatLayout());
+    EXPECT_NEAR(comparison.parts.at(0).statistics_m.mean, 0.019, 0.002);
+  }
+}
+
 TEST(ComparisonSurface, OfADesignIsMeasuredOnItsFaces) {
   const SurfaceComparison comparison =
       CompareSurfaces(BoatShape(), MeshDistance(SailMesh()), BoatLayout());

@@ -63,7 +63,8 @@ void SetSigma(double sigma_m, MarkerShape* shape);
 SectionReport SectionsOf(const Sail& sail, const SectionOptions& options = {},
                          const std::optional<FrameChoice>& choice = std::nullopt);
 
-// Chord, camber, draft position (-1 for none), entry and exit angle, twist, height.
+// Chord, camber, draft position (-1 for none), entry and exit angle, twist, twist of
+// the leech, girth, height.
 std::vector<double> NumbersOf(const Section& section);
 
 }  // namespace velamap

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "exporters/compare/comparison_sigma.h"
+#include "exporters/compare/shape_comparison.h"
 #include "exporters/formats/mesh_writer.h"
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/atomic_output.h"
@@ -125,6 +126,65 @@ TEST_F(ShapeComparerTest, ADesignAsMesh) {
   ExpectError(Compare("design.ply", {"--part", "jib"}), 2, "there are: hull, sail");
   ExpectError(Compare("design.ply", {"--align", "reference_part"}), 2, "best_fit or none");
   ExpectError(Compare("design.ply", {"--align", "none"}), 1, "none of the 36 whole markers");
+}
+
+TEST_F(ShapeComparerTest, AFolderWithAPageAndTheDeflections) {
+  const ProgramRun run =
+      Compare("b/shape", {"--layout_path", path("layout.yml"), "--comparison_path",
+                          path("comparison"), "--Surface.grid_points", "11"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(ListFolder(dir_ / "comparison"),
+              ElementsAre(".velamap", "comparison.html", "deflection.csv", "deflection.vts"));
+  EXPECT_THAT(ReadFileBytes(dir_ / "comparison/comparison.html"),
+              AllOf(HasSubstr("<h1>a against b</h1>"), Not(HasSubstr(dir_.path().string()))));
+  EXPECT_THAT(ReadFileBytes(dir_ / "comparison/deflection.vts"),
+              HasSubstr("WholeExtent=\"0 10 0 40 0 0\""));
+  // It is replaced as a whole, unless somebody has put something there.
+  EXPECT_EQ(Compare("b/shape", {"--comparison_path", path("comparison")}).exit_code, 0);
+  EXPECT_THAT(ListFolder(dir_ / "comparison"), ElementsAre(".velamap", "comparison.html"));
+  WriteTextFile(dir_ / "comparison/notes.txt", "mine");
+  ExpectError(Compare("b/shape", {"--comparison_path", path("comparison")}), 2, "notes.txt");
+}
+
+TEST_F(ShapeComparerTest, ASeriesAgainstOneReference) {
+  WriteShape("c/shape", Shifted(IdsOf("sail"), {0, 0.01, 0}, BoatShape(0.001)));
+  const std::vector<std::string> series = {"--series_paths",
+                                           path("c/shape") + "," + path("b/shape"), "--layout_path",
+                                           path("layout.yml")};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), series.begin(), series.end());
+    return Compare("b/shape", more);
+  };
+  const ProgramRun run = with({"--comparison_path", path("comparison")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("shapes: shape a, alignment reference_part"),
+                             HasSubstr("shapes: shape c,"), HasSubstr("shapes: shape b,"),
+                             HasSubstr("section_differences: shape c, part sail, section h1")));
+  EXPECT_THAT(ListFolder(dir_ / "comparison"),
+              ElementsAre(".velamap", "comparison.html", "deflection.csv", "deflection_a.vts",
+                          "deflection_b.vts", "deflection_c.vts"));
+  EXPECT_THAT(ReadFileBytes(dir_ / "comparison/deflection.csv"), HasSubstr("\nc,sail,1,1,0,0,"));
+  ExpectError(with({"--output_path", path("c.ply")}), 2, "--output_path: is for one shape");
+  ExpectError(with({"--csv_path", path("c/shape/shape.csv")}), 2, "--series_paths");
+  ExpectError(Compare("b/shape", {"--series_paths", path("b/shape") + ",nothing"}), 2,
+              "--series_paths: 'nothing' does not exist");
+  ExpectError(Compare("b/shape", {"--series_paths", ""}), 2, "--series_paths");
+}
+
+TEST_F(ShapeComparerTest, MarkersBeyondTheEdgeOfADesignCountUpToATolerance) {
+  const TriangleMesh mesh = SailMesh(-0.02);
+  WriteFileAtomically(dir_ / "design.ply",
+                      [&](std::ostream& out) { WriteMeshPly(mesh, "sail", out); });
+  WriteShape("sail/shape", MarkersOnPart(BoatShape(), {}, "sail"));
+  const auto compare = [&](const std::string& tolerance_mm) {
+    return RunVelamap({"shape_comparer", "--shape_path", path("sail/shape"), "--reference_path",
+                       path("design.ply"), "--align", "none", "--edge_tolerance", tolerance_mm});
+  };
+  EXPECT_THAT(compare("40").out,
+              AllOf(HasSubstr("num_beyond_edge: 18\n"), HasSubstr("num_beside_surface: 0\n")));
+  EXPECT_THAT(compare("5").out, AllOf(HasSubstr("num_beside_surface: 18\n"),
+                                      HasSubstr("beside_surface_ids: 11 12 13 14 15 16 21 26")));
+  ExpectError(compare("-1"), 2, "--edge_tolerance");
 }
 
 TEST_F(ShapeComparerTest, AMeshInAnotherUnit) {

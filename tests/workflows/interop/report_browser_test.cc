@@ -1,8 +1,5 @@
 // report.html in a real browser: headless Chromium, which draws WebGL in software.
 
-#include <stdlib.h>
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -15,6 +12,7 @@
 #include "exporters/report/report_writer.h"
 #include "tests/exporters/report/report_example.h"
 #include "tests/support/temp_dir.h"
+#include "tests/workflows/interop/browser.h"
 #include "tests/workflows/run_velamap.h"
 
 namespace velamap {
@@ -24,48 +22,6 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
-// Empty where no Chromium is on the PATH.
-std::string FindBrowser() {
-  std::istringstream folders(getenv("PATH"));
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
-      const fs::path path = fs::path(folder) / name;
-      if (fs::exists(path)) return path.string();
-    }
-  }
-  return {};
-}
-
-// What a page wrote to the console, but for the graphics driver's remarks on taking pictures.
-std::vector<std::string> ConsoleLines(const std::string& log) {
-  std::vector<std::string> lines;
-  std::istringstream stream(log);
-  for (std::string line; std::getline(stream, line);) {
-    if (line.find("CONSOLE") != std::string::npos &&
-        line.find("GL Driver Message (OpenGL, Performance") == std::string::npos) {
-      lines.push_back(line);
-    }
-  }
-  return lines;
-}
-
-// Part of the pixels that differ by more than a shade.
-double PartThatDiffers(const cv::Mat& a, const cv::Mat& b) {
-  cv::Mat difference;
-  cv::absdiff(a, b, difference);
-  cv::Mat channels[3];
-  cv::split(difference, channels);
-  const cv::Mat most = cv::max(channels[0], cv::max(channels[1], channels[2]));
-  return cv::countNonZero(most > 24) / static_cast<double>(most.total());
-}
-
-// Part of the pixels that have about this colour (BGR).
-double PartOfColour(const cv::Mat& image, const cv::Scalar& colour) {
-  cv::Mat mask;
-  cv::inRange(image, colour - cv::Scalar::all(12), colour + cv::Scalar::all(12), mask);
-  return cv::countNonZero(mask) / static_cast<double>(mask.total());
-}
 
 // Through the centres of the markers, which stand in rows of 13 by id.
 ReportSurface SurfaceThrough(const MarkerShape& shape) {
@@ -122,15 +78,8 @@ class ReportBrowser : public testing::Test {
 
   // Opens the page and returns the run; its console must stay silent.
   ProgramRun Open(const std::string& page, std::vector<std::string> arguments) const {
-    const TempDir profile;
-    arguments.insert(
-        arguments.end(),
-        {"--headless", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-         "--no-first-run", "--hide-scrollbars", "--enable-logging=stderr",
-         "--user-data-dir=" + profile.path().string(), "--host-resolver-rules=MAP * ~NOTFOUND"});
-    if (geteuid() == 0) arguments.push_back("--no-sandbox");  // refuses to start otherwise
-    arguments.push_back("file://" + dir_->path().string() + "/" + page);
-    const ProgramRun run = RunProgram(browser_, arguments);
+    const ProgramRun run = OpenInBrowser(browser_, "file://" + dir_->path().string() + "/" + page,
+                                         std::move(arguments));
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(ConsoleLines(run.err), ElementsAre());
     return run;

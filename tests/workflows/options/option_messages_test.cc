@@ -56,6 +56,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
     {"exporters/calibration/", {"camera_calibrator"}},
     {"exporters/compare/", {"shape_comparer"}},
     {"exporters/design/mesh_reader.cc", {"shape_comparer"}},
+    {"workflows/commands/compared_shapes.cc", {"shape_comparer"}},
     {"workflows/run/adjustment.cc", {"automatic_reconstructor", "central_frame_sweeper"}},
     {"workflows/run/pipeline.cc", {"automatic_reconstructor"}},
     {"workflows/run/workspace.cc", {"automatic_reconstructor"}},

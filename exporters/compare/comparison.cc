@@ -1,0 +1,126 @@
+#include "exporters/compare/comparison.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "exporters/compare/comparison_report.h"
+#include "importer/base/files.h"
+
+namespace velamap {
+namespace {
+
+bool HasLines(const Layout& layout) {
+  return std::any_of(layout.parts.begin(), layout.parts.end(),
+                     [](const LayoutPart& part) { return !part.horizontal.empty(); });
+}
+
+MetricsReport ReportOf(const Comparison& comparison) {
+  MetricsReport report;
+  AddMetrics(comparison.deviation, &report);
+  if (comparison.has_layout) {
+    AddMetrics(comparison.sections, &report);
+    report.tables.back().in_text = !comparison.IsAgainstDesign();
+    AddMetrics(comparison.surfaces, &report);
+  }
+  DropRoundingErrors(&report);
+  return report;
+}
+
+MetricTable* TableOf(const MetricTable& like, MetricsReport* report) {
+  const auto it = std::find_if(report->tables.begin(), report->tables.end(),
+                               [&](const MetricTable& table) { return table.name == like.name; });
+  if (it != report->tables.end()) return &*it;
+  report->tables.push_back({like.name, like.in_text, {}});
+  return &report->tables.back();
+}
+
+std::string NameOfShape(const std::string& path) {
+  namespace fs = std::filesystem;
+  fs::path folder = AbsoluteFolder(path);
+  const std::string file = folder.filename().string();
+  if (file == "shape.csv") folder = folder.parent_path();
+  if (folder.filename() == "shape" && folder.parent_path().has_filename()) {
+    folder = folder.parent_path();
+  }
+  return folder.has_filename() ? folder.filename().string() : file;
+}
+
+}  // namespace
+
+Comparison Compare(const std::string& name, const UncertainShape& shape,
+                   const UncertainShape& reference, const Layout& layout,
+                   const ComparisonOptions& options) {
+  Comparison comparison;
+  comparison.name = name;
+  comparison.deviation =
+      CompareWithShape(shape, reference, layout, options.alignment, options.part);
+  comparison.has_layout = layout.HasMarkers();
+  if (!comparison.has_layout) return comparison;
+  const ShapeDeviation& deviation = comparison.deviation;
+  comparison.sections = CompareSections(shape, reference, deviation.alignment, layout);
+  comparison.surfaces =
+      CompareSurfaces(deviation.aligned_shape, reference.shape, layout, options.part, options.edge);
+  if (options.with_deflections && HasLines(layout)) {
+    comparison.deflections = ComputeDeflections(deviation.aligned_shape, reference.shape, layout,
+                                                options.grid, options.part);
+  }
+  return comparison;
+}
+
+Comparison Compare(const std::string& name, const UncertainShape& shape,
+                   const MeshDistance& reference, const Layout& layout,
+                   const ComparisonOptions& options) {
+  Comparison comparison;
+  comparison.name = name;
+  comparison.deviation =
+      CompareWithMesh(shape, reference, layout, options.alignment, options.part, options.edge);
+  comparison.has_layout = layout.HasMarkers();
+  if (!comparison.has_layout) return comparison;
+  const ShapeDeviation& deviation = comparison.deviation;
+  comparison.sections = CompareSections(shape, reference, deviation, layout);
+  comparison.surfaces =
+      CompareSurfaces(deviation.aligned_shape, reference, layout, options.part, options.edge);
+  if (options.with_deflections && HasLines(layout)) {
+    comparison.deflections = ComputeDeflections(deviation.aligned_shape, reference, layout,
+                                                options.grid, options.part, options.edge);
+  }
+  return comparison;
+}
+
+MetricsReport MakeReport(const std::vector<Comparison>& series) {
+  if (series.size() == 1) return ReportOf(series.front());
+  MetricsReport together;
+  together.tables.push_back({"shapes", true, {}});
+  for (const Comparison& comparison : series) {
+    MetricsReport report = ReportOf(comparison);
+    Metrics row = {{"shape", comparison.name}};
+    row.insert(row.end(), report.metrics.begin(), report.metrics.end());
+    together.tables.front().rows.push_back(std::move(row));
+    for (MetricTable& table : report.tables) {
+      MetricTable* all = TableOf(table, &together);
+      for (Metrics& figures : table.rows) {
+        figures.insert(figures.begin(), {"shape", comparison.name});
+        all->rows.push_back(std::move(figures));
+      }
+    }
+  }
+  return together;
+}
+
+std::vector<std::string> NamesOfShapes(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const std::string& path : paths) {
+    const std::string name = NameOfShape(path);
+    std::string unique = name;
+    for (int i = 2; std::count(names.begin(), names.end(), unique) > 0; ++i) {
+      unique = fmt::format("{} ({})", name, i);
+    }
+    names.push_back(unique);
+  }
+  return names;
+}
+
+}  // namespace velamap

@@ -1,0 +1,52 @@
+// Everything that is compared between a shape and its reference, and what the files say of a series
+// of shapes.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exporters/compare/deflection_field.h"
+#include "exporters/compare/section_comparison.h"
+#include "exporters/compare/shape_comparison.h"
+#include "exporters/compare/surface_comparison.h"
+#include "exporters/formats/metrics_report.h"
+
+namespace velamap {
+
+struct ComparisonOptions {
+  AlignmentOptions alignment;
+  EdgeOptions edge;
+  GridOptions grid;
+  std::string part;  // empty for all
+  bool with_deflections = false;
+};
+
+struct Comparison {
+  std::string name;         // of the shape
+  bool has_layout = false;  // without one there are no sections, surfaces and deflections
+  ShapeDeviation deviation;
+  SectionComparison sections;
+  SurfaceComparison surfaces;
+  DeflectionReport deflections;
+
+  bool IsAgainstDesign() const { return !deviation.scale.has_value(); }
+};
+
+// Throw the errors of CompareWithShape() and CompareWithMesh().
+Comparison Compare(const std::string& name, const UncertainShape& shape,
+                   const UncertainShape& reference, const Layout& layout,
+                   const ComparisonOptions& options);
+Comparison Compare(const std::string& name, const UncertainShape& shape,
+                   const MeshDistance& reference, const Layout& layout,
+                   const ComparisonOptions& options);
+
+// The figures of all shapes, without rounding errors. Those of several shapes have a row for each
+// in the table shapes, and the name of the shape in each row of the other tables.
+MetricsReport MakeReport(const std::vector<Comparison>& series);
+
+// Names shapes by their paths: the file, or the folder that holds a folder `shape` or a shape.csv.
+// Equal names are numbered.
+std::vector<std::string> NamesOfShapes(const std::vector<std::string>& paths);
+
+}  // namespace velamap

@@ -1,0 +1,156 @@
+#include "exporters/compare/deflection_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "exporters/surface/surface.h"
+#include "importer/base/csv.h"
+#include "importer/base/error.h"
+#include "importer/geometry/units.h"
+
+namespace velamap {
+namespace {
+
+// Only the whole markers that both shapes have, so that both surfaces have the same parameters.
+MarkerShape CommonMarkers(const MarkerShape& shape, const MarkerShape& other) {
+  MarkerShape common;
+  std::copy_if(shape.markers.begin(), shape.markers.end(), std::back_inserter(common.markers),
+               [&](const ShapeMarker& marker) {
+                 return marker.IsWhole() && FindWholeMarker(other, marker.marker_id) != nullptr;
+               });
+  return common;
+}
+
+// Turns the normals to the side that most of the markers face.
+void FaceLikeMarkers(const MarkerShape& shape, const FittedSurface& fit, SurfaceGrid* grid) {
+  double agreement = 0.0;
+  for (const SurfaceResidual& marker : fit.residuals) {
+    agreement += EvaluateNormal(fit.surface, marker.u, marker.v)
+                     .dot(MarkerNormal(*FindWholeMarker(shape, marker.marker_id)));
+  }
+  if (agreement >= 0) return;
+  for (Eigen::Vector3d& normal : grid->normals) normal = -normal;
+}
+
+std::optional<double> Together(const std::optional<double>& a, const std::optional<double>& b) {
+  if (!a || !b) return std::nullopt;
+  return std::hypot(*a, *b);
+}
+
+DeflectionField FieldBetween(const MarkerShape& shape, const MarkerShape& reference,
+                             const LayoutPart& part, const GridOptions& options) {
+  const FittedSurface of_shape =
+      FitSurface(CollectSurfaceInput(CommonMarkers(shape, reference), part));
+  const FittedSurface of_reference =
+      FitSurface(CollectSurfaceInput(CommonMarkers(reference, shape), part));
+  DeflectionField field{part.name, MakeGrid(of_reference.surface, options), {}};
+  FaceLikeMarkers(reference, of_reference, &field.reference);
+  for (std::size_t i = 0; i < field.reference.vertices_m.size(); ++i) {
+    const double u = field.reference.surface_parameters[i].x(),
+                 v = field.reference.surface_parameters[i].y();
+    Deflection deflection;
+    deflection.vector_m = EvaluatePoint(of_shape.surface, u, v) - field.reference.vertices_m[i];
+    deflection.distance_m = deflection.vector_m.dot(field.reference.normals[i]);
+    deflection.sigma_m = Together(SigmaAt(of_shape, u, v), SigmaAt(of_reference, u, v));
+    field.deflections.push_back(deflection);
+  }
+  return field;
+}
+
+// The grid of the shape's surface moved to the design.
+DeflectionField FieldFrom(const MeshDistance& design, const MarkerShape& shape,
+                          const LayoutPart& part, const GridOptions& options,
+                          const EdgeOptions& edge) {
+  const double reach_m = kMPerMm * edge.tolerance_mm;
+  const FittedSurface fit = FitSurface(CollectSurfaceInput(shape, part));
+  DeflectionField field{part.name, MakeGrid(fit.surface, options), {}};
+  for (std::size_t i = 0; i < field.reference.vertices_m.size(); ++i) {
+    const Eigen::Vector2d& at = field.reference.surface_parameters[i];
+    const MeshFoot foot = design.Project(field.reference.vertices_m[i]);
+    field.deflections.emplace_back();
+    if (foot.IsWithin(reach_m, design.Diagonal_m())) {
+      field.deflections.back() =
+          Deflection{foot.distance_m * foot.normal, foot.distance_m, SigmaAt(fit, at.x(), at.y())};
+    }
+    field.reference.vertices_m[i] -= foot.distance_m * foot.normal;
+    field.reference.normals[i] = foot.normal;
+  }
+  return field;
+}
+
+template <typename Function>
+DeflectionReport ForEachPart(const Layout& layout, const std::string& wanted_part,
+                             const Function& make_field) {
+  DeflectionReport report;
+  for (const LayoutPart& part : layout.parts) {
+    if (part.horizontal.empty() || (!wanted_part.empty() && part.name != wanted_part)) continue;
+    try {
+      report.fields.push_back(make_field(part));
+    } catch (const DataError& error) {
+      report.notes.push_back(fmt::format("{}: no deflections: {}", part.name, error.what()));
+    }
+  }
+  return report;
+}
+
+}  // namespace
+
+DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MarkerShape& reference,
+                                    const Layout& layout, const GridOptions& grid,
+                                    const std::string& part) {
+  return ForEachPart(layout, part, [&](const LayoutPart& p) {
+    return FieldBetween(aligned_shape, reference, p, grid);
+  });
+}
+
+DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MeshDistance& reference,
+                                    const Layout& layout, const GridOptions& grid,
+                                    const std::string& part, const EdgeOptions& edge) {
+  return ForEachPart(layout, part, [&](const LayoutPart& p) {
+    return FieldFrom(reference, aligned_shape, p, grid, edge);
+  });
+}
+
+void WriteDeflectionCsv(const std::vector<NamedDeflections>& shapes, std::ostream& out) {
+  CsvWriter csv(out);
+  csv.WriteRecord("shape", "part", "section", "point", "u", "v", "x", "y", "z", "dx", "dy", "dz",
+                  "distance", "sigma");
+  for (const NamedDeflections& named : shapes) {
+    for (const DeflectionField& field : named.report->fields) {
+      for (std::size_t i = 0; i < field.deflections.size(); ++i) {
+        const SurfaceGrid& grid = field.reference;
+        const auto row = static_cast<int>(i);
+        const Eigen::Vector3d& x = grid.vertices_m[i];
+        const auto& deflection = field.deflections[i];
+        const auto known = [&](double value) {
+          return deflection ? std::optional<double>(value) : std::nullopt;
+        };
+        const Deflection d = deflection.value_or(Deflection{});
+        csv.WriteRecord(named.shape, field.part, row / grid.num_points + 1,
+                        row % grid.num_points + 1, grid.surface_parameters[i].x(),
+                        grid.surface_parameters[i].y(), x.x(), x.y(), x.z(), known(d.vector_m.x()),
+                        known(d.vector_m.y()), known(d.vector_m.z()), known(d.distance_m),
+                        d.sigma_m);
+      }
+    }
+  }
+}
+
+void WriteDeflectionVts(const DeflectionField& field, const std::string& name, std::ostream& out) {
+  std::vector<Eigen::Vector3d> vectors_m;
+  std::vector<double> distances_m, is_known, sigmas_m;
+  for (const auto& deflection : field.deflections) {
+    const Deflection d = deflection.value_or(Deflection{});
+    vectors_m.push_back(d.vector_m);
+    distances_m.push_back(d.distance_m);
+    is_known.push_back(deflection ? 1.0 : 0.0);
+    if (d.sigma_m) sigmas_m.push_back(*d.sigma_m);
+  }
+  GridData data{{{"deflection", vectors_m}}, {{"distance", distances_m}, {"is_known", is_known}}};
+  if (sigmas_m.size() == field.deflections.size()) data.scalars.emplace_back("sigma", sigmas_m);
+  WriteGridVts(field.reference, name, out, data);
+}
+
+}  // namespace velamap

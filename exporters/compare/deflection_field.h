@@ -1,0 +1,70 @@
+// The deflection of a sail: from each point of a grid on the reference's surface the vector to the
+// compared shape's.
+//
+// Between two shapes, the vector joins the points of the two surfaces (FitSurface) with the same u
+// and v, both fitted to the markers that both shapes have: it follows the cloth. From a design,
+// which has no markers, it runs along the design's normal to the point of the shape's grid.
+
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "exporters/compare/mesh_distance.h"
+#include "exporters/formats/surface_grid.h"
+#include "exporters/shape/marker_shape.h"
+#include "importer/layout/layout.h"
+
+namespace velamap {
+
+struct Deflection {
+  Eigen::Vector3d vector_m = Eigen::Vector3d::Zero();  // from the reference to the shape
+  double distance_m = 0.0;                             // of it, along the reference's normal
+  // Of the distance, by the noise of the markers. The uncertainty of the alignment, and errors that
+  // all markers of a shape share, are missing. Nothing for a surface through markers without sigma.
+  std::optional<double> sigma_m;
+};
+
+struct DeflectionField {
+  std::string part;
+  // On the reference, in its frame. Normals point to the side of the reference's faces: those of
+  // its markers, or of the design.
+  SurfaceGrid reference;
+  // One per point of the grid; nothing where the shape lies beside the design, beyond the reach of
+  // EdgeOptions.
+  std::vector<std::optional<Deflection>> deflections;
+};
+
+struct DeflectionReport {
+  std::vector<DeflectionField> fields;  // of the parts with lines, in the order of the layout
+  std::vector<std::string> notes;       // parts without one, with the reason
+};
+
+// `aligned_shape` is in the frame of the reference (ShapeDeviation::aligned_shape). An empty `part`
+// means all parts.
+DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MarkerShape& reference,
+                                    const Layout& layout, const GridOptions& grid,
+                                    const std::string& part = "");
+DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MeshDistance& reference,
+                                    const Layout& layout, const GridOptions& grid,
+                                    const std::string& part = "", const EdgeOptions& edge = {});
+
+// The fields of one compared shape, by name.
+struct NamedDeflections {
+  std::string shape;
+  const DeflectionReport* report = nullptr;
+};
+
+// Header shape,part,section,point,u,v,x,y,z,dx,dy,dz,distance,sigma: sections from foot to head and
+// points from luff to leech count from 1; m; unknown fields are empty.
+void WriteDeflectionCsv(const std::vector<NamedDeflections>& shapes, std::ostream& out);
+
+// The grid with the vectors `deflection` and the scalars `distance`, `is_known` (0 where there is
+// no deflection, which is 0 then) and, if it is known everywhere, `sigma`; m.
+void WriteDeflectionVts(const DeflectionField& field, const std::string& name, std::ostream& out);
+
+}  // namespace velamap

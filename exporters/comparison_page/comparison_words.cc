@@ -1,0 +1,230 @@
+#include "exporters/comparison_page/comparison_words.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "importer/geometry/units.h"
+
+namespace velamap {
+namespace {
+
+constexpr double kByChance = 0.0455;  // beyond two sigmas
+constexpr double kSame_m = 1e-6;
+constexpr std::size_t kMaxNamed = 4;
+
+double LargestOf(const Statistics& distance_m) {
+  return std::max(std::abs(distance_m.min), std::abs(distance_m.max));
+}
+
+bool IsSame(const ShapeDeviation& deviation) {
+  return LargestOf(deviation.distance_m) < kSame_m && LargestOf(deviation.difference_m) < kSame_m;
+}
+
+// The significant differences of section numbers, the most significant first.
+std::vector<const SectionDifference*> SignificantOf(const SectionComparison& sections) {
+  std::vector<const SectionDifference*> significant;
+  for (const SectionDifference& difference : sections.differences) {
+    if (difference.IsSignificant()) significant.push_back(&difference);
+  }
+  std::stable_sort(significant.begin(), significant.end(), [](const auto* a, const auto* b) {
+    return std::abs(*a->significance) > std::abs(*b->significance);
+  });
+  return significant;
+}
+
+// The one that says most to a sailmaker: camber, draft or twist, where one of them is significant.
+const SectionDifference* ForTheFirstLine(const std::vector<const SectionDifference*>& significant) {
+  for (const char* number : {"camber_percent", "twist_deg", "draft_position_percent"}) {
+    for (const SectionDifference* difference : significant) {
+      if (difference->number == number) return difference;
+    }
+  }
+  return significant.empty() ? nullptr : significant.front();
+}
+
+std::string Text(const SectionDifference& d) {
+  const std::string unit = NumberUnit(d.number);
+  return fmt::format("{} of {} {:+.{}f}{}{}", NumberName(d.number), d.section, d.Difference(),
+                     unit == "%" ? 2 : 1, unit == "°" ? "" : " ", unit);
+}
+
+std::string SectionClause(const Comparison& comparison) {
+  const auto significant = SignificantOf(comparison.sections);
+  if (const SectionDifference* first = ForTheFirstLine(significant)) {
+    return "; " + Text(*first) + " (significant)";
+  }
+  if (comparison.deviation.num_with_sigma == 0) return "";
+  return comparison.deviation.num_significant == 0 ? "; no difference is significant" : "";
+}
+
+std::string FirstLine(const ComparisonPageInput& input) {
+  const Comparison& first = input.series.front();
+  if (input.series.size() == 1) {
+    const char* what =
+        first.IsAgainstDesign() ? "The shape differs from the design by" : "The shapes differ by";
+    if (IsSame(first.deviation)) {
+      return first.IsAgainstDesign() ? "The shape is that of the design."
+                                     : "The shapes are the same.";
+    }
+    return fmt::format("{} {:.3g} mm RMS{}.", what, kMmPerM * first.deviation.distance_m.rms,
+                       SectionClause(first));
+  }
+  std::vector<std::string> shapes;
+  for (const Comparison& comparison : input.series) {
+    const double rms_mm = kMmPerM * comparison.deviation.distance_m.rms;
+    shapes.push_back(IsSame(comparison.deviation)
+                         ? fmt::format("{} not at all", comparison.name)
+                         : fmt::format("{} by {:.3g} mm RMS", comparison.name, rms_mm));
+  }
+  return fmt::format("From {} differ: {}.", input.reference_name, fmt::join(shapes, ", "));
+}
+
+// Adds the items of one shape, each after `prefix`.
+class Items {
+ public:
+  Items(const Comparison& comparison, std::string prefix, std::vector<std::string>* items)
+      : comparison_(comparison),
+        deviation_(comparison.deviation),
+        prefix_(std::move(prefix)),
+        items_(items) {}
+
+  void AddAll() {
+    AddMarkers();
+    AddSections();
+    AddSurface();
+    AddEdge();
+    AddScale();
+    AddNotes();
+  }
+
+ private:
+  void Add(std::string text) {
+    if (prefix_.empty()) text[0] = static_cast<char>(std::toupper(text[0]));
+    items_->push_back(prefix_ + text);
+  }
+
+  void AddMarkers() {
+    if (IsSame(deviation_)) return;
+    const auto is_known = [](const MarkerDeviation& marker) { return marker.is_over_surface; };
+    const auto largest = std::max_element(
+        deviation_.markers.begin(), deviation_.markers.end(), [&](const auto& a, const auto& b) {
+          return is_known(a) * std::abs(a.distance_m) < is_known(b) * std::abs(b.distance_m);
+        });
+    const std::string farthest = fmt::format("farthest is marker {}, {:+.1f} mm",
+                                             largest->marker_id, kMmPerM * largest->distance_m);
+    if (deviation_.num_with_sigma == 0) {
+      return Add(farthest + "; no sigmas are known, so nothing can be called significant");
+    }
+    Add(
+        fmt::format("{} of {} markers differ significantly, by more than 2 sigmas; noise alone "
+                    "makes about {:.0f} do so; {}",
+                    deviation_.num_significant, deviation_.num_with_sigma,
+                    kByChance * deviation_.num_with_sigma, farthest));
+  }
+
+  void AddSections() {
+    const auto significant = SignificantOf(comparison_.sections);
+    const std::size_t num_all = comparison_.sections.differences.size();
+    if (significant.empty()) {
+      if (num_all > 0 && deviation_.num_with_sigma > 0 && !IsSame(deviation_)) {
+        Add(fmt::format("none of the {} numbers of the sections differs significantly", num_all));
+      }
+      return;
+    }
+    std::vector<std::string> names;
+    for (const SectionDifference* difference : significant) {
+      if (names.size() < kMaxNamed) names.push_back(Text(*difference));
+    }
+    Add(fmt::format("{} of {} numbers of the sections differ significantly: {}{}",
+                    significant.size(), num_all, fmt::join(names, ", "),
+                    significant.size() > kMaxNamed ? " …" : ""));
+  }
+
+  void AddSurface() {
+    for (const DeflectionField& field : comparison_.deflections.fields) {
+      int num_known = 0, num_significant = 0;
+      for (const auto& deflection : field.deflections) {
+        if (!deflection || !deflection->sigma_m) continue;
+        ++num_known;
+        num_significant +=
+            std::abs(deflection->distance_m) > kSignificantSigmas * *deflection->sigma_m ? 1 : 0;
+      }
+      if (num_known == 0 || num_significant == 0) continue;
+      Add(fmt::format("the surface of {} differs significantly at {:.0f} % of its points",
+                      field.part, 100.0 * num_significant / num_known));
+    }
+  }
+
+  void AddEdge() {
+    if (deviation_.num_beyond_edge > 0) {
+      Add(
+          fmt::format("{} markers lie a little beyond the edge of the design and count by their "
+                      "distance along its normal there",
+                      deviation_.num_beyond_edge));
+    }
+    std::vector<int> beside;
+    for (const MarkerDeviation& marker : deviation_.markers) {
+      if (!marker.is_over_surface) beside.push_back(marker.marker_id);
+    }
+    if (beside.empty()) return;
+    Add(fmt::format("beside the design, and without a distance: marker{} {}",
+                    beside.size() == 1 ? "" : "s", fmt::join(beside, " ")));
+  }
+
+  void AddScale() {
+    if (!deviation_.scale || std::abs(*deviation_.scale - 1) < 5e-6) return;
+    Add(fmt::format(
+        "the shape is {:.3f} % {} than the reference, which the alignment leaves as it "
+        "is",
+        100 * std::abs(*deviation_.scale - 1), *deviation_.scale > 1 ? "larger" : "smaller"));
+  }
+
+  void AddNotes() {
+    for (const auto* notes : {&deviation_.alignment.notes, &comparison_.sections.notes,
+                              &comparison_.surfaces.notes, &comparison_.deflections.notes}) {
+      for (const std::string& note : *notes) {
+        if (!note.empty()) Add(note);
+      }
+    }
+  }
+
+  const Comparison& comparison_;
+  const ShapeDeviation& deviation_;
+  const std::string prefix_;
+  std::vector<std::string>* items_;
+};
+
+}  // namespace
+
+std::string ComparisonTitle(const ComparisonPageInput& input) {
+  const std::string what = input.series.size() == 1 ? input.series.front().name
+                                                    : fmt::format("{} shapes", input.series.size());
+  return fmt::format("{} against {}", what, input.reference_name);
+}
+
+std::string NumberName(const std::string& number) {
+  std::string name = number.substr(0, number.rfind('_'));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string NumberUnit(const std::string& number) {
+  const std::string unit = number.substr(number.rfind('_') + 1);
+  return unit == "percent" ? "%" : unit == "deg" ? "°" : unit;
+}
+
+ComparisonVerdict JudgeComparison(const ComparisonPageInput& input) {
+  ComparisonVerdict verdict{FirstLine(input), {}};
+  for (const Comparison& comparison : input.series) {
+    const std::string prefix = input.series.size() == 1 ? "" : comparison.name + ": ";
+    Items(comparison, prefix, &verdict.items).AddAll();
+  }
+  return verdict;
+}
+
+}  // namespace velamap

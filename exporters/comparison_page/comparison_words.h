@@ -1,0 +1,26 @@
+// A comparison in plain words. Private to the comparison's page.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exporters/comparison_page/comparison_page.h"
+
+namespace velamap {
+
+// "trim2 against trim1", "3 shapes against trim1".
+std::string ComparisonTitle(const ComparisonPageInput& input);
+
+// A section number without its unit, and the unit: "draft position", "%".
+std::string NumberName(const std::string& number);
+std::string NumberUnit(const std::string& number);
+
+struct ComparisonVerdict {
+  std::string text;                // one sentence
+  std::vector<std::string> items;  // what lies behind it, and what to know
+};
+
+ComparisonVerdict JudgeComparison(const ComparisonPageInput& input);
+
+}  // namespace velamap

@@ -1,0 +1,206 @@
+// Vectors from the surface of a reference to that of a shape.
+
+#include "exporters/compare/deflection_field.h"
+
+#include <cmath>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exporters/compare/comparison_sigma.h"
+#include "exporters/compare/shape_comparison.h"
+#include "importer/base/csv.h"
+#include "tests/exporters/compare/example_comparison.h"
+#include "tests/exporters/example_covariance.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr int kNumPoints = 21;
+
+GridOptions Grid() { return {kNumPoints, kNumPoints}; }
+
+DeflectionField FieldOf(const MarkerShape& shape, const MarkerShape& reference) {
+  return ComputeDeflections(shape, reference, BoatLayout(), Grid()).fields.at(0);
+}
+
+double LargestVector(const DeflectionField& field) {
+  double largest_m = 0.0;
+  for (const auto& deflection : field.deflections) {
+    if (deflection) largest_m = std::max(largest_m, deflection->vector_m.norm());
+  }
+  return largest_m;
+}
+
+// The depth of a wide bump in the middle of the sail, m.
+double Bump(const Eigen::Vector3d& x_m) {
+  const Eigen::Vector3d from_middle = x_m - Eigen::Vector3d(1.3, 0.4, 2.0);
+  return 0.03 * std::exp(-from_middle.squaredNorm() / (2 * 1.2 * 1.2));
+}
+
+MarkerShape WithBump(const MarkerShape& shape) {
+  MarkerShape bumped = shape;
+  for (const ShapeMarker& marker : shape.markers) {
+    if (marker.part != "sail") continue;
+    bumped =
+        Shifted({marker.marker_id}, Bump(*marker.x_in_shape_m[0]) * MarkerNormal(marker), bumped);
+  }
+  return bumped;
+}
+
+TEST(Deflections, OfAShapeFromItselfAreZero) {
+  const MarkerShape boat = BoatShape(0.001);
+  const DeflectionField field = FieldOf(boat, boat);
+  EXPECT_EQ(field.part, "sail");
+  ASSERT_EQ(field.deflections.size(), static_cast<std::size_t>(kNumPoints * kNumPoints));
+  for (const auto& deflection : field.deflections) {
+    ASSERT_TRUE(deflection.has_value());
+    EXPECT_EQ(deflection->vector_m.norm(), 0.0);
+    ASSERT_TRUE(deflection->sigma_m.has_value());
+    EXPECT_GT(*deflection->sigma_m, 0.0);
+  }
+}
+
+TEST(Deflections, OfAShapeMovedRigidlyAreZeroAfterTheBestFit) {
+  const MarkerShape boat = BoatShape(0.001);
+  AlignmentOptions best_fit;
+  best_fit.method = AlignmentMethod::kBestFit;
+  const ShapeDeviation deviation =
+      CompareWithShape({Moved(FarPose(), boat), {}}, {boat, {}}, BoatLayout(), best_fit);
+  EXPECT_LT(LargestVector(FieldOf(deviation.aligned_shape, boat)), 1e-9);
+}
+
+TEST(Deflections, FollowTheMotionOfTheCloth) {
+  const Eigen::Vector3d motion(0.02, 0.03, -0.01);
+  const MarkerShape boat = BoatShape(0.001);
+  const DeflectionField field = FieldOf(Shifted(IdsOf("sail"), motion, boat), boat);
+  for (std::size_t i = 0; i < field.deflections.size(); ++i) {
+    EXPECT_LT((field.deflections[i]->vector_m - motion).norm(), 1e-9);
+    EXPECT_NEAR(field.deflections[i]->distance_m, motion.dot(field.reference.normals[i]), 1e-9);
+  }
+}
+
+// A marker that one of the shapes lacks does not shift the cloth along its line.
+TEST(Deflections, AMarkerAtTheEndThatOneShapeLacksDoesNotMatter) {
+  const MarkerShape boat = BoatShape();
+  MarkerShape without = boat;
+  without.markers.erase(without.markers.begin() + 5);  // marker 16, at the leech of h1
+  EXPECT_EQ(LargestVector(FieldOf(without, boat)), 0.0);
+  EXPECT_EQ(LargestVector(FieldOf(boat, without)), 0.0);
+}
+
+TEST(Deflections, GiveAKnownBumpBackWithinSigmas) {
+  const MarkerShape boat = BoatShape(0.001), bumped = WithBump(boat);
+  const PointCovariance covariance = CovarianceFromSigmas(boat);
+  double sum_of_squares = 0.0;
+  int count = 0, num_far = 0;
+  SampleShapes(bumped, covariance, 10, [&](const MarkerShape& shape) {
+    SampleShapes(boat, covariance, 1, [&](const MarkerShape& reference) {
+      const DeflectionField field = FieldOf(shape, reference);
+      for (std::size_t i = 0; i < field.deflections.size(); ++i) {
+        const double error_m =
+            field.deflections[i]->distance_m - Bump(field.reference.vertices_m[i]);
+        const double in_sigmas = error_m / *field.deflections[i]->sigma_m;
+        sum_of_squares += in_sigmas * in_sigmas;
+        num_far += std::abs(in_sigmas) > 3 ? 1 : 0;
+        ++count;
+      }
+    });
+  });
+  const double rms_in_sigmas = std::sqrt(sum_of_squares / count);
+  EXPECT_GT(rms_in_sigmas, 0.6);
+  EXPECT_LT(rms_in_sigmas, 1.3);
+  EXPECT_LT(num_far, 0.02 * count);
+  // The bump is far above the noise.
+  EXPECT_NEAR(LargestVector(FieldOf(bumped, boat)), 0.03, 0.002);
+}
+
+// Markers on the other side of the cloth: positive is where they face, as for their own distances.
+TEST(Deflections, ArePositiveOnTheSideOfTheMarkers) {
+  MarkerShape boat = BoatShape(), turned = boat;
+  for (ShapeMarker& marker : turned.markers) {
+    std::swap(marker.x_in_shape_m[1], marker.x_in_shape_m[2]);
+    std::swap(marker.x_in_shape_m[4], marker.x_in_shape_m[3]);
+  }
+  const Eigen::Vector3d motion(0, 0.02, 0);
+  for (const MarkerShape& reference : {boat, turned}) {
+    const MarkerShape shape = Shifted(IdsOf("sail"), motion, reference);
+    AlignmentOptions none;
+    none.method = AlignmentMethod::kNone;
+    const double of_markers_m =
+        CompareWithShape({shape, {}}, {reference, {}}, BoatLayout(), none, "sail").distance_m.mean;
+    double of_field_m = 0.0;
+    for (const auto& deflection : FieldOf(shape, reference).deflections) {
+      of_field_m += deflection->distance_m / (kNumPoints * kNumPoints);
+    }
+    EXPECT_NEAR(of_field_m, of_markers_m, 1e-3);
+  }
+}
+
+TEST(Deflections, FromADesignAreAlongItsNormal) {
+  const MeshDistance design(SailMesh());
+  const MarkerShape shape = Shifted(IdsOf("sail"), {0, 0.02, 0}, BoatShape());
+  const DeflectionReport report = ComputeDeflections(shape, design, BoatLayout(), Grid());
+  const DeflectionField& field = report.fields.at(0);
+  for (std::size_t i = 0; i < field.deflections.size(); ++i) {
+    ASSERT_TRUE(field.deflections[i].has_value());
+    const Eigen::Vector3d& x = field.reference.vertices_m[i];
+    EXPECT_LT(std::abs(design.Project(x).distance_m), 1e-6);  // on the design
+    EXPECT_LT(field.deflections[i]->vector_m.cross(field.reference.normals[i]).norm(), 1e-9);
+    EXPECT_NEAR(field.deflections[i]->distance_m, 0.02 * field.reference.normals[i].y(), 3e-3);
+  }
+  EXPECT_THAT(report.notes, IsEmpty());
+}
+
+TEST(Deflections, AreUnknownBesideTheDesign) {
+  const MeshDistance narrow(SailMesh(-0.1));
+  const DeflectionField field =
+      ComputeDeflections(BoatShape(), narrow, BoatLayout(), Grid()).fields.at(0);
+  EXPECT_FALSE(field.deflections.front().has_value());
+  EXPECT_TRUE(field.deflections[kNumPoints * (kNumPoints / 2) + kNumPoints / 2].has_value());
+  std::ostringstream vts;
+  WriteDeflectionVts(field, "sail", vts);
+  EXPECT_THAT(vts.str(), Not(HasSubstr("nan")));
+  EXPECT_THAT(vts.str(), HasSubstr("Name=\"is_known\" format=\"ascii\">\n0\n"));
+}
+
+TEST(Deflections, APartWithoutASurfaceIsNoted) {
+  MarkerShape shape = BoatShape();
+  shape.markers.erase(shape.markers.begin() + 6, shape.markers.begin() + 30);  // h1 is left
+  const DeflectionReport report = ComputeDeflections(shape, BoatShape(), BoatLayout(), Grid());
+  EXPECT_THAT(report.fields, IsEmpty());
+  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("sail: no deflections: ")));
+}
+
+TEST(Deflections, FilesHoldPointAndVector) {
+  const MarkerShape boat = BoatShape(0.001);
+  const DeflectionReport report =
+      ComputeDeflections(Shifted(IdsOf("sail"), {0, 0.5, 0}, boat), boat, BoatLayout(), Grid());
+  std::ostringstream csv, vts;
+  WriteDeflectionCsv({{"trim2", &report}}, csv);
+  std::istringstream in(csv.str());
+  const std::vector<CsvRecord> records = ReadCsv(in, "deflection.csv");
+  ASSERT_EQ(records.size(), 1u + kNumPoints * kNumPoints);
+  EXPECT_THAT(records[0].fields, ElementsAre("shape", "part", "section", "point", "u", "v", "x",
+                                             "y", "z", "dx", "dy", "dz", "distance", "sigma"));
+  const std::vector<std::string>& last = records.back().fields;
+  EXPECT_EQ(last[0], "trim2");
+  EXPECT_EQ(last[1], "sail");
+  EXPECT_EQ(last[2], std::to_string(kNumPoints));
+  EXPECT_EQ(last[3], std::to_string(kNumPoints));
+  EXPECT_NEAR(std::stod(last[10]), 0.5, 1e-9);
+  WriteDeflectionVts(report.fields[0], "sail", vts);
+  EXPECT_THAT(vts.str(),
+              HasSubstr("Name=\"deflection\" NumberOfComponents=\"3\" format=\"ascii\">"));
+  EXPECT_THAT(vts.str(), HasSubstr("Name=\"distance\""));
+  EXPECT_THAT(vts.str(), HasSubstr("Name=\"sigma\""));
+}
+
+}  // namespace
+}  // namespace velamap

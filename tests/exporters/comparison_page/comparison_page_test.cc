@@ -1,0 +1,223 @@
+// The page of a comparison without a browser (tests/workflows/interop/comparison_browser_test.cc
+// has one).
+
+#include "exporters/comparison_page/comparison_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "exporters/compare/comparison_sigma.h"
+#include "tests/exporters/compare/example_comparison.h"
+
+namespace velamap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+
+UncertainShape Uncertain(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
+
+ComparisonOptions WithDeflections() {
+  ComparisonOptions options;
+  options.with_deflections = true;
+  return options;
+}
+
+// The depth of the line h3 grows by a tenth.
+MarkerShape Fuller() {
+  MarkerShape shape = BoatShape(0.001);
+  const MarkerShape boat = shape;
+  for (const int id : {32, 33, 34, 35}) {
+    const double u = 0.2 * (id - 31);
+    shape = Shifted({id}, 0.12 * u * (1 - u) * MarkerNormal(*FindWholeMarker(boat, id)), shape);
+  }
+  return shape;
+}
+
+// Holds what the input refers to.
+struct Example {
+  std::vector<Comparison> series;
+  MarkerShape reference = BoatShape(0.001);
+  Layout layout = BoatLayout();
+  bool is_design = false;
+
+  void Add(const std::string& name, const MarkerShape& shape) {
+    series.push_back(
+        Compare(name, Uncertain(shape), Uncertain(reference), layout, WithDeflections()));
+  }
+  ComparisonPageInput Input() const {
+    ComparisonPageInput input{series, is_design ? nullptr : &reference, layout};
+    input.reference_name = is_design ? "design.step" : "trim1";
+    input.version = "0.0";
+    return input;
+  }
+  Json Data() const { return Json::parse(ComparisonJson(Input())); }
+};
+
+TEST(ComparisonPage, AShapeAgainstItselfIsTheSame) {
+  Example example;
+  example.Add("again", Moved(FarPose(), BoatShape(0.001)));
+  const Json data = example.Data();
+  EXPECT_EQ(data["verdict"]["text"], "The shapes are the same.");
+  for (const Json& row : data["numbers"]) {
+    EXPECT_EQ(row["values"][0]["is_significant"], false);
+    EXPECT_NEAR(row["values"][0]["difference"].get<double>(), 0.0, 1e-5);
+  }
+  for (const Json& marker : data["markers"]) {
+    EXPECT_EQ(marker["distances"][0]["distance_mm"], 0.0) << marker["id"];
+  }
+  for (const Json& distance : data["surfaces"][0]["distances_mm"]) EXPECT_EQ(distance, 0.0);
+  EXPECT_EQ(data["profiles"].size(), 5u);
+  for (const Json& profile : data["profiles"]) {
+    const Json &reference = profile["curves"][0]["own"], &shape = profile["curves"][1]["own"];
+    ASSERT_EQ(reference.size(), shape.size());
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+      EXPECT_NEAR(shape[i][0].get<double>(), reference[i][0].get<double>(), 0.011);
+      EXPECT_NEAR(shape[i][1].get<double>(), reference[i][1].get<double>(), 0.011);
+    }
+  }
+}
+
+TEST(ComparisonPage, TheFirstLineSaysHowMuchAndWhere) {
+  Example example;
+  example.Add("trim2", Fuller());
+  const Json data = example.Data();
+  const std::string text = data["verdict"]["text"];
+  EXPECT_THAT(text, StartsWith("The shapes differ by "));
+  EXPECT_THAT(text, HasSubstr(" mm RMS; camber of h3 +"));
+  EXPECT_THAT(text, HasSubstr(" % (significant)."));
+  EXPECT_THAT(data["verdict"]["items"].dump(), HasSubstr("markers differ significantly"));
+  EXPECT_EQ(data["title"], "trim2 against trim1");
+  const auto camber = std::find_if(data["numbers"].begin(), data["numbers"].end(), [](auto& row) {
+    return row["section"] == "h3" && row["number"] == "camber";
+  });
+  ASSERT_NE(camber, data["numbers"].end());
+  EXPECT_TRUE((*camber)["values"][0]["is_significant"].get<bool>());
+  EXPECT_EQ((*camber)["unit"], "%");
+}
+
+TEST(ComparisonPage, ProfilesStartAtTheLuffAndLieWhereTheyAre) {
+  Example example;
+  example.Add("trim2", Shifted(IdsOf("sail"), {0, 0.04, 0}, BoatShape(0.001)));
+  const Json data = example.Data();
+  for (const Json& profile : data["profiles"]) {
+    const Json& reference = profile["curves"][0];
+    const Json& shape = profile["curves"][1];
+    EXPECT_EQ(reference["name"], "trim1");
+    EXPECT_EQ(reference["own"], reference["placed"]);
+    EXPECT_NEAR(shape["own"][0][1].get<double>(), 0.0, 0.01);
+    // The luff has moved by 40 mm, across and along the chord.
+    const double x = shape["placed"][0][0], y = shape["placed"][0][1];
+    EXPECT_NEAR(std::hypot(x, y), 40.0, 0.05);
+    EXPECT_NEAR(shape["own"].back()[0].get<double>(), reference["own"].back()[0].get<double>(),
+                0.05);
+  }
+}
+
+TEST(ComparisonPage, ASeriesHasAColumnForEachShape) {
+  Example example;
+  example.Add("trim2", Fuller());
+  example.Add("trim3", Shifted(IdsOf("sail"), {0, 0.02, 0}, BoatShape(0.001)));
+  example.Add("trim4", BoatShape(0.001));
+  const Json data = example.Data();
+  EXPECT_EQ(data["title"], "3 shapes against trim1");
+  EXPECT_THAT(data["verdict"]["text"].get<std::string>(),
+              HasSubstr("From trim1 differ: trim2 by "));
+  EXPECT_THAT(data["verdict"]["text"].get<std::string>(), HasSubstr("trim4 not at all."));
+  EXPECT_EQ(data["shapes"].size(), 3u);
+  EXPECT_EQ(data["surfaces"].size(), 3u);
+  for (const Json& row : data["numbers"]) EXPECT_EQ(row["values"].size(), 3u);
+  for (const Json& row : data["profiles"]) EXPECT_EQ(row["curves"].size(), 4u);
+  for (const Json& row : data["markers"]) EXPECT_EQ(row["distances"].size(), 3u);
+  // One limit for all, so that colours can be compared.
+  EXPECT_GE(data["color_limit_mm"].get<double>(), 20.0);
+}
+
+TEST(ComparisonPage, ADesignHasSectionsToo) {
+  Example example;
+  example.is_design = true;
+  const MeshDistance design(SailMesh(0.0));
+  AlignmentOptions none;
+  none.method = AlignmentMethod::kNone;
+  ComparisonOptions options = WithDeflections();
+  options.alignment = none;
+  example.series.push_back(Compare("trim2", Uncertain(Fuller()), design, example.layout, options));
+  const Json data = example.Data();
+  EXPECT_THAT(data["verdict"]["text"].get<std::string>(),
+              StartsWith("The shape differs from the design by"));
+  EXPECT_THAT(data["verdict"]["items"].dump(),
+              HasSubstr("markers 120 121 122 123 124 125"));  // the hull
+  EXPECT_EQ(data["profiles"].size(), 5u);
+  EXPECT_EQ(data["numbers"].size(), 30u);
+  for (const Json& row : data["numbers"]) {
+    const double difference = row["values"][0]["difference"];
+    const double sigma = row["values"][0]["sigma"];
+    if (row["section"] == "h3" || row["number"] == "twist") continue;
+    EXPECT_LT(std::abs(difference), std::max(4 * sigma, 0.02)) << row.dump();
+  }
+}
+
+TEST(ComparisonPage, WithoutALayoutThereAreMarkers) {
+  Example example;
+  example.layout = {};
+  example.Add("trim2", Fuller());
+  const Json data = example.Data();
+  EXPECT_EQ(data["markers"].size(), 36u);
+  EXPECT_TRUE(data["surfaces"][0].is_null());
+  EXPECT_TRUE(data["profiles"].empty());
+}
+
+TEST(ComparisonPage, IsOneFileWithoutScriptsFromNames) {
+  Example example;
+  example.Add("</script><b>{{STYLE}}", Fuller());
+  ComparisonPageInput input = example.Input();
+  std::ostringstream out;
+  WriteComparisonPage(input, out);
+  const std::string page = out.str();
+  EXPECT_THAT(page, HasSubstr("<h1>&lt;/script&gt;&lt;b&gt;{{STYLE}} against trim1</h1>"));
+  EXPECT_THAT(page, Not(HasSubstr("</script><b>")));
+  EXPECT_THAT(page, Not(HasSubstr("{{SCRIPT}}")));
+  EXPECT_THAT(page, Not(HasSubstr("<script src")));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(page, HasSubstr("</html>"));
+  EXPECT_LT(page.size(), 3'000'000u);
+  std::ostringstream again;
+  WriteComparisonPage(input, again);
+  EXPECT_EQ(again.str(), page);
+}
+
+TEST(ComparisonSeries, FiguresNameTheirShape) {
+  Example example;
+  example.Add("trim2", Fuller());
+  const MetricsReport one = MakeReport(example.series);
+  EXPECT_EQ(one.metrics.front().key, "alignment");
+  example.Add("trim3", BoatShape(0.001));
+  const MetricsReport two = MakeReport(example.series);
+  EXPECT_TRUE(two.metrics.empty());
+  EXPECT_EQ(two.tables.front().name, "shapes");
+  EXPECT_EQ(two.tables.size(), one.tables.size() + 1);
+  for (const MetricTable& table : two.tables) {
+    for (const Metrics& row : table.rows) EXPECT_EQ(row.front().key, "shape") << table.name;
+  }
+  std::ostringstream text;
+  PrintMetrics(two, text);
+  EXPECT_THAT(text.str(), HasSubstr("shapes: shape trim2, alignment reference_part"));
+  EXPECT_THAT(text.str(), HasSubstr("section_differences: shape trim3, part sail, section h1"));
+}
+
+TEST(ComparisonSeries, ShapesAreNamedByTheirFolders) {
+  EXPECT_THAT(NamesOfShapes({"/a/trim1/shape", "/a/trim2/shape/", "/a/trim3/shape/shape.csv",
+                             "/a/truth.csv", "/b/trim1/shape", "/b/trim1"}),
+              ElementsAre("trim1", "trim2", "trim3", "truth.csv", "trim1 (2)", "trim1 (3)"));
+}
+
+}  // namespace
+}  // namespace velamap

@@ -1,0 +1,97 @@
+#include "workflows/commands/compared_shapes.h"
+
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "exporters/compare/comparison_sigma.h"
+#include "exporters/formats/shape_csv.h"
+#include "exporters/shape/shape_sigma.h"
+#include "importer/base/error.h"
+#include "importer/base/files.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
+
+namespace velamap {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether the covariance belongs to the shape, by the sigmas of both.
+bool BelongsTo(const PointCovariance& covariance, const MarkerShape& shape) {
+  constexpr double kTolerance = 1e-3;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (int corner = 1; corner <= kNumCorners; ++corner) {
+      const auto idx = static_cast<std::size_t>(corner);
+      if (!marker.x_in_shape_m[idx]) continue;
+      const auto sigma_m = PointSigma(&covariance, marker.marker_id, corner);
+      if (!sigma_m || !marker.sigma_m[idx] ||
+          (*sigma_m - *marker.sigma_m[idx]).norm() > kTolerance * sigma_m->norm()) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
+                                  const std::string& option) {
+  const bool is_folder = IsFolder(path);
+  UncertainShape result;
+  result.shape = ReadShapeCsv(is_folder ? (fs::path(path) / "shape.csv").string() : path);
+  fs::path folder = uncertainty_path;
+  if (folder.empty() && is_folder) {
+    folder = AbsoluteFolder(path).parent_path() / "sparse" / "0";
+  }
+  if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
+    throw InputError(
+        fmt::format("{}: {} holds no {}; give the folder of a model that velamap bundle_adjuster "
+                    "--backend markers has adjusted",
+                    option, uncertainty_path, kUncertaintyFileName));
+  }
+  if (!folder.empty() && HasUncertainty(folder.string())) {
+    const PointCovariance covariance = ReadUncertainty(folder.string()).points;
+    if (BelongsTo(covariance, result.shape)) {
+      spdlog::info("{}: joint uncertainty from {}", path, folder.string());
+      result.covariance = covariance;
+      return result;
+    }
+    if (!uncertainty_path.empty()) {
+      throw InputError(
+          fmt::format("{}: the uncertainty in {} does not belong to {}: the sigmas differ", option,
+                      uncertainty_path, path));
+    }
+  }
+  result.covariance = CovarianceFromSigmas(result.shape);
+  return result;
+}
+
+void CheckUnit(const std::string& path, const MeshReadOptions& options, const MarkerShape& shape,
+               const MeshDistance& mesh) {
+  const std::optional<double> factor = UnitHint(shape, mesh);
+  if (!factor) return;
+  const std::string what = fmt::format("{}: is {:.3g} m across, which does not match the shape",
+                                       path, mesh.Diagonal_m());
+  if (HasOwnUnit(path) || options.m_per_unit) {
+    spdlog::warn("{}; is its unit right?", what);
+    return;
+  }
+  throw InputError(
+      fmt::format("{}; if its unit is {}, give --reference_unit {}; if it is right as "
+                  "it is, --reference_unit {}",
+                  what, *factor > 1 ? "m" : "mm", *factor > 1 ? "m" : "mm",
+                  DefaultMPerUnit(path) == 1.0 ? "m" : "mm"));
+}
+
+void CheckFaces(const std::string& path, const MeshDistance& mesh) {
+  if (mesh.NumFlippedEdges() == 0) return;
+  spdlog::warn(
+      "{}: the triangles at {} edges face opposite sides, where the signs of distances are "
+      "arbitrary",
+      path, mesh.NumFlippedEdges());
+}
+
+}  // namespace velamap

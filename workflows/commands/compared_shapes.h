@@ -1,0 +1,27 @@
+// What shape_comparer compares: shapes with their uncertainty, and the checks of a design.
+
+#pragma once
+
+#include <string>
+
+#include "exporters/compare/shape_comparison.h"
+#include "exporters/design/mesh_reader.h"
+
+namespace velamap {
+
+// Reads a shape.csv, or the one in a folder, with the joint uncertainty of the model in
+// `uncertainty_path` or, for a folder, beside it; otherwise with the sigmas of the file. `option`
+// gives `uncertainty_path` and stands in messages. Throws InputError where the files cannot be read
+// or do not belong to each other.
+UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
+                                  const std::string& option);
+
+// Throws InputError if the unit of the design in `path` cannot be right and was not given; warns if
+// it was.
+void CheckUnit(const std::string& path, const MeshReadOptions& options, const MarkerShape& shape,
+               const MeshDistance& mesh);
+
+// Warns of triangles that face opposite sides.
+void CheckFaces(const std::string& path, const MeshDistance& mesh);
+
+}  // namespace velamap
