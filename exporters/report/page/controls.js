@@ -41,6 +41,7 @@ const KEYS = {
 };
 
 function connectView(view) {
+  onTheme(() => view.render());  // before the picture for the print is taken
   for (const button of document.querySelectorAll('[data-view]')) {
     button.addEventListener('click', () => view.setView(...VIEWS[button.dataset.view]));
   }
@@ -57,7 +58,6 @@ function connectView(view) {
     byId('view_print_note').textContent = isFactor
         ? `Ellipsoids: 1 sigma, drawn ${byId('factor_value').textContent} times as large.` : '';
   });
-  onTheme(() => view.render());
   window.addEventListener('hashchange', () => followAddress(view));
   followAddress(view);
 }
