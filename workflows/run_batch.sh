@@ -17,8 +17,10 @@
 # VELAMAP: the program; the default is that of build/release, else that on the PATH.
 set -euo pipefail
 
+# Without commands to the terminal, which names of files may hold.
+say() { printf '%s\n' "${*//[[:cntrl:]]/?}"; }
 fail() {
-  echo "error: $*" >&2
+  say "error: $*" >&2
   exit 2
 }
 
@@ -51,7 +53,7 @@ velamap="${VELAMAP:-$(dirname "${BASH_SOURCE[0]}")/../build/release/workflows/ve
 # sail.mp4 and sail/ both become the workspace sail, so that two inputs of one name would collide.
 workspace_name() {
   local name
-  name="$(basename "$1")"
+  name="$(basename "$(realpath -ms "$1")")"
   if [[ -d "$1" ]]; then echo "$name"; else echo "${name%.*}"; fi
 }
 duplicates="$(for input in "${inputs[@]}"; do workspace_name "$input"; done | sort | uniq -d)"
@@ -73,7 +75,7 @@ without_folders() {
   sed -E "s#(^|[[:space:]'\"(=:,;])/[^/[:space:]][^[:space:]'\"),;]*/#\1#g" <<<"$text"
 }
 
-mkdir -p "$output_path"
+mkdir -p "$output_path" 2>/dev/null || fail "$output_path: cannot be made; give another folder"
 summary="$output_path/summary.csv"
 # An earlier summary stays, under the next free number.
 if [[ -e "$summary" || -L "$summary" ]]; then
@@ -82,7 +84,7 @@ if [[ -e "$summary" || -L "$summary" ]]; then
     number=$((number + 1))
   done
   mv --no-clobber "$summary" "$output_path/summary.$number.csv"
-  echo "== the earlier summary is now $output_path/summary.$number.csv"
+  say "== the earlier summary is now $output_path/summary.$number.csv"
 fi
 { printf 'input,workspace,exit_code,error'; printf ',%s' "${keys[@]}"; printf '\n'; } >"$summary"
 results="$(mktemp)"
@@ -92,7 +94,7 @@ trap 'rm -f "$results" "$errors"' EXIT
 first_failure=0
 for input in "${inputs[@]}"; do
   workspace="$output_path/$(workspace_name "$input")"
-  echo "== $input -> $workspace"
+  say "== $input -> $workspace"
   status=0
   "$velamap" automatic_reconstructor --image_path "$input" --workspace_path "$workspace" --summary json \
     "$@" 2>&1 >"$results" | tee "$errors" >&2 || status="${PIPESTATUS[0]}"
@@ -114,5 +116,5 @@ for input in "${inputs[@]}"; do
     [[ $keep_going -eq 1 ]] || break
   fi
 done
-echo "== summary: $summary"
+say "== summary: $summary"
 exit "$first_failure"

@@ -8,7 +8,7 @@ import shlex
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from records import fail, key_of
+from records import MAX_BYTES, fail, key_of, read_start
 from result_columns import RESULT_COLUMNS
 
 COLUMNS = ("name", "clip", "camera", "layout", "options", "central_frames")
@@ -41,14 +41,18 @@ class Clip:
 
 def read_records(path: Path) -> list[tuple[int, list[str]]]:
     """The records with their line numbers, whatever a spreadsheet has made of the file."""
+    if os.path.exists(path) and not os.path.isfile(path):
+        fail(f"{path}: is a folder, a pipe or a device; give a table of clips (CSV)")
     try:
-        data = path.read_bytes()
+        data = read_start(path)
         encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
         text = data.decode(encoding)
     except OSError as error:
         fail(f"{path}: {error.strerror}; give a table of clips (CSV)")
     except UnicodeDecodeError:
         fail(f"{path}: is not UTF-8; save it as \"CSV UTF-8\"")
+    if len(data) > MAX_BYTES:
+        fail(f"{path}: has more than {MAX_BYTES} bytes; is it a table of clips?")
     header = next((line for line in text.splitlines() if line.strip()), "")
     delimiter = max(",;\t", key=header.count)
     records = []
@@ -96,15 +100,15 @@ def find_clips(cell: str, folder: Path) -> list[Path]:
     """One clip whose name may hold anything, or several with ; or spaces between them."""
     if not cell:
         raise RowError("clip: is empty; give a video or a folder of photographs")
-    if (folder / cell).exists():
+    if os.path.exists(folder / cell):
         return [folder / cell]
     try:
         names = ([part.strip() for part in cell.split(";")] if ";" in cell else shlex.split(cell))
     except ValueError:
         names = [cell]
-    if any(len(name) > 0 and (folder / name).exists() for name in names):
+    if any(len(name) > 0 and os.path.exists(folder / name) for name in names):
         for name in names:
-            if not name or not (folder / name).exists():
+            if not name or not os.path.exists(folder / name):
                 raise RowError(f"clip {name or 'without a name'}: there is no such file or folder; "
                                "paths count from the table's folder")
         return [folder / name for name in names]
@@ -115,7 +119,7 @@ def find_clips(cell: str, folder: Path) -> list[Path]:
 def find_file(column: str, cell: str, folder: Path) -> Path | None:
     if not cell:
         return None
-    if not (folder / cell).is_file():
+    if not os.path.isfile(folder / cell):
         raise RowError(f"{column} {cell}: there is no such file; paths count from the table's "
                        "folder")
     return folder / cell
@@ -141,7 +145,7 @@ def read_options(cell: str, folder: Path, known: set[str]) -> list[tuple[str, st
             if not words or words[0].startswith("--"):
                 raise RowError(f"options: --{name} has no value; write --{name} value")
             value = words.pop(0)
-        if (name.endswith("_path") or name == "dictionary") and (folder / value).is_file():
+        if (name.endswith("_path") or name == "dictionary") and os.path.isfile(folder / value):
             value = str(folder / value)
         options.append((name, value))
     return options

@@ -17,8 +17,8 @@ from typing import Any
 
 from clip_table import Clip, read_table
 from job_needs import needs_of
-from records import (MARK, PLAN, RESULT_FILES, as_json, fail, hash_of, job_file, key_of, read_json,
-                     result_file, write_whole)
+from records import (MARK, PLAN, RESULT_FILES, as_json, fail, files_below, hash_of, job_file, key_of,
+                     read_json, read_start, result_file, write_whole)
 
 COMMANDS = {"import": "marker_importer", "reconstruct": "automatic_reconstructor",
             "sweep": "central_frame_sweeper"}
@@ -41,14 +41,13 @@ def options_of_commands() -> dict[str, set[str]]:
 @functools.lru_cache(maxsize=None)
 def states_below(path: Path) -> dict[str, list[int]]:
     """Size and time of a file, or of all files of a folder, because one may change in place."""
-    files = ([Path(folder, name) for folder, _, names in os.walk(path) for name in names]
-             if path.is_dir() else [path] if path.is_file() else [])
-    return {str(file): [file.stat().st_size, file.stat().st_mtime_ns] for file in sorted(files)}
+    return {str(file): [file.stat().st_size, file.stat().st_mtime_ns]
+            for file in files_below(path)}
 
 
 @functools.lru_cache(maxsize=None)
 def dictionary_files(layout: Path) -> list[Path]:
-    text = layout.read_text(encoding="utf-8", errors="replace")
+    text = read_start(layout).decode("utf-8", "replace")
     names = re.findall(r"^dictionary:\s*[\"']?([^\"'#\n]*?)[\"']?\s*(?:#.*)?$", text, re.M)
     return [layout.parent / name for name in names if name]
 

@@ -19,14 +19,35 @@ from typing import Any, NoReturn
 
 MARK = ".velamap_dataset"
 PLAN = Path("jobs/plan.json")
+MAX_BYTES = 16 << 20  # of a table, a layout or a camera file, as velamap reads them
 RESULT_FILES = ("dataset.csv", "dataset.html")
 
 
 def fail(*messages: str) -> NoReturn:
-    """Ends the program as velamap does for bad input."""
+    """Ends the program as velamap does for bad input, without commands to the terminal."""
     for message in messages:
-        print(f"error: {message}", file=sys.stderr)
+        print("error:", re.sub(r"[\x00-\x1f\x7f-\x9f]", "?", message), file=sys.stderr)
     sys.exit(2)
+
+
+def read_start(path: Path) -> bytes:
+    """The first MAX_BYTES, and one more if there are more."""
+    with path.open("rb") as file:
+        return file.read(MAX_BYTES + 1)
+
+
+def files_below(path: Path) -> list[Path]:
+    """A file, or all files of a folder as velamap finds them: through links, each folder once."""
+    if not path.is_dir():
+        return [path] if path.is_file() else []
+    files, seen = [], set()
+    for folder, folders, names in os.walk(path, followlinks=True):
+        if os.path.realpath(folder) in seen:
+            folders.clear()
+            continue
+        seen.add(os.path.realpath(folder))
+        files += [Path(folder, name) for name in names if Path(folder, name).exists()]
+    return sorted(files)
 
 
 def key_of(name: str) -> str:
@@ -43,7 +64,13 @@ def result_file(key: str, stage: str) -> Path:
 
 
 def read_json(path: Path) -> Any:
-    return json.loads(path.read_text(encoding="utf-8"))
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        record = None
+    if not isinstance(record, dict):
+        fail(f"{path}: is damaged; move it away and run again, or give a new folder")
+    return record
 
 
 def as_json(value: Any) -> str:

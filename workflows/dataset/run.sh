@@ -14,7 +14,7 @@
 set -euo pipefail
 
 fail() {
-  echo "error: $*" >&2
+  echo "error: ${*//[[:cntrl:]]/?}" >&2
   exit 2
 }
 

@@ -164,6 +164,16 @@ refused "${head}a,empty,,,\n" "layout: is empty"
 refused "${head}\"a,empty,layout.yml,,\n" "line 2: .*quotes"
 refused "name,layout\n" "has no column clip"
 refused "${head}a,empty,layout.yml,,\n" "is no data set of this workflow" empty
+refused "${head}a,$(printf 'x%.0s' {1..5000}),layout.yml,,\n" "line 2: clip xxx"
+refused "${head}a,no\x1b[31m\xc2\x9b,layout.yml,,\n" 'clip no?\[31m?: there'
+mkfifo pipe.csv
+code=0
+timeout 20 "$run" pipe.csv bad_out >refused.txt 2>&1 || code=$?
+expect_refusal refused.txt 'a pipe or a device'
+truncate --size 17M large.csv
+code=0
+"$run" large.csv bad_out >refused.txt 2>&1 || code=$?
+expect_refusal refused.txt 'more than 16777216 bytes'
 # Without Snakemake it says what to install.
 mkdir bin
 for program in bash dirname realpath nproc; do ln -s "$(command -v "$program")" bin; done
@@ -181,4 +191,7 @@ mkdir out/clips/new
 sed -i 's/^no markers;/new;/' table.csv
 run_dataset
 expect_refusal log.txt 'clips/new: is there'
+echo '[' >out/.velamap_dataset
+run_dataset
+expect_refusal log.txt 'velamap_dataset: is damaged'
 exit "$status"
