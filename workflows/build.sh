@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Configures and builds velamap.
 # usage: workflows/build.sh PRESET [TARGET]
-# PRESET: release, debug, ci (release, warnings are errors) or sanitize (clang with the address and
-# undefined-behaviour sanitizers). TARGET: such as velamap or fuzz_targets; default all, with sanitize
-# the unit tests.
+# PRESET: release, debug, ci (release, warnings are errors), sanitize (clang with the address and
+# undefined-behaviour sanitizers) or tsan (clang with the thread sanitizer). TARGET: such as velamap
+# or fuzz_targets; default all, with sanitizers the unit tests.
 # VELAMAP_JOBS: parallel compilers, default one a core (each takes up to 1 GB of memory).
 set -euo pipefail
 
