@@ -35,11 +35,11 @@ void CheckVideo(const MarkerImporterOptions& options,
                 const std::map<std::string, SourceFile>& sources) {
   const auto known = sources.find(kVideoSource);
   if (known == sources.end() || HasSameContent(known->second, options.image_path)) return;
-  const bool is_same_path = CanonicalPath(options.image_path) == fs::path(known->second.path);
-  throw InputError(fmt::format(
-      "{}: was made from {} ({}); {}", options.database_path,
-      is_same_path ? "the video before it was changed" : "another video than " + options.image_path,
-      SourceText(known->second), kRemedy));
+  throw InputError(fmt::format("{}: was made from {} ({}); {}", options.database_path,
+                               IsSamePlace(known->second, options.image_path)
+                                   ? "the video before it was changed"
+                                   : "another video than " + options.image_path,
+                               SourceText(known->second), kRemedy));
 }
 
 // Frames that are there would be in the result, whatever the options select now.
@@ -67,7 +67,7 @@ void CheckPhotograph(const MarkerImporterOptions& options, const std::string& na
                                  options.database_path, file.string(), SourceText(known), kRemedy));
   }
   // Photographs of several folders may share a database outside of a workspace.
-  if (!options.is_only_source && CanonicalPath(file) != fs::path(known.path)) return;
+  if (!options.is_only_source && !IsSamePlace(known, file)) return;
   throw InputError(fmt::format("{}: holds {}, which is not in {} (it was {}); {}",
                                options.database_path, name, options.image_path, SourceText(known),
                                kRemedy));

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -56,6 +57,8 @@ int Main(int argc, char** argv) {
   };
   try {
     OccupyStandardStreams();
+    // A limit of the shell (ulimit -f) is then an error of the file, as a full disk is.
+    std::signal(SIGXFSZ, SIG_IGN);
     UseOwnThreadsOnly();
     SetUpLogging();
     Run({argv + 1, argv + argc});

@@ -84,7 +84,9 @@ class Judge {
         [](const CameraModelScore& a, const CameraModelScore& b) {
           return a.is_folded != b.is_folded ? b.is_folded : a.unseen_error_px < b.unseen_error_px;
         });
-    if (best.unseen_error_px > kMuchBetter * taken.unseen_error_px) return;
+    if (best.model == taken.model || best.unseen_error_px > kMuchBetter * taken.unseen_error_px) {
+      return;
+    }
     reasons_.Bad(fmt::format(
         "the residuals are {}: {} leaves {:.2f} px in unseen pictures, {} {:.2f} px; "
         "leave --camera_model out, or take {}",
@@ -96,10 +98,13 @@ class Judge {
 
   void JudgeErrors() {
     const double unseen_px = calibration_.Score().unseen_error_px;
-    const std::string text = fmt::format(
-        "the error in unseen pictures is {:.2f} px: hold the board still, in good "
-        "light, and keep it stiff",
-        unseen_px);
+    const std::string text =
+        !std::isfinite(unseen_px)
+            ? "the pictures are too few to leave some out as a test of the camera: take 20 or more"
+            : fmt::format(
+                  "the error in unseen pictures is {:.2f} px: hold the board still, in good "
+                  "light, and keep it stiff",
+                  unseen_px);
     if (unseen_px > kBadUnseenPx) {
       reasons_.Bad(text);
     } else if (unseen_px > kGoodUnseenPx) {

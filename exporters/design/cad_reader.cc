@@ -4,6 +4,7 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
+#include <new>
 
 #include <fmt/format.h>
 #include <BRepBndLib.hxx>
@@ -18,6 +19,7 @@
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
@@ -157,6 +159,8 @@ CadShape ReadCad(const fs::path& path, double chord_deviation_mm) {
     CadShape result = Describe(shape, chord_deviation_mm);
     result.length_unit = unit;
     return result;
+  } catch (const Standard_OutOfMemory&) {
+    throw std::bad_alloc();
   } catch (const Standard_Failure&) {
     ThrowUnreadable(path, is_step ? "STEP" : "IGES");
   }

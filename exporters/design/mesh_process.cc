@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -37,23 +38,19 @@ constexpr int kAnswerFd = STDERR_FILENO + 1;
 
 // The first byte of the child's answer. kError is followed by the message, kMesh by the numbers of
 // vertices and triangles, their coordinates and their indices.
-enum Answer : char { kError = 'e', kMemory = 'm', kMesh = 't' };
+enum Answer : char { kError = 'e', kMesh = 't' };
 
 std::atomic<bool> serves_mesh_reader{false};
+
+std::string FailureText(const fs::path& path, const std::string& why) {
+  return fmt::format("{}: {}; export it again, the surface alone", path.string(), why);
+}
 
 // ---- the child
 
 void Limit(__rlimit_resource resource, rlim_t limit) {
   const rlimit soft_and_hard{limit, limit + 1};  // the signal of the hard one does not say why
   setrlimit(resource, &soft_and_hard);
-}
-
-void LimitThisProcess(const MeshLimits& limits) {
-  Limit(RLIMIT_CORE, 0);
-  Limit(RLIMIT_CPU, static_cast<rlim_t>(limits.cpu_s));
-#ifndef VELAMAP_SANITIZE  // the address sanitizer reserves terabytes
-  Limit(RLIMIT_AS, limits.memory_bytes);
-#endif
 }
 
 // Keeps the output for the answer: the libraries write to both streams.
@@ -87,8 +84,28 @@ bool WriteMesh(const TriangleMesh& mesh) {
          WriteItems(mesh.vertices_m) && WriteItems(mesh.triangles);
 }
 
-bool WriteFailure(Answer answer, std::string_view message) {
+bool WriteFailure(std::string_view message) {
+  const Answer answer = kError;
   return WriteAll(&answer, 1) && WriteAll(message.data(), message.size());
+}
+
+// What to answer when memory has run out, made before.
+std::string memory_failure;
+
+[[noreturn]] void EndForWantOfMemory() {
+  _exit(WriteFailure(memory_failure) ? EXIT_SUCCESS : EXIT_FAILURE);
+}
+
+void LimitThisProcess(const fs::path& path, const MeshLimits& limits) {
+  Limit(RLIMIT_CORE, 0);
+  Limit(RLIMIT_CPU, static_cast<rlim_t>(limits.cpu_s));
+#ifndef VELAMAP_SANITIZE  // the address sanitizer reserves terabytes
+  Limit(RLIMIT_AS, limits.memory_bytes);
+#endif
+  memory_failure = FailureText(
+      path, fmt::format("reading it takes more than {} MB of memory", limits.memory_bytes >> 20));
+  // The libraries catch some exceptions and go on with half of the file.
+  std::set_new_handler(EndForWantOfMemory);
 }
 
 bool ReadForParent(char** argv) {
@@ -101,17 +118,29 @@ bool ReadForParent(char** argv) {
   }
   if (m_per_unit > 0) options.m_per_unit = m_per_unit;
   if (!KeepOutputForAnswer()) return false;
-  LimitThisProcess(limits);
+  LimitThisProcess(argv[2], limits);
   try {
     return WriteMesh(ParseMesh(argv[2], options));
   } catch (const InputError& error) {
-    return WriteFailure(kError, error.what());
+    return WriteFailure(error.what());
   } catch (const std::bad_alloc&) {
-    return WriteFailure(kMemory, "");
+    EndForWantOfMemory();
   }
 }
 
 // ---- the parent
+
+// Below those that this process has from a shell (ulimit), so that the child's come first.
+MeshLimits BelowOwnLimits(MeshLimits limits) {
+  const auto below = [](__rlimit_resource resource, rlim_t limit) {
+    rlimit own{};
+    if (getrlimit(resource, &own) != 0 || own.rlim_cur > limit) return limit;
+    return own.rlim_cur - std::min<rlim_t>(own.rlim_cur, 1);
+  };
+  limits.cpu_s = static_cast<int>(below(RLIMIT_CPU, static_cast<rlim_t>(limits.cpu_s)));
+  limits.memory_bytes = below(RLIMIT_AS, limits.memory_bytes);
+  return limits;
+}
 
 struct ChildAnswer {
   std::string bytes;
@@ -180,10 +209,6 @@ std::string TimeText(int limit_s) {
   return fmt::format("reading it takes more than {} s", limit_s);
 }
 
-std::string MemoryText(const MeshLimits& limits) {
-  return fmt::format("reading it takes more than {} MB of memory", limits.memory_bytes >> 20);
-}
-
 // Why a child that has not answered ended.
 std::string EndText(int status, const MeshLimits& limits) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -203,12 +228,10 @@ void ServeMeshReader(int argc, char** argv) {
 }
 
 TriangleMesh ParseMeshInChild(const fs::path& path, const MeshReadOptions& options,
-                              const MeshLimits& limits) {
+                              const MeshLimits& wanted_limits) {
   VELAMAP_CHECK(serves_mesh_reader);
-  const auto fail = [&path](const std::string& why) -> InputError {
-    return InputError(
-        fmt::format("{}: {}; export it again, the surface alone", path.string(), why));
-  };
+  const MeshLimits limits = BelowOwnLimits(wanted_limits);
+  const auto fail = [&path](const std::string& why) { return InputError(FailureText(path, why)); };
   const ChildProcess child(
       {kProgram, kArgument, path.string(), fmt::format("{}", options.chord_deviation_mm),
        fmt::format("{}", options.m_per_unit.value_or(0.0)), fmt::format("{}", limits.cpu_s),
@@ -218,7 +241,6 @@ TriangleMesh ParseMeshInChild(const fs::path& path, const MeshReadOptions& optio
   if (!answer) throw fail(TimeText(limits.wall_s));
   const std::string_view bytes = answer->bytes;
   if (!bytes.empty() && bytes.front() == kError) throw InputError(std::string(bytes.substr(1)));
-  if (!bytes.empty() && bytes.front() == kMemory) throw fail(MemoryText(limits));
   if (!bytes.empty() && bytes.front() == kMesh) {
     if (auto mesh = MeshFromBytes(bytes.substr(1))) return *std::move(mesh);
   }

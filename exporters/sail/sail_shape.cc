@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "exporters/formats/cad_writer.h"
 #include "exporters/formats/mesh_writer.h"
@@ -22,10 +23,31 @@ namespace {
 // A boat has a few sails. Further parts with lines get no surface.
 constexpr int kMaxSurfaces = 20;
 
+// A given edge that is far from all markers is in another unit or frame.
+void CheckEdges(const MarkerShape& shape, const SurfaceEdges& edges) {
+  Eigen::AlignedBox3d box;
+  for (const ShapeMarker& marker : shape.markers) {
+    if (marker.IsWhole()) box.extend(*marker.x_in_shape_m[0]);
+  }
+  if (box.isEmpty()) return;
+  const double size_m = box.diagonal().norm();
+  for (const auto* edge : {&edges.luff, &edges.leech, &edges.foot, &edges.head}) {
+    for (const Eigen::Vector3d& x_m : *edge) {
+      const double distance_m = box.exteriorDistance(x_m);
+      if (distance_m <= size_m) continue;
+      throw InputError(fmt::format(
+          "--Surface.edges_path: the point {:g}, {:g}, {:g} is {:.3g} m from the markers, expected "
+          "at most {:.3g} m, which they cover; give m in the frame of the result",
+          x_m.x(), x_m.y(), x_m.z(), distance_m, size_m));
+    }
+  }
+}
+
 SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, const LayoutPart& part,
                             const SailOptions& options) {
   SailSurface surface;
   surface.part = part.name;
+  CheckEdges(shape, options.surface.edges);
   surface.fit = FitSurface(CollectSurfaceInput(shape, part), options.surface);
   surface.area_m2 = SurfaceArea(surface.fit.surface);
   surface.mesh = MeshSurface(

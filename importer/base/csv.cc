@@ -18,6 +18,10 @@ class RecordParser {
 
   // Returns whether the record ends with this line, which it does not inside quotes.
   bool ParseLine(const std::string& text) {
+    if (text.find('\0') != std::string::npos) {
+      throw InputError(name_ + ":" + std::to_string(record_.line) +
+                       ": a zero byte, which no CSV holds; save the table as CSV in UTF-8");
+    }
     for (std::size_t i = 0; i < text.size(); ++i) {
       if (inside_quotes_) {
         if (text[i] != '"') {

@@ -19,7 +19,7 @@ namespace velamap {
 // The name under which a video stands, the source of all its frames.
 inline constexpr char kVideoSource[] = "";
 
-// Creates the table if it is missing. Replaces the row of that name.
+// Creates the table if it is missing, or brings it up to date. Replaces the row of that name.
 void WriteSourceRow(const std::string& image_name, const SourceFile& source,
                     SQLite::Database* database);
 

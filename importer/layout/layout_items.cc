@@ -14,9 +14,11 @@ namespace velamap {
 namespace {
 
 double ReadPositiveMetres(const YamlItem& item) {
+  constexpr double kMaxLength_m = 1e5;
   const double length_m = ReadMetres(item);
-  if (!std::isfinite(length_m) || length_m <= 0) {
-    item.Fail(fmt::format("{} m is not a length; expected a positive number of metres", length_m));
+  if (!(length_m > 0 && length_m <= kMaxLength_m)) {
+    item.Fail(fmt::format("{} m is not a length; expected a positive number of metres, up to {:g}",
+                          length_m, kMaxLength_m));
   }
   return length_m;
 }

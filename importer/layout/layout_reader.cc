@@ -1,11 +1,13 @@
 // Reads a layout of importer/layout/layout.h from YAML.
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -100,7 +102,7 @@ std::vector<LayoutPart> ReadParts(const YamlItem& item) {
   std::vector<LayoutPart> parts;
   PartOfId part_of_id;
   ForEachKey(item, [&](const std::string& name, const YamlItem& value) {
-    parts.push_back(ReadPart(value, name, &part_of_id));
+    parts.push_back(ReadPart(value, CheckedName(name, value), &part_of_id));
   });
   if (parts.empty()) item.Fail("no part is named; leave the key out to accept every marker");
   return parts;
@@ -135,10 +137,33 @@ std::string ReadDictionaryName(const YamlItem& item) {
   return is_file || looks_like_file ? file.string() : name;
 }
 
+// A second document would be passed over: yaml-cpp reads the first one.
+void CheckSingleDocument(const std::string& path, const std::string& text) {
+  std::istringstream lines(text);
+  bool has_content = false, has_ended = false;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::string marker = line.substr(0, 3);
+    const bool is_marker = (marker == "---" || marker == "...") &&
+                           (line.size() == 3 || std::isspace(static_cast<unsigned char>(line[3])));
+    const std::size_t first =
+        is_marker ? line.find_first_not_of(" \t\r", 3) : line.find_first_not_of(" \t\r");
+    if (is_marker) has_ended = has_content;
+    if (first == std::string::npos || line[first] == '#' || line[first] == '%') continue;
+    if (has_ended) {
+      throw InputError(fmt::format(
+          "{}:{}: a second document begins here; put all keys into the first one", path, number));
+    }
+    has_content = true;
+  }
+}
+
 }  // namespace
 
 Layout ReadLayout(const std::string& path) {
   const std::string text = ReadTextFile(path, "layout file (--layout_path)");
+  CheckSingleDocument(path, text);
   YAML::Node root;
   try {
     root = YAML::Load(text);

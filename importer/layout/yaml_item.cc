@@ -1,5 +1,6 @@
 #include "importer/layout/yaml_item.h"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -60,10 +61,17 @@ void ForEachElement(const YamlItem& list, const std::function<void(const YamlIte
   }
 }
 
-std::string ReadString(const YamlItem& item) {
-  if (item.Text().empty()) item.Fail("a name is expected");
-  return item.Text();
+std::string CheckedName(const std::string& name, const YamlItem& item) {
+  if (name.empty()) item.Fail("a name is expected");
+  const bool is_printable = std::none_of(name.begin(), name.end(),
+                                         [](unsigned char c) { return c < ' ' || c == '\x7f'; });
+  if (!is_printable) {
+    item.Fail("a name without line breaks and other control characters is expected");
+  }
+  return name;
 }
+
+std::string ReadString(const YamlItem& item) { return CheckedName(item.Text(), item); }
 
 bool ReadBool(const YamlItem& item) {
   bool value = false;

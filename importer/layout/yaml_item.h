@@ -43,6 +43,8 @@ void ReadMap(const YamlItem& map, const KeyHandlers& handlers,
 
 void ForEachElement(const YamlItem& list, const std::function<void(const YamlItem&)>& handle);
 
+// Returns a name that stands in files and tables. Throws InputError for one that cannot.
+std::string CheckedName(const std::string& name, const YamlItem& item);
 std::string ReadString(const YamlItem& item);
 bool ReadBool(const YamlItem& item);
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <vector>
 
+#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace velamap {
@@ -59,8 +60,14 @@ bool PngHasEnd(const Bytes& bytes) {
 
 }  // namespace
 
-cv::Mat DecodeImageFile(const std::string& path, std::string* reason) {
-  std::ifstream stream(path, std::ios::binary);
+cv::Mat DecodeImageFile(const std::string& path, std::string* reason, std::size_t max_pixels) {
+  std::ifstream stream(path, std::ios::binary | std::ios::ate);
+  const std::int64_t size = stream.tellg();
+  if (size > kMaxImageFileSize) {
+    *reason = fmt::format("has {} bytes; pictures of at most {} are read", size, kMaxImageFileSize);
+    return {};
+  }
+  stream.seekg(0);
   const Bytes bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream.is_open() || stream.bad()) {
     *reason = "cannot be read";
@@ -73,6 +80,11 @@ cv::Mat DecodeImageFile(const std::string& path, std::string* reason) {
   } else {
     try {
       const cv::Mat color = cv::imdecode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+      if (color.total() > max_pixels) {
+        *reason = fmt::format("has {} x {} pixels; pictures of at most {} are read", color.cols,
+                              color.rows, max_pixels);
+        return {};
+      }
       if (!color.empty()) return color;
     } catch (const cv::Exception&) {
       // Falls through: OpenCV throws for some damaged files and returns nothing for others.

@@ -42,8 +42,10 @@ std::uint64_t HashOfContent(const std::string& path, std::uint64_t size) {
 
 SourceFile SourceWithoutHash(const std::string& path) {
   constexpr std::int64_t kNsPerS = 1'000'000'000;
+  const std::filesystem::path place = CanonicalPath(path);
   SourceFile source;
-  source.path = CanonicalPath(path).string();
+  source.name = place.filename().string();
+  source.path_hash = Hash(place.string());
   source.size = FileSize(path);
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) throw InputError(path + ": cannot be read");
@@ -73,14 +75,19 @@ SourceFile IdentifySource(const std::string& path) {
 bool HasSameContent(const SourceFile& known, const std::string& path) {
   const SourceFile now = SourceWithoutHash(path);
   if (now.size != known.size) return false;
-  if (now.path == known.path && now.changed_ns == known.changed_ns &&
-      now.modified_s == known.modified_s)
+  if (now.path_hash == known.path_hash && now.changed_ns == known.changed_ns &&
+      now.modified_s == known.modified_s) {
     return true;
+  }
   return HashOfContent(path, now.size) == known.content_hash;
 }
 
+bool IsSamePlace(const SourceFile& known, const std::filesystem::path& path) {
+  return Hash(CanonicalPath(path).string()) == known.path_hash;
+}
+
 std::string SourceText(const SourceFile& source) {
-  return fmt::format("{}, {} bytes of {:%Y-%m-%d %H:%M} UTC", source.path, source.size,
+  return fmt::format("{}, {} bytes of {:%Y-%m-%d %H:%M} UTC", source.name, source.size,
                      fmt::gmtime(static_cast<std::time_t>(source.modified_s)));
 }
 

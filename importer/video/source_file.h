@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace velamap {
 
 struct SourceFile {
-  std::string path;  // absolute, without links
+  std::string name;             // without folders, because databases are handed on
+  std::uint64_t path_hash = 0;  // of the absolute path without links
   std::uint64_t size = 0;
   std::int64_t modified_s = 0;  // since 1970, UTC
   // When content, name or rights were changed last, which no program sets back (ctime); since 1970.
@@ -28,7 +30,10 @@ SourceFile IdentifySource(const std::string& path);
 // times. It is not read if nothing has touched it since. Throws InputError if it cannot be read.
 bool HasSameContent(const SourceFile& known, const std::string& path);
 
-// "path, 1234 bytes of 2024-05-01 14:02 UTC".
+// Whether `path` is where it was read from, whatever is there now.
+bool IsSamePlace(const SourceFile& known, const std::filesystem::path& path);
+
+// "clip.mp4, 1234 bytes of 2024-05-01 14:02 UTC".
 std::string SourceText(const SourceFile& source);
 
 }  // namespace velamap

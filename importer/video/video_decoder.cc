@@ -1,7 +1,9 @@
 #include "importer/video/video_decoder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <new>
 #include <vector>
@@ -44,6 +46,20 @@ using FormatPtr = std::unique_ptr<AVFormatContext, FormatCloser>;
                   path));
 }
 
+// FFmpeg shows any text as a film of letters ("tty"), and follows lists of other files, whose
+// changes nobody would notice.
+void CheckHoldsPictures(const std::string& path, const std::string& format) {
+  static constexpr const char* kOthers[] = {"tty", "concat", "hls", "dash", "imf", "sdp"};
+  if (std::none_of(std::begin(kOthers), std::end(kOthers),
+                   [&](const char* other) { return format == other; })) {
+    return;
+  }
+  throw InputError(
+      fmt::format("{}: is a text or a list of other files (FFmpeg's format {}); give "
+                  "the video itself",
+                  path, format));
+}
+
 FormatPtr OpenFormat(const std::string& path) {
   AVFormatContext* opened = nullptr;
   // Without the protocol, FFmpeg would look for one before a colon in the name.
@@ -51,6 +67,7 @@ FormatPtr OpenFormat(const std::string& path) {
     ThrowUnreadable(path);
   }
   FormatPtr format(opened);
+  CheckHoldsPictures(path, opened->iformat->name);
   if (avformat_find_stream_info(opened, nullptr) < 0) ThrowUnreadable(path);
   return format;
 }

@@ -93,7 +93,10 @@ void BlameModel(const std::vector<CameraModelScore>& scores, CameraModel wanted,
   const auto taken =
       std::find_if(scores.begin(), scores.end(),
                    [wanted](const CameraModelScore& score) { return score.model == wanted; });
-  if (taken == scores.end() || best->unseen_error_px > kFarBetter * taken->unseen_error_px) return;
+  if (taken == scores.end() || best->model == wanted ||
+      best->unseen_error_px > kFarBetter * taken->unseen_error_px) {
+    return;
+  }
   throw DataError(fmt::format(
       "a {} camera does not describe this lens: it leaves {:.2f} px in unseen pictures, and {} "
       "leaves {:.2f} px; take that one ({})",

@@ -51,13 +51,14 @@ std::vector<std::string> ChildEnvironment(const std::string& scratch_path) {
 
 // Quotes the first line of COLMAP's output that looks like an error, else the last line.
 std::string DescribeOutput(const std::string& output) {
+  constexpr std::size_t kMaxQuoted = 500;
   std::string last, line;
   std::istringstream lines(output);
   while (std::getline(lines, line)) {
     for (const char* sign : {"ERROR", "Check failed", "what():"}) {
-      if (line.find(sign) != std::string::npos) return "it wrote: " + line;
+      if (line.find(sign) != std::string::npos) return "it wrote: " + line.substr(0, kMaxQuoted);
     }
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line.substr(0, kMaxQuoted);
   }
   return last.empty() ? "it wrote nothing" : "it wrote last: " + last;
 }
@@ -88,10 +89,13 @@ class Log {
   Log& operator=(const Log&) = delete;
 
   void Write(const std::string& text) {
-    unfinished_ += text;
-    const std::size_t end = unfinished_.rfind('\n') + 1;
-    stream_ << WithoutFolders(unfinished_.substr(0, end)) << std::flush;
-    unfinished_.erase(0, end);
+    const std::size_t end = text.rfind('\n') + 1;
+    unfinished_.append(text, 0, end);
+    if (end > 0) {
+      stream_ << WithoutFolders(unfinished_) << std::flush;
+      unfinished_.clear();
+    }
+    unfinished_.append(text, end);
   }
 
  private:

@@ -14,7 +14,8 @@ using ::testing::HasSubstr;
 
 std::vector<BadInput> AllCases() {
   std::vector<BadInput> cases;
-  for (const auto& some : {OutputCases(), SourceCases(), InputCases(), ProcessCases()}) {
+  for (const auto& some :
+       {OutputCases(), SourceCases(), InputCases(), ProcessCases(), CommandCases()}) {
     cases.insert(cases.end(), some.begin(), some.end());
   }
   return cases;

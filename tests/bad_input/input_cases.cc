@@ -16,10 +16,6 @@ std::string Call(const std::string& image_path, const std::string& camera_path,
 
 const std::string kCall = Call("grey", "camera.yml");
 
-std::function<void(const fs::path&)> Write(const std::string& name, const std::string& text) {
-  return [=](const fs::path& dir) { WriteTextFile(dir / name, text); };
-}
-
 std::vector<BadInput> Pictures() {
   return {
       {"NoMarkerAtAll", kCall, 1, "no marker of DICT_4X4_50"},

@@ -105,6 +105,10 @@ std::map<std::string, std::string> ContentOf(const fs::path& dir) {
   return content;
 }
 
+std::function<void(const fs::path&)> Write(const std::string& name, const std::string& text) {
+  return [=](const fs::path& dir) { WriteTextFile(dir / name, text); };
+}
+
 void Replace(const fs::path& file, const std::string& from, const std::string& to) {
   std::string text = ReadFileBytes(file);
   const std::size_t i = text.find(from);

@@ -49,13 +49,15 @@ std::vector<std::string> ArgumentsIn(const fs::path& dir, const std::string& com
 // The hash of each file below, by its path in `dir`; of a link where it leads.
 std::map<std::string, std::string> ContentOf(const fs::path& dir);
 
-// Steps of `spoil`.
+// Steps of `spoil`, and one that writes a file.
 void Replace(const fs::path& file, const std::string& from, const std::string& to);
 void RunSql(const fs::path& database, const std::string& sql);
+std::function<void(const fs::path& dir)> Write(const std::string& name, const std::string& text);
 
 std::vector<BadInput> OutputCases();
 std::vector<BadInput> SourceCases();
 std::vector<BadInput> InputCases();
 std::vector<BadInput> ProcessCases();
+std::vector<BadInput> CommandCases();
 
 }  // namespace velamap

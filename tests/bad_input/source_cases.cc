@@ -62,7 +62,7 @@ std::vector<BadInput> ChangedSources() {
       {"AnotherVideo", kImportClip, 2, "another video than",
        [](const fs::path& dir) {
          RunGood(dir, kImportClip);
-         RunSql(dir / "new.db", "UPDATE marker_sources SET size = size + 1, path = '/old.avi'");
+         RunSql(dir / "new.db", "UPDATE marker_sources SET size = size + 1, path_hash = 1");
        }},
       {"AVideoWithOtherOptions", kImportClip + " --ArucoDetection.corner_refinement subpix", 2,
        "was made with other detection options", [](const fs::path& dir) { RunGood(dir, kImport); }},

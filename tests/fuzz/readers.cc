@@ -199,7 +199,7 @@ std::vector<Bytes> DatabaseSeeds() {
       database.AddImage(camera_id, frame, "fuzz");
     }
     database.WriteFormation({});
-    database.WriteSource("", {"/clip.mp4", 1, 2, 3, 4});
+    database.WriteSource("", {"clip.mp4", 1, 2, 3, 4, 5});
     TrackingState tracking;
     tracking.last_frame = 0;
     tracking.tracks.tracks.emplace_back().corners_px.fill(Eigen::Vector2d::Zero());

@@ -24,8 +24,6 @@ namespace {
   dup2(open(out_path.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
   dup2(open(err_path.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
   if (limits.max_file_size) {
-    // Ignored, the signal becomes an error of write(), as on a full disk.
-    signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{*limits.max_file_size, *limits.max_file_size};
     setrlimit(RLIMIT_FSIZE, &limit);
   }

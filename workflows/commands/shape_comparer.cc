@@ -84,7 +84,7 @@ OptionGroup InputGroup(Options* options) {
                "unit of a .ply, .stl or .obj; left out: as velamap wrote it, else m for .ply, mm "
                "for .stl and .obj"}),
        {"chord_deviation", &mesh->chord_deviation_mm, "mm",
-        "how far triangles may be from the faces of a .step or .iges", MoreThan(0)},
+        "how far triangles may be from the faces of a .step or .iges", FromTo(0.001, 1000)},
        Common(PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,
                          "layout file: names the reference part and the lines")),
        {"part", &options->comparison.part, "name", "compare the markers of this part only"},

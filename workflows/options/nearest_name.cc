@@ -1,6 +1,8 @@
 #include "workflows/options/nearest_name.h"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 #include <sstream>
 
 namespace velamap {
@@ -26,6 +28,14 @@ int EditDistance(const Sequence& a, const Sequence& b, const Insertion& insertio
   return row.back();
 }
 
+// What it costs to write these words, or to strike them out.
+int Cost(const std::string& word) { return std::min(static_cast<int>(word.size()), kMaxOfWord); }
+
+int Cost(const std::vector<std::string>& words) {
+  return std::accumulate(words.begin(), words.end(), 0,
+                         [](int sum, const std::string& word) { return sum + Cost(word); });
+}
+
 int LetterDistance(const std::string& a, const std::string& b) {
   return EditDistance(
       a, b, [](char) { return 1; }, [](char x, char y) { return static_cast<int>(x != y); });
@@ -39,11 +49,13 @@ std::vector<std::string> Words(std::string name) {
   return words;
 }
 
-int WordDistance(const std::string& a, const std::string& b) {
-  return EditDistance(
-      Words(a), Words(b),
-      [](const std::string& word) { return std::min(static_cast<int>(word.size()), kMaxOfWord); },
-      LetterDistance);
+// Nothing for names that have no word in common, however few their words are.
+std::optional<int> WordDistance(const std::string& a, const std::string& b) {
+  const std::vector<std::string> words1 = Words(a), words2 = Words(b);
+  const int distance = EditDistance(
+      words1, words2, [](const std::string& word) { return Cost(word); }, LetterDistance);
+  if (distance >= Cost(words1) + Cost(words2)) return std::nullopt;
+  return distance;
 }
 
 }  // namespace
@@ -52,7 +64,9 @@ std::string NearestName(const std::string& text, const std::vector<std::string>&
   std::string nearest;
   int smallest = static_cast<int>(text.size() + 1) / 2;  // beyond half of the letters it is a guess
   for (const std::string& name : names) {
-    const int distance = std::min(LetterDistance(text, name), WordDistance(text, name));
+    if (name == text) continue;
+    const int by_letters = LetterDistance(text, name);
+    const int distance = std::min(by_letters, WordDistance(text, name).value_or(by_letters));
     if (distance < smallest || (distance == smallest && nearest.empty())) {
       smallest = distance;
       nearest = name;

@@ -118,7 +118,11 @@ GivenValues ReadCommandLine(const CommandSyntax& syntax, const OptionsByName& op
 
 GivenValues ReadProjectFile(const CommandSyntax& syntax, const OptionsByName& options,
                             const std::string& path, const std::set<std::string>& known_names) {
-  std::istringstream stream(ReadTextFile(path, fmt::format("project file (--{})", kProjectPath)));
+  const std::string text = ReadTextFile(path, fmt::format("project file (--{})", kProjectPath));
+  if (text.find('\0') != std::string::npos) {
+    throw InputError(path + ": a zero byte, which no project file holds; save it as UTF-8");
+  }
+  std::istringstream stream(text);
   GivenValues values;
   try {
     constexpr bool kAllowUnregistered = true;
@@ -127,7 +131,11 @@ GivenValues ReadProjectFile(const CommandSyntax& syntax, const OptionsByName& op
          po::parse_config_file(stream, description, kAllowUnregistered).options) {
       const std::string& name = given.string_key;
       if (given.unregistered && known_names.count(name) > 0) continue;
-      if (given.unregistered || name == kProjectPath) {
+      if (name == kProjectPath) {
+        throw InputError(
+            fmt::format("{}: {}: a project file names no other; remove it", path, name));
+      }
+      if (given.unregistered) {
         throw InputError(fmt::format("{}: unknown key {}; {}{}", path, name,
                                      DidYouMean(options, name, ""), HelpHint(syntax)));
       }

@@ -87,9 +87,15 @@ void AddUse(PathUse use, const std::string& used_by, const std::string& path, Us
 void CheckKinds(const UsedPaths& paths) {
   for (const UsedPath& input : paths.inputs) CheckInputKind(input.used_by, input.path);
   for (const UsedPath& output : paths.outputs) {
-    if (!IsPipe(output.path)) continue;
-    throw InputError(fmt::format("{}: {} is a pipe, whose reader would be waited for; give a file",
-                                 output.used_by, output.path.string()));
+    if (IsPipe(output.path)) {
+      throw InputError(
+          fmt::format("{}: {} is a pipe, whose reader would be waited for; give a file",
+                      output.used_by, output.path.string()));
+    }
+    if (!output.is_replaced_folder && (!output.path.has_filename() || IsFolder(output.path))) {
+      throw InputError(fmt::format("{}: {} is a folder; give the name of a file", output.used_by,
+                                   output.path.string()));
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 #include "exporters/calibration/calibration_page.h"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -88,6 +89,12 @@ TEST(CalibrationVerdict, EachFaultIsNamed) {
     const Verdict verdict = JudgeCalibration(calibration);
     return verdict.reasons.empty() ? std::string() : verdict.reasons.front().text;
   };
+  EXPECT_THAT(first_reason([](auto* c) {
+                for (auto& score : c->scores) {
+                  score.unseen_error_px = std::numeric_limits<double>::infinity();
+                }
+              }),
+              HasSubstr("the pictures are too few to leave some out"));
   EXPECT_THAT(first_reason([](auto* c) { c->camera.sigmas[0] = 7.0; }),
               HasSubstr("the focal length is known to 1.00 %"));
   EXPECT_THAT(first_reason([](auto* c) { c->camera.sigmas[2] = 4.0; }),

@@ -69,8 +69,9 @@ TEST_F(MeshProcessTest, EndsWhatTakesTooMuchMemory) {
   std::filesystem::resize_file(dir_ / "a.stl", header_size + num_triangles * triangle_size);
   MeshLimits limits;
   limits.memory_bytes = std::uint64_t{400} << 20;
-  ExpectThrows<InputError>([&] { ParseMeshInChild(dir_ / "a.stl", options_, limits); },
-                           {"a.stl", "bad_alloc"});
+  ExpectThrows<InputError>(
+      [&] { ParseMeshInChild(dir_ / "a.stl", options_, limits); },
+      {"a.stl: reading it takes more than 400 MB of memory", "export it again"});
 }
 #endif
 

@@ -142,6 +142,16 @@ TEST(SailShape, ResolutionIsAsAskedForAndNotAbsurd) {
   EXPECT_THROW(options.Check(), InputError);
 }
 
+TEST(SailShape, RefusesEdgesInAnotherUnitOrFrame) {
+  SailOptions options;
+  options.surface.edges.luff = {{0, 0, 0}, {0, 0, 5000}};
+  const SailShape refused = Compute(ExampleSail(), options);
+  EXPECT_THAT(refused.surfaces, IsEmpty());
+  EXPECT_EQ(refused.sections.sections.size(), 3u);
+  ExpectThrows<InputError>([&] { refused.ThrowSurfaceError(); },
+                           {"--Surface.edges_path: the point 0, 0, 5000 is", "m from the markers"});
+}
+
 TEST(SurfaceEdges, AreReadAndRefusedWithLineAndColumn) {
   const auto read = [](const std::string& text) {
     std::istringstream in(text);

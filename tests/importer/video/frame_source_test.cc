@@ -95,6 +95,18 @@ TEST(DecodeImageFile, IsNotFooledByThePreviewOfACutJpeg) {
   EXPECT_TRUE(DecodeImageFile(dir / "a.jpg", &reason).empty());
 }
 
+TEST(DecodeImageFile, RefusesWhatIsTooLarge) {
+  const TempDir dir;
+  std::string reason;
+  cv::imwrite(dir / "a.png", cv::Mat(60, 80, CV_8UC1, cv::Scalar(9)));
+  EXPECT_FALSE(DecodeImageFile(dir / "a.png", &reason, 4800).empty());
+  EXPECT_TRUE(DecodeImageFile(dir / "a.png", &reason, 4799).empty());
+  EXPECT_EQ(reason, "has 80 x 60 pixels; pictures of at most 4799 are read");
+  std::filesystem::resize_file(dir / "a.png", kMaxImageFileSize + 1);
+  EXPECT_TRUE(DecodeImageFile(dir / "a.png", &reason).empty());
+  EXPECT_EQ(reason, "has 1073741825 bytes; pictures of at most 1073741824 are read");
+}
+
 TEST(DecodeImageFile, SaysWhyThereIsNoImage) {
   const TempDir dir;
   std::string reason;

@@ -40,13 +40,14 @@ TEST_F(SourceFileTest, EveryByteOfAPictureCounts) {
 
 TEST_F(SourceFileTest, NamesAndTimesDoNotCount) {
   for (const std::string name : {"a.tif", "a.mp4"}) {
-    const SourceFile known = IdentifySource(Write(name, 7, 'b'));
-    EXPECT_TRUE(HasSameContent(known, known.path));
-    fs::last_write_time(known.path, fs::file_time_type::clock::now());
-    EXPECT_TRUE(HasSameContent(known, known.path));
+    const std::string path = Write(name, 7, 'b');
+    const SourceFile known = IdentifySource(path);
+    EXPECT_TRUE(HasSameContent(known, path));
+    fs::last_write_time(path, fs::file_time_type::clock::now());
+    EXPECT_TRUE(HasSameContent(known, path));
     EXPECT_TRUE(HasSameContent(known, Write("moved_" + name, 7, 'b')));
-    fs::resize_file(known.path, (3 << 20) + 1);
-    EXPECT_FALSE(HasSameContent(known, known.path));
+    fs::resize_file(path, (3 << 20) + 1);
+    EXPECT_FALSE(HasSameContent(known, path));
   }
 }
 
@@ -55,6 +56,29 @@ TEST_F(SourceFileTest, BeginAndEndOfAVideoCount) {
   for (const std::streamoff place : {0, (3 << 20) - 1}) {
     EXPECT_FALSE(HasSameContent(known, Write("a.mp4", place, 'b'))) << place;
   }
+}
+
+TEST_F(SourceFileTest, IsNotReadAgainUntouchedInItsPlace) {
+  const std::string path = Write("a.tif", 0, 'a');
+  SourceFile known = IdentifySource(path);
+  known.content_hash += 1;
+  EXPECT_TRUE(HasSameContent(known, path));
+  EXPECT_FALSE(HasSameContent(known, Write("b.tif", 0, 'a')));
+  // Copies of photographs of one size may have the same times.
+  known.path_hash += 1;
+  EXPECT_FALSE(HasSameContent(known, path));
+}
+
+TEST_F(SourceFileTest, PlaceIsKnownWithoutTheNamesOfFolders) {
+  fs::create_directory(dir_ / "other");
+  const std::string path = Write("a.tif", 0, 'a'), other = Write("other/a.tif", 0, 'a');
+  const SourceFile known = IdentifySource(path);
+  EXPECT_EQ(known.name, "a.tif");
+  EXPECT_EQ(SourceText(known).rfind("a.tif, 3145728 bytes of ", 0), 0u) << SourceText(known);
+  EXPECT_TRUE(IsSamePlace(known, dir_ / "other/../a.tif"));
+  EXPECT_FALSE(IsSamePlace(known, other));
+  fs::remove(path);
+  EXPECT_TRUE(IsSamePlace(known, path));
 }
 
 TEST_F(SourceFileTest, NamesAFileThatIsNotThere) {

@@ -138,6 +138,13 @@ TEST_F(ColmapRunnerTest, FailureWithoutASignQuotesTheLastLine) {
   EXPECT_THAT(ErrorOf(Script("exit 1")), HasSubstr("it wrote nothing"));
 }
 
+TEST_F(ColmapRunnerTest, QuotesTheBeginOfALongLine) {
+  const std::string error = ErrorOf(Script("head -c 5000000 /dev/zero | tr '\\0' x; exit 1"));
+  EXPECT_THAT(error, HasSubstr("it wrote last: xxx"));
+  EXPECT_LT(error.size(), 2000u);
+  EXPECT_GT(Log().size(), 5000000u);
+}
+
 TEST_F(ColmapRunnerTest, DeathBySignalSaysSo) {
   EXPECT_THAT(ErrorOf(Script("kill -9 $$")),
               AllOf(HasSubstr("killed by signal 9 (Killed)"), HasSubstr("memory")));

@@ -252,6 +252,9 @@ TEST(NearestNameTest, SuggestsOnlyWhatIsNear) {
   EXPECT_EQ(NearestName("marker_imprter", names), "marker_importer");
   EXPECT_EQ(NearestName("hepl", names), "help");
   EXPECT_EQ(NearestName("zzzzzz", names), "");
+  EXPECT_EQ(NearestName("backend", names), "");
+  EXPECT_EQ(NearestName("SurfaceGrid.columns", names), "");
+  EXPECT_EQ(NearestName("help", {"help"}), "");
 }
 
 }  // namespace
