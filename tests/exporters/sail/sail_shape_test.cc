@@ -148,7 +148,8 @@ TEST(SailShape, RefusesEdgesInAnotherUnitOrFrame) {
   const SailShape refused = Compute(ExampleSail(), options);
   EXPECT_THAT(refused.surfaces, IsEmpty());
   EXPECT_EQ(refused.sections.sections.size(), 3u);
-  ExpectThrows<InputError>([&] { refused.ThrowSurfaceError(); },
+  ASSERT_TRUE(refused.surface_error);
+  ExpectThrows<InputError>([&] { std::rethrow_exception(refused.surface_error); },
                            {"--Surface.edges_path: the point 0, 0, 5000 is", "m from the markers"});
 }
 
