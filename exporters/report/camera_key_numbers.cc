@@ -59,9 +59,9 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
       fmt::format("{:.3f} px systematic, {:.2g} sigmas of the shape", evidence.systematic_px,
                   evidence.shape_change_in_sigmas),
       fmt::format("part of the residuals and of the markers' sides over the image that another "
-                  "calibration explains, and how far that would move the shape; good up to {:.2g} "
-                  "px or {:g} sigmas",
-                  evidence.max_systematic_px, kGoodShapeChange_sigmas),
+                  "calibration explains, and how far that would move the shape; good up to {:g} px "
+                  "or {:g} sigmas",
+                  kMaxSystematic_px, kGoodShapeChange_sigmas),
       StatusOf(evidence), CalibrationAdvice(evidence)};
 }
 

@@ -102,7 +102,7 @@ std::vector<LayoutPart> ReadParts(const YamlItem& item) {
   std::vector<LayoutPart> parts;
   PartOfId part_of_id;
   ForEachKey(item, [&](const std::string& name, const YamlItem& value) {
-    parts.push_back(ReadPart(value, CheckedName(name, value), &part_of_id));
+    parts.push_back(ReadPart(value, CheckedName(name, item), &part_of_id));
   });
   if (parts.empty()) item.Fail("no part is named; leave the key out to accept every marker");
   return parts;

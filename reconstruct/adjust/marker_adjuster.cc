@@ -231,8 +231,6 @@ void MarkerAdjuster::Finish() {
   uncertainty.calibration =
       TestCalibration(solution_.model, linearization->state, linearization->problem,
                       linearization->jacobian, linearization->covariance);
-  uncertainty.calibration.max_systematic_px =
-      std::hypot(kLensResidue_px, std::sqrt(2.0) * solution_.options.inset_sigma_px);
   uncertainty.calibration.shape_change_in_sigmas =
       uncertainty.calibration.shape_change_m /
       std::sqrt(Trace(uncertainty.points) /

@@ -19,15 +19,15 @@ namespace {
 // Layout of the file: magic, version, six doubles, CalibrationEvidence, points, blocks, factor,
 // signs; little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
-constexpr std::uint32_t kVersion = 5, kVersionWithoutMaxSystematic = 4;
+constexpr std::uint32_t kVersion = 4;
 
-// In the order of the file, after num_changes. The last one is missing in version 4.
-constexpr std::array<double CalibrationEvidence::*, 10> kEvidenceMembers = {
+// In the order of the file, after num_changes.
+constexpr std::array<double CalibrationEvidence::*, 9> kEvidenceMembers = {
     &CalibrationEvidence::chi_squared,      &CalibrationEvidence::focal_share,
     &CalibrationEvidence::distortion_share, &CalibrationEvidence::systematic_px,
     &CalibrationEvidence::focal_change,     &CalibrationEvidence::focal_sigma,
     &CalibrationEvidence::shape_change_m,   &CalibrationEvidence::shape_change_in_sigmas,
-    &CalibrationEvidence::scale_change,     &CalibrationEvidence::max_systematic_px};
+    &CalibrationEvidence::scale_change};
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is written as memory holds it");
 
@@ -169,9 +169,7 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   if (!std::equal(magic, magic + sizeof(magic), kMagic))
     reader.Fail("is not an uncertainty file of velamap");
   const auto version = reader.Read<std::uint32_t>();
-  if (version != kVersion && version != kVersionWithoutMaxSystematic) {
-    reader.Fail(fmt::format("has the unknown version {}", version));
-  }
+  if (version != kVersion) reader.Fail(fmt::format("has the unknown version {}", version));
   AdjustmentUncertainty uncertainty;
   uncertainty.relative_scale_sigma = reader.Read<double>();
   uncertainty.variance_factor = reader.Read<double>();
@@ -183,7 +181,6 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   uncertainty.rolling_shutter_sigma_s = reader.Read<double>();
   uncertainty.calibration.num_changes = static_cast<int>(reader.Read<std::uint64_t>());
   for (const auto member : kEvidenceMembers) {
-    if (member == &CalibrationEvidence::max_systematic_px && version != kVersion) continue;
     uncertainty.calibration.*member = reader.Read<double>();
   }
   PointCovariance& points = uncertainty.points;

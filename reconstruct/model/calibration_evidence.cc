@@ -11,8 +11,7 @@ double SigmasOff(const CalibrationEvidence& evidence) {
 }
 
 bool IsContradicted(const CalibrationEvidence& evidence) {
-  return SigmasOff(evidence) > kMaxCalibrationSigmas &&
-         evidence.systematic_px > evidence.max_systematic_px;
+  return SigmasOff(evidence) > kMaxCalibrationSigmas && evidence.systematic_px > kMaxSystematic_px;
 }
 
 }  // namespace velamap

@@ -4,10 +4,6 @@
 
 namespace velamap {
 
-// The lens residue that the sigma of every corner contains
-// (MarkerAdjustmentOptions::corner_sigma_floor_px).
-constexpr double kLensResidue_px = 0.02;
-
 // Zero for a calibration that was not tested.
 struct CalibrationEvidence {
   // Number of independent changes of the calibration that the images can tell from another shape
@@ -21,9 +17,6 @@ struct CalibrationEvidence {
   double focal_share = 0.0, distortion_share = 0.0;
   // RMS over the corners of the part of the residuals that the changes explain, px.
   double systematic_px = 0.0;
-  // What systematic_px may be under a right calibration: the lens residue, and what 1 sigma of the
-  // inset displaces a corner by, which differs over the image as blur and slant do.
-  double max_systematic_px = kLensResidue_px;
   // Relative change of the focal length, with the others free, and its 1 sigma. Linearized, so that
   // large values are orders of magnitude.
   double focal_change = 0.0, focal_sigma = 0.0;
@@ -37,9 +30,10 @@ struct CalibrationEvidence {
 // many sigmas the residuals speak against the calibration. 0 where nothing was tested.
 double SigmasOff(const CalibrationEvidence& evidence);
 
-// Whether the residuals contradict the calibration: beyond chance, and by more than errors of the
-// corners may imitate.
-constexpr double kMaxCalibrationSigmas = 3.0;
+// Whether the residuals contradict the calibration: beyond chance, and by more than the lens
+// residue that the sigma of every corner contains
+// (MarkerAdjustmentOptions::corner_sigma_floor_px).
+constexpr double kMaxCalibrationSigmas = 3.0, kMaxSystematic_px = 0.02;
 bool IsContradicted(const CalibrationEvidence& evidence);
 
 }  // namespace velamap

@@ -56,26 +56,27 @@ std::vector<BadInput> Plans() {
 std::vector<BadInput> BoardsAndClips() {
   const std::string board = "camera_calibrator --image_path @/images --report_path @/new.html ";
   const std::string clip = "clip_checker --image_path @/clip.avi ";
-  return {
-      {"ABoardIntoAFolder", board + "--output_path @/grey", 2, "--output_path: @/grey is a folder"},
-      {"ABoardOverAPhotograph", board + "--output_path @/images/1.png", 2,
-       "is the --image_path too"},
-      {"ACameraModelThatIsNone", board + "--output_path @/new.yml --camera_model ROUND", 2,
-       "--camera_model: 'ROUND' is unknown"},
-      {"AClipIntoAFolder", clip + "--output_path @/workspace", 2, "workspace is a folder"},
-      {"AClipThatEndsBeforeItBegins", clip + "--Video.first_frame 3 --Video.last_frame 1", 2,
-       "--Video.last_frame: 1 is before"},
-      {"AClipThatBeginsAfterItsEnd", clip + "--Video.first_frame 1000", 2, "none at or after"},
-      {"APlaylistInPlaceOfAClip", "clip_checker --image_path @/list.m3u8", 2, "list.m3u8",
-       Write("list.m3u8",
-             "#EXTM3U\n#EXT-X-TARGETDURATION:5\n#EXTINF:5,\n/etc/passwd\n#EXT-X-ENDLIST\n")},
-      {"ATextInPlaceOfAClip", "clip_checker --image_path @/notes.txt", 2,
-       "notes.txt: is a text or a list of other files", Write("notes.txt", "of the user\n")},
-      {"AListOfClips", "clip_checker --image_path @/list.ffconcat", 2,
-       "list.ffconcat: is a text or a list of other files",
-       Write("list.ffconcat", "ffconcat version 1.0\nfile clip.avi\n")},
-      {"AClipOfItself", "clip_checker --image_path @/list.ffconcat", 2, "list.ffconcat",
-       Write("list.ffconcat", "ffconcat version 1.0\nfile list.ffconcat\n")}};
+  return {{"ABoardIntoAFolder", board + "--output_path @/grey", 2,
+           "grey is a folder; give the name of a file"},
+          {"ABoardOverAPhotograph", board + "--output_path @/images/1.png", 2,
+           "is the --image_path too"},
+          {"ACameraModelThatIsNone", board + "--output_path @/new.yml --camera_model ROUND", 2,
+           "--camera_model: 'ROUND' is unknown"},
+          {"AClipIntoAFolder", clip + "--output_path @/workspace", 2, "workspace is a folder"},
+          {"AClipThatEndsBeforeItBegins", clip + "--Video.first_frame 3 --Video.last_frame 1", 2,
+           "--Video.last_frame: 1 is before"},
+          {"AClipThatBeginsAfterItsEnd", clip + "--Video.first_frame 1000", 2, "none at or after"},
+          {"APlaylistInPlaceOfAClip", "clip_checker --image_path @/list.m3u8", 2, "list.m3u8",
+           Write("list.m3u8",
+                 "#EXTM3U\n#EXT-X-TARGETDURATION:5\n#EXTINF:5,\n/etc/passwd\n#EXT-X-ENDLIST\n")},
+          {"ATextInPlaceOfAClip", "clip_checker --image_path @/notes.txt", 2,
+           "notes.txt: is a text or a list of other files",
+           Write("notes.txt", std::string(10000, 'a'))},
+          {"AListOfClips", "clip_checker --image_path @/list.ffconcat", 2,
+           "list.ffconcat: is a text or a list of other files",
+           Write("list.ffconcat", "ffconcat version 1.0\nfile clip.avi\n")},
+          {"AClipOfItself", "clip_checker --image_path @/list.ffconcat", 2, "list.ffconcat",
+           Write("list.ffconcat", "ffconcat version 1.0\nfile list.ffconcat\n")}};
 }
 
 std::vector<BadInput> Layouts() {
@@ -134,7 +135,7 @@ std::vector<BadInput> Exports() {
       {"AZeroByteInTheEdges", call + "--Surface.edges_path @/bad.csv", 2, "bad.csv:2: a zero byte",
        Write("bad.csv", std::string("edge,x,y,z\nluff,0\0,0,0\n", 23))},
       {"ATableIntoAFolder", analyzed + "--marker_length 0.1 --csv_path @/grey", 2,
-       "--csv_path: @/grey is a folder"},
+       "grey is a folder; give the name of a file"},
       {"ATableWithTheNameOfAFolder", analyzed + "--marker_length 0.1 --csv_path @/new/", 2,
        "is a folder"},
       {"AProjectFileInAProjectFile", analyzed + "--project_path @/p.ini", 2,
@@ -142,7 +143,7 @@ std::vector<BadInput> Exports() {
        Write("p.ini", "project_path=q.ini\n")},
       {"AZeroByteInAProjectFile", analyzed + "--project_path @/p.ini", 2, "p.ini: a zero byte",
        Write("p.ini", std::string("marker_length=0.1\0\n", 19))},
-      {"HelpWithAValue", analyzed + "--help=1", 2, "--help: unknown option; see velamap"}};
+      {"HelpWithAValue", analyzed + "--help=1", 2, "--help: unknown option"}};
 }
 
 std::vector<BadInput> Comparisons() {

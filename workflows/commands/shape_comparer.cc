@@ -49,13 +49,11 @@ std::vector<std::string> PathsFromText(const std::string& text, const std::strin
   std::vector<std::string> result;
   std::istringstream list(text + ",");
   for (std::string path; std::getline(list, path, ',');) {
-    if (path.empty() || !Exists(path)) {
-      throw InputError(
-          fmt::format("{}: '{}' does not exist; give shapes separated by commas, such "
-                      "as trim2/shape,trim3/shape",
-                      option, path));
+    if (path.empty()) {
+      throw InputError(fmt::format(
+          "{}: '{}' names no shape between two commas; give trim2/shape,trim3/shape, for example",
+          option, text));
     }
-    MentionPath(path);
     result.push_back(path);
   }
   return result;
@@ -77,7 +75,7 @@ OptionGroup InputGroup(Options* options) {
        Required(PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
                            "what the shape is compared with: shape.csv or its folder, or a surface "
                            "as .ply, .stl, .obj, .step or .iges")),
-       Common({"series_paths", ParsedValue{series_paths, "", set_series}, "paths",
+       Common({"series_paths", ParsedValue{series_paths, "", set_series}, "shapes",
                "more shapes for the same comparison, such as the other trims of a series: "
                "trim2/shape,trim3/shape"}),
        Common({"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
@@ -159,6 +157,11 @@ void CheckSeries(const Options& options) {
   }
   std::vector<UsedPath> inputs, outputs;
   for (const std::string& path : options.series_paths) {
+    MentionPath(path);
+    if (!Exists(path)) {
+      throw InputError(
+          fmt::format("--series_paths: '{}' does not exist; give shape.csv or its folder", path));
+    }
     inputs.push_back({"--series_paths", ShapeFile(path)});
     CheckInputKind("--series_paths", ShapeFile(path));
   }

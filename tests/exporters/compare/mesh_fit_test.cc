@@ -171,7 +171,7 @@ TEST(ShapeComparisonMesh, MarkersFarBeyondTheEdgeAreBeside) {
         .num_beside;
   };
   EXPECT_EQ(num_beside(20.0), 18);
-  EXPECT_EQ(num_beside(80.0), 0);
+  EXPECT_EQ(num_beside(100.0), 0);  // also those at the corners
   ExpectThrows<InputError>([&] { num_beside(-1.0); }, {"--edge_tolerance"});
 }
 

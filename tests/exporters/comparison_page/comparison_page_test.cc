@@ -37,7 +37,7 @@ MarkerShape Fuller() {
   const MarkerShape boat = shape;
   for (const int id : {32, 33, 34, 35}) {
     const double u = 0.2 * (id - 31);
-    shape = Shifted({id}, 0.12 * u * (1 - u) * MarkerNormal(*FindWholeMarker(boat, id)), shape);
+    shape = Shifted({id}, -0.12 * u * (1 - u) * MarkerNormal(*FindWholeMarker(boat, id)), shape);
   }
   return shape;
 }

@@ -28,13 +28,11 @@ SyntheticScene NoisyScene(SceneKind kind, std::uint32_t seed) {
 }
 
 // Of an adjustment that keeps the calibration.
-CalibrationEvidence Evidence(const SyntheticScene& scene, const Camera& assumed,
-                             double inset_sigma_px = 0.0) {
+CalibrationEvidence Evidence(const SyntheticScene& scene, const Camera& assumed) {
   Model model = MakeSceneModel(scene);
   for (auto& [camera_id, camera] : model.cameras) camera = assumed;
   MarkerAdjustmentOptions options;
   options.refine_calibration = false;
-  options.inset_sigma_px = inset_sigma_px;
   return AdjustWithMarkers(options, scene.layout, {}, &model).uncertainty.calibration;
 }
 
@@ -102,21 +100,6 @@ TEST(CalibrationScore, WrongCalibrationsAreContradictedAndNamed) {
     EXPECT_GT(no_distortion.distortion_share, no_distortion.focal_share) << seed;
     EXPECT_GT(no_distortion.distortion_share, 0.7) << seed;
   }
-}
-
-// A lens that is sharp in the middle: what no model of the blur describes grows towards the border.
-TEST(CalibrationScore, InsetsThatDifferOverTheImageAreNoWrongCalibration) {
-  constexpr double kInsetSigma_px = 0.03;
-  SyntheticScene scene = NoisyScene(SceneKind::kSail, 6);
-  const Eigen::Vector2d middle_px(0.5 * scene.camera.width_px, 0.5 * scene.camera.height_px);
-  AddInset(
-      [&](const MarkerDetection& marker) {
-        return 2 * kInsetSigma_px * (CornerMean(marker) - middle_px).norm() / middle_px.norm();
-      },
-      &scene);
-  EXPECT_TRUE(IsContradicted(Evidence(scene, scene.camera)));
-  EXPECT_FALSE(IsContradicted(Evidence(scene, scene.camera, kInsetSigma_px)));
-  EXPECT_TRUE(IsContradicted(Evidence(scene, WithFocalLength(scene.camera, 1.03), kInsetSigma_px)));
 }
 
 // What the adjustment refines, it has fitted already.

@@ -27,7 +27,7 @@ class UncertaintyFile : public testing::Test {
     uncertainty_.variance_factor = 1.7;
     uncertainty_.apparent_inset_px = -0.01;
     uncertainty_.apparent_inset_sigma_px = 0.02;
-    uncertainty_.calibration = {8, 123.5, 0.25, 0.5, 0.125, 0.03, -0.09, 0.002, 0.015, 3.5, 0.01};
+    uncertainty_.calibration = {8, 123.5, 0.25, 0.5, 0.125, -0.09, 0.002, 0.015, 3.5, 0.01};
     uncertainty_.correlation_factor = 1.3;
     uncertainty_.share_above_4_sigma = 0.004;
   }
@@ -70,25 +70,11 @@ TEST_F(UncertaintyFile, ComesBackToTheLastBit) {
   EXPECT_EQ(found.focal_share, written.focal_share);
   EXPECT_EQ(found.distortion_share, written.distortion_share);
   EXPECT_EQ(found.systematic_px, written.systematic_px);
-  EXPECT_EQ(found.max_systematic_px, written.max_systematic_px);
   EXPECT_EQ(found.focal_change, written.focal_change);
   EXPECT_EQ(found.focal_sigma, written.focal_sigma);
   EXPECT_EQ(found.shape_change_m, written.shape_change_m);
   EXPECT_EQ(found.shape_change_in_sigmas, written.shape_change_in_sigmas);
   EXPECT_EQ(found.scale_change, written.scale_change);
-}
-
-// It ends its evidence before max_systematic_px.
-TEST_F(UncertaintyFile, OfVersion4IsRead) {
-  WriteUncertainty(uncertainty_, Folder());
-  std::string bytes = FileBytes();
-  bytes[8] = 4;
-  bytes.erase(156, sizeof(double));
-  WriteBytes(bytes);
-  const AdjustmentUncertainty read = ReadUncertainty(Folder());
-  EXPECT_EQ(read.calibration.scale_change, uncertainty_.calibration.scale_change);
-  EXPECT_EQ(read.calibration.max_systematic_px, kLensResidue_px);
-  EXPECT_EQ(read.points.point3D_ids, uncertainty_.points.point3D_ids);
 }
 
 TEST_F(UncertaintyFile, NoPointsAndNoFactorAreFine) {
@@ -121,7 +107,7 @@ TEST_F(UncertaintyFile, ForeignOrBrokenFilesAreInputErrors) {
   const std::string bytes = FileBytes();
   WriteBytes("no uncertainty at all, but a text that somebody put here");
   EXPECT_THROW(ReadUncertainty(Folder()), InputError);
-  for (const std::size_t at : {8u, 164u, 171u}) {  // version, number of points
+  for (const std::size_t at : {8u, 156u, 163u}) {  // version, number of points
     std::string broken = bytes;
     broken[at] = '\x7f';
     WriteBytes(broken);
