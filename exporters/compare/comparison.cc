@@ -48,24 +48,37 @@ std::string NameOfShape(const std::string& path) {
   return folder.has_filename() ? folder.filename().string() : file;
 }
 
+// All but the sections. `reference` is a shape or a design.
+template <typename Reference>
+Comparison CompareAligned(const std::string& name, ShapeDeviation deviation,
+                          const Reference& reference, const Layout& layout,
+                          const ComparisonOptions& options) {
+  Comparison comparison;
+  comparison.name = name;
+  comparison.deviation = std::move(deviation);
+  comparison.has_layout = layout.HasMarkers();
+  if (!comparison.has_layout) return comparison;
+  const MarkerShape& aligned_shape = comparison.deviation.aligned_shape;
+  comparison.surfaces =
+      CompareSurfaces(aligned_shape, reference, layout, options.part, options.edge);
+  if (options.with_deflections && HasLines(layout)) {
+    comparison.deflections = ComputeDeflections(aligned_shape, reference, layout, options.grid,
+                                                options.part, options.edge);
+  }
+  return comparison;
+}
+
 }  // namespace
 
 Comparison Compare(const std::string& name, const UncertainShape& shape,
                    const UncertainShape& reference, const Layout& layout,
                    const ComparisonOptions& options) {
-  Comparison comparison;
-  comparison.name = name;
-  comparison.deviation =
+  ShapeDeviation deviation =
       CompareWithShape(shape, reference, layout, options.alignment, options.part);
-  comparison.has_layout = layout.HasMarkers();
-  if (!comparison.has_layout) return comparison;
-  const ShapeDeviation& deviation = comparison.deviation;
-  comparison.sections = CompareSections(shape, reference, deviation.alignment, layout);
-  comparison.surfaces =
-      CompareSurfaces(deviation.aligned_shape, reference.shape, layout, options.part, options.edge);
-  if (options.with_deflections && HasLines(layout)) {
-    comparison.deflections = ComputeDeflections(deviation.aligned_shape, reference.shape, layout,
-                                                options.grid, options.part);
+  Comparison comparison =
+      CompareAligned(name, std::move(deviation), reference.shape, layout, options);
+  if (comparison.has_layout) {
+    comparison.sections = CompareSections(shape, reference, comparison.deviation.alignment, layout);
   }
   return comparison;
 }
@@ -73,19 +86,11 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
 Comparison Compare(const std::string& name, const UncertainShape& shape,
                    const MeshDistance& reference, const Layout& layout,
                    const ComparisonOptions& options) {
-  Comparison comparison;
-  comparison.name = name;
-  comparison.deviation =
+  ShapeDeviation deviation =
       CompareWithMesh(shape, reference, layout, options.alignment, options.part, options.edge);
-  comparison.has_layout = layout.HasMarkers();
-  if (!comparison.has_layout) return comparison;
-  const ShapeDeviation& deviation = comparison.deviation;
-  comparison.sections = CompareSections(shape, reference, deviation, layout);
-  comparison.surfaces =
-      CompareSurfaces(deviation.aligned_shape, reference, layout, options.part, options.edge);
-  if (options.with_deflections && HasLines(layout)) {
-    comparison.deflections = ComputeDeflections(deviation.aligned_shape, reference, layout,
-                                                options.grid, options.part, options.edge);
+  Comparison comparison = CompareAligned(name, std::move(deviation), reference, layout, options);
+  if (comparison.has_layout) {
+    comparison.sections = CompareSections(shape, reference, comparison.deviation, layout);
   }
   return comparison;
 }

@@ -99,7 +99,7 @@ DeflectionReport ForEachPart(const Layout& layout, const std::string& wanted_par
 
 DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MarkerShape& reference,
                                     const Layout& layout, const GridOptions& grid,
-                                    const std::string& part) {
+                                    const std::string& part, const EdgeOptions&) {
   return ForEachPart(layout, part, [&](const LayoutPart& p) {
     return FieldBetween(aligned_shape, reference, p, grid);
   });

@@ -45,10 +45,10 @@ struct DeflectionReport {
 };
 
 // `aligned_shape` is in the frame of the reference (ShapeDeviation::aligned_shape). An empty `part`
-// means all parts.
+// means all parts. Only a design has an edge; between shapes `edge` is not used.
 DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MarkerShape& reference,
                                     const Layout& layout, const GridOptions& grid,
-                                    const std::string& part = "");
+                                    const std::string& part = "", const EdgeOptions& edge = {});
 DeflectionReport ComputeDeflections(const MarkerShape& aligned_shape, const MeshDistance& reference,
                                     const Layout& layout, const GridOptions& grid,
                                     const std::string& part = "", const EdgeOptions& edge = {});

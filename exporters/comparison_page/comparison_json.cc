@@ -101,42 +101,51 @@ Json ShapeJson(const Comparison& comparison) {
   return json;
 }
 
+// A row of the table of numbers.
+bool AreOfOneRow(const SectionDifference& a, const SectionDifference& b) {
+  return a.part == b.part && a.section == b.section && a.number == b.number;
+}
+
 const SectionDifference* FindDifference(const SectionComparison& sections,
                                         const SectionDifference& like) {
-  const auto it = std::find_if(
-      sections.differences.begin(), sections.differences.end(), [&](const SectionDifference& d) {
-        return d.part == like.part && d.section == like.section && d.number == like.number;
-      });
+  const auto it = std::find_if(sections.differences.begin(), sections.differences.end(),
+                               [&](const SectionDifference& d) { return AreOfOneRow(d, like); });
   return it == sections.differences.end() ? nullptr : &*it;
 }
 
 // Those of all shapes, each once, in the order of the first shape that has it.
-std::vector<const SectionDifference*> AllNumbers(const std::vector<Comparison>& series) {
-  std::vector<const SectionDifference*> all;
+std::vector<SectionDifference> AllNumbers(const std::vector<Comparison>& series) {
+  std::vector<SectionDifference> all;
   for (const Comparison& comparison : series) {
     for (const SectionDifference& d : comparison.sections.differences) {
-      const bool is_there = std::any_of(all.begin(), all.end(), [&](const auto* other) {
-        return other->part == d.part && other->section == d.section && other->number == d.number;
-      });
-      if (!is_there) all.push_back(&d);
+      const bool is_there =
+          std::any_of(all.begin(), all.end(),
+                      [&](const SectionDifference& other) { return AreOfOneRow(d, other); });
+      if (!is_there) all.push_back(d);
     }
   }
   return all;
 }
 
-bool HasOnePart(const std::vector<const SectionDifference*>& numbers) {
-  return std::all_of(numbers.begin(), numbers.end(),
-                     [&](const SectionDifference* d) { return d->part == numbers.front()->part; });
+// Whether sections need no part before their names. Items have a member `part`.
+template <typename Items>
+bool HaveOnePart(const Items& items) {
+  return std::all_of(items.begin(), items.end(),
+                     [&](const auto& item) { return item.part == items.front().part; });
+}
+
+std::string SectionName(const std::string& part, const std::string& section, bool has_one_part) {
+  return has_one_part ? section : part + " " + section;
 }
 
 Json NumbersJson(const std::vector<Comparison>& series) {
   Json rows = Json::array();
-  const std::vector<const SectionDifference*> numbers = AllNumbers(series);
-  const bool has_one_part = HasOnePart(numbers);
-  for (const SectionDifference* number : numbers) {
+  const std::vector<SectionDifference> numbers = AllNumbers(series);
+  const bool has_one_part = HaveOnePart(numbers);
+  for (const SectionDifference& number : numbers) {
     Json values = Json::array();
     for (const Comparison& comparison : series) {
-      const SectionDifference* d = FindDifference(comparison.sections, *number);
+      const SectionDifference* d = FindDifference(comparison.sections, number);
       if (d == nullptr) {
         values.push_back(nullptr);
         continue;
@@ -146,12 +155,11 @@ Json NumbersJson(const std::vector<Comparison>& series) {
       value["is_significant"] = d->IsSignificant();
       values.push_back(std::move(value));
     }
-    rows.push_back(
-        {{"section", has_one_part ? number->section : number->part + " " + number->section},
-         {"number", NumberName(number->number)},
-         {"unit", NumberUnit(number->number)},
-         {"reference", Rounded(number->reference)},
-         {"values", std::move(values)}});
+    rows.push_back({{"section", SectionName(number.part, number.section, has_one_part)},
+                    {"number", NumberName(number.number)},
+                    {"unit", NumberUnit(number.number)},
+                    {"reference", Rounded(number.reference)},
+                    {"values", std::move(values)}});
   }
   return rows;
 }
@@ -172,9 +180,7 @@ Json CurveJson(const std::string& name, const Section& section, const Section& r
 Json ProfilesJson(const ComparisonPageInput& input) {
   Json profiles = Json::array();
   const auto& sections = input.series.front().sections.of_reference.sections;
-  const bool has_one_part =
-      std::all_of(sections.begin(), sections.end(),
-                  [&](const Section& section) { return section.part == sections.front().part; });
+  const bool has_one_part = HaveOnePart(sections);
   for (const Section& reference : sections) {
     Json curves = Json::array({CurveJson(input.reference_name, reference, reference)});
     for (const Comparison& comparison : input.series) {
@@ -182,9 +188,8 @@ Json ProfilesJson(const ComparisonPageInput& input) {
           FindSection(comparison.sections.of_shape, reference.part, reference.name);
       if (section != nullptr) curves.push_back(CurveJson(comparison.name, *section, reference));
     }
-    profiles.push_back(
-        {{"section", has_one_part ? reference.name : reference.part + " " + reference.name},
-         {"curves", std::move(curves)}});
+    profiles.push_back({{"section", SectionName(reference.part, reference.name, has_one_part)},
+                        {"curves", std::move(curves)}});
   }
   return profiles;
 }

@@ -31,8 +31,8 @@ struct MarkerSizeVerdict {
 // solution in which the sizes had hardly any weight. `inset_sigmas` has 1 sigma of a marker's size
 // by the inset of its corners, as a fraction, which is the same in all images; markers that it does
 // not name have none. A marker contradicts the others if it deviates by more than four sigmas of
-// image noise, inset and print tolerance together. If ten or more markers
-// scatter 1.3 times as far as these sigmas explain, the print tolerance is raised.
+// image noise, inset and print tolerance together. If ten or more markers scatter 1.3 times as far
+// as these sigmas explain, the print tolerance is raised.
 //
 // Where the mean of a part (of three markers or more) differs from that of the other parts by more
 // than four sigmas of these means and by more than `print_scale_sigma` (1 sigma of the scale of the
