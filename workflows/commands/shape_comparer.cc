@@ -28,8 +28,7 @@ namespace {
 struct Options : CommandOptions {
   ComparisonOptions comparison;
   MeshReadOptions mesh;
-  std::string series_paths;         // separated by commas
-  std::vector<std::string> series;  // the same, one by one
+  std::vector<std::string> series_paths;
   std::string layout_path;
   std::string uncertainty_path;
   std::string reference_uncertainty_path;
@@ -41,20 +40,20 @@ struct Options : CommandOptions {
 
   std::vector<std::string> ShapePaths() const {
     std::vector<std::string> shape_paths = {paths.shape_path};
-    shape_paths.insert(shape_paths.end(), series.begin(), series.end());
+    shape_paths.insert(shape_paths.end(), series_paths.begin(), series_paths.end());
     return shape_paths;
   }
 };
 
-std::vector<std::string> SplitSeries(const std::string& text) {
+std::vector<std::string> PathsFromText(const std::string& text, const std::string& option) {
   std::vector<std::string> result;
-  std::istringstream list(text);
+  std::istringstream list(text + ",");
   for (std::string path; std::getline(list, path, ',');) {
     if (path.empty() || !Exists(path)) {
-      throw InputError(fmt::format(
-          "--series_paths: '{}' does not exist; give shapes separated by commas, such as "
-          "trim2/shape,trim3/shape",
-          path));
+      throw InputError(
+          fmt::format("{}: '{}' does not exist; give shapes separated by commas, such as "
+                      "trim2/shape,trim3/shape",
+                      option, path));
     }
     MentionPath(path);
     result.push_back(path);
@@ -68,13 +67,17 @@ OptionGroup InputGroup(Options* options) {
     mesh->m_per_unit = MPerUnitFromName(text, option);
   };
   PathOptions* paths = &options->paths;
+  std::vector<std::string>* series_paths = &options->series_paths;
+  const auto set_series = [series_paths](const std::string& text, const std::string& option) {
+    *series_paths = PathsFromText(text, option);
+  };
   return {
       "Input",
       {ShapeInputOption(paths),
        Required(PathOption("reference_path", PathUse::kReadsShape, &paths->reference_path,
                            "what the shape is compared with: shape.csv or its folder, or a surface "
                            "as .ply, .stl, .obj, .step or .iges")),
-       Common({"series_paths", &options->series_paths, "shapes",
+       Common({"series_paths", ParsedValue{series_paths, "", set_series}, "shapes",
                "more shapes for the same comparison, such as the other trims of a series: "
                "trim2/shape,trim3/shape"}),
        Common({"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
@@ -145,7 +148,7 @@ CommandSyntax Declare(Options* options) {
 
 // The check of ParseOptions() knows options of one path only.
 void CheckSeries(const Options& options) {
-  if (options.series.empty()) return;
+  if (options.series_paths.empty()) return;
   for (const auto& [option, path] : {std::pair{"--output_path", options.paths.output_path},
                                      std::pair{"--surface_path", options.surface_path},
                                      std::pair{"--uncertainty_path", options.uncertainty_path}}) {
@@ -155,7 +158,7 @@ void CheckSeries(const Options& options) {
         option));
   }
   std::vector<UsedPath> inputs, outputs;
-  for (const std::string& path : options.series) {
+  for (const std::string& path : options.series_paths) {
     inputs.push_back({"--series_paths", ShapeFile(path)});
     CheckInputKind("--series_paths", ShapeFile(path));
   }
@@ -177,7 +180,6 @@ void Validate(Options* options) {
     throw InputError("--align_markers: goes with --align markers only");
   }
   options->comparison.with_deflections = !options->comparison_path.empty();
-  options->series = SplitSeries(options->series_paths);
   CheckSeries(*options);
 }
 

@@ -168,6 +168,7 @@ TEST_F(ShapeComparerTest, ASeriesAgainstOneReference) {
   ExpectError(with({"--csv_path", path("c/shape/shape.csv")}), 2, "--series_paths");
   ExpectError(Compare("b/shape", {"--series_paths", path("b/shape") + ",nothing"}), 2,
               "--series_paths: 'nothing' does not exist");
+  ExpectError(Compare("b/shape", {"--series_paths", ""}), 2, "--series_paths");
 }
 
 TEST_F(ShapeComparerTest, MarkersBeyondTheEdgeOfADesignCountUpToATolerance) {
