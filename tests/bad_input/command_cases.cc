@@ -143,7 +143,7 @@ std::vector<BadInput> Exports() {
        Write("p.ini", "project_path=q.ini\n")},
       {"AZeroByteInAProjectFile", analyzed + "--project_path @/p.ini", 2, "p.ini: a zero byte",
        Write("p.ini", std::string("marker_length=0.1\0\n", 19))},
-      {"HelpWithAValue", analyzed + "--help=1", 2, "--help: unknown option"}};
+      {"HelpWithAValue", analyzed + "--help=1", 2, "--help: unknown option; see velamap"}};
 }
 
 std::vector<BadInput> Comparisons() {

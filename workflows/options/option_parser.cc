@@ -65,6 +65,8 @@ std::string DidYouMean(const OptionsByName& options, const std::string& unknown_
                        const std::string& dashes) {
   std::vector<std::string> names = {"help", "help_all"};
   for (const auto& [name, option] : options) names.push_back(option.name);
+  // --help=1 is no misspelling of another option.
+  if (std::find(names.begin(), names.end(), unknown_name) != names.end()) return "";
   const std::string nearest = NearestName(unknown_name, names);
   return nearest.empty() ? "" : fmt::format("did you mean {}{}? ", dashes, nearest);
 }
