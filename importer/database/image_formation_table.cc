@@ -1,5 +1,7 @@
 #include "importer/database/image_formation_table.h"
 
+#include <utility>
+
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <SQLiteCpp/VariadicBind.h>
 #include <fmt/format.h>
@@ -10,13 +12,14 @@ namespace velamap {
 namespace {
 
 constexpr char kSchema[] = R"(
-CREATE TABLE IF NOT EXISTS image_formation (
+CREATE TABLE image_formation (
     gamma REAL NOT NULL,
     s_amplitude REAL NOT NULL,
     sharpening REAL NOT NULL,
     sharpening_radius_px REAL NOT NULL,
     sharpens_light INTEGER NOT NULL,
     ink_spread_sides REAL NOT NULL,
+    edge_shift_blurs REAL NOT NULL,
     outline_corner_weight REAL NOT NULL,
     is_inverted INTEGER NOT NULL,
     quiet_zone_cells REAL NOT NULL,
@@ -28,38 +31,43 @@ CREATE TABLE IF NOT EXISTS image_formation (
 
 constexpr char kColumns[] =
     "gamma, s_amplitude, sharpening, sharpening_radius_px, sharpens_light, ink_spread_sides,"
-    " outline_corner_weight, is_inverted, quiet_zone_cells, quiet_zone_sigma_cells, num_samples, "
+    " edge_shift_blurs, outline_corner_weight, is_inverted, quiet_zone_cells, "
+    "quiet_zone_sigma_cells, num_samples, "
     "noise_gray,"
     " inset_sigma_px";
 
 }  // namespace
 
 void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* database) {
+  database->exec(
+      "DROP TABLE IF EXISTS image_formation");  // of an earlier velamap, with less columns
   database->exec(kSchema);
-  database->exec("DELETE FROM image_formation");
   SQLite::Statement insert(
       *database, fmt::format("INSERT INTO image_formation({}) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
-                             " ?, ?, ?)",
+                             " ?, ?, ?, ?)",
                              kColumns));
   const ImageFormationParameters& found = estimate.parameters;
   SQLite::bind(insert, found.gamma, found.s_amplitude, found.sharpening, found.sharpening_radius_px,
-               found.sharpens_light ? 1 : 0, found.ink_spread_sides, found.outline_corner_weight,
-               found.is_inverted ? 1 : 0, found.quiet_zone_cells, found.quiet_zone_sigma_cells,
-               estimate.num_samples, estimate.noise_gray, estimate.inset_sigma_px);
+               found.sharpens_light ? 1 : 0, found.ink_spread_sides, found.edge_shift_blurs,
+               found.outline_corner_weight, found.is_inverted ? 1 : 0, found.quiet_zone_cells,
+               found.quiet_zone_sigma_cells, estimate.num_samples, estimate.noise_gray,
+               estimate.inset_sigma_px);
   insert.exec();
 }
 
 std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
                                                     SQLite::Database* database) {
   if (!database->tableExists("image_formation")) return std::nullopt;
-  // An earlier velamap had no such column, and all pixels had the same weight.
-  const bool is_earlier = database
-                              ->execAndGet(
-                                  "SELECT COUNT(*) FROM pragma_table_info('image_formation') "
-                                  "WHERE name = 'outline_corner_weight'")
-                              .getInt() == 0;
-  SQLite::Statement query(*database, fmt::format("SELECT *{} FROM image_formation",
-                                                 is_earlier ? ", 1 AS outline_corner_weight" : ""));
+  // Columns that an earlier velamap did not have, with what it assumed.
+  std::string missing;
+  for (const auto& [column, value] :
+       {std::pair("outline_corner_weight", 1), {"edge_shift_blurs", 0}}) {
+    SQLite::Statement exists(*database,
+                             "SELECT 1 FROM pragma_table_info('image_formation') WHERE name = ?");
+    exists.bind(1, column);
+    if (!exists.executeStep()) missing += fmt::format(", {} AS {}", value, column);
+  }
+  SQLite::Statement query(*database, fmt::format("SELECT *{} FROM image_formation", missing));
   if (!query.executeStep()) return std::nullopt;
   const auto number = [&](const char* column, const OptionRange& range) {
     return CheckedNumber({path, "image_formation"}, column, range, &query);
@@ -73,6 +81,7 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   found.sharpening_radius_px = number("sharpening_radius_px", FromTo(0.1, 10));
   found.sharpens_light = number("sharpens_light", is_true) != 0;
   found.ink_spread_sides = number("ink_spread_sides", FromTo(-0.1, 0.1));
+  found.edge_shift_blurs = number("edge_shift_blurs", FromTo(-2, 2));
   found.outline_corner_weight = number("outline_corner_weight", FromTo(0, 1));
   found.is_inverted = number("is_inverted", is_true) != 0;
   found.quiet_zone_cells = number("quiet_zone_cells", FromTo(0, 100));

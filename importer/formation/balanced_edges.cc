@@ -16,28 +16,29 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   for (int i = 0; i < kIterations; ++i) {
     edges = InnerEdgeShift(balanced.state);
     FormationVector parameters = balanced.state.parameters;
-    parameters[kInkSpread] =
-        std::clamp(parameters[kInkSpread] + edges.mean_sides, -kMaxInkSpread, kMaxInkSpread);
+    parameters[kEdgeShift] =
+        std::clamp(parameters[kEdgeShift] + edges.mean_blurs, -kMaxEdgeShift, kMaxEdgeShift);
     balanced.state = MovedTo(parameters, balanced.state, num_threads);
   }
-  const double change = balanced.state.parameters[kInkSpread] - state.parameters[kInkSpread];
+  const double change = balanced.state.parameters[kEdgeShift] - state.parameters[kEdgeShift];
   const double inset_px = MeanInset(state, balanced.state);
   if (std::abs(change) < 1e-7) return {state, 0.0};
   // James and Stein's estimate, positive part: what noise explains is not corrected.
-  const double share = std::max(0.0, 1 - edges.sigma_sides * edges.sigma_sides / (change * change));
+  const double share = std::max(0.0, 1 - edges.sigma_blurs * edges.sigma_blurs / (change * change));
   FormationVector parameters = state.parameters;
-  parameters[kInkSpread] += share * change;
+  parameters[kEdgeShift] += share * change;
   spdlog::debug(
-      "inner edges: ink spread {:+.3f} -> {:+.3f} +- {:.3f} % of the side, corners {:.3f} px "
-      "outwards; half difference of the directions {:.3f} %",
-      100 * state.parameters[kInkSpread], 100 * balanced.state.parameters[kInkSpread],
-      100 * edges.sigma_sides, inset_px, 100 * edges.half_difference_sides);
+      "inner edges: shift {:+.4f} -> {:+.4f} +- {:.4f} blur sigmas, corners {:.3f} px outwards; "
+      "half "
+      "difference of the directions {:.4f}",
+      state.parameters[kEdgeShift], balanced.state.parameters[kEdgeShift], edges.sigma_blurs,
+      inset_px, edges.half_difference_blurs);
   const double unexplained =
-      std::sqrt(std::max(0.0, edges.half_difference_sides * edges.half_difference_sides -
-                                  edges.sigma_sides * edges.sigma_sides));
-  const double inset_by_spread_px = inset_px / change;
+      std::sqrt(std::max(0.0, edges.half_difference_blurs * edges.half_difference_blurs -
+                                  edges.sigma_blurs * edges.sigma_blurs));
+  const double inset_by_shift_px = inset_px / change;
   return {MovedTo(parameters, state, num_threads),
-          std::abs(inset_by_spread_px) * std::hypot(share * edges.sigma_sides, unexplained)};
+          std::abs(inset_by_shift_px) * std::hypot(share * edges.sigma_blurs, unexplained)};
 }
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// The spread of the ink from the places of inner edges.
+// The shift of edges that no description of the camera explains, from the places of inner edges.
 
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace velamap {
 
-// A state whose ink spreads so far that inner edges lie where the model has them, and how well the
+// A state that shifts edges so far that inner edges lie where the model has them, and how well the
 // inset of the corners is known by that.
 struct BalancedEdges {
   FormationState state;
@@ -14,7 +14,7 @@ struct BalancedEdges {
 };
 
 // The best fit of all pixels may leave inner edges of both polarities beside their places where no
-// description of the camera fits the shape of its edges. The spread of ink then follows their
+// description of the camera fits the shape of its edges. The shift then follows their
 // places, as far as the scatter of the samples does not explain the shift.
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads);
 

@@ -11,7 +11,7 @@ namespace {
 
 using P = PatternParameters;
 
-// Least squares of the residuals at inner edges on their derivative by the spread of ink.
+// Least squares of the residuals at inner edges on their derivative by the shift of edges.
 struct ShiftSums {
   double by_residual = 0.0, squares = 0.0;
 
@@ -24,7 +24,7 @@ struct ShiftSums {
     squares += other.squares;
     return *this;
   }
-  double shift_sides() const { return squares > 0 ? by_residual / squares : 0.0; }
+  double shift_blurs() const { return squares > 0 ? by_residual / squares : 0.0; }
 };
 
 // Sums over the edges that the rows of the image cross, and over those that its columns cross.
@@ -33,12 +33,12 @@ struct SampleShift {
 };
 
 SampleShift ShiftOf(const FittedSample& sample) {
-  constexpr double kStepCells = 0.01;
+  constexpr double kStepBlurs = 0.04;
   const PatternProblem& problem = sample.problem;
-  PatternModel more_ink = problem.model;
-  more_ink.ink_spread_cells += kStepCells;
+  PatternModel shifted = problem.model;
+  shifted.edge_shift_blurs += kStepBlurs;
   const PatternPicture picture(problem.model, sample.minimum.parameters);
-  const PatternPicture moved_picture(more_ink, sample.minimum.parameters);
+  const PatternPicture moved_picture(shifted, sample.minimum.parameters);
   const cv::Point patch_from_box = problem.box.tl() - problem.patch.origin_px;
   SampleShift shift;
   PatternPixels pixels, moved;
@@ -51,8 +51,7 @@ SampleShift ShiftOf(const FittedSample& sample) {
     moved_picture.At(x, y, &moved);
     const double residual =
         problem.patch.values.at<float>(place.in_box + patch_from_box) - pixels.gray[0];
-    const double by_spread =
-        (moved.gray[0] - pixels.gray[0]) * problem.model.num_cells / kStepCells;
+    const double by_shift = (moved.gray[0] - pixels.gray[0]) / kStepBlurs;
     // The shares of the corners add up to one, so that their derivatives add up to the slope.
     double by_x = 0.0, by_y = 0.0;
     for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
@@ -61,8 +60,8 @@ SampleShift ShiftOf(const FittedSample& sample) {
     }
     const double squared_slope = by_x * by_x + by_y * by_y;
     if (!(squared_slope > 0)) continue;
-    shift.across_rows.Add(by_spread, residual, by_x * by_x / squared_slope);
-    shift.across_columns.Add(by_spread, residual, by_y * by_y / squared_slope);
+    shift.across_rows.Add(by_shift, residual, by_x * by_x / squared_slope);
+    shift.across_columns.Add(by_shift, residual, by_y * by_y / squared_slope);
   }
   return shift;
 }
@@ -83,7 +82,7 @@ EdgeShift InnerEdgeShift(const FormationState& state) {
   ShiftSums all = across_rows;
   all += across_columns;
   if (samples.size() < 2 || !(all.squares > 0)) return {};
-  const double mean = all.shift_sides();
+  const double mean = all.shift_blurs();
   double scatter = 0.0;
   for (const ShiftSums& sample : samples) {
     const double deviation = sample.by_residual - sample.squares * mean;
@@ -91,7 +90,7 @@ EdgeShift InnerEdgeShift(const FormationState& state) {
   }
   const auto count = static_cast<double>(samples.size());
   return {mean, std::sqrt(scatter * count / (count - 1)) / all.squares,
-          0.5 * std::abs(across_rows.shift_sides() - across_columns.shift_sides())};
+          0.5 * std::abs(across_rows.shift_blurs() - across_columns.shift_blurs())};
 }
 
 }  // namespace velamap

@@ -11,13 +11,13 @@
 
 namespace velamap {
 
-// Means over all samples, in sides of a marker. Positive: dark cells are larger than in the model.
+// Means over all samples, in sigmas of the blur. Positive: dark cells are larger than in the model.
 struct EdgeShift {
-  double mean_sides = 0.0;
-  double sigma_sides = 0.0;  // of the mean, from the scatter of the samples
+  double mean_blurs = 0.0;
+  double sigma_blurs = 0.0;  // of the mean, from the scatter of the samples
   // Half of the difference between the edges that the rows and that the columns of the images
   // cross: many cameras treat the two directions differently, which no parameter describes.
-  double half_difference_sides = 0.0;
+  double half_difference_blurs = 0.0;
 };
 
 EdgeShift InnerEdgeShift(const FormationState& state);

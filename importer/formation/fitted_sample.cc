@@ -124,10 +124,7 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
   constexpr double kTolerancePx = 0.003;
   PatternProblem& problem = sample->problem;
   problem.patch = CutPatch(sample->gray, sample->patch_box, formation);
-  problem.model.tone = &formation.tone();
-  problem.model.ink_spread_cells =
-      formation.parameters().ink_spread_sides * problem.model.num_cells;
-  problem.model.outline_corner_weight = formation.parameters().outline_corner_weight;
+  SetFormation(formation, &problem);
   SetQuietZonePrior(formation.parameters(), &problem);
   for (const int index : {P::kDark, P::kLight}) {
     double& light = sample->minimum.parameters[index];

@@ -17,6 +17,7 @@ struct FormationSample {
   cv::Mat gray;            // 8 bit: the marker with half a side around it, dark cells dark
   QuadCorners corners_px;  // OpenCV's pixel frame of `gray`, to a pixel
   cv::Mat cells;           // as in FitPattern()
+  double side_mm = 100.0;  // of the printed square, which tells how far ink may spread
 };
 
 struct SamplePlace {

@@ -20,13 +20,32 @@ constexpr int kCount = kNumFormationParameters;
 using Vector = FormationVector;
 using State = FormationState;
 
-// Priors and limits: usual cameras. The steps are for derivatives.
-const Vector kMean = (Vector() << std::log(1.6), 0.0, 0.1, 0.0, 0.0).finished();
-const Vector kSigma = (Vector() << 0.6, 0.05, 0.5, 0.3, 0.004).finished();
-const Vector kMin =
-    (Vector() << std::log(0.8), -0.05, -0.3, std::log(0.5), -kMaxInkSpread).finished();
-const Vector kMax = (Vector() << std::log(3.2), 0.13, 2.0, std::log(2.5), kMaxInkSpread).finished();
-const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004).finished();
+// Priors and limits: usual cameras, and what printers do to the edge of a dark area. The steps are
+// for derivatives.
+constexpr double kInkSigma_mm = 0.1, kMaxInkSpread_mm = 0.3;
+const Vector kMean = (Vector() << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0).finished();
+
+struct Limits {
+  Vector sigma, min, max;
+};
+
+Limits LimitsFor(const std::vector<FormationSample>& samples) {
+  std::vector<double> sides_mm;
+  for (const FormationSample& sample : samples) sides_mm.push_back(sample.side_mm);
+  const double per_side = sides_mm.empty() ? 0.01 : 1 / Median(std::move(sides_mm));
+  const double max_ink = kMaxInkSpread_mm * per_side;
+  Limits limits;
+  limits.sigma << 0.6, 0.05, 0.5, 0.3, kInkSigma_mm * per_side, 0.2;
+  limits.min << std::log(0.8), -0.05, -0.3, std::log(0.5), -max_ink, -kMaxEdgeShift;
+  limits.max << std::log(3.2), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift;
+  return limits;
+}
+
+const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02).finished();
+
+// Blur, demosaicing, filters and compression give neighbouring pixels errors in common, so that so
+// many of them tell no more than one. Without it they overrule what is known of cameras and prints.
+constexpr double kPixelsAlike = 10.0;
 
 // 1 sigma of the width of one quiet zone around the mean width, cells, while the mean is unknown.
 constexpr double kQuietZoneSigma = 0.25;
@@ -84,8 +103,8 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
  public:
   using Parameters = State;
 
-  FormationProblem(double noise, int num_threads)
-      : noise_(noise), num_threads_(num_threads), loss_{9 * noise * noise} {}
+  FormationProblem(const Limits& limits, double noise, int num_threads)
+      : limits_(limits), noise_(noise), num_threads_(num_threads), loss_{9 * noise * noise} {}
 
   // Derivatives take six fits of every sample, so that there are none where the cost is higher
   // than before: such a step is not taken.
@@ -97,7 +116,8 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
   }
 
   State Plus(const State& state, const Step& step) const {
-    return MovedTo((state.parameters + step).cwiseMax(kMin).cwiseMin(kMax), state, num_threads_);
+    return MovedTo((state.parameters + step).cwiseMax(limits_.min).cwiseMin(limits_.max), state,
+                   num_threads_);
   }
 
   double Cost(const State& state) const { return SumUp(state, nullptr).cost(); }
@@ -113,7 +133,8 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
       inset_by[k] = MeanInset(state, moved[static_cast<std::size_t>(k)]) / kStep[k];
     }
     const Vector by_inset = SumUp(state, &moved).hessian().ldlt().solve(inset_by);
-    const Vector by_prior = PriorWeight().cwiseAbs2().cwiseProduct(kSigma).cwiseProduct(by_inset);
+    const Vector by_prior =
+        PriorWeight().cwiseAbs2().cwiseProduct(limits_.sigma).cwiseProduct(by_inset);
     const double independent = noise_ * noise_ * inset_by.dot(by_inset);
     return std::sqrt(std::max(
         VarianceOfSum(InfluencesOf(state, moved, by_inset)) + by_prior.squaredNorm(), independent));
@@ -170,8 +191,11 @@ class FormationProblem : public LeastSquaresProblem<kCount> {
     return equations;
   }
 
-  Vector PriorWeight() const { return noise_ * kSigma.cwiseInverse(); }
+  Vector PriorWeight() const {
+    return std::sqrt(kPixelsAlike) * noise_ * limits_.sigma.cwiseInverse();
+  }
 
+  const Limits& limits_;
   double noise_;
   int num_threads_;
   CauchyLoss loss_;
@@ -197,8 +221,8 @@ State BestStart(const std::vector<FormationSample>& samples,
   return best;
 }
 
-State Minimize(const std::vector<FormationSample>& samples, bool is_inverted, bool sharpens_light,
-               int num_threads) {
+State Minimize(const std::vector<FormationSample>& samples, const Limits& limits, bool is_inverted,
+               bool sharpens_light, int num_threads) {
   constexpr int kNumRounds = 2;        // each with the noise of the one before
   constexpr double kSameNoise = 0.95;  // another round would change nothing
   constexpr double kLittleWeight = 0.2;
@@ -220,7 +244,7 @@ State Minimize(const std::vector<FormationSample>& samples, bool is_inverted, bo
     const bool corners_count = state.formation->parameters().outline_corner_weight > kLittleWeight;
     if (noise > kSameNoise * noise_before && !corners_count) break;
     GaussNewtonEquations<kCount> equations;
-    MinimizeSquares(options, FormationProblem(noise, num_threads), &state, &equations);
+    MinimizeSquares(options, FormationProblem(limits, noise, num_threads), &state, &equations);
     if (round == 0) {
       state = WithOutlineCorners(OutlineCornerWeight(state), state, num_threads);
     }
@@ -245,8 +269,9 @@ double InsetSigmaByModel(const State& state) {
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads) {
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
-  State by_gray = Minimize(samples, is_inverted, false, num_threads);
-  State by_light = Minimize(samples, is_inverted, true, num_threads);
+  const Limits limits = LimitsFor(samples);
+  State by_gray = Minimize(samples, limits, is_inverted, false, num_threads);
+  State by_light = Minimize(samples, limits, is_inverted, true, num_threads);
   KeepOnly(by_light.sample_idxs, &by_gray);
   KeepOnly(by_gray.sample_idxs, &by_light);
   if (by_gray.samples.empty()) return {};
@@ -255,7 +280,7 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   by_gray = WithOutlineCorners(weight, by_gray, num_threads);
   by_light = WithOutlineCorners(weight, by_light, num_threads);
   const double noise = std::min(NoiseOf(by_gray), NoiseOf(by_light));
-  const FormationProblem problem(noise, num_threads);
+  const FormationProblem problem(limits, noise, num_threads);
   // Most cameras sharpen grey values, and under noise and compression both explain the samples.
   constexpr double kClearlyLess = 0.9;
   const double cost_by_gray = problem.Cost(by_gray), cost_by_light = problem.Cost(by_light);

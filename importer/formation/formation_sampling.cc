@@ -60,7 +60,9 @@ std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv
                static_cast<int>(box.max.y() - box.min.y()) + 2 * reach_px) &
       cv::Rect({}, gray.size());
   FormationSample sample;
-  sample.cells = detector.looks[static_cast<std::size_t>(quad.marker_id)].cells;
+  const auto id = static_cast<std::size_t>(quad.marker_id);
+  sample.cells = detector.looks[id].cells;
+  if (detector.sides_mm[id] > 0) sample.side_mm = detector.sides_mm[id];
   sample.gray = gray(cut).clone();
   if (detector.options.inverted) cv::bitwise_not(sample.gray, sample.gray);
   QuadCorners corners_px = quad.corners_px;
@@ -159,11 +161,13 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   const ImageFormationParameters& found = estimate.parameters;
   spdlog::info(
       "camera and print, from {} markers: gamma {:.2f}, S-curve {:+.3f}, sharpening {:.2f} over "
-      "{:.1f} px{}, ink spread {:+.2f} % of the side, quiet zone {:.2f} cells; residuals {:.1f} "
+      "{:.1f} px{}, ink spread {:+.2f} % of the side, edges {:+.2f} blurs, quiet zone {:.2f} "
+      "cells; residuals {:.1f} "
       "grey levels",
       estimate.num_samples, found.gamma, found.s_amplitude, found.sharpening,
       found.sharpening_radius_px, found.sharpens_light ? " of light" : "",
-      100 * found.ink_spread_sides, found.quiet_zone_cells, estimate.noise_gray);
+      100 * found.ink_spread_sides, found.edge_shift_blurs, found.quiet_zone_cells,
+      estimate.noise_gray);
   return estimate;
 }
 

@@ -34,7 +34,8 @@ ImageFormationParameters With(const FormationVector& p, ImageFormationParameters
   formation.s_amplitude = p[1];
   formation.sharpening = p[2];
   formation.sharpening_radius_px = std::exp(p[3]);
-  formation.ink_spread_sides = p[4];
+  formation.ink_spread_sides = p[kInkSpread];
+  formation.edge_shift_blurs = p[kEdgeShift];
   return formation;
 }
 

@@ -13,9 +13,10 @@
 
 namespace velamap {
 
-constexpr int kNumFormationParameters = 5;  // log gamma, S, sharpening, log radius, ink spread
-constexpr int kInkSpread = 4;
-constexpr double kMaxInkSpread = 0.02;  // sides, either way
+// log gamma, S, sharpening, log radius, ink spread, edge shift
+constexpr int kNumFormationParameters = 6;
+constexpr int kInkSpread = 4, kEdgeShift = 5;
+constexpr double kMaxEdgeShift = 1.0;  // blur sigmas, either way
 using FormationVector = Eigen::Matrix<double, kNumFormationParameters, 1>;
 
 // `formation` with the parameters of the vector.

@@ -1,6 +1,7 @@
 // How light from a printed marker becomes grey values, beyond the blur that each fit finds itself.
 //
 //   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
+//   blur       of light; edges move edge_shift_blurs (of its sigma) towards the light side
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
 //   sharpening sharpened = gray + sharpening (gray - G gray), or the same with light, before the
 //              tone curve;  G is a Gaussian of sharpening_radius_px
@@ -21,6 +22,10 @@ struct ImageFormationParameters {
   double sharpening = 0.0;
   double sharpening_radius_px = 1.0;
   double ink_spread_sides = 0.0;
+  // Noise filters, compression and tone curves of other shapes move edges by a part of their blur,
+  // which is the same in all directions of the image. Ink moves them by a length on the paper,
+  // which a slant shortens.
+  double edge_shift_blurs = 0.0;
   // The images hold 255 less the recorded grey values, so that inverted prints look upright. Light
   // stays what the camera received: bright cells then have less of it than dark ones.
   bool is_inverted = false;

@@ -118,9 +118,8 @@ class PatternPicture {
     Around around;
     Blended pattern = BlendAll(
         u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner, &around);
-    if (model_.ink_spread_cells != 0) {
-      ApplySpread(static_cast<float>(model_.ink_spread_cells), cells_u * p[P::kBlurU],
-                  cells_v * p[P::kBlurV], &pattern);
+    if (model_.ink_spread_cells != 0 || model_.edge_shift_blurs != 0) {
+      ApplySpread(cells_u * p[P::kBlurU], cells_v * p[P::kBlurV], &pattern);
     }
 
     const auto inverse_diagonal = static_cast<float>(1 / model_.diagonal_px);
@@ -172,17 +171,22 @@ class PatternPicture {
     Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
   };
 
-  // Moves every edge by `spread` cells towards the light side, to second order in the spread. The
-  // derivatives keep their values without it, which is enough for a step.
-  static void ApplySpread(float spread, Floats blur_u, Floats blur_v, Blended* pattern) {
-    const Floats squared_slope =
-        pattern->by_u * pattern->by_u + pattern->by_v * pattern->by_v + 1e-8f;
+  // Moves every edge towards the light side, by the ink and by a part of its blur (cells), to
+  // second order. The derivatives keep their values without it, which is enough for a step.
+  void ApplySpread(Floats blur_u, Floats blur_v, Blended* pattern) const {
+    const auto ink = static_cast<float>(model_.ink_spread_cells);
+    const auto share = static_cast<float>(model_.edge_shift_blurs);
+    const Floats spread_u = ink + share * blur_u, spread_v = ink + share * blur_v;
+    const Floats squared_u = pattern->by_u * pattern->by_u;
+    const Floats squared_v = pattern->by_v * pattern->by_v;
+    const Floats squared_slope = squared_u + squared_v + 1e-8f;
     const Floats by_uu = pattern->by_blur_u / blur_u, by_vv = pattern->by_blur_v / blur_v;
-    const Floats bend = (pattern->by_u * pattern->by_u * by_uu +
-                         2.0f * pattern->by_u * pattern->by_v * pattern->by_u_v +
-                         pattern->by_v * pattern->by_v * by_vv) /
-                        squared_slope;
-    pattern->value += spread * (0.5f * spread * bend - Sqrt(squared_slope));
+    const Floats bend =
+        spread_u * spread_u * squared_u * by_uu +
+        2.0f * spread_u * spread_v * pattern->by_u * pattern->by_v * pattern->by_u_v +
+        spread_v * spread_v * squared_v * by_vv;
+    pattern->value += 0.5f * bend / squared_slope -
+                      (spread_u * squared_u + spread_v * squared_v) / Sqrt(squared_slope);
   }
 
   // Whether the cell at a place (in cells), or the quiet zone there, is light.

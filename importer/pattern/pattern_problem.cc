@@ -227,9 +227,7 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
   // The surroundings are read up to two cells away.
   const cv::Point beyond(box->width / 4 + 3, box->height / 4 + 3);
   problem.patch = CutPatch(gray, cv::Rect(box->tl() - beyond, box->br() + beyond), formation);
-  problem.model.tone = &formation.tone();
-  problem.model.ink_spread_cells = formation.parameters().ink_spread_sides * cells.rows;
-  problem.model.outline_corner_weight = formation.parameters().outline_corner_weight;
+  SetFormation(formation, &problem);
   problem.model.center_px = map.ToImage(0.5, 0.5);
   problem.model.diagonal_px =
       0.5 * ((corners_px[2] - corners_px[0]).norm() + (corners_px[3] - corners_px[1]).norm());
@@ -240,6 +238,15 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
 double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum) {
   const ToneCurve& tone = *problem.model.tone;
   return tone.Encode(minimum.parameters[P::kLight]) - tone.Encode(minimum.parameters[P::kDark]);
+}
+
+void SetFormation(const ImageFormation& formation, PatternProblem* problem) {
+  const ImageFormationParameters& parameters = formation.parameters();
+  PatternModel& model = problem->model;
+  model.tone = &formation.tone();
+  model.ink_spread_cells = parameters.ink_spread_sides * model.num_cells;
+  model.edge_shift_blurs = parameters.edge_shift_blurs;
+  model.outline_corner_weight = parameters.outline_corner_weight;
 }
 
 void SetQuietZonePrior(const ImageFormationParameters& formation, PatternProblem* problem) {

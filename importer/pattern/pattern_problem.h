@@ -47,6 +47,9 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
 // Grey levels between the dark and the light cells.
 double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum);
 
+// The constants of the model that the image formation tells.
+void SetFormation(const ImageFormation& formation, PatternProblem* problem);
+
 // The prior of the widths of the quiet zone, where that is known of all markers.
 void SetQuietZonePrior(const ImageFormationParameters& formation, PatternProblem* problem);
 

@@ -69,6 +69,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
   for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
     detector.looks.push_back(
         {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
+    detector.sides_mm.push_back(1e3 * MarkerLength(layout, id));
   }
   CheckLayoutIds(layout, detector.dictionary);
   detector.symmetries = FindCodeSymmetries(detector.dictionary);

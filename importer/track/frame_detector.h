@@ -32,6 +32,7 @@ struct FrameDetector {
   CodeSymmetries symmetries;              // of markers with a rotational symmetry
   std::map<int, std::string> part_of_id;  // empty: every id is accepted
   std::vector<MarkerLook> looks;          // by id of the dictionary
+  std::vector<double> sides_mm;           // likewise
   std::vector<std::vector<int>> lines;    // ids along the lines of the layout; for tracked search
   ImageFormation formation;               // of the camera and the print
   PriorShape prior_shape;                 // of markers that can be detected; may be empty

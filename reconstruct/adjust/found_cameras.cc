@@ -54,17 +54,10 @@ void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
   }
 }
 
-void WidenSigmas(const std::map<CameraId, std::vector<double>>& sigmas, double inset_as_scale,
-                 std::map<CameraId, EstimatedCamera>* cameras) {
-  for (const auto& [camera_id, least] : sigmas) {
-    EstimatedCamera& found = cameras->at(camera_id);
-    for (std::size_t i = 0; i < least.size(); ++i) {
-      found.sigmas[i] = std::max(found.sigmas[i], least[i]);
-    }
-    const std::size_t num_focal = HasOneFocalLength(found.camera.model) ? 1 : 2;
-    for (std::size_t i = 0; i < num_focal; ++i) {
-      found.sigmas[i] = std::hypot(found.sigmas[i], inset_as_scale * found.camera.params[i]);
-    }
+void AddInset(double inset_as_scale, const Camera& camera, std::vector<double>* sigmas) {
+  const std::size_t num_focal = HasOneFocalLength(camera.model) ? 1 : 2;
+  for (std::size_t i = 0; i < num_focal; ++i) {
+    (*sigmas)[i] = std::hypot((*sigmas)[i], inset_as_scale * camera.params[i]);
   }
 }
 

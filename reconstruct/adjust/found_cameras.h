@@ -22,11 +22,9 @@ void WarnOfFoldedCameras(MarkerSolution* solution);
 void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
                       const std::vector<std::string>& weaknesses);
 
-// Raises the sigmas of the cameras to `sigmas` where they are smaller, and adds the effect of an
-// inset of all corners to those of the focal lengths: an inset changes by how much the squares seem
-// to be foreshortened, and no picture shows it. `inset_as_scale`: 1 sigma of the inset, in parts of
-// a side.
-void WidenSigmas(const std::map<CameraId, std::vector<double>>& sigmas, double inset_as_scale,
-                 std::map<CameraId, EstimatedCamera>* cameras);
+// Adds the effect of an inset of all corners to the sigmas of the focal lengths: an inset changes by
+// how much the squares seem to be foreshortened, and no picture shows it. `inset_as_scale`: 1 sigma
+// of the inset, in parts of a side.
+void AddInset(double inset_as_scale, const Camera& camera, std::vector<double>* sigmas);
 
 }  // namespace velamap

@@ -164,7 +164,13 @@ void MarkerAdjuster::WidenCameraSigmas() {
   MarkerSolution as_recorded = solution_;
   MoveToMiddleRow(-solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
                   &as_recorded.model);
-  WidenSigmas(JackknifeCameras(as_recorded), solution_.weights.inset_as_scale, &summary_.cameras);
+  for (auto& [camera_id, sigmas] : JackknifeCameras(as_recorded)) {
+    EstimatedCamera& found = summary_.cameras.at(camera_id);
+    AddInset(solution_.weights.inset_as_scale, found.camera, &sigmas);
+    for (std::size_t i = 0; i < sigmas.size(); ++i) {
+      found.sigmas[i] = std::max(found.sigmas[i], sigmas[i]);
+    }
+  }
 }
 
 void MarkerAdjuster::ChooseCameraModel() { solution_ = WithBestCameraModel(solution_); }
@@ -241,6 +247,9 @@ void MarkerAdjuster::Finish() {
                   &solution_.model);
   if (solution_.options.find_camera) {
     summary_.cameras = CamerasOf(solution_.model, *linearization);
+    for (auto& [camera_id, found] : summary_.cameras) {
+      AddInset(solution_.weights.inset_as_scale, found.camera, &found.sigmas);
+    }
     WarnOfFoldedCameras(&solution_);
   }
   UpdatePointErrors(&solution_.model);

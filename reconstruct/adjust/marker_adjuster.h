@@ -67,8 +67,7 @@ class MarkerAdjuster {
   // and the warnings and figures of the summary. Image points move to where they are while the
   // middle row is read.
   void Finish();
-  // After Finish: takes the sigmas of the jackknife for the cameras where they are larger, and adds
-  // what an inset of all corners does to the focal length.
+  // After Finish: takes the sigmas of the jackknife for the cameras where they are larger.
   void WidenCameraSigmas();
 
   Model TakeModel() { return std::move(solution_.model); }
