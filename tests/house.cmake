@@ -100,7 +100,7 @@ house_folder(workflows/run PUBLIC
   adjustment central_frame_sweep logging pipeline progress run_summary stage_times summary version
   versions workspace)
 house_folder(workflows/check PUBLIC
-  clip_check clip_facts clip_frames clip_limits clip_verdict)
+  clip_check clip_facts clip_frames clip_limits clip_verdict dictionary_search)
 house_folder(workflows/plan PUBLIC
   plan_drawing plan_writer)
 house_folder(workflows/calibrate PUBLIC
