@@ -61,7 +61,7 @@ house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/problem PUBLIC
   corner_errors corner_residuals corner_velocities error_correlation marker_adjustment_options
-  marker_problem marker_state marker_uncertainty normal_equations scale_bar)
+  marker_problem marker_state marker_uncertainty normal_equations prior_cost_functions scale_bar)
 house_folder(reconstruct/adjust PUBLIC
   camera_adjustment camera_cross_validation marker_adjustment)
 house_folder(reconstruct/calibration PUBLIC
