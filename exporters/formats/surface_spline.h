@@ -1,4 +1,4 @@
-// A tensor-product B-spline surface: points, derivatives, area, nearest points and plane cuts.
+// A tensor-product B-spline surface: points, derivatives, area and nearest points.
 // Eigen evaluates the basis functions (de Boor's recursion; Piegl and Tiller, The NURBS Book, 1997,
 // chapter 2).
 //
