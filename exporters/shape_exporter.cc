@@ -176,12 +176,4 @@ void WriteShape(const ShapeExportReport& report, const ShapeExporterOptions& opt
   if (shape_folder) shape_folder->Commit();
 }
 
-ShapeExportReport ExportShape(const Model& model, const Layout& layout,
-                              const ShapeExporterOptions& options,
-                              const AdjustmentUncertainty* uncertainty) {
-  ShapeExportReport report = ComputeShape(model, layout, options, uncertainty);
-  WriteShape(report, options, nullptr);
-  return report;
-}
-
 }  // namespace velamap

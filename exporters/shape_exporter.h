@@ -82,9 +82,4 @@ ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
 void WriteShape(const ShapeExportReport& report, const ShapeExporterOptions& options,
                 const Verdict* verdict);
 
-// ComputeShape() and WriteShape() without a verdict.
-ShapeExportReport ExportShape(const Model& model, const Layout& layout,
-                              const ShapeExporterOptions& options,
-                              const AdjustmentUncertainty* uncertainty = nullptr);
-
 }  // namespace velamap

@@ -52,10 +52,10 @@ struct CameraCalibration {
   double rolling_shutter_s = 0.0, rolling_shutter_sigma_s = 0.0;
   std::vector<std::string> warnings;
 
-  // Of the model that was taken.
+  // The score of the model that was taken.
   const CameraModelScore& Score() const;
   std::vector<BoardView> UsedViews() const;
-  // Of the picture, with `num_cells` along its larger side.
+  // Divides the picture into `num_cells` along its larger side.
   PictureGrid Grid(int num_cells) const;
 };
 

@@ -12,7 +12,7 @@ house_folder(importer/text PUBLIC
 house_folder(importer/lanes PUBLIC
   float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
-  alignment consensus_pose least_squares opencv_pose p3p pose_refinement pose_step principal_axes quad
+  alignment consensus_pose directions least_squares opencv_pose p3p pose_refinement pose_step principal_axes quad
   ransac rigid3 unit_square_map units)
 house_folder(importer/camera PUBLIC
   calibration calibration_writer camera camera_jacobian camera_projection storage_check
@@ -61,7 +61,7 @@ house_folder(reconstruct/colmap PUBLIC
   bundle_adjustment bundle_adjustment_options colmap_runner observation_filter warm_start)
 house_folder(reconstruct/problem PUBLIC
   corner_errors corner_residuals corner_velocities error_correlation marker_adjustment_options
-  marker_problem marker_state marker_uncertainty normal_equations scale_bar)
+  marker_problem marker_state marker_uncertainty normal_equations prior_cost_functions scale_bar)
 house_folder(reconstruct/adjust PUBLIC
   camera_adjustment camera_cross_validation marker_adjustment)
 house_folder(reconstruct/calibration PUBLIC
@@ -100,7 +100,7 @@ house_folder(workflows/run PUBLIC
   adjustment central_frame_sweep logging pipeline progress run_summary stage_times summary version
   versions workspace)
 house_folder(workflows/check PUBLIC
-  clip_check clip_facts clip_frames clip_limits clip_verdict)
+  clip_check clip_facts clip_frames clip_limits clip_verdict dictionary_search)
 house_folder(workflows/plan PUBLIC
   plan_drawing plan_writer)
 house_folder(workflows/calibrate PUBLIC

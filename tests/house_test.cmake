@@ -1,5 +1,6 @@
 # Fails when the code departs from the floor plan in tests/house.cmake, or when knowledge that
-# belongs in one file stands in another. Run as cmake -DSOURCE_DIR=... -P house_test.cmake.
+# belongs in one file stands in another, or when a README leaves out a folder. Run as
+# cmake -DSOURCE_DIR=... -P house_test.cmake.
 
 cmake_policy(VERSION 3.22)
 set(ROOMS importer reconstruct exporters workflows)
@@ -9,7 +10,7 @@ set(num_files 0)
 
 # Only the database's files know SQL; only the search, the detector and the dictionaries know
 # cv::aruco.
-set(SQL_FILES "^importer/database/(colmap_(database|schema)|(image_formation|marker_detections|source|tracking)_table)\\.cc$")
+set(SQL_FILES "^importer/database/(colmap_(database|schema)|(camera|image_formation|marker_detections|source|tracking)_table)\\.cc$")
 # Only these files call the operations of std::filesystem, because they turn a failure into an input
 # error; elsewhere its exceptions would end the program as a broken invariant.
 set(FILE_SYSTEM_FILES "^importer/base/(files|atomic_output)\\.cc$")
@@ -90,6 +91,12 @@ foreach(room IN LISTS ROOMS)
 endforeach()
 
 foreach(folder IN LISTS folders)
+  if(folder MATCHES "^([a-z]+)/(.+)$")
+    file(STRINGS ${SOURCE_DIR}/${CMAKE_MATCH_1}/README.md row REGEX "^\\| `${CMAKE_MATCH_2}` \\|")
+    if(NOT row)
+      fail("${CMAKE_MATCH_1}/README.md: the table of folders lacks ${CMAKE_MATCH_2}")
+    endif()
+  endif()
   list(LENGTH files_in_${folder} num_files_in_folder)
   if(num_files_in_folder GREATER MAX_FILES_IN_FOLDER)
     fail("${folder} shows ${num_files_in_folder} source files at once, more than ${MAX_FILES_IN_FOLDER}")

@@ -1,13 +1,13 @@
 #include "exporters/compare/closest_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/directions.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/principal_axes.h"
 
@@ -98,22 +98,6 @@ SurfacePose Iterate(const Points& points, const MeshDistance& mesh, const Rigid3
 Eigen::Matrix3d RightHanded(Eigen::Matrix3d directions) {
   if (directions.determinant() < 0) directions.col(0) *= -1;
   return directions;
-}
-
-// The 24 rotations of a cube onto itself.
-std::vector<Eigen::Matrix3d> CubeRotations() {
-  std::vector<Eigen::Matrix3d> rotations;
-  std::array<int, 3> order = {0, 1, 2};
-  do {
-    for (int signs = 0; signs < 8; ++signs) {
-      Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
-      for (int i = 0; i < 3; ++i) {
-        rotation(order[static_cast<std::size_t>(i)], i) = (signs >> i) % 2 == 0 ? 1.0 : -1.0;
-      }
-      if (rotation.determinant() > 0) rotations.push_back(rotation);
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
-  return rotations;
 }
 
 std::vector<Rigid3> Starts(const Points& points, const MeshDistance& mesh, bool starts_as_is) {

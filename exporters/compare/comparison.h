@@ -1,5 +1,5 @@
-// Everything that is compared between a shape and its reference, and what the files say of a series
-// of shapes.
+// Everything that is compared between a shape and its reference, and what the files say about a
+// series of shapes.
 
 #pragma once
 

@@ -24,8 +24,8 @@ namespace velamap {
 struct Deflection {
   Eigen::Vector3d vector_m = Eigen::Vector3d::Zero();  // from the reference to the shape
   double distance_m = 0.0;                             // of it, along the reference's normal
-  // Of the distance, by the noise of the markers. The uncertainty of the alignment, and errors that
-  // all markers of a shape share, are missing. Nothing for a surface through markers without sigma.
+  // Sigma of the distance by the noise of the markers, without the alignment and without errors
+  // that all markers of a shape share. Nothing for a surface through markers without sigma.
   std::optional<double> sigma_m;
 };
 

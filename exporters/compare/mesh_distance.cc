@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "importer/base/error.h"
+#include "importer/geometry/directions.h"
 
 namespace velamap {
 namespace {
@@ -106,10 +107,6 @@ struct Edge {
   int direction = 0;  // triangles with ascending minus triangles with descending vertices
 };
 
-double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 // Gives vertices in the same place the same number.
 std::vector<int> Weld(const std::vector<Eigen::Vector3d>& vertices_m, const Eigen::Vector3d& min_m,
                       double tolerance_m, std::vector<Eigen::Vector3d>* welded_m) {
@@ -177,7 +174,7 @@ void MeshDistance::Index::AddTriangle(const Triangle& t) {
   for (std::size_t k = 0; k < 3; ++k) {
     const int from = t[k], to = t[(k + 1) % 3];
     vertex_normals[static_cast<std::size_t>(from)] +=
-        Angle(vertex(k + 1) - vertex(k), vertex(k + 2) - vertex(k)) * normal;
+        AngleBetween(vertex(k + 1) - vertex(k), vertex(k + 2) - vertex(k)) * normal;
     Edge& edge = edges[EdgeKey(from, to)];
     edge.normal += normal;
     ++edge.num_triangles;

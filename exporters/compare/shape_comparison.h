@@ -32,13 +32,13 @@ struct UncertainShape {
 struct MarkerDeviation {
   int marker_id = 0;
   std::string part;
-  Eigen::Vector3d x_in_reference_m = Eigen::Vector3d::Zero();  // center in the aligned shape
+  Eigen::Vector3d x_in_reference_m = Eigen::Vector3d::Zero();  // centre in the aligned shape
   // Unit normal of the reference's marker, or of the surface at the nearest point.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double distance_m = 0.0;  // along the normal, positive on its side
   std::optional<double> sigma_m;
   std::optional<double> significance;  // distance / sigma, with the sign of the distance
-  // Center in the shape minus center in the reference; only for two shapes.
+  // Centre in the shape minus centre in the reference; only for two shapes.
   std::optional<Eigen::Vector3d> difference_m;
   std::optional<Eigen::Vector3d> difference_sigma_m;  // along the axes
   // Distance of the marker beyond the edge of the surface, see MeshFoot; only for a surface. Beyond

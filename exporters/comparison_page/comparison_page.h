@@ -22,7 +22,7 @@ struct ComparisonPageInput {
   std::string reference_name = {};
   std::string version = {};                   // of the program
   std::string created = {};                   // date and time; empty for none
-  std::optional<double> color_limit_mm = {};  // the distance with the full color; or the largest
+  std::optional<double> color_limit_mm = {};  // the distance with the full colour; or the largest
 };
 
 void WriteComparisonPage(const ComparisonPageInput& input, std::ostream& out);

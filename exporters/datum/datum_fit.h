@@ -1,5 +1,5 @@
-// What an adjusted pose tells of each point, of the six degrees of freedom, and of the size of the
-// shape, by the joint covariance of all coordinates.
+// What an adjusted pose says about each point, the six degrees of freedom and the size of the
+// shape, from the joint covariance of all coordinates.
 
 #pragma once
 

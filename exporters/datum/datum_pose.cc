@@ -9,9 +9,9 @@
 #include <Eigen/Geometry>
 
 #include "importer/geometry/alignment.h"
+#include "importer/geometry/directions.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/pose_step.h"
-#include "importer/geometry/units.h"
 
 namespace velamap {
 namespace {
@@ -86,21 +86,6 @@ std::optional<Rigid3> ClosedForm(const DatumPoints& points, const PointSet& set)
   return EstimateRigid3(x_m, known_m, weights);
 }
 
-// The 24 turns of a cube onto itself.
-std::vector<Eigen::Quaterniond> CubeRotations() {
-  const auto turn = [](int quarters, int axis) {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(quarters * 0.5 * kPi, Eigen::Vector3d::Unit(axis)));
-  };
-  std::vector<Eigen::Quaterniond> rotations;
-  for (int face = 0; face < 6; ++face) {
-    const Eigen::Quaterniond to_face = face < 4 ? turn(face, 0) : turn(2 * face - 9, 1);
-    for (int quarters = 0; quarters < 4; ++quarters) {
-      rotations.push_back(to_face * turn(quarters, 2));
-    }
-  }
-  return rotations;
-}
-
 // The mean shift that the coordinates of each axis ask for after the rotation.
 Rigid3 Shifted(const DatumPoints& points, const PointSet& set, const Eigen::Quaterniond& rotation) {
   Rigid3 pose{rotation, Eigen::Vector3d::Zero()};
@@ -133,8 +118,8 @@ std::vector<DatumPose> FindPoses(const DatumPoints& points, const PointSet& set)
   const DatumProblem problem(points, set, PlainWhitener(points, set));
   if (const auto closed_form = ClosedForm(points, set)) return {Minimize(problem, *closed_form)};
   std::vector<DatumPose> found;
-  for (const Eigen::Quaterniond& rotation : CubeRotations()) {
-    found.push_back(Minimize(problem, Shifted(points, set, rotation)));
+  for (const Eigen::Matrix3d& rotation : CubeRotations()) {
+    found.push_back(Minimize(problem, Shifted(points, set, Eigen::Quaterniond(rotation))));
   }
   std::stable_sort(found.begin(), found.end(), [](const DatumPose& a, const DatumPose& b) {
     return a.squared_sigmas < b.squared_sigmas;

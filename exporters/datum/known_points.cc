@@ -33,7 +33,7 @@ std::optional<Eigen::Vector3d> PointInShape(const MarkerShape& shape, const Know
                            : marker->x_in_shape_m[static_cast<std::size_t>(known.corner)];
 }
 
-// Of the points in the shape, with zeros for those that `covariance` lacks.
+// The covariance of the points in the shape, with zeros for those that `covariance` lacks.
 Eigen::MatrixXd CovarianceOfPoints(const std::vector<KnownPoint>& known,
                                    const PointCovariance* covariance) {
   std::vector<PointGradient> gradients;

@@ -9,8 +9,6 @@
 #include <Eigen/LU>
 #include <unsupported/Eigen/Splines>
 
-#include "importer/base/error.h"
-
 namespace velamap {
 namespace {
 
@@ -200,38 +198,6 @@ std::vector<SurfaceFoot> ProjectOnSurface(const SplineSurface& surface,
     feet.push_back(RefineFoot(surface, x, us[best / vs.size()], vs[best % vs.size()]));
   }
   return feet;
-}
-
-std::vector<Eigen::Vector3d> CutSurface(const SplineSurface& surface,
-                                        const Eigen::Vector3d& point_in_shape_m,
-                                        const Eigen::Vector3d& normal, int num_samples) {
-  VELAMAP_CHECK(num_samples >= 2);
-  constexpr int kBisections = 60;
-  const std::vector<double> vs = SpanSamples(surface.knots_v, kSamplesPerSpan);
-  std::vector<Eigen::Vector3d> cut;
-  for (int i = 0; i < num_samples; ++i) {
-    const double u = static_cast<double>(i) / (num_samples - 1);
-    const auto height = [&](double v) {
-      return normal.dot(EvaluatePoint(surface, u, v) - point_in_shape_m);
-    };
-    double low = vs.front(), height_at_low = height(low);
-    for (std::size_t k = 1; k < vs.size(); ++k) {
-      double high = vs[k];
-      const double height_at_high = height(high);
-      if ((height_at_low <= 0) == (height_at_high <= 0)) {
-        low = high;
-        height_at_low = height_at_high;
-        continue;
-      }
-      for (int step = 0; step < kBisections; ++step) {
-        const double middle = (low + high) / 2;
-        ((height(middle) <= 0) == (height_at_low <= 0) ? low : high) = middle;
-      }
-      cut.push_back(EvaluatePoint(surface, u, (low + high) / 2));
-      break;
-    }
-  }
-  return cut;
 }
 
 }  // namespace velamap

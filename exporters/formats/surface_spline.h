@@ -1,4 +1,4 @@
-// A tensor-product B-spline surface: points, derivatives, area, nearest points and plane cuts.
+// A tensor-product B-spline surface: points, derivatives, area and nearest points.
 // Eigen evaluates the basis functions (de Boor's recursion; Piegl and Tiller, The NURBS Book, 1997,
 // chapter 2).
 //
@@ -44,7 +44,7 @@ struct SurfaceJet {
 };
 SurfaceJet EvaluateJet(const SplineSurface& surface, double u, double v);
 Eigen::Vector3d EvaluatePoint(const SplineSurface& surface, double u, double v);
-// Unit; that of a neighboring point where the surface degenerates to a point.
+// Unit; that of a neighbouring point where the surface degenerates to a point.
 Eigen::Vector3d EvaluateNormal(const SplineSurface& surface, double u, double v);
 
 double SurfaceArea(const SplineSurface& surface);  // m^2
@@ -59,11 +59,5 @@ struct SurfaceFoot {
 // Nearest points of the surface: the nearest point of a dense grid, refined by Gauss-Newton steps.
 std::vector<SurfaceFoot> ProjectOnSurface(const SplineSurface& surface,
                                           const std::vector<Eigen::Vector3d>& points_in_shape_m);
-
-// Cuts the surface with the plane through `point_in_shape_m`: returns, for each of `num_samples`
-// values of u from 0 to 1, the point with the lowest v on the plane, if there is one.
-std::vector<Eigen::Vector3d> CutSurface(const SplineSurface& surface,
-                                        const Eigen::Vector3d& point_in_shape_m,
-                                        const Eigen::Vector3d& normal, int num_samples);
 
 }  // namespace velamap

@@ -44,7 +44,7 @@ KeyNumber MarkersNumber(const ShapeMetrics& metrics) {
   return number;
 }
 
-// Of all ids found, those that fit into one shape.
+// How many of the ids found fit into one shape.
 std::optional<KeyNumber> DictionaryNumber(const ReportInput& input) {
   if (input.num_ids_found == 0) return std::nullopt;
   const auto num_fitting = static_cast<int>(input.shape.markers.size());

@@ -56,7 +56,7 @@ struct Section {
   Estimate entry_angle_deg;  // between chord and curve at the luff, positive to leeward
   Estimate exit_angle_deg;   // the same at the leech, positive if the curve returns from leeward
   Estimate twist_deg;        // of the chord about up, from `twist_reference`; positive to leeward
-  // Of the direction in which the curve ends at the leech, about up, from that of the lowest line;
+  // Turn about up of the direction in which the curve ends at the leech, from the lowest line's;
   // positive to leeward.
   Estimate leech_twist_deg;
   Estimate girth_m;  // length of the curve
@@ -85,7 +85,7 @@ struct RigNumbers {
   std::optional<Estimate> luff_bend_m;  // positive forwards: bend of the mast
   std::optional<Estimate> luff_sag_m;   // positive to leeward: sag of the forestay
   std::vector<int> luff_marker_ids;     // from foot to head; empty without bend and sag
-  // About up from the center line to the boom or, without one, the chord of the lowest line;
+  // About up from the centre line to the boom or, without one, the chord of the lowest line;
   // positive to leeward.
   std::optional<Estimate> sheeting_angle_deg;
   std::string aft_reference;  // "centerline" or "lowest section"

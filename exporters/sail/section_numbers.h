@@ -59,7 +59,7 @@ struct PartContext {
   PartCurves curves;
 };
 
-// Two markers of the boom or of the center line as indices into the CenterSet, from forward aft.
+// Two markers of the boom or of the centre line as indices into the CenterSet, from forward aft.
 struct MarkerPair {
   int first_idx = 0, last_idx = 0;
 };
@@ -78,7 +78,7 @@ NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& c
 // The azimuth of the pair; the other numbers are zero.
 NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& pair);
 
-// Numbers as a function of the centers, of which only the one with this index has moved.
+// Numbers as a function of the centres, of which only the one with this index has moved.
 using NumbersFunction = std::function<Eigen::VectorXd(const CenterSet& centers, int index)>;
 
 // Their derivatives, with respect to the listed markers by central differences; zero for others.

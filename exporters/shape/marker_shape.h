@@ -1,4 +1,4 @@
-// The metric result: positions of the corners and the center of every marker.
+// The metric result: positions of the corners and the centre of every marker.
 
 #pragma once
 
@@ -13,16 +13,16 @@
 
 namespace velamap {
 
-// Index 0 is the center, the mean of the four corners; 1..4 are the corners. Shape frame, m.
+// Index 0 is the centre, the mean of the four corners; 1..4 are the corners. Shape frame, m.
 struct ShapeMarker {
   int marker_id = 0;
   std::string part;
   std::array<std::optional<Eigen::Vector3d>, kNumCorners + 1> x_in_shape_m;
   // 1 sigma along x, y and z; nothing without a covariance.
   std::array<std::optional<Eigen::Vector3d>, kNumCorners + 1> sigma_m;
-  std::array<int, kNumCorners + 1> num_frames{};  // for the center, the minimum of its corners
+  std::array<int, kNumCorners + 1> num_frames{};  // for the centre, the minimum of its corners
 
-  // Whether all four corners are known, and with them the center.
+  // Whether all four corners are known, and with them the centre.
   bool IsWhole() const { return x_in_shape_m[0].has_value(); }
 };
 

@@ -9,6 +9,7 @@
 
 #include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/shape_sigma.h"
+#include "importer/geometry/directions.h"
 #include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 
@@ -82,17 +83,12 @@ Statistics DistancesMm(const std::vector<Eigen::Vector3d>& points, const Princip
   return ComputeStatistics(std::move(distances_mm));
 }
 
-double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  // Unlike the arc cosine, exact for small angles.
-  return std::atan2(a.cross(b).norm(), a.dot(b)) * kDegPerRad;
-}
-
 Statistics SpreadDeg(const std::vector<Eigen::Vector3d>& directions) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& direction : directions) mean += direction;
   std::vector<double> angles_deg;
   for (const Eigen::Vector3d& direction : directions)
-    angles_deg.push_back(AngleDeg(direction, mean));
+    angles_deg.push_back(kDegPerRad * AngleBetween(direction, mean));
   return ComputeStatistics(std::move(angles_deg));
 }
 
@@ -197,7 +193,7 @@ std::vector<PlanePair> ComparePlanes(const std::vector<PartPlane>& planes,
       PlanePair pair;
       pair.part1 = a.part;
       pair.part2 = b.part;
-      pair.angle_deg = AngleDeg(a.normal, b.normal);
+      pair.angle_deg = kDegPerRad * AngleBetween(a.normal, b.normal);
       if (IsNearlyParallel(pair)) {
         const Eigen::Vector3d axis =
             (a.normal + (pair.angle_deg > 90 ? -1.0 : 1.0) * b.normal).normalized();

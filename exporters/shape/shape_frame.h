@@ -4,7 +4,7 @@
 //
 // Markers:        origin at the first marker, x towards the axis marker; the plane marker has y = 0
 //                 and z > 0.
-// Reference part: origin at the mean of its marker centers. Three orthogonal directions belong to
+// Reference part: origin at the mean of its marker centres. Three orthogonal directions belong to
 //                 the part: the normal of the least-squares plane of its corners, the direction
 //                 from its first to its last marker within that plane, and the third one. If the
 //                 part is less than twice as wide as thick, the mean normal of its markers replaces

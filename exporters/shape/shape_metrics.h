@@ -71,7 +71,7 @@ struct ShapeComparison {
   std::vector<MarkerDistance> markers;  // by id
 };
 
-// Aligns common corners (not centers) by least squares. `covariance`, of the corners of the shape,
+// Aligns common corners (not centres) by least squares. `covariance`, of the corners of the shape,
 // is used if it has all common corners. Throws DataError with fewer than three common corners or if
 // they all lie in one point.
 ShapeComparison CompareShapes(const MarkerShape& shape, const MarkerShape& reference,

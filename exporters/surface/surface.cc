@@ -11,6 +11,7 @@
 #include "exporters/surface/surface_ends.h"
 #include "exporters/surface/surface_feet.h"
 #include "exporters/surface/surface_parameters.h"
+#include "exporters/surface/surface_rows.h"
 #include "exporters/surface/surface_smoother.h"
 #include "importer/base/error.h"
 

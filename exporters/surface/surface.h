@@ -55,7 +55,7 @@ struct SurfaceResidual {
   int marker_id = 0;
   std::string line;         // empty for a marker on no line of the fit
   double u = 0.0, v = 0.0;  // of the marker's foot on the surface
-  // Of the marker from the surface, along the normal. A marker is where the cloth is between its
+  // From the surface to the marker, along the normal. A marker is where the cloth is between its
   // corners: the mean of the corners, moved out by the bend of the surface.
   double distance_m = 0.0;
   double beyond_edge_m = 0.0;  // how far the marker lies outside the surface's edge
@@ -66,18 +66,18 @@ struct SurfaceResidual {
 struct SurfaceEdgePoint {
   std::string edge;  // luff, leech, foot or head
   Eigen::Vector3d x_in_shape_m = Eigen::Vector3d::Zero();
-  // Of the distance along the normal. It grows with the distance from the markers. Nothing if the
-  // markers are interpolated, because nothing is known about their noise then.
+  // Sigma along the normal. It grows with the distance from the markers. Nothing if the markers are
+  // interpolated, because nothing is known about their noise then.
   std::optional<double> sigma_m;
 };
 
 struct FittedSurface {
   SplineSurface surface;
-  std::vector<SurfaceResidual> residuals;  // of every marker center of the part, by marker id
+  std::vector<SurfaceResidual> residuals;  // of every marker centre of the part, by marker id
   Statistics distance_m;                   // signed, of the used markers
   // Trace of the hat matrix. A value near the number of used markers means interpolation.
   double num_effective_parameters = 0.0;
-  // Of the poles along each coordinate (surface_smoother.h); empty if the markers are interpolated.
+  // Per coordinate of the poles (surface_smoother.h); empty if the markers are interpolated.
   Eigen::MatrixXd pole_covariance_m2;
   std::vector<SurfaceEdgePoint> edges;  // luff and leech from foot, foot and head from luff
   std::vector<std::string> notes;       // lines left out and why, gaps, markers outside the edge

@@ -29,14 +29,10 @@ struct SurfaceParameters {
   std::vector<std::string> notes;
 };
 
-// Length of a polyline up to each of its points, m.
-std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points);
-
-// Needs at least two lines with at least three markers each. u is the chord length from the luff
-// over the length of the whole line; v sums the mean distances between neighbouring lines. A
-// missing marker at the end of a line counts with the mean spacing of the line, so that the edge of
-// the surface keeps its place. `has_markers_between` doubles the knots in v, so that the surface
-// can follow markers between the lines. Throws the same errors as FitSurface.
+// Needs at least two lines with at least three markers each. u is that of MakeSurfaceRows
+// (surface_rows.h); v sums the mean distances between neighbouring rows. `has_markers_between`
+// doubles the knots in v, so that the surface can follow markers between the lines. Throws the same
+// errors as FitSurface.
 SurfaceParameters AssignParameters(const std::vector<SurfaceLine>& lines, bool has_markers_between,
                                    const SurfaceOptions& options);
 

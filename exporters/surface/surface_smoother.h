@@ -27,7 +27,7 @@ constexpr std::size_t kMinCrossValidated = 30;
 struct SmoothSurface {
   SplineSurface surface;
   double num_effective_parameters = 0.0;
-  // Of the poles along each coordinate, m^2, with the penalty as prior knowledge (Wahba, "Bayesian
+  // Per coordinate of the poles, m^2, with the penalty as prior knowledge (Wahba, "Bayesian
   // confidence intervals for the cross-validated smoothing spline", 1983). Empty if interpolating.
   Eigen::MatrixXd pole_covariance_m2;
 };

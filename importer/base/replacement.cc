@@ -56,11 +56,6 @@ std::vector<Place> PlacesOf(const std::vector<UsedPath>& paths) {
   return places;
 }
 
-bool IsInside(const fs::path& path, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
-         folder.end();
-}
-
 void CheckApart(const Place& output, const Place& other) {
   if (output.canonical == other.canonical || (output.id && output.id == other.id)) {
     throw InputError(fmt::format("{}: {} is the {} too; give another", output.used->used_by,
@@ -77,6 +72,11 @@ void CheckApart(const Place& output, const Place& other) {
 constexpr char kTemporaryMark[] = ".tmp-";
 
 }  // namespace
+
+bool IsInside(const fs::path& path, const fs::path& folder) {
+  const fs::path inner = CanonicalPath(path), outer = CanonicalPath(folder);
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
 
 std::string MakeFolderRecord(const fs::path& folder) {
   std::string record;

@@ -28,6 +28,9 @@ std::string MakeFolderRecord(const std::filesystem::path& folder);
 // Nothing happens if the path is missing.
 void CheckReplaceableFolder(const std::filesystem::path& path);
 
+// Whether the path is the folder or lies in it; links count as what they lead to.
+bool IsInside(const std::filesystem::path& path, const std::filesystem::path& folder);
+
 // A path that a command reads or writes, and on whose behalf.
 struct UsedPath {
   std::string used_by;  // such as --csv_path, for messages

@@ -9,6 +9,7 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
+#include "importer/database/camera_table.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/correspondence.h"
 #include "importer/database/image_formation_table.h"
@@ -129,59 +130,15 @@ CameraId ColmapDatabase::AddCamera(const Camera& camera, bool is_calibrated) {
   for (const auto& [camera_id, known_camera] : ReadCameras()) {
     if (known_camera == camera) return camera_id;
   }
-  return Guarded(path_, [&] {
-    SQLite::Statement insert(*database_,
-                             "INSERT INTO cameras(model, width, height, params,"
-                             " prior_focal_length) VALUES(?, ?, ?, ?, ?)");
-    insert.bind(1, static_cast<int>(camera.model));
-    insert.bind(2, camera.width_px);
-    insert.bind(3, camera.height_px);
-    BindBlob(insert, 4, camera.params);
-    insert.bind(5, is_calibrated ? 1 : 0);
-    insert.exec();
-    return static_cast<CameraId>(database_->getLastInsertRowid());
-  });
+  return Guarded(path_, [&] { return InsertCamera(camera, is_calibrated, database_.get()); });
 }
 
 bool ColmapDatabase::HasCalibration() const {
-  return Guarded(path_, [&] {
-    // Cameras whose images another program has added do not count.
-    const std::string ours =
-        database_->tableExists("marker_detections")
-            ? " AND camera_id NOT IN (SELECT camera_id FROM images WHERE camera_id NOT IN"
-              " (SELECT camera_id FROM images JOIN marker_detections USING(image_id)))"
-            : "";
-    return database_->execAndGet("SELECT COUNT(*) FROM cameras WHERE prior_focal_length = 0" + ours)
-               .getInt() == 0;
-  });
+  return Guarded(path_, [&] { return AllCamerasAreCalibrated(database_.get()); });
 }
 
 std::map<CameraId, Camera> ColmapDatabase::ReadCameras() const {
-  return Guarded(path_, [&] {
-    std::map<CameraId, Camera> cameras;
-    SQLite::Statement query(*database_,
-                            "SELECT camera_id, model, width, height, params"
-                            " FROM cameras");
-    while (query.executeStep()) {
-      Camera camera;
-      const std::optional<CameraModel> model = CameraModelFromId(query.getColumn(1).getInt());
-      if (!model) continue;  // of an image that velamap has not imported
-      camera.model = *model;
-      camera.width_px = query.getColumn(2).getInt();
-      camera.height_px = query.getColumn(3).getInt();
-      camera.params = ReadBlob<double>(query.getColumn(4));
-      if (static_cast<int>(camera.params.size()) != NumCameraParams(*model)) {
-        throw InputError(fmt::format("{}: camera {} has a wrong number of parameters", path_,
-                                     query.getColumn(0).getInt()));
-      }
-      if (!(SmallestFocalLength(camera) > 0)) {
-        throw InputError(fmt::format("{}: camera {} has a focal length that is not positive", path_,
-                                     query.getColumn(0).getInt()));
-      }
-      cameras.emplace(query.getColumn(0).getUInt(), camera);
-    }
-    return cameras;
-  });
+  return Guarded(path_, [&] { return ReadCameraRows(path_, database_.get()); });
 }
 
 ImageId ColmapDatabase::AddImage(CameraId camera_id, const FrameDetections& detections,

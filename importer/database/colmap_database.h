@@ -1,10 +1,9 @@
 // The COLMAP database. Only the files of this folder know its tables.
 //
 // The layout is COLMAP 3.8's (six tables, images with seven nullable prior columns), which every
-// COLMAP from 3.5 to 4.x opens. More tables, marker_detections, marker_detector,
-// marker_sources and image_formation, hold what COLMAP has no place for; COLMAP ignores and keeps
-// them. The layout of
-// an existing file is recognised by its columns.
+// COLMAP from 3.5 to 4.x opens. More tables (README.md of this folder) hold what COLMAP has no
+// place for; COLMAP ignores and keeps them. The layout of an existing file is recognised by its
+// columns.
 
 #pragma once
 

@@ -65,7 +65,7 @@ const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
 
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
 
-// Of the j-th residual of the i-th sample.
+// The root of the weight of the j-th residual of the i-th sample.
 double RootWeight(const State& state, std::size_t i, Eigen::Index j) {
   const SamplePlace& place = state.samples[i].places[static_cast<std::size_t>(j)];
   return place.is_at_outline_corner ? std::sqrt(state.formation->parameters().outline_corner_weight)

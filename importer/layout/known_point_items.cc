@@ -35,23 +35,14 @@ double ReadSigma(const YamlItem& item) {
   return sigma_m;
 }
 
-// Whether the point is a check.
-bool ReadUse(const YamlItem& item) {
-  if (item.Text() != "frame" && item.Text() != "check") {
-    item.Fail(
-        fmt::format("'{}': frame (takes part in the frame of the result) or check (compared with "
-                    "the result) is expected",
-                    item.Text()));
-  }
-  return item.Text() == "check";
-}
-
 KnownPoint ReadKnownPoint(const YamlItem& item) {
   KnownPoint point;
   KeyHandlers handlers = {
       {"at", [&](const YamlItem& v) { ReadMarkerPoint(v, &point.marker_id, &point.corner); }},
       {"sigma", [&](const YamlItem& v) { point.sigma_m = ReadSigma(v); }},
-      {"use", [&](const YamlItem& v) { point.is_check = ReadUse(v); }}};
+      {"use", [&](const YamlItem& v) {
+         point.is_check = !TakesPart(v, "frame", "takes part in the frame of the result");
+       }}};
   for (std::size_t axis = 0; axis < kAxisNames.size(); ++axis) {
     handlers[kAxisNames[axis]] = [&point, axis](const YamlItem& v) {
       point.x_m[axis] = ReadCoordinate(v);

@@ -23,7 +23,7 @@ struct MarkerLine {
 
 // Where an edge of the cloth is; unknown if both are empty.
 struct ClothEdge {
-  // Distances along the surface from the centers of the outer markers to the edge, m: one for all
+  // Distances along the surface from the centres of the outer markers to the edge, m: one for all
   // horizontal lines, or for luff and leech one for each line.
   std::vector<double> offsets_m;
   std::string line;  // of luff or leech: the vertical line of markers on the edge

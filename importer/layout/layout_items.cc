@@ -23,17 +23,6 @@ double ReadPositiveMetres(const YamlItem& item) {
   return length_m;
 }
 
-// Whether the length takes part in the adjustment.
-bool ReadUse(const YamlItem& item) {
-  if (item.Text() != "check" && item.Text() != "scale") {
-    item.Fail(
-        fmt::format("'{}': check (compared with the result) or scale (takes part in the "
-                    "adjustment) is expected",
-                    item.Text()));
-  }
-  return item.Text() == "scale";
-}
-
 KnownDistance ReadDistance(const YamlItem& item) {
   KnownDistance distance;
   ReadMap(
@@ -44,7 +33,10 @@ KnownDistance ReadDistance(const YamlItem& item) {
         [&](const YamlItem& v) { ReadMarkerPoint(v, &distance.marker_id2, &distance.corner2); }},
        {"length", [&](const YamlItem& v) { distance.length_m = ReadPositiveMetres(v); }},
        {"sigma", [&](const YamlItem& v) { distance.sigma_m = ReadPositiveMetres(v); }},
-       {"use", [&](const YamlItem& v) { distance.is_scale_bar = ReadUse(v); }}},
+       {"use",
+        [&](const YamlItem& v) {
+          distance.is_scale_bar = TakesPart(v, "scale", "takes part in the adjustment");
+        }}},
       {"from", "length", "sigma", "to"}, "{from: 12, to: 45, length: 2.315, sigma: 0.002} (m)");
   if (distance.marker_id1 == distance.marker_id2 && distance.corner1 == distance.corner2) {
     item.Fail("from and to are the same point");
@@ -133,6 +125,14 @@ double ReadMetres(const YamlItem& item) {
         fmt::format("'{}' is not a number; expected a length in metres, such as 0.1", item.Text()));
   }
   return length_m;
+}
+
+bool TakesPart(const YamlItem& item, const std::string& word, const std::string& meaning) {
+  if (item.Text() != word && item.Text() != "check") {
+    item.Fail(fmt::format("'{}': {} ({}) or check (compared with the result) is expected",
+                          item.Text(), word, meaning));
+  }
+  return item.Text() == word;
 }
 
 void CheckMarkersAreNamed(const std::vector<int>& marker_ids, const Layout& layout,

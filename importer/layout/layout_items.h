@@ -27,6 +27,10 @@ void ReadMarkerPoint(const YamlItem& item, int* marker_id, int* corner);
 void CheckMarkersAreNamed(const std::vector<int>& marker_ids, const Layout& layout,
                           const YamlItem& item);
 
+// What a measurement is used for: whether it takes part in the result, which is called `word` and
+// explained by `meaning`, or is only a check.
+bool TakesPart(const YamlItem& item, const std::string& word, const std::string& meaning);
+
 // The list of measured distances. `layout` has its parts.
 std::vector<KnownDistance> ReadDistances(const YamlItem& list, const Layout& layout);
 

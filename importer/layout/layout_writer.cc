@@ -55,7 +55,7 @@ void EmitEdges(const ClothEdges& edges, YAML::Emitter* out) {
   EmitEdge("foot", edges.foot, out);
   EmitEdge("head", edges.head, out);
   *out << YAML::EndMap
-       << YAML::Comment("m, from the outer markers' centers to the edges of the cloth");
+       << YAML::Comment("m, from the outer markers' centres to the edges of the cloth");
 }
 
 void EmitPart(const LayoutPart& part, YAML::Emitter* out) {

@@ -15,7 +15,7 @@
 
 namespace velamap {
 
-// Of the last fit of a marker.
+// The last fit of a marker uses so many pixels and ends at this change of its corners.
 constexpr int kMaxPatternPixels = 1000;
 constexpr double kPatternTolerancePx = 0.005;
 

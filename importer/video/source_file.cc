@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint64_t kPartSize = 1 << 16, kNumParts = 16;
 
-// Of a large file.
+// The hash of a large file, from some of its parts.
 std::uint64_t HashOfParts(const std::string& path, std::uint64_t size) {
   std::ifstream stream(path, std::ios::binary);
   std::vector<char> part(kPartSize);

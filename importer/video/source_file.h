@@ -15,8 +15,8 @@ struct SourceFile {
   std::int64_t modified_s = 0;  // since 1970, UTC
   // When content, name or rights were changed last, which no program sets back (ctime); since 1970.
   std::int64_t changed_ns = 0;
-  // Of the whole picture; of 16 parts that are spread over a video, because an encoded video that
-  // is changed somewhere is changed in many places.
+  // Taken from the whole picture, or from 16 parts that are spread over a video, because an encoded
+  // video that is changed somewhere is changed in many places.
   std::uint64_t content_hash = 0;
 };
 

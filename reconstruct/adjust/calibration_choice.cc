@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {

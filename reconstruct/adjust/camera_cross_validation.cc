@@ -58,7 +58,7 @@ class ImagePoseProblem : public LeastSquaresProblem<6> {
   const std::vector<SeenPoint>& points_;
 };
 
-// Of the corners of one image.
+// The errors of the corners of one image.
 struct ErrorSum {
   double squares_px2 = 0.0;
   int num_corners = 0;
@@ -119,7 +119,7 @@ std::vector<ErrorSum> ErrorsOfSeen(const MarkerSolution& trial) {
   return sums;
 }
 
-// Of the images that one division leaves out.
+// Adds the errors of the images that one division leaves out.
 void FindErrorsOfUnseen(const MarkerSolution& trial, std::size_t division,
                         std::vector<ErrorSum>* sums) {
   constexpr std::size_t kMinPoints = 4;

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/geometry/camera_conversion.h"
 
 namespace velamap {

@@ -14,6 +14,7 @@
 #include "reconstruct/adjust/calibration_choice.h"
 #include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/adjust/camera_model_choice.h"
+#include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/adjust/found_cameras.h"
 #include "reconstruct/adjust/marker_sizes.h"
 #include "reconstruct/adjust/rolling_shutter_choice.h"
@@ -222,7 +223,8 @@ bool MarkerAdjuster::AddScaleBars() {
 void MarkerAdjuster::Finish() {
   // Another image is the first one where the first image has been removed.
   MoveToFirstCamera(&solution_.model);
-  auto linearization = CalibrateCorners();
+  CornerCalibration calibration = CalibrateBySquares(&solution_);
+  auto linearization = std::move(calibration.linearization);
   const double correlation_factor = CorrelationFactor(solution_, *linearization);
   if (correlation_factor > 1.0) {
     solution_.weights.corner_factor *= correlation_factor;
@@ -231,8 +233,8 @@ void MarkerAdjuster::Finish() {
   }
   AdjustmentUncertainty uncertainty = MakeUncertainty(
       linearization->state, solution_.weights, linearization->problem, linearization->covariance);
-  uncertainty.variance_factor = summary_.uncertainty.variance_factor;
-  uncertainty.share_above_4_sigma = summary_.uncertainty.share_above_4_sigma;
+  uncertainty.variance_factor = calibration.variance_factor;
+  uncertainty.share_above_4_sigma = calibration.share_above_4_sigma;
   uncertainty.correlation_factor = correlation_factor;
   uncertainty.calibration =
       TestCalibration(solution_.model, linearization->state, linearization->problem,
@@ -279,38 +281,6 @@ void MarkerAdjuster::WarnOfSlowShutter() {
       "the rows of a frame seem to be read over {:.0f} +- {:.0f} ms, longer than cameras take: is "
       "the video stabilised, slowed down or sped up? Film without",
       1e3 * uncertainty.rolling_shutter_s, 1e3 * uncertainty.rolling_shutter_sigma_s));
-}
-
-std::unique_ptr<const MarkerLinearization> MarkerAdjuster::CalibrateCorners() {
-  constexpr int kMaxNumRounds = 3;
-  constexpr double kMaxChange = 0.01;
-  constexpr double kManySigmas = 4.0;
-  for (int round = 1; true; ++round) {
-    Minimize(1e-9, &solution_);
-    auto linearization = Linearize(solution_);
-    const double redundancy = CornerRedundancy(linearization->jacobian, linearization->covariance);
-    double sum = 0.0;
-    const std::vector<CornerResidual> corners = EvaluateCorners(linearization->problem);
-    for (const CornerResidual& corner : corners) sum += corner.sigmas * corner.sigmas;
-    const double variance = sum / std::max(1.0, redundancy);
-    const double factor =
-        std::max(kMinCornerFactor, solution_.weights.corner_factor * std::sqrt(variance));
-    const bool is_calibrated =
-        std::abs(factor / solution_.weights.corner_factor - 1.0) <= kMaxChange;
-    if (round < kMaxNumRounds && !is_calibrated) {
-      solution_.weights.corner_factor = factor;
-      continue;
-    }
-    const auto num_above =
-        std::count_if(corners.begin(), corners.end(), [variance](const CornerResidual& corner) {
-          return corner.sigmas > kManySigmas * std::sqrt(variance);
-        });
-    summary_.uncertainty.share_above_4_sigma =
-        static_cast<double>(num_above) / static_cast<double>(corners.size());
-    summary_.uncertainty.variance_factor =
-        variance * solution_.weights.corner_factor * solution_.weights.corner_factor;
-    return linearization;
-  }
 }
 
 int MarkerAdjuster::ReviseCorners() {

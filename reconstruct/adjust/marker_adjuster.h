@@ -3,7 +3,6 @@
 #pragma once
 
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -78,9 +77,6 @@ class MarkerAdjuster {
   int ReviseCorners();
   void RemoveUnderconstrainedParts();
   void WarnOfSlowShutter();
-  // Minimizes and sets the factor of the corners' sigmas by the sum of squares until it is stable.
-  // Sets the variance factor and the share of large residuals.
-  std::unique_ptr<const MarkerLinearization> CalibrateCorners();
 
   MarkerSolution solution_;
   std::size_t num_images_before_;

@@ -11,6 +11,7 @@
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
+#include "reconstruct/problem/prior_cost_functions.h"
 
 namespace velamap {
 namespace {

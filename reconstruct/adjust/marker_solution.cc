@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "importer/base/error.h"
 #include "reconstruct/problem/error_correlation.h"
 
@@ -126,16 +124,6 @@ double InformationCriterion(int num_parameters, const MarkerSolution& solution) 
     num_corners += static_cast<int>(point.track.size());
   }
   return num_parameters * std::log(2.0 * num_corners);
-}
-
-double CalibrateRobustly(MarkerSolution* solution) {
-  const double before = solution->weights.corner_factor;
-  const double variance =
-      RobustVarianceFactor(EvaluateCorners(solution->model, *solution), solution->model);
-  const double after = std::max(kMinCornerFactor, before * std::sqrt(variance));
-  solution->weights.corner_factor = after;
-  spdlog::debug("corner sigmas times {:.4f}", after);
-  return std::abs(after / before - 1.0);
 }
 
 }  // namespace velamap

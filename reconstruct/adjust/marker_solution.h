@@ -25,7 +25,8 @@ struct MarkerSolution {
   const CornerErrors* corner_errors = nullptr;
   std::map<CameraId, Camera> calibration;  // the prior of the cameras where they are refined
   Model model;
-  // Of the last minimization. Rolling shutter, inset and print scale are the start of the next one.
+  // The result of the last minimization. The next one starts at its rolling shutter, inset and
+  // print scale.
   MarkerState state;
   MarkerWeights weights;
   int num_iterations = 0;  // of all minimizations
@@ -64,11 +65,5 @@ double SumOfSquares(const MarkerSolution& solution);
 // The decrease of SumOfSquares that is significant for so many more parameters: the Bayesian
 // information criterion (Schwarz, "Estimating the Dimension of a Model", 1978).
 double InformationCriterion(int num_parameters, const MarkerSolution& solution);
-
-// The smallest factor of the corners' sigmas: exact corners would leave no weight to the priors.
-constexpr double kMinCornerFactor = 1e-3;
-
-// Sets the factor of the corners' sigmas by their median residual. Returns the relative change.
-double CalibrateRobustly(MarkerSolution* solution);
 
 }  // namespace velamap

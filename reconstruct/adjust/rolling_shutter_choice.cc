@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {

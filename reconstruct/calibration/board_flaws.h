@@ -20,7 +20,7 @@ struct BoardFlaws {
   double size_scatter = 0.0;
 };
 
-// Of a metric model. `points` is its covariance, of all its points.
+// The model is metric; `points` is the covariance of all its points.
 BoardFlaws FindBoardFlaws(const Model& model, const PointCovariance& points);
 
 }  // namespace velamap

@@ -48,8 +48,8 @@ struct BoardView {
   int Tilt() const;
 };
 
-// Of the images that show at least two markers, in their order. `unknown_sigma_px` is the sigma of
-// a corner that has none.
+// The views of the images that show at least two markers, in the same order. `unknown_sigma_px` is
+// the sigma of a corner that has none.
 std::vector<BoardView> DescribeBoardViews(const std::vector<DatabaseImage>& images,
                                           double unknown_sigma_px);
 

@@ -11,7 +11,7 @@
 
 namespace velamap {
 
-// Of a corner that took part: projection minus observation.
+// Projection minus observation of a corner that took part.
 struct CalibrationResidual {
   Eigen::Vector2d x_in_image_px, residual_px;
 };

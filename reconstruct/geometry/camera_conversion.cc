@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kStride = 4;
 
-// Of one ray, px.
+// The error of one ray, px.
 class RayError {
  public:
   RayError(CameraModel model, const Eigen::Vector2d& ray, const Eigen::Vector2d& x_px)

@@ -58,7 +58,7 @@ double RadialSigma(const IntrinsicsPrior& prior) {
   return prior.sigmas[k1] * RelativeMovement(prior.model, 0, kJudgedField * prior.max_ray_length);
 }
 
-// Of the free parameters, from the prior's mean.
+// The change of the free parameters from the prior's mean.
 Eigen::VectorXd Change(const IntrinsicsPrior& prior, const Camera& refined) {
   Eigen::VectorXd change(static_cast<Eigen::Index>(prior.free.size()));
   for (std::size_t i = 0; i < prior.free.size(); ++i) {
@@ -158,7 +158,7 @@ FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const Intrinsics
                                     const Camera& refined, const Eigen::MatrixXd& covariance) {
   if (ChangesPixelShape(prior, refined)) return {};
   const Eigen::VectorXd change = Change(prior, refined);
-  // Of the free parameters [begin, end) of the camera.
+  // Looks at the free parameters in [begin, end) of the camera.
   const auto is_determined = [&](int begin, int end) {
     double largest_change = 0.0, largest_sigma = 0.0;
     for (std::size_t i = 0; i < prior.free.size(); ++i) {

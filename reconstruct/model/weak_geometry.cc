@@ -9,6 +9,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "importer/geometry/directions.h"
 #include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/geometry/covariance_update.h"
@@ -66,10 +67,6 @@ struct Views {
   double max_tilt_rad = 0.0;  // largest angle between a view and the normal of a flat object
 };
 
-double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 double MedianParallax(const Model& model, const std::vector<Eigen::Vector3d>& camera_centers) {
   std::map<ImageId, std::size_t> image_idxs;
   for (std::size_t i = 0; i < model.images.size(); ++i) {
@@ -83,7 +80,8 @@ double MedianParallax(const Model& model, const std::vector<Eigen::Vector3d>& ca
     }
     double parallax = 0.0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) parallax = std::max(parallax, Angle(rays[i], rays[j]));
+      for (std::size_t j = 0; j < i; ++j)
+        parallax = std::max(parallax, AngleBetween(rays[i], rays[j]));
     }
     parallaxes.push_back(parallax);
   }
@@ -106,7 +104,7 @@ Views DescribeViews(const Model& model) {
   std::vector<double> distances_m;
   for (const Eigen::Vector3d& center : centers) {
     distances_m.push_back((center - axes.mean).norm());
-    const double angle = Angle(center - axes.mean, axes.directions.col(0));
+    const double angle = AngleBetween(center - axes.mean, axes.directions.col(0));
     views.max_tilt_rad = std::max(views.max_tilt_rad, std::min(angle, kPi - angle));
     for (const Eigen::Vector3d& other : centers) {
       views.camera_extent_m = std::max(views.camera_extent_m, (center - other).norm());

@@ -47,7 +47,7 @@ Eigen::VectorXd SlopeWeights(const FrameWindow& window, int reach) {
   return SlopeWeights(times_s);
 }
 
-// Of the mean of a marker's corners, px/s. The corners' own velocities are twice as noisy, and
+// The velocity of the mean of a marker's corners, px/s. Single corners' are twice as noisy, and
 // noise in what the shutter multiplies makes it seem shorter. Nothing unless all frames that
 // `weights` reaches show the marker.
 std::optional<Eigen::Vector2d> MeasureVelocity(const FrameWindow& window,

@@ -12,6 +12,7 @@
 #include "importer/base/error.h"
 #include "importer/camera/camera_projection.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
+#include "reconstruct/problem/prior_cost_functions.h"
 #include "reconstruct/solve/schur_complement.h"
 
 namespace velamap {

@@ -11,6 +11,7 @@
 #   tracking    import with exhaustive search, with tracked search, and with a prior shape: what each of
 #               them finds, and the time of the search
 #   sweep       central_frame_sweeper; as many single runs
+#   dataset     the two jobs of a clip of workflows/dataset, on one thread: time, memory, sizes of files
 # Times are CPU seconds, user and system, of all threads and children, because other programs on the
 # machine change wall times more. Decoding is measured before and after what it is compared with. Clips
 # are rendered with fixed seeds and kept in WORK_FOLDER/clips.
@@ -30,7 +31,7 @@ work="workspace/compare"
 parts=()
 for argument in "$@"; do
   case "$argument" in
-    detection | adjustment | main | memory | growth | markers | tracking | sweep) parts+=("$argument") ;;
+    detection | adjustment | main | memory | growth | markers | tracking | sweep | dataset) parts+=("$argument") ;;
     --help)
       sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "$0"
       exit 0
@@ -39,7 +40,7 @@ for argument in "$@"; do
     *) work="$argument" ;;
   esac
 done
-if [[ ${#parts[@]} -eq 0 ]]; then parts=(detection adjustment main memory growth markers tracking sweep); fi
+if [[ ${#parts[@]} -eq 0 ]]; then parts=(detection adjustment main memory growth markers tracking sweep dataset); fi
 read -ra widths <<<"${WIDTHS:-1920 3840}"
 num_frames="${NUM_FRAMES:-200}"
 mbit="${MBIT:-100}"
@@ -99,6 +100,8 @@ measure() {
 
 # value KEY: prints the value of `KEY: value` in the last command's stdout.
 value() { awk -F': ' -v key="$1" '$1 == key { print $2 }' "$work/out.txt"; }
+
+megabytes() { du -sb "$1" | awk '{ printf "%.1f", $1 / 1e6 }'; }
 
 mean() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", (a + b) / 2 }'; }
 
@@ -295,6 +298,22 @@ compare_sweep() {
     cold="$cpu"
     measure "${sweep[@]}"
     echo "${widths[0]},$num_frames,$central_frames,$sum,$cold,$cpu"
+  done
+}
+
+compare_dataset() {
+  local width folder import_cpu import_memory
+  echo "width_px,num_frames,clip_mb,workspace_mb,import_cpu_s,import_memory_mb,reconstruct_cpu_s,\
+reconstruct_memory_mb"
+  for width in "${widths[@]}"; do
+    folder="$(clip calm "$width")"
+    rm -rf "$work/result"
+    mkdir "$work/result"
+    run_on_clip marker_importer "$folder" --database_path "$work/result/database.db" --num_threads 1
+    import_cpu="$cpu" import_memory="$memory"
+    run_on_clip automatic_reconstructor "$folder" --workspace_path "$work/result" --num_threads 1
+    echo "$width,$num_frames,$(megabytes "$folder/clip.mp4"),$(megabytes "$work/result"),\
+$import_cpu,$import_memory,$cpu,$memory"
   done
 }
 

@@ -191,3 +191,35 @@ block_own_solver() {
       }
     }'
 }
+
+# Clips of a data set: what one takes, and what 10 to 100,000 of the last row's take. Over the network go
+# the clip, and the workspace once in each direction.
+block_dataset_scale() {
+  echo "One clip, made by $(made_by dataset.csv):"
+  echo
+  echo "| clip | clip, MB | workspace, MB | import, CPU s | its memory, MB | reconstruction, CPU s | its memory, MB |"
+  echo "|---|---|---|---|---|---|---|"
+  table dataset.csv '
+    {
+      printf "| %s px, %s frames | %s | %s | %s | %s | %s | %s |\n", cell("width_px"), cell("num_frames"),
+        num(cell("clip_mb"), 2), num(cell("workspace_mb"), 2), num(cell("import_cpu_s"), 2),
+        cell("import_memory_mb"), num(cell("reconstruct_cpu_s"), 2), cell("reconstruct_memory_mb")
+      seconds = cell("import_cpu_s") + cell("reconstruct_cpu_s")
+      stored = cell("clip_mb") + cell("workspace_mb")
+      moved = cell("clip_mb") + 2 * cell("workspace_mb")
+    }
+    END {
+      print "\nMany of the last, where a core costs 0.05 EUR an hour:\n"
+      print "| clips | CPU hours | clips and workspaces, GB | over the network, GB at most | EUR |"
+      print "|---|---|---|---|---|"
+      n = split("10 1000 100000", counts, " ")
+      for (i = 1; i <= n; i++) {
+        hours = counts[i] * seconds / 3600
+        printf "| %d | %s | %s | %s | %s |\n", counts[i], num(hours, 2), num(counts[i] * stored / 1000, 2),
+          num(counts[i] * moved / 1000, 2), num(0.05 * hours, 2)
+      }
+    }'
+  echo
+  echo "A sweep takes $(table sweep.csv '{ note("x", cell("sweep_cpu_s") / cell("num_central_frames")) }
+    END { printf "%s", span(least["x"], most["x"], 2) }') CPU s for each central frame of the clip in 1080p."
+}

@@ -3,12 +3,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "exporters/shape_exporter.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/global/global_registration.h"
 #include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
 #include "tests/reconstruct/registration_fixture.h"
+#include "tests/support/export_shape.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

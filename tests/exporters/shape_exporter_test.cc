@@ -21,6 +21,7 @@
 #include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/golden_file.h"
+#include "tests/support/export_shape.h"
 #include "tests/support/scoped_date.h"
 #include "tests/support/temp_dir.h"
 

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "exporters/scale/metric_shape.h"
-#include "exporters/shape_exporter.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/golden_file.h"
+#include "tests/support/export_shape.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

@@ -27,7 +27,7 @@ constexpr int kNumColumns = 4, kNumRows = 3;
 const Camera kTruth{
     CameraModel::kOpenCV, 1280, 720, {950, 950, 646, 355, -0.11, 0.03, 0.0006, -0.0004}};
 
-// Of the print: 1 % of its extent bent, and as wide as it should be but for a fraction.
+// Flaws of the print: how far it is bent, and by what fraction it is too wide.
 struct Flaws {
   double bend_m = 0.0, stretch = 0.0;
 };

@@ -50,7 +50,7 @@ inline MarkerPoints TruthInCam(const SyntheticScene& scene, int marker_id, int f
                    scene.x_in_world.at(marker_id));
 }
 
-// Of the image whose camera is the frame of the shape.
+// The index of the image whose camera is the frame of the shape.
 inline int CentralIdx(const Registration& registration) {
   return static_cast<int>(registration.central_image_id) - 1;
 }

@@ -46,7 +46,7 @@ ClipSheet MakeSheet(const Ground& ground, double gray, int num_columns, int num_
 // Tiles of a sticker along one of its sides.
 struct StickerGrid {
   std::vector<double> lines;  // parts of the marker's side, -0.5 to 0.5 from first to last cell
-  // Of each tile, first and last cell that ink may reach it from; -1 and num_cells are the margins.
+  // First and last cell that ink may reach each tile from; -1 and num_cells are the margins.
   std::vector<std::pair<int, int>> cells;
 
   void AddTiles(double begin, double end, int count, std::pair<int, int> reached_from) {

@@ -30,7 +30,7 @@ class FrameView {
         frame_idx_(frame_idx),
         readout_frames_(scene.options.rolling_shutter_s * scene.options.fps) {}
 
-  // Of the middle row.
+  // The pose while the middle row is read.
   const Rigid3& cam_from_world() const { return cam_from_world_; }
 
   std::optional<Eigen::Vector2d> Image(const Eigen::Vector3d& x_in_world) const {

@@ -12,7 +12,7 @@
 namespace velamap {
 namespace {
 
-// Of a line `key: value ...`; NaN without one.
+// The value of a line `key: value ...`; NaN without one.
 double ValueOf(const std::string& text, const std::string& key) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {

@@ -9,35 +9,29 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/database/colmap_database.h"
-#include "importer/dictionary_hint.h"
 #include "workflows/check/clip_frames.h"
+#include "workflows/check/dictionary_search.h"
 #include "workflows/run/pipeline.h"
 
 namespace velamap {
 namespace {
 
-// The camera does not depend on the size of the board.
-constexpr double kAnyLength_m = 0.1;
-
-// The smallest dictionary with which most markers are found; sets the polarity.
+// The layout of the best dictionary; the camera does not depend on the size of the board.
 Layout FindLayout(const BoardCalibrationOptions& options, ArucoDetectionOptions* detection) {
   constexpr int kNumFrames = 10;
   const int num_frames = OpenFrameSource(options.image_path, options.video)->NumFrames();
   const ClipFrames clip =
       ReadClipFrames(options.image_path, SpreadOverClip(options.video, num_frames, kNumFrames),
                      kNumFrames, options.calibration.num_threads);
-  std::vector<cv::Mat> images;
-  for (const Frame& frame : clip.frames) images.push_back(frame.gray);
-  const std::vector<DictionaryHint> hints = SuggestDictionaries(images, 1, *detection);
+  const std::vector<DictionaryHint> hints = FindDictionaries(clip, *detection);
   if (hints.empty()) {
     throw DataError(fmt::format(
         "{}: no marker of any of OpenCV's dictionaries is seen in {} pictures: show a board of "
         "markers, larger and in better light, or name its dictionary file with --dictionary",
-        options.image_path, images.size()));
+        options.image_path, clip.frames.size()));
   }
-  spdlog::info("markers of {}{}", hints[0].dictionary, hints[0].inverted ? ", inverted" : "");
-  detection->inverted = hints[0].inverted;
-  return MakeLayout(hints[0].dictionary, kAnyLength_m);
+  spdlog::info("markers of {}", DictionaryName(hints[0]));
+  return UseDictionary(hints[0], detection);
 }
 
 }  // namespace

@@ -12,11 +12,11 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/database/colmap_database.h"
-#include "importer/dictionary_hint.h"
 #include "importer/marker_importer.h"
 #include "importer/track/frame_detector.h"
 #include "workflows/check/clip_frames.h"
 #include "workflows/check/clip_precision.h"
+#include "workflows/check/dictionary_search.h"
 #include "workflows/check/marker_light.h"
 #include "workflows/run/progress.h"
 
@@ -26,20 +26,16 @@ namespace {
 constexpr int kNumFramesWithPixels = 10;
 constexpr int kFewMarkers = 4;
 
-// The smallest dictionary with which most markers are found, where nobody names it.
-Layout FindDictionary(const ClipFrames& clip, ArucoDetectionOptions* detection, ClipFacts* facts) {
-  std::vector<cv::Mat> images;
-  for (const Frame& frame : clip.frames) images.push_back(frame.gray);
-  const std::vector<DictionaryHint> hints = SuggestDictionaries(images, 1, *detection);
+// The layout of the best dictionary; of none where no dictionary finds markers.
+Layout FindLayout(const ClipFrames& clip, ArucoDetectionOptions* detection, ClipFacts* facts) {
+  const std::vector<DictionaryHint> hints = FindDictionaries(clip, *detection);
   if (hints.empty()) return {};
   facts->num_markers_found = hints[0].num_markers;
   if (hints.size() > 1) {
     facts->num_markers_of_second = hints[1].num_markers;
-    facts->second_dictionary = hints[1].dictionary + (hints[1].inverted ? ", inverted" : "");
+    facts->second_dictionary = DictionaryName(hints[1]);
   }
-  detection->inverted = hints[0].inverted;
-  constexpr double kAnyLength_m = 0.1;  // nothing depends on it
-  return MakeLayout(hints[0].dictionary, kAnyLength_m);
+  return UseDictionary(hints[0], detection);
 }
 
 void CountIds(const std::vector<DatabaseImage>& images, const Layout& layout, ClipFacts* facts) {
@@ -170,8 +166,7 @@ class Checker {
     facts.height_px = clip.frames[0].gray.rows;
     facts.has_layout = options_.layout && options_.layout->HasMarkers();
     ArucoDetectionOptions detection = options_.detection;
-    const Layout layout =
-        options_.layout ? *options_.layout : FindDictionary(clip, &detection, &facts);
+    const Layout layout = options_.layout ? *options_.layout : FindLayout(clip, &detection, &facts);
     facts.dictionary = layout.dictionary;
     facts.is_inverted = detection.inverted;
     MarkFrame(clip.frames[0], {});

@@ -18,9 +18,8 @@ struct ClipFrames {
 // Chooses about `max_num_frames` of the `num_frames` that `video` chooses, at equal distances.
 VideoOptions SpreadOverClip(const VideoOptions& video, int num_frames, int max_num_frames);
 
-// Up to `max_num_frames` frames: of a video the first that `video` chooses, of photographs some at
-// equal distances. Throws InputError
-// where OpenFrameSource() does and if no frame can be read.
+// Reads up to `max_num_frames` frames: the first ones that `video` chooses, or photographs at equal
+// distances. Throws InputError where OpenFrameSource() does and if no frame can be read.
 ClipFrames ReadClipFrames(const std::string& image_path, const VideoOptions& video,
                           int max_num_frames, int num_threads);
 

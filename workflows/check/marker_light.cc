@@ -21,8 +21,8 @@ struct Edge {
   double black = 0.0, white = 0.0, blur_px = 0.0;
 };
 
-// Of a black-white edge that is blurred by a normal distribution, the steepest slope is the
-// contrast divided by sqrt(2 pi) sigmas.
+// The steepest slope of a black-white edge that is blurred by a normal distribution is the contrast
+// divided by sqrt(2 pi) sigmas.
 std::optional<Edge> MeasureEdge(const cv::Mat& gray, const Eigen::Vector2d& from,
                                 const Eigen::Vector2d& to) {
   constexpr double kReachSides = 0.1, kStep_px = 0.25;

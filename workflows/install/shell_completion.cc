@@ -21,7 +21,7 @@ std::vector<ShownOption> OptionsOf(const Command& command) {
   return options;
 }
 
-// Of all commands: an option means the same everywhere.
+// The options of all commands; an option means the same everywhere.
 std::map<std::string, ShownOption> OptionsByName(const std::vector<Command>& commands) {
   std::map<std::string, ShownOption> options;
   for (const Command& command : commands) {

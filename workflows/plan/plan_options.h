@@ -26,8 +26,8 @@ struct ShootPlanOptions {
   // The camera's path: on an arc around the middle of the markers, which it looks at.
   std::optional<double> distance_m;  // nothing: as near as the picture holds the markers
   double arc_deg = 90.0;             // from the first view to the last
-  // Of the camera over the lowest marker; nothing: 1 m, or the middle of the markers if that is
-  // lower.
+  // Height of the camera over the lowest marker; nothing: 1 m, or the middle of the markers if that
+  // is lower.
   std::optional<double> height_m;
   int num_views = 40;  // that the adjustment uses
 
@@ -39,7 +39,7 @@ struct ShootPlanOptions {
   // common. Rendered action cameras at 18 to 23 crf had 0.056 to 0.09 px.
   double corner_sigma_px = 0.075;
 
-  // Of a sail whose shape is not given.
+  // The shape of a sail for which none is given.
   double camber = 0.1;  // depth, part of the chord
   double twist_deg = 10.0;
 

@@ -21,7 +21,7 @@ struct PlannedPath {
   int num_views = 0;
 };
 
-// Of the lowest marker below the middle of all, m.
+// How far the lowest marker is below the middle of all, m.
 double LowestDepth(const PlannedSurface& surface);
 
 // At an angle to the right of straight ahead, looking at the middle of the markers.

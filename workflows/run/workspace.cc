@@ -22,11 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr char kLockName[] = ".velamap.lock";
 
-bool IsInside(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = CanonicalPath(path).lexically_relative(CanonicalPath(folder));
-  return !relative.empty() && *relative.begin() != "..";
-}
-
 bool IsOurDatabase(const fs::path& path) {
   return IsRegularFile(path) &&
          ColmapDatabase(path.string(), ColmapDatabase::Mode::kReadOnly).ReadDetector().has_value();

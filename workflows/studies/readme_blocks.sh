@@ -7,7 +7,8 @@
 
 block_sample_output() {
   echo '```'
-  data sample_project.txt | grep -vE '^(==|look at:|files:|in COLMAP:|distance_(after|sigma))'
+  data sample_project.txt |
+    grep -vE '^(==|look at:|files:|in COLMAP:|distance_(after|sigma)|section sail h[2356] |surface: hull)'
   echo '```'
 }
 

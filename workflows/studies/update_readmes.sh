@@ -44,7 +44,7 @@ done
 for table in conditions conditions_motion_lines; do
   command_of[$table.csv]=workflows/studies/conditions.sh
 done
-for part in detection adjustment main memory growth markers tracking sweep; do
+for part in detection adjustment main memory growth markers tracking sweep dataset; do
   command_of[$part.csv]="tests/benchmarks/compare.sh $part"
 done
 command_of[corner_accuracy.csv]=tests/benchmarks/corner_accuracy.sh

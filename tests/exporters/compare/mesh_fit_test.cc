@@ -33,7 +33,7 @@ UncertainShape Exact(const MarkerShape& shape) { return {shape, {}}; }
 
 MarkerShape Sail() { return MarkersOnPart(BoatShape(), BoatLayout(), "sail"); }
 
-// A marker of 0.1 m facing outwards, with its center at `radius_m` from the origin.
+// A marker of 0.1 m facing outwards, with its centre at `radius_m` from the origin.
 ShapeMarker MarkerOnSphere(int id, const Eigen::Vector3d& direction, double radius_m) {
   const Eigen::Quaterniond rotation =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction);
@@ -146,7 +146,7 @@ TEST(ShapeComparisonMesh, MarkersAtTheEdgeOfADesignCount) {
     num_counted += deviation.distance_m.count;
     num_beyond += deviation.num_beyond_edge;
     for (const MarkerDeviation& marker : deviation.markers) {
-      // Of the marker's own noise, whether the foot is on the edge or not.
+      // The distance is the marker's own noise, whether the foot is on the edge or not.
       const Eigen::Vector3d noise_m =
           marker.x_in_reference_m - *FindWholeMarker(sail, marker.marker_id)->x_in_shape_m[0];
       EXPECT_NEAR(marker.distance_m, marker.normal.dot(noise_m), 4e-4) << marker.marker_id;

@@ -83,16 +83,5 @@ TEST(SurfaceSpline, FootOnACurvedSurfaceIsPerpendicular) {
   }
 }
 
-TEST(SurfaceSpline, PlaneCutLiesOnPlaneAndSurface) {
-  const SplineSurface surface = Sail();
-  const auto cut = CutSurface(surface, {0, 0, 2.2}, Eigen::Vector3d::UnitZ(), 21);
-  ASSERT_EQ(cut.size(), 21u);
-  for (const Eigen::Vector3d& x : cut) EXPECT_NEAR(x.z(), 2.2, 1e-10);
-  for (const SurfaceFoot& foot : ProjectOnSurface(surface, cut)) {
-    EXPECT_LT(std::abs(foot.distance_m), 1e-10);
-  }
-  EXPECT_TRUE(CutSurface(surface, {0, 0, 7}, Eigen::Vector3d::UnitZ(), 21).empty());
-}
-
 }  // namespace
 }  // namespace velamap

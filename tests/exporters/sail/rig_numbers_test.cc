@@ -35,7 +35,7 @@ void AddPair(const std::string& part, int id, double leeward_deg, int leeward, S
   sail->layout.parts.push_back(pair);
 }
 
-// Five lines whose luff bends forwards and sags to leeward as a parabola, over a boom and a center
+// Five lines whose luff bends forwards and sags to leeward as a parabola, over a boom and a centre
 // line.
 Sail BentSail(int leeward = 1) {
   std::vector<SailLine> lines;

@@ -10,7 +10,6 @@
 
 #include "exporters/design/cad_reader.h"
 #include "exporters/scale/metric_shape.h"
-#include "exporters/shape_exporter.h"
 #include "exporters/surface/surface_csv.h"
 #include "importer/base/error.h"
 #include "reconstruct/model/gauge.h"
@@ -18,6 +17,7 @@
 #include "tests/exporters/golden_file.h"
 #include "tests/exporters/sail/sail_shapes.h"
 #include "tests/support/error_matchers.h"
+#include "tests/support/export_shape.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

@@ -219,7 +219,7 @@ TEST(SectionDrawing, SvgIsWellFormedToOneScaleAndHasTheNumbers) {
     ++at;
   }
   ASSERT_EQ(lengths_px.size(), 4u);
-  // Of the head, which is drawn on top but written last, over the foot.
+  // The ratio of the head, which is drawn on top but written last, to the foot.
   EXPECT_NEAR(lengths_px[3] / lengths_px[0],
               example.report.sections[3].chord_m.value / example.report.sections[0].chord_m.value,
               1e-4);

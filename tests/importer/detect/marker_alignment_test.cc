@@ -134,7 +134,7 @@ TEST(RefineCorners, DoNotDependOnWhereTheQuadCameFrom) {
   }
 }
 
-// Of the pixels of a large marker a part is fitted, which the start chooses.
+// Only a part of the pixels of a large marker is fitted, and the start chooses which.
 TEST(RefineCorners, OfLargeMarkersDifferLessThanThoseOfIndependentPixels) {
   constexpr double kOfIndependentPixels = 2.0;  // the variance of a difference
   const MarkerGrid grid = MakeGrid(60.0, 0.5);

@@ -28,7 +28,7 @@ void ExpectMarkersOf(const cv::aruco::Board& opencv, const Board& board,
   }
 }
 
-// The squares of the picture that OpenCV draws, too.
+// Compares the squares with those in the picture that OpenCV draws.
 void ExpectSquaresOf(const cv::aruco::CharucoBoard& opencv, const Board& board,
                      const Eigen::Vector2d& origin_mm) {
   constexpr int kSquarePx = 60;

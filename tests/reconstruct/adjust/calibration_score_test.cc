@@ -27,7 +27,7 @@ SyntheticScene NoisyScene(SceneKind kind, std::uint32_t seed) {
   return scene;
 }
 
-// Of an adjustment that keeps the calibration.
+// The evidence that an adjustment with a fixed calibration leaves.
 CalibrationEvidence Evidence(const SyntheticScene& scene, const Camera& assumed) {
   Model model = MakeSceneModel(scene);
   for (auto& [camera_id, camera] : model.cameras) camera = assumed;
@@ -55,7 +55,7 @@ Camera WithoutDistortion(const Camera& camera) {
   return WithParams(camera, params);
 }
 
-// Of another specimen of the same kind with another lens.
+// The camera of the same model, but another specimen with another lens.
 Camera OfAnotherCamera(const Camera& camera) {
   std::vector<double> params = WithFocalLength(camera, 0.94).params;
   params[2] += 25;

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "reconstruct/problem/prior_cost_functions.h"
+
 namespace velamap {
 namespace {
 

@@ -155,7 +155,7 @@ class RenderedPicturesTest : public ::testing::Test {
     return dir_ / name;
   }
 
-  // Of one marker by image: its corner that is farthest from the truth.
+  // The error of one marker in each image: that of its worst corner.
   std::map<std::string, double> ErrorsOf(int marker_id, const std::string& database) {
     std::map<std::string, double> errors_px;
     std::size_t frame_idx = 0;

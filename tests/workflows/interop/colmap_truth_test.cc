@@ -85,8 +85,8 @@ PointErrors ComparePoints(const Model& model, const SyntheticScene& scene) {
 using PointJacobian = Eigen::Matrix<double, 2, 3>;
 using CameraJacobian = Eigen::Matrix<double, 2, 6>;
 
-// Of the image position (px) by the point in world (m) and by a small motion of the camera (rad,
-// m), by central differences.
+// Derivatives of the image position (px) by the point in world (m) and by a small motion of the
+// camera (rad, m), from central differences.
 std::pair<PointJacobian, CameraJacobian> Differentiate(const Camera& camera,
                                                        const Rigid3& cam_from_world,
                                                        const Eigen::Vector3d& x_in_world) {

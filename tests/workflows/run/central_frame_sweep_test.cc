@@ -10,12 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "exporters/formats/shape_csv.h"
-#include "exporters/shape_exporter.h"
 #include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/database/colmap_database.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/support/error_matchers.h"
+#include "tests/support/export_shape.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
 #include "workflows/run/pipeline.h"

@@ -1,0 +1,40 @@
+// The rows of a surface, from foot to head: the lines of markers, and the edges of foot and head
+// where they are given, with u of their points.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "exporters/surface/surface.h"
+
+namespace velamap {
+
+struct SurfaceRow {
+  std::string name;
+  std::vector<int> marker_ids;
+  std::vector<Eigen::Vector3d> points;
+  std::vector<double> us;
+  double length_m = 0.0;
+};
+
+// Length of a polyline up to each of its points, m.
+std::vector<double> ChordLengths(const std::vector<Eigen::Vector3d>& points);
+
+// Mean length of the lines, from the first marker to the last.
+double MeanLength(const std::vector<SurfaceLine>& lines);
+
+// u is the chord length from the luff over the length of the whole line. A missing marker at the
+// end of a line counts with the mean spacing of the line, so that the edge of the surface keeps its
+// place. Throws DataError for two markers in one place and InputError for an edge without a length.
+std::vector<SurfaceRow> MakeSurfaceRows(const std::vector<SurfaceLine>& lines,
+                                        const SurfaceOptions& options,
+                                        std::vector<std::string>* notes);
+
+// Mean distance between two neighbouring rows over their common range of u. Throws DataError where
+// they cross or run in opposite directions.
+double MeanDistance(const SurfaceRow& lower, const SurfaceRow& upper);
+
+}  // namespace velamap

@@ -1,0 +1,18 @@
+// Angles between directions, and the directions that a cube can turn to.
+
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace velamap {
+
+// In rad, 0 to pi. Exact for small angles, too, unlike the arc cosine. The vectors need no
+// length 1.
+double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+// The 24 rotations of a cube onto itself.
+std::vector<Eigen::Matrix3d> CubeRotations();
+
+}  // namespace velamap

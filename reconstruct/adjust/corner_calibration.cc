@@ -1,0 +1,57 @@
+#include "reconstruct/adjust/corner_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "reconstruct/problem/marker_uncertainty.h"
+
+namespace velamap {
+namespace {
+
+// Exact corners would leave no weight to the priors.
+constexpr double kMinCornerFactor = 1e-3;
+
+}  // namespace
+
+double CalibrateRobustly(MarkerSolution* solution) {
+  const double before = solution->weights.corner_factor;
+  const double variance =
+      RobustVarianceFactor(EvaluateCorners(solution->model, *solution), solution->model);
+  const double after = std::max(kMinCornerFactor, before * std::sqrt(variance));
+  solution->weights.corner_factor = after;
+  spdlog::debug("corner sigmas times {:.4f}", after);
+  return std::abs(after / before - 1.0);
+}
+
+CornerCalibration CalibrateBySquares(MarkerSolution* solution) {
+  constexpr int kMaxNumRounds = 3;
+  constexpr double kMaxChange = 0.01;
+  constexpr double kManySigmas = 4.0;
+  for (int round = 1; true; ++round) {
+    Minimize(1e-9, solution);
+    auto linearization = Linearize(*solution);
+    const double redundancy = CornerRedundancy(linearization->jacobian, linearization->covariance);
+    double sum = 0.0;
+    const std::vector<CornerResidual> corners = EvaluateCorners(linearization->problem);
+    for (const CornerResidual& corner : corners) sum += corner.sigmas * corner.sigmas;
+    const double variance = sum / std::max(1.0, redundancy);
+    const double before = solution->weights.corner_factor;
+    const double factor = std::max(kMinCornerFactor, before * std::sqrt(variance));
+    if (round < kMaxNumRounds && std::abs(factor / before - 1.0) > kMaxChange) {
+      solution->weights.corner_factor = factor;
+      continue;
+    }
+    const auto num_above =
+        std::count_if(corners.begin(), corners.end(), [variance](const CornerResidual& corner) {
+          return corner.sigmas > kManySigmas * std::sqrt(variance);
+        });
+    return {std::move(linearization), variance * before * before,
+            static_cast<double>(num_above) / static_cast<double>(corners.size())};
+  }
+}
+
+}  // namespace velamap
