@@ -27,6 +27,7 @@
 #include "importer/import_anew.h"
 #include "importer/import_checks.h"
 #include "importer/import_completion.h"
+#include "importer/import_part.h"
 #include "importer/track/frame_detector.h"
 #include "importer/track/marker_tracking.h"
 #include "importer/video/frame_image.h"
@@ -68,7 +69,8 @@ class ImportRun {
             [this] { SecureBatch(); }, database),
         turns_(tracking.tracks),
         held_markers_(HoldsMarkers(*database)),
-        few_found_(!held_markers_) {}
+        expects_markers_(!held_markers_ && !options.part),
+        few_found_(expects_markers_) {}
 
   FrameResult Process(int frame_idx, Frame* frame) {
     FrameResult result;
@@ -113,7 +115,7 @@ class ImportRun {
       if (rejected.reason == kNotInLayout) ids_not_in_layout_.insert(rejected.detection.marker_id);
     }
     few_found_ =
-        !held_markers_ && report_.num_markers < kFewMarkersPerFrame * report_.num_frames_read;
+        expects_markers_ && report_.num_markers < kFewMarkersPerFrame * report_.num_frames_read;
     if (!few_found_) ClearSample();
     // Frames of a video without markers are dropped; a photograph is in the database in any case.
     if (source_->IsVideo() && detections.markers.empty()) return;
@@ -136,6 +138,7 @@ class ImportRun {
     }
     if (few_found_) CheckMarkersFound(options_, detector_.dictionary.name, sample_, report_);
     writer_.Commit();
+    SecureTracking();
     return report_;
   }
 
@@ -156,6 +159,7 @@ class ImportRun {
       seen_coarsely = SearchInFrameCoarsely(detector_, frame.gray);
     }
     MarkerTracks* tracks = turn->Wait();
+    if ((num_searched_ + frame_idx) % FramesPerGroup(detector_.options) == 0) *tracks = {};
     const int frame_number = frame.frame_number.value_or(frame_idx);
     const FrameSearch search{
         frame.gray.size(),
@@ -203,6 +207,14 @@ class ImportRun {
     }
   }
 
+  // Frames without markers at the end are in no batch.
+  void SecureTracking() const {
+    if (!source_->IsVideo() || tracking_.num_frames == num_searched_) return;
+    ColmapDatabase::Transaction transaction(database_);
+    database_->WriteTracking(tracking_);
+    transaction.Commit();
+  }
+
   // Turns sums over threads into the times that ImportReport::times describes.
   void SettleTimes(double cpu_s, int num_threads) {
     ImportTimes& times = report_.times;
@@ -237,6 +249,7 @@ class ImportRun {
   DatabaseWriter writer_;
   FrameTurns<MarkerTracks> turns_;  // videos
   bool held_markers_;               // whether the database held markers before this run
+  bool expects_markers_;            // whether few markers are a sign of wrong options
   std::atomic<bool> few_found_;     // few markers so far: frames are sampled for a hint
   std::mutex sample_mutex_;
   ImageSample sample_;
@@ -277,16 +290,12 @@ ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetec
   return run.Finish(ProcessCpuSeconds() - cpu_begin_s, num_threads);
 }
 
-// Beside the database, whatever links lead to it.
-std::filesystem::path LockOf(const std::string& database_path) {
-  const std::filesystem::path path = CanonicalPath(database_path);
-  return path.parent_path() / ("." + path.filename().string() + ".lock");
-}
-
-// Runs the steps that need all frames.
-void CompleteDatabase(const FrameDetector& detector, ColmapDatabase* database,
-                      ImportReport* report) {
+// Runs the steps that need all frames. Of a part they are left to the merge.
+void CompleteDatabase(const MarkerImporterOptions& options, const FrameDetector& detector,
+                      ColmapDatabase* database, ImportReport* report) {
   const StageTimer timer(ImportStage::kDatabase);
+  NotePart(options, DescribeDetector(detector), true, database);
+  if (options.part) return;
   const int num_turned = ResolveDoubtfulRotations(detector, database);
   report->num_markers += num_turned;
   report->num_rejected -= num_turned;
@@ -314,7 +323,9 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   CheckImagePath(options.image_path);
   FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
 
-  const FileLock lock(LockOf(options.database_path), options.database_path);
+  const std::optional<VideoOptions> frames = FramesToSearch(options);
+
+  const FileLock lock(LockOfDatabase(options.database_path), options.database_path);
   if (options.import_anew) RemoveEarlierImport(options);
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
@@ -322,16 +333,22 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
   if (known_names.empty()) database.ForgetSources();
   CheckSources(options, known_names, database);
+  CheckPart(options, database);
   CheckExisting(options, DescribeDetector(detector), database);
   NoteSources(options, known_names, &database);
   CheckFrameFolder(options, known_names);
   if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }
-  ImportReport report =
-      ImportFrames(options, detector, known_names, num_threads, progress, &database);
+  NotePart(options, DescribeDetector(detector), false, &database);
+  ImportReport report;
+  if (frames) {
+    MarkerImporterOptions searched = options;
+    searched.video = *frames;
+    report = ImportFrames(searched, detector, known_names, num_threads, progress, &database);
+  }
   report.num_images_present = static_cast<int>(known_names.size());
-  CompleteDatabase(detector, &database, &report);
+  CompleteDatabase(options, detector, &database, &report);
   report.times += TakeStageTimes();
   guard.Keep();
   return report;

@@ -50,6 +50,7 @@ inline OptionRange FromTo(double min, double max) { return {min, max}; }
 enum class PathUse {
   kNone,             // the option is no path
   kReadsFile,        // such as a calibration or a database
+  kReadsFiles,       // several, with commas between them
   kReadsLayout,      // a layout file, and the dictionary file that it names
   kReadsPictures,    // a video, or a folder of images
   kReadsModel,       // the folder of a COLMAP model

@@ -36,6 +36,7 @@ Command ClipChecker();
 Command AutomaticReconstructor();
 Command MarkerGenerator();
 Command MarkerImporter();
+Command DatabaseMerger();
 Command FrameRegistrator();
 Command BundleAdjuster();
 Command CentralFrameSweeper();

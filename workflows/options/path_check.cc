@@ -14,6 +14,7 @@
 #include "importer/text/shown_text.h"
 #include "importer/video/source_file.h"
 #include "reconstruct/model/model_io.h"
+#include "workflows/options/shared_options.h"
 #include "workflows/run/workspace.h"
 
 namespace velamap {
@@ -62,6 +63,9 @@ void AddUse(PathUse use, const std::string& used_by, const std::string& path, Us
       return;
     case PathUse::kReadsFile:
       return paths->inputs.push_back({used_by, path});
+    case PathUse::kReadsFiles:
+      for (const std::string& file : PathsInList(path)) paths->inputs.push_back({used_by, file});
+      return;
     case PathUse::kReadsLayout:
       return AddLayout(used_by, path, paths);
     case PathUse::kReadsPictures:

@@ -1,6 +1,7 @@
 #include "workflows/options/shared_options.h"
 
 #include <filesystem>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -125,6 +126,13 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
                                  with_dictionary ? " and --dictionary" : ""));
   }
   return MakeLayout(options.dictionary, *options.marker_length_m);
+}
+
+std::vector<std::string> PathsInList(const std::string& list) {
+  std::vector<std::string> paths;
+  std::istringstream stream(list);
+  for (std::string path; std::getline(stream, path, ',');) paths.push_back(path);
+  return paths;
 }
 
 std::string ShapeFile(const std::string& path) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exporters/scale/metric_scale.h"
 #include "importer/camera/camera.h"
@@ -69,6 +70,9 @@ std::optional<Camera> LoadCalibration(const PathOptions& paths);
 // Throws InputError unless a layout file alone, or a marker length (with a dictionary, where one is
 // needed) is given, and where ReadLayout() does.
 Layout LoadLayout(const MarkerOptions& options, bool with_dictionary);
+
+// The paths in the value of an option that takes several, with commas between them.
+std::vector<std::string> PathsInList(const std::string& list);
 
 // `path`, or the shape.csv in it if it is a folder.
 std::string ShapeFile(const std::string& path);

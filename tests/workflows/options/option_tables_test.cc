@@ -182,6 +182,7 @@ std::string GoodValue(const Option& option) {
   if (std::holds_alternative<std::string*>(option.target)) return "text of " + option.name;
   if (option.name == "frame") return "lines";
   if (option.name == "reference_unit") return "mm";
+  if (option.name == "part") return "2/5";
   const std::string default_text = std::get<ParsedValue>(option.target).default_text;
   return default_text.empty() ? "1,2" : default_text;
 }
