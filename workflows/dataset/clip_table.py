@@ -11,13 +11,15 @@ from pathlib import Path
 from records import fail, key_of
 from result_columns import RESULT_COLUMNS
 
-COLUMNS = ("name", "clip", "camera", "layout", "options", "central_frames")
+COLUMNS = ("name", "clip", "camera", "layout", "options", "central_frames", "parts")
 REQUIRED = ("name", "clip")
 # What the workflow gives itself.
 OWN_OPTIONS = {"image_path", "camera_path", "layout_path", "workspace_path", "database_path",
                "frame_output_path", "output_path", "models_path", "log_path", "central_frames",
-               "import_anew", "num_threads", "summary", "help", "help_all"}
+               "database_paths", "part", "import_anew", "num_threads", "summary", "help",
+               "help_all"}
 MAX_NAME_BYTES = 200
+MAX_NUM_PARTS = 10000  # as velamap has it
 
 
 class RowError(Exception):
@@ -33,9 +35,11 @@ class Clip:
     layout: Path | None = None
     options: list[tuple[str, str]] = field(default_factory=list)
     central_frames: str = ""  # as written; empty: no sweep
+    parts: int | float = 1  # into how many jobs the import is split; a float: s, of each at most
     tags: dict[str, str] = field(default_factory=dict)
 
     def stages(self) -> list[str]:
+        """Those with a row in the results; the parts of an import come before `import`."""
         return ["import", "reconstruct"] + (["sweep"] if self.central_frames else [])
 
 
@@ -167,6 +171,22 @@ def read_central_frames(cell: str) -> str:
                    "or 12;40 (frames, or names of photographs)")
 
 
+def read_parts(cell: str, path: Path) -> int | float:
+    """A number of parts, or `60 s`, the longest that a part may be."""
+    count = re.fullmatch(r"\d{1,5}", cell)
+    seconds = re.fullmatch(r"(\d{1,6}(?:\.\d{1,3})?) ?s", cell)
+    if cell and path.is_dir():
+        raise RowError("parts: photographs have no parts; leave it empty")
+    if count and 1 <= int(cell) <= MAX_NUM_PARTS:
+        return int(cell)
+    if seconds and float(seconds[1]) > 0:
+        return float(seconds[1])
+    if not cell:
+        return 1
+    raise RowError(f"parts {cell}: is neither a number of parts from 1 to {MAX_NUM_PARTS}, such as "
+                   "4, nor the longest that one may be, such as 60 s")
+
+
 def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
     check_name(row["name"])
     paths = find_clips(row["clip"], folder)
@@ -178,6 +198,7 @@ def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
         clip.layout = find_file("layout", row.get("layout", ""), folder)
         clip.options = read_options(row.get("options", ""), folder, known)
         clip.central_frames = read_central_frames(row.get("central_frames", ""))
+        clip.parts = read_parts(row.get("parts", ""), path)
         clip.tags = {name: value for name, value in row.items() if name not in COLUMNS}
         clips.append(clip)
     names = [name for name, _ in clips[0].options]

@@ -16,12 +16,12 @@ from pathlib import Path
 from typing import Any
 
 from clip_table import Clip, read_table
-from job_needs import needs_of
+from job_needs import needs_of, num_parts_of
 from records import (MARK, PLAN, RESULT_FILES, as_json, fail, hash_of, job_file, key_of, read_json,
                      result_file, write_whole)
 
-COMMANDS = {"import": "marker_importer", "reconstruct": "automatic_reconstructor",
-            "sweep": "central_frame_sweeper"}
+COMMANDS = {"import": "marker_importer", "merge": "database_merger",
+            "reconstruct": "automatic_reconstructor", "sweep": "central_frame_sweeper"}
 
 
 def ask_velamap(*arguments: str) -> str:
@@ -61,27 +61,46 @@ def files_read(clip: Clip, options: list[tuple[str, str]]) -> dict[str, list[int
     return {file: state for path in paths if path for file, state in states_below(path).items()}
 
 
-def command_of(clip: Clip, stage: str, options: list[tuple[str, str]]) -> list[str]:
+def command_of(clip: Clip, stage: str, options: list[tuple[str, str]],
+               num_parts: int) -> list[str]:
     """The command without the program and the number of threads; run in the folder OUTPUT."""
     workspace = f"clips/{clip.name}"
-    words = [COMMANDS[stage]]
-    if stage != "sweep":
+    jobs = f"jobs/{key_of(clip.name)}"
+    part = stage.partition("_")[2]
+    words = [COMMANDS[command_key(stage, num_parts)]]
+    if words[0] in ("marker_importer", "automatic_reconstructor"):
         words += ["--image_path", str(clip.path)]
         words += ["--camera_path", str(clip.camera)] if clip.camera else []
     words += ["--layout_path", str(clip.layout)] if clip.layout else []
-    if stage == "import":
-        words += ["--database_path", f"{workspace}/database.db", "--import_anew", "1"]
+    if words[0] == "database_merger":
+        parts = ",".join(f"{jobs}/part_{number}.db" for number in range(1, num_parts + 1))
+        words += ["--database_paths", parts, "--output_path", f"{workspace}/database.db"]
+    elif words[0] == "marker_importer":
+        words += ["--part", f"{part}/{num_parts}"] if part else []
+        database = f"{jobs}/part_{part}.db" if part else f"{workspace}/database.db"
+        words += ["--database_path", database, "--import_anew", "1"]
         if not clip.path.is_dir():
             words += ["--frame_output_path", f"{workspace}/images"]
     elif stage == "reconstruct":
         words += ["--workspace_path", workspace, "--summary", "json"]
     else:
         words += ["--database_path", f"{workspace}/database.db", "--central_frames",
-                  clip.central_frames, "--output_path", f"jobs/{key_of(clip.name)}/sweep.csv",
-                  "--log_path", f"jobs/{key_of(clip.name)}/sweep_colmap.log"]
+                  clip.central_frames, "--output_path", f"{jobs}/sweep.csv",
+                  "--log_path", f"{jobs}/sweep_colmap.log"]
     for name, value in options:
         words += [f"--{name}", value]
     return words
+
+
+def part_stages(num_parts: int) -> list[str]:
+    """The jobs that a split import begins with."""
+    return [f"part_{number}" for number in range(1, num_parts + 1)] if num_parts > 1 else []
+
+
+def command_key(stage: str, num_parts: int) -> str:
+    if stage == "import" and num_parts > 1:
+        return "merge"
+    return "import" if stage.startswith("part_") else stage
 
 
 def check_output(output: Path) -> None:
@@ -111,12 +130,13 @@ def check_folders(output: Path, clips: list[Clip]) -> None:
                  "folder")
 
 
-def forget_lost_results(output: Path, clip: Clip, retry_failed: bool) -> None:
+def forget_lost_results(output: Path, clip: Clip, parts: list[str], retry_failed: bool) -> None:
     """Removes the records of results that have been deleted, or that failed and shall be tried."""
     workspace = output / "clips" / clip.name
     key = key_of(clip.name)
     made = {"import": workspace / "database.db", "reconstruct": workspace / "report.html",
-            "sweep": output / "jobs" / key / "sweep.csv"}
+            "sweep": output / "jobs" / key / "sweep.csv",
+            **{part: output / "jobs" / key / f"{part}.db" for part in parts}}
     for stage, file in made.items():
         result = output / result_file(key, stage)
         if not result.exists():
@@ -133,17 +153,24 @@ def write_jobs(output: Path, tags: list[str], clips: list[Clip], cores: int,
     rows: list[dict[str, Any]] = []
     for clip in clips:
         key = key_of(clip.name)
-        for stage in clip.stages():
-            options = [option for option in clip.options if option[0] in known[stage]]
-            job = {"stage": stage, "version": version, "command": command_of(clip, stage, options),
+        num_parts = num_parts_of(clip.path, clip.parts, output)
+        parts = part_stages(num_parts)
+        for stage in parts + clip.stages():
+            known_here = known[command_key(stage, num_parts)]
+            options = [option for option in clip.options if option[0] in known_here]
+            job = {"stage": stage, "version": version,
+                   "command": command_of(clip, stage, options, num_parts),
+                   "after": parts if stage == "import" else [] if stage in parts else ["import"],
                    "files": files_read(clip, options)}
             write_whole(output / job_file(key, stage), as_json(job))
-        forget_lost_results(output, clip, retry_failed)
+        forget_lost_results(output, clip, parts, retry_failed)
         rows.append({"name": clip.name, "key": key, "clip": clip.path.name, "tags": clip.tags,
-                     "central_frames": clip.central_frames, "stages": clip.stages(),
-                     **needs_of(clip.path, clip.camera)})
-    threads = max(1, cores // len(rows))
-    write_whole(output / PLAN, as_json({"version": version, "tags": tags, "threads": threads,
+                     "central_frames": clip.central_frames, "parts": parts,
+                     "stages": clip.stages(), **needs_of(clip.path, clip.camera, num_parts)})
+    num_imports = sum(len(row["parts"]) or 1 for row in rows)
+    write_whole(output / PLAN, as_json({"version": version, "tags": tags,
+                                        "threads": max(1, cores // len(rows)),
+                                        "import_threads": max(1, cores // num_imports),
                                         "rows": rows}))
 
 

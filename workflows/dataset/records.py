@@ -4,7 +4,9 @@
     OUTPUT/jobs/KEY/STAGE.job    JSON: the job, the files that it reads, the command
     OUTPUT/jobs/KEY/STAGE.json   its result: exit code, reason, figures
     OUTPUT/jobs/KEY/STAGE.log    the line to copy, and what the program said
+    OUTPUT/jobs/KEY/part_K.db    what job part_K has imported, until `import` merges all parts
     OUTPUT/jobs/plan.json        the table of clips as it was read
+    OUTPUT/jobs/durations.json   how long the clips are, where that matters
     OUTPUT/.velamap_dataset      marks the folder; hashes of dataset.csv and dataset.html
 """
 
@@ -19,6 +21,7 @@ from typing import Any, NoReturn
 
 MARK = ".velamap_dataset"
 PLAN = Path("jobs/plan.json")
+DURATIONS = Path("jobs/durations.json")
 RESULT_FILES = ("dataset.csv", "dataset.html")
 
 
