@@ -1,10 +1,9 @@
 // The COLMAP database. Only the files of this folder know its tables.
 //
 // The layout is COLMAP 3.8's (six tables, images with seven nullable prior columns), which every
-// COLMAP from 3.5 to 4.x opens. More tables, marker_detections, marker_detector,
-// marker_sources and image_formation, hold what COLMAP has no place for; COLMAP ignores and keeps
-// them. The layout of
-// an existing file is recognised by its columns.
+// COLMAP from 3.5 to 4.x opens. More tables (README.md of this folder) hold what COLMAP has no
+// place for; COLMAP ignores and keeps them. The layout of an existing file is recognised by its
+// columns.
 
 #pragma once
 
@@ -27,6 +26,7 @@ class Database;
 
 namespace velamap {
 
+struct PartRecord;
 struct TrackingState;
 
 // One row of `images` with its detections. Keypoints are the corners of detections.markers, ordered
@@ -111,8 +111,13 @@ class ColmapDatabase {
   // Throws InputError for values that no tracking gives.
   std::optional<TrackingState> ReadTracking() const;
 
-  // Forgets sources, image formation and tracking, which a run that is interrupted before its first
-  // images leaves behind.
+  // Which part of a video the database holds; nothing if its import is a whole one.
+  void WritePart(const PartRecord& record);
+  // Throws InputError for values that no import writes.
+  std::optional<PartRecord> ReadPart() const;
+
+  // Forgets sources, image formation, tracking and part, which a run that is interrupted before its
+  // first images leaves behind.
   void ForgetSources();
 
  private:
