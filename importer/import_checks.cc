@@ -147,7 +147,7 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
                       const std::vector<std::string>& known_names) {
   const std::string& folder = options.frame_output_path;
   if (folder.empty() || IsFolder(options.image_path) || !IsFolder(folder)) return;
-  RemoveUnfinished(folder);
+  if (!options.part) RemoveUnfinished(folder);  // other parts may be writing there now
   const std::set<std::string> known(known_names.begin(), known_names.end());
   for (const fs::path& file : FolderEntries(folder)) {
     const std::string name = file.filename().string();

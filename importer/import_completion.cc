@@ -1,6 +1,7 @@
 #include "importer/import_completion.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,11 +19,12 @@ int ResolveDoubtfulRotations(const FrameDetector& detector, ColmapDatabase* data
   const std::vector<std::size_t> changed =
       ResolveRotationsAcrossFrames(detector.symmetries, detector.graph, &frames);
   int num_resolved = 0;
+  const std::string description = database->ReadDetector().value();
   ColmapDatabase::Transaction transaction(database);
   for (const std::size_t i : changed) {
     num_resolved += static_cast<int>(frames[i].markers.size()) -
                     static_cast<int>(images[i].detections.markers.size());
-    database->ReplaceDetections(images[i].image_id, frames[i], DescribeDetector(detector));
+    database->ReplaceDetections(images[i].image_id, frames[i], description);
   }
   transaction.Commit();
   return num_resolved;

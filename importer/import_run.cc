@@ -13,6 +13,7 @@
 #include "importer/base/stage_timer.h"
 #include "importer/frame_camera.h"
 #include "importer/import_checks.h"
+#include "importer/import_part.h"
 #include "importer/video/frame_image.h"
 #include "importer/video/source_file.h"
 
@@ -43,7 +44,8 @@ ImportRun::ImportRun(const MarkerImporterOptions& options, const FrameDetector& 
           [this] { SecureBatch(); }, database),
       turns_(tracking.tracks),
       held_markers_(HoldsMarkers(*database)),
-      few_found_(!held_markers_) {}
+      expects_markers_(!held_markers_ && !options.part),
+      few_found_(expects_markers_) {}
 
 FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
   FrameResult result;
@@ -88,7 +90,7 @@ void ImportRun::Consume(const FrameResult& result) {
     if (rejected.reason == kNotInLayout) ids_not_in_layout_.insert(rejected.detection.marker_id);
   }
   few_found_ =
-      !held_markers_ && report_.num_markers < kFewMarkersPerFrame * report_.num_frames_read;
+      expects_markers_ && report_.num_markers < kFewMarkersPerFrame * report_.num_frames_read;
   if (!few_found_) ClearSample();
   // Frames of a video without markers are dropped; a photograph is in the database in any case.
   if (source_->IsVideo() && detections.markers.empty()) return;
@@ -109,6 +111,7 @@ ImportReport ImportRun::Finish(double cpu_s, int num_threads) {
   }
   if (few_found_) CheckMarkersFound(options_, detector_.dictionary.name, sample_, report_);
   writer_.Commit();
+  SecureTracking();
   return report_;
 }
 
@@ -124,6 +127,7 @@ std::vector<MarkerQuad> ImportRun::SearchInTurn(int frame_idx, const Frame& fram
     seen_coarsely = SearchInFrameCoarsely(detector_, frame.gray);
   }
   MarkerTracks* tracks = turn->Wait();
+  if ((num_searched_ + frame_idx) % FramesPerGroup(detector_.options) == 0) *tracks = {};
   const int frame_number = frame.frame_number.value_or(frame_idx);
   const FrameSearch search{
       frame.gray.size(),
@@ -167,6 +171,13 @@ void ImportRun::SecureBatch() const {
   if (writes_images_ && Exists(options_.frame_output_path)) {
     SyncFileSystem(options_.frame_output_path);
   }
+}
+
+void ImportRun::SecureTracking() const {
+  if (!source_->IsVideo() || tracking_.num_frames == num_searched_) return;
+  ColmapDatabase::Transaction transaction(database_);
+  database_->WriteTracking(tracking_);
+  transaction.Commit();
 }
 
 void ImportRun::SettleTimes(double cpu_s, int num_threads) {

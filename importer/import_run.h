@@ -47,6 +47,8 @@ class ImportRun {
   // A frame that the database holds is not written again by a later run, so it has to be on the
   // disk first. The batch goes with the tracks after it.
   void SecureBatch() const;
+  // Frames without markers at the end are in no batch.
+  void SecureTracking() const;
   // Turns sums over threads into the times that ImportReport::times describes.
   void SettleTimes(double cpu_s, int num_threads);
   // Called on the working threads, because results that wait for earlier frames hold no pixels.
@@ -63,6 +65,7 @@ class ImportRun {
   DatabaseWriter writer_;
   FrameTurns<MarkerTracks> turns_;  // videos
   bool held_markers_;               // whether the database held markers before this run
+  bool expects_markers_;            // whether few markers are a sign of wrong options
   std::atomic<bool> few_found_;     // few markers so far: frames are sampled for a hint
   std::mutex sample_mutex_;
   ImageSample sample_;

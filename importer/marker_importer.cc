@@ -17,6 +17,7 @@
 #include "importer/import_anew.h"
 #include "importer/import_checks.h"
 #include "importer/import_completion.h"
+#include "importer/import_part.h"
 #include "importer/import_run.h"
 #include "importer/track/frame_detector.h"
 #include "importer/video/frame_source.h"
@@ -63,16 +64,12 @@ ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetec
   return run.Finish(ProcessCpuSeconds() - cpu_begin_s, num_threads);
 }
 
-// Beside the database, whatever links lead to it.
-std::filesystem::path LockOf(const std::string& database_path) {
-  const std::filesystem::path path = CanonicalPath(database_path);
-  return path.parent_path() / ("." + path.filename().string() + ".lock");
-}
-
-// Runs the steps that need all frames.
-void CompleteDatabase(const FrameDetector& detector, ColmapDatabase* database,
-                      ImportReport* report) {
+// Runs the steps that need all frames. Of a part they are left to the merge.
+void CompleteDatabase(const MarkerImporterOptions& options, const FrameDetector& detector,
+                      ColmapDatabase* database, ImportReport* report) {
   const StageTimer timer(ImportStage::kDatabase);
+  NotePart(options, DescribeDetector(detector), true, database);
+  if (options.part) return;
   const int num_turned = ResolveDoubtfulRotations(detector, database);
   report->num_markers += num_turned;
   report->num_rejected -= num_turned;
@@ -100,7 +97,9 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   CheckImagePath(options.image_path);
   FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
 
-  const FileLock lock(LockOf(options.database_path), options.database_path);
+  const std::optional<VideoOptions> frames = FramesToSearch(options);
+
+  const FileLock lock(LockOfDatabase(options.database_path), options.database_path);
   if (options.import_anew) RemoveEarlierImport(options);
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
@@ -108,16 +107,22 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) known_names.push_back(name);
   if (known_names.empty()) database.ForgetSources();
   CheckSources(options, known_names, database);
+  CheckPart(options, database);
   CheckExisting(options, DescribeDetector(detector), database);
   NoteSources(options, known_names, &database);
   CheckFrameFolder(options, known_names);
   if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }
-  ImportReport report =
-      ImportFrames(options, detector, known_names, num_threads, progress, &database);
+  NotePart(options, DescribeDetector(detector), false, &database);
+  ImportReport report;
+  if (frames) {
+    MarkerImporterOptions searched = options;
+    searched.video = *frames;
+    report = ImportFrames(searched, detector, known_names, num_threads, progress, &database);
+  }
   report.num_images_present = static_cast<int>(known_names.size());
-  CompleteDatabase(detector, &database, &report);
+  CompleteDatabase(options, detector, &database, &report);
   report.times += TakeStageTimes();
   guard.Keep();
   return report;

@@ -9,6 +9,7 @@
 
 #include "importer/base/stage_timer.h"
 #include "importer/camera/camera.h"
+#include "importer/database/part_table.h"
 #include "importer/detect/detection_options.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
@@ -37,6 +38,9 @@ struct MarkerImporterOptions {
   // `allowed_frames` leaves out, of which `video` may choose fewer.
   bool is_only_source = false;
   VideoOptions allowed_frames;
+  // Video only: the part of the frames to import, for MergeDatabases(); nothing: all. No marker in
+  // a part is no error.
+  std::optional<VideoPart> part;
   // Whether an earlier import is removed first: the database, and the pictures that it made.
   bool import_anew = false;
   int num_threads = 0;  // 0: one a core

@@ -37,9 +37,9 @@ house_folder(importer/track PUBLIC
 house_folder(importer/formation PUBLIC
   formation_sampling)
 house_folder(importer/database PUBLIC
-  colmap_database correspondence database_writer source_table tracking_table)
+  colmap_database correspondence database_writer part_table source_table tracking_table)
 house_folder(importer PUBLIC
-  dictionary_hint marker_importer)
+  database_merger dictionary_hint marker_importer)
 house_folder(reconstruct/geometry PUBLIC
   camera_conversion covariance_update frame_shape intrinsics_prior marker_pose point_covariance)
 house_folder(reconstruct/model PUBLIC

@@ -14,6 +14,7 @@
 #include "importer/database/correspondence.h"
 #include "importer/database/image_formation_table.h"
 #include "importer/database/marker_detections_table.h"
+#include "importer/database/part_table.h"
 #include "importer/database/source_table.h"
 #include "importer/database/sqlite_blob.h"
 #include "importer/database/sqlite_errors.h"
@@ -277,10 +278,18 @@ std::optional<TrackingState> ColmapDatabase::ReadTracking() const {
   return Guarded(path_, [&] { return velamap::ReadTracking(path_, database_.get()); });
 }
 
+void ColmapDatabase::WritePart(const PartRecord& record) {
+  Guarded(path_, [&] { velamap::WritePart(record, database_.get()); });
+}
+
+std::optional<PartRecord> ColmapDatabase::ReadPart() const {
+  return Guarded(path_, [&] { return velamap::ReadPart(path_, database_.get()); });
+}
+
 void ColmapDatabase::ForgetSources() {
   Guarded(path_, [&] {
     for (const char* table :
-         {"marker_sources", "image_formation", "marker_tracking", "marker_tracks"}) {
+         {"marker_sources", "image_formation", "marker_tracking", "marker_tracks", "marker_part"}) {
       database_->exec(fmt::format("DROP TABLE IF EXISTS {}", table));
     }
   });

@@ -26,6 +26,7 @@ class Database;
 
 namespace velamap {
 
+struct PartRecord;
 struct TrackingState;
 
 // One row of `images` with its detections. Keypoints are the corners of detections.markers, ordered
@@ -110,8 +111,13 @@ class ColmapDatabase {
   // Throws InputError for values that no tracking gives.
   std::optional<TrackingState> ReadTracking() const;
 
-  // Forgets sources, image formation and tracking, which a run that is interrupted before its first
-  // images leaves behind.
+  // Which part of a video the database holds; nothing if its import is a whole one.
+  void WritePart(const PartRecord& record);
+  // Throws InputError for values that no import writes.
+  std::optional<PartRecord> ReadPart() const;
+
+  // Forgets sources, image formation, tracking and part, which a run that is interrupted before its
+  // first images leaves behind.
   void ForgetSources();
 
  private:

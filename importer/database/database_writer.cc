@@ -10,6 +10,11 @@ constexpr int kBatchSize = 50;  // images a transaction
 
 }  // namespace
 
+std::filesystem::path LockOfDatabase(const std::string& path) {
+  const std::filesystem::path file = CanonicalPath(path);
+  return file.parent_path() / ("." + file.filename().string() + ".lock");
+}
+
 void RemoveDatabase(const std::string& path) {
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) RemoveAll(path + suffix);
 }

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,6 +14,9 @@
 #include "importer/video/source_file.h"
 
 namespace velamap {
+
+// The lock of the runs that write to a database: beside it, whatever links lead to it.
+std::filesystem::path LockOfDatabase(const std::string& path);
 
 // Removes the file and SQLite's files beside it.
 void RemoveDatabase(const std::string& path);

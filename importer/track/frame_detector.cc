@@ -57,6 +57,23 @@ void WarnOfSymmetries(const FrameDetector& detector) {
       detector.dictionary.name, fmt::join(ids, " "));
 }
 
+// A checksum of what dictionary and layout tell an import. Only a tracked search uses the lines.
+std::string DescribeLayout(const FrameDetector& detector, SearchMode search) {
+  std::string known;
+  const cv::Mat& bytes = detector.dictionary.aruco->bytesList;
+  known.append(reinterpret_cast<const char*>(bytes.data), bytes.total() * bytes.elemSize());
+  for (const auto& [id, part] : detector.part_of_id) known += fmt::format("|{} {}", id, part);
+  for (const auto& [id, neighbors] : detector.graph) {
+    known += fmt::format("|{}: {}", id, fmt::join(neighbors, " "));
+  }
+  if (search == SearchMode::kTracked) {
+    for (const std::vector<int>& line : detector.lines) {
+      known += fmt::format("|line {}", fmt::join(line, " "));
+    }
+  }
+  return fmt::format("dictionary_and_layout={:016x}", Hash(known));
+}
+
 }  // namespace
 
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
@@ -85,22 +102,12 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
 }
 
 std::string DescribeDetector(const FrameDetector& detector) {
-  std::string known;
-  const cv::Mat& bytes = detector.dictionary.aruco->bytesList;
-  known.append(reinterpret_cast<const char*>(bytes.data), bytes.total() * bytes.elemSize());
-  for (const auto& [id, part] : detector.part_of_id) known += fmt::format("|{} {}", id, part);
-  for (const auto& [id, neighbors] : detector.graph) {
-    known += fmt::format("|{}: {}", id, fmt::join(neighbors, " "));
-  }
-  // Earlier versions searched exhaustively without naming it. Only a tracked search uses the lines.
+  // Earlier versions searched exhaustively without naming it.
   std::string search;
   if (detector.options.search == SearchMode::kTracked) {
     search =
         fmt::format(" search={} full_search_interval={}", SearchModeName(detector.options.search),
                     detector.options.full_search_interval);
-    for (const std::vector<int>& line : detector.lines) {
-      known += fmt::format("|line {}", fmt::join(line, " "));
-    }
   }
   // Databases of earlier versions hold the prior shape under the name map.
   if (!detector.prior_shape.empty()) {
@@ -112,11 +119,18 @@ std::string DescribeDetector(const FrameDetector& detector) {
   }
   return fmt::format(
       "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
-      "error_correction_rate={} inverted={} dictionary_and_layout={:016x}{}",
+      "error_correction_rate={} inverted={} {}{}",
       detector.dictionary.name, detector.border_bits,
       CornerRefinementName(detector.options.corner_refinement),
       detector.options.min_marker_perimeter_rate, detector.options.error_correction_rate,
-      detector.options.inverted ? 1 : 0, Hash(known), search);
+      detector.options.inverted ? 1 : 0, DescribeLayout(detector, detector.options.search), search);
+}
+
+bool IsOfLayout(const std::string& description, const FrameDetector& detector) {
+  for (const SearchMode search : {SearchMode::kTracked, SearchMode::kExhaustive}) {
+    if (description.find(DescribeLayout(detector, search)) != std::string::npos) return true;
+  }
+  return false;
 }
 
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray) {

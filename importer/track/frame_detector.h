@@ -73,6 +73,10 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
 // enter as a checksum.
 std::string DescribeDetector(const FrameDetector& detector);
 
+// Whether `description`, which DescribeDetector() has made, is of the dictionary and the layout of
+// `detector`, whatever its options.
+bool IsOfLayout(const std::string& description, const FrameDetector& detector);
+
 // The steps after the search. `gray` is the frame in grey, `quads` are the markers found in it.
 // Thread-safe.
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,

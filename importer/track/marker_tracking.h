@@ -13,6 +13,10 @@
 // whole frame is searched where far fewer markers are found than usual or the regions fill most of
 // the picture, and then in every next frame as long as this finds new markers. The result depends
 // on the frames and their order only.
+//
+// All tracks end after kFullSearchesPerGroup full searches, as the pictures of an encoded video end
+// to depend on earlier ones at a key frame: no frame of a group depends on another group, so that
+// the import of a long video can be split there (importer/import_part.h).
 
 #pragma once
 
@@ -27,6 +31,10 @@
 #include "importer/track/marker_track.h"
 
 namespace velamap {
+
+// 1800 frames with a full search in every 15th: small markers that only their tracks hold are lost
+// at each beginning, a per cent of all markers where these are near the smallest that can be found.
+inline constexpr int kFullSearchesPerGroup = 120;
 
 // The state of the tracking after a frame.
 struct MarkerTracks {

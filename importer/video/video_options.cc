@@ -30,4 +30,9 @@ bool VideoOptions::Selects(int frame_number) const {
          (frame_number - first_frame) % frame_step == 0;
 }
 
+bool operator==(const VideoOptions& a, const VideoOptions& b) {
+  return a.first_frame == b.first_frame && a.last_frame == b.last_frame &&
+         a.frame_step == b.frame_step;
+}
+
 }  // namespace velamap

@@ -16,6 +16,8 @@ struct VideoOptions {
   bool Selects(int frame_number) const;
 };
 
+bool operator==(const VideoOptions& a, const VideoOptions& b);
+
 OptionGroup DescribeOptions(VideoOptions* options);
 
 }  // namespace velamap

@@ -27,6 +27,7 @@ std::vector<std::pair<std::string, std::string>> CallsThatRead() {
       {"PriorShape", kPhotographs + kCamera + kLayout + "--prior_shape_path PIPE " + new_workspace},
       {"ProjectFile", "automatic_reconstructor --project_path PIPE"},
       {"Database", "frame_registrator " + kLayout + "--database_path PIPE --output_path @/new"},
+      {"Parts", "database_merger " + kLayout + "--database_paths PIPE --output_path @/new"},
       {"Model", "shape_exporter " + kLayout + "--input_path PIPE --shape_path @/new"},
       {"Shape", "shape_analyzer " + kLayout + "--shape_path PIPE"},
       {"Reference", "shape_analyzer " + kLayout + kShape + "--reference_path PIPE"},

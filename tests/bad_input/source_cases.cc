@@ -96,6 +96,59 @@ std::vector<BadInput> ChangedSources() {
        }}};
 }
 
+// Parts of a video that are not what the whole needs.
+std::vector<BadInput> Parts() {
+  const std::string merge =
+      "database_merger --layout_path @/layout.yml --output_path @/merged.db --database_paths ";
+  const auto part = [](int number, const std::string& more = "") {
+    return fmt::format(
+        "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
+        "@/layout.yml --video_part {0}/2 --database_path @/{0}.db {1}",
+        number, more);
+  };
+  const auto import_first = [part](const fs::path& dir) { RunGood(dir, part(1)); };
+  const auto import_both = [part](const fs::path& dir) {
+    for (const int number : {1, 2}) RunGood(dir, part(number));
+  };
+  return {
+      {"APartOfPhotographs", kImport + " --video_part 1/2", 2, "photographs have no parts"},
+      {"APartBeyondTheLast", kImportClip + " --video_part 3/2", 2,
+       "--video_part: '3/2' is no part"},
+      {"APartInWords", kImportClip + " --video_part second", 2,
+       "--video_part: 'second' is no part"},
+      {"AnotherPartInADatabase",
+       "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
+       "@/layout.yml --video_part 2/2 --database_path @/1.db",
+       2, "holds part 1/2", import_first},
+      {"AWholeImportInTheDatabaseOfAPart",
+       "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
+       "@/layout.yml --database_path @/1.db",
+       2, "holds part 1/2", import_first},
+      {"APartInTheDatabaseOfAWholeImport", kImportClip + " --video_part 1/2", 2,
+       "holds the import of a whole source",
+       [](const fs::path& dir) { RunGood(dir, kImportClip); }},
+      {"AWholeImportToMerge", merge + "@/workspace/database.db", 2, "holds no part of a video"},
+      {"AMissingPart", merge + "@/1.db", 2, "part 2/2 is missing", import_first},
+      {"APartNamedTwice", merge + "@/1.db,@/2.db,@/1.db", 2, "name each part once", import_both},
+      {"PartsOfOtherOptions", merge + "@/1.db,@/2.db", 2, "other detection options",
+       [part, import_first](const fs::path& dir) {
+         import_first(dir);
+         RunGood(dir, part(2, "--ArucoDetection.corner_refinement subpix"));
+       }},
+      {"PartsMergedWithAnotherLayout",
+       "database_merger --dictionary DICT_4X4_100 --marker_length 0.1 --output_path @/merged.db "
+       "--database_paths @/1.db,@/2.db",
+       2, "--layout_path: not the layout", import_both},
+      {"PartsMergedOverOne",
+       "database_merger --layout_path @/layout.yml --output_path @/2.db --database_paths "
+       "@/1.db,@/2.db",
+       2, "is the --database_paths too", import_both},
+      {"PartsMergedOverAPhotograph",
+       "database_merger --layout_path @/layout.yml --output_path @/images/1.png --database_paths "
+       "@/1.db,@/2.db",
+       2, "not an SQLite database", import_both}};
+}
+
 // Wishes that cannot be granted, and data that have no result.
 std::vector<BadInput> Wishes() {
   const auto write_layout = [](const std::string& rest) {
@@ -204,7 +257,7 @@ std::vector<BadInput> ImageFormations() {
 
 std::vector<BadInput> SourceCases() {
   std::vector<BadInput> cases = ChangedSources();
-  for (const auto& more : {Wishes(), ImageFormations()}) {
+  for (const auto& more : {Parts(), Wishes(), ImageFormations()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

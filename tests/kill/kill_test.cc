@@ -11,15 +11,13 @@
 #include <chrono>
 #include <cstdlib>
 #include <random>
-#include <set>
 #include <thread>
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
 #include "tests/bad_input/sandbox.h"
+#include "tests/support/database_text.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
@@ -36,25 +34,6 @@ int Setting(const char* name, int otherwise) {
 
 const std::string kOptions =
     " --camera_path @/camera.yml --layout_path @/layout.yml --workspace_path @/new ";
-
-// All rows of all tables: the same content may lie in other places of the file.
-std::string DatabaseText(const fs::path& path) {
-  SQLite::Database database(path.string(), SQLite::OPEN_READONLY);
-  EXPECT_EQ(database.execAndGet("PRAGMA integrity_check").getString(), "ok");
-  std::vector<std::string> tables;
-  SQLite::Statement names(database, "SELECT name FROM sqlite_master WHERE type = 'table'");
-  while (names.executeStep()) tables.push_back(names.getColumn(0).getString());
-  std::multiset<std::string> lines;
-  for (const std::string& table : tables) {
-    SQLite::Statement rows(database, "SELECT * FROM \"" + table + '"');
-    while (rows.executeStep()) {
-      std::string line = table;
-      for (int i = 0; i < rows.getColumnCount(); ++i) line += '|' + rows.getColumn(i).getString();
-      lines.insert(line);
-    }
-  }
-  return fmt::format("{}", fmt::join(lines, "\n"));
-}
 
 // The result, by the paths of its files. Logs and times are those of the run.
 std::map<std::string, std::string> ResultIn(const fs::path& workspace) {

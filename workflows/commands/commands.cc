@@ -52,7 +52,7 @@ std::vector<CommandGroup> CommandGroups() {
        {MarkerGenerator(), ShootPlanner(), CameraCalibrator(), ClipChecker()}},
       {"From pictures to the shape, in one call", {AutomaticReconstructor()}},
       {"The same in steps",
-       {MarkerImporter(), FrameRegistrator(), BundleAdjuster(), ShapeExporter()}},
+       {MarkerImporter(), DatabaseMerger(), FrameRegistrator(), BundleAdjuster(), ShapeExporter()}},
       {"Judging and comparing shapes", {ShapeAnalyzer(), ShapeComparer(), CentralFrameSweeper()}},
       {"About velamap", {Version()}}};
 }

@@ -38,6 +38,7 @@ Command ClipChecker();
 Command AutomaticReconstructor();
 Command MarkerGenerator();
 Command MarkerImporter();
+Command DatabaseMerger();
 Command FrameRegistrator();
 Command BundleAdjuster();
 Command CentralFrameSweeper();

@@ -1,10 +1,14 @@
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <fmt/ranges.h>
 
+#include "importer/base/error.h"
+#include "importer/base/numbers.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/pipeline.h"
@@ -16,6 +20,29 @@ namespace {
 struct Options : CommandOptions {
   MarkerImporterOptions importer;
 };
+
+// "2/5".
+VideoPart ParsePart(const std::string& text, const std::string& option) {
+  VideoPart part;
+  const std::string_view all = text;
+  const std::size_t slash = all.find('/');
+  const bool is_part = slash != std::string_view::npos &&
+                       ParseNumber(all.substr(0, slash), &part.number) &&
+                       ParseNumber(all.substr(slash + 1), &part.count);
+  if (is_part && part.number >= 1 && part.number <= part.count && part.count <= kMaxNumParts) {
+    return part;
+  }
+  throw InputError(fmt::format("{}: '{}' is no part; give 2/5 for the second of five, up to {}/{}",
+                               option, text, kMaxNumParts, kMaxNumParts));
+}
+
+Option PartOption(std::optional<VideoPart>* part) {
+  const auto set = [part](const std::string& text, const std::string& option) {
+    *part = ParsePart(text, option);
+  };
+  return {"video_part", ParsedValue{part, "", set}, "K/N",
+          "import the K-th of N parts of a video, for database_merger; left out: all frames"};
+}
 
 CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
@@ -31,7 +58,8 @@ CommandSyntax Declare(Options* options) {
              PathOption("frame_output_path", PathUse::kAddsToFolder, &paths->frame_output_path,
                         "folder for the frames of a video that hold markers, as JPEG; left out: "
                         "none are written"),
-             ImportAnewOption(&options->importer), PresetOption(&options->preset)}},
+             PartOption(&options->importer.part), ImportAnewOption(&options->importer),
+             PresetOption(&options->preset)}},
            DescribeOptions(&options->markers, true),
            DescribeOptions(&options->importer.detection),
            DescribeOptions(&options->importer.video),

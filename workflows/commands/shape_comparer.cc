@@ -1,7 +1,6 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -12,10 +11,8 @@
 #include "exporters/design/mesh_reader.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
-#include "importer/base/files.h"
 #include "importer/base/replacement.h"
 #include "importer/text/output_date.h"
-#include "importer/text/shown_text.h"
 #include "workflows/commands/commands.h"
 #include "workflows/commands/compared_shapes.h"
 #include "workflows/options/path_check.h"
@@ -45,22 +42,6 @@ struct Options : CommandOptions {
   }
 };
 
-std::vector<std::string> PathsFromText(const std::string& text, const std::string& option) {
-  std::vector<std::string> result;
-  std::istringstream list(text + ",");
-  for (std::string path; std::getline(list, path, ',');) {
-    if (path.empty() || !Exists(path)) {
-      throw InputError(
-          fmt::format("{}: '{}' does not exist; give shapes separated by commas, such as "
-                      "trim2/shape,trim3/shape",
-                      option, path));
-    }
-    MentionPath(path);
-    result.push_back(path);
-  }
-  return result;
-}
-
 OptionGroup InputGroup(Options* options) {
   MeshReadOptions* mesh = &options->mesh;
   const auto set_unit = [mesh](const std::string& text, const std::string& option) {
@@ -69,7 +50,7 @@ OptionGroup InputGroup(Options* options) {
   PathOptions* paths = &options->paths;
   std::vector<std::string>* series_paths = &options->series_paths;
   const auto set_series = [series_paths](const std::string& text, const std::string& option) {
-    *series_paths = PathsFromText(text, option);
+    *series_paths = PathsFromText(text, option, "trim2/shape,trim3/shape");
   };
   return {
       "Input",

@@ -11,13 +11,15 @@ from pathlib import Path
 from records import MAX_BYTES, fail, key_of, read_start
 from result_columns import RESULT_COLUMNS
 
-COLUMNS = ("name", "clip", "camera", "layout", "options", "central_frames")
+COLUMNS = ("name", "clip", "camera", "layout", "options", "central_frames", "parts")
 REQUIRED = ("name", "clip")
 # What the workflow gives itself.
 OWN_OPTIONS = {"image_path", "camera_path", "layout_path", "workspace_path", "database_path",
                "frame_output_path", "output_path", "models_path", "log_path", "central_frames",
-               "import_anew", "num_threads", "summary", "help", "help_all"}
+               "database_paths", "video_part", "import_anew", "num_threads", "summary", "help",
+               "help_all"}
 MAX_NAME_BYTES = 200
+MAX_NUM_PARTS = 100  # as velamap has it
 
 
 class RowError(Exception):
@@ -33,10 +35,16 @@ class Clip:
     layout: Path | None = None
     options: list[tuple[str, str]] = field(default_factory=list)
     central_frames: str = ""  # as written; empty: no sweep
+    num_parts: int = 1  # into how many jobs the import is split
     tags: dict[str, str] = field(default_factory=dict)
 
     def stages(self) -> list[str]:
         return ["import", "reconstruct"] + (["sweep"] if self.central_frames else [])
+
+    def part_stages(self) -> list[str]:
+        """The jobs that a split import begins with; `import` then merges what they have made."""
+        numbers = range(1, self.num_parts + 1) if self.num_parts > 1 else []
+        return [f"part_{number}" for number in numbers]
 
 
 def read_records(path: Path) -> list[tuple[int, list[str]]]:
@@ -171,6 +179,16 @@ def read_central_frames(cell: str) -> str:
                    "or 12;40 (frames, or names of photographs)")
 
 
+def read_num_parts(cell: str, path: Path) -> int:
+    if not cell:
+        return 1
+    if path.is_dir():
+        raise RowError("parts: photographs have no parts; leave it empty")
+    if not re.fullmatch(r"[0-9]{1,3}", cell) or not 1 <= int(cell) <= MAX_NUM_PARTS:
+        raise RowError(f"parts {cell}: is no number of parts from 1 to {MAX_NUM_PARTS}")
+    return int(cell)
+
+
 def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
     check_name(row["name"])
     paths = find_clips(row["clip"], folder)
@@ -182,6 +200,7 @@ def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
         clip.layout = find_file("layout", row.get("layout", ""), folder)
         clip.options = read_options(row.get("options", ""), folder, known)
         clip.central_frames = read_central_frames(row.get("central_frames", ""))
+        clip.num_parts = read_num_parts(row.get("parts", ""), path)
         clip.tags = {name: value for name, value in row.items() if name not in COLUMNS}
         clips.append(clip)
     names = [name for name, _ in clips[0].options]

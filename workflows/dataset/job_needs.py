@@ -20,10 +20,12 @@ def image_size_px(camera: Path | None) -> tuple[int, int]:
     return (int(colmap[1]), int(colmap[2])) if colmap else DEFAULT_SIZE_PX
 
 
-def needs_of(clip: Path, camera: Path | None) -> dict[str, int]:
-    """mem_mb and runtime_min of the largest job of a clip, with room to spare."""
+def needs_of(clip: Path, camera: Path | None, num_parts: int) -> dict[str, int]:
+    """mem_mb and runtime_min of the largest job of a clip, and the time of a part of its import,
+    with room to spare."""
     width, height = image_size_px(camera)
     megapixels = width * height / 1e6
     megabytes = sum(file.stat().st_size for file in files_below(clip)) / 1e6
     return {"mem_mb": round(600 + 100 * megapixels),
-            "runtime_min": round(10 + 0.5 * megabytes)}
+            "runtime_min": round(10 + 0.5 * megabytes),
+            "part_runtime_min": round(10 + 0.5 * megabytes / num_parts)}

@@ -20,8 +20,8 @@ from job_needs import needs_of
 from records import (MARK, PLAN, RESULT_FILES, as_json, fail, files_below, hash_of, job_file, key_of,
                      read_json, read_start, result_file, write_whole)
 
-COMMANDS = {"import": "marker_importer", "reconstruct": "automatic_reconstructor",
-            "sweep": "central_frame_sweeper"}
+COMMANDS = {"import": "marker_importer", "merge": "database_merger",
+            "reconstruct": "automatic_reconstructor", "sweep": "central_frame_sweeper"}
 
 
 def ask_velamap(*arguments: str) -> str:
@@ -63,24 +63,37 @@ def files_read(clip: Clip, options: list[tuple[str, str]]) -> dict[str, list[int
 def command_of(clip: Clip, stage: str, options: list[tuple[str, str]]) -> list[str]:
     """The command without the program and the number of threads; run in the folder OUTPUT."""
     workspace = f"clips/{clip.name}"
-    words = [COMMANDS[stage]]
-    if stage != "sweep":
+    jobs = f"jobs/{key_of(clip.name)}"
+    part = stage.partition("_")[2]
+    words = [COMMANDS[command_key(stage, clip)]]
+    if words[0] in ("marker_importer", "automatic_reconstructor"):
         words += ["--image_path", str(clip.path)]
         words += ["--camera_path", str(clip.camera)] if clip.camera else []
     words += ["--layout_path", str(clip.layout)] if clip.layout else []
-    if stage == "import":
-        words += ["--database_path", f"{workspace}/database.db", "--import_anew", "1"]
+    if words[0] == "database_merger":
+        parts = ",".join(f"{jobs}/{each}.db" for each in clip.part_stages())
+        words += ["--database_paths", parts, "--output_path", f"{workspace}/database.db"]
+    elif words[0] == "marker_importer":
+        words += ["--video_part", f"{part}/{clip.num_parts}"] if part else []
+        database = f"{jobs}/{stage}.db" if part else f"{workspace}/database.db"
+        words += ["--database_path", database, "--import_anew", "1"]
         if not clip.path.is_dir():
             words += ["--frame_output_path", f"{workspace}/images"]
     elif stage == "reconstruct":
         words += ["--workspace_path", workspace, "--summary", "json"]
     else:
         words += ["--database_path", f"{workspace}/database.db", "--central_frames",
-                  clip.central_frames, "--output_path", f"jobs/{key_of(clip.name)}/sweep.csv",
-                  "--log_path", f"jobs/{key_of(clip.name)}/sweep_colmap.log"]
+                  clip.central_frames, "--output_path", f"{jobs}/sweep.csv",
+                  "--log_path", f"{jobs}/sweep_colmap.log"]
     for name, value in options:
         words += [f"--{name}", value]
     return words
+
+
+def command_key(stage: str, clip: Clip) -> str:
+    if stage == "import" and clip.num_parts > 1:
+        return "merge"
+    return "import" if stage.startswith("part_") else stage
 
 
 def check_output(output: Path) -> None:
@@ -110,12 +123,13 @@ def check_folders(output: Path, clips: list[Clip]) -> None:
                  "folder")
 
 
-def forget_lost_results(output: Path, clip: Clip, retry_failed: bool) -> None:
+def forget_lost_results(output: Path, clip: Clip, parts: list[str], retry_failed: bool) -> None:
     """Removes the records of results that have been deleted, or that failed and shall be tried."""
     workspace = output / "clips" / clip.name
     key = key_of(clip.name)
     made = {"import": workspace / "database.db", "reconstruct": workspace / "report.html",
-            "sweep": output / "jobs" / key / "sweep.csv"}
+            "sweep": output / "jobs" / key / "sweep.csv",
+            **{part: output / "jobs" / key / f"{part}.db" for part in parts}}
     for stage, file in made.items():
         result = output / result_file(key, stage)
         if not result.exists():
@@ -129,19 +143,24 @@ def write_jobs(output: Path, tags: list[str], clips: list[Clip], cores: int,
                known: dict[str, set[str]]) -> None:
     version = ask_velamap("version").splitlines()[0]
     retry_failed = os.environ.get("RETRY_FAILED") == "1"
+    threads = max(1, cores // len(clips))
     rows: list[dict[str, Any]] = []
     for clip in clips:
         key = key_of(clip.name)
-        for stage in clip.stages():
-            options = [option for option in clip.options if option[0] in known[stage]]
-            job = {"stage": stage, "version": version, "command": command_of(clip, stage, options),
+        parts = clip.part_stages()
+        for stage in parts + clip.stages():
+            known_here = known[command_key(stage, clip)]
+            options = [option for option in clip.options if option[0] in known_here]
+            job = {"stage": stage, "version": version,
+                   "command": command_of(clip, stage, options),
+                   "after": parts if stage == "import" else [] if stage in parts else ["import"],
                    "files": files_read(clip, options)}
             write_whole(output / job_file(key, stage), as_json(job))
-        forget_lost_results(output, clip, retry_failed)
+        forget_lost_results(output, clip, parts, retry_failed)
         rows.append({"name": clip.name, "key": key, "clip": clip.path.name, "tags": clip.tags,
-                     "central_frames": clip.central_frames, "stages": clip.stages(),
-                     **needs_of(clip.path, clip.camera)})
-    threads = max(1, cores // len(rows))
+                     "central_frames": clip.central_frames, "parts": parts,
+                     "stages": clip.stages(), "part_threads": max(1, threads // clip.num_parts),
+                     **needs_of(clip.path, clip.camera, clip.num_parts)})
     write_whole(output / PLAN, as_json({"version": version, "tags": tags, "threads": threads,
                                         "rows": rows}))
 

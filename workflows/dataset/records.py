@@ -4,6 +4,7 @@
     OUTPUT/jobs/KEY/STAGE.job    JSON: the job, the files that it reads, the command
     OUTPUT/jobs/KEY/STAGE.json   its result: exit code, reason, figures
     OUTPUT/jobs/KEY/STAGE.log    the line to copy, and what the program said
+    OUTPUT/jobs/KEY/part_K.db    what job part_K has imported, which `import` merges with the others
     OUTPUT/jobs/plan.json        the table of clips as it was read
     OUTPUT/.velamap_dataset      marks the folder; hashes of dataset.csv and dataset.html
 """

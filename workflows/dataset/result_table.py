@@ -38,12 +38,23 @@ def section_column(section: dict[str, Any], figure: str) -> str:
     return f"{section['part']}_{section['section']}_{figure}"
 
 
+def with_parts(result: dict[str, Any], clip: dict[str, Any], output: Path) -> dict[str, Any]:
+    """The result of an import with the time of its parts, and the memory of the largest."""
+    paths = [output / result_file(clip["key"], part) for part in clip["parts"]]
+    results = [result] + [read_json(path) for path in paths if path.exists()]
+    if len(results) == 1:
+        return result
+    return {**result, "wall_s": round(sum(each.get("wall_s", 0) for each in results), 3),
+            "peak_memory_mb": max(each.get("peak_memory_mb", 0) for each in results)}
+
+
 def row_of(clip: dict[str, Any], output: Path) -> dict[str, Any]:
     """All cells of a clip that there are, by column; `sections` and `reasons` are the page's."""
     results = {}
     for stage in clip["stages"]:
         path = output / result_file(clip["key"], stage)
         results[stage] = read_json(path) if path.exists() else NOT_RUN
+    results["import"] = with_parts(results["import"], clip, output)
     row: dict[str, Any] = {"name": clip["name"], "clip": clip["clip"], "tags": clip["tags"]}
     for stage, result in results.items():
         row.update(result.get("figures", {}))

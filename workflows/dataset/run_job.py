@@ -78,11 +78,19 @@ def figures_of_sweep(path: Path) -> dict[str, float]:
     return figures
 
 
+def database_of(command: list[str]) -> Path:
+    """The database that an import or the merge of its parts writes."""
+    option = "--output_path" if command[0] == "database_merger" else "--database_path"
+    return Path(command[command.index(option) + 1])
+
+
 def figures_of(stage: str, command: list[str], printed: str) -> dict[str, Any]:
     if stage == "import":
-        database = Path(command[command.index("--database_path") + 1])
+        database = database_of(command)
         duration = duration_s(database) if database.exists() else None
         return {} if duration is None else {"duration_s": duration}
+    if stage.startswith("part_"):
+        return {}
     if stage == "sweep":
         table = Path(command[command.index("--output_path") + 1])
         return figures_of_sweep(table) if table.exists() else {}
@@ -120,13 +128,12 @@ def run(command: list[str], log: TextIO) -> tuple[int, str]:
 
 def run_job(job: dict[str, Any], log_path: Path, threads: str) -> dict[str, Any]:
     stage, command = job["stage"], job["command"]
-    if stage != "import":
-        earlier = read_json(log_path.with_name("import.json"))
+    for earlier_stage in job["after"]:
+        earlier = read_json(log_path.with_name(f"{earlier_stage}.json"))
         if earlier["exit_code"]:
             return {"exit_code": earlier["exit_code"], "error": earlier["error"]}
-    else:
-        Path(command[command.index("--database_path") + 1]).parent.mkdir(parents=True,
-                                                                         exist_ok=True)
+    if command[0] in ("marker_importer", "database_merger"):
+        database_of(command).parent.mkdir(parents=True, exist_ok=True)
     begin = time.monotonic()
     with log_path.open("a", encoding="utf-8") as log:
         start = log.tell()

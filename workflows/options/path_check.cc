@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <string>
 #include <variant>
 
@@ -107,6 +108,22 @@ void CheckInputKind(const std::string& used_by, const fs::path& path) {
       "{}: {} is a pipe or a device, which may never end; give a file, such as a copy of what it "
       "yields",
       used_by, path.string()));
+}
+
+std::vector<std::string> PathsFromText(const std::string& text, const std::string& option,
+                                       const std::string& example) {
+  std::vector<std::string> paths;
+  std::istringstream list(text + ",");
+  for (std::string path; std::getline(list, path, ',');) {
+    if (path.empty() || !Exists(path)) {
+      throw InputError(
+          fmt::format("{}: '{}' does not exist; give paths separated by commas, such as {}", option,
+                      path, example));
+    }
+    MentionPath(path);
+    paths.push_back(path);
+  }
+  return paths;
 }
 
 void CompletePaths(const std::vector<OptionGroup>& groups) {

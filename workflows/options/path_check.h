@@ -14,6 +14,11 @@ namespace velamap {
 // the option.
 void CheckInputKind(const std::string& used_by, const std::filesystem::path& path);
 
+// The paths in the value of `option`, with commas between them. Throws InputError, which shows
+// `example`, for one that does not exist.
+std::vector<std::string> PathsFromText(const std::string& text, const std::string& option,
+                                       const std::string& example);
+
 // Once the options are set: sets outputs that are left out to the file beside another output, and
 // throws InputError where CheckOutputs() (importer/base/replacement.h) does, for an input that is a
 // pipe or a device, and for an output that is a pipe. Texts that are sent around will not show the

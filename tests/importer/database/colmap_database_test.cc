@@ -339,5 +339,39 @@ TEST(ColmapDatabase, ReadsAWriteAheadDatabaseAndLeavesNoExtraFiles) {
   EXPECT_EQ(NumFiles(dir), 1);
 }
 
+// The tables and columns that COLMAP 3.12 and 4.x add to a database that they open. Without a row
+// in `frames` COLMAP makes each image a frame of its own, so none may come from us.
+TEST(ColmapDatabase, AddsToADatabaseThatALaterColmapHasOpened) {
+  const TempDir dir;
+  const std::string path = dir / "database.db";
+  {
+    ColmapDatabase database(path, Mode::kReadWriteCreate);
+    database.AddImage(database.AddCamera(kCamera), SomeDetections("a.jpg"), "how");
+  }
+  SQLite::Database(path, SQLite::OPEN_READWRITE)
+      .exec(
+          "CREATE TABLE rigs(rig_id INTEGER PRIMARY KEY, ref_sensor_id INTEGER NOT NULL,"
+          " ref_sensor_type INTEGER NOT NULL);"
+          "CREATE TABLE frames(frame_id INTEGER PRIMARY KEY, rig_id INTEGER NOT NULL);"
+          "CREATE TABLE frame_data(frame_id INTEGER NOT NULL, data_id INTEGER NOT NULL,"
+          " sensor_id INTEGER NOT NULL, sensor_type INTEGER NOT NULL);"
+          "ALTER TABLE descriptors ADD COLUMN type INTEGER NOT NULL DEFAULT 0;"
+          "ALTER TABLE two_view_geometries ADD COLUMN camera1 BLOB;"
+          "PRAGMA user_version = 4020000");
+  {
+    ColmapDatabase database(path, Mode::kReadWriteCreate);
+    database.AddImage(database.AddCamera(kCamera), SomeDetections("b.jpg"), "how");
+    database.WriteMatches(1, 2, {{0, 0}});
+    EXPECT_EQ(database.ReadImages().size(), 2u);
+  }
+  SQLite::Database sqlite(path);
+  for (const char* table : {"images", "keypoints", "descriptors"}) {
+    EXPECT_EQ(sqlite.execAndGet(std::string("SELECT count(*) FROM ") + table).getInt(), 2) << table;
+  }
+  for (const char* table : {"rigs", "frames", "frame_data"}) {
+    EXPECT_EQ(sqlite.execAndGet(std::string("SELECT count(*) FROM ") + table).getInt(), 0) << table;
+  }
+}
+
 }  // namespace
 }  // namespace velamap

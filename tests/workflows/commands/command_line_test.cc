@@ -15,9 +15,10 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::vector<std::string> kCommands = {
-    "automatic_reconstructor", "marker_generator", "marker_importer",       "frame_registrator",
-    "bundle_adjuster",         "shape_exporter",   "central_frame_sweeper", "shape_analyzer",
-    "shape_comparer",          "version"};
+    "automatic_reconstructor", "marker_generator", "marker_importer",
+    "frame_registrator",       "bundle_adjuster",  "shape_exporter",
+    "central_frame_sweeper",   "shape_analyzer",   "shape_comparer",
+    "database_merger",         "version"};
 
 TEST(CommandLineTest, HelpListsAllCommands) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{},

@@ -58,10 +58,10 @@ name='odd "one" {x} <b>'
 # As a spreadsheet saves it: byte order mark, semicolons, CRLF, a blank row, comma as decimal point.
 quick="--ArucoDetection.estimate_formation 0"
 {
-  printf '\xef\xbb\xbfName;Clip;camera;layout;options;Central frames;sailing;wind\r\n'
-  printf '"%s";two words;camera.yml;layout.yml;%s;;x;4,5\r\n' "${name//\"/\"\"}" "$quick"
-  printf 'no markers;empty;;layout.yml;%s;;;6\r\n;;;;;;;\r\n' "$quick"
-  printf 'sail;%s;%s;%s;%s --Video.last_frame 60 --Video.frame_step 3;0:60:30;x;7\r\n' \
+  printf '\xef\xbb\xbfName;Clip;camera;layout;options;Central frames;Parts;sailing;wind\r\n'
+  printf '"%s";two words;camera.yml;layout.yml;%s;;;x;4,5\r\n' "${name//\"/\"\"}" "$quick"
+  printf 'no markers;empty;;layout.yml;%s;;;;6\r\n;;;;;;;;\r\n' "$quick"
+  printf 'sail;%s;%s;%s;%s --Video.last_frame 60 --Video.frame_step 3;0:60:30;2;x;7\r\n' \
     "$samples"/sail/{clip.mp4,camera.yml,layout.yml} "$quick"
 } >table.csv
 mkdir out
@@ -90,6 +90,8 @@ head -n 1 out/dataset.csv | grep -q ',[a-z0-9_]*_camber_percent,' || fail "no se
 [[ -s "out/clips/$name/report.html" ]] || fail "no report of $name"
 grep -q 'velamap marker_importer --image_path .*two words' out/jobs/odd*/import.log ||
   fail "the log has no line to copy"
+grep -q 'velamap database_merger .*/part_1.db,.*/part_2.db' out/jobs/sail/import.log ||
+  fail "the import of the sail was not split"
 ! grep -q "$folder" out/dataset.csv out/dataset.html || fail "the tables name folders"
 for text in 'odd &quot;one&quot; {x} &lt;b&gt;' '<svg' '<td class="tag">•</td>' 'href="clips/sail/report.html"'; do
   grep -qF "$text" out/dataset.html || fail "dataset.html has no $text"
@@ -161,6 +163,10 @@ refused "${head}a,empty,layout.yml,,10:0:1\n" "central_frames 10:0:1: is none of
 refused "${head}a,empty,layout.yml,--Video.frame_stp 2,\n" "velamap has no --Video.frame_stp"
 refused "${head}a,empty,layout.yml,--workspace_path x,\n" "gives --workspace_path itself"
 refused "${head}a,empty,,,\n" "layout: is empty"
+refused "name,clip,layout,parts\na,empty,layout.yml,2\n" "photographs have no parts"
+for parts in 0 101 2.5 two; do
+  refused "name,clip,layout,parts\na,$samples/sail/clip.mp4,layout.yml,$parts\n" "parts $parts: is no number"
+done
 refused "${head}\"a,empty,layout.yml,,\n" "line 2: .*quotes"
 refused "name,layout\n" "has no column clip"
 refused "${head}a,empty,layout.yml,,\n" "is no data set of this workflow" empty

@@ -22,6 +22,7 @@ using Names = std::set<std::string>;
 // The commands that run the code of a folder or file; of several entries the longest counts.
 const std::map<std::string, Names> kCommandsOfPath = {
     {"importer/", {"automatic_reconstructor", "marker_importer"}},
+    {"importer/database_merger.cc", {"database_merger"}},
     {"importer/base/",
      {"automatic_reconstructor", "marker_importer", "frame_registrator", "bundle_adjuster",
       "central_frame_sweeper", "shape_exporter", "shape_analyzer", "shape_comparer"}},

@@ -183,6 +183,7 @@ std::string GoodValue(const Option& option) {
   if (option.name == "frame") return "lines";
   if (option.name == "reference_unit") return "mm";
   if (option.name == "series_paths") return ".";  // has to exist
+  if (option.name == "video_part") return "2/5";
   const std::string default_text = std::get<ParsedValue>(option.target).default_text;
   return default_text.empty() ? "1,2" : default_text;
 }

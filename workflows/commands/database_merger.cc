@@ -1,0 +1,66 @@
+#include "importer/database_merger.h"
+
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "importer/base/replacement.h"
+#include "workflows/commands/commands.h"
+#include "workflows/options/path_check.h"
+#include "workflows/options/shared_options.h"
+
+namespace velamap {
+namespace {
+
+struct Options : CommandOptions {
+  std::string database_paths;
+  DatabaseMergerOptions merger;
+};
+
+CommandSyntax Declare(Options* options) {
+  return {"database_merger",
+          "makes one database of the parts of a long video, each of which is an import of its own",
+          "--database_paths part1.db,part2.db,part3.db --layout_path layout.yml \\\n"
+          "    --output_path database.db",
+          {{"Input and output",
+            {Required({"database_paths", &options->database_paths, "databases",
+                       "those of all parts, in any order: part1.db,part2.db"}),
+             Required(PathOption("output_path", PathUse::kWritesFile, &options->paths.output_path,
+                                 "database, as one import of the whole video makes it; one of "
+                                 "velamap that is there is replaced"))}},
+           DescribeOptions(&options->markers, true),
+           DescribeOptions(&options->general)}};
+}
+
+void Validate(Options* options) {
+  options->merger.output_path = options->paths.output_path;
+  options->merger.database_paths =
+      PathsFromText(options->database_paths, "--database_paths", "part1.db,part2.db");
+  // The check of ParseOptions() knows options of one path only.
+  std::vector<UsedPath> inputs;
+  for (const std::string& path : options->merger.database_paths) {
+    CheckInputKind("--database_paths", path);
+    inputs.push_back({"--database_paths", path});
+  }
+  CheckOutputs(inputs, {{"--output_path", options->merger.output_path}});
+  options->merger.layout = LoadLayout(options->markers, true);
+}
+
+void Run(const Options& options) {
+  const MergeReport report = MergeDatabases(options.merger);
+  fmt::print(std::cout, "parts: {}\n", options.merger.database_paths.size());
+  fmt::print(std::cout, "images: {}\n", report.num_images);
+  fmt::print(std::cout, "markers: {}\n", report.num_markers);
+  fmt::print(std::cout, "pairs_with_matches: {}\n", report.num_pairs);
+  fmt::print(std::cout, "database_path: {}\n", options.merger.output_path);
+}
+
+}  // namespace
+
+Command DatabaseMerger() {
+  return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run);
+}
+
+}  // namespace velamap
