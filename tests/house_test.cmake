@@ -10,7 +10,7 @@ set(num_files 0)
 
 # Only the database's files know SQL; only the search, the detector and the dictionaries know
 # cv::aruco.
-set(SQL_FILES "^importer/database/(colmap_(database|schema)|(camera|image_formation|marker_detections|part|source|tracking)_table)\.cc$")
+set(SQL_FILES "^importer/database/(colmap_(database|schema)|(camera|image_formation|marker_detections|part|source|tracking)_table)\\.cc$")
 # Only these files call the operations of std::filesystem, because they turn a failure into an input
 # error; elsewhere its exceptions would end the program as a broken invariant.
 set(FILE_SYSTEM_FILES "^importer/base/(files|atomic_output)\\.cc$")
