@@ -47,9 +47,10 @@ struct Found {
 };
 
 Found Find(const std::vector<DatabaseImage>& images, const std::map<CameraId, Camera>& guesses,
-           const Layout& layout) {
+           const Layout& layout, double inset_sigma_px = 0.0) {
   MarkerAdjustmentOptions adjustment;
   adjustment.find_camera = true;
+  adjustment.inset_sigma_px = inset_sigma_px;
   const CornerErrors sigmas = CornerErrorsOf(images);
   Found found;
   found.all = FindCameras(images, guesses, layout, sigmas, {}, adjustment);
@@ -92,6 +93,30 @@ TEST(CameraSearch, DrawnCamerasAreFoundWithinTheirSigmas) {
     sum += std::pow(error / sigma, 2);
   }
   EXPECT_LT(sum / kNumDraws, 3.3);  // 99.9 % of chi-squared with 8 degrees of freedom
+}
+
+// Squares that are seen too small seem to be foreshortened otherwise than they are.
+TEST(CameraSearch, AnInsetOfAllCornersIsInTheSigmaOfTheFocalLength) {
+  constexpr double kInsetPx = 0.2;
+  const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 964, 537, -0.05}};
+  const SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 5);
+  std::vector<DatabaseImage> images = ImagesOf(scene);
+  for (DatabaseImage& image : images) {
+    for (MarkerDetection& marker : image.detections.markers) {
+      const auto seen = marker.corners_in_image_px;
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        const auto next = seen[(i + 1) % 4], last = seen[(i + 3) % 4];
+        marker.corners_in_image_px[i] +=
+            kInsetPx * ((next - seen[i]).normalized() + (last - seen[i]).normalized());
+      }
+    }
+  }
+  const std::map<CameraId, Camera> guesses = {{1, UnknownCamera(1920, 1080)}};
+  const Found unaware = Find(images, guesses, scene.layout);
+  const Found aware = Find(images, guesses, scene.layout, kInsetPx);
+  EXPECT_GT(aware.estimate.sigmas.front(), 1.3 * unaware.estimate.sigmas.front());
+  EXPECT_LT(std::abs(FocalError(aware, truth)),
+            3.0 * aware.estimate.sigmas.front() / MeanFocalLength(truth));
 }
 
 TEST(CameraSearch, AFisheyeIsFoundAsOne) {
