@@ -78,10 +78,14 @@ class ImportRun {
     if (Load(frame, &result.skipped_because)) {
       const StageTimer timer(ImportStage::kDetect);
       result.camera = CameraOfFrame(options_, source_->IsVideo(), *frame);
-      const std::vector<MarkerQuad> quads =
-          turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
-               : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.prior_shape);
-      result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
+      if (detector_.chessboard) {
+        result.detections = DetectChessboard(*detector_.chessboard, *frame);
+      } else {
+        const std::vector<MarkerQuad> quads =
+            turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
+                 : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.prior_shape);
+        result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
+      }
       WriteImage(*frame, result.detections);
       AddToSample(frame_idx, frame->gray);
       result.source = frame->source;
@@ -312,7 +316,9 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   ArucoDetectionOptions detection = options.detection;
   if (IsFolder(options.image_path)) detection.search = SearchMode::kExhaustive;
   CheckImagePath(options.image_path);
-  FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
+  FrameDetector detector = options.chessboard
+                               ? MakeChessboardDetector(*options.chessboard)
+                               : MakeFrameDetector(options.layout, detection, options.prior_shape);
 
   const FileLock lock(LockOf(options.database_path), options.database_path);
   if (options.import_anew) RemoveEarlierImport(options);
@@ -325,7 +331,8 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   CheckExisting(options, DescribeDetector(detector), database);
   NoteSources(options, known_names, &database);
   CheckFrameFolder(options, known_names);
-  if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
+  if (detector.options.corner_refinement == CornerRefinement::kEdge &&
+      detector.options.estimate_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }
   ImportReport report =

@@ -16,8 +16,11 @@
 #include "importer/marker_importer.h"
 #include "importer/track/frame_detector.h"
 #include "workflows/check/clip_frames.h"
+#include "workflows/check/clip_map.h"
 #include "workflows/check/clip_precision.h"
+#include "workflows/check/layout_correction.h"
 #include "workflows/check/marker_light.h"
+#include "workflows/check/print_faults.h"
 #include "workflows/run/progress.h"
 
 namespace velamap {
@@ -193,9 +196,10 @@ class Checker {
     importer.camera_path = options_.camera_path;
     importer.layout = layout;
     importer.detection = detection;
-    // The estimate takes longer than all else, and only the precision needs it: without it, the
-    // sides of the markers contradict the layout.
-    importer.detection.estimate_formation = detection.estimate_formation && MeasuresPrecision();
+    // The estimate takes longer than all else, and only what measures the markers' sides needs it:
+    // without it, they contradict the layout.
+    importer.detection.estimate_formation =
+        detection.estimate_formation && (MeasuresPrecision() || options_.proposes_layout);
     importer.num_threads = options_.num_threads;
     importer.video = video;
     try {
@@ -206,17 +210,49 @@ class Checker {
           }).num_frames_read;
     } catch (const DataError& error) {
       check_.facts.no_markers_because = error.what();
+      if (options_.proposes_layout) FindFaults(clip, {}, layout, importer.detection);
       return;
     }
     const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
     const std::vector<DatabaseImage> images = database.ReadImages();
     CollectFacts(clip, video.frame_step, layout, images);
+    if (options_.proposes_layout) {
+      FindFaults(clip, images, layout, importer.detection);
+      Propose(importer.database_path, layout);
+    }
     if (!MeasuresPrecision()) return;
     try {
       check_.facts.precision =
           MeasurePrecision(importer.database_path, layout, options_.num_threads);
     } catch (const DataError& error) {
       check_.facts.no_precision_because = error.what();
+    }
+  }
+
+  void FindFaults(const ClipFrames& clip, const std::vector<DatabaseImage>& images,
+                  const Layout& layout, const ArucoDetectionOptions& detection) {
+    std::map<std::string, const FrameDetections*> by_name;
+    for (const DatabaseImage& image : images) {
+      by_name[image.detections.image_name] = &image.detections;
+    }
+    ClipFacts& facts = check_.facts;
+    facts.contradictions = DescribeFaults(FindPrintFaults(clip.frames, by_name, layout, detection),
+                                          static_cast<int>(facts.num_frames_of_id.size()),
+                                          static_cast<int>(clip.frames.size()));
+  }
+
+  void Propose(const std::string& database_path, const Layout& layout) {
+    ClipFacts& facts = check_.facts;
+    try {
+      const ClipMap map = MapClip(database_path, layout, options_.num_threads);
+      check_.proposal =
+          layout.HasMarkers() ? CorrectLayout(map, layout) : ProposeLayout(map, layout);
+      for (const std::string& line : map.doubled) facts.contradictions.push_back(line);
+      for (const std::string& line : check_.proposal->contradictions) {
+        facts.contradictions.push_back(line);
+      }
+    } catch (const DataError& error) {
+      facts.no_proposal_because = error.what();
     }
   }
 
