@@ -83,7 +83,17 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
   return detector;
 }
 
+FrameDetector MakeChessboardDetector(const Chessboard& board) {
+  FrameDetector detector;
+  detector.chessboard = board;
+  detector.options.search = SearchMode::kExhaustive;
+  // The corners of a chessboard are symmetric, so that nothing moves them in or out.
+  detector.options.estimate_formation = false;
+  return detector;
+}
+
 std::string DescribeDetector(const FrameDetector& detector) {
+  if (detector.chessboard) return ChessboardName(*detector.chessboard);
   std::string known;
   const cv::Mat& bytes = detector.dictionary.aruco->bytesList;
   known.append(reinterpret_cast<const char*>(bytes.data), bytes.total() * bytes.elemSize());
