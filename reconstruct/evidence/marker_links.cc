@@ -154,6 +154,22 @@ class Linker {
   std::vector<bool> used_;                          // by link
 };
 
+// Where the next marker of a row is missing, one of a neighbouring row can seem to follow. It
+// stands beside the straight line through the last two markers, `a` and `b`, by most of a step.
+bool IsBeside(const StandingMarker& a, const StandingMarker& b, const StandingMarker& next) {
+  constexpr double kMaxSidestep = 0.6;  // of a step
+  const Eigen::Vector3d step = b.center_m - a.center_m;
+  return step.normalized().cross(next.center_m - b.center_m).norm() > kMaxSidestep * step.norm();
+}
+
+void TrimEnd(const std::vector<StandingMarker>& markers, MarkerChain* chain) {
+  const std::size_t num = chain->size();
+  if (num < 3) return;
+  if (IsBeside(markers[(*chain)[num - 3]], markers[(*chain)[num - 2]], markers[chain->back()])) {
+    chain->pop_back();
+  }
+}
+
 MarkerChain Reversed(MarkerChain chain) {
   std::reverse(chain.begin(), chain.end());
   return chain;
@@ -172,6 +188,9 @@ std::optional<double> BendAtGap(const std::vector<StandingMarker>& markers, cons
   const Eigen::Vector3d gap = markers[b.front()].center_m - markers[a.back()].center_m;
   const double step = StepOf(markers, a);
   if (gap.norm() > kMaxGap * step) return std::nullopt;
+  if (IsBeside(markers[a[a.size() - 2]], markers[a.back()], markers[b.front()])) {
+    return std::nullopt;
+  }
   double bend = Bend(markers[a.back()].center_m - markers[a[a.size() - 2]].center_m, gap);
   if (b.size() > 1) {
     if (!AreLike(step, StepOf(markers, b))) return std::nullopt;
@@ -238,6 +257,11 @@ double StepOf(const std::vector<StandingMarker>& markers, const MarkerChain& cha
 
 std::vector<MarkerChain> FindChains(const std::vector<StandingMarker>& markers) {
   std::vector<MarkerChain> chains = Linker(markers).Chains();
+  for (MarkerChain& chain : chains) {
+    TrimEnd(markers, &chain);
+    chain = Reversed(std::move(chain));
+    TrimEnd(markers, &chain);
+  }
   std::set<std::size_t> on_rows;
   for (const MarkerChain& chain : chains) {
     if (chain.size() >= 3) on_rows.insert(chain.begin(), chain.end());

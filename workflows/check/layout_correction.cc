@@ -128,10 +128,11 @@ class Corrector {
         }
       };
       for (const Ids& row : group.horizontal) {
-        const bool is_new = part != nullptr && !part->horizontal.empty() && row.size() >= 3 &&
-                            std::all_of(row.begin(), row.end(), [&](int id) {
-                              return PartOfMarker(proposal_.layout, id).empty();
-                            });
+        const bool is_new =
+            part != nullptr && !part->horizontal.empty() && row.size() >= 3 &&
+            std::all_of(row.begin(), row.end(), [&](int id) {
+              return PartOfMarker(proposal_.layout, id).empty() || IsOn(part->vertical, id);
+            });
         if (is_new) AddLine(row, part);
         collect(row);
       }
@@ -157,6 +158,11 @@ class Corrector {
     part.marker_ids = std::move(added_alone);
     proposal_.layout.parts.push_back(std::move(part));
     proposal_.notes.push_back("part unnamed: NOT SURE where its markers belong");
+  }
+
+  static bool IsOn(const std::vector<MarkerLine>& lines, int id) {
+    return std::any_of(lines.begin(), lines.end(),
+                       [id](const MarkerLine& line) { return Contains(line.marker_ids, id); });
   }
 
   void AddLine(const Ids& row, LayoutPart* part) {

@@ -14,7 +14,23 @@
 namespace velamap {
 namespace {
 
-bool HasLines(const RowGroup& rows) { return rows.horizontal.size() >= 2; }
+// Rows of one direction do not cross. Those of a chessboard's squares do: its diagonals are as much
+// horizontal as vertical.
+bool AreCrossing(const std::vector<std::vector<int>>& rows) {
+  std::set<int> ids;
+  for (const std::vector<int>& row : rows) {
+    for (const int id : row) {
+      if (!ids.insert(id).second) return true;
+    }
+  }
+  return false;
+}
+
+bool LinesCross(const RowGroup& rows) {
+  return AreCrossing(rows.horizontal) || AreCrossing(rows.vertical);
+}
+
+bool HasLines(const RowGroup& rows) { return rows.horizontal.size() >= 2 && !LinesCross(rows); }
 
 std::vector<MarkerLine> Named(char letter, std::vector<std::vector<int>> rows) {
   std::vector<MarkerLine> lines;
@@ -89,13 +105,17 @@ LayoutPart RigidPart(const std::string& name, const RowGroup& rows, bool is_seen
     for (const std::vector<int>& row : *all) ids.insert(row.begin(), row.end());
   }
   part.marker_ids.assign(ids.begin(), ids.end());
+  if (LinesCross(rows)) {
+    notes->push_back(fmt::format(
+        "{}: NOT SURE of its lines: they cross others of the same direction, and none is written",
+        name));
+  }
   notes->push_back(
       is_seen_to_move
           ? fmt::format("{}: its markers keep their places and move against the largest part", name)
-          : fmt::format(
-                "{}: NOT SURE whether it is a rigid part of its own: it stands apart or on one "
-                "line only, and did not move against the others in this clip",
-                name));
+          : fmt::format("{}: NOT SURE whether it is a rigid part of its own: it has fewer "
+                        "than two clear lines, and did not move against the others in this clip",
+                        name));
   return part;
 }
 
@@ -180,7 +200,11 @@ void CorrectLengths(const ClipMap& map, LayoutProposal* proposal) {
       proposal->contradictions.push_back(fmt::format(
           "marker {} is {:.1f} mm long and not {:g} mm, as measured against the others", marker_id,
           kMmPerM * map.sides.at(marker_id).length_m, kMmPerM * MarkerLength(layout, marker_id)));
-      layout.marker_lengths_m[marker_id] = length_m;
+      if (length_m == layout.marker_length_m) {
+        layout.marker_lengths_m.erase(marker_id);
+      } else {
+        layout.marker_lengths_m[marker_id] = length_m;
+      }
     }
     proposal->notes.push_back(
         fmt::format("markers {}: a length of {} was measured, if most others are as long as they "

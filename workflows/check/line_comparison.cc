@@ -163,6 +163,25 @@ std::string GivenPlace(const std::vector<ComparedLine>& lines, const Layout& lay
                      line.is_vertical ? "vertical" : "horizontal");
 }
 
+// Markers of `line` that stand on another line, on which the layout has them, too.
+std::vector<std::string> DescribeTwice(const std::vector<ComparedLine>& lines,
+                                       const ComparedLine& line) {
+  std::vector<std::string> texts;
+  for (const int id : line.given) {
+    if (Contains(line.row, id)) continue;
+    for (const ComparedLine& other : lines) {
+      if (&other == &line || other.is_vertical != line.is_vertical || !Contains(other.row, id) ||
+          !Contains(other.given, id)) {
+        continue;
+      }
+      texts.push_back(
+          fmt::format("line {}: marker {} stands on line {} only, and the layout has it on both",
+                      line.line->name, id, other.line->name));
+    }
+  }
+  return texts;
+}
+
 }  // namespace
 
 bool Contains(const Ids& ids, int id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); }
@@ -201,6 +220,7 @@ std::vector<std::string> DescribeDifferences(const std::vector<ComparedLine>& li
       texts.push_back(fmt::format("line {}: marker {} stands {}; {}", line.line->name, id,
                                   Between(line.row, id), GivenPlace(lines, layout, line, id)));
     }
+    for (std::string& text : DescribeTwice(lines, line)) texts.push_back(std::move(text));
   }
   return texts;
 }

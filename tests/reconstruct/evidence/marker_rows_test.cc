@@ -105,6 +105,19 @@ TEST(MarkerRows, GapsAreBridged) {
   EXPECT_THAT(groups[0].others, IsEmpty());
 }
 
+TEST(MarkerRows, ARowDoesNotTurnToAnotherOneWhereItsMarkerIsMissing) {
+  ShapePoints shape = TriangularSail(1, 0.0);
+  for (const int id : {20, 21, 22, 23, 24, 121, 122, 123, 31, 131, 132, 133, 41}) shape.erase(id);
+  // The next line, without its marker above 113.
+  int marker_id = 20;
+  for (const int column : {-3, -2, -1, 1, 2, 3}) {
+    Place(marker_id++, 0.15 + 0.134 * column, 2.434, 0.1, 0.0, &shape);
+  }
+  const std::vector<RowGroup> groups = FindMarkerRows(shape);
+  ASSERT_FALSE(groups.empty());
+  EXPECT_THAT(groups[0].vertical, ElementsAre(ElementsAre(1, 101, 102, 103, 11, 111, 112, 113)));
+}
+
 TEST(MarkerRows, ItDoesNotMatterHowTheShapeStands) {
   const ShapePoints shape = TriangularSail(1, 0.0);
   ShapePoints moved;

@@ -95,6 +95,24 @@ TEST(LayoutProposal, ARectangleDoesNotSayWhereItsLuffIs) {
               Contains(AllOf(HasSubstr("NOT SURE"), HasSubstr("luff"))));
 }
 
+TEST(LayoutProposal, DiagonalsOfAChessboardAreNoLines) {
+  ClipMap map;
+  map.bodies.emplace_back();
+  for (int i = 0; i < 64; ++i) {
+    if ((i / 8 + i % 8) % 2 == 0) continue;
+    const Eigen::Vector3d center(0.1 * (i % 8), 0.0, 0.1 * (i / 8));
+    map.bodies[0][i] = {
+        center, center + Eigen::Vector3d(-0.03, 0, 0.03), center + Eigen::Vector3d(0.03, 0, 0.03),
+        center + Eigen::Vector3d(0.03, 0, -0.03), center + Eigen::Vector3d(-0.03, 0, -0.03)};
+  }
+  const LayoutProposal proposal = ProposeLayout(map, MakeLayout("DICT_4X4_250", 0.1));
+  ASSERT_EQ(proposal.layout.parts.size(), 1u);
+  EXPECT_TRUE(proposal.layout.parts[0].horizontal.empty());
+  EXPECT_TRUE(proposal.layout.parts[0].vertical.empty());
+  EXPECT_EQ(proposal.layout.parts[0].marker_ids.size(), 32u);
+  EXPECT_THAT(proposal.notes, Contains(HasSubstr("NOT SURE of its lines")));
+}
+
 TEST(LayoutCorrection, ALayoutThatIsRightStaysAsItIs) {
   const LayoutProposal correction = CorrectLayout(SampleSail(), SampleLayout());
   EXPECT_THAT(correction.contradictions, IsEmpty());
@@ -119,6 +137,27 @@ TEST(LayoutCorrection, AMarkerOfAnotherLineIsNamedAndPutRight) {
               ElementsAre(AllOf(HasSubstr("line h2: marker 20 stands between markers 19 and 21"),
                                 HasSubstr("on line h5")),
                           AllOf(HasSubstr("line h5: marker 61"), HasSubstr("on line h2"))));
+  ExpectSameLines(correction.layout, SampleLayout());
+}
+
+TEST(LayoutCorrection, ALineThatItForgotIsAdded) {
+  Layout given = SampleLayout();
+  const std::vector<int> line = given.parts[0].horizontal[2].marker_ids;
+  given.parts[0].horizontal.erase(given.parts[0].horizontal.begin() + 2);
+  const LayoutProposal correction = CorrectLayout(SampleSail(), given);
+  EXPECT_THAT(correction.contradictions,
+              ElementsAre(HasSubstr("stand on a line that the layout does not name")));
+  EXPECT_THAT(correction.notes, Contains(AllOf(HasSubstr("NOT SURE"), HasSubstr("it is new"))));
+  EXPECT_EQ(correction.layout.parts[0].horizontal.back().marker_ids, line);
+}
+
+TEST(LayoutCorrection, AMarkerOnTwoLinesIsNamedAndTakenOffTheWrongOne) {
+  Layout given = SampleLayout();
+  std::vector<int>& line = given.parts[0].horizontal[0].marker_ids;
+  line.insert(line.begin() + 4, 46);
+  const LayoutProposal correction = CorrectLayout(SampleSail(), given);
+  EXPECT_THAT(correction.contradictions,
+              ElementsAre(AllOf(HasSubstr("line h1: marker 46"), HasSubstr("on line h4 only"))));
   ExpectSameLines(correction.layout, SampleLayout());
 }
 
@@ -160,7 +199,7 @@ TEST(LayoutCorrection, AWrongLengthIsNamedAndPutRight) {
   EXPECT_THAT(
       correction.contradictions,
       ElementsAre(AllOf(HasSubstr("marker 12"), HasSubstr("100.0 mm"), HasSubstr("50 mm"))));
-  EXPECT_EQ(MarkerLength(correction.layout, 12), 0.1);
+  EXPECT_TRUE(correction.layout.marker_lengths_m.empty());
 }
 
 TEST(LayoutCorrection, WhatTheClipDoesNotShowStays) {
