@@ -8,7 +8,7 @@ house_folder(importer/base PUBLIC
 house_folder(importer/process PUBLIC
   child_process)
 house_folder(importer/text PUBLIC
-  markup output_date shown_text)
+  id_ranges markup output_date shown_text)
 house_folder(importer/lanes PUBLIC
   float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
@@ -100,7 +100,7 @@ house_folder(workflows/run PUBLIC
   adjustment camera_checks central_frame_sweep logging pipeline progress run_summary stage_times summary
   version versions workspace)
 house_folder(workflows/check PUBLIC
-  clip_check clip_facts clip_frames clip_limits clip_verdict dictionary_search layout_proposal)
+  clip_check clip_frames clip_limits clip_verdict dictionary_search layout_proposal)
 house_folder(workflows/plan PUBLIC
   plan_drawing plan_writer)
 house_folder(workflows/calibrate PUBLIC

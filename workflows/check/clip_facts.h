@@ -60,7 +60,4 @@ struct ClipFacts {
   std::string no_proposal_because;
 };
 
-// `0-7 9 11`; at most ten numbers or ranges, then `...`. "none" for no ids.
-std::string IdRanges(std::vector<int> ids);
-
 }  // namespace velamap

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "importer/text/id_ranges.h"
 #include "workflows/check/clip_limits.h"
 
 namespace velamap {

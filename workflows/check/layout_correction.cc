@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "workflows/check/clip_facts.h"
+#include "importer/text/id_ranges.h"
 #include "workflows/check/line_comparison.h"
 
 namespace velamap {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "importer/geometry/units.h"
-#include "workflows/check/clip_facts.h"
+#include "importer/text/id_ranges.h"
 
 namespace velamap {
 namespace {

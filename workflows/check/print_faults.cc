@@ -9,7 +9,7 @@
 
 #include "importer/detect/marker_search.h"
 #include "importer/layout/dictionary.h"
-#include "workflows/check/clip_facts.h"
+#include "importer/text/id_ranges.h"
 
 namespace velamap {
 namespace {

@@ -9,6 +9,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/files.h"
 #include "importer/layout/layout_writer.h"
+#include "importer/text/id_ranges.h"
 #include "workflows/check/clip_check.h"
 #include "workflows/check/clip_verdict.h"
 #include "workflows/check/layout_proposal.h"

@@ -1,4 +1,4 @@
-#include "workflows/check/clip_facts.h"
+#include "importer/text/id_ranges.h"
 
 #include <algorithm>
 
