@@ -10,6 +10,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "importer/camera/camera_projection.h"
 #include "importer/layout/dictionary.h"
 #include "tests/support/board_renderer.h"
 #include "tests/support/error_matchers.h"
@@ -18,7 +19,7 @@
 namespace velamap {
 namespace {
 
-const Chessboard kChessboard{7, 6};
+const Chessboard kBoard{7, 6};
 const Camera kTruth{CameraModel::kRadial, 640, 480, {560, 326, 236, -0.12, 0.05}};
 
 enum class Kind { kChessboard, kCharuco, kMarkerGrid };
@@ -31,7 +32,7 @@ PrintedBoard Print(Kind kind) {
     case Kind::kMarkerGrid:
       return PrintMarkerGrid(5, 4, dictionary, 0.03);
     default:
-      return PrintChessboard(kChessboard, 0.03);
+      return PrintChessboard(kBoard, 0.03);
   }
 }
 
@@ -52,7 +53,7 @@ void RenderPictures(Kind kind, std::uint32_t seed, const std::filesystem::path& 
 BoardCalibrationOptions OptionsFor(Kind kind, const std::filesystem::path& folder) {
   BoardCalibrationOptions options;
   options.image_path = folder.string();
-  if (kind == Kind::kChessboard) options.chessboard = kChessboard;
+  if (kind == Kind::kChessboard) options.chessboard = kBoard;
   return options;
 }
 
@@ -79,13 +80,14 @@ TEST_P(BoardCalibrationTest, RenderedBoardsGiveTheCameraWithinItsSigmas) {
   EXPECT_GT(Rms(errors), 0.3);
 }
 
+std::string NameOf(const testing::TestParamInfo<Kind>& test) {
+  constexpr std::array<const char*, 3> kNames = {"Chessboard", "Charuco", "MarkerGrid"};
+  return kNames[static_cast<std::size_t>(test.param)];
+}
+
 INSTANTIATE_TEST_SUITE_P(Boards, BoardCalibrationTest,
                          testing::Values(Kind::kChessboard, Kind::kCharuco, Kind::kMarkerGrid),
-                         [](const auto& info) {
-                           return std::array<const char*, 3>{
-                               "Chessboard", "Charuco",
-                               "MarkerGrid"}[static_cast<std::size_t>(info.param)];
-                         });
+                         NameOf);
 
 TEST(BoardCalibration, APictureWithoutTheChessboardSaysWhatToCount) {
   const TempDir dir;
