@@ -3,7 +3,10 @@
 // without any code becomes markers, and all that follows is the same for both.
 //
 // The corners are found by radon checkers (Duda and Frese, "Accurate Detection and Localization of
-// Checkerboard Corners for Calibration", BMVC 2018; cv::findChessboardCornersSB).
+// Checkerboard Corners for Calibration", BMVC 2018; cv::findChessboardCornersSB), and located by
+// the gradients of the edges that meet there (Foerstner and Guelch, "A Fast Operator for Detection
+// and Precise Location of Distinct Points, Corners and Centres of Circular Features", ISPRS 1987;
+// cv::cornerSubPix).
 
 #pragma once
 

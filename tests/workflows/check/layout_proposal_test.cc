@@ -3,6 +3,7 @@
 #include "workflows/check/layout_proposal.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include <gmock/gmock.h>
 
