@@ -20,7 +20,7 @@ namespace velamap {
 namespace {
 
 const Chessboard kBoard{7, 6};
-const Camera kTruth{CameraModel::kRadial, 640, 480, {560, 326, 236, -0.12, 0.05}};
+const Camera kTruth{CameraModel::kRadial, 320, 240, {280, 163, 118, -0.12, 0.05}};
 
 enum class Kind { kChessboard, kCharuco, kMarkerGrid };
 
@@ -37,7 +37,7 @@ PrintedBoard Print(Kind kind) {
 }
 
 void RenderPictures(Kind kind, std::uint32_t seed, const std::filesystem::path& folder) {
-  constexpr int kNumPictures = 14;
+  constexpr int kNumPictures = 10;
   BoardRenderOptions options;
   options.noise_sigma = 2.0;
   options.supersampling = 3;
@@ -53,6 +53,8 @@ void RenderPictures(Kind kind, std::uint32_t seed, const std::filesystem::path& 
 BoardCalibrationOptions OptionsFor(Kind kind, const std::filesystem::path& folder) {
   BoardCalibrationOptions options;
   options.image_path = folder.string();
+  // It takes longer than all else, and has tests of its own.
+  options.detection.estimate_formation = false;
   if (kind == Kind::kChessboard) options.chessboard = kBoard;
   return options;
 }
@@ -61,7 +63,7 @@ class BoardCalibrationTest : public testing::TestWithParam<Kind> {};
 
 TEST_P(BoardCalibrationTest, RenderedBoardsGiveTheCameraWithinItsSigmas) {
   std::vector<double> errors;
-  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 2; ++seed) {
     const TempDir dir;
     RenderPictures(GetParam(), seed, dir.path());
     const CameraCalibration calibration =
@@ -69,7 +71,7 @@ TEST_P(BoardCalibrationTest, RenderedBoardsGiveTheCameraWithinItsSigmas) {
     EXPECT_TRUE(calibration.board.is_flat) << seed;
     EXPECT_LT(calibration.error_px.rms, 0.2) << seed;
     const Camera& camera = calibration.camera.camera;
-    EXPECT_NEAR(MeanFocalLength(camera), kTruth.params[0], 5) << seed;
+    EXPECT_NEAR(MeanFocalLength(camera), kTruth.params[0], 2.5) << seed;
     const std::size_t num_focal = HasOneFocalLength(camera.model) ? 1 : 2;
     for (std::size_t i = 0; i < num_focal + 2; ++i) {
       const double truth = kTruth.params[i < num_focal ? 0 : i - num_focal + 1];
