@@ -161,6 +161,13 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
 
 void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,
                        const ImageSample& sample, const ImportReport& report) {
+  if (options.chessboard) {
+    if (report.num_markers > 0) return;
+    throw DataError(fmt::format(
+        "{}: no {} is seen in {} pictures: count the corners where four squares meet, and show the "
+        "whole board, with its white margin, in even light",
+        options.image_path, ChessboardName(*options.chessboard), report.num_frames_read));
+  }
   const std::vector<DictionaryHint> hints =
       SuggestDictionaries(sample.Images(), options.layout.border_bits, options.detection);
   const double rate = static_cast<double>(report.num_markers + report.num_rejected) /

@@ -55,10 +55,14 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
   if (Load(frame, &result.skipped_because)) {
     const StageTimer timer(ImportStage::kDetect);
     result.camera = CameraOfFrame(options_, source_->IsVideo(), *frame);
-    const std::vector<MarkerQuad> quads =
-        turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
-             : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.prior_shape);
-    result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
+    if (detector_.chessboard) {
+      result.detections = DetectChessboard(*detector_.chessboard, *frame);
+    } else {
+      const std::vector<MarkerQuad> quads =
+          turn ? SearchInTurn(frame_idx, *frame, &*turn, &result)
+               : SearchInWholeFrame(detector_, result.camera, frame->gray, &result.prior_shape);
+      result.detections = DetectInFrame(detector_, *frame, frame->gray, quads);
+    }
     WriteImage(*frame, result.detections);
     AddToSample(frame_idx, frame->gray);
     result.source = frame->source;

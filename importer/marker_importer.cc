@@ -95,7 +95,9 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   ArucoDetectionOptions detection = options.detection;
   if (IsFolder(options.image_path)) detection.search = SearchMode::kExhaustive;
   CheckImagePath(options.image_path);
-  FrameDetector detector = MakeFrameDetector(options.layout, detection, options.prior_shape);
+  FrameDetector detector = options.chessboard
+                               ? MakeChessboardDetector(*options.chessboard)
+                               : MakeFrameDetector(options.layout, detection, options.prior_shape);
 
   const std::optional<VideoOptions> frames = FramesToSearch(options);
 
@@ -111,7 +113,8 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   CheckExisting(options, DescribeDetector(detector), database);
   NoteSources(options, known_names, &database);
   CheckFrameFolder(options, known_names);
-  if (detection.corner_refinement == CornerRefinement::kEdge && detection.estimate_formation) {
+  if (detector.options.corner_refinement == CornerRefinement::kEdge &&
+      detector.options.estimate_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }
   NotePart(options, DescribeDetector(detector), false, &database);

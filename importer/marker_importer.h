@@ -10,6 +10,7 @@
 #include "importer/base/stage_timer.h"
 #include "importer/camera/camera.h"
 #include "importer/database/part_table.h"
+#include "importer/detect/chessboard.h"
 #include "importer/detect/detection_options.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
@@ -31,6 +32,8 @@ struct MarkerImporterOptions {
   ArucoDetectionOptions detection;
   VideoOptions video;
   PriorShape prior_shape;  // empty: none
+  // Its squares are the markers, and the layout says only how long they are.
+  std::optional<Chessboard> chessboard;
   // Video only: the folder into which frames with markers are written as JPEG, so that later steps
   // need not decode the video again; empty: none are written. Photographs stay where they are.
   std::string frame_output_path;

@@ -8,7 +8,7 @@ house_folder(importer/base PUBLIC
 house_folder(importer/process PUBLIC
   child_process)
 house_folder(importer/text PUBLIC
-  markup output_date shown_text)
+  id_ranges markup output_date shown_text)
 house_folder(importer/lanes PUBLIC
   float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
@@ -25,7 +25,7 @@ house_folder(importer/video PUBLIC
   frame_image frame_source image_file picture_metadata source_file video_options
   written_frame)
 house_folder(importer/detect PUBLIC
-  corner_colors detection detection_options duplicates interpolate marker_alignment
+  chessboard corner_colors detection detection_options duplicates interpolate marker_alignment
   marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
 house_folder(importer/pattern PUBLIC
   clipped_pixels fit_equations formation_estimate image_formation pattern_fit pattern_picture
@@ -52,7 +52,7 @@ house_folder(reconstruct/solve PUBLIC
 house_folder(reconstruct/registration PUBLIC
   dictionary_doubt frame_order registration registration_options)
 house_folder(reconstruct/evidence PUBLIC
-  layout_evidence unnamed_markers)
+  layout_evidence marker_rows unnamed_markers)
 house_folder(reconstruct/thesis PUBLIC
   frame_selection posed_images thesis_registration)
 house_folder(reconstruct/global PUBLIC
@@ -97,10 +97,10 @@ house_folder(exporters/calibration PUBLIC
 house_folder(exporters PUBLIC
   shape_exporter shape_report)
 house_folder(workflows/run PUBLIC
-  adjustment central_frame_sweep logging pipeline progress run_summary stage_times summary version
-  versions workspace)
+  adjustment camera_checks central_frame_sweep logging pipeline progress run_summary stage_times summary
+  version versions workspace)
 house_folder(workflows/check PUBLIC
-  clip_check clip_facts clip_frames clip_limits clip_verdict dictionary_search)
+  clip_check clip_frames clip_limits clip_verdict dictionary_search layout_proposal)
 house_folder(workflows/plan PUBLIC
   plan_drawing plan_writer)
 house_folder(workflows/calibrate PUBLIC

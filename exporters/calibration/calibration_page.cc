@@ -91,12 +91,11 @@ std::string Views(const CameraCalibration& calibration) {
 }
 
 std::string Part(std::string_view name, const CameraCalibration& calibration,
-                 const std::string& dictionary, const ResidualDrawing& residuals) {
+                 const std::string& board, const ResidualDrawing& residuals) {
   const Camera& camera = calibration.camera.camera;
   if (name == "STYLE") return std::string(kReportStyle);
   if (name == "ORIGIN") {
-    return EscapeForMarkup(
-        fmt::format("{} x {} px, markers of {}", camera.width_px, camera.height_px, dictionary));
+    return EscapeForMarkup(fmt::format("{} x {} px, {}", camera.width_px, camera.height_px, board));
   }
   if (name == "VERDICT") return VerdictHtml(JudgeCalibration(calibration));
   if (name == "PARAMETERS") return Parameters(calibration.camera);
@@ -128,12 +127,12 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
 
 }  // namespace
 
-void WriteCalibrationPage(const CameraCalibration& calibration, const std::string& dictionary,
+void WriteCalibrationPage(const CameraCalibration& calibration, const std::string& board,
                           std::ostream& out) {
   const ResidualDrawing residuals = DrawResiduals(calibration);
   WriteHtmlPage(
       kCalibrationPage,
-      [&](std::string_view name) { return Part(name, calibration, dictionary, residuals); }, out);
+      [&](std::string_view name) { return Part(name, calibration, board, residuals); }, out);
 }
 
 }  // namespace velamap

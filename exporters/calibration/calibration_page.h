@@ -10,8 +10,8 @@
 
 namespace velamap {
 
-// `dictionary` is the name of the markers' dictionary.
-void WriteCalibrationPage(const CameraCalibration& calibration, const std::string& dictionary,
+// `board` says what was filmed, such as "markers of DICT_4X4_50".
+void WriteCalibrationPage(const CameraCalibration& calibration, const std::string& board,
                           std::ostream& out);
 
 }  // namespace velamap

@@ -101,7 +101,17 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
   return detector;
 }
 
+FrameDetector MakeChessboardDetector(const Chessboard& board) {
+  FrameDetector detector;
+  detector.chessboard = board;
+  detector.options.search = SearchMode::kExhaustive;
+  // The corners of a chessboard are symmetric, so that nothing moves them in or out.
+  detector.options.estimate_formation = false;
+  return detector;
+}
+
 std::string DescribeDetector(const FrameDetector& detector) {
+  if (detector.chessboard) return ChessboardName(*detector.chessboard);
   // Earlier versions searched exhaustively without naming it.
   std::string search;
   if (detector.options.search == SearchMode::kTracked) {

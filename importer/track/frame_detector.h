@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/camera/camera.h"
+#include "importer/detect/chessboard.h"
 #include "importer/detect/detection.h"
 #include "importer/detect/detection_options.h"
 #include "importer/detect/marker_location.h"
@@ -36,12 +37,16 @@ struct FrameDetector {
   std::vector<std::vector<int>> lines;    // ids along the lines of the layout; for tracked search
   ImageFormation formation;               // of the camera and the print
   PriorShape prior_shape;                 // of markers that can be detected; may be empty
+  // In place of all markers; nothing else counts then.
+  std::optional<Chessboard> chessboard;
 };
 
 // Throws InputError for a dictionary that does not exist or has wrong bits. Ignores markers of
 // `prior_shape` that are missing in the dictionary or the layout.
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
                                 const PriorShape& prior_shape = {});
+
+FrameDetector MakeChessboardDetector(const Chessboard& board);
 
 // The markers of the whole frame, or of regions of it, to a pixel. Thread-safe.
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray);

@@ -131,6 +131,7 @@ void DropWrongSizes(GlobalRegistration* global) {
                  fmt::format("its side is {:.2f} times as long as marker_length: a wrong "
                              "length in the layout, or a false square with its id",
                              ratio));
+    global->dropped_markers[static_cast<int>(idx)].size_ratio = ratio;
   }
 }
 

@@ -33,6 +33,9 @@ struct DroppedMarker {
   std::string reason;
   // The images agree on its place, but the layout contradicts it.
   bool is_false = false;
+  // Its side over that of the others, both in units of marker_length, where they differ by far more
+  // than print does.
+  std::optional<double> size_ratio{};
 };
 
 // The shape frame is the cam frame of the central image. Metres follow from the nominal marker

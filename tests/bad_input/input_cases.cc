@@ -58,6 +58,11 @@ std::vector<BadInput> Boards() {
        "no marker of DICT_7X7_50"},
       {"ABoardOfOtherIds", call + layout, 1, "layout",
        [](const fs::path& dir) { Replace(dir / "layout.yml", "[0, 1, 2, 3, 4, 5]", "[40, 41]"); }},
+      {"AChessboardThatIsNotThere", call + "--Board.chessboard 9x6", 1,
+       "no chessboard of 9 x 6 inner corners"},
+      {"AChessboardOfOneNumber", call + "--Board.chessboard 9", 2, "--Board.chessboard: '9'"},
+      {"AChessboardWithALayout", call + layout + "--Board.chessboard 9x6", 2,
+       "--Board.chessboard: a chessboard has no markers"},
       {"NoBoardAtAll", "camera_calibrator --output_path @/new.yml --image_path @/grey", 1,
        "no marker of any of OpenCV's dictionaries"},
       {"ViewsThatAreAllAlike", call + layout, 1, "pictures are alike", keep_one}};

@@ -2,6 +2,7 @@
 velamap_test(NAME reconstruct_evidence_test LABEL unit
   SOURCES
     evidence/layout_evidence_test.cc
+    evidence/marker_rows_test.cc
     evidence/unnamed_markers_test.cc
     evidence/random_sail.cc
 )

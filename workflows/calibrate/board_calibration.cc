@@ -16,6 +16,19 @@
 namespace velamap {
 namespace {
 
+// The markers that stand for the squares of a chessboard; nothing looks up their codes.
+Layout LayoutOfChessboard(const BoardCalibrationOptions& options) {
+  if (options.chessboard->LooksTheSameTurned()) {
+    spdlog::warn(
+        "a {} looks the same when it is turned: hold it upright in all pictures, or take one with "
+        "an odd and an even number of corners",
+        ChessboardName(*options.chessboard));
+  }
+  Layout layout;
+  layout.marker_length_m = options.square_m;
+  return layout;
+}
+
 // The layout of the best dictionary; the camera does not depend on the size of the board.
 Layout FindLayout(const BoardCalibrationOptions& options, ArucoDetectionOptions* detection) {
   constexpr int kNumFrames = 10;
@@ -44,10 +57,14 @@ BoardCalibration CalibrateWithBoard(const BoardCalibrationOptions& options) {
   importer.detection = options.detection;
   importer.video = options.video;
   importer.num_threads = options.calibration.num_threads;
-  importer.layout = options.layout ? *options.layout : FindLayout(options, &importer.detection);
+  importer.chessboard = options.chessboard;
+  importer.layout = options.chessboard ? LayoutOfChessboard(options)
+                    : options.layout   ? *options.layout
+                                       : FindLayout(options, &importer.detection);
   ImportImages(importer);
   const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
-  return {importer.layout.dictionary,
+  return {options.chessboard ? ChessboardName(*options.chessboard)
+                             : "markers of " + importer.layout.dictionary,
           CalibrateCamera(options.calibration, database.ReadImages(), database.ReadCameras(),
                           importer.layout, database.ReadFormation())};
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "importer/detect/chessboard.h"
 #include "importer/detect/detection_options.h"
 #include "importer/layout/layout.h"
 #include "importer/video/video_options.h"
@@ -13,15 +14,18 @@
 namespace velamap {
 
 struct BoardCalibrationOptions {
-  std::string image_path;        // folder of images, or a video file
-  std::optional<Layout> layout;  // nothing: the dictionary is found by trying
+  std::string image_path;  // folder of images, or a video file
+  // Nothing in both: the dictionary of the markers is found by trying.
+  std::optional<Layout> layout;
+  std::optional<Chessboard> chessboard;
+  double square_m = 0.1;  // of the chessboard: the camera does not depend on it, the report does
   ArucoDetectionOptions detection;
   VideoOptions video;
   CameraCalibrationOptions calibration;
 };
 
 struct BoardCalibration {
-  std::string dictionary;
+  std::string board;  // "markers of DICT_4X4_50"
   CameraCalibration calibration;
 };
 

@@ -15,9 +15,13 @@
 #include "importer/marker_importer.h"
 #include "importer/track/frame_detector.h"
 #include "workflows/check/clip_frames.h"
+#include "workflows/check/clip_map.h"
 #include "workflows/check/clip_precision.h"
 #include "workflows/check/dictionary_search.h"
+#include "workflows/check/layout_correction.h"
+#include "workflows/check/marked_frame.h"
 #include "workflows/check/marker_light.h"
+#include "workflows/check/print_faults.h"
 #include "workflows/run/progress.h"
 
 namespace velamap {
@@ -117,36 +121,6 @@ void MeasureLights(const ClipFrames& clip,
   facts->motion_px = Median(std::move(motions_px));
 }
 
-// Small markers are shown enlarged, so that their ids can be read.
-void Mark(const FrameDetections& detections, cv::Mat* image) {
-  constexpr double kReadableSidePx = 40.0;
-  constexpr int kMaxWidthPx = 4000, kThickness = 2;
-  std::vector<double> sides_px;
-  for (const MarkerDetection& marker : detections.markers) {
-    sides_px.push_back(QuadMeanSide(marker.corners_in_image_px));
-  }
-  const double side_px = sides_px.empty() ? kReadableSidePx : Median(std::move(sides_px));
-  const double factor =
-      std::clamp(kReadableSidePx / side_px, 1.0, std::max(1.0, double(kMaxWidthPx) / image->cols));
-  cv::resize(*image, *image, {}, factor, factor, cv::INTER_LINEAR);
-  const auto draw = [&](const MarkerDetection& marker, const cv::Scalar& color) {
-    std::vector<cv::Point> outline;
-    for (const Eigen::Vector2d& x_px : marker.corners_in_image_px) {
-      outline.emplace_back(static_cast<int>(factor * x_px.x()),
-                           static_cast<int>(factor * x_px.y()));
-    }
-    cv::polylines(*image, outline, true, color, kThickness, cv::LINE_AA);
-    const double font_scale =
-        std::clamp(factor * QuadMeanSide(marker.corners_in_image_px) / 70.0, 0.35, 2.0);
-    cv::putText(*image, std::to_string(marker.marker_id), outline[0] - cv::Point(0, 4),
-                cv::FONT_HERSHEY_SIMPLEX, font_scale, color, font_scale < 0.8 ? 1 : 2, cv::LINE_AA);
-  };
-  for (const MarkerDetection& marker : detections.markers) draw(marker, {80, 200, 0});
-  for (const RejectedDetection& rejected : detections.rejected) {
-    draw(rejected.detection, {40, 40, 230});
-  }
-}
-
 class Checker {
  public:
   explicit Checker(const ClipCheckOptions& options) : options_(options) {}
@@ -188,9 +162,10 @@ class Checker {
     importer.camera_path = options_.camera_path;
     importer.layout = layout;
     importer.detection = detection;
-    // The estimate takes longer than everything else. Only the precision needs it: without it, the
-    // sides of the markers would contradict the layout.
-    importer.detection.estimate_formation = detection.estimate_formation && MeasuresPrecision();
+    // The estimate takes longer than all else, and only what measures the markers' sides needs it:
+    // without it, they contradict the layout.
+    importer.detection.estimate_formation =
+        detection.estimate_formation && (MeasuresPrecision() || options_.proposes_layout);
     importer.num_threads = options_.num_threads;
     importer.video = video;
     try {
@@ -201,17 +176,49 @@ class Checker {
           }).num_frames_read;
     } catch (const DataError& error) {
       check_.facts.no_markers_because = error.what();
+      if (options_.proposes_layout) FindFaults(clip, {}, layout, importer.detection);
       return;
     }
     const ColmapDatabase database(importer.database_path, ColmapDatabase::Mode::kReadOnly);
     const std::vector<DatabaseImage> images = database.ReadImages();
     CollectFacts(clip, video.frame_step, layout, images);
+    if (options_.proposes_layout) {
+      FindFaults(clip, images, layout, importer.detection);
+      Propose(importer.database_path, layout);
+    }
     if (!MeasuresPrecision()) return;
     try {
       check_.facts.precision =
           MeasurePrecision(importer.database_path, layout, options_.num_threads);
     } catch (const DataError& error) {
       check_.facts.no_precision_because = error.what();
+    }
+  }
+
+  void FindFaults(const ClipFrames& clip, const std::vector<DatabaseImage>& images,
+                  const Layout& layout, const ArucoDetectionOptions& detection) {
+    std::map<std::string, const FrameDetections*> by_name;
+    for (const DatabaseImage& image : images) {
+      by_name[image.detections.image_name] = &image.detections;
+    }
+    ClipFacts& facts = check_.facts;
+    facts.contradictions = DescribeFaults(FindPrintFaults(clip.frames, by_name, layout, detection),
+                                          static_cast<int>(facts.num_frames_of_id.size()),
+                                          static_cast<int>(clip.frames.size()));
+  }
+
+  void Propose(const std::string& database_path, const Layout& layout) {
+    ClipFacts& facts = check_.facts;
+    try {
+      const ClipMap map = MapClip(database_path, layout, options_.num_threads);
+      check_.proposal =
+          layout.HasMarkers() ? CorrectLayout(map, layout) : ProposeLayout(map, layout);
+      for (const std::string& line : map.doubled) facts.contradictions.push_back(line);
+      for (const std::string& line : check_.proposal->contradictions) {
+        facts.contradictions.push_back(line);
+      }
+    } catch (const DataError& error) {
+      facts.no_proposal_because = error.what();
     }
   }
 
@@ -248,7 +255,7 @@ class Checker {
   void MarkFrame(const Frame& frame, const FrameDetections& detections) {
     check_.marked_frame = ColorImage(frame).clone();
     check_.marked_frame_name = frame.image_name;
-    Mark(detections, &check_.marked_frame);
+    DrawMarkers(detections, &check_.marked_frame);
   }
 
   const ClipCheckOptions& options_;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <opencv2/core.hpp>
@@ -11,6 +12,7 @@
 #include "importer/layout/layout.h"
 #include "importer/video/video_options.h"
 #include "workflows/check/clip_facts.h"
+#include "workflows/check/layout_proposal.h"
 
 namespace velamap {
 
@@ -19,6 +21,8 @@ struct ClipCheckOptions {
   std::optional<Layout> layout;  // nothing: the dictionary is found by trying
   std::optional<Camera> camera;  // with a layout: the precision is found by a reconstruction
   std::string camera_path;       // for messages only
+  // Where the markers stand is found by a reconstruction, with or without a camera.
+  bool proposes_layout = false;
   ArucoDetectionOptions detection;
   VideoOptions video;
   int num_frames = 40;  // to look at, of a video
@@ -31,6 +35,8 @@ struct ClipCheck {
   // layout does not name are red.
   cv::Mat marked_frame;
   std::string marked_frame_name;
+  // Of the wish for one; nothing where the frames give none.
+  std::optional<LayoutProposal> proposal;
 };
 
 // Throws InputError where OpenFrameSource() and MakeFrameDetector() do.

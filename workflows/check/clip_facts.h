@@ -53,9 +53,11 @@ struct ClipFacts {
   std::vector<ClipStretch> good_stretches;   // videos
   std::optional<ClipPrecision> precision;
   std::string no_precision_because;
-};
 
-// `0-7 9 11`; at most ten numbers or ranges, then `...`. "none" for no ids. `ids` are ascending.
-std::string IdRanges(const std::vector<int>& ids);
+  // With a proposed layout: markers that are there twice or badly printed, and where the layout is
+  // wrong, one line each.
+  std::vector<std::string> contradictions;
+  std::string no_proposal_because;
+};
 
 }  // namespace velamap

@@ -49,8 +49,8 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   Model model = MakeSeedModel(registration, images, cameras);
   MarkerAdjustmentOptions adjustment_options;
   adjustment_options.num_threads = num_threads;
-  const MarkerAdjustmentSummary summary =
-      AdjustWithMarkers(adjustment_options, layout, CornerErrorsOf(images), &model);
+  const MarkerAdjustmentSummary summary = AdjustWithMarkers(
+      adjustment_options, layout, CornerErrorsOf(images, database.ReadFormation()), &model);
   ClipPrecision precision;
   precision.num_images = static_cast<int>(model.images.size());
   std::vector<double> sigmas_mm;

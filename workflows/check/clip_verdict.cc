@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "importer/text/id_ranges.h"
 #include "workflows/check/clip_limits.h"
 
 namespace velamap {
@@ -26,6 +27,7 @@ class Judge {
     JudgeLight();
     JudgeFrames();
     JudgePrecision();
+    JudgeLayout();
     return reasons_.Take();
   }
 
@@ -134,6 +136,13 @@ class Judge {
       reasons_.Check("contradicts the layout: " + marker);
     }
     for (const std::string& warning : precision.warnings) reasons_.Check(warning);
+  }
+
+  void JudgeLayout() {
+    for (const std::string& contradiction : facts_.contradictions) reasons_.Check(contradiction);
+    if (!facts_.no_proposal_because.empty()) {
+      reasons_.Check("no layout can be proposed: " + facts_.no_proposal_because);
+    }
   }
 
   const ClipFacts& facts_;

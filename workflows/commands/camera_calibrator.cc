@@ -8,6 +8,7 @@
 #include "exporters/calibration/calibration_page.h"
 #include "exporters/calibration/calibration_verdict.h"
 #include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
 #include "workflows/calibrate/board_calibration.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
@@ -19,6 +20,7 @@ enum class WantedModel { kAuto, kPinhole, kSimpleRadial, kRadial, kOpenCV, kFull
 
 struct Options : CommandOptions {
   std::string report_path;
+  std::string chessboard;
   WantedModel camera_model = WantedModel::kAuto;
   BoardCalibrationOptions calibration;
 };
@@ -27,7 +29,7 @@ CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
   return {
       "camera_calibrator",
-      "calibrates a camera from pictures of a board of markers",
+      "calibrates a camera from pictures of a board of markers or a chessboard",
       "--image_path board.mp4 --output_path camera.yml",
       {{"Input and output",
         {ImagePathOption(paths),
@@ -49,6 +51,12 @@ CommandSyntax Declare(Options* options) {
                               {WantedModel::kFullOpenCV, "FULL_OPENCV"},
                               {WantedModel::kFisheye, "OPENCV_FISHEYE"}},
                              "auto: the one that predicts pictures best that it has not seen"))}},
+       {"Chessboard",
+        {Common({"Board.chessboard", &options->chessboard, "CxR",
+                 "a chessboard in place of markers: its inner corners, where four squares meet, as "
+                 "columns and rows, such as 9x6"}),
+         {"Board.square", &options->calibration.square_m, "m",
+          "side of a square; the camera does not depend on it", FromTo(1e-4, 10.0)}}},
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->calibration.detection),
        DescribeOptions(&options->calibration.video),
@@ -83,6 +91,13 @@ void Validate(Options* options) {
   calibration.calibration.camera_model = ModelOf(options->camera_model);
   calibration.calibration.num_threads = options->general.num_threads;
   calibration.layout = LoadGivenLayout(options->markers, true);
+  if (options->chessboard.empty()) return;
+  calibration.chessboard = ParseChessboard(options->chessboard, "--Board.chessboard");
+  if (calibration.layout) {
+    throw InputError(
+        "--Board.chessboard: a chessboard has no markers; leave out --layout_path, --dictionary "
+        "and --marker_length");
+  }
 }
 
 void Print(const CameraCalibration& calibration, std::ostream& out) {
@@ -114,7 +129,7 @@ void Run(const Options& options) {
                                calibration.UsedViews().size(), calibration.Score().unseen_error_px),
                    options.paths.output_path);
   WriteFileAtomically(options.report_path, [&](std::ostream& out) {
-    WriteCalibrationPage(calibration, result.dictionary, out);
+    WriteCalibrationPage(calibration, result.board, out);
   });
   Print(calibration, std::cout);
   fmt::print(std::cout, "camera_path: {}\nreport_path: {}\n", options.paths.output_path,

@@ -7,8 +7,12 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "importer/base/atomic_output.h"
+#include "importer/base/files.h"
+#include "importer/layout/layout_writer.h"
+#include "importer/text/id_ranges.h"
 #include "workflows/check/clip_check.h"
 #include "workflows/check/clip_verdict.h"
+#include "workflows/check/layout_proposal.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
 
@@ -16,6 +20,7 @@ namespace velamap {
 namespace {
 
 struct Options : CommandOptions {
+  std::string proposed_layout_path;
   ClipCheckOptions check;
 };
 
@@ -25,7 +30,7 @@ CommandSyntax Declare(Options* options) {
       "clip_checker",
       "says in seconds whether a clip will do, before any reconstruction",
       "--image_path clip.mp4 --layout_path layout.yml --camera_path camera.yml \\\n"
-      "    --output_path frame.png",
+      "    --output_path frame.png --proposed_layout_path corrected.yml",
       {{"Input and output",
         {ImagePathOption(paths),
          Common(PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
@@ -33,6 +38,10 @@ CommandSyntax Declare(Options* options) {
          Common(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
                            "PNG of the frame with most markers, with their outlines and ids; left "
                            "out: none")),
+         Common(PathOption(
+             "proposed_layout_path", PathUse::kWritesFile, &options->proposed_layout_path,
+             "layout file with the parts, lines and lengths that the clip shows, or the "
+             "given layout corrected; left out: none")),
          {"num_frames", &options->check.num_frames, "frames",
           "number of frames of a video to look at", FromTo(5, 1000)}}},
        DescribeOptions(&options->markers, true),
@@ -50,6 +59,7 @@ void Validate(Options* options) {
   check.layout = LoadGivenLayout(options->markers, true);
   check.camera = LoadCalibration(options->paths);
   check.camera_path = options->paths.camera_path;
+  check.proposes_layout = !options->proposed_layout_path.empty();
 }
 
 std::string StretchesText(const std::vector<ClipStretch>& stretches) {
@@ -107,9 +117,30 @@ void Print(const ClipFacts& facts, std::ostream& out) {
   if (facts.precision) PrintPrecision(*facts.precision, out);
 }
 
+// The dictionary file of the layout is named relative to the new file.
+void WriteProposal(const LayoutProposal& proposal, const Options& options) {
+  const std::string& path = options.proposed_layout_path;
+  Layout layout = proposal.layout;
+  if (IsRegularFile(layout.dictionary)) {
+    layout.dictionary = AbsolutePath(layout.dictionary)
+                            .lexically_proximate(AbsolutePath(path).parent_path())
+                            .string();
+  }
+  std::string comment = "Proposed by velamap clip_checker.\n";
+  if (!options.check.layout) {
+    comment +=
+        "marker_length: NOT KNOWN, 0.1 m is put in its place; measure a black square and correct "
+        "it.\n";
+  }
+  for (const std::string& note : proposal.notes) comment += note + "\n";
+  WriteFileAtomically(path, [&](std::ostream& out) { out << LayoutText(layout, comment); });
+  fmt::print(std::cout, "proposed_layout_path: {}\n", path);
+}
+
 void Run(const Options& options) {
   const ClipCheck check = CheckClip(options.check);
   Print(check.facts, std::cout);
+  if (check.proposal) WriteProposal(*check.proposal, options);
   const std::string& path = options.paths.output_path;
   if (path.empty()) return;
   std::vector<std::uint8_t> png;

@@ -7,7 +7,7 @@
 
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
-#include "workflows/check/clip_facts.h"
+#include "importer/text/id_ranges.h"
 #include "workflows/check/clip_limits.h"
 
 namespace velamap {

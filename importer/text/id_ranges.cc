@@ -1,10 +1,13 @@
-#include "workflows/check/clip_facts.h"
+#include "importer/text/id_ranges.h"
+
+#include <algorithm>
 
 #include <fmt/format.h>
 
 namespace velamap {
 
-std::string IdRanges(const std::vector<int>& ids) {
+std::string IdRanges(std::vector<int> ids) {
+  std::sort(ids.begin(), ids.end());
   constexpr int kMaxNumRanges = 10;
   std::string text;
   int num_ranges = 0;

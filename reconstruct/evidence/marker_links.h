@@ -1,0 +1,37 @@
+// Neighbours of markers on a surface, and the chains of neighbours that go on in one direction. The
+// first two steps of marker_rows.h. Private to this folder.
+
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "reconstruct/geometry/frame_shape.h"
+
+namespace velamap {
+
+struct StandingMarker {
+  int marker_id = 0;
+  Eigen::Vector3d center_m, right, up, normal;  // the last three have unit length
+};
+
+std::vector<StandingMarker> StandingMarkers(const ShapePoints& shape);
+
+// Indices of markers, in order; at least one.
+using MarkerChain = std::vector<std::size_t>;
+
+double Distance(const StandingMarker& a, const StandingMarker& b);
+
+// The median distance between neighbours of the chain, which has at least two markers.
+double StepOf(const std::vector<StandingMarker>& markers, const MarkerChain& chain);
+
+// Of at least two markers each. A marker may be on several chains, two neighbours are on one.
+std::vector<MarkerChain> FindChains(const std::vector<StandingMarker>& markers);
+
+// Single linkage of the markers of `rest`: each is in one cluster, and in its order there.
+std::vector<MarkerChain> FindClusters(const std::vector<StandingMarker>& markers,
+                                      const MarkerChain& rest);
+
+}  // namespace velamap

@@ -1,0 +1,34 @@
+// The markers of a clip in space, whatever a layout says of them.
+
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "importer/layout/layout.h"
+#include "reconstruct/geometry/frame_shape.h"
+
+namespace velamap {
+
+struct MarkerSide {
+  double length_m = 0.0;
+  double sigma_m = 0.0;  // noise of the images, and the scatter of the markers beyond it
+};
+
+struct ClipMap {
+  // Markers that keep their places relative to each other; most markers first. Each body has a
+  // frame of its own.
+  std::vector<ShapePoints> bodies;
+  std::map<int, MarkerSide> sides;      // of the markers of the bodies
+  std::map<int, std::string> left_out;  // why an id is on no body
+  std::vector<std::string> doubled;     // ids that are on the object twice, one line each
+};
+
+// Registers and adjusts the images of a database without the parts and lines of `layout`, of which
+// only the dictionary and the lengths are believed; markers of other lengths are measured. What
+// moves against the largest body is tried as another one. Finds the camera where the database has
+// none. Throws DataError where the images give no body.
+ClipMap MapClip(const std::string& database_path, const Layout& layout, int num_threads);
+
+}  // namespace velamap

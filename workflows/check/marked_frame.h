@@ -1,0 +1,15 @@
+// The frame of a clip with its markers drawn on it. Private to this folder.
+
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "importer/detect/detection.h"
+
+namespace velamap {
+
+// Draws outlines and ids: green for markers, red for rejected ones. Enlarges an image of small
+// markers, so that their ids can be read. `image` is BGR.
+void DrawMarkers(const FrameDetections& detections, cv::Mat* image);
+
+}  // namespace velamap

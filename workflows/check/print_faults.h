@@ -1,0 +1,32 @@
+// Markers that were printed mirrored or with black and white exchanged: a search of the pictures as
+// they are passes over them, or takes them for other markers.
+
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "importer/detect/detection.h"
+#include "importer/detect/detection_options.h"
+#include "importer/layout/layout.h"
+#include "importer/video/frame_source.h"
+
+namespace velamap {
+
+struct PrintFaults {
+  // Frames that show the marker so, by id; two at least.
+  std::map<int, int> mirrored, inverted;
+};
+
+// Searches the mirrored and the inverted `frames` where none of `found`, which is by the frames'
+// image names, is a marker of the layout. Only ids of the layout count where it names any.
+PrintFaults FindPrintFaults(const std::vector<Frame>& frames,
+                            const std::map<std::string, const FrameDetections*>& found,
+                            const Layout& layout, const ArucoDetectionOptions& detection);
+
+// One line for each marker, or one for all where half of the markers or more are faulty.
+// `num_markers` have been found as they should be in `num_frames` frames.
+std::vector<std::string> DescribeFaults(const PrintFaults& faults, int num_markers, int num_frames);
+
+}  // namespace velamap
