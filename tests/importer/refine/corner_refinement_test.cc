@@ -238,7 +238,7 @@ TEST(PatternPicture, DerivativesAgreeWithDifferences) {
   parameters.head<8>() << 290, 190, 310, 190, 310, 210, 290, 210;
   parameters.segment<8>(P::kBlurU) << 0.8, 0.9, 40, 200, 0.05, -0.03, 0.9, 0.95;
   parameters.segment<4>(P::kMargin) << 0.7, 0.9, 1.1, 0.8;
-  const ImageFormation formation({2.2, 0.03, 0.0, 1.0, 0.0, false});
+  const ImageFormation formation({2.2, 0.03, 0.0, 1.0});
   model.tone = &formation.tone();
   FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), formation), grid.cells[0],
                 parameters, &model);
