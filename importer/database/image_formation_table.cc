@@ -31,16 +31,14 @@ CREATE TABLE image_formation (
 
 constexpr char kColumns[] =
     "gamma, s_amplitude, sharpening, sharpening_radius_px, sharpens_light, ink_spread_sides,"
-    " edge_shift_blurs, outline_corner_weight, is_inverted, quiet_zone_cells, "
-    "quiet_zone_sigma_cells, num_samples, "
-    "noise_gray,"
-    " inset_sigma_px";
+    " edge_shift_blurs, outline_corner_weight, is_inverted, quiet_zone_cells,"
+    " quiet_zone_sigma_cells, num_samples, noise_gray, inset_sigma_px";
 
 }  // namespace
 
 void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* database) {
-  database->exec(
-      "DROP TABLE IF EXISTS image_formation");  // of an earlier velamap, with less columns
+  // The table of an earlier velamap has fewer columns.
+  database->exec("DROP TABLE IF EXISTS image_formation");
   database->exec(kSchema);
   SQLite::Statement insert(
       *database, fmt::format("INSERT INTO image_formation({}) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"

@@ -29,8 +29,7 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   parameters[kEdgeShift] += share * change;
   spdlog::debug(
       "inner edges: shift {:+.4f} -> {:+.4f} +- {:.4f} blur sigmas, corners {:.3f} px outwards; "
-      "half "
-      "difference of the directions {:.4f}",
+      "half difference of the directions {:.4f}",
       state.parameters[kEdgeShift], balanced.state.parameters[kEdgeShift], edges.sigma_blurs,
       inset_px, edges.half_difference_blurs);
   const double unexplained =

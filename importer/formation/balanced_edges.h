@@ -14,8 +14,8 @@ struct BalancedEdges {
 };
 
 // The best fit of all pixels may leave inner edges of both polarities beside their places where no
-// description of the camera fits the shape of its edges. The shift then follows their
-// places, as far as the scatter of the samples does not explain the shift.
+// description of the camera fits the shape of its edges. The shift then follows their places, as
+// far as it exceeds the scatter of the samples.
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads);
 
 }  // namespace velamap

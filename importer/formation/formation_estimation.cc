@@ -20,31 +20,32 @@ constexpr int kCount = kNumFormationParameters;
 using Vector = FormationVector;
 using State = FormationState;
 
-// Priors and limits: usual cameras, and what printers do to the edge of a dark area. The steps are
-// for derivatives.
-constexpr double kInkSigma_mm = 0.1, kMaxInkSpread_mm = 0.3;
+// The means of the priors, and the steps of derivatives by differences.
 const Vector kMean = (Vector() << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0).finished();
+const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02).finished();
 
+// The sigmas of the priors and the limits of the parameters: those of usual cameras, and of what
+// printers do to the edge of a dark area.
 struct Limits {
   Vector sigma, min, max;
 };
 
 Limits LimitsFor(const std::vector<FormationSample>& samples) {
+  constexpr double kInkSigma_mm = 0.1, kMaxInkSpread_mm = 0.3;
   std::vector<double> sides_mm;
   for (const FormationSample& sample : samples) sides_mm.push_back(sample.side_mm);
-  const double per_side = sides_mm.empty() ? 0.01 : 1 / Median(std::move(sides_mm));
-  const double max_ink = kMaxInkSpread_mm * per_side;
+  const double side_mm = Median(std::move(sides_mm));
+  const double ink_sigma = kInkSigma_mm / side_mm, max_ink = kMaxInkSpread_mm / side_mm;
   Limits limits;
-  limits.sigma << 0.6, 0.05, 0.5, 0.3, kInkSigma_mm * per_side, 0.2;
+  limits.sigma << 0.6, 0.05, 0.5, 0.3, ink_sigma, 0.2;
   limits.min << std::log(0.8), -0.05, -0.3, std::log(0.5), -max_ink, -kMaxEdgeShift;
   limits.max << std::log(3.2), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift;
   return limits;
 }
 
-const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02).finished();
-
-// Blur, demosaicing, filters and compression give neighbouring pixels errors in common, so that so
-// many of them tell no more than one. Without it they overrule what is known of cameras and prints.
+// Blur, demosaicing, filters and compression give neighbouring pixels errors in common: about so
+// many of them tell as much as one independent pixel. If all counted, they would overrule the
+// priors.
 constexpr double kPixelsAlike = 10.0;
 
 // 1 sigma of the width of one quiet zone around the mean width, cells, while the mean is unknown.
@@ -269,6 +270,7 @@ double InsetSigmaByModel(const State& state) {
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads) {
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
+  if (samples.empty()) return {};
   const Limits limits = LimitsFor(samples);
   State by_gray = Minimize(samples, limits, is_inverted, false, num_threads);
   State by_light = Minimize(samples, limits, is_inverted, true, num_threads);

@@ -1,7 +1,7 @@
 // How light from a printed marker becomes grey values, beyond the blur that each fit finds itself.
 //
 //   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
-//   blur       of light; edges move edge_shift_blurs (of its sigma) towards the light side
+//   camera     edges lie edge_shift_blurs (sigmas of the blur) further towards the light side
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
 //   sharpening sharpened = gray + sharpening (gray - G gray), or the same with light, before the
 //              tone curve;  G is a Gaussian of sharpening_radius_px

@@ -171,8 +171,9 @@ class PatternPicture {
     Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
   };
 
-  // Moves every edge towards the light side, by the ink and by a part of its blur (cells), to
-  // second order. The derivatives keep their values without it, which is enough for a step.
+  // Moves every edge towards the light side by the ink's spread and by a part of its blur, to
+  // second order. `blur_u`, `blur_v`: in cells. The derivatives stay as they are, which is enough
+  // for a step.
   void ApplySpread(Floats blur_u, Floats blur_v, Blended* pattern) const {
     const auto ink = static_cast<float>(model_.ink_spread_cells);
     const auto share = static_cast<float>(model_.edge_shift_blurs);

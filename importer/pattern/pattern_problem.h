@@ -15,7 +15,7 @@
 
 namespace velamap {
 
-// The last fit of a marker uses so many pixels and ends at this change of its corners.
+// The last fit of a marker uses at most so many pixels and ends at this change of its corners.
 constexpr int kMaxPatternPixels = 1000;
 constexpr double kPatternTolerancePx = 0.005;
 
@@ -47,7 +47,7 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
 // Grey levels between the dark and the light cells.
 double ContrastOf(const PatternProblem& problem, const PatternMinimum& minimum);
 
-// The constants of the model that the image formation tells.
+// Sets the constants of the model that depend on the image formation.
 void SetFormation(const ImageFormation& formation, PatternProblem* problem);
 
 // The prior of the widths of the quiet zone, where that is known of all markers.
