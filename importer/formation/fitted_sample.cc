@@ -20,7 +20,7 @@ cv::Point PatchFromBox(const PatternProblem& problem) {
 
 // Modelled grey values less those of the patch, which is without the sharpening, in the box of the
 // problem; zero where no pixel counts.
-cv::Mat Differences(const FittedSample& sample) {
+VELAMAP_CLONE_FOR_AVX2 cv::Mat Differences(const FittedSample& sample) {
   const PatternProblem& problem = sample.problem;
   const PatternPicture picture(problem.model, sample.minimum.parameters);
   const cv::Point patch_from_box = PatchFromBox(problem);

@@ -222,35 +222,59 @@ State BestStart(const std::vector<FormationSample>& samples,
   return best;
 }
 
-State Minimize(const std::vector<FormationSample>& samples, const Limits& limits, bool is_inverted,
-               bool sharpens_light, int num_threads) {
-  constexpr int kNumRounds = 2;        // each with the noise of the one before
-  constexpr double kSameNoise = 0.95;  // another round would change nothing
-  constexpr double kLittleWeight = 0.2;
+// Every fourth sample, but not fewer than kMinSome.
+std::vector<FormationSample> SomeOf(const std::vector<FormationSample>& all) {
+  constexpr std::size_t kMinSome = 8, kOneOf = 4;
+  const std::size_t num = std::max(kMinSome, all.size() / kOneOf);
+  const std::size_t step = std::max<std::size_t>(1, all.size() / num);
+  std::vector<FormationSample> some;
+  for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
+  return some;
+}
+
+void Minimize(const Limits& limits, int max_iterations, int num_threads, State* state) {
+  LeastSquaresOptions options;
+  options.max_iterations = max_iterations;
+  options.initial_damping = 1e-3;
+  options.max_damping = 1e2;
+  options.min_relative_decrease = 2e-4;
+  *state = WithPooledQuietZone(std::move(*state), num_threads);
+  GaussNewtonEquations<kCount> equations;
+  MinimizeSquares(options, FormationProblem(limits, NoiseOf(*state), num_threads), state,
+                  &equations);
+}
+
+// The pixels at the corners of outlines count once straight edges tell how they look.
+State Minimized(const std::vector<FormationSample>& samples, const Limits& limits, bool is_inverted,
+                bool sharpens_light, int num_threads) {
+  constexpr int kMaxIterations = 6;
   ImageFormationParameters formation;
   formation.is_inverted = is_inverted;
   formation.sharpens_light = sharpens_light;
   formation.quiet_zone_sigma_cells = kQuietZoneSigma;
-  formation.outline_corner_weight = 0.0;  // until straight edges tell how they look
-  LeastSquaresOptions options;
-  options.max_iterations = 6;
-  options.initial_damping = 1e-3;
-  options.max_damping = 1e2;
-  options.min_relative_decrease = 2e-4;
+  formation.outline_corner_weight = 0.0;
   State state = BestStart(samples, formation, num_threads);
-  double noise = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < kNumRounds && !state.samples.empty(); ++round) {
-    state = WithPooledQuietZone(std::move(state), num_threads);
-    const double noise_before = std::exchange(noise, NoiseOf(state));
-    const bool corners_count = state.formation->parameters().outline_corner_weight > kLittleWeight;
-    if (noise > kSameNoise * noise_before && !corners_count) break;
-    GaussNewtonEquations<kCount> equations;
-    MinimizeSquares(options, FormationProblem(limits, noise, num_threads), &state, &equations);
-    if (round == 0) {
-      state = WithOutlineCorners(OutlineCornerWeight(state), state, num_threads);
-    }
-  }
+  if (state.samples.empty()) return state;
+  Minimize(limits, kMaxIterations, num_threads, &state);
+  state = WithOutlineCorners(OutlineCornerWeight(state), state, num_threads);
+  Minimize(limits, kMaxIterations, num_threads, &state);
   return state;
+}
+
+// Whether the camera sharpens light rather than grey values. Most sharpen grey values, and under
+// noise and compression both explain the samples. Gives all pixels the same weights in both states,
+// so that their costs can be compared.
+bool LightWins(const Limits& limits, int num_threads, State* by_gray, State* by_light) {
+  constexpr double kClearlyLess = 0.9;
+  const double weight = std::min(OutlineCornerWeight(*by_gray), OutlineCornerWeight(*by_light));
+  *by_gray = WithOutlineCorners(weight, *by_gray, num_threads);
+  *by_light = WithOutlineCorners(weight, *by_light, num_threads);
+  const double noise = std::min(NoiseOf(*by_gray), NoiseOf(*by_light));
+  const FormationProblem problem(limits, noise, num_threads);
+  const double cost_by_gray = problem.Cost(*by_gray), cost_by_light = problem.Cost(*by_light);
+  spdlog::debug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
+                cost_by_light);
+  return cost_by_light < kClearlyLess * cost_by_gray;
 }
 
 // Cameras denoise, sharpen and compress in ways that no parameter describes, and lenses do not blur
@@ -270,26 +294,23 @@ double InsetSigmaByModel(const State& state) {
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads) {
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
+  constexpr int kFewIterations = 2;
   if (samples.empty()) return {};
+  // Some samples tell which description of the camera is right, and nearly its parameters; then all
+  // take few steps.
   const Limits limits = LimitsFor(samples);
-  State by_gray = Minimize(samples, limits, is_inverted, false, num_threads);
-  State by_light = Minimize(samples, limits, is_inverted, true, num_threads);
+  const std::vector<FormationSample> some = SomeOf(samples);
+  State by_gray = Minimized(some, limits, is_inverted, false, num_threads);
+  State by_light = Minimized(some, limits, is_inverted, true, num_threads);
   KeepOnly(by_light.sample_idxs, &by_gray);
   KeepOnly(by_gray.sample_idxs, &by_light);
   if (by_gray.samples.empty()) return {};
-  // Costs can be compared where all pixels have the same weights.
-  const double weight = std::min(OutlineCornerWeight(by_gray), OutlineCornerWeight(by_light));
-  by_gray = WithOutlineCorners(weight, by_gray, num_threads);
-  by_light = WithOutlineCorners(weight, by_light, num_threads);
-  const double noise = std::min(NoiseOf(by_gray), NoiseOf(by_light));
-  const FormationProblem problem(limits, noise, num_threads);
-  // Most cameras sharpen grey values, and under noise and compression both explain the samples.
-  constexpr double kClearlyLess = 0.9;
-  const double cost_by_gray = problem.Cost(by_gray), cost_by_light = problem.Cost(by_light);
-  const bool light_wins = cost_by_light < kClearlyLess * cost_by_gray;
-  spdlog::debug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
-                cost_by_light);
-  const State& winner = light_wins ? by_light : by_gray;
+  const bool light_wins = LightWins(limits, num_threads, &by_gray, &by_light);
+  const State& likely = light_wins ? by_light : by_gray;
+  State winner =
+      FitSamples(samples, likely.parameters, likely.formation->parameters(), num_threads);
+  if (winner.samples.empty()) return {};
+  Minimize(limits, kFewIterations, num_threads, &winner);
   const BalancedEdges balanced = WithBalancedEdges(winner, num_threads);
   const State& best = balanced.state;
   FormationEstimate estimate;
@@ -302,6 +323,7 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   // the noise explains.
   const double by_model_px =
       std::hypot(0.5 * MeanInset(by_gray, by_light), InsetSigmaByModel(winner));
+  const FormationProblem problem(limits, estimate.noise_gray, num_threads);
   estimate.inset_sigma_px =
       std::hypot(problem.InsetSigma(winner), by_model_px, balanced.inset_sigma_px);
   return estimate;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <opencv2/imgproc.hpp>
 
@@ -40,14 +41,6 @@ cv::Mat MakeUnsharpeningKernel(const ImageFormationParameters& parameters) {
   return middle;
 }
 
-void Decode(const ToneCurve& tone, cv::Mat* values) {
-  for (float& value : cv::Mat_<float>(*values)) value = static_cast<float>(tone.Decode(value));
-}
-
-void Encode(const ToneCurve& tone, cv::Mat* values) {
-  for (float& value : cv::Mat_<float>(*values)) value = static_cast<float>(tone.Encode(value));
-}
-
 }  // namespace
 
 ToneCurve::ToneCurve(const ImageFormationParameters& parameters)
@@ -65,6 +58,12 @@ ToneCurve::ToneCurve(const ImageFormationParameters& parameters)
   const auto gray = [this](int i) -> float& { return gray_of_root_[static_cast<std::size_t>(i)]; };
   const float step = gray(white) - gray(white - 1);
   for (int i = white + 1; i <= kSteps; ++i) gray(i) = gray(i - 1) + step;
+  for (std::size_t i = 0; i < first_above_gray_.size(); ++i) {
+    first_above_gray_[i] =
+        static_cast<int>(std::upper_bound(gray_of_root_.begin() + 1, gray_of_root_.end() - 1,
+                                          static_cast<float>(i)) -
+                         gray_of_root_.begin());
+  }
 }
 
 double ToneCurve::Encode(double light) const {
@@ -75,13 +74,34 @@ double ToneCurve::Encode(double light) const {
 double ToneCurve::Decode(double gray) const {
   if (is_linear_) return gray;
   const double recorded = (gray - offset_) * sign_;
-  const auto high = std::upper_bound(gray_of_root_.begin() + 1, gray_of_root_.end() - 1,
-                                     static_cast<float>(recorded));
+  const auto place = static_cast<float>(recorded);
+  const auto* high = gray_of_root_.begin() +
+                     first_above_gray_[static_cast<std::size_t>(std::clamp(recorded, 0.0, 255.0))];
+  while (high < gray_of_root_.end() - 1 && *high <= place) ++high;
   const double low = *(high - 1), step = std::max(*high - low, 1e-6);
   const double idx =
       static_cast<double>(high - 1 - gray_of_root_.begin()) + (recorded - low) / step;
   const double root = std::max(0.0, idx * kMaxRoot / kSteps);
   return root * root;
+}
+
+VELAMAP_CLONE_FOR_AVX2 void ToneCurve::Encode(cv::Mat* values) const {
+  if (is_linear_) return;
+  for (int row = 0; row < values->rows; ++row) {
+    auto* value = values->ptr<float>(row);
+    for (int left = values->cols; left > 0; left -= kLanes, value += kLanes) {
+      const std::size_t size = sizeof(float) * static_cast<std::size_t>(std::min(left, kLanes));
+      Floats group{}, slope;
+      std::memcpy(&group, value, size);
+      group = Encode(group, &slope);
+      std::memcpy(value, &group, size);
+    }
+  }
+}
+
+void ToneCurve::Decode(cv::Mat* values) const {
+  if (is_linear_) return;
+  for (float& value : cv::Mat_<float>(*values)) value = static_cast<float>(Decode(value));
 }
 
 ImageFormation::ImageFormation(const ImageFormationParameters& parameters)
@@ -111,12 +131,12 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
     cv::LUT(gray(wide), formation.light_of_gray(), values);
   } else {
     gray(wide).convertTo(values, CV_32F);
-    if (of_light) Decode(formation.tone(), &values);
+    if (of_light) formation.tone().Decode(&values);
   }
   cv::filter2D(values, filtered, CV_32F, formation.unsharpening(), {-1, -1}, 0,
                cv::BORDER_REPLICATE);
   patch.values = filtered(inside - wide.tl()).clone();
-  if (of_light) Encode(formation.tone(), &patch.values);
+  if (of_light) formation.tone().Encode(&patch.values);
   return patch;
 }
 
@@ -131,9 +151,9 @@ cv::Mat Sharpened(const cv::Mat& values, const ImageFormation& formation) {
   const ImageFormationParameters& parameters = formation.parameters();
   cv::Mat sharpened = values.clone();
   if (parameters.sharpening == 0) return sharpened;
-  if (parameters.sharpens_light) Decode(formation.tone(), &sharpened);
+  if (parameters.sharpens_light) formation.tone().Decode(&sharpened);
   Sharpen(parameters, cv::BORDER_REPLICATE, &sharpened);
-  if (parameters.sharpens_light) Encode(formation.tone(), &sharpened);
+  if (parameters.sharpens_light) formation.tone().Encode(&sharpened);
   return sharpened;
 }
 

@@ -45,6 +45,10 @@ class ToneCurve {
   double Encode(double light) const;
   double Decode(double gray) const;  // the inverse
 
+  // The same of every value of a matrix of CV_32F.
+  void Encode(cv::Mat* values) const;
+  void Decode(cv::Mat* values) const;
+
  private:
   static constexpr int kSteps = 512;
   static constexpr float kMaxRoot = 20.0f;  // the root of the largest light, 400
@@ -53,6 +57,7 @@ class ToneCurve {
   bool is_linear_;
   float sign_, offset_;                         // of inverted images -1 and 255, else 1 and 0
   std::array<float, kSteps + 1> gray_of_root_;  // as recorded
+  std::array<int, 256> first_above_gray_;       // idx in `gray_of_root_`, where Decode() begins
 };
 
 // The parameters, ready for many markers.
