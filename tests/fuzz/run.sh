@@ -9,8 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds="$(awk -v minutes="$1" 'BEGIN { print int(60 * minutes) }')"
 shift
 
-workflows/build.sh sanitize fuzz_targets
-programs=build/sanitize/tests/fuzz
+workflows/build.sh fuzz
+programs=build/fuzz/tests/fuzz
 build=build/fuzz
 mkdir -p "$build/findings"
 "$programs/make_seeds" "$build/seeds"
