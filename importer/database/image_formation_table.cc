@@ -20,6 +20,7 @@ CREATE TABLE image_formation (
     sharpens_light INTEGER NOT NULL,
     ink_spread_sides REAL NOT NULL,
     edge_shift_blurs REAL NOT NULL,
+    outline_shift_blurs REAL NOT NULL,
     outline_corner_weight REAL NOT NULL,
     is_inverted INTEGER NOT NULL,
     quiet_zone_cells REAL NOT NULL,
@@ -31,7 +32,7 @@ CREATE TABLE image_formation (
 
 constexpr char kColumns[] =
     "gamma, s_amplitude, sharpening, sharpening_radius_px, sharpens_light, ink_spread_sides,"
-    " edge_shift_blurs, outline_corner_weight, is_inverted, quiet_zone_cells,"
+    " edge_shift_blurs, outline_shift_blurs, outline_corner_weight, is_inverted, quiet_zone_cells,"
     " quiet_zone_sigma_cells, num_samples, noise_gray, inset_sigma_px";
 
 }  // namespace
@@ -42,14 +43,14 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
   database->exec(kSchema);
   SQLite::Statement insert(
       *database, fmt::format("INSERT INTO image_formation({}) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
-                             " ?, ?, ?, ?)",
+                             " ?, ?, ?, ?, ?)",
                              kColumns));
   const ImageFormationParameters& found = estimate.parameters;
   SQLite::bind(insert, found.gamma, found.s_amplitude, found.sharpening, found.sharpening_radius_px,
                found.sharpens_light ? 1 : 0, found.ink_spread_sides, found.edge_shift_blurs,
-               found.outline_corner_weight, found.is_inverted ? 1 : 0, found.quiet_zone_cells,
-               found.quiet_zone_sigma_cells, estimate.num_samples, estimate.noise_gray,
-               estimate.inset_sigma_px);
+               found.outline_shift_blurs, found.outline_corner_weight, found.is_inverted ? 1 : 0,
+               found.quiet_zone_cells, found.quiet_zone_sigma_cells, estimate.num_samples,
+               estimate.noise_gray, estimate.inset_sigma_px);
   insert.exec();
 }
 
@@ -58,8 +59,9 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   if (!database->tableExists("image_formation")) return std::nullopt;
   // Columns that an earlier velamap did not have, with what it assumed.
   std::string missing;
-  for (const auto& [column, value] :
-       {std::pair("outline_corner_weight", 1), {"edge_shift_blurs", 0}}) {
+  for (const auto& [column, value] : {std::pair("outline_corner_weight", 1),
+                                      {"edge_shift_blurs", 0},
+                                      {"outline_shift_blurs", 0}}) {
     SQLite::Statement exists(*database,
                              "SELECT 1 FROM pragma_table_info('image_formation') WHERE name = ?");
     exists.bind(1, column);
@@ -80,6 +82,7 @@ std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
   found.sharpens_light = number("sharpens_light", is_true) != 0;
   found.ink_spread_sides = number("ink_spread_sides", FromTo(-0.1, 0.1));
   found.edge_shift_blurs = number("edge_shift_blurs", FromTo(-2, 2));
+  found.outline_shift_blurs = number("outline_shift_blurs", FromTo(-2, 2));
   found.outline_corner_weight = number("outline_corner_weight", FromTo(0, 1));
   found.is_inverted = number("is_inverted", is_true) != 0;
   found.quiet_zone_cells = number("quiet_zone_cells", FromTo(0, 100));

@@ -8,6 +8,20 @@
 #include "importer/formation/edge_shift.h"
 
 namespace velamap {
+namespace {
+
+// James and Stein's estimate, positive part: the share of a shift that noise does not explain.
+double ShareBeyondNoise(double shift, double sigma) {
+  return std::max(0.0, 1 - sigma * sigma / (shift * shift));
+}
+
+FormationState WithOutlineShift(double shift_blurs, const FormationState& state, int num_threads) {
+  ImageFormationParameters formation = state.formation->parameters();
+  formation.outline_shift_blurs = shift_blurs;
+  return FittedWith(formation, state.parameters, state, num_threads);
+}
+
+}  // namespace
 
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   constexpr int kIterations = 3;
@@ -23,8 +37,7 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   const double change = balanced.state.parameters[kEdgeShift] - state.parameters[kEdgeShift];
   const double inset_px = MeanInset(state, balanced.state);
   if (std::abs(change) < 1e-7) return {state, 0.0};
-  // James and Stein's estimate, positive part: what noise explains is not corrected.
-  const double share = std::max(0.0, 1 - edges.sigma_blurs * edges.sigma_blurs / (change * change));
+  const double share = ShareBeyondNoise(change, edges.sigma_blurs);
   FormationVector parameters = state.parameters;
   parameters[kEdgeShift] += share * change;
   spdlog::debug(
@@ -38,6 +51,32 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   const double inset_by_shift_px = inset_px / change;
   return {MovedTo(parameters, state, num_threads),
           std::abs(inset_by_shift_px) * std::hypot(share * edges.sigma_blurs, unexplained)};
+}
+
+BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads) {
+  constexpr double kProbeBlurs = -0.1, kMaxShiftBlurs = 0.5, kMinSlopePx = 0.05;
+  constexpr int kIterations = 2;
+  const EdgeShift edges = InnerEdgeShift(state);
+  const FormationState probe = WithOutlineShift(kProbeBlurs, state, num_threads);
+  const double slope_px =
+      (InnerEdgeShift(probe).corners_outwards_px - edges.corners_outwards_px) / kProbeBlurs;
+  if (!(slope_px > kMinSlopePx)) return {state, std::abs(edges.corners_outwards_px)};
+  double shift = 0.0, corners_outwards_px = edges.corners_outwards_px;
+  FormationState shifted = state;
+  for (int i = 0; i < kIterations; ++i) {
+    shift = std::clamp(shift - corners_outwards_px / slope_px, -kMaxShiftBlurs, kMaxShiftBlurs);
+    shifted = WithOutlineShift(shift, state, num_threads);
+    corners_outwards_px = InnerEdgeShift(shifted).corners_outwards_px;
+  }
+  const double sigma = edges.corners_sigma_px / slope_px;
+  shift *= 0.5 * ShareBeyondNoise(shift, sigma);
+  const double inset_px = MeanInset(state, probe) / kProbeBlurs;  // by one blur sigma
+  spdlog::debug(
+      "inner edges have corners {:+.4f} +- {:.4f} px further outside: outlines shifted by {:+.3f} "
+      "+- {:.3f} blur sigmas, corners {:+.4f} px outwards",
+      edges.corners_outwards_px, edges.corners_sigma_px, shift, sigma, inset_px * shift);
+  return {WithOutlineShift(shift, state, num_threads),
+          std::abs(inset_px) * std::hypot(shift != 0 ? 0.5 * sigma : 0.0, shift)};
 }
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// The shift of edges that no description of the camera explains, from the places of inner edges.
+// The shifts of edges that no description of the camera explains, from the places of inner edges.
 
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace velamap {
 
-// A state that shifts edges so far that inner edges lie where the model has them, and how well the
-// inset of the corners is known by that.
+// A state whose shifts have inner edges where the model has them, and how well the inset of the
+// corners is known by that.
 struct BalancedEdges {
   FormationState state;
   double inset_sigma_px = 0.0;
@@ -17,5 +17,12 @@ struct BalancedEdges {
 // description of the camera fits the shape of its edges. The shift then follows their places, as
 // far as it exceeds the scatter of the samples.
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads);
+
+// Inner edges also tell how large the markers are. What lies around a narrow quiet zone, a noise
+// filter that takes the zone for noise, or a printer may move the outlines of the black squares
+// alone, or what is within. Where both contradict each other by more than the scatter of the
+// samples, neither is known to be right: the corners lie in the middle, and half of the
+// contradiction is 1 sigma.
+BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads);
 
 }  // namespace velamap

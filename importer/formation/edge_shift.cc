@@ -11,7 +11,7 @@ namespace {
 
 using P = PatternParameters;
 
-// Least squares of the residuals at inner edges on their derivative by the shift of edges.
+// Least squares of the residuals at inner edges on their derivative by a shift.
 struct ShiftSums {
   double by_residual = 0.0, squares = 0.0;
 
@@ -24,22 +24,41 @@ struct ShiftSums {
     squares += other.squares;
     return *this;
   }
-  double shift_blurs() const { return squares > 0 ? by_residual / squares : 0.0; }
+  double shift() const { return squares > 0 ? by_residual / squares : 0.0; }
 };
 
-// Sums over the edges that the rows of the image cross, and over those that its columns cross.
+// Sums over the edges that the rows of the image cross, over those that its columns cross, and for
+// the distance of the marker's corners from its centre: over all edges, and over those far from the
+// corners of outlines, which some filters round further than pixels are left out elsewhere.
 struct SampleShift {
-  ShiftSums across_rows, across_columns;
+  ShiftSums across_rows, across_columns, outwards, outwards_far_from_corners;
 };
 
-SampleShift ShiftOf(const FittedSample& sample) {
+// The derivative of grey values by the distance of all corners from the centre, along both sides.
+double ByCornersOutwards(const PatternPixels& pixels, const QuadCorners& corners_px) {
+  const Eigen::Vector2d center =
+      0.25 * (corners_px[0] + corners_px[1] + corners_px[2] + corners_px[3]);
+  const double half_side = 0.5 * QuadMeanSide(corners_px);
+  double derivative = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const Eigen::Vector2d by_corner(pixels.jacobian[P::kCorners + 2 * i][0],
+                                    pixels.jacobian[P::kCorners + 2 * i + 1][0]);
+    derivative += by_corner.dot(corners_px[i] - center) / half_side;
+  }
+  return derivative;
+}
+
+SampleShift ShiftOf(const FittedSample& sample, double noise) {
   constexpr double kStepBlurs = 0.04;
+  constexpr float kWideReachPx = 4.0f, kWideReachCells = 0.5f;
   const PatternProblem& problem = sample.problem;
   PatternModel shifted = problem.model;
   shifted.edge_shift_blurs += kStepBlurs;
   const PatternPicture picture(problem.model, sample.minimum.parameters);
   const PatternPicture moved_picture(shifted, sample.minimum.parameters);
   const cv::Point patch_from_box = problem.box.tl() - problem.patch.origin_px;
+  const QuadCorners corners_px = CornersOf(sample.minimum.parameters);
+  const double weight = 1 / (noise * noise);
   SampleShift shift;
   PatternPixels pixels, moved;
   for (const SamplePlace& place : sample.places) {
@@ -60,37 +79,60 @@ SampleShift ShiftOf(const FittedSample& sample) {
     }
     const double squared_slope = by_x * by_x + by_y * by_y;
     if (!(squared_slope > 0)) continue;
-    shift.across_rows.Add(by_shift, residual, by_x * by_x / squared_slope);
-    shift.across_columns.Add(by_shift, residual, by_y * by_y / squared_slope);
+    shift.across_rows.Add(by_shift, residual, weight * by_x * by_x / squared_slope);
+    shift.across_columns.Add(by_shift, residual, weight * by_y * by_y / squared_slope);
+    const double by_outwards = ByCornersOutwards(pixels, corners_px);
+    shift.outwards.Add(by_outwards, residual, weight);
+    if (!picture.IsAtOutlineCorner(x, y, kWideReachPx, kWideReachCells)[0]) {
+      shift.outwards_far_from_corners.Add(by_outwards, residual, weight);
+    }
   }
   return shift;
+}
+
+ShiftSums Total(const std::vector<ShiftSums>& samples) {
+  ShiftSums total;
+  for (const ShiftSums& sample : samples) total += sample;
+  return total;
+}
+
+// 1 sigma of the shift of all samples together.
+double SigmaByScatter(const std::vector<ShiftSums>& samples) {
+  const ShiftSums total = Total(samples);
+  double scatter = 0.0;
+  for (const ShiftSums& sample : samples) {
+    const double deviation = sample.by_residual - sample.squares * total.shift();
+    scatter += deviation * deviation;
+  }
+  const auto count = static_cast<double>(samples.size());
+  return std::sqrt(scatter * count / (count - 1)) / total.squares;
 }
 
 }  // namespace
 
 EdgeShift InnerEdgeShift(const FormationState& state) {
-  std::vector<ShiftSums> samples;
-  ShiftSums across_rows, across_columns;
-  for (const FittedSample& sample : state.samples) {
-    if (sample.residuals.empty()) continue;
-    const SampleShift shift = ShiftOf(sample);
-    across_rows += shift.across_rows;
-    across_columns += shift.across_columns;
-    samples.push_back(shift.across_rows);
-    samples.back() += shift.across_columns;
+  const std::vector<double> noises = NoisesOf(state);
+  std::vector<ShiftSums> across_rows, across_columns, across_all, outwards, far;
+  for (std::size_t i = 0; i < state.samples.size(); ++i) {
+    if (state.samples[i].residuals.empty()) continue;
+    const SampleShift shift = ShiftOf(state.samples[i], noises[i]);
+    across_rows.push_back(shift.across_rows);
+    across_columns.push_back(shift.across_columns);
+    across_all.push_back(shift.across_rows);
+    across_all.back() += shift.across_columns;
+    outwards.push_back(shift.outwards);
+    far.push_back(shift.outwards_far_from_corners);
   }
-  ShiftSums all = across_rows;
-  all += across_columns;
-  if (samples.size() < 2 || !(all.squares > 0)) return {};
-  const double mean = all.shift_blurs();
-  double scatter = 0.0;
-  for (const ShiftSums& sample : samples) {
-    const double deviation = sample.by_residual - sample.squares * mean;
-    scatter += deviation * deviation;
-  }
-  const auto count = static_cast<double>(samples.size());
-  return {mean, std::sqrt(scatter * count / (count - 1)) / all.squares,
-          0.5 * std::abs(across_rows.shift_blurs() - across_columns.shift_blurs())};
+  if (across_all.size() < 2 || !(Total(across_all).squares > 0)) return {};
+  EdgeShift shift;
+  shift.mean_blurs = Total(across_all).shift();
+  shift.sigma_blurs = SigmaByScatter(across_all);
+  shift.half_difference_blurs =
+      0.5 * std::abs(Total(across_rows).shift() - Total(across_columns).shift());
+  const double near_px = Total(outwards).shift(), far_px = Total(far).shift();
+  shift.corners_outwards_px = 0.5 * (near_px + far_px);
+  shift.corners_sigma_px = std::hypot(SigmaByScatter(outwards), 0.5 * (near_px - far_px));
+  return shift;
 }
 
 }  // namespace velamap

@@ -1,7 +1,9 @@
 #include "importer/formation/fitted_sample.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -78,6 +80,14 @@ std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation&
   return residuals;
 }
 
+// Infinite without any.
+double RmsOf(const std::vector<float>& residuals) {
+  if (residuals.empty()) return std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  for (const float residual : residuals) sum += static_cast<double>(residual) * residual;
+  return std::sqrt(sum / static_cast<double>(residuals.size()));
+}
+
 // Another tone curve moves edges by a part of their blur. A fit that ends further from where the
 // marker was found, as where white is clipped and tells little, has lost it.
 bool HasRunAway(const FittedSample& sample) {
@@ -122,6 +132,7 @@ std::optional<FittedSample> FitSample(const FormationSample& sample,
 void RefitSample(const ImageFormation& formation, const ToneCurve& before, FittedSample* sample) {
   constexpr int kMaxPixels = 4000;
   constexpr double kTolerancePx = 0.003;
+  constexpr double kDiverged = 3.0;  // times the residuals before
   PatternProblem& problem = sample->problem;
   problem.patch = CutPatch(sample->gray, sample->patch_box, formation);
   SetFormation(formation, &problem);
@@ -131,17 +142,16 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
     light = formation.tone().Decode(before.Encode(light));
   }
   const P::Vector start = sample->minimum.parameters;
+  const double rms_before = RmsOf(sample->residuals);
   const bool is_fitted =
       HasClippedPixels(sample->gray, problem.box)
           ? RefineBeyondClipping(sample->gray, formation, kMaxPixels, kTolerancePx, &problem,
                                  &sample->minimum)
           : RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum);
-  if (is_fitted && !HasRunAway(*sample)) {
-    sample->residuals = ResidualsOf(*sample, formation);
-  } else {
-    sample->minimum.parameters = start;
-    sample->residuals.clear();
-  }
+  sample->residuals.clear();
+  if (is_fitted && !HasRunAway(*sample)) sample->residuals = ResidualsOf(*sample, formation);
+  if (!(RmsOf(sample->residuals) < kDiverged * rms_before)) sample->residuals.clear();
+  if (sample->residuals.empty()) sample->minimum.parameters = start;
 }
 
 }  // namespace velamap

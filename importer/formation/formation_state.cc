@@ -12,19 +12,28 @@
 namespace velamap {
 namespace {
 
-double NoiseOf(const FormationState& state, bool at_outline_corners) {
-  constexpr double kMinNoise = 0.5;  // 8 bits round
-  std::vector<double> values;
-  for (const FittedSample& sample : state.samples) {
-    for (std::size_t j = 0; j < sample.residuals.size(); ++j) {
-      if (sample.places[j].is_at_outline_corner == at_outline_corners &&
-          !IsClipped(sample, sample.places[j])) {
-        values.push_back(sample.residuals[j]);
-      }
+void AddResiduals(const FittedSample& sample, bool at_outline_corners,
+                  std::vector<double>* residuals) {
+  for (std::size_t j = 0; j < sample.residuals.size(); ++j) {
+    if (sample.places[j].is_at_outline_corner == at_outline_corners &&
+        !IsClipped(sample, sample.places[j])) {
+      residuals->push_back(sample.residuals[j]);
     }
   }
-  return values.empty() ? std::numeric_limits<double>::infinity()
-                        : std::max(kMinNoise, RobustSigma(values));
+}
+
+double NoiseOf(const std::vector<double>& residuals) {
+  constexpr double kMinNoise = 0.5;  // 8 bits round
+  return residuals.empty() ? std::numeric_limits<double>::infinity()
+                           : std::max(kMinNoise, RobustSigma(residuals));
+}
+
+double NoiseOf(const FormationState& state, bool at_outline_corners) {
+  std::vector<double> residuals;
+  for (const FittedSample& sample : state.samples) {
+    AddResiduals(sample, at_outline_corners, &residuals);
+  }
+  return NoiseOf(residuals);
 }
 
 }  // namespace
@@ -97,6 +106,16 @@ FormationState WithPooledQuietZone(FormationState state, int num_threads) {
 }
 
 double NoiseOf(const FormationState& state) { return NoiseOf(state, false); }
+
+std::vector<double> NoisesOf(const FormationState& state) {
+  std::vector<double> noises;
+  for (const FittedSample& sample : state.samples) {
+    std::vector<double> residuals;
+    AddResiduals(sample, false, &residuals);
+    noises.push_back(NoiseOf(residuals));
+  }
+  return noises;
+}
 
 double OutlineCornerWeight(const FormationState& state) {
   const double relative_noise = NoiseOf(state, true) / NoiseOf(state, false);

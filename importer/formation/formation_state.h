@@ -59,6 +59,9 @@ FormationState WithPooledQuietZone(FormationState state, int num_threads);
 // infinite without any.
 double NoiseOf(const FormationState& state);
 
+// The same of each sample alone.
+std::vector<double> NoisesOf(const FormationState& state);
+
 // The weight that the residuals of the pixels at the corners of outlines ask for, compared with the
 // residuals of the others.
 double OutlineCornerWeight(const FormationState& state);

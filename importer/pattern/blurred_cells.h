@@ -39,11 +39,17 @@ struct Shares {
   FloatsArray<kMaxRingedCells> value, by_x, by_blur;
 };
 
-inline void ComputeShares(Floats x, Floats blur, int num_cells, float margin_low, float margin_high,
+// Where the edges around the black square lie along one axis, in cells.
+struct OuterEdges {
+  float margin_low = 1.0f, margin_high = 1.0f;  // widths of the quiet zone
+  Floats outline_shift{};                       // of the square's outline, outwards
+};
+
+inline void ComputeShares(Floats x, Floats blur, int num_cells, const OuterEdges& outer,
                           Shares* shares) {
   constexpr float kReach = 3.3f;  // sigmas
   // Edge k lies between the ringed cells k and k + 1. Edges are one cell apart, except the first
-  // and the last, where the quiet zone ends after `margin_low` and `margin_high` cells.
+  // and the last, where the quiet zone ends, and the outline of the square.
   const int all_edges = num_cells + 2 * kRing - 1;
   const Floats place = x + static_cast<float>(kRing - 1);
   // A diverging fit makes these infinite or NaN; the limits keep the cells inside the pattern.
@@ -67,9 +73,11 @@ inline void ComputeShares(Floats x, Floats blur, int num_cells, float margin_low
     const auto index = static_cast<std::size_t>(i);
     const Ints edge = low + i;
     const Floats none{};
-    const Floats inwards = (edge == 0 ? AllLanes(1 - margin_low) : none) -
-                           (edge == all_edges - 1 ? AllLanes(1 - margin_high) : none);
-    const Floats z = (from_low - static_cast<float>(i) - inwards) * inverse_blur;
+    const Floats forwards = (edge == 0 ? AllLanes(1 - outer.margin_low) : none) -
+                            (edge == kRing - 1 ? outer.outline_shift : none) +
+                            (edge == all_edges - kRing ? outer.outline_shift : none) -
+                            (edge == all_edges - 1 ? AllLanes(1 - outer.margin_high) : none);
+    const Floats z = (from_low - static_cast<float>(i) - forwards) * inverse_blur;
     const NormalLanes normal = NormalAt(z);
     const Floats next_density = normal.density * inverse_blur;
     const Floats next_moment = -z * next_density;

@@ -1,7 +1,8 @@
 // How light from a printed marker becomes grey values, beyond the blur that each fit finds itself.
 //
 //   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
-//   camera     edges lie edge_shift_blurs (sigmas of the blur) further towards the light side
+//   camera     edges lie edge_shift_blurs (sigmas of the blur) further towards the light side, and
+//              the outline of the black square outline_shift_blurs further outside
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
 //   sharpening sharpened = gray + sharpening (gray - G gray), or the same with light, before the
 //              tone curve;  G is a Gaussian of sharpening_radius_px
@@ -26,6 +27,9 @@ struct ImageFormationParameters {
   // which is the same in all directions of the image. Ink moves them by a length on the paper,
   // which a slant shortens.
   double edge_shift_blurs = 0.0;
+  // What lies around a narrow quiet zone, and noise filters that take the zone for noise, move the
+  // outline of the black square beside what they do to the edges within.
+  double outline_shift_blurs = 0.0;
   // The images hold 255 less the recorded grey values, so that inverted prints look upright. Light
   // stays what the camera received: bright cells then have less of it than dark ones.
   bool is_inverted = false;

@@ -49,6 +49,7 @@ struct PatternModel {
   double diagonal_px = 0.0;
   double ink_spread_cells = 0.0;       // how far dark cells reach beyond their outlines
   double edge_shift_blurs = 0.0;       // how far the camera moves them further, in blur sigmas
+  double outline_shift_blurs = 0.0;    // how far the outline of the square lies further outside
   double outline_corner_weight = 1.0;  // of the pixels at the corners of the cells' outlines
   const ToneCurve* tone = nullptr;
 };

@@ -69,10 +69,11 @@ class PatternPicture {
     return is_near;
   }
 
-  // Whether a place is at a corner of the outlines of the cells; -1 for yes. Printers, noise
-  // filters and compression round these corners more than the blur of straight edges tells.
-  Ints IsAtOutlineCorner(Floats x, Floats y) const {
-    constexpr float kReachPx = 2.0f, kReachCells = 0.4f;
+  // Whether a place is at a corner of the outlines of the cells, within the smaller of both
+  // reaches; -1 for yes. Printers, noise filters and compression round these corners more than the
+  // blur of straight edges tells.
+  Ints IsAtOutlineCorner(Floats x, Floats y, float reach_px = 2.0f,
+                         float reach_cells = 0.4f) const {
     const Place place = ToSquare(x, y);
     const auto n = static_cast<float>(model_.num_cells);
     Ints is_near{};
@@ -88,7 +89,7 @@ class PatternPicture {
       const float dx = px2_by_cells2 * (v_by_y * du - u_by_y * dv);
       const float dy = px2_by_cells2 * (u_by_x * dv - v_by_x * du);
       const float reach2 =
-          std::min(kReachPx * kReachPx, kReachCells * kReachCells * std::abs(px2_by_cells2));
+          std::min(reach_px * reach_px, reach_cells * reach_cells * std::abs(px2_by_cells2));
       is_near[lane] = -static_cast<int>(dx * dx + dy * dy < reach2);
     }
     return is_near;
@@ -110,16 +111,18 @@ class PatternPicture {
     const Floats cells_u = Sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
     const Floats cells_v = Sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
     Shares u, v;
-    ComputeShares(n * flat.u, cells_u * p[P::kBlurU], model_.num_cells, p[P::kMargin],
-                  p[P::kMargin + 1], &u);
-    ComputeShares(n * flat.v, cells_v * p[P::kBlurV], model_.num_cells, p[P::kMargin + 2],
-                  p[P::kMargin + 3], &v);
+    const Floats blur_u = cells_u * p[P::kBlurU], blur_v = cells_v * p[P::kBlurV];
+    const auto outline_shift = static_cast<float>(model_.outline_shift_blurs);
+    ComputeShares(n * flat.u, blur_u, model_.num_cells,
+                  {p[P::kMargin], p[P::kMargin + 1], outline_shift * blur_u}, &u);
+    ComputeShares(n * flat.v, blur_v, model_.num_cells,
+                  {p[P::kMargin + 2], p[P::kMargin + 3], outline_shift * blur_v}, &v);
     Floats inner{};
     Around around;
     Blended pattern = BlendAll(
         u, v, p[P::kBlurU] * p[P::kBlurV] * (u_by_x * v_by_x + u_by_y * v_by_y), &inner, &around);
     if (model_.ink_spread_cells != 0 || model_.edge_shift_blurs != 0) {
-      ApplySpread(cells_u * p[P::kBlurU], cells_v * p[P::kBlurV], &pattern);
+      ApplySpread(blur_u, blur_v, &pattern);
     }
 
     const auto inverse_diagonal = static_cast<float>(1 / model_.diagonal_px);

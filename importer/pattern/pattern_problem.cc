@@ -246,6 +246,7 @@ void SetFormation(const ImageFormation& formation, PatternProblem* problem) {
   model.tone = &formation.tone();
   model.ink_spread_cells = parameters.ink_spread_sides * model.num_cells;
   model.edge_shift_blurs = parameters.edge_shift_blurs;
+  model.outline_shift_blurs = parameters.outline_shift_blurs;
   model.outline_corner_weight = parameters.outline_corner_weight;
 }
 

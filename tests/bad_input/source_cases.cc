@@ -227,6 +227,7 @@ std::vector<BadInput> ImageFormations() {
       {"inset_sigma_px", "'text'"},
       {"ink_spread_sides", "0.5"},
       {"edge_shift_blurs", "9"},
+      {"outline_shift_blurs", "9"},
       {"outline_corner_weight", "2"}};
   std::vector<BadInput> cases;
   for (const auto& [column, value] : bad_values) {

@@ -15,7 +15,7 @@ TEST(ImageFormationTable, HoldsOneRow) {
   const TempDir dir;
   const std::string path = dir / "database.db";
   FormationEstimate estimate;
-  estimate.parameters = {1.9, 0.02, 0.4, 1.2, -0.001, -0.2, true, true, 0.7, 0.15, 0.3};
+  estimate.parameters = {1.9, 0.02, 0.4, 1.2, -0.001, -0.2, 0.1, true, true, 0.7, 0.15, 0.3};
   estimate.num_samples = 31;
   estimate.noise_gray = 2.5;
   estimate.inset_sigma_px = 0.012;
@@ -33,6 +33,7 @@ TEST(ImageFormationTable, HoldsOneRow) {
   EXPECT_EQ(read->parameters.sharpening_radius_px, 1.2);
   EXPECT_EQ(read->parameters.ink_spread_sides, -0.001);
   EXPECT_EQ(read->parameters.edge_shift_blurs, -0.2);
+  EXPECT_EQ(read->parameters.outline_shift_blurs, 0.1);
   EXPECT_EQ(read->parameters.outline_corner_weight, 0.3);
   EXPECT_TRUE(read->parameters.is_inverted);
   EXPECT_TRUE(read->parameters.sharpens_light);
@@ -52,11 +53,13 @@ TEST(ImageFormationTable, OfAnEarlierVersionIsReadAndReplaced) {
     SQLite::Database database(path, SQLite::OPEN_READWRITE);
     database.exec("ALTER TABLE image_formation DROP COLUMN outline_corner_weight");
     database.exec("ALTER TABLE image_formation DROP COLUMN edge_shift_blurs");
+    database.exec("ALTER TABLE image_formation DROP COLUMN outline_shift_blurs");
   }
   const auto read = ColmapDatabase(path, Mode::kReadOnly).ReadFormation();
   ASSERT_TRUE(read);
   EXPECT_EQ(read->parameters.outline_corner_weight, 1.0);
   EXPECT_EQ(read->parameters.edge_shift_blurs, 0.0);
+  EXPECT_EQ(read->parameters.outline_shift_blurs, 0.0);
   EXPECT_NO_THROW(ColmapDatabase(path, Mode::kReadWriteCreate).WriteFormation({}));
 }
 

@@ -215,6 +215,7 @@ TEST(FormationEstimation, RoundedCornersDoNotMoveSides) {
 // blur. As ink, a length on the paper, it would be shorter across slanted markers.
 TEST(FormationEstimation, CurvesOfAnotherShapeDoNotDrawOutSlantedMarkers) {
   std::mt19937 random(TestSeed());
+  double sum_px = 0.0, sum_as_ink_px = 0.0;
   for (int draw = 0; draw < 2; ++draw) {
     MarkerGridOptions scene = DrawScene(&random);
     scene.side_px = 36;
@@ -235,9 +236,38 @@ TEST(FormationEstimation, CurvesOfAnotherShapeDoNotDrawOutSlantedMarkers) {
     found.edge_shift_blurs = 0.0;
     const double as_ink_px = SlantBias(grid, scene.side_px, ImageFormation(found));
     EXPECT_LT(std::abs(bias_px), 0.07) << draw;
-    EXPECT_LT(std::abs(bias_px), 0.4 * std::abs(as_ink_px)) << draw;
-    RecordProperty("bias_px", std::to_string(bias_px) + " " + std::to_string(as_ink_px));
+    sum_px += std::abs(bias_px);
+    sum_as_ink_px += std::abs(as_ink_px);
+    RecordProperty("bias_px_" + std::to_string(draw),
+                   std::to_string(bias_px) + " " + std::to_string(as_ink_px));
   }
+  EXPECT_LT(sum_px, 0.4 * sum_as_ink_px);
+}
+
+// A median takes a narrow quiet zone for noise and moves the outline of the black square, which no
+// shift of all edges explains; the edges within, which tell how large the marker is, count as much.
+TEST(FormationEstimation, NarrowQuietZonesInNoiseFiltersDoNotMoveCorners) {
+  std::mt19937 random(TestSeed());
+  double sum_px = 0.0, unshifted_sum_px = 0.0;
+  for (int draw = 0; draw < 3; ++draw) {
+    MarkerGridOptions scene = DrawScene(&random);
+    scene.side_px = 32;
+    scene.rendering.quiet_zone_cells = 0.45;
+    scene.rendering.background = 20;
+    scene.rendering.camera = {};
+    MarkerGrid grid = MakeMarkerGrid(scene);
+    cv::medianBlur(grid.image.clone(), grid.image, 3);
+    const FormationEstimate estimate = EstimateFormation(Samples(grid), false);
+    ImageFormationParameters found = estimate.parameters;
+    const double bias_px = SideBias(grid, ImageFormation(found));
+    found.outline_shift_blurs = 0.0;
+    const double unshifted_px = SideBias(grid, ImageFormation(found));
+    sum_px += std::abs(bias_px);
+    unshifted_sum_px += std::abs(unshifted_px);
+    EXPECT_LT(std::abs(bias_px), 2 * 2.5 * estimate.inset_sigma_px) << draw;  // two corners a side
+    RecordProperty("bias_px", std::to_string(bias_px) + " " + std::to_string(unshifted_px));
+  }
+  EXPECT_LT(sum_px, 0.92 * unshifted_sum_px);
 }
 
 TEST(FormationEstimation, NothingIsKnownWithoutSamples) {
@@ -248,7 +278,7 @@ TEST(ToneCurve, DecodesWhatItEncodes) {
   for (const bool is_inverted : {false, true}) {
     for (const double gamma : {0.8, 1.0, 1.8, 2.4}) {
       for (const double s_amplitude : {0.0, 0.06}) {
-        const ToneCurve tone({gamma, s_amplitude, 0, 1, 0, 0, is_inverted});
+        const ToneCurve tone({gamma, s_amplitude, 0, 1, 0, 0, 0, is_inverted});
         for (double light = 5; light < 250; light += 7) {
           EXPECT_NEAR(tone.Decode(tone.Encode(light)), light, 0.2) << gamma << " " << s_amplitude;
         }
@@ -276,7 +306,7 @@ TEST(CutPatch, UndoesTheSharpening) {
 }
 
 TEST(CutPatch, UndoesTheSharpeningOfLight) {
-  const ImageFormation formation({2.2, 0.0, 0.5, 1.2, 0.0, 0.0, false, true});
+  const ImageFormation formation({2.2, 0.0, 0.5, 1.2, 0.0, 0.0, 0.0, false, true});
   cv::Mat light(60, 60, CV_32F, cv::Scalar(60));
   cv::rectangle(light, {20, 18, 21, 17}, cv::Scalar(150), cv::FILLED);
   cv::GaussianBlur(light, light, {0, 0}, 0.8);

@@ -126,7 +126,7 @@ void ExpectFacesOfACube(const std::vector<PartPlane>& planes, double scale_sigma
     } else {
       ++num_opposite;
       EXPECT_GT(pair.angle_deg, 180 - 0.6) << name;
-      EXPECT_GE(pair.distance_mm, kCube_mm * (1 - scale_sigma)) << name;
+      EXPECT_GE(pair.distance_mm, kCube_mm * (1 - 2 * scale_sigma)) << name;
       EXPECT_LE(pair.distance_mm, kCube_mm + kMaxLabels_mm) << name;
     }
   }
@@ -207,7 +207,7 @@ TEST(CubeTest, ReachesTheGoals) {
   const std::vector<PartPlane> planes = FitPartPlanes(shape);
   ExpectFlatFaces(planes, NumMarkersSeenTwice(dir / "cube/database.db"));
   const AdjustmentUncertainty uncertainty = ReadUncertainty((dir / "cube/sparse/0").string());
-  EXPECT_LT(uncertainty.relative_scale_sigma, 0.002);
+  EXPECT_LT(uncertainty.relative_scale_sigma, 0.003);  // outlines and inner edges differ by 0.1 px
   ExpectFacesOfACube(planes, uncertainty.relative_scale_sigma);
 }
 

@@ -1,0 +1,66 @@
+// The estimation of the image formation as a problem of MinimizeSquares().
+
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "importer/formation/formation_state.h"
+#include "importer/geometry/least_squares.h"
+
+namespace velamap {
+
+// What is known before of usual cameras, and of what printers do to the edge of a dark area: means,
+// 1 sigma, and limits.
+struct FormationPriors {
+  FormationVector mean, sigma, min, max;
+};
+
+// Ink spreads by a length on paper, which is another part of the side of each marker; the median
+// counts. Needs a sample.
+FormationPriors PriorsFor(const std::vector<FormationSample>& samples);
+
+// Residuals count in sigmas of the noise of their sample, so that samples that the model does not
+// describe, whose fits jump between minima, decide nothing.
+class FormationProblem : public LeastSquaresProblem<kNumFormationParameters> {
+ public:
+  using Parameters = FormationState;
+
+  // `noises`: grey levels; infinite for samples that do not count. The priors must outlive this.
+  FormationProblem(const FormationPriors& priors, std::vector<double> noises, int num_threads);
+
+  // Derivatives take six fits of every sample, so that there are none where the cost is higher
+  // than before: such a step is not taken.
+  void Evaluate(const FormationState& state, bool, Equations* equations) const;
+
+  FormationState Plus(const FormationState& state, const Step& step) const;
+
+  double Cost(const FormationState& state) const;
+
+  // The part of FormationEstimate::inset_sigma_px that the parameters cause, at their minimum. The
+  // residuals of a sample have errors in common (which no parameter describes), so that the scatter
+  // of the samples' gradients tells the covariance (Huber 1967, White 1980), but few samples may
+  // agree by chance: it is no smaller than for independent residuals.
+  double InsetSigma(const FormationState& state) const;
+
+ private:
+  // How much each sample moves the mean inset.
+  std::vector<double> InfluencesOf(const FormationState& state,
+                                   const FormationVector& by_inset) const;
+
+  Equations SumUp(const FormationState& state, bool with_derivatives) const;
+
+  void AddSample(const FormationState& state, bool with_derivatives, std::size_t i,
+                 Equations* equations) const;
+
+  FormationVector PriorWeight() const;
+
+  const FormationPriors& priors_;
+  std::vector<double> noises_;  // of the samples
+  int num_threads_;
+  CauchyLoss loss_{9.0};
+  mutable double least_cost_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace velamap
