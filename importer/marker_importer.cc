@@ -54,6 +54,7 @@ ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetec
       OpenFrameSource(options.image_path, options.video, WithSearchedFrames(known_names, tracking),
                       options.num_threads);
   ImportRun run(options, detector, tracking, database, source.get());
+  if (progress) progress(0, source->NumFrames(), "");
   RunFramePipeline(
       source.get(), num_threads,
       [&](int frame_idx, Frame* frame) { return run.Process(frame_idx, frame); },

@@ -18,7 +18,8 @@
 
 namespace velamap {
 
-// Called with the numbers of frames done and in total (0 if unknown) and a line on the last frame.
+// Called with the numbers of frames done and in total (0 if unknown) and a line on the last frame:
+// with none done where the reading of frames begins, then after each.
 using ProgressCallback = std::function<void(int done, int total, const std::string& message)>;
 
 struct MarkerImporterOptions {

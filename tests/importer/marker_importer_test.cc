@@ -81,7 +81,7 @@ TEST_F(MarkerImporterTest, FolderOfImages) {
     done.push_back(n);
     EXPECT_EQ(total, 3);
   });
-  EXPECT_THAT(done, ElementsAre(1, 2, 3));
+  EXPECT_THAT(done, ElementsAre(0, 1, 2, 3));
   EXPECT_EQ(report.num_frames_read, 3);
   EXPECT_EQ(report.num_images_added, 3);
   EXPECT_EQ(report.num_images_present, 0);
