@@ -75,8 +75,10 @@ double ToneCurve::Decode(double gray) const {
   if (is_linear_) return gray;
   const double recorded = (gray - offset_) * sign_;
   const auto place = static_cast<float>(recorded);
-  const auto* high = gray_of_root_.begin() +
-                     first_above_gray_[static_cast<std::size_t>(std::clamp(recorded, 0.0, 255.0))];
+  // std::clamp() would let NaN through.
+  const auto* high =
+      gray_of_root_.begin() +
+      first_above_gray_[static_cast<std::size_t>(std::min(std::max(0.0, recorded), 255.0))];
   while (high < gray_of_root_.end() - 1 && *high <= place) ++high;
   const double low = *(high - 1), step = std::max(*high - low, 1e-6);
   const double idx =
