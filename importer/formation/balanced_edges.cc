@@ -55,19 +55,17 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
 
 BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads) {
   constexpr double kProbeBlurs = -0.1, kMaxShiftBlurs = 0.5, kMinSlopePx = 0.05;
-  constexpr int kIterations = 2;
   const EdgeShift edges = InnerEdgeShift(state);
   const FormationState probe = WithOutlineShift(kProbeBlurs, state, num_threads);
   const double slope_px =
       (InnerEdgeShift(probe).corners_outwards_px - edges.corners_outwards_px) / kProbeBlurs;
   if (!(slope_px > kMinSlopePx)) return {state, std::abs(edges.corners_outwards_px)};
-  double shift = 0.0, corners_outwards_px = edges.corners_outwards_px;
-  FormationState shifted = state;
-  for (int i = 0; i < kIterations; ++i) {
-    shift = std::clamp(shift - corners_outwards_px / slope_px, -kMaxShiftBlurs, kMaxShiftBlurs);
-    shifted = WithOutlineShift(shift, state, num_threads);
-    corners_outwards_px = InnerEdgeShift(shifted).corners_outwards_px;
-  }
+  // Two steps of Newton's method.
+  const auto stepped = [&](double shift, const EdgeShift& left) {
+    return std::clamp(shift - left.corners_outwards_px / slope_px, -kMaxShiftBlurs, kMaxShiftBlurs);
+  };
+  double shift = stepped(0.0, edges);
+  shift = stepped(shift, InnerEdgeShift(WithOutlineShift(shift, state, num_threads)));
   const double sigma = edges.corners_sigma_px / slope_px;
   shift *= 0.5 * ShareBeyondNoise(shift, sigma);
   const double inset_px = MeanInset(state, probe) / kProbeBlurs;  // by one blur sigma

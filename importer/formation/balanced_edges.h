@@ -6,8 +6,8 @@
 
 namespace velamap {
 
-// A state whose shifts have inner edges where the model has them, and how well the inset of the
-// corners is known by that.
+// A state with corrected shifts, and 1 sigma of the inset of the corners that the correction
+// leaves.
 struct BalancedEdges {
   FormationState state;
   double inset_sigma_px = 0.0;

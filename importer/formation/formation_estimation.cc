@@ -20,21 +20,21 @@ using State = FormationState;
 constexpr double kQuietZoneSigma = 0.25;
 
 // The samples fitted with a camera that is usual but for its gamma.
-State Start(const std::vector<FormationSample>& samples, double gamma,
-            const ImageFormationParameters& formation, int num_threads) {
-  FormationVector start = PriorsFor(samples).mean;
+State Start(const std::vector<FormationSample>& samples, const FormationPriors& priors,
+            double gamma, const ImageFormationParameters& formation, int num_threads) {
+  FormationVector start = priors.mean;
   start[0] = std::log(gamma);
   return FitSamples(samples, start, formation, num_threads);
 }
 
 // The samples fitted with the gamma that leaves the least noise; none if no fit succeeds.
-State BestStart(const std::vector<FormationSample>& samples,
+State BestStart(const std::vector<FormationSample>& samples, const FormationPriors& priors,
                 const ImageFormationParameters& formation, int num_threads) {
   constexpr double kGammas[] = {1.0, 1.5, 2.2};
   State best;
   double least_noise = std::numeric_limits<double>::infinity();
   for (const double gamma : kGammas) {
-    State state = Start(samples, gamma, formation, num_threads);
+    State state = Start(samples, priors, gamma, formation, num_threads);
     const double noise = NoiseOf(state);
     if (noise < least_noise) {
       least_noise = noise;
@@ -75,7 +75,7 @@ State Minimized(const std::vector<FormationSample>& samples, const FormationPrio
   formation.sharpens_light = sharpens_light;
   formation.quiet_zone_sigma_cells = kQuietZoneSigma;
   formation.outline_corner_weight = 0.0;
-  State state = BestStart(samples, formation, num_threads);
+  State state = BestStart(samples, priors, formation, num_threads);
   if (state.samples.empty()) return state;
   Minimize(priors, kMaxIterations, num_threads, &state);
   state = WithOutlineCorners(OutlineCornerWeight(state), state, num_threads);
@@ -136,8 +136,8 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   if (by_gray.samples.empty()) return {};
   const bool light_wins = LightWins(priors, num_threads, &by_gray, &by_light);
   const State& likely = light_wins ? by_light : by_gray;
-  State winner =
-      Start(samples, std::exp(likely.parameters[0]), likely.formation->parameters(), num_threads);
+  State winner = Start(samples, priors, std::exp(likely.parameters[0]),
+                       likely.formation->parameters(), num_threads);
   if (winner.samples.empty()) return {};
   winner = FittedWith(likely.formation->parameters(), likely.parameters, winner, num_threads);
   Minimize(priors, kFewIterations, num_threads, &winner);

@@ -13,11 +13,11 @@ namespace velamap {
 
 // Levenberg-Marquardt over gamma, S, sharpening, its radius, the ink's spread and the camera's
 // shift of edges, with a Cauchy loss and priors around a usual camera and printer; the samples are
-// fitted again after each step. Starts from several gammas, and sharpens grey values or light,
-// whichever explains the samples better. The shift of edges then follows the places of inner edges
-// (edge_shift.h), and pixels at the corners of outlines get the weight that their residuals ask
-// for. `is_inverted`: the samples hold 255 less the recorded grey values. The number of threads (0:
-// one a core) does not change the result.
+// fitted again after each step. A part of the samples starts from several gammas and tells whether
+// grey values or light are sharpened; then all samples take a few steps. The shifts of edges and of
+// outlines then follow the places of inner edges (balanced_edges.h), and pixels at the corners of
+// outlines get the weight that their residuals ask for. `is_inverted`: the samples hold 255 less
+// the recorded grey values. The number of threads (0: one a core) does not change the result.
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads = 1);
 

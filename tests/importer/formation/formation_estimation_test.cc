@@ -265,7 +265,8 @@ TEST(FormationEstimation, NarrowQuietZonesInNoiseFiltersDoNotMoveCorners) {
     sum_px += std::abs(bias_px);
     unshifted_sum_px += std::abs(unshifted_px);
     EXPECT_LT(std::abs(bias_px), 2 * 2.5 * estimate.inset_sigma_px) << draw;  // two corners a side
-    RecordProperty("bias_px", std::to_string(bias_px) + " " + std::to_string(unshifted_px));
+    RecordProperty("bias_px_" + std::to_string(draw),
+                   std::to_string(bias_px) + " " + std::to_string(unshifted_px));
   }
   EXPECT_LT(sum_px, 0.92 * unshifted_sum_px);
 }
