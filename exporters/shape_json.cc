@@ -88,7 +88,7 @@ Json CamerasOf(const Model& model, const std::optional<bool>& is_found) {
 }
 
 // The file is sent around.
-Json JsonOf(const Verdict& verdict) {
+Json VerdictJson(const Verdict& verdict) {
   Json reasons = Json::array();
   for (const VerdictReason& reason : verdict.reasons) {
     reasons.push_back({{"level", StatusName(reason.level)}, {"text", WithoutFolders(reason.text)}});
@@ -117,7 +117,7 @@ void WriteShapeJson(const ShapeFrame& frame, const Model& model, int num_markers
   if (!origin.clip.empty()) root["clip"] = origin.clip;
   root["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", OutputDate());
   if (!origin.version.empty()) root["velamap_version"] = origin.version;
-  if (verdict != nullptr) root["verdict"] = JsonOf(*verdict);
+  if (verdict != nullptr) root["verdict"] = VerdictJson(*verdict);
   root["frame"] = {
       {"name", frame.name}, {"description", frame.description}, {"reasons", frame.reasons}};
   root["units"] = {{"length", "m"},

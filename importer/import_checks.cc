@@ -29,8 +29,6 @@ namespace fs = std::filesystem;
 // suggested.
 constexpr double kConvincingRatio = 10.0;
 
-constexpr char kRemedy[] = "write to a new place, or give --import_anew 1 to import all anew";
-
 void CheckVideo(const MarkerImporterOptions& options,
                 const std::map<std::string, SourceFile>& sources) {
   const auto known = sources.find(kVideoSource);
@@ -39,7 +37,7 @@ void CheckVideo(const MarkerImporterOptions& options,
                                IsSamePlace(known->second, options.image_path)
                                    ? "the video before it was changed"
                                    : "another video than " + options.image_path,
-                               SourceText(known->second), kRemedy));
+                               SourceText(known->second), kImportAnewRemedy));
 }
 
 // Frames that are there would be in the result, whatever the options select now.
@@ -55,7 +53,7 @@ void CheckFrames(const MarkerImporterOptions& options,
       "{}: holds {} frames, such as {}, that {}, {} and {} leave out; {}", options.database_path,
       std::count_if(first, known_names.end(), is_left_out), *first,
       OptionName(&VideoOptions::first_frame), OptionName(&VideoOptions::last_frame),
-      OptionName(&VideoOptions::frame_step), kRemedy));
+      OptionName(&VideoOptions::frame_step), kImportAnewRemedy));
 }
 
 void CheckPhotograph(const MarkerImporterOptions& options, const std::string& name,
@@ -64,13 +62,14 @@ void CheckPhotograph(const MarkerImporterOptions& options, const std::string& na
   if (IsRegularFile(file)) {
     if (HasSameContent(known, file.string())) return;
     throw InputError(fmt::format("{}: {} has changed since it was imported (it was {}); {}",
-                                 options.database_path, file.string(), SourceText(known), kRemedy));
+                                 options.database_path, file.string(), SourceText(known),
+                                 kImportAnewRemedy));
   }
   // Photographs of several folders may share a database outside of a workspace.
   if (!options.is_only_source && !IsSamePlace(known, file)) return;
   throw InputError(fmt::format("{}: holds {}, which is not in {} (it was {}); {}",
                                options.database_path, name, options.image_path, SourceText(known),
-                               kRemedy));
+                               kImportAnewRemedy));
 }
 
 void CheckPhotographs(const MarkerImporterOptions& options,
@@ -80,7 +79,7 @@ void CheckPhotographs(const MarkerImporterOptions& options,
       CheckPhotograph(options, name, source);
     } else if (options.is_only_source) {
       throw InputError(fmt::format("{}: was made from a video ({}), not from photographs; {}",
-                                   options.database_path, SourceText(source), kRemedy));
+                                   options.database_path, SourceText(source), kImportAnewRemedy));
     }
   }
 }
@@ -95,22 +94,22 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
     throw InputError(
         fmt::format("{}: was made with other detection options, another layout or "
                     "another prior shape ({}; this run has {}); {}",
-                    options.database_path, *known_detector, detector, kRemedy));
+                    options.database_path, *known_detector, detector, kImportAnewRemedy));
   }
   if (!options.camera && database.HasCalibration() && !database.ReadCameras().empty()) {
     throw InputError(
         fmt::format("{}: was made with a calibration (--camera_path); give it again, {}",
-                    options.database_path, kRemedy));
+                    options.database_path, kImportAnewRemedy));
   }
   if (!options.camera) return;
   if (!database.HasCalibration()) {
     throw InputError(fmt::format("{}: was made without the calibration {}; {}",
-                                 options.database_path, options.camera_path, kRemedy));
+                                 options.database_path, options.camera_path, kImportAnewRemedy));
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {
     if (!IsSameCalibration(options, camera)) {
       throw InputError(fmt::format("{}: was made with another calibration than {}; {}",
-                                   options.database_path, options.camera_path, kRemedy));
+                                   options.database_path, options.camera_path, kImportAnewRemedy));
     }
   }
 }
@@ -122,7 +121,8 @@ void CheckSources(const MarkerImporterOptions& options, const std::vector<std::s
   const auto photograph = sources.upper_bound(kVideoSource);
   if (options.is_only_source && photograph != sources.end()) {
     throw InputError(fmt::format("{}: was made from photographs ({}), not from a video; {}",
-                                 options.database_path, SourceText(photograph->second), kRemedy));
+                                 options.database_path, SourceText(photograph->second),
+                                 kImportAnewRemedy));
   }
   CheckVideo(options, sources);
   if (options.is_only_source) CheckFrames(options, known_names);

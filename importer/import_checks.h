@@ -14,6 +14,9 @@ namespace velamap {
 // With fewer markers a frame than this, those found are probably false ones.
 inline constexpr double kFewMarkersPerFrame = 0.5;
 
+inline constexpr char kImportAnewRemedy[] =
+    "write to a new place, or give --import_anew 1 to import all anew";
+
 // Throws InputError if `database` was made with another `detector` (DescribeDetector()) or
 // calibration.
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,

@@ -7,6 +7,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/import_checks.h"
 #include "importer/track/marker_tracking.h"
 #include "importer/video/frame_source.h"
 
@@ -66,24 +67,24 @@ std::optional<VideoOptions> FramesToSearch(const MarkerImporterOptions& options)
 }
 
 void CheckPart(const MarkerImporterOptions& options, const ColmapDatabase& database) {
-  constexpr char kRemedy[] = "write to a new place, or give --import_anew 1 to import all anew";
   const std::optional<PartRecord> known = database.ReadPart();
   if (!known && (!options.part || !database.ReadDetector())) return;
   if (!known) {
     throw InputError(fmt::format("{}: holds the import of a whole source, not part {}; {}",
-                                 options.database_path, PartText(*options.part), kRemedy));
+                                 options.database_path, PartText(*options.part),
+                                 kImportAnewRemedy));
   }
   const std::string known_part = PartText(known->part);
   if (!options.part || PartText(*options.part) != known_part) {
     throw InputError(
         fmt::format("{}: holds part {} of a video, to be merged with the others by velamap "
                     "database_merger; {}",
-                    options.database_path, known_part, kRemedy));
+                    options.database_path, known_part, kImportAnewRemedy));
   }
   if (!(known->whole == options.video)) {
     throw InputError(fmt::format("{}: holds part {} of {}, this run is of {}; {}",
                                  options.database_path, known_part, FramesText(known->whole),
-                                 FramesText(options.video), kRemedy));
+                                 FramesText(options.video), kImportAnewRemedy));
   }
 }
 

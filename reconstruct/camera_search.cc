@@ -179,11 +179,11 @@ struct Outcome {
   double share = 0.0;  // of all corners that the registered images show
 };
 
-class Search {
+class CameraSearch {
  public:
-  Search(const std::vector<DatabaseImage>& images, const Layout& layout,
-         const CornerErrors& corner_errors, const RegistrationOptions& registration,
-         const MarkerAdjustmentOptions& adjustment)
+  CameraSearch(const std::vector<DatabaseImage>& images, const Layout& layout,
+               const CornerErrors& corner_errors, const RegistrationOptions& registration,
+               const MarkerAdjustmentOptions& adjustment)
       : images_(images),
         layout_(layout),
         corner_errors_(corner_errors),
@@ -257,7 +257,7 @@ std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
                                        const MarkerAdjustmentOptions& adjustment) {
   constexpr double kNearlyAll = 0.8;
   if (images.size() < 2) return guesses;  // the registration says what is missing
-  const Search search(images, layout, corner_errors, registration, adjustment);
+  const CameraSearch search(images, layout, corner_errors, registration, adjustment);
   std::optional<Outcome> best;
   std::string first_failure;
   for (const Start& start : Starts(images, guesses, registration, adjustment)) {

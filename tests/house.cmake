@@ -25,7 +25,7 @@ house_folder(importer/video PUBLIC
   frame_image frame_source image_file picture_metadata source_file video_options
   written_frame)
 house_folder(importer/detect PUBLIC
-  chessboard corner_colors detection detection_options duplicates interpolate marker_alignment
+  chessboard corner_colors detection detection_options duplicates gray_levels interpolate marker_alignment
   marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
 house_folder(importer/pattern PUBLIC
   clipped_pixels fit_equations formation_estimate image_formation pattern_fit pattern_picture

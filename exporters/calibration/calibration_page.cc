@@ -56,7 +56,7 @@ std::vector<std::string> ParameterNames(const Camera& camera) {
   return names;
 }
 
-std::string Parameters(const EstimatedCamera& found) {
+std::string ParameterTable(const EstimatedCamera& found) {
   const std::vector<std::string> names = ParameterNames(found.camera);
   std::string rows = Row({CameraModelName(found.camera.model), "value", "sigma"}, "th");
   for (std::size_t i = 0; i < found.camera.params.size(); ++i) {
@@ -98,7 +98,7 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
     return EscapeForMarkup(fmt::format("{} x {} px, {}", camera.width_px, camera.height_px, board));
   }
   if (name == "VERDICT") return VerdictHtml(JudgeCalibration(calibration));
-  if (name == "PARAMETERS") return Parameters(calibration.camera);
+  if (name == "PARAMETERS") return ParameterTable(calibration.camera);
   if (name == "MORE") {
     const std::vector<std::string> advice = WhatToShoot(calibration);
     return advice.empty() ? "<p>Nothing is missing.</p>" : Items(advice);

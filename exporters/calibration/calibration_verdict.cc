@@ -25,11 +25,11 @@ constexpr double kMaxOutliers = 0.1;  // share
 
 // One of the nine parts of a picture.
 std::string PartName(int column, int row) {
-  constexpr std::array<const char*, 3> kRows = {"top", "middle", "bottom"};
-  constexpr std::array<const char*, 3> kColumns = {"left", "centre", "right"};
+  constexpr std::array<const char*, 3> kRowNames = {"top", "middle", "bottom"};
+  constexpr std::array<const char*, 3> kColumnNames = {"left", "centre", "right"};
   if (row == 1 && column == 1) return "centre";
-  return fmt::format("{} {}", kRows.at(static_cast<std::size_t>(row)),
-                     kColumns.at(static_cast<std::size_t>(column)));
+  return fmt::format("{} {}", kRowNames.at(static_cast<std::size_t>(row)),
+                     kColumnNames.at(static_cast<std::size_t>(column)));
 }
 
 // Parts of the picture of whose cells half or more are empty.

@@ -90,7 +90,7 @@ Eigen::MatrixXd DriftOf(const Rows& rows) {
   return drift;
 }
 
-struct Solution {
+struct FieldSolution {
   Eigen::LLT<Eigen::MatrixXd> covariance;
   Eigen::MatrixXd whitened_drift;
   Eigen::LLT<Eigen::MatrixXd> drift_precision;
@@ -103,9 +103,10 @@ double LogDeterminant(const Eigen::LLT<Eigen::MatrixXd>& factor) {
 }
 
 // Rasmussen and Williams, section 2.7, with a polynomial of finite prior sigma.
-Solution Solve(const Eigen::MatrixXd& unit_covariance, const Eigen::MatrixXd& drift,
-               const Eigen::VectorXd& targets, const Eigen::VectorXd& sigmas, double amplitude) {
-  Solution solution;
+FieldSolution Solve(const Eigen::MatrixXd& unit_covariance, const Eigen::MatrixXd& drift,
+                    const Eigen::VectorXd& targets, const Eigen::VectorXd& sigmas,
+                    double amplitude) {
+  FieldSolution solution;
   Eigen::MatrixXd covariance = amplitude * amplitude * unit_covariance;
   covariance.diagonal() += sigmas.cwiseAbs2();
   solution.covariance.compute(covariance);
@@ -221,7 +222,8 @@ SurfaceField::SurfaceField(const std::vector<FieldPoint>& points,
   sigmas_.head(num_points) =
       (parameters.sigma_factor * sigmas_.head(num_points)).cwiseMax(kMinSigma);
   amplitude_ = parameters.amplitude;
-  Solution solution = Solve(UnitCovariance(rows), DriftOf(rows), rows.targets, sigmas_, amplitude_);
+  FieldSolution solution =
+      Solve(UnitCovariance(rows), DriftOf(rows), rows.targets, sigmas_, amplitude_);
   places_ = std::move(rows.places);
   normals_ = std::move(rows.directions);
   covariance_ = std::move(solution.covariance);

@@ -11,17 +11,17 @@
 namespace velamap {
 namespace {
 
-struct CornerErrors {
+struct ErrorSum {
   int count = 0;
   double sum_px = 0.0;
 };
 
 // Errors by marker id. Points behind their camera have none.
-std::map<int, CornerErrors> ErrorsByMarker(const std::vector<ObservationError>& errors) {
-  std::map<int, CornerErrors> errors_of;
+std::map<int, ErrorSum> ErrorsByMarker(const std::vector<ObservationError>& errors) {
+  std::map<int, ErrorSum> errors_of;
   for (const ObservationError& error : errors) {
     if (!IsCornerPoint3DId(error.point3D_id) || !std::isfinite(error.error_px)) continue;
-    CornerErrors& marker = errors_of[CornerFromPoint3DId(error.point3D_id).marker_id];
+    ErrorSum& marker = errors_of[CornerFromPoint3DId(error.point3D_id).marker_id];
     ++marker.count;
     marker.sum_px += error.error_px;
   }
@@ -83,7 +83,7 @@ double AreaDeviationPercent(const ShapeMarker& marker, const Layout& layout) {
 }
 
 ReportJsonValue MarkersJson(const ReportInput& input, const std::vector<ObservationError>& errors) {
-  const std::map<int, CornerErrors> errors_of = ErrorsByMarker(errors);
+  const std::map<int, ErrorSum> errors_of = ErrorsByMarker(errors);
   ReportJsonValue markers = ReportJsonValue::array();
   for (const ShapeMarker& marker : input.shape.markers) {
     ReportJsonValue json = {{"id", marker.marker_id}, {"part", marker.part}};

@@ -6,11 +6,12 @@
 
 #include <Eigen/Geometry>
 
+#include "exporters/sail/section_spline.h"
+
 namespace velamap {
 namespace {
 
 constexpr std::size_t kMinLuffMarkers = 4;  // of a smoothing spline
-constexpr double kSamePlace_m = 1e-3;
 
 enum LuffNumber { kBend, kSag, kNumLuffNumbers };
 

@@ -14,8 +14,6 @@
 namespace velamap {
 namespace {
 
-constexpr double kSamePlace_m = 1e-3;
-
 // The reason why no curve can be fitted to the markers; empty if one can.
 std::string WhyNoCurve(const CenterSet& centers, const std::vector<int>& indices,
                        const Eigen::Vector3d& up) {

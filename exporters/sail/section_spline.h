@@ -19,6 +19,9 @@
 
 namespace velamap {
 
+// Points nearer than this are one point for a curve.
+inline constexpr double kSamePlace_m = 1e-3;
+
 struct SpaceCurve {
   int degree = 3;
   Eigen::ArrayXd knots;  // degree + 1 times 0, ascending, degree + 1 times 1

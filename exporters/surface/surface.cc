@@ -18,7 +18,7 @@
 namespace velamap {
 namespace {
 
-constexpr std::size_t kMinMarkers = 3, kMinLines = 2;
+constexpr std::size_t kMinSurfaceMarkers = 3, kMinLines = 2;
 // Limits of the surface's area over that of straight strips between the lines. A half cylinder has
 // a ratio of 1.57.
 constexpr double kMaxAreaRatio = 1.6, kMaxAreaRatioWithEdges = 4.0;
@@ -38,19 +38,20 @@ SortedInput SortInput(const SurfaceInput& input) {
       present.push_back(*marker);
       sorted.by_id[marker->marker_id] = *marker;
     }
-    if (present.size() >= kMinMarkers) {
+    if (present.size() >= kMinSurfaceMarkers) {
       sorted.lines.push_back(line);
       continue;
     }
     sorted.markers.insert(sorted.markers.end(), present.begin(), present.end());
     sorted.notes.push_back(fmt::format("line {}: {} of its {} markers whole, {} needed; left out",
                                        line.name, present.size(), line.markers.size(),
-                                       kMinMarkers));
+                                       kMinSurfaceMarkers));
   }
   if (sorted.lines.size() < kMinLines) {
     throw DataError(fmt::format("{} of {} horizontal lines have {} whole markers, {} needed{}{}",
-                                sorted.lines.size(), input.lines.size(), kMinMarkers, kMinLines,
-                                sorted.notes.empty() ? "" : ": ", fmt::join(sorted.notes, "; ")));
+                                sorted.lines.size(), input.lines.size(), kMinSurfaceMarkers,
+                                kMinLines, sorted.notes.empty() ? "" : ": ",
+                                fmt::join(sorted.notes, "; ")));
   }
   return sorted;
 }
@@ -85,8 +86,8 @@ Noise DescribeNoise(const SortedInput& sorted, const SurfaceOptions& options) {
   return noise;
 }
 
-std::vector<double> Weights(const std::vector<SurfaceObservation>& observations,
-                            const Noise& noise) {
+std::vector<double> NoiseWeights(const std::vector<SurfaceObservation>& observations,
+                                 const Noise& noise) {
   std::vector<double> weights;
   for (const SurfaceObservation& observation : observations) {
     const double sigma_m =
@@ -268,7 +269,7 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   SmoothSurface smooth;
   for (int fit = 1; fit <= kNumFits; ++fit) {
     const bool is_parabolic = fit <= kNumParabolicFits && !interpolates;
-    smooth = SmoothObservations(parameters, Weights(parameters.observations, noise),
+    smooth = SmoothObservations(parameters, NoiseWeights(parameters.observations, noise),
                                 is_parabolic ? Smoothing::kParabolas : noise.smoothing);
     if (fit == kNumParabolicFits) AddBetween(sorted, smooth.surface, &parameters);
     if (fit == kNumFits) break;

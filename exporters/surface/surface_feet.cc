@@ -42,9 +42,9 @@ Bounds BoundsOf(const SurfaceParameters& parameters) {
 }  // namespace
 
 OpenSides OpenSidesOf(const SurfaceParameters& parameters, const SurfaceEdges& edges) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kOnEdge = 1e-9;
   const Bounds bounds = BoundsOf(parameters);
-  OpenSides open{bounds.least > kRounding, bounds.greatest < 1 - kRounding};
+  OpenSides open{bounds.least > kOnEdge, bounds.greatest < 1 - kOnEdge};
   open.at_least[0] = open.at_least[0] || !edges.luff.empty();
   open.at_greatest[0] = open.at_greatest[0] || !edges.leech.empty();
   open.at_least[1] = open.at_least[1] || !edges.foot.empty();

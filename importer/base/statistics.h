@@ -22,6 +22,9 @@ Statistics ComputeStatistics(std::vector<double> values);
 // The mean of the middle two for an even count. `values` must not be empty.
 double Median(std::vector<double> values);
 
+// Medians of chi-squared with 2 and 8 degrees of freedom.
+inline constexpr double kChiSquaredMedian2 = 1.386, kChiSquaredMedian8 = 7.344;
+
 // The standard deviation of a normal distribution whose median absolute deviation is 1.
 constexpr double kMadToSigma = 1.4826;
 

@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-const std::string kByteOrderMark = "\xef\xbb\xbf";
+const std::string kUtf8Mark = "\xef\xbb\xbf";
 
 }  // namespace
 
@@ -35,10 +35,10 @@ std::string ReadTextFile(const std::string& path, const std::string& what) {
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream) throw InputError(fmt::format("{}: the {} cannot be read", path, what));
-  if (text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0) {
-    text.erase(0, kByteOrderMark.size());
+  if (text.compare(0, kUtf8Mark.size(), kUtf8Mark) == 0) {
+    text.erase(0, kUtf8Mark.size());
   }
-  if (text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0) {
+  if (text.compare(0, kUtf8Mark.size(), kUtf8Mark) == 0) {
     throw InputError(fmt::format(
         "{}: the {} begins with two byte order marks; save it as UTF-8 without any", path, what));
   }

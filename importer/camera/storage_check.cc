@@ -16,20 +16,20 @@ namespace {
 
 constexpr int kMaxDepth = 16, kMaxValues = 2'000'000;
 
-[[noreturn]] void Fail(const std::string& path, const std::string& why) {
+[[noreturn]] void FailForm(const std::string& path, const std::string& why) {
   throw InputError(
       fmt::format("{}: not a readable OpenCV FileStorage file: {}", path, SingleLine(why)));
 }
 
 [[noreturn]] void FailDepth(const std::string& path) {
-  Fail(path, fmt::format("nested more than {} deep", kMaxDepth));
+  FailForm(path, fmt::format("nested more than {} deep", kMaxDepth));
 }
 
 // Visits each value as often as aliases repeat it, which OpenCV's parser would, too.
 void CheckNode(const YAML::Node& node, int depth, int* num_values, const std::string& path) {
   if (depth > kMaxDepth) FailDepth(path);
   if (++*num_values > kMaxValues) {
-    Fail(path, fmt::format("it holds more than {} values, aliases resolved", kMaxValues));
+    FailForm(path, fmt::format("it holds more than {} values, aliases resolved", kMaxValues));
   }
   for (const auto& child : node) {
     CheckNode(node.IsMap() ? child.second : child, depth + 1, num_values, path);
@@ -44,15 +44,15 @@ void CheckYaml(const std::string& text, const std::string& path) {
       begin != std::string::npos && text.find("\n---", begin + 1) != std::string::npos;
   if (begins_twice ||
       (end != std::string::npos && text.find_first_not_of(" \t\r\n.", end) != std::string::npos)) {
-    Fail(path, "it holds more than one document");
+    FailForm(path, "it holds more than one document");
   }
   YAML::Node document;
   try {
     document = YAML::Load(text);
   } catch (const YAML::Exception& exception) {  // beyond a depth of 500, too
-    Fail(path, exception.what());
+    FailForm(path, exception.what());
   }
-  if (!document.IsMap()) Fail(path, "its top level is not a map of keys");
+  if (!document.IsMap()) FailForm(path, "its top level is not a map of keys");
   int num_values = 0;
   CheckNode(document, 0, &num_values, path);
 }
@@ -60,9 +60,9 @@ void CheckYaml(const std::string& text, const std::string& path) {
 void CheckXml(const std::string& text, const std::string& path) {
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
-  if (!result) Fail(path, result.description());
+  if (!result) FailForm(path, result.description());
   if (std::strcmp(document.document_element().name(), "opencv_storage") != 0) {
-    Fail(path, "its first element is not opencv_storage");
+    FailForm(path, "its first element is not opencv_storage");
   }
   std::vector<std::pair<pugi::xml_node, int>> nodes = {{document.document_element(), 0}};
   while (!nodes.empty()) {
@@ -76,7 +76,7 @@ void CheckXml(const std::string& text, const std::string& path) {
 }  // namespace
 
 void CheckStorageText(const std::string& text, const std::string& path) {
-  if (text.find('\0') != std::string::npos) Fail(path, "it holds a zero byte");
+  if (text.find('\0') != std::string::npos) FailForm(path, "it holds a zero byte");
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_xml = begin != std::string::npos && text[begin] == '<';
   is_xml ? CheckXml(text, path) : CheckYaml(text, path);

@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-constexpr char kSchema[] = R"(
+constexpr char kFormationSchema[] = R"(
 CREATE TABLE image_formation (
     gamma REAL NOT NULL,
     s_amplitude REAL NOT NULL,
@@ -40,7 +40,7 @@ constexpr char kColumns[] =
 void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* database) {
   // The table of an earlier velamap has fewer columns.
   database->exec("DROP TABLE IF EXISTS image_formation");
-  database->exec(kSchema);
+  database->exec(kFormationSchema);
   SQLite::Statement insert(
       *database, fmt::format("INSERT INTO image_formation({}) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
                              " ?, ?, ?, ?, ?)",

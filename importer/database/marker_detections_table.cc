@@ -17,7 +17,7 @@
 namespace velamap {
 namespace {
 
-constexpr char kSchema[] = R"(
+constexpr char kDetectionsSchema[] = R"(
 CREATE TABLE IF NOT EXISTS marker_detections (
     detection_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
     image_id INTEGER NOT NULL,
@@ -137,7 +137,7 @@ MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::stri
 }  // namespace
 
 void CreateMarkerDetectionsTable(SQLite::Database* database) {
-  database->exec(kSchema);
+  database->exec(kDetectionsSchema);
   const std::set<std::string> names = ColumnNames(*database, "marker_detections");
   for (const auto& [name, type] : kAddedColumns) {
     if (names.count(name) > 0) continue;

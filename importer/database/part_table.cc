@@ -9,7 +9,7 @@
 namespace velamap {
 namespace {
 
-constexpr char kSchema[] = R"(
+constexpr char kPartSchema[] = R"(
 CREATE TABLE IF NOT EXISTS marker_part (
     part INTEGER NOT NULL,
     num_parts INTEGER NOT NULL,
@@ -28,7 +28,7 @@ std::string PartText(const VideoPart& part) {
 }
 
 void WritePart(const PartRecord& record, SQLite::Database* database) {
-  database->exec(kSchema);
+  database->exec(kPartSchema);
   SQLite::Statement insert(*database,
                            "INSERT INTO marker_part(part, num_parts, first_frame, last_frame,"
                            " frame_step, detector, is_finished) VALUES(?, ?, ?, ?, ?, ?, ?)");

@@ -12,7 +12,7 @@
 namespace velamap {
 namespace {
 
-constexpr char kSchema[] = R"(
+constexpr char kSourceSchema[] = R"(
 CREATE TABLE marker_sources (
     image_name TEXT PRIMARY KEY NOT NULL,
     path TEXT NOT NULL,
@@ -47,7 +47,7 @@ void Insert(const std::string& image_name, const SourceFile& source, SQLite::Dat
 void MakeTable(SQLite::Database* database) {
   const std::map<std::string, SourceFile> earlier = ReadSourceRows(database);
   database->exec("DROP TABLE IF EXISTS marker_sources");
-  database->exec(kSchema);
+  database->exec(kSourceSchema);
   for (const auto& [image_name, source] : earlier) Insert(image_name, source, database);
 }
 

@@ -15,7 +15,7 @@
 namespace velamap {
 namespace {
 
-constexpr char kSchema[] = R"(
+constexpr char kTrackingSchema[] = R"(
 CREATE TABLE IF NOT EXISTS marker_tracking (
     first_frame INTEGER NOT NULL,
     frame_step INTEGER NOT NULL,
@@ -127,7 +127,7 @@ TrackingState StateOf(const RowReader& row) {
 }  // namespace
 
 void WriteTracking(const TrackingState& state, SQLite::Database* database) {
-  database->exec(kSchema);
+  database->exec(kTrackingSchema);
   SQLite::Statement insert(*database,
                            "INSERT INTO marker_tracking(first_frame, frame_step, last_frame,"
                            " num_frames, tracked_frame, has_new, inflow_px)"

@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "importer/base/error.h"
+#include "importer/detect/gray_levels.h"
 #include "importer/detect/interpolate.h"
 #include "importer/geometry/unit_square_map.h"
 
 namespace velamap {
 namespace {
-
-constexpr double kMinContrast = 12.0;  // grey levels
 
 // Scans across a side: their number, how many have to find the edge, and the part of the side that
 // is left out at either end.
@@ -28,7 +27,7 @@ constexpr double kMaxDepartureCells = 0.12;
 
 // A quad that moves less than this is aligned.
 constexpr double kSettledPx = 0.01;
-constexpr int kMaxRounds = 6;
+constexpr int kMaxAlignments = 6;
 
 // Place in the unit square of the marker: `along` a side, from corner `side` on, and `inwards` of
 // it.
@@ -144,7 +143,7 @@ std::optional<QuadCorners> AlignSides(const cv::Mat& gray, const QuadCorners& qu
   if (!HasCells(quad, look.cells.total())) return std::nullopt;
   // Repeated, because the grey levels are read beside sides that are not aligned yet.
   std::optional<QuadCorners> aligned = quad;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxAlignments; ++round) {
     const QuadCorners last = *aligned;
     aligned = AlignSidesOnce(gray, last, look);
     if (!aligned || MaxCornerShift(*aligned, last) < kSettledPx) break;

@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "importer/base/error.h"
+#include "importer/detect/gray_levels.h"
 #include "importer/geometry/unit_square_map.h"
 
 namespace velamap {
 namespace {
-
-constexpr double kMinContrast = 12.0;  // grey levels
 
 constexpr double kMinCorrelation = 0.8;
 constexpr double kSureCorrelation = 0.9;  // the search does not go further out

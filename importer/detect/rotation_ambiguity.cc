@@ -8,12 +8,12 @@
 namespace velamap {
 namespace {
 
-constexpr std::size_t kNumNeighbors = 3;
+constexpr std::size_t kNumNearest = 3;
 
 // The margin in the mean cosine between top sides by which the best turn must beat the second. It
 // means that a marker with half turns is within 75 degrees of its neighbours, with quarter turns
 // within 24.
-constexpr double kMinMargin = 0.5;
+constexpr double kMinLead = 0.5;
 
 // Unit vector along the top side, from corner 1 to corner 2, after `turn` quarter turns.
 Eigen::Vector2d TopSide(const MarkerDetection& marker, int turn) {
@@ -39,7 +39,7 @@ std::vector<const MarkerDetection*> NearestUnambiguous(
            std::make_pair(b.first, b.second->marker_id);
   });
   std::vector<const MarkerDetection*> neighbors;
-  for (std::size_t i = 0; i < std::min(nearest.size(), kNumNeighbors); ++i) {
+  for (std::size_t i = 0; i < std::min(nearest.size(), kNumNearest); ++i) {
     neighbors.push_back(nearest[i].second);
   }
   return neighbors;
@@ -60,7 +60,7 @@ int ChooseTurn(const MarkerDetection& marker, const std::vector<int>& possible_t
   add(0);
   for (const int turn : possible_turns) add(turn);
   std::sort(scores.rbegin(), scores.rend());
-  return scores[0].first - scores[1].first >= kMinMargin ? scores[0].second : -1;
+  return scores[0].first - scores[1].first >= kMinLead ? scores[0].second : -1;
 }
 
 }  // namespace

@@ -11,7 +11,6 @@ namespace velamap {
 namespace {
 
 constexpr int kCount = kNumFormationParameters;
-using Vector = FormationVector;
 using State = FormationState;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
 
@@ -21,13 +20,14 @@ using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
 constexpr double kPixelsAlike = 10.0;
 
 // Of derivatives by differences.
-const Vector kStep = (Vector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02).finished();
+const FormationVector kStep =
+    (FormationVector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02).finished();
 
 const std::vector<State>& MovedBySteps(const State& state, int num_threads) {
   if (!state.moved) {
     std::vector<State> moved;
     for (int k = 0; k < kCount; ++k) {
-      Vector parameters = state.parameters;
+      FormationVector parameters = state.parameters;
       parameters[k] += kStep[k];
       moved.push_back(MovedTo(parameters, state, num_threads));
     }
@@ -113,19 +113,19 @@ double FormationProblem::Cost(const State& state) const { return SumUp(state, fa
 
 double FormationProblem::InsetSigma(const State& state) const {
   const std::vector<State>& moved = MovedBySteps(state, num_threads_);
-  Vector inset_by;
+  FormationVector inset_by;
   for (int k = 0; k < kCount; ++k) {
     inset_by[k] = MeanInset(state, moved[static_cast<std::size_t>(k)]) / kStep[k];
   }
-  const Vector by_inset = SumUp(state, true).hessian().ldlt().solve(inset_by);
-  const Vector by_prior =
+  const FormationVector by_inset = SumUp(state, true).hessian().ldlt().solve(inset_by);
+  const FormationVector by_prior =
       PriorWeight().cwiseAbs2().cwiseProduct(priors_.sigma).cwiseProduct(by_inset);
   return std::sqrt(std::max(VarianceOfSum(InfluencesOf(state, by_inset)) + by_prior.squaredNorm(),
                             inset_by.dot(by_inset)));
 }
 
 std::vector<double> FormationProblem::InfluencesOf(const State& state,
-                                                   const Vector& by_inset) const {
+                                                   const FormationVector& by_inset) const {
   std::vector<double> influences;
   for (std::size_t i = 0; i < state.samples.size(); ++i) {
     Equations equations;

@@ -9,16 +9,15 @@
 namespace velamap {
 namespace {
 
-using Vector = PatternParameters::Vector;
-
 // Compression makes clipped areas a little uneven.
-constexpr int kWhite = 252, kBlack = 3;
+constexpr int kClippedWhite = 252, kClippedBlack = 3;
 
-bool IsClipped(int gray) { return gray >= kWhite || gray <= kBlack; }
+bool IsClipped(int gray) { return gray >= kClippedWhite || gray <= kClippedBlack; }
 
 // The modelled grey values of the patch before the sharpening; those of the patch itself outside
 // of the problem's box.
-VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem, const Vector& parameters) {
+VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem,
+                                          const PatternParameters::Vector& parameters) {
   const PatternPicture picture(problem.model, parameters);
   const Eigen::Vector2d& center = problem.model.center_px;
   const cv::Rect& box = problem.box;
@@ -41,7 +40,7 @@ VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem, const V
 // Cuts the patch of the problem anew, with the model's values for the pixels of its box that are
 // clipped and that the model has beyond their limit. False for none.
 bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
-                          const Vector& parameters, PatternProblem* problem) {
+                          const PatternParameters::Vector& parameters, PatternProblem* problem) {
   GrayPatch& patch = problem->patch;
   const cv::Mat expected = Sharpened(ModelPatch(*problem, parameters), formation);
   const cv::Rect patch_box(patch.origin_px, patch.values.size());
@@ -58,8 +57,8 @@ bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
       if (!IsClipped(value)) continue;
       const cv::Point in_patch = cv::Point(x, y) - patch_box.tl();
       const float model = expected.at<float>(in_patch);
-      if (value >= kWhite ? model <= static_cast<float>(value)
-                          : model >= static_cast<float>(value)) {
+      if (value >= kClippedWhite ? model <= static_cast<float>(value)
+                                 : model >= static_cast<float>(value)) {
         continue;
       }
       recorded.at<float>(cv::Point(x, y) - wide.tl()) = model;
@@ -81,8 +80,8 @@ bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box) {
   for (int row = box.y; row < box.y + box.height; ++row) {
     const auto* values = gray.ptr<std::uint8_t>(row) + box.x;
     for (int i = 0; i < box.width; ++i) {
-      if (values[i] >= kWhite) ++num_white;
-      if (values[i] <= kBlack) ++num_black;
+      if (values[i] >= kClippedWhite) ++num_white;
+      if (values[i] <= kClippedBlack) ++num_black;
     }
   }
   return num_white + num_black > 0 && std::min(num_white, num_black) < kMaxShare * box.area();
@@ -92,22 +91,22 @@ bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, 
                           double tolerance_px, PatternProblem* problem, PatternMinimum* minimum) {
   constexpr int kMaxRounds = 6;
   constexpr double kLeft = 3.0;  // slow rounds leave this times their last step
-  constexpr double kMinRatio = 0.2, kMaxRatio = 0.9;
-  Vector last_step = Vector::Zero();
+  constexpr double kMinStepRatio = 0.2, kMaxStepRatio = 0.9;
+  PatternParameters::Vector last_step = PatternParameters::Vector::Zero();
   for (int round = 0; round < kMaxRounds; ++round) {
-    const Vector before = minimum->parameters;
+    const PatternParameters::Vector before = minimum->parameters;
     const bool is_restored = RestoreClippedPixels(gray, formation, before, problem);
     if (!RefinePatternFit(max_pixels, tolerance_px, problem, minimum)) return false;
-    const Vector step = minimum->parameters - before;
+    const PatternParameters::Vector step = minimum->parameters - before;
     const double step_px = step.head<2 * kNumCorners>().cwiseAbs().maxCoeff();
     if (!is_restored || kLeft * step_px < tolerance_px) break;
     // Aitken's extrapolation: the steps shrink by about the same ratio from round to round.
-    const Vector weight = minimum->equations.hessian().diagonal();
+    const PatternParameters::Vector weight = minimum->equations.hessian().diagonal();
     const double ratio =
         step.dot(weight.cwiseProduct(last_step)) / last_step.dot(weight.cwiseProduct(last_step));
     last_step = step;
-    const Vector further = minimum->parameters + ratio / (1 - ratio) * step;
-    if (ratio > kMinRatio && ratio < kMaxRatio && round + 1 < kMaxRounds &&
+    const PatternParameters::Vector further = minimum->parameters + ratio / (1 - ratio) * step;
+    if (ratio > kMinStepRatio && ratio < kMaxStepRatio && round + 1 < kMaxRounds &&
         further.segment<2>(PatternParameters::kBlurU).minCoeff() > 0) {
       minimum->parameters = further;
       last_step.setZero();

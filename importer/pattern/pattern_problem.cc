@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "importer/detect/gray_levels.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/unit_square_map.h"
 #include "importer/pattern/pattern_picture.h"
@@ -17,9 +18,6 @@ namespace {
 
 using P = PatternParameters;
 
-constexpr double kMinContrast = 12.0;    // grey levels
-constexpr double kMaxRelativeRms = 0.2;  // of the residuals, relative to the contrast
-constexpr double kPixelNoise = 3.0;      // grey levels; sets the weight of the priors
 constexpr double kMinBlurPx = 0.3, kMaxBlurPx = 4.0;
 // Usual for cloth; the label of a can has ten times as much.
 constexpr double kBendOfDiagonal = 0.003;

@@ -6,10 +6,10 @@
 #include <png.h>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
-
-constexpr double kMmPerInch = 25.4;
 
 void Append(png_structp png, png_bytep data, png_size_t size) {
   static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);

@@ -9,11 +9,11 @@
 namespace velamap {
 namespace {
 
-constexpr Color kGray = {0.35, 0.35, 0.35};
+constexpr Color kPaleInk = {0.35, 0.35, 0.35};
 constexpr double kHairline_mm = 0.15;
 constexpr double kCutMark_mm = 2.5;
 constexpr double kUprightScale_mm = 14.0;  // room for a scale beside the markers
-constexpr double kWords_mm = 3.0;          // size of type
+constexpr double kSheetWords_mm = 3.0;     // size of type
 
 void AddCutMarks(const Eigen::Vector2d& min_mm, const Eigen::Vector2d& max_mm, Drawing* drawing) {
   for (const double x : {min_mm.x(), max_mm.x()}) {
@@ -35,7 +35,7 @@ void AddLabel(const Sticker& sticker, const PrintedLook& look, Drawing* drawing)
   const double width = right - left;
   drawing->areas.push_back(UpArrow({left + 0.3 * height, bottom}, 0.8 * height));
   drawing->texts.push_back(
-      {"up", {left + 0.75 * height, bottom}, 0.4 * height, TextAnchor::kStart, false, kGray});
+      {"up", {left + 0.75 * height, bottom}, 0.4 * height, TextAnchor::kStart, false, kPaleInk});
   drawing->texts.push_back({fmt::format("{}", sticker.marker.marker_id),
                             {left + 1.4 * height, bottom},
                             0.95 * height,
@@ -78,7 +78,7 @@ void AddScale(const Eigen::Vector2d& start_mm, int length_mm, bool is_upright, D
     if (mm % 50 != 0 && mm != 10) continue;
     drawing->texts.push_back({mm == length_mm ? fmt::format("{} mm", mm) : fmt::format("{}", mm),
                               is_upright ? at(mm + 0.6, 3.4) : at(mm + 0.6, is_end ? 2.8 : 3.4),
-                              2.4, TextAnchor::kStart, false, kGray});
+                              2.4, TextAnchor::kStart, false, kPaleInk});
   }
 }
 
@@ -117,14 +117,19 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double fr
   drawing.height_mm = frame.height_mm;
   const double left = frame.min_mm.x(), right = frame.max_mm.x(), width = right - left;
   const double header = frame.min_mm.y() - 4.0;
-  drawing.texts.push_back(
-      {words.title, {left, header}, kWords_mm, TextAnchor::kStart, true, kGray, 0.8 * width});
+  drawing.texts.push_back({words.title,
+                           {left, header},
+                           kSheetWords_mm,
+                           TextAnchor::kStart,
+                           true,
+                           kPaleInk,
+                           0.8 * width});
   drawing.texts.push_back({fmt::format("{} of {}", words.sheet_number, words.num_sheets),
                            {right, header},
-                           kWords_mm,
+                           kSheetWords_mm,
                            TextAnchor::kEnd,
                            false,
-                           kGray,
+                           kPaleInk,
                            0.18 * width});
   const int scale_mm = width >= 112 ? 100 : width >= 62 ? 50 : 30;
   const double bottom = frame.max_mm.y() + 18.0;
@@ -139,7 +144,7 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double fr
            "Print at 100 % (\"actual size\", not \"fit to page\"), then measure {} {} mm long.",
            has_two_scales ? "both scales: they have to be" : "this scale: it has to be", scale_mm),
        {left, bottom - 4.4},
-       kWords_mm,
+       kSheetWords_mm,
        TextAnchor::kStart,
        true,
        kBlack,
@@ -148,7 +153,7 @@ Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double fr
       {"If it is not, print again at 100 %. If that does not help, measure the black squares and "
        "write their side, in m, as marker_length into layout.yml.",
        {left, bottom - 0.4},
-       kWords_mm,
+       kSheetWords_mm,
        TextAnchor::kStart,
        false,
        kBlack,

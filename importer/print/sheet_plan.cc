@@ -11,10 +11,10 @@
 namespace velamap {
 namespace {
 
-constexpr double kBorder_mm = 8.0;   // that printers leave white
-constexpr double kHeader_mm = 7.0;   // line of words at the top
-constexpr double kFooter_mm = 18.0;  // scale and words at the bottom
-constexpr double kGutter_mm = 6.0;   // between stickers; holds the cut marks
+constexpr double kPrinterBorder_mm = 8.0;  // that printers leave white
+constexpr double kHeader_mm = 7.0;         // line of words at the top
+constexpr double kFooter_mm = 18.0;        // scale and words at the bottom
+constexpr double kGutter_mm = 6.0;         // between stickers; holds the cut marks
 constexpr double kLabelOfLength = 0.08;
 constexpr double kMinLabel_mm = 4.0, kMaxLabel_mm = 8.0;
 
@@ -122,8 +122,9 @@ PageFrame MakePageFrame(const Paper& paper, bool is_landscape) {
   PageFrame frame;
   frame.width_mm = is_landscape ? paper.height_mm : paper.width_mm;
   frame.height_mm = is_landscape ? paper.width_mm : paper.height_mm;
-  frame.min_mm = {kBorder_mm, kBorder_mm + kHeader_mm};
-  frame.max_mm = {frame.width_mm - kBorder_mm, frame.height_mm - kBorder_mm - kFooter_mm};
+  frame.min_mm = {kPrinterBorder_mm, kPrinterBorder_mm + kHeader_mm};
+  frame.max_mm = {frame.width_mm - kPrinterBorder_mm,
+                  frame.height_mm - kPrinterBorder_mm - kFooter_mm};
   return frame;
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "importer/base/error.h"
+#include "importer/detect/gray_levels.h"
 #include "importer/detect/marker_alignment.h"
 #include "importer/pattern/pattern_fit.h"
 #include "importer/refine/edge_fit.h"
@@ -14,8 +15,6 @@
 namespace velamap {
 namespace {
 
-constexpr double kMinContrast = 12.0;    // grey levels
-constexpr double kMaxRelativeRms = 0.2;  // of the residuals, relative to the contrast
 constexpr double kFirstBlurPx = 1.0;
 
 struct Pass {
@@ -60,11 +59,11 @@ std::optional<FittedSide> FitSide(const cv::Mat& gray, const SideModel& model, c
 
 // The tangent of the fitted edge at its end s = -1 or 1, where the bend is zero.
 ImageLine TangentAtEnd(const FittedSide& fitted, double s) {
-  using P = EdgeParameters;
+  using E = EdgeParameters;
   const Side& side = fitted.side;
-  const P& p = fitted.parameters;
-  const double offset_px = p[P::kOffset] + p[P::kSlope] * s;
-  const double slope = (p[P::kSlope] - 2 * p[P::kBend] * s) / side.half_length_px;
+  const E& p = fitted.parameters;
+  const double offset_px = p[E::kOffset] + p[E::kSlope] * s;
+  const double slope = (p[E::kSlope] - 2 * p[E::kBend] * s) / side.half_length_px;
   return {side.middle_px + s * side.half_length_px * side.along + offset_px * side.outward,
           side.along + slope * side.outward};
 }

@@ -5,26 +5,26 @@
 
 #include <Eigen/Cholesky>
 
+#include "importer/detect/gray_levels.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/lanes/normal_lanes.h"
 
 namespace velamap {
 namespace {
 
-using Vector = EdgeParameters::Vector;
-using Matrix = EdgeEquations::Matrix;
+using EdgeVector = EdgeParameters::Vector;
+using EdgeMatrix = EdgeEquations::Matrix;
 
-constexpr double kMinBlurPx = 0.3;
-constexpr double kMaxBlurPx = 5.0;
-constexpr double kPixelNoise = 3.0;  // grey levels; sets the weight of the priors
+constexpr double kMinEdgeBlurPx = 0.3;
+constexpr double kMaxEdgeBlurPx = 5.0;
 
-Vector PriorWeight(const EdgePrior& prior) {
+EdgeVector PriorWeight(const EdgePrior& prior) {
   return (kPixelNoise * prior.sigma.values.cwiseInverse()).cwiseAbs2();
 }
 
 VELAMAP_CLONE_FOR_AVX2 void SumUp(const EdgeSamples& samples, const EdgePrior& prior,
-                                  const Vector& weight, const Vector& values, bool with_hessian,
-                                  EdgeEquations* equations) {
+                                  const EdgeVector& weight, const EdgeVector& values,
+                                  bool with_hessian, EdgeEquations* equations) {
   const EdgeParameters parameters{values};
   equations->Clear(with_hessian);
   EdgeEquations::Jacobian jacobian;
@@ -38,33 +38,33 @@ VELAMAP_CLONE_FOR_AVX2 void SumUp(const EdgeSamples& samples, const EdgePrior& p
 
 // The fit as a problem of MinimizeSquares().
 struct EdgeProblem {
-  using Parameters = Vector;
+  using Parameters = EdgeVector;
   using Equations = EdgeEquations;
-  using Step = Vector;
+  using Step = EdgeVector;
 
   const EdgeSamples& samples;
   const EdgePrior& prior;
-  Vector prior_weight;
+  EdgeVector prior_weight;
 
-  void Evaluate(const Vector& values, bool with_hessian, EdgeEquations* equations) const {
+  void Evaluate(const EdgeVector& values, bool with_hessian, EdgeEquations* equations) const {
     SumUp(samples, prior, prior_weight, values, with_hessian, equations);
   }
-  Vector Plus(const Vector& values, const Vector& step) const { return values + step; }
+  EdgeVector Plus(const EdgeVector& values, const EdgeVector& step) const { return values + step; }
   // How far the edge moves, px.
-  double StepSize(const Vector& step, const EdgeEquations&) const {
+  double StepSize(const EdgeVector& step, const EdgeEquations&) const {
     return step.head<3>().cwiseAbs().maxCoeff();
   }
-  Vector LimitStep(const Vector& values, Vector step) const {
-    LimitParameter(kMinBlurPx, kMaxBlurPx, values[EdgeParameters::kBlur],
+  EdgeVector LimitStep(const EdgeVector& values, EdgeVector step) const {
+    LimitParameter(kMinEdgeBlurPx, kMaxEdgeBlurPx, values[EdgeParameters::kBlur],
                    &step[EdgeParameters::kBlur]);
     return step;
   }
-  void Predict(const Vector& step, EdgeEquations* equations) const { equations->Predict(step); }
+  void Predict(const EdgeVector& step, EdgeEquations* equations) const { equations->Predict(step); }
 };
 
 // `inverse` of the Hessian.
 VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const EdgeEquations& equations,
-                                             const Matrix& inverse) {
+                                             const EdgeMatrix& inverse) {
   return equations.Noise(inverse, [](const EdgeEquations::Jacobian& jacobian) {
     return jacobian[EdgeParameters::kOffset] * jacobian[EdgeParameters::kOffset];
   });
@@ -74,14 +74,14 @@ VELAMAP_CLONE_FOR_AVX2 ResidualNoise NoiseOf(const EdgeEquations& equations,
 
 Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& samples,
                     EdgeEquations::Jacobian* jacobian) {
-  using P = EdgeParameters;
-  const Eigen::Matrix<float, P::kCount, 1> p = parameters.values.cast<float>();
+  using E = EdgeParameters;
+  const Eigen::Matrix<float, E::kCount, 1> p = parameters.values.cast<float>();
   const Floats s = samples.s, hump = 1.0f - s * s;
-  const Floats dark = p[P::kDark] + p[P::kDarkSlope] * s;
-  const Floats light = p[P::kLight] + p[P::kLightSlope] * s;
-  const float inverse_blur = 1 / p[P::kBlur];
+  const Floats dark = p[E::kDark] + p[E::kDarkSlope] * s;
+  const Floats light = p[E::kLight] + p[E::kLightSlope] * s;
+  const float inverse_blur = 1 / p[E::kBlur];
   const Floats distance =
-      samples.distance_px - p[P::kOffset] - p[P::kSlope] * s - p[P::kBend] * hump;
+      samples.distance_px - p[E::kOffset] - p[E::kSlope] * s - p[E::kBend] * hump;
   const Floats z = distance * inverse_blur;
   const Floats inner_z = (distance + samples.inner_depth_px) * inverse_blur;
   const Floats outer_z = (distance - samples.outer_depth_px) * inverse_blur;
@@ -91,8 +91,8 @@ Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& sam
   const Floats inner_amount = samples.inner * (1.0f - inner.distribution);
   const Floats outer_amount = samples.outer * outer.distribution;
   const Floats by_edge = (light - dark) * samples.cover * edge.density;
-  const Floats by_inner = -p[P::kInnerGain] * samples.inner * inner.density;
-  const Floats by_outer = p[P::kOuterGain] * samples.outer * outer.density;
+  const Floats by_inner = -p[E::kInnerGain] * samples.inner * inner.density;
+  const Floats by_outer = p[E::kOuterGain] * samples.outer * outer.density;
   const Floats by_offset = -(by_edge + by_inner + by_outer) * inverse_blur;
   *jacobian = {
       by_offset,        by_offset * s,
@@ -100,8 +100,8 @@ Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& sam
       darkness,         1.0f - darkness,
       darkness * s,     (1.0f - darkness) * s,
       inner_amount,     outer_amount};
-  return light - (light - dark) * darkness + p[P::kInnerGain] * inner_amount +
-         p[P::kOuterGain] * outer_amount;
+  return light - (light - dark) * darkness + p[E::kInnerGain] * inner_amount +
+         p[E::kOuterGain] * outer_amount;
 }
 
 bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double tolerance_px,
@@ -117,9 +117,9 @@ bool FitEdge(const EdgeSamples& samples, const EdgePrior& prior, double toleranc
 }
 
 std::optional<EdgeUncertainty> EstimateUncertainty(const EdgeFit& fit, const EdgePrior& prior) {
-  const Eigen::LLT<Matrix> factors(fit.equations.hessian());
+  const Eigen::LLT<EdgeMatrix> factors(fit.equations.hessian());
   if (factors.info() != Eigen::Success) return std::nullopt;
-  const Matrix inverse = factors.solve(Matrix::Identity());
+  const EdgeMatrix inverse = factors.solve(EdgeMatrix::Identity());
   if (!inverse.allFinite()) return std::nullopt;
   EdgeUncertainty uncertainty;
   // inverse * (hessian - weight) * inverse, of the first two parameters.

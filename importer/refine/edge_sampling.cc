@@ -190,20 +190,20 @@ VELAMAP_CLONE_FOR_AVX2 void SampleSide(const cv::Mat& gray, const SideModel& mod
 EdgePrior MakeEdgePrior(const SideModel& model) {
   const double contrast = model.light - model.dark;
   const double half_length = model.side.half_length_px;
-  using P = EdgeParameters;
+  using E = EdgeParameters;
   EdgePrior prior;
-  P& mean = prior.mean;
-  mean[P::kBlur] = model.blur_px;
-  mean[P::kDark] = model.dark;
-  mean[P::kLight] = model.light;
-  mean[P::kInnerGain] = mean[P::kOuterGain] = 1.0;
-  P& sigma = prior.sigma;
-  sigma[P::kOffset] = sigma[P::kSlope] = 1e3;
-  sigma[P::kBend] = 2e-3 * half_length + 5e-4 * half_length * half_length;
-  sigma[P::kBlur] = 0.5;
-  sigma[P::kDark] = sigma[P::kLight] = 1e3;
-  sigma[P::kDarkSlope] = sigma[P::kLightSlope] = 0.1 * contrast;
-  sigma[P::kInnerGain] = sigma[P::kOuterGain] = 0.3;
+  E& mean = prior.mean;
+  mean[E::kBlur] = model.blur_px;
+  mean[E::kDark] = model.dark;
+  mean[E::kLight] = model.light;
+  mean[E::kInnerGain] = mean[E::kOuterGain] = 1.0;
+  E& sigma = prior.sigma;
+  sigma[E::kOffset] = sigma[E::kSlope] = 1e3;
+  sigma[E::kBend] = 2e-3 * half_length + 5e-4 * half_length * half_length;
+  sigma[E::kBlur] = 0.5;
+  sigma[E::kDark] = sigma[E::kLight] = 1e3;
+  sigma[E::kDarkSlope] = sigma[E::kLightSlope] = 0.1 * contrast;
+  sigma[E::kInnerGain] = sigma[E::kOuterGain] = 0.3;
   return prior;
 }
 

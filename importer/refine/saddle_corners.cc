@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
+#include "importer/detect/gray_levels.h"
 #include "importer/detect/interpolate.h"
 #include "importer/geometry/unit_square_map.h"
 
@@ -16,7 +17,6 @@ namespace {
 using Quad = QuadCorners;
 
 constexpr double kMinCellPx = 4.0;
-constexpr double kMinContrast = 12.0;  // grey levels
 // The touching square is as dark as the marker to within this part of the contrast. A quiet zone
 // into which dark squares around it blur stays lighter.
 constexpr double kMaxDarkness = 0.35;

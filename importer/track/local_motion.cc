@@ -5,7 +5,7 @@
 namespace velamap {
 namespace {
 
-constexpr std::size_t kNumNearest = 5;
+constexpr std::size_t kNumNearestPoints = 5;
 
 // Points with a smaller spread do not determine rotation and scale, since each is known to a pixel.
 constexpr double kSmallSpreadPx = 50.0;
@@ -19,7 +19,7 @@ Eigen::Vector2d LocalMotion(const std::vector<PointMotion>& motions,
                             const Eigen::Vector2d& point_px) {
   if (motions.empty()) return Eigen::Vector2d::Zero();
   std::vector<PointMotion> nearest = motions;
-  const std::size_t count = std::min(kNumNearest, nearest.size());
+  const std::size_t count = std::min(kNumNearestPoints, nearest.size());
   std::stable_sort(nearest.begin(), nearest.end(), [&](const PointMotion& a, const PointMotion& b) {
     return (a.from_px - point_px).norm() < (b.from_px - point_px).norm();
   });

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMinDifference = 30;  // levels; above the noise of cameras
 constexpr int kRowStep = 7;         // odd, so that both fields are looked at
-constexpr double kMinRatio = 1.5, kMinShare = 0.0003;
+constexpr double kMinFieldRatio = 1.5, kMinFieldShare = 0.0003;
 
 // Number of pixels of a line that are brighter, or darker, than both other lines.
 int CountBeyond(const std::uint8_t* line, const std::uint8_t* above, const std::uint8_t* below,
@@ -31,8 +31,8 @@ bool IsCombed(const cv::Mat& gray) {
     num_of_same_field += CountBeyond(line, gray.ptr(y - 2), gray.ptr(y + 2), gray.cols);
     num_pixels += gray.cols;
   }
-  return num_of_other_field > kMinShare * num_pixels &&
-         num_of_other_field > kMinRatio * num_of_same_field;
+  return num_of_other_field > kMinFieldShare * num_pixels &&
+         num_of_other_field > kMinFieldRatio * num_of_same_field;
 }
 
 }  // namespace velamap

@@ -5,6 +5,8 @@
 
 #include <libexif/exif-data.h>
 
+#include "importer/geometry/units.h"
+
 namespace velamap {
 namespace {
 
@@ -41,7 +43,7 @@ int QuarterTurns(double orientation) {
 }
 
 std::optional<double> FocalFromFocalPlane(ExifData* data) {
-  constexpr double kMmPerInch = 25.4, kMmPerCm = 10.0;
+  constexpr double kMmPerCm = 10.0;
   const auto number = [data](ExifTag tag) { return PositiveNumber(data, EXIF_IFD_EXIF, tag); };
   const auto focal_mm = number(EXIF_TAG_FOCAL_LENGTH);
   const auto per_unit = number(EXIF_TAG_FOCAL_PLANE_X_RESOLUTION);

@@ -223,8 +223,8 @@ MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution) {
 }
 
 std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& solution) {
-  constexpr std::size_t kMaxNumGroups = 20;
-  const std::size_t num_groups = std::min(kMaxNumGroups, solution.model.images.size());
+  constexpr std::size_t kMaxLeftOut = 20;
+  const std::size_t num_groups = std::min(kMaxLeftOut, solution.model.images.size());
   std::vector<std::map<CameraId, Camera>> cameras(num_groups);
   ParallelFor(num_groups, solution.options.num_threads, [&](std::size_t group) {
     MarkerSolution fitted = Without(solution, group, num_groups);

@@ -14,8 +14,9 @@
 namespace velamap {
 namespace {
 
-constexpr std::array<CameraModel, 4> kModels = {CameraModel::kSimpleRadial, CameraModel::kRadial,
-                                                CameraModel::kOpenCV, CameraModel::kOpenCVFisheye};
+constexpr std::array<CameraModel, 4> kModelsOfClips = {CameraModel::kSimpleRadial,
+                                                       CameraModel::kRadial, CameraModel::kOpenCV,
+                                                       CameraModel::kOpenCVFisheye};
 
 constexpr double kMinRayLength = 0.7;  // of a fisheye, tangent
 
@@ -54,7 +55,7 @@ std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution trial)
 
 MarkerSolution WithBestCameraModel(const MarkerSolution& solution) {
   std::vector<MarkerSolution> trials;
-  for (const CameraModel model : kModels) {
+  for (const CameraModel model : kModelsOfClips) {
     if (model == CameraModel::kOpenCVFisheye && !SeesWideAngles(solution)) continue;
     auto trial = RefinedAs(model, solution);
     if (trial) trials.push_back(std::move(*trial));

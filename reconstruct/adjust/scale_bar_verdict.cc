@@ -13,7 +13,7 @@ namespace velamap {
 namespace {
 
 // A distance that is this many sigmas off contradicts the others.
-constexpr double kMaxSigmas = 4.0;
+constexpr double kMaxBarSigmas = 4.0;
 // Larger differences between distances and markers are explained by the scale of the print instead
 // of chance.
 constexpr double kMaxChanceSigmas = 3.0;
@@ -82,7 +82,7 @@ CommonScale MeanOf(const LogScales& scales, const BarSet& set, Eigen::Index left
 struct Difference {
   double value = 0.0;
   double sigma = 0.0;
-  bool Contradicts() const { return std::abs(value) > kMaxSigmas * sigma; }
+  bool Contradicts() const { return std::abs(value) > kMaxBarSigmas * sigma; }
 };
 
 Difference DifferenceFrom(const LogScales& scales, const CommonScale& others, Eigen::Index bar) {

@@ -18,7 +18,7 @@ namespace velamap {
 namespace {
 
 constexpr int kNumUnknowns = 9;  // pose, logarithm of the focal length, principal point
-constexpr int kMinCorners = 8;
+constexpr int kMinCornersOfView = 8;
 
 struct OwnCamera {
   Rigid3 cam_from_world;
@@ -72,7 +72,7 @@ class OwnCameraProblem : public LeastSquaresProblem<kNumUnknowns> {
 std::optional<ImageIntrinsics> IntrinsicsOf(const Model& model, const ModelImage& image,
                                             double scale_px) {
   const std::vector<SeenPoint> points = SeenPointsOf(model, image);
-  if (points.size() < kMinCorners) return std::nullopt;
+  if (points.size() < kMinCornersOfView) return std::nullopt;
   const OwnCameraProblem problem(model.cameras.at(image.camera_id), points, scale_px);
   OwnCamera own{image.cam_from_world};
   OwnCameraProblem::Equations equations;

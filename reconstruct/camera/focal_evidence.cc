@@ -21,10 +21,9 @@ namespace {
 
 using CornerVector = Eigen::Matrix<double, 2 * kNumCorners, 1>;
 
-constexpr double kMinFocal = 0.2, kMaxFocal = 10.0;  // times the larger side
-constexpr double kGridStep = 0.12;                   // of the logarithm
-constexpr double kMedianOf2 = 1.386;                 // of chi-squared with 2 degrees of freedom
-constexpr double kLossSigmas = 3.0;
+constexpr double kMinFocalOnGrid = 0.2, kMaxFocalOnGrid = 10.0;  // times the larger side
+constexpr double kGridStep = 0.12;                               // of the logarithm
+constexpr double kFocalLossSigmas = 3.0;
 
 Camera LensOf(CameraModel model, int width_px, int height_px, double focal_px) {
   const double cx = 0.5 * width_px, cy = 0.5 * height_px;
@@ -119,7 +118,7 @@ class PooledViews {
   // A view that the camera cannot have seen counts as one far off.
   double Cost(const Camera& camera, double variance) const {
     constexpr double kFarOff = 1e4;
-    const CauchyLoss loss{kLossSigmas * kLossSigmas * variance};
+    const CauchyLoss loss{kFocalLossSigmas * kFocalLossSigmas * variance};
     double cost = 0.0;
     for (const auto& errors : Evaluate(camera, false)) {
       cost += loss.Value(errors ? errors->SquaredNorm() : kFarOff * variance) / variance;
@@ -134,7 +133,7 @@ class PooledViews {
       if (errors) squares.push_back(errors->SquaredNorm());
     }
     constexpr double kMin = 1e-8;  // exact corners
-    return squares.empty() ? 1.0 : std::max(kMin, Median(std::move(squares)) / kMedianOf2);
+    return squares.empty() ? 1.0 : std::max(kMin, Median(std::move(squares)) / kChiSquaredMedian2);
   }
 
  private:
@@ -163,7 +162,8 @@ FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
   const auto lens = [&](double log_focal) {
     return LensOf(model, width_px, height_px, std::exp(log_focal));
   };
-  const double low = std::log(kMinFocal * side_px), high = std::log(kMaxFocal * side_px);
+  const double low = std::log(kMinFocalOnGrid * side_px),
+               high = std::log(kMaxFocalOnGrid * side_px);
   // The noise is that at the best focal length, so two passes: by all, then by the right noise.
   double variance = std::numeric_limits<double>::infinity();
   for (double x = low; x <= high; x += kGridStep) {
@@ -183,7 +183,7 @@ FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
   }
   double information = 0.0;
   for (int i = 0; i < kMaxNumSteps; ++i) {
-    const CauchyLoss loss{kLossSigmas * kLossSigmas * variance};
+    const CauchyLoss loss{kFocalLossSigmas * kFocalLossSigmas * variance};
     double gradient = 0.0;
     information = 0.0;
     result.num_views = 0;

@@ -10,7 +10,7 @@
 namespace velamap {
 namespace {
 
-constexpr std::size_t kMinCorners = 4;
+constexpr std::size_t kMinCornersOfImage = 4;
 
 std::vector<RayObservation> ObservationsOf(const Model& model, const ModelImage& image) {
   std::vector<RayObservation> observations;
@@ -26,7 +26,7 @@ std::vector<RayObservation> ObservationsOf(const Model& model, const ModelImage&
 Rigid3 Resect(const Model& model, const ModelImage& image) {
   constexpr double kLossRay = 1e-3;  // 2 px of a lens with a focal length of 2000 px
   const std::vector<RayObservation> observations = ObservationsOf(model, image);
-  if (observations.size() < kMinCorners) return image.cam_from_world;
+  if (observations.size() < kMinCornersOfImage) return image.cam_from_world;
   return RefinePose(observations, image.cam_from_world, CauchyLoss{kLossRay * kLossRay});
 }
 

@@ -124,8 +124,8 @@ class RowFinder {
         std::max(a.step, b.step) > kLikeSteps * std::min(a.step, b.step)) {
       return false;
     }
-    constexpr double kSameFace = 0.3;
-    if (markers_[a.chain[0]].normal.dot(markers_[b.chain[0]].normal) < kSameFace) return false;
+    constexpr double kFaceOfRow = 0.3;
+    if (markers_[a.chain[0]].normal.dot(markers_[b.chain[0]].normal) < kFaceOfRow) return false;
     double nearest = std::numeric_limits<double>::infinity();
     for (const std::size_t i : a.chain) {
       for (const std::size_t j : b.chain) {

@@ -20,7 +20,6 @@
 namespace velamap {
 namespace {
 
-constexpr double kLossSigmas = 4.0;
 constexpr double kScaleLossSigmas = 1.0;
 
 struct ScalePrior {

@@ -14,11 +14,11 @@ namespace {
 
 // Frames whose planar solutions are hypotheses, and that form pairs with others.
 constexpr std::size_t kMaxViews = 8;
-constexpr std::size_t kMaxRefined = 3;
+constexpr std::size_t kMaxRefinedPlaces = 3;
 // Places nearer than this to each other are one: half a side of the marker, and 0.2 rad (11
 // degrees). The two planar solutions of a marker differ by twice its tilt, so a coarser limit would
 // merge the solutions of a marker that is tilted by 10 degrees.
-constexpr double kSamePlaceInSides = 0.5, kSameRotation = 0.2;
+constexpr double kSamePlaceInSides = 0.5, kSamePlaceRotation = 0.2;
 // Rays nearer than this to parallel do not determine a depth, rad.
 constexpr double kMinParallax = 0.02;
 
@@ -147,7 +147,7 @@ std::vector<PlaceHypothesis> RankPlaces(const MapProblem& problem, const MapSolu
     const Sim3 &place_a = a.shape_from_marker, &place_b = b.shape_from_marker;
     return (place_a.translation - place_b.translation).norm() <
                kSamePlaceInSides * length_m * place_a.scale &&
-           place_a.rotation.angularDistance(place_b.rotation) < kSameRotation;
+           place_a.rotation.angularDistance(place_b.rotation) < kSamePlaceRotation;
   };
   const PlaceConsensus coarse{problem, solution, views, kCoarse * tolerance_factor};
   const PlaceConsensus fine{problem, solution, views, tolerance_factor};
@@ -157,12 +157,12 @@ std::vector<PlaceHypothesis> RankPlaces(const MapProblem& problem, const MapSolu
   }
   std::vector<PlaceHypothesis> refined;
   for (PlaceHypothesis& hypothesis :
-       DistinctHypotheses(std::move(hypotheses), is_same, kMaxRefined)) {
+       DistinctHypotheses(std::move(hypotheses), is_same, kMaxRefinedPlaces)) {
     const Sim3 place =
         RefineHypothesis(coarse, kMaxRounds, std::move(hypothesis)).shape_from_marker;
     refined.push_back(RefineHypothesis(fine, kMaxRounds, fine.Score(place)));
   }
-  return DistinctHypotheses(std::move(refined), is_same, kMaxRefined);
+  return DistinctHypotheses(std::move(refined), is_same, kMaxRefinedPlaces);
 }
 
 }  // namespace

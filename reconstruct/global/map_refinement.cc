@@ -9,8 +9,6 @@
 namespace velamap {
 namespace {
 
-// Observations beyond this many sigmas lose weight.
-constexpr double kLossSigmas = 4.0;
 constexpr CauchyLoss kLoss{kLossSigmas * kLossSigmas * 2 * kNumCorners};
 
 LeastSquaresOptions Options() {

@@ -14,6 +14,9 @@ namespace velamap {
 // How far a marker's side may be from the nominal one, 1 sigma of its logarithm.
 constexpr double kScaleSigma = 0.02;
 
+// Observations beyond this many sigmas lose weight.
+constexpr double kLossSigmas = 4.0;
+
 // An observation together with the place of its marker.
 struct PlacedObservation {
   const MapObservation* observation;

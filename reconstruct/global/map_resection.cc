@@ -155,7 +155,7 @@ RansacOptions SamplingOptions(const std::vector<KnownMarker>& known, std::uint32
   return options;
 }
 
-bool IsSame(const PoseHypothesis& a, const PoseHypothesis& b) {
+bool IsSamePose(const PoseHypothesis& a, const PoseHypothesis& b) {
   const Rigid3 &pose_a = a.cam_from_shape, &pose_b = b.cam_from_shape;
   return AngularDistance(pose_a, pose_b) < kSameRotation &&
          (pose_a.translation - pose_b.translation).norm() <
@@ -178,12 +178,12 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
   for (PoseHypothesis& hypothesis :
        DistinctHypotheses(Ransac(SamplingOptions(known, random_seed), coarse,
                                  SingleMarkerPoses(Thinned(known, kMaxSingles))),
-                          IsSame, kMaxRefined)) {
+                          IsSamePose, kMaxRefined)) {
     const Rigid3 cam_from_shape =
         RefineHypothesis(coarse, kMaxRounds, std::move(hypothesis)).cam_from_shape;
     refined.push_back(RefineHypothesis(fine, kMaxRounds, fine.Score(cam_from_shape)));
   }
-  return DistinctHypotheses(std::move(refined), IsSame, kMaxHypotheses);
+  return DistinctHypotheses(std::move(refined), IsSamePose, kMaxHypotheses);
 }
 
 bool IsAmbiguous(const std::vector<PoseHypothesis>& hypotheses) {

@@ -13,9 +13,6 @@
 namespace velamap {
 namespace {
 
-// Medians of chi-square with 8 and 2 degrees of freedom: of the corners of a marker at a known
-// place, and of their residuals after a fit of its pose.
-constexpr double kMedianOf8 = 7.344, kMedianOf2 = 1.386;
 // The nominal sigma is a guess; the noise of corners is not taken to be below this part of it.
 constexpr double kMinFactor = 0.3;
 
@@ -31,8 +28,9 @@ std::string Px(double value) {
 }
 
 // Distances of the corners from their projections, px.
-std::array<double, kNumCorners> CornerErrors(const MapProblem& problem, const MapSolution& solution,
-                                             const MapObservation& observation) {
+std::array<double, kNumCorners> CornerErrorsPx(const MapProblem& problem,
+                                               const MapSolution& solution,
+                                               const MapObservation& observation) {
   const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
   const auto corners = CornersInShape(
       problem.Marker(observation.marker_idx),
@@ -120,13 +118,14 @@ MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
     relative_of_frame[static_cast<std::size_t>(observation.frame_idx)].push_back(relative.back());
   }
   if (relative.empty()) return noise;
-  noise.factor = SigmaFromMedian(Median(std::move(relative)), kMedianOf8);
-  noise.sigma_px = SigmaFromMedian(Median(std::move(errors_px)), kMedianOf8);
-  noise.alone_sigma_px = SigmaFromMedian(Median(std::move(alone_px)), kMedianOf2);
+  // A marker at a known place has 8 degrees of freedom, and 2 after a fit of its pose.
+  noise.factor = SigmaFromMedian(Median(std::move(relative)), kChiSquaredMedian8);
+  noise.sigma_px = SigmaFromMedian(Median(std::move(errors_px)), kChiSquaredMedian8);
+  noise.alone_sigma_px = SigmaFromMedian(Median(std::move(alone_px)), kChiSquaredMedian2);
   for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
     if (relative_of_frame[idx].empty()) continue;
     noise.factor_of_frame[idx] =
-        SigmaFromMedian(Median(std::move(relative_of_frame[idx])), kMedianOf8);
+        SigmaFromMedian(Median(std::move(relative_of_frame[idx])), kChiSquaredMedian8);
   }
   return noise;
 }
@@ -182,7 +181,7 @@ std::string WhyOutlier(const MapProblem& problem, const MapSolution& solution,
              " degrees";
     }
   }
-  const auto errors_px = CornerErrors(problem, solution, observation);
+  const auto errors_px = CornerErrorsPx(problem, solution, observation);
   const double corner_tolerance_px = FinalTolerance(observation, noise);
   std::string corners;
   int num_off = 0;

@@ -52,9 +52,9 @@ void WriteCount(std::size_t count, std::ostream* out) {
 
 // Reads what Write wrote. Every count is compared with the bytes that are left, so that a damaged
 // file cannot make it allocate all memory.
-class Reader {
+class UncertaintyReader {
  public:
-  explicit Reader(const std::filesystem::path& path) : path_(path.string()) {
+  explicit UncertaintyReader(const std::filesystem::path& path) : path_(path.string()) {
     constexpr std::uintmax_t kMaxSize = std::uintmax_t{4} << 30;
     CheckInputFile(path_, kUncertaintyFileName, kMaxSize);
     in_.open(path, std::ios::binary);
@@ -117,7 +117,7 @@ void WriteMatrix(const Eigen::MatrixXd& matrix, std::ostream* out) {
   Write(matrix.data(), static_cast<std::size_t>(matrix.size()), out);
 }
 
-void CheckShapes(const PointCovariance& points, const Reader& reader) {
+void CheckShapes(const PointCovariance& points, const UncertaintyReader& reader) {
   const auto num_rows = static_cast<Eigen::Index>(3 * points.point3D_ids.size());
   Eigen::Index num_block_rows = 0;
   for (const Eigen::MatrixXd& block : points.blocks) {
@@ -163,7 +163,7 @@ void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::strin
 bool HasUncertainty(const std::string& folder) { return IsRegularFile(FilePath(folder)); }
 
 AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
-  Reader reader(FilePath(folder));
+  UncertaintyReader reader(FilePath(folder));
   char magic[sizeof(kMagic)];
   reader.Read(magic, sizeof(magic));
   if (!std::equal(magic, magic + sizeof(magic), kMagic))

@@ -35,10 +35,6 @@ RowMajor<kMaxNumIntrinsics> ProjectionByIntrinsics(CameraModel model, const doub
   return jacobian;
 }
 
-Eigen::Map<const Eigen::Vector3d> Corner(const double* marker, int slot) {
-  return Eigen::Map<const Eigen::Vector3d>(marker + 3 * slot);
-}
-
 // The parameter blocks of MarkerViewError.
 struct ViewParameters {
   explicit ViewParameters(double const* const* parameters)
@@ -51,7 +47,7 @@ struct ViewParameters {
         rotation_matrix(rotation.toRotationMatrix()) {}
 
   Eigen::Vector3d InCam(const CornerObservation& corner) const {
-    return rotation_matrix * Corner(marker, corner.slot) + translation;
+    return rotation_matrix * CornerOfBlock(marker, corner.slot) + translation;
   }
   // What is added to the projection of a corner to give its residual.
   Eigen::Vector2d OffsetPx(const CornerObservation& corner) const {
@@ -81,7 +77,7 @@ void SetDerivatives(const ViewParameters& view, const CornerObservation& corner,
   }
   if (by_pose.rows() > 0) {
     by_pose.block<2, 4>(row, 0) =
-        by_cam * RotatedFromQuaternion(view.rotation, Corner(view.marker, corner.slot));
+        by_cam * RotatedFromQuaternion(view.rotation, CornerOfBlock(view.marker, corner.slot));
     by_pose.block<2, 3>(row, 4) = by_cam;
   }
   if (by_inset.rows() > 0) by_inset.block<2, 1>(row, 0) = by_image * corner.inset_direction;

@@ -38,6 +38,11 @@ struct CornerObservation {
   Eigen::Vector2d shutter_direction_px_s = Eigen::Vector2d::Zero();
 };
 
+// The corner in a slot of a marker block.
+inline Eigen::Map<const Eigen::Vector3d> CornerOfBlock(const double* marker, int slot) {
+  return Eigen::Map<const Eigen::Vector3d>(marker + 3 * slot);
+}
+
 // Applies the Cauchy loss to a whitened residual r itself, so that one residual block can hold
 // several corners with a loss each: r becomes g r with |g r|^2 = a^2 log(1 + |r|^2 / a^2) and
 // a = loss_sigmas. Infinite loss_sigmas: no loss. `jacobian` is the derivative of the result by r

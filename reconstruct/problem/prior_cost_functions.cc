@@ -9,6 +9,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/ids.h"
+#include "reconstruct/problem/marker_cost_functions.h"
 
 namespace velamap {
 namespace {
@@ -16,15 +17,11 @@ namespace {
 using JacobianMap =
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-Eigen::Map<const Eigen::Vector3d> Corner(const double* marker, int slot) {
-  return Eigen::Map<const Eigen::Vector3d>(marker + 3 * slot);
-}
-
 // Residual of the difference of the diagonals. Its derivative goes to a row of `jacobian`, unless
 // that is empty.
 double EvaluateDiagonals(const double* marker, double sigma_m, int row, JacobianMap* jacobian) {
-  const Eigen::Vector3d diagonal1 = Corner(marker, 2) - Corner(marker, 0);
-  const Eigen::Vector3d diagonal2 = Corner(marker, 3) - Corner(marker, 1);
+  const Eigen::Vector3d diagonal1 = CornerOfBlock(marker, 2) - CornerOfBlock(marker, 0);
+  const Eigen::Vector3d diagonal2 = CornerOfBlock(marker, 3) - CornerOfBlock(marker, 1);
   if (jacobian->rows() > 0) {
     const Eigen::RowVector3d direction1 = diagonal1.normalized().transpose() / sigma_m;
     const Eigen::RowVector3d direction2 = diagonal2.normalized().transpose() / sigma_m;
@@ -36,10 +33,10 @@ double EvaluateDiagonals(const double* marker, double sigma_m, int row, Jacobian
 // The same for the distance of the corners from their plane. The signed distances from the best
 // plane are h, -h, h, -h.
 double EvaluateFlatness(const double* marker, double sigma_m, int row, JacobianMap* jacobian) {
-  const Eigen::Vector3d diagonal1 = Corner(marker, 2) - Corner(marker, 0);
-  const Eigen::Vector3d diagonal2 = Corner(marker, 3) - Corner(marker, 1);
-  const Eigen::Vector3d alternating =
-      Corner(marker, 0) - Corner(marker, 1) + Corner(marker, 2) - Corner(marker, 3);
+  const Eigen::Vector3d diagonal1 = CornerOfBlock(marker, 2) - CornerOfBlock(marker, 0);
+  const Eigen::Vector3d diagonal2 = CornerOfBlock(marker, 3) - CornerOfBlock(marker, 1);
+  const Eigen::Vector3d alternating = CornerOfBlock(marker, 0) - CornerOfBlock(marker, 1) +
+                                      CornerOfBlock(marker, 2) - CornerOfBlock(marker, 3);
   const Eigen::Vector3d cross = diagonal1.cross(diagonal2);
   const Eigen::Vector3d normal = cross.normalized();
   const double factor = 0.25 / sigma_m;
@@ -95,7 +92,7 @@ bool MarkerPriorError::Evaluate(double const* const* parameters, double* residua
   }
   for (int i = 0; i < num_sides; ++i) {
     const auto [a, b] = sides_[i];
-    const Eigen::Vector3d side = Corner(parameters[0], b) - Corner(parameters[0], a);
+    const Eigen::Vector3d side = CornerOfBlock(parameters[0], b) - CornerOfBlock(parameters[0], a);
     const double length_m = side.norm();
     residuals[i] = (length_m - scale * prior_.length_m) / prior_.side_sigma_m;
     if (by_marker != nullptr) {

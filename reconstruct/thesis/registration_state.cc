@@ -12,7 +12,7 @@ namespace {
 constexpr int kNumRefinements = 4;
 
 // Images with at least this fraction of the best image's inliers are added in the same round.
-constexpr double kJoinRatio = 0.8;
+constexpr double kJoinShare = 0.8;
 
 // The pose solutions of every marker in the shape frame, by all registered frames in which it is no
 // outlier.
@@ -80,7 +80,7 @@ void GrowFromCentralFrame(int central_idx, RegistrationState* state) {
     if (candidates.empty()) return;
     for (auto& [idx, alignment] : candidates) {
       if (static_cast<double>(alignment.inlier_ids.size()) >=
-          kJoinRatio * static_cast<double>(most_inliers)) {
+          kJoinShare * static_cast<double>(most_inliers)) {
         state->alignments[idx] = std::move(alignment);
       }
     }

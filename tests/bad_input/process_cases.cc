@@ -11,7 +11,7 @@ namespace {
 const std::string kPhotographs = "automatic_reconstructor --image_path @/images ";
 const std::string kCamera = "--camera_path @/camera.yml ";
 const std::string kLayout = "--layout_path @/layout.yml ";
-const std::string kShape = "--shape_path @/workspace/shape ";
+const std::string kShapeToCompare = "--shape_path @/workspace/shape ";
 
 void MakePipe(const fs::path& path) { mkfifo(path.c_str(), 0600); }
 
@@ -30,8 +30,8 @@ std::vector<std::pair<std::string, std::string>> CallsThatRead() {
       {"Parts", "database_merger " + kLayout + "--database_paths PIPE --output_path @/new"},
       {"Model", "shape_exporter " + kLayout + "--input_path PIPE --shape_path @/new"},
       {"Shape", "shape_analyzer " + kLayout + "--shape_path PIPE"},
-      {"Reference", "shape_analyzer " + kLayout + kShape + "--reference_path PIPE"},
-      {"Design", "shape_comparer " + kShape + "--reference_path PIPE"},
+      {"Reference", "shape_analyzer " + kLayout + kShapeToCompare + "--reference_path PIPE"},
+      {"Design", "shape_comparer " + kShapeToCompare + "--reference_path PIPE"},
       {"Edges", "shape_exporter " + kLayout +
                     "--input_path @/workspace/sparse/0 --shape_path @/new "
                     "--Surface.edges_path PIPE"},

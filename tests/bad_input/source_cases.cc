@@ -25,7 +25,7 @@ void RunGood(const fs::path& dir, const std::string& command) {
   if (run.exit_code != 0) throw std::runtime_error(run.err);
 }
 
-const std::string kImportClip =
+const std::string kImportClipAgain =
     "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path @/layout.yml "
     "--database_path @/new.db";
 
@@ -59,12 +59,12 @@ std::vector<BadInput> ChangedSources() {
        {},
        kLog},
       {"AVideoInTheWorkspaceOfPhotographs", of_video, 2, "was made from photographs", {}, kLog},
-      {"AnotherVideo", kImportClip, 2, "another video than",
+      {"AnotherVideo", kImportClipAgain, 2, "another video than",
        [](const fs::path& dir) {
-         RunGood(dir, kImportClip);
+         RunGood(dir, kImportClipAgain);
          RunSql(dir / "new.db", "UPDATE marker_sources SET size = size + 1, path_hash = 1");
        }},
-      {"AVideoWithOtherOptions", kImportClip + " --ArucoDetection.corner_refinement subpix", 2,
+      {"AVideoWithOtherOptions", kImportClipAgain + " --ArucoDetection.corner_refinement subpix", 2,
        "was made with other detection options", [](const fs::path& dir) { RunGood(dir, kImport); }},
       {"FramesThatTheOptionsLeaveOut",
        of_video + "2 --Video.frame_step 2",
@@ -74,14 +74,14 @@ std::vector<BadInput> ChangedSources() {
        {"workspace2/velamap.log"}},
       {"ImportedAnewFromNoVideo", kImportNoVideo + " --import_anew 1", 2, "video.mp4",
        [](const fs::path& dir) {
-         RunGood(dir, kImportClip);
+         RunGood(dir, kImportClipAgain);
          WriteTextFile(dir / "video.mp4", "no video");
        }},
-      {"ImportedAnewOverADatabaseOfOthers", kImportClip + " --import_anew 1", 2, "new.db",
+      {"ImportedAnewOverADatabaseOfOthers", kImportClipAgain + " --import_anew 1", 2, "new.db",
        [](const fs::path& dir) { RunSql(dir / "new.db", "CREATE TABLE notes(text TEXT)"); }},
-      {"AVideoThatWasChanged", kImportClip, 2, "the video before it was changed",
+      {"AVideoThatWasChanged", kImportClipAgain, 2, "the video before it was changed",
        [](const fs::path& dir) {
-         RunGood(dir, kImportClip);
+         RunGood(dir, kImportClipAgain);
          WriteTextFile(dir / "clip.avi", ReadFileBytes(dir / "clip.avi") + "more");
        }},
       {"APhotographDeletedFromTheFolderOfADatabase", kImport, 2, "holds 4.png, which is not in",
@@ -112,9 +112,9 @@ std::vector<BadInput> Parts() {
   };
   return {
       {"APartOfPhotographs", kImport + " --video_part 1/2", 2, "photographs have no parts"},
-      {"APartBeyondTheLast", kImportClip + " --video_part 3/2", 2,
+      {"APartBeyondTheLast", kImportClipAgain + " --video_part 3/2", 2,
        "--video_part: '3/2' is no part"},
-      {"APartInWords", kImportClip + " --video_part second", 2,
+      {"APartInWords", kImportClipAgain + " --video_part second", 2,
        "--video_part: 'second' is no part"},
       {"AnotherPartInADatabase",
        "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
@@ -124,9 +124,9 @@ std::vector<BadInput> Parts() {
        "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
        "@/layout.yml --database_path @/1.db",
        2, "holds part 1/2", import_first},
-      {"APartInTheDatabaseOfAWholeImport", kImportClip + " --video_part 1/2", 2,
+      {"APartInTheDatabaseOfAWholeImport", kImportClipAgain + " --video_part 1/2", 2,
        "holds the import of a whole source",
-       [](const fs::path& dir) { RunGood(dir, kImportClip); }},
+       [](const fs::path& dir) { RunGood(dir, kImportClipAgain); }},
       {"AWholeImportToMerge", merge + "@/workspace/database.db", 2, "holds no part of a video"},
       {"AMissingPart", merge + "@/1.db", 2, "part 2/2 is missing", import_first},
       {"APartNamedTwice", merge + "@/1.db,@/2.db,@/1.db", 2, "name each part once", import_both},

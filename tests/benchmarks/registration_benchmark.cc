@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-SyntheticScene Sail(int num_frames) {
+SyntheticScene RegisteredSail(int num_frames) {
   SyntheticSceneOptions options;
   options.num_rows = 8;
   options.num_columns = 15;
@@ -25,14 +25,14 @@ SyntheticScene Sail(int num_frames) {
   return scene;
 }
 
-Model Seed(const SyntheticScene& scene) {
+Model SeedOf(const SyntheticScene& scene) {
   const auto images = DatabaseImages(scene);
   const auto cameras = SceneCameras(scene);
   return MakeSeedModel(RegisterFrames(images, cameras, scene.layout, {}), images, cameras);
 }
 
 void BM_ThesisRegistration(benchmark::State& state) {
-  const SyntheticScene scene = Sail(static_cast<int>(state.range(0)));
+  const SyntheticScene scene = RegisteredSail(static_cast<int>(state.range(0)));
   const auto images = DatabaseImages(scene);
   const auto cameras = SceneCameras(scene);
   RegistrationOptions options;
@@ -49,7 +49,7 @@ BENCHMARK(BM_ThesisRegistration)
     ->MeasureProcessCPUTime();
 
 void BM_GlobalRegistration(benchmark::State& state) {
-  const SyntheticScene scene = Sail(static_cast<int>(state.range(0)));
+  const SyntheticScene scene = RegisteredSail(static_cast<int>(state.range(0)));
   const auto images = DatabaseImages(scene);
   const auto cameras = SceneCameras(scene);
   for (auto _ : state) {
@@ -65,7 +65,7 @@ BENCHMARK(BM_GlobalRegistration)
     ->MeasureProcessCPUTime();
 
 void BM_ColmapBundleAdjustment(benchmark::State& state) {
-  const Model seed = Seed(Sail(static_cast<int>(state.range(0))));
+  const Model seed = SeedOf(RegisteredSail(static_cast<int>(state.range(0))));
   const TempDir folder;
   for (auto _ : state) {
     Model model = seed;
@@ -75,8 +75,8 @@ void BM_ColmapBundleAdjustment(benchmark::State& state) {
 BENCHMARK(BM_ColmapBundleAdjustment)->Arg(41)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void BM_Export(benchmark::State& state) {
-  const SyntheticScene scene = Sail(41);
-  const Model model = Seed(scene);
+  const SyntheticScene scene = RegisteredSail(41);
+  const Model model = SeedOf(scene);
   const TempDir folder;
   ShapeExporterOptions options;
   options.model_output_path = (folder / "model").string();

@@ -199,11 +199,11 @@ TEST(ShapeExporter, ShapeJsonListsAllFilesBesideIt) {
   ShapeExporterOptions options = OptionsIn(dir);
   options.sail.sections.heights_m = {0.1};
   ExportShape(ExampleModel(), ExampleLayout(), options);
-  const auto json = nlohmann::json::parse(ReadBytes(dir / "shape" / "shape.json"));
+  const auto root = nlohmann::json::parse(ReadBytes(dir / "shape" / "shape.json"));
   std::set<std::string> listed = {".velamap", "shape.json"};
-  for (const auto& [name, content] : json.at("files").items()) listed.insert(name);
+  for (const auto& [name, content] : root.at("files").items()) listed.insert(name);
   EXPECT_EQ(listed, FilesIn(dir / "shape"));
-  EXPECT_EQ(json.at("num_markers"), 8);
+  EXPECT_EQ(root.at("num_markers"), 8);
 }
 
 TEST(ShapeExporter, TheModelIsMetricAndHasTrueErrorsInBothFormats) {

@@ -33,28 +33,28 @@ nlohmann::json Json(const Model& model, const ShapeOrigin& origin,
 TEST(ShapeJson, SaysWhatTheTablesDoNot) {
   const ScopedDate date("1700000000");
   const Model model = ExampleModel();
-  const auto json = Json(model, {"1.2.3", "clip.mp4", true}, {{"shape.csv", "markers"}});
-  EXPECT_EQ(json.at("velamap_version"), "1.2.3");
-  EXPECT_EQ(json.at("clip"), "clip.mp4");
-  EXPECT_EQ(json.at("date"), "2023-11-14T22:13:20Z");
-  EXPECT_EQ(json.at("frame"),
+  const auto root = Json(model, {"1.2.3", "clip.mp4", true}, {{"shape.csv", "markers"}});
+  EXPECT_EQ(root.at("velamap_version"), "1.2.3");
+  EXPECT_EQ(root.at("clip"), "clip.mp4");
+  EXPECT_EQ(root.at("date"), "2023-11-14T22:13:20Z");
+  EXPECT_EQ(root.at("frame"),
             nlohmann::json(
                 {{"name", "lines h1 h2"}, {"description", "x aft"}, {"reasons", {"no hull"}}}));
-  EXPECT_EQ(json.at("units").at("length"), "m");
-  EXPECT_EQ(json.at("num_markers"), 7);
-  EXPECT_EQ(json.at("num_images"), model.images.size());
-  EXPECT_EQ(json.at("files"), nlohmann::json({{"shape.csv", "markers"}}));
-  ASSERT_EQ(json.at("cameras").size(), 1u);
-  EXPECT_EQ(json.at("cameras")[0].at("num_images"), model.images.size());
-  EXPECT_EQ(json.at("cameras")[0].at("found_without_calibration"), true);
+  EXPECT_EQ(root.at("units").at("length"), "m");
+  EXPECT_EQ(root.at("num_markers"), 7);
+  EXPECT_EQ(root.at("num_images"), model.images.size());
+  EXPECT_EQ(root.at("files"), nlohmann::json({{"shape.csv", "markers"}}));
+  ASSERT_EQ(root.at("cameras").size(), 1u);
+  EXPECT_EQ(root.at("cameras")[0].at("num_images"), model.images.size());
+  EXPECT_EQ(root.at("cameras")[0].at("found_without_calibration"), true);
 }
 
 TEST(ShapeJson, WhatIsUnknownHasNoKey) {
-  const auto json = Json(ExampleModel(), {});
-  EXPECT_FALSE(json.contains("clip"));
-  EXPECT_FALSE(json.contains("velamap_version"));
-  EXPECT_FALSE(json.contains("verdict"));
-  EXPECT_FALSE(json.at("cameras")[0].contains("found_without_calibration"));
+  const auto root = Json(ExampleModel(), {});
+  EXPECT_FALSE(root.contains("clip"));
+  EXPECT_FALSE(root.contains("velamap_version"));
+  EXPECT_FALSE(root.contains("verdict"));
+  EXPECT_FALSE(root.at("cameras")[0].contains("found_without_calibration"));
   EXPECT_THAT(Text(ExampleModel(), {}), testing::Not(testing::HasSubstr("null")));
 }
 

@@ -17,7 +17,7 @@
 namespace velamap {
 namespace {
 
-constexpr double kNoisePx = 0.1;
+constexpr double kSearchNoisePx = 0.1;
 
 SyntheticScene MakeScene(SceneKind kind, const Camera& camera, std::uint32_t seed) {
   SyntheticSceneOptions options;
@@ -28,7 +28,7 @@ SyntheticScene MakeScene(SceneKind kind, const Camera& camera, std::uint32_t see
   options.camera = camera;
   options.seed = seed;
   SyntheticScene scene = MakeSyntheticScene(options);
-  AddNoise({kNoisePx, 0, 0, 200, seed}, &scene);
+  AddNoise({kSearchNoisePx, 0, 0, 200, seed}, &scene);
   return scene;
 }
 
@@ -215,7 +215,7 @@ TEST(CameraSearch, ABoardSeenHeadOnIsRefused) {
       for (std::size_t c = 0; c < kNumCorners; ++c) {
         marker.corners_in_image_px[c] =
             *ImageFromCam(truth, pose * x[c + 1]) +
-            kNoisePx * Eigen::Vector2d(normal(generator), normal(generator));
+            kSearchNoisePx * Eigen::Vector2d(normal(generator), normal(generator));
       }
       scene.frames[i].markers.push_back(marker);
     }

@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-constexpr double kMinContrast = 8.0;
+constexpr double kMinCellContrast = 8.0;
 
 // Across one side.
 struct Edge {
@@ -50,7 +50,7 @@ std::optional<Edge> MeasureEdge(const cv::Mat& gray, const Eigen::Vector2d& from
   for (std::size_t i = kSpan; i < profile.size(); ++i) {
     steepest = std::max(steepest, (profile[i] - profile[i - kSpan]) / (kSpan * kStep_px));
   }
-  if (edge.white - edge.black < kMinContrast || steepest <= 0) return std::nullopt;
+  if (edge.white - edge.black < kMinCellContrast || steepest <= 0) return std::nullopt;
   edge.blur_px = (edge.white - edge.black) / (std::sqrt(2 * kPi) * steepest);
   return edge;
 }

@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-constexpr int kMinFrames = 2;
+constexpr int kMinPrintFrames = 2;
 
 bool IsOneOf(const MarkerQuad& quad, const std::vector<MarkerDetection>& markers) {
   const Eigen::Vector2d center_px = QuadCenter(quad.corners_px);
@@ -59,7 +59,7 @@ PrintFaults FindPrintFaults(const std::vector<Frame>& frames,
   }
   for (std::map<int, int>* counts : {&faults.mirrored, &faults.inverted}) {
     for (auto it = counts->begin(); it != counts->end();) {
-      it = it->second < kMinFrames ? counts->erase(it) : std::next(it);
+      it = it->second < kMinPrintFrames ? counts->erase(it) : std::next(it);
     }
   }
   return faults;

@@ -20,15 +20,13 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-UncertainShape Uncertain(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
-
 // Marker 33 is 20 mm in front of the surface, marker 44 is 10 mm behind it.
 ShapeDeviation Example(double sigma_m = 0.0) {
   const MarkerShape reference = BoatShape(sigma_m);
   const auto normal = [&](int id) { return MarkerNormal(*FindWholeMarker(reference, id)); };
   const MarkerShape shape =
       Shifted({33}, 0.02 * normal(33), Shifted({44}, -0.01 * normal(44), reference));
-  return CompareWithShape(Uncertain(shape), Uncertain(reference), BoatLayout(), {});
+  return CompareWithShape(WithSigmas(shape), WithSigmas(reference), BoatLayout(), {});
 }
 
 std::string Ply(const ShapeDeviation& deviation, std::optional<double> limit_m = std::nullopt) {
@@ -96,7 +94,7 @@ TEST(ComparisonPly, DoesNotFollowTheLocale) {
 }
 
 TEST(ComparisonPly, EqualShapesAreWhite) {
-  const UncertainShape boat = Uncertain(BoatShape());
+  const UncertainShape boat = WithSigmas(BoatShape());
   AlignmentOptions none;
   none.method = AlignmentMethod::kNone;
   const PlyReadElement vertices =
@@ -129,7 +127,7 @@ TEST(ComparisonReport, HasTheKeysThatTheReadmeLists) {
 }
 
 TEST(ComparisonReport, AShapeIsZeroFromItself) {
-  const UncertainShape boat = Uncertain(BoatShape(0.001)),
+  const UncertainShape boat = WithSigmas(BoatShape(0.001)),
                        elsewhere{Moved(FarPose(), boat.shape), boat.covariance};
   MetricsReport report;
   AddMetrics(CompareWithShape(elsewhere, boat, BoatLayout(), {}, ""), &report);
@@ -149,9 +147,9 @@ TEST(ComparisonReport, OfASurfaceHasNoVectors) {
   AlignmentOptions none;
   none.method = AlignmentMethod::kNone;
   MetricsReport report;
-  AddMetrics(
-      CompareWithMesh(Uncertain(BoatShape()), MeshDistance(SailMesh()), BoatLayout(), none, "sail"),
-      &report);
+  AddMetrics(CompareWithMesh(WithSigmas(BoatShape()), MeshDistance(SailMesh()), BoatLayout(), none,
+                             "sail"),
+             &report);
   std::ostringstream csv;
   WriteMetricsCsv(report, csv);
   EXPECT_THAT(csv.str(), HasSubstr(",,num_beside_surface,0\n"));

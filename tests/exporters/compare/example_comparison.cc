@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "exporters/compare/comparison_sigma.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -111,6 +112,10 @@ TriangleMesh SailMesh(double margin_m) {
   }
   return mesh;
 }
+
+UncertainShape Exact(const MarkerShape& shape) { return {shape, {}}; }
+
+UncertainShape WithSigmas(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
 
 MarkerShape Moved(const Rigid3& b_from_a, MarkerShape shape) {
   for (ShapeMarker& marker : shape.markers) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "exporters/compare/shape_comparison.h"
 #include "exporters/formats/mesh_triangles.h"
 #include "exporters/shape/marker_shape.h"
 #include "importer/geometry/rigid3.h"
@@ -22,6 +23,10 @@ MarkerShape BoatShape(double sigma_m = 0.0);
 
 // The surface of the sail's markers up to `margin_m` beyond the outer centres.
 TriangleMesh SailMesh(double margin_m = 0.3);
+
+// A shape without uncertainties, and with those of its sigmas.
+UncertainShape Exact(const MarkerShape& shape);
+UncertainShape WithSigmas(const MarkerShape& shape);
 
 MarkerShape Moved(const Rigid3& b_from_a, MarkerShape shape);
 // Moves the markers with these ids by `shift_m`.

@@ -22,14 +22,12 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-AlignmentOptions By(AlignmentMethod method, bool starts_as_is = false) {
+AlignmentOptions FitBy(AlignmentMethod method, bool starts_as_is = false) {
   AlignmentOptions options;
   options.method = method;
   options.starts_as_is = starts_as_is;
   return options;
 }
-
-UncertainShape Exact(const MarkerShape& shape) { return {shape, {}}; }
 
 MarkerShape Sail() { return MarkersOnPart(BoatShape(), BoatLayout(), "sail"); }
 
@@ -56,7 +54,7 @@ TEST(ShapeComparisonMesh, DistancesToASphereWithoutAlignment) {
   const MeshDistance mesh(SphereMesh(1.0, 150));
   for (const double offset_m : {0.03, -0.02}) {
     const ShapeDeviation deviation =
-        CompareWithMesh(Exact(Ball(1.0 + offset_m)), mesh, {}, By(AlignmentMethod::kNone));
+        CompareWithMesh(Exact(Ball(1.0 + offset_m)), mesh, {}, FitBy(AlignmentMethod::kNone));
     EXPECT_EQ(deviation.distance_m.count, 20);
     EXPECT_NEAR(deviation.distance_m.min, offset_m, 3e-4);
     EXPECT_NEAR(deviation.distance_m.max, offset_m, 3e-4);
@@ -98,7 +96,7 @@ TEST(ShapeComparisonMesh, AsIsStaysNearTheStart) {
   const Rigid3 near{Eigen::Quaterniond(Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitX())),
                     {0.02, 0.03, -0.02}};
   const ShapeDeviation deviation = CompareWithMesh(Exact(Moved(near, Sail())), mesh, BoatLayout(),
-                                                   By(AlignmentMethod::kBestFit, true));
+                                                   FitBy(AlignmentMethod::kBestFit, true));
   EXPECT_LT(deviation.distance_m.rms, 1e-3);
   EXPECT_LT(AngularDistance(deviation.alignment.reference_from_shape, Inverse(near)), 0.01);
 }
@@ -112,8 +110,8 @@ TEST(ShapeComparisonMesh, MarkersBesideTheSurfaceAreNotMeasured) {
                            return half.vertices_m[static_cast<std::size_t>(triangle[0])].z() > 2.5;
                          }),
           t.end());
-  const ShapeDeviation deviation =
-      CompareWithMesh(Exact(Sail()), MeshDistance(half), BoatLayout(), By(AlignmentMethod::kNone));
+  const ShapeDeviation deviation = CompareWithMesh(Exact(Sail()), MeshDistance(half), BoatLayout(),
+                                                   FitBy(AlignmentMethod::kNone));
   EXPECT_EQ(deviation.num_beside, 12);
   EXPECT_EQ(deviation.distance_m.count, 18);
   EXPECT_LT(deviation.distance_m.rms, 1e-3);
@@ -123,7 +121,7 @@ TEST(ShapeComparisonMesh, MarkersBesideTheSurfaceAreNotMeasured) {
   ExpectThrows<DataError>(
       [&] {
         CompareWithMesh(Exact(Shifted(IdsOf("sail"), {20, 0, 0}, Sail())), MeshDistance(half),
-                        BoatLayout(), By(AlignmentMethod::kNone));
+                        BoatLayout(), FitBy(AlignmentMethod::kNone));
       },
       {"none of the 30 whole markers", "best_fit"});
 }
@@ -138,8 +136,8 @@ TEST(ShapeComparisonMesh, MarkersAtTheEdgeOfADesignCount) {
   int num_beside = 0, num_counted = 0, num_beyond = 0, num_far = 0;
   SampleShapes(sail, covariance, 20, [&](const MarkerShape& sample) {
     const auto compare = [&](const EdgeOptions& edge) {
-      return CompareWithMesh({sample, covariance}, mesh, BoatLayout(), By(AlignmentMethod::kNone),
-                             "", edge);
+      return CompareWithMesh({sample, covariance}, mesh, BoatLayout(),
+                             FitBy(AlignmentMethod::kNone), "", edge);
     };
     num_beside += compare(none).num_beside;
     const ShapeDeviation deviation = compare({});
@@ -166,7 +164,7 @@ TEST(ShapeComparisonMesh, MarkersFarBeyondTheEdgeAreBeside) {
   const MeshDistance mesh(SailMesh(-0.05));
   const MarkerShape sail = MarkersOnPart(BoatShape(), BoatLayout(), "sail");
   const auto num_beside = [&](double tolerance_mm) {
-    return CompareWithMesh(Exact(sail), mesh, BoatLayout(), By(AlignmentMethod::kNone), "",
+    return CompareWithMesh(Exact(sail), mesh, BoatLayout(), FitBy(AlignmentMethod::kNone), "",
                            {tolerance_mm, 3.0})
         .num_beside;
   };
@@ -196,7 +194,7 @@ TEST(ShapeComparisonMesh, SigmasAreWhatRepetitionsScatterBy) {
   const MeshDistance mesh(SailMesh());
   const MarkerShape sail = MarkersOnPart(BoatShape(0.002), BoatLayout(), "sail");
   const UncertainShape uncertain{sail, CovarianceFromSigmas(sail)};
-  const AlignmentOptions options = By(AlignmentMethod::kBestFit, true);
+  const AlignmentOptions options = FitBy(AlignmentMethod::kBestFit, true);
   const ShapeDeviation deviation = CompareWithMesh(uncertain, mesh, BoatLayout(), options);
   ASSERT_EQ(deviation.num_with_sigma, 30);
   std::vector<std::vector<double>> distances_m(30);
@@ -224,7 +222,7 @@ TEST(ShapeComparisonMesh, UnitHintForAWrongUnit) {
 TEST(ShapeComparisonMesh, RefusesWhatASurfaceCannotDo) {
   const MeshDistance mesh(SailMesh());
   ExpectThrows<InputError>(
-      [&] { AlignToMesh(BoatShape(), mesh, By(AlignmentMethod::kReferencePart)); },
+      [&] { AlignToMesh(BoatShape(), mesh, FitBy(AlignmentMethod::kReferencePart)); },
       {"--align reference_part", "best_fit"});
   MarkerShape one;
   one.markers = {BoatShape().markers.front()};

@@ -15,11 +15,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-UncertainShape Uncertain(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
-
 SectionComparison Compare(const MarkerShape& shape, const MarkerShape& reference) {
   const Alignment alignment = AlignShapes(shape, reference, BoatLayout(), {});
-  return CompareSections(Uncertain(shape), Uncertain(reference), alignment, BoatLayout());
+  return CompareSections(WithSigmas(shape), WithSigmas(reference), alignment, BoatLayout());
 }
 
 const SectionDifference& Find(const SectionComparison& comparison, const std::string& section,
@@ -94,7 +92,7 @@ TEST(ComparisonSections, WhatOneLacksIsSaid) {
 TEST(ComparisonSections, ALayoutWithoutLinesHasNone) {
   const MarkerShape boat = BoatShape();
   const SectionComparison comparison =
-      CompareSections(Uncertain(boat), Uncertain(boat), Alignment(), Layout());
+      CompareSections(WithSigmas(boat), WithSigmas(boat), Alignment(), Layout());
   EXPECT_TRUE(comparison.differences.empty());
   EXPECT_FALSE(comparison.notes.empty());
 }

@@ -19,9 +19,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-UncertainShape Exact(const MarkerShape& shape) { return {shape, {}}; }
-UncertainShape WithSigmas(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
-
 AlignmentOptions By(AlignmentMethod method, const std::vector<int>& ids = {}) {
   AlignmentOptions options;
   options.method = method;

@@ -23,8 +23,6 @@ using ::testing::Not;
 using ::testing::StartsWith;
 using Json = nlohmann::json;
 
-UncertainShape Uncertain(const MarkerShape& shape) { return {shape, CovarianceFromSigmas(shape)}; }
-
 ComparisonOptions WithDeflections() {
   ComparisonOptions options;
   options.with_deflections = true;
@@ -43,7 +41,7 @@ MarkerShape Fuller() {
 }
 
 // Holds what the input refers to.
-struct Example {
+struct PageExample {
   std::vector<Comparison> series;
   MarkerShape reference = BoatShape(0.001);
   Layout layout = BoatLayout();
@@ -51,7 +49,7 @@ struct Example {
 
   void Add(const std::string& name, const MarkerShape& shape) {
     series.push_back(
-        Compare(name, Uncertain(shape), Uncertain(reference), layout, WithDeflections()));
+        Compare(name, WithSigmas(shape), WithSigmas(reference), layout, WithDeflections()));
   }
   ComparisonPageInput Input() const {
     ComparisonPageInput input{series, is_design ? nullptr : &reference, layout};
@@ -63,7 +61,7 @@ struct Example {
 };
 
 TEST(ComparisonPage, AShapeAgainstItselfIsTheSame) {
-  Example example;
+  PageExample example;
   example.Add("again", Moved(FarPose(), BoatShape(0.001)));
   const Json data = example.Data();
   EXPECT_EQ(data["verdict"]["text"], "The shapes are the same.");
@@ -87,7 +85,7 @@ TEST(ComparisonPage, AShapeAgainstItselfIsTheSame) {
 }
 
 TEST(ComparisonPage, TheFirstLineSaysHowMuchAndWhere) {
-  Example example;
+  PageExample example;
   example.Add("trim2", Fuller());
   const Json data = example.Data();
   const std::string text = data["verdict"]["text"];
@@ -105,7 +103,7 @@ TEST(ComparisonPage, TheFirstLineSaysHowMuchAndWhere) {
 }
 
 TEST(ComparisonPage, ProfilesStartAtTheLuffAndLieWhereTheyAre) {
-  Example example;
+  PageExample example;
   example.Add("trim2", Shifted(IdsOf("sail"), {0, 0.04, 0}, BoatShape(0.001)));
   const Json data = example.Data();
   for (const Json& profile : data["profiles"]) {
@@ -123,7 +121,7 @@ TEST(ComparisonPage, ProfilesStartAtTheLuffAndLieWhereTheyAre) {
 }
 
 TEST(ComparisonPage, ASeriesHasAColumnForEachShape) {
-  Example example;
+  PageExample example;
   example.Add("trim2", Fuller());
   example.Add("trim3", Shifted(IdsOf("sail"), {0, 0.02, 0}, BoatShape(0.001)));
   example.Add("trim4", BoatShape(0.001));
@@ -142,14 +140,14 @@ TEST(ComparisonPage, ASeriesHasAColumnForEachShape) {
 }
 
 TEST(ComparisonPage, ADesignHasSectionsToo) {
-  Example example;
+  PageExample example;
   example.is_design = true;
   const MeshDistance design(SailMesh(0.0));
   AlignmentOptions none;
   none.method = AlignmentMethod::kNone;
   ComparisonOptions options = WithDeflections();
   options.alignment = none;
-  example.series.push_back(Compare("trim2", Uncertain(Fuller()), design, example.layout, options));
+  example.series.push_back(Compare("trim2", WithSigmas(Fuller()), design, example.layout, options));
   const Json data = example.Data();
   EXPECT_THAT(data["verdict"]["text"].get<std::string>(),
               StartsWith("The shape differs from the design by"));
@@ -166,7 +164,7 @@ TEST(ComparisonPage, ADesignHasSectionsToo) {
 }
 
 TEST(ComparisonPage, WithoutALayoutThereAreMarkers) {
-  Example example;
+  PageExample example;
   example.layout = {};
   example.Add("trim2", Fuller());
   const Json data = example.Data();
@@ -176,7 +174,7 @@ TEST(ComparisonPage, WithoutALayoutThereAreMarkers) {
 }
 
 TEST(ComparisonPage, IsOneFileWithoutScriptsFromNames) {
-  Example example;
+  PageExample example;
   example.Add("</script><b>{{STYLE}}", Fuller());
   ComparisonPageInput input = example.Input();
   std::ostringstream out;
@@ -195,7 +193,7 @@ TEST(ComparisonPage, IsOneFileWithoutScriptsFromNames) {
 }
 
 TEST(ComparisonSeries, FiguresNameTheirShape) {
-  Example example;
+  PageExample example;
   example.Add("trim2", Fuller());
   const MetricsReport one = MakeReport(example.series);
   EXPECT_EQ(one.metrics.front().key, "alignment");

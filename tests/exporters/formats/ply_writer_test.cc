@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::string Written(PlyFormat format, int num_rows) {
+std::string WrittenPly(PlyFormat format, int num_rows) {
   PlyElement<int> points{"vertex", std::vector<int>(static_cast<std::size_t>(num_rows)), {}};
   std::iota(points.rows.begin(), points.rows.end(), 0);
   points.Add("x", PlyType::kDouble, [](int i) { return i / 3.0; });
@@ -33,7 +33,7 @@ std::string Written(PlyFormat format, int num_rows) {
 TEST(PlyWriter, BothFormatsReadBackWithAllRows) {
   constexpr int kNumRows = 20000;
   for (const PlyFormat format : {PlyFormat::kAscii, PlyFormat::kBinaryLittleEndian}) {
-    const PlyFile file = ReadPly(Written(format, kNumRows));
+    const PlyFile file = ReadPly(WrittenPly(format, kNumRows));
     ASSERT_EQ(file.elements.size(), 2u);
     const PlyReadElement& points = file.elements[0];
     ASSERT_EQ(points.rows.size(), static_cast<std::size_t>(kNumRows));
@@ -50,7 +50,7 @@ TEST(PlyWriter, BothFormatsReadBackWithAllRows) {
 }
 
 TEST(PlyWriter, HeaderKeepsEachCommentOnOneLine) {
-  EXPECT_THAT(Written(PlyFormat::kAscii, 1),
+  EXPECT_THAT(WrittenPly(PlyFormat::kAscii, 1),
               HasSubstr("ply\nformat ascii 1.0\ncomment one two\ncomment three\nelement vertex 1\n"
                         "property double x\nproperty float nx\nproperty uchar red\n"
                         "property int marker_id\nproperty list uchar int neighbours\n"));

@@ -24,7 +24,7 @@ namespace {
 
 using testing::HasSubstr;
 
-SplineSurface Sail() { return FitSurface(MarkersOn(TwistedSail, 6, 7)).surface; }
+SplineSurface GridSail() { return FitSurface(MarkersOn(TwistedSail, 6, 7)).surface; }
 
 GridOptions Size(int num_sections, int num_points) {
   GridOptions options;
@@ -46,7 +46,7 @@ double Area(const SurfaceGrid& grid) {
 }
 
 TEST(SurfaceGrid, RunsFromLuffToLeechAndFromFootToHead) {
-  const SplineSurface surface = Sail();
+  const SplineSurface surface = GridSail();
   const SurfaceGrid grid = MakeGrid(surface, Size(5, 9));
   ASSERT_EQ(grid.vertices_m.size(), 45u);
   for (int j = 0; j < 5; ++j) {
@@ -62,7 +62,7 @@ TEST(SurfaceGrid, RunsFromLuffToLeechAndFromFootToHead) {
 }
 
 TEST(SurfaceGrid, FilesDoNotDependOnTheLocale) {
-  const SurfaceGrid grid = MakeGrid(Sail(), Size(3, 4));
+  const SurfaceGrid grid = MakeGrid(GridSail(), Size(3, 4));
   const auto text = [&] {
     std::ostringstream out;
     WriteGridVts(grid, "a--b<", out);
@@ -79,7 +79,7 @@ TEST(SurfaceGrid, FilesDoNotDependOnTheLocale) {
 }
 
 TEST(SurfaceGrid, AnsysPointsAreOneGroupPerSectionInTheUnit) {
-  const SurfaceGrid grid = MakeGrid(Sail(), Size(3, 4));
+  const SurfaceGrid grid = MakeGrid(GridSail(), Size(3, 4));
   std::stringstream file;
   WriteGridAnsys(grid, "sail", LengthUnit::kMillimetre, file);
   std::string comment;
@@ -100,7 +100,7 @@ TEST(SurfaceGrid, AnsysPointsAreOneGroupPerSectionInTheUnit) {
 // A head that is a point, but for what a fit leaves of it: its quadrilaterals have become triangles
 // with one node at the head, and none has two corners in one place.
 TEST(SurfaceGrid, MshOfAPointedHeadHasTriangles) {
-  SplineSurface surface = Sail();
+  SplineSurface surface = GridSail();
   for (int i = 0; i < surface.NumPolesU(); ++i) {
     surface.poles_in_shape_m.row((i + 1) * surface.NumPolesV() - 1) =
         Eigen::RowVector3d(0.5 + 1e-6 * i, 0.1, 6.3);
@@ -148,7 +148,7 @@ bool Works(const std::string& command) {
 TEST(SurfaceGrid, VtkReadsTheStructureAndTheNormals) {
   if (!Works("/usr/bin/python3 -c 'import vtkmodules.vtkIOXML'")) GTEST_SKIP() << "no python3-vtk9";
   const TempDir dir;
-  const SurfaceGrid grid = MakeGrid(Sail(), Size(21, 31));
+  const SurfaceGrid grid = MakeGrid(GridSail(), Size(21, 31));
   std::ofstream file(dir / "a.vts");
   WriteGridVts(grid, "sail -- <1>", file);
   file.close();
@@ -184,7 +184,7 @@ open("result.txt", "w").write(" ".join("%.17g" % number for number in numbers))
 TEST(SurfaceGrid, GmshReadsTheMesh) {
   if (!Works("command -v gmsh")) GTEST_SKIP() << "no gmsh";
   const TempDir dir;
-  const SurfaceGrid grid = MakeGrid(Sail(), Size(11, 21));
+  const SurfaceGrid grid = MakeGrid(GridSail(), Size(11, 21));
   std::ofstream file(dir / "a.msh");
   WriteGridMsh(grid, "sail (frame: lines h1 v1)", LengthUnit::kMillimetre, file);
   file.close();

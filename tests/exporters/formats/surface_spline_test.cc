@@ -17,10 +17,10 @@ SplineSurface FlatRectangle() {
       .surface;
 }
 
-SplineSurface Sail() { return FitSurface(MarkersOn(TwistedSail, 8, 9)).surface; }
+SplineSurface SplineSail() { return FitSurface(MarkersOn(TwistedSail, 8, 9)).surface; }
 
 TEST(SurfaceSpline, BasisFunctionsSumToOne) {
-  const SplineSurface surface = Sail();
+  const SplineSurface surface = SplineSail();
   for (const double t : {0.0, 0.1, 0.37, 0.5, 0.99, 1.0}) {
     const Eigen::MatrixXd row = BasisRow(surface.knots_u, 3, t, 3);
     EXPECT_NEAR(row.row(0).sum(), 1, 1e-14);
@@ -30,7 +30,7 @@ TEST(SurfaceSpline, BasisFunctionsSumToOne) {
 
 TEST(SurfaceSpline, DerivativesAreThoseOfThePoints) {
   constexpr double kStep = 1e-5;
-  const SplineSurface surface = Sail();
+  const SplineSurface surface = SplineSail();
   for (const double u : {0.2, 0.55, 0.9}) {
     for (const double v : {0.1, 0.48, 0.8}) {
       const SurfaceJet jet = EvaluateJet(surface, u, v);
@@ -71,7 +71,7 @@ TEST(SurfaceSpline, FootOfAPerpendicularHasSignAndSide) {
 }
 
 TEST(SurfaceSpline, FootOnACurvedSurfaceIsPerpendicular) {
-  const SplineSurface surface = Sail();
+  const SplineSurface surface = SplineSail();
   for (const double u : {0.15, 0.5, 0.83}) {
     for (const double v : {0.2, 0.7}) {
       const SurfaceJet jet = EvaluateJet(surface, u, v);

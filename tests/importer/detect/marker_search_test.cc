@@ -7,13 +7,13 @@
 namespace velamap {
 namespace {
 
-const std::vector<DrawnMarker> kDrawn = {
+const std::vector<DrawnMarker> kSearched = {
     {3, 40, 50, 96}, {7, 200, 60, 60}, {11, 320, 41, 24}, {49, 60, 220, 144}};
 
 class SearchMarkersTest : public testing::Test {
  protected:
   SearchMarkersTest() {
-    cv::cvtColor(DrawMarkers(dictionary_.aruco, {480, 400}, kDrawn), gray_, cv::COLOR_BGR2GRAY);
+    cv::cvtColor(DrawMarkers(dictionary_.aruco, {480, 400}, kSearched), gray_, cv::COLOR_BGR2GRAY);
     cv::GaussianBlur(gray_, gray_, cv::Size(), 0.7);
   }
 
@@ -27,7 +27,7 @@ class SearchMarkersTest : public testing::Test {
 
 TEST_F(SearchMarkersTest, ARegionGivesTheSameCornersAsTheWhole) {
   const std::vector<MarkerQuad> all = SearchMarkers(gray_, dictionary_, 1, {});
-  ASSERT_EQ(all.size(), kDrawn.size());
+  ASSERT_EQ(all.size(), kSearched.size());
   for (const MarkerQuad& whole : all) {
     const cv::Rect square(static_cast<int>(whole.corners_px[0].x()),
                           static_cast<int>(whole.corners_px[0].y()),

@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-const cv::Size kSize(1920, 1080);
+const cv::Size kFrameSize(1920, 1080);
 
 // A world of square markers that shows those that lie in the searched regions, and counts. They can
 // also be located, if it is told so.
@@ -23,9 +23,9 @@ class FakeVideo {
   std::vector<MarkerQuad> Search(const std::vector<cv::Rect>& regions) {
     std::vector<MarkerQuad> found;
     for (const cv::Rect& region : regions) {
-      num_full += region.size() == kSize;
+      num_full += region.size() == kFrameSize;
       area_px += region.area();
-      EXPECT_EQ(region & cv::Rect({0, 0}, kSize), region);
+      EXPECT_EQ(region & cv::Rect({0, 0}, kFrameSize), region);
       for (const auto& [id, center] : markers) {
         const auto quad = Show(id, center, region);
         if (quad) found.push_back({id, *quad});
@@ -37,7 +37,7 @@ class FakeVideo {
   std::optional<QuadCorners> Locate(int marker_id, const QuadCorners& expected, double reach_px) {
     if (!can_locate) return std::nullopt;
     for (const auto& [id, center] : markers) {
-      const auto quad = Show(id, center, {{0, 0}, kSize});
+      const auto quad = Show(id, center, {{0, 0}, kFrameSize});
       if (id != marker_id || !quad) continue;
       if ((QuadCenter(*quad) - QuadCenter(expected)).norm() > reach_px) continue;
       ++num_located;
@@ -50,7 +50,7 @@ class FakeVideo {
   std::vector<int> Next() {
     std::vector<int> ids;
     for (const MarkerQuad& quad : SearchTracked(
-             {kSize,
+             {kFrameSize,
               [this](const auto&regions) { return Search(regions); },
               [this](int id, const QuadCorners&expected, double reach_px) {
                 return Locate(id, expected, reach_px);
@@ -108,7 +108,7 @@ TEST(SearchTracked, AcceleratedMarkersAreFollowedInASmallPartOfThePicture) {
     EXPECT_EQ(video.Next().size(), 12u) << i;
   }
   EXPECT_EQ(video.num_full, 2);
-  EXPECT_LT(video.area_px, 0.25 * 19 * kSize.area());
+  EXPECT_LT(video.area_px, 0.25 * 19 * kFrameSize.area());
 }
 
 TEST(SearchTracked, MarkersThatCanBeLocatedNeedNoRegion) {
@@ -121,7 +121,7 @@ TEST(SearchTracked, MarkersThatCanBeLocatedNeedNoRegion) {
     EXPECT_EQ(video.Next().size(), 12u) << i;
   }
   EXPECT_EQ(video.num_located, 9 * 12);
-  EXPECT_LT(video.area_px, 0.5 * kSize.area());  // along the border where the picture comes in
+  EXPECT_LT(video.area_px, 0.5 * kFrameSize.area());  // along the border where the picture comes in
 }
 
 TEST(SearchTracked, WhatIsMissingOnALineIsLocated) {

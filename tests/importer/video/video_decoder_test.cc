@@ -20,14 +20,14 @@ namespace {
 constexpr int kNumFrames = 75;
 constexpr double kFramesPerSecond = 25.0;
 
-struct Clip {
+struct EncodedClip {
   const char* file_name;
   const char* encoding;         // options of ffmpeg
   bool can_count;               // whether frames can be counted without decoding
   double max_difference = 1.0;  // of grey levels, from OpenCV's
 };
 
-std::string ClipName(const testing::TestParamInfo<Clip>& info) {
+std::string ClipName(const testing::TestParamInfo<EncodedClip>& info) {
   std::string name = info.param.file_name;
   name[name.find('.')] = '_';
   return name;
@@ -59,7 +59,7 @@ std::vector<ReadFrame> ReadAll(const std::string& path, int skip_to) {
   return frames;
 }
 
-class VideoDecoderTest : public testing::TestWithParam<Clip> {
+class VideoDecoderTest : public testing::TestWithParam<EncodedClip> {
  protected:
   void SetUp() override { ASSERT_NO_FATAL_FAILURE(MakeClip(path_, GetParam().encoding)); }
 
@@ -116,22 +116,23 @@ TEST_P(VideoDecoderTest, SkippingKeepsNumbersTimesAndPixels) {
 INSTANTIATE_TEST_SUITE_P(
     Clips, VideoDecoderTest,
     testing::Values(
-        Clip{"b_frames.mp4", "-c:v libx264 -g 12 -bf 3", true},
-        Clip{"one_group.mp4", "-c:v libx264 -g 250 -bf 3", true},
-        Clip{"open_groups.mp4", "-c:v libx264 -g 12 -bf 3 -x264-params open-gop=1", true},
-        Clip{"open_groups.ts", "-c:v libx264 -g 12 -bf 3 -x264-params open-gop=1", true},
-        Clip{"refresh.mkv", "-c:v libx264 -g 12 -x264-params intra-refresh=1", false},
-        Clip{"b_frames.mkv", "-c:v libx264 -g 12 -bf 3", true},
-        Clip{"times_unknown.avi", "-c:v libx264 -g 12 -bf 3", false},
-        Clip{"h265.mp4", "-c:v libx265 -x265-params log-level=none:keyint=12:bframes=3", true},
-        Clip{"variable.mkv", "-vf 'setpts=PTS*(1+0.01*N),hue=s=0' -vsync vfr -c:v libx264 -g 12",
-             true},
-        Clip{"full_range.mp4",
-             "-vf hue=s=0,scale=out_range=full -color_range pc -c:v libx264 -g 12", true},
-        Clip{"ten_bits.mp4", "-pix_fmt yuv420p10le -c:v libx264 -g 12", true, 2.0},
-        Clip{"packed.mov", "-pix_fmt uyvy422 -c:v rawvideo", false, 2.0},
-        Clip{"m.avi", "-c:v mjpeg -q:v 2", true},
-        Clip{"vp9.webm", "-c:v libvpx-vp9 -g 12 -cpu-used 8", false}),
+        EncodedClip{"b_frames.mp4", "-c:v libx264 -g 12 -bf 3", true},
+        EncodedClip{"one_group.mp4", "-c:v libx264 -g 250 -bf 3", true},
+        EncodedClip{"open_groups.mp4", "-c:v libx264 -g 12 -bf 3 -x264-params open-gop=1", true},
+        EncodedClip{"open_groups.ts", "-c:v libx264 -g 12 -bf 3 -x264-params open-gop=1", true},
+        EncodedClip{"refresh.mkv", "-c:v libx264 -g 12 -x264-params intra-refresh=1", false},
+        EncodedClip{"b_frames.mkv", "-c:v libx264 -g 12 -bf 3", true},
+        EncodedClip{"times_unknown.avi", "-c:v libx264 -g 12 -bf 3", false},
+        EncodedClip{"h265.mp4", "-c:v libx265 -x265-params log-level=none:keyint=12:bframes=3",
+                    true},
+        EncodedClip{"variable.mkv",
+                    "-vf 'setpts=PTS*(1+0.01*N),hue=s=0' -vsync vfr -c:v libx264 -g 12", true},
+        EncodedClip{"full_range.mp4",
+                    "-vf hue=s=0,scale=out_range=full -color_range pc -c:v libx264 -g 12", true},
+        EncodedClip{"ten_bits.mp4", "-pix_fmt yuv420p10le -c:v libx264 -g 12", true, 2.0},
+        EncodedClip{"packed.mov", "-pix_fmt uyvy422 -c:v rawvideo", false, 2.0},
+        EncodedClip{"m.avi", "-c:v mjpeg -q:v 2", true},
+        EncodedClip{"vp9.webm", "-c:v libvpx-vp9 -g 12 -cpu-used 8", false}),
     ClipName);
 
 TEST(VideoDecoder, CutByTheContainer) {

@@ -154,7 +154,8 @@ TEST(PlaceMarker, TwoFramesThatDisagreeGiveNoPlace) {
 
 // The id of marker 7 is read where marker 21 stands in every `step`-th frame from `first` on;
 // returns those frames.
-std::vector<int> ReadSevenAtTwentyOne(std::size_t first, std::size_t step, SyntheticScene* scene) {
+std::vector<int> FramesThatReadSevenAtTwentyOne(std::size_t first, std::size_t step,
+                                                SyntheticScene* scene) {
   std::vector<int> frame_idxs;
   for (std::size_t i = first; i < scene->frames.size(); i += step) {
     FrameDetections& frame = scene->frames[i];
@@ -169,7 +170,7 @@ std::vector<int> ReadSevenAtTwentyOne(std::size_t first, std::size_t step, Synth
 
 TEST(PlaceMarker, FalseIdInAThirdOfTheFramesIsFoundElsewhere) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 15, false);
-  const std::vector<int> false_frames = ReadSevenAtTwentyOne(0, 3, &scene);
+  const std::vector<int> false_frames = FramesThatReadSevenAtTwentyOne(0, 3, &scene);
   ASSERT_GE(false_frames.size(), 4u);
   const SceneMap map(std::move(scene));
   const MarkerPlacement placement =
@@ -183,7 +184,7 @@ TEST(PlaceMarker, FalseIdInAThirdOfTheFramesIsFoundElsewhere) {
 
 TEST(PlaceMarker, OneIdAtTwoPlacesHasAPlaceAndARestElsewhere) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 16, false);
-  const std::vector<int> false_frames = ReadSevenAtTwentyOne(0, 2, &scene);
+  const std::vector<int> false_frames = FramesThatReadSevenAtTwentyOne(0, 2, &scene);
   const SceneMap map(std::move(scene));
   const int marker_idx = map.MarkerIdx(7);
   const MarkerPlacement placement =

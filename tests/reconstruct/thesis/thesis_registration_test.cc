@@ -19,8 +19,8 @@ RegistrationOptions ThesisOptions() {
   return options;
 }
 
-Registration Register(const SyntheticScene& scene,
-                      const RegistrationOptions& options = ThesisOptions()) {
+Registration RegisterAsThesis(const SyntheticScene& scene,
+                              const RegistrationOptions& options = ThesisOptions()) {
   return RegisterFrames(DatabaseImages(scene), SceneCameras(scene), scene.layout, options);
 }
 
@@ -28,7 +28,7 @@ class NoiseFreeRegistration : public testing::TestWithParam<RegistrationCase> {}
 
 TEST_P(NoiseFreeRegistration, GivesTheTruthBack) {
   const SyntheticScene scene = MakeScene(GetParam().kind, 24, GetParam().video);
-  const Registration registration = Register(scene);
+  const Registration registration = RegisterAsThesis(scene);
   EXPECT_LT(MaxError(registration, scene), 1e-9);
   EXPECT_GE(registration.NumRegistered(), 20);
   for (const RegisteredFrame& frame : registration.frames) {
@@ -73,22 +73,23 @@ double MaxCenterOffset(const Registration& registration, const SyntheticScene& s
 
 TEST(ExactThesis, GivesTheTruthBackWithoutNoise) {
   const SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
-  const Registration registration = Register(scene, ExactOptions());
+  const Registration registration = RegisterAsThesis(scene, ExactOptions());
   EXPECT_LT(MaxError(registration, scene), 1e-9);
 }
 
 TEST(ExactThesis, CamerasAlignTheCentersOfTheirMarkersWithTheMean) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
   AddNoise({0.3, 0.0, 0.0, 200, 3}, &scene);
-  EXPECT_LT(MaxCenterOffset(Register(scene, ExactOptions()), scene), 1e-9);
-  EXPECT_GT(MaxCenterOffset(Register(scene), scene), 1e-6);  // robust: judges markers in the image
+  EXPECT_LT(MaxCenterOffset(RegisterAsThesis(scene, ExactOptions()), scene), 1e-9);
+  EXPECT_GT(MaxCenterOffset(RegisterAsThesis(scene), scene),
+            1e-6);  // robust: judges markers in the image
 }
 
 TEST(ExactThesis, DoesNotAdaptTheSkipToAShortVideo) {
   const SyntheticScene scene = MakeScene(SceneKind::kSail, 60, true);
-  const Registration exact = Register(scene, ExactOptions());
+  const Registration exact = RegisterAsThesis(scene, ExactOptions());
   EXPECT_LT(exact.NumRegistered(), 12);  // a skip of 10 has room for six frames
-  EXPECT_GT(Register(scene).NumRegistered(), 20);
+  EXPECT_GT(RegisterAsThesis(scene).NumRegistered(), 20);
 }
 
 TEST(ExactThesis, MarkersThatRansacRefusesLeaveTheirFrame) {
@@ -101,7 +102,7 @@ TEST(ExactThesis, MarkersThatRansacRefusesLeaveTheirFrame) {
   auto& markers = scene.frames[31].markers;
   ASSERT_GT(markers.size(), 4u);
   std::swap(markers.front().corners_in_image_px, markers.back().corners_in_image_px);
-  const Registration registration = Register(scene, options);
+  const Registration registration = RegisterAsThesis(scene, options);
   const RegisteredFrame& frame = registration.frames[31];
   EXPECT_EQ(frame.outlier_ids,
             (std::vector<int>{markers.front().marker_id, markers.back().marker_id}));
@@ -110,7 +111,7 @@ TEST(ExactThesis, MarkersThatRansacRefusesLeaveTheirFrame) {
 
 TEST(Registration, ImagesThatShareNothingWithTheCentralOneAreReachedThroughOthers) {
   const SyntheticScene scene = MakeScene(SceneKind::kCube, 24, false);
-  const Registration registration = Register(scene);
+  const Registration registration = RegisterAsThesis(scene);
   EXPECT_EQ(registration.NumRegistered(), 24);
   const auto frames = FrameShapes(scene);
   int num_without_shared = 0;
@@ -142,9 +143,9 @@ TEST(Registration, SeedDecidesNothingThatMatters) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 41, true);
   AddNoise({0.2, 0.0, 0.03, 200, 3}, &scene);
   RegistrationOptions options = ThesisOptions();
-  const Registration first = Register(scene, options);
+  const Registration first = RegisterAsThesis(scene, options);
   options.random_seed = 42;
-  const Registration second = Register(scene, options);
+  const Registration second = RegisterAsThesis(scene, options);
   EXPECT_EQ(first.central_image_id, second.central_image_id);
   ASSERT_EQ(first.shape.size(), second.shape.size());
   for (const auto& [marker_id, points] : first.shape) {
@@ -155,7 +156,7 @@ TEST(Registration, SeedDecidesNothingThatMatters) {
 TEST(Registration, MisplacedMarkersAreLeftOutOfTheirFrames) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 21, true);
   AddNoise({0.1, 0.0, 0.05, 300, 9}, &scene);
-  const Registration registration = Register(scene);
+  const Registration registration = RegisterAsThesis(scene);
   int num_outliers = 0;
   for (const RegisteredFrame& frame : registration.frames) {
     num_outliers += static_cast<int>(frame.outlier_ids.size());
@@ -182,7 +183,7 @@ TEST(Registration, WrongFrameIsLeftOutWithAReason) {
   markers = irregular;
   RegistrationOptions options = ThesisOptions();
   options.min_num_inliers = 5;
-  const Registration registration = Register(scene, options);
+  const Registration registration = RegisterAsThesis(scene, options);
   EXPECT_FALSE(registration.frames[3].cam_from_shape);
   EXPECT_THAT(registration.frames[3].reason, testing::HasSubstr("do not agree"));
   EXPECT_EQ(registration.NumRegistered(), 7);
@@ -193,7 +194,7 @@ TEST(Registration, SecondGroupOfImagesIsReported) {
   for (std::size_t i = 7; i < 10; ++i) {
     for (auto& marker : scene.frames[i].markers) marker.marker_id += 500;
   }
-  const Registration registration = Register(scene);
+  const Registration registration = RegisterAsThesis(scene);
   EXPECT_EQ(registration.NumRegistered(), 7);
   for (std::size_t i = 7; i < 10; ++i) {
     EXPECT_THAT(registration.frames[i].reason, testing::HasSubstr("shares 0 of its"));
@@ -210,7 +211,7 @@ TEST(Registration, RareMarkersAreDroppedFromAVideo) {
                                  [](const auto& m) { return m.marker_id == rare; }),
                   markers.end());
   }
-  const Registration registration = Register(scene);
+  const Registration registration = RegisterAsThesis(scene);
   EXPECT_EQ(registration.shape.count(rare), 0u);
   ASSERT_EQ(registration.dropped_markers.size(), 1u);
   EXPECT_EQ(registration.dropped_markers[0].marker_id, rare);
@@ -226,16 +227,16 @@ TEST(Registration, DataThatCannotBeRegisteredAreRefused) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (auto& marker : scene.frames[i].markers) marker.marker_id += static_cast<int>(100 * i);
   }
-  EXPECT_THROW(Register(scene), DataError);
+  EXPECT_THROW(RegisterAsThesis(scene), DataError);
 }
 
 TEST(Registration, UnknownCentralFrameIsAnInputError) {
   const SyntheticScene scene = MakeScene(SceneKind::kSail, 3, true);
   RegistrationOptions options = ThesisOptions();
   options.central_frame = "17";
-  EXPECT_THROW(Register(scene, options), InputError);
+  EXPECT_THROW(RegisterAsThesis(scene, options), InputError);
   options.central_frame = "2";
-  EXPECT_EQ(Register(scene, options).central_image_name, "frame_000002.jpg");
+  EXPECT_EQ(RegisterAsThesis(scene, options).central_image_name, "frame_000002.jpg");
 }
 
 }  // namespace

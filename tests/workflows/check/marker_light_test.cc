@@ -8,20 +8,21 @@
 namespace velamap {
 namespace {
 
-constexpr int kScale = 8;  // samples along a side of a pixel
+constexpr int kSubpixels = 8;  // samples along a side of a pixel
 
 // A black square on white paper, seen somewhat turned, with the blur of a lens and of a motion
 // along the rows. Values are area means, as a camera's.
 cv::Mat Picture(const QuadCorners& corners_px, double black, double white, double blur_px,
                 double motion_px) {
-  cv::Mat fine(160 * kScale, 160 * kScale, CV_32F, cv::Scalar(white));
+  cv::Mat fine(160 * kSubpixels, 160 * kSubpixels, CV_32F, cv::Scalar(white));
   std::vector<cv::Point> outline;
   for (const Eigen::Vector2d& x_px : corners_px) {
-    outline.emplace_back(cvRound(kScale * x_px.x() - 0.5), cvRound(kScale * x_px.y() - 0.5));
+    outline.emplace_back(cvRound(kSubpixels * x_px.x() - 0.5),
+                         cvRound(kSubpixels * x_px.y() - 0.5));
   }
   cv::fillConvexPoly(fine, outline, cv::Scalar(black));
-  cv::GaussianBlur(fine, fine, {0, 0}, kScale * blur_px);
-  if (motion_px > 0) cv::blur(fine, fine, {cvRound(kScale * motion_px) | 1, 1});
+  cv::GaussianBlur(fine, fine, {0, 0}, kSubpixels * blur_px);
+  if (motion_px > 0) cv::blur(fine, fine, {cvRound(kSubpixels * motion_px) | 1, 1});
   cv::Mat gray;
   cv::resize(fine, gray, {160, 160}, 0, 0, cv::INTER_AREA);
   gray.convertTo(gray, CV_8U);

@@ -18,14 +18,14 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-struct Values {
+struct ParsedValues {
   Preset preset;
   std::string method = "global";
   double beta = 0.5;
   double other = 1.5;
 };
 
-CommandSyntax MakeSyntax(Values* values) {
+CommandSyntax MakePresetSyntax(ParsedValues* values) {
   return {"walker",
           "walks",
           "--preset thesis",
@@ -37,14 +37,14 @@ CommandSyntax MakeSyntax(Values* values) {
           &values->preset};
 }
 
-Values Parse(const std::vector<std::string>& arguments) {
-  Values values;
-  EXPECT_TRUE(ParseOptions(MakeSyntax(&values), arguments, {}));
+ParsedValues Parse(const std::vector<std::string>& arguments) {
+  ParsedValues values;
+  EXPECT_TRUE(ParseOptions(MakePresetSyntax(&values), arguments, {}));
   return values;
 }
 
 TEST(PresetTest, SetsWhatIsNotGivenAndSaysWhich) {
-  const Values values = Parse({"--preset", "thesis"});
+  const ParsedValues values = Parse({"--preset", "thesis"});
   EXPECT_EQ(values.method, "thesis");
   EXPECT_EQ(values.beta, 0.3);
   EXPECT_EQ(values.other, 1.5);
@@ -54,7 +54,8 @@ TEST(PresetTest, SetsWhatIsNotGivenAndSaysWhich) {
 }
 
 TEST(PresetTest, WhatIsGivenWinsWhereverItIsGiven) {
-  const Values typed = Parse({"--Registration.frequency_threshold", "0.2", "--preset", "thesis"});
+  const ParsedValues typed =
+      Parse({"--Registration.frequency_threshold", "0.2", "--preset", "thesis"});
   EXPECT_EQ(typed.beta, 0.2);
   EXPECT_EQ(typed.method, "thesis");
   EXPECT_THAT(typed.preset.effect,
@@ -62,18 +63,18 @@ TEST(PresetTest, WhatIsGivenWinsWhereverItIsGiven) {
   const TempDir temp_dir;
   const std::string file = (temp_dir / "project.ini").string();
   WriteTextFile(file, "preset=thesis\n[Registration]\nfrequency_threshold=0.4\n");
-  const Values from_file = Parse({"--project_path", file});
+  const ParsedValues from_file = Parse({"--project_path", file});
   EXPECT_EQ(from_file.beta, 0.4);
   EXPECT_EQ(from_file.method, "thesis");
 }
 
 TEST(PresetTest, NoneAndNothingSetNothing) {
-  for (const Values& values : {Parse({}), Parse({"--preset", "none"})}) {
+  for (const ParsedValues& values : {Parse({}), Parse({"--preset", "none"})}) {
     EXPECT_EQ(values.method, "global");
     EXPECT_EQ(values.preset.effect, "");
   }
-  Values values;
-  EXPECT_THROW(ParseOptions(MakeSyntax(&values), {"--preset", "theses"}, {}), InputError);
+  ParsedValues values;
+  EXPECT_THROW(ParseOptions(MakePresetSyntax(&values), {"--preset", "theses"}, {}), InputError);
 }
 
 // A name that no command has any more would silently be left out.
