@@ -87,7 +87,7 @@ Json CamerasOf(const Model& model, const std::optional<bool>& is_found) {
   return cameras;
 }
 
-// The file is sent around.
+// Without the folders in the reasons, because shape.json is passed on to others.
 Json VerdictJson(const Verdict& verdict) {
   Json reasons = Json::array();
   for (const VerdictReason& reason : verdict.reasons) {

@@ -9,8 +9,8 @@
 
 namespace velamap {
 
-// Keys of sigmas and significance exist if the sigmas are known. Adds tables parts, lines and, for
-// the files only, markers.
+// Keys of sigmas and significance exist if the sigmas are known. Adds the tables parts and lines
+// and, for the files only, reference_from_shape and markers.
 void AddMetrics(const ShapeDeviation& deviation, MetricsReport* report);
 
 // Adds surface_note and table surfaces with part and surface_distance_mm.

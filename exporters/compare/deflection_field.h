@@ -34,8 +34,8 @@ struct DeflectionField {
   // On the reference, in its frame. Normals point to the side of the reference's faces: those of
   // its markers, or of the design.
   SurfaceGrid reference;
-  // One per point of the grid; nothing where the shape lies beside the design, beyond the reach of
-  // EdgeOptions.
+  // One per point of the grid; nothing where the shape is more than EdgeOptions::tolerance_mm
+  // beside the design.
   std::vector<std::optional<Deflection>> deflections;
 };
 

@@ -195,8 +195,8 @@ void MeshDistance::Index::FindBorder() {
 OptionGroup DescribeOptions(EdgeOptions* options) {
   return {"Edge of a surface",
           {{"edge_tolerance", &options->tolerance_mm, "mm",
-            "how far markers may lie beyond the edge of the reference's surface and still count, "
-            "by their distance along its normal there; or 3 sigmas, if these are more",
+            "how far beyond the edge of the reference's surface a marker is still compared, by its "
+            "distance along the normal at the edge; at least 3 sigmas of its position",
             AtLeast(0)}}};
 }
 

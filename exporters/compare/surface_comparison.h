@@ -18,7 +18,7 @@ struct SurfaceDeviation {
   std::string part;
   TriangleMesh mesh;  // of the compared shape, in the reference's frame
   // One per vertex: along the normal of the reference, positive on the side to which it points;
-  // nothing where the vertex lies beside the reference, beyond the reach of EdgeOptions.
+  // nothing where the vertex is more than EdgeOptions::tolerance_mm beside the reference.
   std::vector<std::optional<double>> distance_m;
   Statistics statistics_m;  // of the known distances
 };

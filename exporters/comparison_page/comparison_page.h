@@ -35,8 +35,9 @@ void WriteComparisonPage(const ComparisonPageInput& input, std::ostream& out);
 //   shapes     name, alignment_by, residual_mm, turn_deg, scale_percent, num_markers,
 //              num_beyond_edge, num_beside, mean_mm, rms_mm, largest_mm, num_with_sigma,
 //              num_significant
-//   numbers    section, number, unit, reference, values: for each shape value, difference, sigma,
-//              is_significant, or null
+//   numbers    section, number, unit, reference (of the first shape that has the number; the
+//              sections of a design depend on the markers of the shape), values: for each shape
+//              value, difference, sigma, is_significant, or null
 //   profiles   section, curves: name, own (from the luff along the own chord, mm), placed (from the
 //              luff of the reference along its chord, mm); the first one is the reference's
 //   markers    id, part, corners, centre (m), distances: for each shape distance_mm, sigma_mm,

@@ -188,7 +188,7 @@ class Items {
     for (const auto* notes : {&deviation_.alignment.notes, &comparison_.sections.notes,
                               &comparison_.surfaces.notes, &comparison_.deflections.notes}) {
       for (const std::string& note : *notes) {
-        if (!note.empty()) Add(note);
+        if (!note.empty()) items_->push_back(prefix_ + note);  // may begin with the name of a part
       }
     }
   }

@@ -16,7 +16,7 @@ namespace {
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 using ByPose = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-// Least certainty of a determined motion, as a share of the radius: 3 degrees.
+// Largest sigma of a motion that counts as determined, as a share of the radius: 3 degrees.
 constexpr double kMaxOpen = 0.05;
 
 // The directions in the span of the columns, which are orthonormal: the axes where these span it.
@@ -59,14 +59,15 @@ SetSystem MakeSystem(const DatumPoints& points, const DatumEquations& equations,
   system.by_pose = system.whitener * equations.by_pose;
   system.residuals = system.whitener * equations.residuals_m;
   PoseMatrix normal = system.by_pose.transpose() * system.by_pose;
-  // Bounds what the equations leave open: far beyond the size of the shape, above the rounding.
+  // A weak prior keeps the matrix regular where the equations leave a motion open: a sigma of 1000
+  // times the radius, but never below the rounding errors of the matrix.
   normal.diagonal().array() += std::pow(1e3 * points.radius_m, -2) + 1e-12 * normal.trace();
   system.pose_covariance = normal.llt().solve(PoseMatrix::Identity());
   return system;
 }
 
-// Each point of the set against the others: the part of its residuals that the adjusted pose cannot
-// take up, over what it would be for a right point.
+// How far each point of the set is from where the others put it, in sigmas: its residuals after the
+// adjustment, divided by their expected size for a point without a gross error.
 std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen::Index>& begins) {
   constexpr double kMinRedundancy = 1e-6;  // less is rounding
   const Eigen::VectorXd adjusted =

@@ -204,8 +204,8 @@ std::string Lack(const std::vector<ComparedPoint>& points, const PresentPoints& 
   }
   std::string lack = WhatDatumLacks(found);
   if (lack.empty() || missing.empty()) return lack;
-  return fmt::format("of the known points in the shape: {} ({} not reconstructed)", lack,
-                     fmt::join(missing, " "));
+  return fmt::format("the known points in the shape do not suffice: {} ({} not reconstructed)",
+                     lack, fmt::join(missing, " "));
 }
 
 // Compares every point in the shape with its coordinates in the frame of the agreement.
@@ -255,7 +255,8 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   }
   if (IsAmbiguous(points, *agreement)) {
     fit.reason =
-        "the known points fit in two places; give one more, which a large sigma may make rough";
+        "the known points fit in two places; add another point, roughly measured and with a large "
+        "sigma if need be";
     return fit;
   }
   const Rigid3& pose = agreement->pose.pose;

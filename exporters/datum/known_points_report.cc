@@ -137,8 +137,8 @@ std::vector<std::string> KnownPointWarnings(const KnownPointFit& fit) {
   for (const ComparedPoint& point : fit.points) {
     if (point.state == PointState::kFailed) {
       warnings.push_back(fmt::format(
-          "check point {} is {:.1f} mm from its known place, {:.1f} sigmas of both; find out which "
-          "is wrong before using the shape",
+          "check point {} is {:.1f} mm ({:.1f} sigmas) from its measured position; find out "
+          "whether the measurement or the shape is wrong before using the shape",
           NameOf(point), kMmPerM * point.difference_m.norm(), point.sigmas_off));
     } else if (point.state == PointState::kLeftOut) {
       warnings.push_back(fmt::format(
@@ -149,8 +149,8 @@ std::vector<std::string> KnownPointWarnings(const KnownPointFit& fit) {
   }
   if (fit.DoubtsScale()) {
     warnings.push_back(fmt::format(
-        "the known points ask for a shape that is larger by {}; check marker_length, or measure a "
-        "distance (distances, use: scale)",
+        "the known points ask for a shape of another size, by {}; check marker_length, or measure "
+        "a distance (distances, use: scale)",
         GrowthText(*fit.growth)));
   }
   return warnings;

@@ -49,7 +49,8 @@ std::string FailureText(const fs::path& path, const std::string& why) {
 // ---- the child
 
 void Limit(__rlimit_resource resource, rlim_t limit) {
-  const rlimit soft_and_hard{limit, limit + 1};  // the signal of the hard one does not say why
+  // The soft limit comes first: its SIGXCPU names the cause, the SIGKILL of the hard one does not.
+  const rlimit soft_and_hard{limit, limit + 1};
   setrlimit(resource, &soft_and_hard);
 }
 
@@ -89,7 +90,7 @@ bool WriteFailure(std::string_view message) {
   return WriteAll(&answer, 1) && WriteAll(message.data(), message.size());
 }
 
-// What to answer when memory has run out, made before.
+// The answer when memory runs out, made in advance, because making it allocates.
 std::string memory_failure;
 
 [[noreturn]] void EndForWantOfMemory() {
@@ -130,7 +131,7 @@ bool ReadForParent(char** argv) {
 
 // ---- the parent
 
-// Below those that this process has from a shell (ulimit), so that the child's come first.
+// Lowers the limits below those of this process (ulimit), so that the child reaches its own first.
 MeshLimits BelowOwnLimits(MeshLimits limits) {
   const auto below = [](__rlimit_resource resource, rlim_t limit) {
     rlimit own{};

@@ -20,7 +20,8 @@
 namespace velamap {
 namespace {
 
-// A mesh has at least area / length^2 * kTrianglesPerArea triangles, which are equilateral then.
+// Equilateral triangles of side L cover an area with kTrianglesPerArea * area / L^2 triangles
+// (4 / sqrt(3)). No mesh with edges up to L has fewer.
 constexpr double kTrianglesPerArea = 2.3;
 
 SurfaceField MakeField(const std::vector<FreeformMarker>& markers) {
@@ -216,15 +217,16 @@ void CheckCount(std::size_t num_markers) {
                               kMaxFreeformMarkers));
 }
 
-// Without the markers that stand apart. A half of them or more has to hang together.
+// The markers of the largest piece, and a note on the others. Throws DataError if that piece has
+// fewer than half of the markers or fewer than kMinFreeformMarkers.
 std::vector<FreeformMarker> ConnectedMarkers(const std::vector<FreeformMarker>& markers,
                                              const std::vector<int>& pieces,
                                              std::vector<std::string>* notes) {
   const std::vector<FreeformMarker> connected = LargestPiece(markers, pieces);
   if (2 * connected.size() < markers.size() || connected.size() < kMinFreeformMarkers) {
     throw DataError(fmt::format(
-        "{} of {} markers hang together; the others are too far away for the spacing of most "
-        "markers, or look elsewhere: list each face or body as a part of its own",
+        "only {} of {} markers are connected; the others are too far away from them or face "
+        "another direction: make each face or body a part of its own in the layout",
         connected.size(), markers.size()));
   }
   std::set<int> left_out;

@@ -202,8 +202,8 @@ class Front {
            !Crosses(vertex, a, nearby, plane);
   }
 
-  // The triangle on the open side of the edge: that with the smallest circle on this side, which is
-  // that with the largest angle at its third corner.
+  // The triangle with the smallest circumscribed circle on the open side of the edge. Its third
+  // corner sees the edge under the largest angle.
   std::optional<Candidate> BestFor(const Edge& edge) const {
     const auto [a, b] = edge;
     const Eigen::Vector3d normal = (normals_[a] + normals_[b]).normalized();

@@ -19,7 +19,8 @@ constexpr double kDiameter = 2.5;
 // The slope along a normal need not be 1: the function is no exact distance.
 constexpr double kSlopeSigma = 0.1;
 constexpr double kMinSigma = 1e-5;
-// The likelihood of some of the rows tells the amplitude as well.
+// A subset of the rows determines the amplitude well enough. The time of one evaluation of the
+// likelihood grows with the third power of their number.
 constexpr Eigen::Index kMaxLikelihoodRows = 600;
 
 using Drift = Eigen::Matrix<double, kNumDrift, 1>;

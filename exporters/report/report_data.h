@@ -111,7 +111,7 @@ struct ReportInput {
   const AdjustmentUncertainty* uncertainty = nullptr;  // may be null
   const ScaleAudit* audit = nullptr;                   // may be null
   const KnownPointFit* known_points = nullptr;         // may be null
-  std::vector<EstimatedCamera> found_cameras = {};     // by the pictures; empty: calibrated
+  std::vector<EstimatedCamera> found_cameras = {};     // from the images; empty if calibrated
   std::vector<std::string> warnings = {};              // of the log
   int num_ids_found = 0;  // different marker ids in the images, in the shape or not; 0: unknown
   std::vector<ReportLeftOut> images_left_out = {};

@@ -53,7 +53,7 @@ std::optional<ReportJsonValue> CornersInImage(const ShapeMarker& marker, const M
   return corners;
 }
 
-// Whole markers that the image should show, and of which it has no corner of the shape.
+// Whole markers that should be visible in the image, but have no observation in it.
 ReportJsonValue NotDetectedJson(const MarkerShape& shape, const ModelImage& image,
                                 const Camera& camera) {
   std::set<int> detected;

@@ -15,6 +15,7 @@ namespace velamap {
 namespace {
 
 constexpr double kGoodScaleSpread_percent = 1, kBadScaleSpread_percent = 3;
+constexpr double kGoodScaleSigma_percent = 0.5, kBadScaleSigma_percent = 3;
 
 // Whether parts differ by more than the scale's sigma says and no distance decides between them.
 bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
@@ -33,18 +34,25 @@ bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
                       const AdjustmentUncertainty* uncertainty) {
   const double spread_percent = 100 * scale.relative_spread;
+  const double sigma_percent = 100 * scale.relative_sigma.value_or(0.0);
   std::string value = fmt::format("{:.2f} % spread", spread_percent);
-  if (scale.relative_sigma) {
-    value = fmt::format("\u00b1{:.3f} %, {}", 100 * *scale.relative_sigma, value);
-  }
+  if (scale.relative_sigma) value = fmt::format("\u00b1{:.3f} %, {}", sigma_percent, value);
   KeyNumber number{
       KeyNumberKind::kScale, value,
       fmt::format("standard deviations of the metric scale and of the scales from each of {} "
-                  "markers alone; good up to {:g} % spread",
-                  scale.num_markers, kGoodScaleSpread_percent),
+                  "markers alone; good up to {:g} % and {:g} % spread",
+                  scale.num_markers, kGoodScaleSigma_percent, kGoodScaleSpread_percent),
       LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent),
       "the sizes of the markers contradict each other: check their prints and marker_length, and "
       "measure a distance (distances, use: scale)"};
+  const ReportStatus of_sigma =
+      LowIsGood(sigma_percent, kGoodScaleSigma_percent, kBadScaleSigma_percent);
+  if (of_sigma > number.status) {
+    number.status = of_sigma;
+    number.advice =
+        "the images do not determine the scale any better: measure a distance (distances, use: "
+        "scale), or use larger markers with a wider white margin";
+  }
   if (audit != nullptr && !FailedChecks(*audit).empty()) {
     number.meaning += "; measured distances contradict it";
     number.status = ReportStatus::kBad;
@@ -58,9 +66,10 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
   const bool is_calibration_doubted =
       uncertainty != nullptr && StatusOf(uncertainty->calibration) > ReportStatus::kGood;
   if (number.status == ReportStatus::kGood && is_calibration_doubted) {
-    number.meaning += "; the calibration is in doubt, and this with it";
+    number.meaning += "; its sigma assumes a right calibration, which is in doubt";
     number.status = ReportStatus::kCheck;
-    number.advice = "its sigma takes the calibration for granted, which is in doubt";
+    number.advice =
+        "its sigma assumes a right calibration, which is in doubt: calibrate the camera first";
   }
   return number;
 }

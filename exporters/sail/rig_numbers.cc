@@ -15,8 +15,9 @@ constexpr std::size_t kMinLuffMarkers = 4;  // of a smoothing spline
 
 enum LuffNumber { kBend, kSag, kNumLuffNumbers };
 
-// The first markers of the lines that run from luff to leech. A line that the layout makes too
-// short for a section has one, too; a line that was left out for another reason is not believed.
+// The first markers of the lines that run from luff to leech, including lines that have too few
+// markers in the layout for a section. Lines that were left out for another reason may be listed
+// wrongly and are not used.
 std::vector<int> FirstMarkers(const PartContext& context) {
   std::vector<int> ids;
   for (const MarkerLine& line : context.part.horizontal) {

@@ -27,7 +27,7 @@ struct DxfOutput {
   std::ostream& stream;
   LengthUnit unit;
 
-  // Lengths are in mm up to here.
+  // All functions take lengths in mm; WritePoint() and WriteText() convert them to `unit`.
   double UnitsPerMm() const { return kMPerMm * UnitsPerM(unit); }
 };
 

@@ -129,8 +129,10 @@ void PrintDistances(const ScaleAudit& audit, std::ostream& out) {
   for (const CheckedDistance& checked : audit.distances) {
     if (!checked.distance_m) continue;
     ++num_found;
+    // Failed checks first, as in the report.
     if (worst == nullptr ||
-        std::abs(checked.DifferenceInSigmas()) > std::abs(worst->DifferenceInSigmas())) {
+        std::make_pair(checked.FailsAsCheck(), std::abs(checked.DifferenceInSigmas())) >
+            std::make_pair(worst->FailsAsCheck(), std::abs(worst->DifferenceInSigmas()))) {
       worst = &checked;
     }
   }

@@ -210,7 +210,9 @@ void CheckFrameChoice(const std::optional<FrameChoice>& choice, const Layout& la
   if (choice->kind == FrameKind::kKnownPoints) {
     if (layout.known_points.empty()) ThrowNotGranted(*choice, "the layout has no known_points");
     const std::string lack = WhatDatumLacks(layout.known_points);
-    if (!lack.empty()) ThrowNotGranted(*choice, "of the layout's known_points, " + lack);
+    if (!lack.empty()) {
+      ThrowNotGranted(*choice, "the layout's known_points do not suffice: " + lack);
+    }
   }
   if (choice->kind == FrameKind::kReferencePart && !layout.reference_part) {
     ThrowNotGranted(*choice, "the layout names no reference_part");

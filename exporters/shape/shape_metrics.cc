@@ -125,8 +125,8 @@ void CheckHasMarkersOf(const Layout& layout, const MarkerShape& shape) {
       });
   if (has_one) return;
   throw DataError(fmt::format(
-      "none of the {} markers of the shape is in the layout, neither marker {} nor the others: is "
-      "it the layout of this surface?",
+      "none of the {} markers of the shape, such as marker {}, is in the layout; give the layout "
+      "of this surface",
       shape.markers.size(), shape.markers.front().marker_id));
 }
 

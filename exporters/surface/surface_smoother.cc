@@ -11,16 +11,16 @@
 namespace velamap {
 namespace {
 
-// A weight of a penalty is its ratio to the data term, as traces, in powers of ten. The least
-// ratios interpolate to far below a micrometre, and hold the equations solvable; at the largest
-// ones only the parabolas are left that no penalty counts.
+// A weight is the decimal logarithm of the ratio of the traces of penalty and data term. The
+// smallest weights interpolate to far below a micrometre and keep the equations solvable; the
+// largest leave only parabolas, which the penalties do not affect.
 constexpr double kMinWeight = -9.0, kMaxWeight = 4.0;
 // An interpolating surface may bend more along the lines, which hold markers, than between them.
 constexpr double kMinWeightAlongLines = -11.0;
 constexpr double kFirstStep = 1.0, kLastStep = 0.25;
-// Each effective parameter counts this many times, because the least
-// score of a few markers is often one that follows their noise (Kim and Gu, "Smoothing spline
-// Gaussian regression: more scalable computation via efficient approximation", 2004).
+// Each effective parameter counts this many times, because the smoothing with the lowest score
+// often follows the noise of few markers (Kim and Gu, "Smoothing spline Gaussian regression: more
+// scalable computation via efficient approximation", 2004).
 constexpr double kCostFactor = 1.4;
 
 // Integrals of the products of the derivatives of two basis functions.

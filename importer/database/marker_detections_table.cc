@@ -108,6 +108,12 @@ void InsertDetector(const std::string& detector, SQLite::Database* database) {
 MarkerDetection ReadDetection(SQLite::Statement& row, int begin, const std::string& path) {
   MarkerDetection marker;
   marker.marker_id = row.getColumn(begin).getInt();
+  if (marker.marker_id < 0 || marker.marker_id > kMaxMarkerId) {
+    throw InputError(
+        fmt::format("{}: table marker_detections: {} is no marker id; delete the database and "
+                    "import again",
+                    path, marker.marker_id));
+  }
   marker.part = row.getColumn(begin + 1).getString();
   const std::vector<double> corners = ReadBlob<double>(row.getColumn(begin + 2));
   const std::vector<std::uint8_t> colors = ReadBlob<std::uint8_t>(row.getColumn(begin + 3));

@@ -279,8 +279,8 @@ void MarkerAdjuster::WarnOfSlowShutter() {
   if (!(std::abs(uncertainty.rolling_shutter_s) > kSlowest_s)) return;
   solution_.warnings.push_back(fmt::format(
       "the rows of a frame seem to be read over {:.0f} +- {:.0f} ms, longer than cameras take: is "
-      "the video stabilised, slowed down or sped up? Film without",
-      1e3 * uncertainty.rolling_shutter_s, 1e3 * uncertainty.rolling_shutter_sigma_s));
+      "the video stabilised, slowed down or sped up? Film without stabilisation, at normal speed",
+      1e3 * std::abs(uncertainty.rolling_shutter_s), 1e3 * uncertainty.rolling_shutter_sigma_s));
 }
 
 int MarkerAdjuster::ReviseCorners() {

@@ -174,6 +174,7 @@ std::vector<PartSize> MeasureParts(const std::vector<MarkerSize>& sizes, double 
     MarkerIdxs idxs;
     std::copy_if(all.begin(), all.end(), std::back_inserter(idxs),
                  [&](std::size_t i) { return std::abs(normalized[i]) <= kMaxSigmas; });
+    if (idxs.empty()) continue;  // two groups of equal size: no marker is near the median
     PartSize size{part, idxs.size(), 0.0, 0.0, MeanByFactor(sizes, idxs)};
     const double count = static_cast<double>(idxs.size());
     for (const std::size_t i : idxs) {

@@ -177,6 +177,14 @@ std::vector<BadInput> Numbers() {
          RunSql(dir / "workspace/database.db",
                 "UPDATE cameras SET params = CAST(zeroblob(8) || substr(params, 9) AS BLOB)");
        }},
+      {"MarkerIdsOfADatabaseOutOfRange",
+       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
+       "--output_path @/out",
+       2, "is no marker id",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db",
+                "UPDATE marker_detections SET marker_id = marker_id + 10000");
+       }},
       {"FocalLengthBelowZeroExported", exported, 2, "not positive", negative},
       {"FocalLengthBelowZeroAdjusted", adjusted, 2, "not positive", negative},
       {"AFarPointExported", exported, 2, "has a coordinate beyond", far},

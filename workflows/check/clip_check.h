@@ -35,7 +35,7 @@ struct ClipCheck {
   // layout does not name are red.
   cv::Mat marked_frame;
   std::string marked_frame_name;
-  // Of the wish for one; nothing where the frames give none.
+  // If ClipCheckOptions::proposes_layout is set and the frames give one.
   std::optional<LayoutProposal> proposal;
 };
 

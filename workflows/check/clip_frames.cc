@@ -36,7 +36,6 @@ ClipFrames ReadClipFrames(const std::string& image_path, const VideoOptions& vid
   const auto unreadable =
       std::stable_partition(clip.frames.begin(), clip.frames.end(),
                             [](const Frame& frame) { return !frame.gray.empty(); });
-  clip.num_unreadable = static_cast<int>(std::distance(unreadable, clip.frames.end()));
   clip.frames.erase(unreadable, clip.frames.end());
   if (clip.frames.empty()) {
     throw InputError(fmt::format("{}: no frame can be read{}", image_path,

@@ -11,7 +11,6 @@ namespace velamap {
 
 struct ClipFrames {
   std::vector<Frame> frames;  // loaded, in order
-  int num_unreadable = 0;
   bool is_video = false;
 };
 

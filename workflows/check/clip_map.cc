@@ -104,8 +104,8 @@ std::vector<DatabaseImage> Only(std::vector<DatabaseImage> images, const std::se
   return images;
 }
 
-// Gives markers that differ by far from their length in the layout the length that markers like
-// them have. False where there are none.
+// Sets the lengths of markers that are far from their length in the layout: those of similar size
+// get their median. Returns false if there are none.
 bool FindOtherLengths(const Registration& registration, Layout* layout) {
   constexpr double kSameSize = 1.1;
   std::vector<std::pair<double, int>> others;  // length, id

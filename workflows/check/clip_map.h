@@ -25,10 +25,10 @@ struct ClipMap {
   std::vector<std::string> doubled;     // ids that are on the object twice, one line each
 };
 
-// Registers and adjusts the images of a database without the parts and lines of `layout`, of which
-// only the dictionary and the lengths are believed; markers of other lengths are measured. What
-// moves against the largest body is tried as another one. Finds the camera where the database has
-// none. Throws DataError where the images give no body.
+// Registers and adjusts the images of a database. Uses only the dictionary and marker lengths of
+// `layout`, not its parts and lines, and measures markers whose length is far from the given one.
+// Markers that move against the first body are tried as further bodies. Finds the camera if the
+// database has no calibration. Throws DataError if the images give no body.
 ClipMap MapClip(const std::string& database_path, const Layout& layout, int num_threads);
 
 }  // namespace velamap

@@ -156,8 +156,8 @@ class Corrector {
     }
     std::sort(added_alone.begin(), added_alone.end());
     part.marker_ids = std::move(added_alone);
+    proposal_.notes.push_back(fmt::format("part {}: NOT SURE where its markers belong", part.name));
     proposal_.layout.parts.push_back(std::move(part));
-    proposal_.notes.push_back("part unnamed: NOT SURE where its markers belong");
   }
 
   static bool IsOn(const std::vector<MarkerLine>& lines, int id) {

@@ -207,8 +207,8 @@ void CorrectLengths(const ClipMap& map, LayoutProposal* proposal) {
       }
     }
     proposal->notes.push_back(
-        fmt::format("markers {}: a length of {} was measured, if most others are as long as they "
-                    "should be; {:g} mm is written",
+        fmt::format("markers {}: measured as {} long, provided that most other markers have the "
+                    "given length; the layout now says {:g} mm",
                     IdRanges(other.marker_ids), measured, kMmPerM * length_m));
   }
 }

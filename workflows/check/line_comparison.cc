@@ -208,7 +208,7 @@ std::vector<std::string> DescribeDifferences(const std::vector<ComparedLine>& li
   for (const ComparedLine& line : lines) {
     if (!line.is_against) continue;
     texts.push_back(fmt::format(
-        "line {}: it runs against the other {} lines, which would have it from {} to {}",
+        "line {}: it runs opposite to most {} lines of its part; list it from marker {} to {}",
         line.line->name, line.is_vertical ? "vertical" : "horizontal", line.row.back(),
         line.row.front()));
   }

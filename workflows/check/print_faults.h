@@ -25,8 +25,8 @@ PrintFaults FindPrintFaults(const std::vector<Frame>& frames,
                             const std::map<std::string, const FrameDetections*>& found,
                             const Layout& layout, const ArucoDetectionOptions& detection);
 
-// One line for each marker, or one for all where half of the markers or more are faulty.
-// `num_markers` have been found as they should be in `num_frames` frames.
+// One line for each faulty marker, or one for all if there are four or more of them and at least as
+// many as the `num_markers` markers that were found right. `num_frames` frames were searched.
 std::vector<std::string> DescribeFaults(const PrintFaults& faults, int num_markers, int num_frames);
 
 }  // namespace velamap

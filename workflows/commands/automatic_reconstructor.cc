@@ -72,8 +72,8 @@ CommandSyntax Declare(Options* options) {
   syntax.preset = &options->preset;
   syntax.groups.push_back(DescribeOptions(&options->general));
   syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
-                                          "log and report name files with their folders; 0: "
-                                          "without, so that they can be sent around"});
+                                          "1: log and report show files with their folders; 0: "
+                                          "without, so that they can be passed on"});
   syntax.groups.back().options.push_back(ChoiceOption(
       "summary", &options->summary,
       {{SummaryFormat::kText, "text"}, {SummaryFormat::kJson, "json"}},
@@ -132,7 +132,7 @@ std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& a
   return options;
 }
 
-// The report is sent around.
+// Removes the user's folders from the texts of the report, because reports are passed on to others.
 void LeaveFoldersOut(ReportInput* input) {
   for (std::string& warning : input->warnings) warning = WithoutFolders(warning);
   for (auto* pairs : {&input->options, &input->versions}) {
@@ -276,6 +276,7 @@ Command AutomaticReconstructor() {
   const auto options = std::make_shared<Options>();
   return {Declare(options.get()), [options](const Arguments& arguments) {
             options->arguments = arguments;
+            SetLogLevel(options->general.log_level);
             Validate(options.get());
             Run(*options);
           }};

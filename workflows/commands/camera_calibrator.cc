@@ -41,7 +41,7 @@ CommandSyntax Declare(Options* options) {
                          &paths->output_path, "calibration.html")}},
        {"Calibration",
         {{"num_views", &options->calibration.calibration.max_num_views, "count",
-          "pictures that take part at most, chosen by what they add", FromTo(5, 500)},
+          "largest number of pictures used; those that add most are chosen", FromTo(5, 500)},
          Common(ChoiceOption("camera_model", &options->camera_model,
                              {{WantedModel::kAuto, "auto"},
                               {WantedModel::kPinhole, "SIMPLE_PINHOLE"},
@@ -50,7 +50,8 @@ CommandSyntax Declare(Options* options) {
                               {WantedModel::kOpenCV, "OPENCV"},
                               {WantedModel::kFullOpenCV, "FULL_OPENCV"},
                               {WantedModel::kFisheye, "OPENCV_FISHEYE"}},
-                             "auto: the one that predicts pictures best that it has not seen"))}},
+                             "auto: the model with the least error in pictures that were left out "
+                             "of its fit"))}},
        {"Chessboard",
         {Common({"Board.chessboard", &options->chessboard, "CxR",
                  "a chessboard in place of markers: its inner corners, where four squares meet, as "

@@ -28,7 +28,7 @@ CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
   return {
       "clip_checker",
-      "says in seconds whether a clip will do, before any reconstruction",
+      "checks within seconds whether a clip is good enough to reconstruct",
       "--image_path clip.mp4 --layout_path layout.yml --camera_path camera.yml \\\n"
       "    --output_path frame.png --proposed_layout_path corrected.yml",
       {{"Input and output",

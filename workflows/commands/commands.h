@@ -21,8 +21,8 @@ struct Command {
   std::function<void(const Arguments& arguments)> run;  // `arguments` as they were typed
 };
 
-// The command whose options are `options`: declared at once; when it runs, validated and used, at
-// the log level that they name. The command keeps them.
+// Makes a command that owns `options`. `declare` is called at once; `validate` and `run` are called
+// when the command runs, after the log level has been set from the options.
 template <typename Options>
 Command MakeCommand(const std::shared_ptr<Options>& options, CommandSyntax (*declare)(Options*),
                     void (*validate)(Options*), void (*run)(const Options&)) {

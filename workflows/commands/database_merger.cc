@@ -26,10 +26,10 @@ CommandSyntax Declare(Options* options) {
           "    --output_path database.db",
           {{"Input and output",
             {Required({"database_paths", &options->database_paths, "databases",
-                       "those of all parts, in any order: part1.db,part2.db"}),
+                       "databases of all parts, in any order: part1.db,part2.db"}),
              Required(PathOption("output_path", PathUse::kWritesFile, &options->paths.output_path,
-                                 "database, as one import of the whole video makes it; one of "
-                                 "velamap that is there is replaced"))}},
+                                 "merged database, the same as from one import of the whole video; "
+                                 "replaces an earlier database of velamap"))}},
            DescribeOptions(&options->markers, true),
            DescribeOptions(&options->general)}};
 }

@@ -35,7 +35,7 @@ CommandSyntax Declare(Options* options) {
   PathOptions* paths = &options->paths;
   return {
       "shoot_planner",
-      "says what a shoot will give: distance, shutter, path, sigmas of the markers",
+      "plans a shoot: predicts distance, shutter, path and the sigmas of the markers",
       "--field_of_view 90 --lens wide --width 3840 --height 2160 --marker_length 0.1 \\\n"
       "    --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 --Plan.speed_knots 3 "
       "--output_path plan",
@@ -61,7 +61,8 @@ CommandSyntax Declare(Options* options) {
 
 void CheckCamera(const Options& options) {
   if (options.paths.camera_path.empty() || !options.plan.field_of_view_deg) return;
-  throw InputError("--field_of_view: the calibration says what the camera is; leave it out");
+  throw InputError(
+      "--field_of_view: the calibration says it already; leave out this option or --camera_path");
 }
 
 void Validate(Options* options) {

@@ -21,8 +21,8 @@ std::vector<std::string> PathsFromText(const std::string& text, const std::strin
 
 // Once the options are set: sets outputs that are left out to the file beside another output, and
 // throws InputError where CheckOutputs() (importer/base/replacement.h) does, for an input that is a
-// pipe or a device, and for an output that is a pipe. Texts that are sent around will not show the
-// folders of the paths (importer/text/shown_text.h).
+// pipe or a device, and for an output that is a pipe or a folder. Registers the paths, so that logs
+// and reports leave out their folders (importer/text/shown_text.h).
 void CompletePaths(const std::vector<OptionGroup>& groups);
 
 }  // namespace velamap

@@ -48,7 +48,8 @@ Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& de
 
 Option ImportAnewOption(MarkerImporterOptions* importer) {
   return {"import_anew", &importer->import_anew, "0|1",
-          "1: forget what the database holds, such as of pictures that have changed since"};
+          "1: discard the detections in the database and import all pictures again, for example "
+          "because they have changed"};
 }
 
 Option ModelInputOption(PathOptions* paths) {
@@ -73,8 +74,8 @@ Option BackendOption(AdjustmentBackend* backend) {
                    {{AdjustmentBackend::kColmap, "colmap"},
                     {AdjustmentBackend::kMarkers, "markers"},
                     {AdjustmentBackend::kBoth, "both"}},
-                   "colmap: COLMAP's own program; markers: ours, which knows the markers' size "
-                   "and gives sigmas; both: one after the other",
+                   "colmap: COLMAP's bundle adjuster; markers: velamap's marker-aware adjustment, "
+                   "which uses the markers' size and gives sigmas; both: COLMAP's, then velamap's",
                    {{AdjustmentBackend::kMarkers, "ceres"}}));
 }
 
@@ -82,21 +83,23 @@ Option ScaleOption(ScaleMethod* scale_by) {
   return ChoiceOption(
       "scale_by", scale_by,
       {{ScaleMethod::kAgreeing, "agreeing_markers"}, {ScaleMethod::kMeanSide, "mean_side"}},
-      "what gives the metres after COLMAP's adjustment: the mean over the markers "
-      "that agree, or the mean side of all; the marker-aware adjustment is metric");
+      "how the metric scale is computed after COLMAP's adjustment: from the mean over the markers "
+      "that agree, or from the mean side of all; the marker-aware adjustment needs no scale");
 }
 
 OptionGroup DescribeOptions(GeneralOptions* options) {
-  return {"General",
-          {ChoiceOption("log_level", &options->log_level,
-                        {{LogLevel::kError, "error"},
-                         {LogLevel::kWarn, "warn"},
-                         {LogLevel::kInfo, "info"},
-                         {LogLevel::kDebug, "debug"}},
-                        "least severe messages that are shown"),
-           {"random_seed", &options->random_seed, "seed", "same seed, same result", AtLeast(0)},
-           {"num_threads", &options->num_threads, "count",
-            "threads; 0: one a core; the result does not depend on it", FromTo(0, 1024)}}};
+  return {
+      "General",
+      {ChoiceOption("log_level", &options->log_level,
+                    {{LogLevel::kError, "error"},
+                     {LogLevel::kWarn, "warn"},
+                     {LogLevel::kInfo, "info"},
+                     {LogLevel::kDebug, "debug"}},
+                    "least severe messages that are shown"),
+       {"random_seed", &options->random_seed, "seed",
+        "seed of the random numbers; the same seed gives the same result", AtLeast(0)},
+       {"num_threads", &options->num_threads, "count",
+        "number of threads; 0: one per core; the result does not depend on it", FromTo(0, 1024)}}};
 }
 
 OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary) {

@@ -35,8 +35,8 @@ struct ShootPlanOptions {
   std::optional<double> speed_knots;
   double turn_rate_deg_s = 10.0;
 
-  // 1 sigma of a corner's coordinate on a marker of 20 px, with what neighbouring frames have in
-  // common. Rendered action cameras at 18 to 23 crf had 0.056 to 0.09 px.
+  // 1 sigma of a corner's coordinate on a marker of 20 px, including errors that neighbouring
+  // frames share. Rendered clips of an action camera (crf 18 to 23) had 0.056 to 0.09 px.
   double corner_sigma_px = 0.075;
 
   // The shape of a sail for which none is given.

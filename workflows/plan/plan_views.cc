@@ -11,8 +11,8 @@
 namespace velamap {
 namespace {
 
-// From workflows/studies/shooting.sh, as everything else here that pictures decide: half of the
-// markers are found at so many pixels a cell, and the share rises over this width.
+// The share of markers that are found is a logistic function of the pixels per cell on the narrow
+// side: where it is one half, and its width. All numbers here come from studies/shooting.sh.
 constexpr double kPxPerCellForHalf = 1.9, kPxPerCellWidth = 0.17;
 constexpr double kToleratedMotionCells = 0.5;
 

@@ -199,7 +199,8 @@ Verdict JudgePlan(const ShootPlan& plan) {
                     "around further",
                     plan.path.arc_deg));
   if (plan.shutters.front().exposure_s < kShortest_s) {
-    add(ReportStatus::kCheck, "few cameras have a shutter that short: go slower, hold it calmer");
+    add(ReportStatus::kCheck,
+        "few cameras have such a short exposure: go slower, or hold the camera steadier");
   }
   if (!plan.surface.markers_left_out.empty()) {
     add(ReportStatus::kCheck,

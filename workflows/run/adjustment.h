@@ -26,8 +26,8 @@ struct AdjustmentOptions {
 
   bool UsesColmap() const { return backend != AdjustmentBackend::kMarkers; }
   bool UsesMarkers() const { return backend != AdjustmentBackend::kColmap; }
-  // Copies the parameters that both adjustments have to `markers`. Throws InputError that names the
-  // option for a bad one.
+  // Copies the options that both adjustments share from `colmap` to `markers`, and checks both.
+  // Throws InputError that names a bad option.
   void Complete(int num_threads);
 };
 

@@ -233,6 +233,10 @@ std::vector<SweepRow> SweepCentralFrames(const CentralFrameSweepOptions& options
   Sweep sweep(options, layout);
   const std::vector<int> central_frames =
       ChooseCentralFrames(options.central_frames, sweep.posed());
+  if (central_frames.empty()) {
+    throw DataError(fmt::format("{}: holds no image with markers; import a clip that shows some",
+                                options.database_path));
+  }
   sweep.CheckModelFolders(central_frames);
   clock->End("read", static_cast<int>(sweep.posed().images.size()));
   std::vector<SweepRow> rows;

@@ -19,7 +19,8 @@
 namespace velamap {
 namespace {
 
-// `before` is the character before it: in UTF-8, control characters from 80 to 9F stand behind C2.
+// `before` is the preceding byte: UTF-8 encodes the control characters U+0080 to U+009F with C2 as
+// their first byte.
 char PrintableCharacter(char before, char character) {
   const auto code = static_cast<unsigned char>(character);
   const bool is_control = (code < 0x20 && code != '\n' && code != '\t') || code == 0x7f ||

@@ -138,7 +138,6 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   seed.corner_errors = CornerErrorsOf(images, database.ReadFormation());
   if (!database.HasCalibration()) {
     cameras = FindUnknownCameras(images, cameras, layout, seed.corner_errors, options, adjustment);
-    seed.found_cameras = true;
   }
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) {
     seed.image_names.push_back(name);

@@ -28,7 +28,6 @@ struct SeedResult {
   CornerErrors corner_errors;            // from the database
   int num_ids_found = 0;                 // different marker ids in the database
   std::optional<ReportClip> clip;        // of a video
-  bool found_cameras = false;            // the database has no calibration
 };
 
 // The part of `video` that the thesis's search around a named central frame can reach (3.4.1), so

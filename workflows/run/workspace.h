@@ -32,8 +32,9 @@ struct WorkspacePaths {
   std::filesystem::path ColmapLog() const { return root / "colmap.log"; }
 };
 
-// What a run writes there, apart from images/, whose files AddModelImages() looks at one by one.
-// `used_by` names the option.
+// The files and folders that every run writes there. images/ is not one of them, because
+// AddModelImages() checks its files one by one, nor is camera.yml, which is written only without
+// --camera_path. `used_by` names the option.
 std::vector<UsedPath> WorkspaceOutputs(const std::string& path, const std::string& used_by);
 
 // Holds the workspace during a run, and its lock. Unless Keep() is called, the destructor removes a

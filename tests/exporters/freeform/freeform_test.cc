@@ -198,7 +198,7 @@ TEST(Freeform, MarkersThatStandApartAreNamed) {
     for (const FreeformMarker& marker : Grid(4, far, 100 * height)) markers.push_back(marker);
   }
   ExpectThrows<DataError>([&] { FitFreeformSurface(markers, 0.5, std::nullopt); },
-                          {"16 of 49 markers hang together", "part of its own"});
+                          {"16 of 49 markers are connected", "part of its own"});
   ExpectThrows<DataError>(
       [] { FitFreeformSurface(Grid(1, Eigen::Isometry3d::Identity(), 0), 0.5, std::nullopt); },
       {"1 whole markers; 4 to 1000 needed"});

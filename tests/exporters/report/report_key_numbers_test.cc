@@ -127,6 +127,17 @@ TEST_F(ReportKeyNumbers, PartsThatDisagreeLeaveTheScaleOpen) {
   EXPECT_EQ(scale().status, ReportStatus::kGood);
 }
 
+TEST_F(ReportKeyNumbers, AScaleThatIsHardlyKnownIsNotGood) {
+  example_.scale.relative_spread = 0.0;
+  example_.scale.relative_sigma = 0.0049;
+  EXPECT_EQ(Find(KeyNumberKind::kScale).status, ReportStatus::kGood);
+  example_.scale.relative_sigma = 0.006;
+  EXPECT_EQ(Find(KeyNumberKind::kScale).status, ReportStatus::kCheck);
+  EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("measure a distance"));
+  example_.scale.relative_sigma = 0.031;
+  EXPECT_EQ(Find(KeyNumberKind::kScale).status, ReportStatus::kBad);
+}
+
 TEST_F(ReportKeyNumbers, ImagesCountThoseLeftOut) {
   ReportInput input = example_.Input();
   input.images_left_out = {{"a.jpg", "blurred"}};

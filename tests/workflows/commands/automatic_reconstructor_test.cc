@@ -166,7 +166,9 @@ TEST_F(AutomaticReconstructorTest, WhatIsSentAroundNamesNoFolderAndRunsNoScript)
 }
 
 TEST_F(AutomaticReconstructorTest, OtherDetectionOptionsNeedANewDatabase) {
-  ASSERT_EQ(Run().exit_code, 0);
+  const ProgramRun quiet = Run({"--log_level", "error"});
+  ASSERT_EQ(quiet.exit_code, 0);
+  EXPECT_EQ(quiet.err, "");
   const std::string before = ReadFileBytes(workspace() / "shape/shape.csv");
   const ProgramRun run = Run({"--ArucoDetection.corner_refinement", "none"});
   EXPECT_EQ(run.exit_code, 2);
