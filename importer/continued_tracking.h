@@ -11,8 +11,8 @@
 
 namespace velamap {
 
-// The tracking that the database holds; that of the first frame where the earlier import searched
-// other frames of the video, and for photographs.
+// The tracking that the database holds. For photographs, and if the earlier import searched other
+// frames of the video, the state before the first frame.
 TrackingState ContinuedTracking(const MarkerImporterOptions& options,
                                 const ColmapDatabase& database);
 

@@ -15,8 +15,9 @@ namespace velamap {
 // Contains every registered image with all keypoints of the database, and every corner of the mean
 // shape as point 10*k + c with its complete track and the mean colour over the track. The central
 // image comes first and is the origin; reconstruct/model/gauge.h defines the order of the others.
-// Images with fewer than two markers and points with fewer than two observations are left out,
-// unless the registration has a single frame. Throws DataError if fewer than two images are left.
+// Images with fewer than two markers are left out, and so are points with fewer than two
+// observations unless the registration has a single frame. Throws DataError if no point or fewer
+// than two images are left (for a single frame: none).
 Model MakeSeedModel(const Registration& registration, const std::vector<DatabaseImage>& images,
                     const std::map<CameraId, Camera>& cameras);
 

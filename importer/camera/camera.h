@@ -49,8 +49,8 @@ std::optional<CameraModel> CameraModelFromId(int model_id);
 int NumCameraParams(CameraModel model);
 
 // A guess at a camera without calibration: SIMPLE_RADIAL without distortion, its principal point in
-// the centre. `focal_px` is what is known of the focal length; 0: nothing, then it is that of
-// COLMAP, 1.2 times the larger side.
+// the centre. `focal_px` is the focal length if something is known of it; 0 stands for COLMAP's
+// guess, 1.2 times the larger side.
 Camera UnknownCamera(int width_px, int height_px, double focal_px = 0.0);
 
 // Mean of the focal lengths in x and y, px.

@@ -19,7 +19,7 @@ namespace velamap {
 namespace {
 
 // 1 sigma of a corner's coordinate as a part of the width of an edge, from a tenth to nine tenths
-// of its contrast. Of rendered boards the errors are 0.1 to 1.5 of it.
+// of its contrast. On rendered boards the errors are 0.1 to 1.5 sigmas.
 constexpr double kSigmaOfEdgeWidth = 0.02;
 // Half a window around a corner as a part of the distance to the nearest other one, so that the
 // window holds the edges of no other corner.
@@ -56,7 +56,7 @@ CornerGrid QuarterTurned(const CornerGrid& grid) {
   return turned;
 }
 
-// Whether columns and rows turn in the image as x and y do.
+// Whether columns and rows turn in the image the other way round than x and y do.
 bool IsMirrored(const CornerGrid& grid) {
   const cv::Point2f x = grid.At(grid.num_columns - 1, 0) - grid.At(0, 0);
   const cv::Point2f y = grid.At(0, grid.num_rows - 1) - grid.At(0, 0);
@@ -86,7 +86,8 @@ double Uprightness(const CornerGrid& grid) {
   return x.x / cv::norm(x) + y.y / cv::norm(y);
 }
 
-// The first square is dark, where a turn can make it so; what is left to choose is upright.
+// Turns the grid so that its first square is dark, if any turn makes it so. Of the turns that are
+// left, the most upright one is taken.
 CornerGrid Oriented(const cv::Mat& gray, CornerGrid grid) {
   if (IsMirrored(grid)) grid = MirroredGrid(grid);
   std::vector<CornerGrid> turns;

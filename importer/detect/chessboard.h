@@ -17,7 +17,7 @@
 
 namespace velamap {
 
-// Of inner corners, where four squares meet: a board of 10 x 7 squares has 9 x 6.
+// The size of a board in inner corners, where four squares meet: 10 x 7 squares have 9 x 6.
 struct Chessboard {
   int num_columns = 0, num_rows = 0;
 
@@ -26,7 +26,7 @@ struct Chessboard {
   bool LooksTheSameTurned() const {
     return num_columns == num_rows || (num_columns + num_rows) % 2 == 0;
   }
-  // Of 9 x 6 inner corners: 4 x 3. One column in the middle belongs to no marker.
+  // 9 x 6 inner corners make 4 x 3 markers; one column in the middle belongs to no marker.
   int NumMarkers() const { return (num_columns / 2) * (num_rows / 2); }
 };
 

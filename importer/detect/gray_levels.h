@@ -4,13 +4,15 @@
 
 namespace velamap {
 
-// Between the black and the white of a marker; with less, compression and noise look the same.
+// The least contrast between the black and the white of a marker, grey levels. Compression and
+// noise can look like a marker of less contrast.
 inline constexpr double kMinContrast = 12.0;
 
-// Of the residuals of a fit, relative to the contrast; with more, it has fitted something else.
+// The largest RMS residual of a fit, relative to the contrast. A fit that leaves more has fitted
+// something else.
 inline constexpr double kMaxRelativeRms = 0.2;
 
-// Of a pixel; sets how much the priors of a fit weigh.
+// 1 sigma of the noise of a pixel, grey levels; sets how much the priors of a fit weigh.
 inline constexpr double kPixelNoise = 3.0;
 
 }  // namespace velamap

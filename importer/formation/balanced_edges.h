@@ -13,16 +13,15 @@ struct BalancedEdges {
   double inset_sigma_px = 0.0;
 };
 
-// The best fit of all pixels may leave inner edges of both polarities beside their places where no
-// description of the camera fits the shape of its edges. The shift then follows their places, as
-// far as it exceeds the scatter of the samples.
+// If no image formation describes the shape of the blurred edges, the best fit to all pixels leaves
+// the inner edges shifted towards the dark or the light cells. Corrects the edge shift by what the
+// inner edges show, as far as that exceeds the scatter of the samples.
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads);
 
-// Inner edges also tell how large the markers are. What lies around a narrow quiet zone, a noise
-// filter that takes the zone for noise, or a printer may move the outlines of the black squares
-// alone, or what is within. Where both contradict each other by more than the scatter of the
-// samples, neither is known to be right: the corners lie in the middle, and half of the
-// contradiction is 1 sigma.
+// Inner edges and outlines both tell how large the markers are. They disagree if only one of them
+// is moved: by what lies around a narrow quiet zone, by a noise filter that takes the zone for
+// noise, or by a printer. If they disagree by more than the scatter of the samples, either may be
+// right: the corners are moved half of the way, and half of the disagreement is 1 sigma.
 BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads);
 
 }  // namespace velamap

@@ -19,12 +19,12 @@ struct EdgeShift {
   // Half of the difference between the edges that the rows and that the columns of the images
   // cross: many cameras treat the two directions differently, which no parameter describes.
   double half_difference_blurs = 0.0;
-  // How far outside of the fitted corners the inner edges have them, along both sides, px.
+  // How far outside of the fitted corners the inner edges place the corners, along both sides, px.
   double corners_outwards_px = 0.0;
   double corners_sigma_px = 0.0;  // from the scatter of the samples, and from rounded corners
 };
 
-// Samples count by their noise.
+// Samples are weighted by the inverse square of their noise.
 EdgeShift InnerEdgeShift(const FormationState& state);
 
 }  // namespace velamap

@@ -66,7 +66,8 @@ void Minimize(const FormationPriors& priors, int max_iterations, int num_threads
                   &equations);
 }
 
-// The pixels at the corners of outlines count once straight edges tell how they look.
+// Minimizes without the pixels at the corners of outlines first, then with the weight that their
+// residuals ask for.
 State Minimized(const std::vector<FormationSample>& samples, const FormationPriors& priors,
                 bool is_inverted, bool sharpens_light, int num_threads) {
   constexpr int kMaxIterations = 6;
@@ -83,9 +84,9 @@ State Minimized(const std::vector<FormationSample>& samples, const FormationPrio
   return state;
 }
 
-// Whether the camera sharpens light rather than grey values. Most sharpen grey values, and under
-// noise and compression both explain the samples. Gives all pixels the same weights in both states,
-// so that their costs can be compared.
+// Whether the camera sharpens light rather than grey values. Light has to explain the samples
+// clearly better, because under noise and compression both explain them. Gives all pixels the same
+// weights in both states, so that their costs can be compared.
 bool LightWins(const FormationPriors& priors, int num_threads, State* by_gray, State* by_light) {
   constexpr double kClearlyLess = 0.9;
   const double weight = std::min(OutlineCornerWeight(*by_gray), OutlineCornerWeight(*by_light));

@@ -17,8 +17,8 @@ struct FormationPriors {
   FormationVector mean, sigma, min, max;
 };
 
-// Ink spreads by a length on paper, which is another part of the side of each marker; the median
-// counts. Needs a sample.
+// The prior of the ink's spread is a length on paper; the median side of the samples converts it
+// into a fraction of the side. `samples` must not be empty.
 FormationPriors PriorsFor(const std::vector<FormationSample>& samples);
 
 // Residuals count in sigmas of the noise of their sample, so that samples that the model does not

@@ -11,9 +11,9 @@
 namespace velamap {
 
 // Estimates the image formation from about 32 markers: of up to 32 photographs of the folder, or of
-// every fifth frame of a video from the first markers on, which is read again for the import. The
-// parameters are the defaults, with the inset that an unknown camera may cause, if fewer than two
-// markers can be fitted.
+// every fifth frame at the beginning of a video, and of later ones while too few markers are found.
+// The video is read again for the import. The parameters are the defaults, with the inset that an
+// unknown camera may cause, if fewer than two markers can be fitted.
 FormationEstimate EstimateFormationOfSource(const std::string& image_path,
                                             const VideoOptions& video, int num_threads,
                                             const FrameDetector& detector);

@@ -21,8 +21,8 @@ struct RansacOptions {
   std::uint32_t random_seed = 0;
 };
 
-// The number of samples of `sample_size` data each after which all of them hold an outlier with a
-// probability below 1e-9 only, for this ratio of inliers; within the limits of the options.
+// The number of samples of `sample_size` data each for which the probability that every sample
+// holds an outlier is below 1e-9 at this ratio of inliers; within the limits of the options.
 inline int NumSamples(double inlier_ratio, int sample_size, const RansacOptions& options) {
   constexpr double kMissProbability = 1e-9;
   const double log_miss = std::log1p(-std::pow(inlier_ratio, sample_size));

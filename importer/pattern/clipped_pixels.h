@@ -14,8 +14,9 @@
 
 namespace velamap {
 
-// Not where a good part of the box is at either end, as in drawings: without both levels the edges
-// alone cannot tell where they are, and the values are taken as they are.
+// Whether pixels of the box are clipped. False where a fifth of them or more is clipped at each
+// end, as in drawings: if neither level is known, the edges do not tell where they are, and the
+// values are taken as they are.
 bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box);
 
 // RefinePatternFit() with the values that a camera without limits would have recorded, by the model

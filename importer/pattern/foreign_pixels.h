@@ -6,10 +6,10 @@
 
 namespace velamap {
 
-// Fits again without such pixels. The model misses the middle of what they show by far more than
-// the noise and by a part of the contrast, and the blur mixes it into the pixels around. Leaves the
-// fit as it is where there are hardly any, or too many to be foreign. False for a singular system
-// or a refit that has lost the marker.
+// Fits again without the pixels whose residuals exceed both 6 robust sigmas and a tenth of the
+// contrast, and without the pixels around them into which the blur mixes them. Leaves the fit as it
+// is where there are hardly any, or too many to be foreign. False if too few pixels lie on edges,
+// for a singular system, or for a refit that has lost the marker.
 bool RefitWithoutForeignPixels(PatternProblem* problem, PatternMinimum* minimum);
 
 }  // namespace velamap

@@ -34,8 +34,7 @@ struct ImageFormationParameters {
   // stays what the camera received: bright cells then have less of it than dark ones.
   bool is_inverted = false;
   // Sharpening of light, before the tone curve, which makes dark halos strong and bright ones weak.
-  // Most real cameras of the tests and samples are explained better by it than by sharpened grey
-  // values.
+  // Chosen only if it explains the samples clearly better than sharpened grey values do.
   bool sharpens_light = false;
   // The quiet zone around the black squares of all markers: mean width and 1 sigma of a side, as
   // the prior of each fit. A sigma of 0: unknown.

@@ -16,8 +16,8 @@
 namespace velamap {
 
 // Detects all markers of `dictionary` in an 8-bit grey image. Corners are in the image frame (px);
-// the half pixel between OpenCV's pixel centres and COLMAP's is added here and nowhere else. Edge
-// refinement sets the sigma of each corner, or marks the detection as a fallback.
+// the half pixel between OpenCV's pixel centres and COLMAP's is already added. Edge refinement sets
+// the sigma of each corner, or marks the detection as a fallback.
 // Ids may occur more than once (duplicates.h). Thread-safe; colours are left zero.
 std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                            int border_bits, const ArucoDetectionOptions& options);

@@ -22,7 +22,7 @@ BorderInflow AddInflow(const std::vector<PointMotion>& motions, const cv::Size& 
   inflow_px[1] += LocalMotion(motions, {0.5 * w, 0.0}).y();
   inflow_px[2] -= LocalMotion(motions, {w, 0.5 * h}).x();
   inflow_px[3] -= LocalMotion(motions, {0.5 * w, h}).y();
-  // After a long motion outwards, other things may come in.
+  // Limited, because other things may come in when the picture returns from a long motion outwards.
   for (double& inflow : inflow_px) inflow = std::max(inflow, -0.02 * size.width);
   return inflow_px;
 }

@@ -41,8 +41,9 @@ struct FrameDetector {
   std::optional<Chessboard> chessboard;
 };
 
-// Throws InputError for a dictionary that does not exist or has wrong bits. Ignores markers of
-// `prior_shape` that are missing in the dictionary or the layout.
+// Throws InputError for a dictionary that does not exist or has wrong bits, and for a layout that
+// names an id that the dictionary does not have. Ignores markers of `prior_shape` that are missing
+// in the dictionary or the layout.
 FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOptions& options,
                                 const PriorShape& prior_shape = {});
 

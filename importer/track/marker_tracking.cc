@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-// Where regions fill a larger part of the picture than this, a full search is left to find more.
+// If the regions fill a larger part of the picture than this, the whole frame is searched instead.
 constexpr double kMaxSearchedPart = 0.6;
 
 // Finding fewer than this part of the expected markers means a jerk or a cut. Small markers are

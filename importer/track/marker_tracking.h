@@ -14,9 +14,9 @@
 // the picture, and then in every next frame as long as this finds new markers. The result depends
 // on the frames and their order only.
 //
-// All tracks end after kFullSearchesPerGroup full searches, as the pictures of an encoded video end
-// to depend on earlier ones at a key frame: no frame of a group depends on another group, so that
-// the import of a long video can be split there (importer/import_part.h).
+// All tracks end after kFullSearchesPerGroup full searches. As with the key frames of an encoded
+// video, no frame depends on a frame before that, so the import of a long video can be split there
+// (importer/import_part.h).
 
 #pragma once
 
@@ -32,8 +32,8 @@
 
 namespace velamap {
 
-// 1800 frames with a full search in every 15th: small markers that only their tracks hold are lost
-// at each beginning, a per cent of all markers where these are near the smallest that can be found.
+// 1800 frames with a full search in every 15th. Small markers that are only found by their tracks
+// are lost where a group begins: 1 % of all markers if these are hardly large enough to be found.
 inline constexpr int kFullSearchesPerGroup = 120;
 
 // The state of the tracking after a frame.

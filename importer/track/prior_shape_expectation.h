@@ -19,7 +19,7 @@ namespace velamap {
 // The camera of a frame in the frame of the prior shape.
 struct PriorShapeView {
   Rigid3 cam_from_shape;
-  // From the reprojections of agreeing markers to where they are found, because cloth moves;
+  // How far the agreeing markers are found from their reprojections, because cloth moves; in
   // OpenCV's pixel frame.
   std::vector<PointMotion> departures;
 };
@@ -30,9 +30,9 @@ std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, c
                                                 const std::vector<MarkerQuad>& found,
                                                 PriorShapeAgreement* agreement);
 
-// Expects every marker of the prior shape that faces the camera and whose id is not found at its
-// reprojection, shifted like the found markers around it from theirs. Leaves out markers that lie
-// farther outside of the image than their reach.
+// Expects every marker of the prior shape that faces the camera and whose id is not found. Its
+// place is its reprojection, shifted by the departures of the found markers around it. Leaves out
+// markers that lie farther outside of the image than their reach.
 std::vector<ExpectedMarker> ExpectByPriorShape(const PriorShape& prior_shape, const Camera& camera,
                                                const PriorShapeView& view,
                                                const std::vector<MarkerQuad>& found);

@@ -80,7 +80,7 @@ double RmsOf(const std::vector<ErrorSum>& sums) {
                                : std::numeric_limits<double>::infinity();
 }
 
-// Without every image whose index has this remainder, of `num_divisions`.
+// The solution without the images whose index modulo `num_divisions` is `division`.
 MarkerSolution Without(const MarkerSolution& all, std::size_t division, std::size_t num_divisions) {
   MarkerSolution some = all;
   std::vector<ModelImage> kept;

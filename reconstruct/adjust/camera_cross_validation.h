@@ -19,7 +19,7 @@ struct CameraModelScore {
 };
 
 struct CrossValidation {
-  std::vector<CameraModelScore> scores;  // in the order of their numbers of parameters
+  std::vector<CameraModelScore> scores;  // by number of parameters, a fisheye last
   MarkerSolution best;                   // with the model that was taken, refined
 };
 

@@ -1,4 +1,4 @@
-// The factor of the corners' sigmas, by which the residuals become as large as their sigmas say.
+// Calibrates the corners' sigmas: finds the factor that makes them agree with the residuals.
 
 #pragma once
 

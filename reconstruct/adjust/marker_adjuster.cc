@@ -161,7 +161,8 @@ std::vector<CameraModelScore> MarkerAdjuster::CrossValidateCameraModel(
 }
 
 void MarkerAdjuster::WidenCameraSigmas() {
-  // Finish() has moved the image points to the middle row; the fits move them themselves.
+  // Finish() has moved the image points to the middle row; the fits need them as recorded. The
+  // inverse is exact to first order only.
   MarkerSolution as_recorded = solution_;
   MoveToMiddleRow(-solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
                   &as_recorded.model);

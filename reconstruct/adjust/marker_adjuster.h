@@ -53,9 +53,9 @@ class MarkerAdjuster {
   // The cameras with their sigmas.
   std::map<CameraId, EstimatedCamera> EstimateCameras() const;
 
-  // Where intrinsics that the images determine better than the calibration explain the corners
-  // significantly better: the result of AdjustToCorners with these, else nothing. After
-  // AdjustToCorners; `begin` is this adjuster before it.
+  // After AdjustToCorners; `begin` is this adjuster before it. Returns its result with those
+  // intrinsics free that the images determine better than the calibration, or nothing unless they
+  // explain the corners significantly better.
   std::optional<MarkerAdjuster> WithBetterCalibration(MarkerAdjuster begin) const;
 
   // Adds the scale bars that agree with each other; where they contradict the markers, frees the

@@ -30,7 +30,8 @@ std::string PointName(int marker_id, int corner) {
                      : fmt::format("corner {} of marker {}", corner, marker_id);
 }
 
-// Logarithms of tape over model, and their covariance where the scale of the print is known.
+// Logarithms of the measured lengths over the lengths in the model, and their covariance if the
+// scale of the print is known.
 struct LogScales {
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;

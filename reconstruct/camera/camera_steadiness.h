@@ -35,21 +35,21 @@ struct FocalStep {
   double before_px = 0.0, after_px = 0.0;
   double sigmas = 0.0;  // of the step, by the sigmas of the images or their scatter
 
-  // By 2 % and far beyond what the sigmas explain. The points of the model were found with one
-  // focal length and hide a part of a step, so that a smaller one is worth an adjustment with two
-  // cameras.
+  // Certain: at least 2 % and 8 sigmas. The points of the model were found with one focal length
+  // and hide a part of a step, so a smaller one (0.3 % and 3 sigmas) is suspicious: an adjustment
+  // with two cameras has to confirm it.
   bool IsCertain() const;
   bool IsSuspicious() const;
 };
 
 struct SteadinessVerdict {
   std::optional<FocalStep> step;  // the one that divides the images best; nothing for few images
-  // The principal point wanders by 0.4 % of the larger side and more, far beyond what the images'
-  // sigmas explain: one line. Empty: it does not.
+  // One line for a warning if the principal point wanders from image to image by at least 0.4 % of
+  // the larger side and 4 sigmas; else empty.
   std::string wandering;
 };
 
-// In the order of the images' names.
+// Takes the images in the natural order of their names.
 SteadinessVerdict JudgeSteadiness(const Model& model);
 
 // The step as a warning.

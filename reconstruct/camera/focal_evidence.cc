@@ -164,7 +164,8 @@ FocalEvidence FindFocalLength(CameraModel model, int width_px, int height_px,
   };
   const double low = std::log(kMinFocalOnGrid * side_px),
                high = std::log(kMaxFocalOnGrid * side_px);
-  // The noise is that at the best focal length, so two passes: by all, then by the right noise.
+  // Costs can only be compared for one and the same noise. A first pass over the grid finds the
+  // smallest one, a second pass the costs.
   double variance = std::numeric_limits<double>::infinity();
   for (double x = low; x <= high; x += kGridStep) {
     variance = std::min(variance, pooled.Variance(lens(x)));

@@ -4,9 +4,10 @@
 //
 // A step is the distance between neighbours. However cloth is bent, folded or rolled up, neighbours
 // are never farther apart than along the cloth. A detour over a marker between two others is
-// therefore never longer than twice the shorter of its two distances: one step for each marker on a
-// line of equal steps. The prices are higher than that, so that no bend costs a marker. A line with
-// uneven steps gets a larger step. Private to this folder.
+// therefore never longer than twice the shorter of its two distances: on a line of equal steps, at
+// most one step for each place from one of the others to the other. The prices are higher, except
+// for markers that few of their images show, so that no bend costs a marker that is seen well. A
+// line with uneven steps gets a larger step. Private to this folder.
 
 #pragma once
 

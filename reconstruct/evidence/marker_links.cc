@@ -16,14 +16,14 @@
 namespace velamap {
 namespace {
 
-// Cosine between the normals of markers on one surface.
+// The least cosine between the normals of two markers on one surface.
 constexpr double kSameFace = 0.5;
 // Neighbours are at most this many times as far apart as the nearest ones there.
 constexpr double kMaxLink = 1.75;
-// A step of a row and the next one.
+// The largest ratio between two consecutive steps of a row.
 constexpr double kMaxStepRatio = 2.0;
 constexpr double kMaxBend = 35.0 * kRadPerDeg, kMaxBendAtGap = 25.0 * kRadPerDeg;
-// Of a gap, in steps: two markers are missing.
+// The largest gap in a row, in steps: two missing markers make three, and steps are uneven.
 constexpr double kMaxGap = 3.6;
 // Markers of a cluster are at most this many times as far apart as the nearest ones there.
 constexpr double kMaxTimesNearest = 2.5;

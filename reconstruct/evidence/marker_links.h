@@ -27,10 +27,12 @@ double Distance(const StandingMarker& a, const StandingMarker& b);
 // The median distance between neighbours of the chain, which has at least two markers.
 double StepOf(const std::vector<StandingMarker>& markers, const MarkerChain& chain);
 
-// Of at least two markers each. A marker may be on several chains, two neighbours are on one.
+// Each chain has at least two markers. A marker may be on several chains, a pair of neighbours is
+// on one only.
 std::vector<MarkerChain> FindChains(const std::vector<StandingMarker>& markers);
 
-// Single linkage of the markers of `rest`: each is in one cluster, and in its order there.
+// Clusters of the markers of `rest` by single linkage: each is in one cluster, in the order of
+// `rest`.
 std::vector<MarkerChain> FindClusters(const std::vector<StandingMarker>& markers,
                                       const MarkerChain& rest);
 

@@ -99,8 +99,8 @@ class RowFinder {
     }
   }
 
-  // Near the head, lines are short: two markers that are on no other horizontal row, parallel to
-  // one with about the same step.
+  // Keeps a horizontal row of two markers if these are on no longer horizontal row, and if such a
+  // row nearby is parallel to it with about the same step: lines are short near the head of a sail.
   void KeepShortRows(std::vector<Row> short_rows) {
     std::set<std::size_t> on_horizontal;
     for (const Row& row : rows_) {

@@ -51,7 +51,8 @@ Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
   return gradient;
 }
 
-// 1 sigma of one distortion parameter moves a ray in the judged field by so much.
+// How far 1 sigma of the first distortion parameter moves a ray in the judged field, relative to
+// its distance from the optical axis.
 double RadialSigma(const IntrinsicsPrior& prior) {
   const std::size_t k1 = static_cast<std::size_t>(NumFocalLengths(prior.model)) + 2;
   if (prior.sigmas.size() <= k1) return 0.0;
@@ -68,7 +69,8 @@ Eigen::VectorXd Change(const IntrinsicsPrior& prior, const Camera& refined) {
   return change;
 }
 
-// Than what the calibration says, or than the change that contradicts it.
+// Whether the estimate is clearly more certain than the prior, or than its own difference from the
+// prior, whichever is larger.
 bool IsClearlySmaller(double sigma, double prior_sigma, double change) {
   return sigma <= kClearly * std::max(prior_sigma, std::abs(change));
 }

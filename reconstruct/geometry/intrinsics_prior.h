@@ -74,8 +74,9 @@ Camera WithDistortionParams(const Camera& camera);
 FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const IntrinsicsPrior& prior,
                                     const Camera& refined, const Eigen::MatrixXd& covariance);
 
-// Whether the focal lengths, the principal point and the radial distortion at 0.7 of the way to the
-// image's farthest corner are within 1 sigma of the prior's, that of one parameter.
+// Whether the focal lengths and the principal point are within 1 sigma of the prior, and the radial
+// distortion at 0.7 of the way to the image's farthest corner has changed by no more than 1 sigma
+// of its first parameter would change it.
 bool IsWithin(const IntrinsicsPrior& prior, const Camera& camera);
 
 // What has changed, for a message: "focal length 901.3 -> 875.1 px, ...".

@@ -38,9 +38,10 @@
 
 namespace velamap {
 
-// RegisterFrames() with RegistrationMethod::kGlobal, and the same contract. Also throws DataError
-// when no consistent map is found. Adds a note to a result whose errors are larger than the noise
-// of the corners explains.
+// RegisterFrames() with RegistrationMethod::kGlobal. Throws DataError if fewer than two images
+// contain markers or no two of them agree on a map, and InputError for options out of range, a time
+// order without frame numbers, and a central frame that is unknown or cannot be registered. Adds a
+// note to a result whose errors are larger than the noise of the corners explains.
 Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
                                     const std::map<CameraId, Camera>& cameras, const Layout& layout,
                                     const RegistrationOptions& options);

@@ -16,7 +16,7 @@
 namespace velamap {
 namespace {
 
-// Layout of the file: magic, version, six doubles, CalibrationEvidence, points, blocks, factor,
+// Layout of the file: magic, version, eight doubles, CalibrationEvidence, points, blocks, factor,
 // signs; little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
 constexpr std::uint32_t kVersion = 4;

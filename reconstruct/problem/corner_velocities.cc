@@ -47,9 +47,9 @@ Eigen::VectorXd SlopeWeights(const FrameWindow& window, int reach) {
   return SlopeWeights(times_s);
 }
 
-// The velocity of the mean of a marker's corners, px/s. Single corners' are twice as noisy, and
-// noise in what the shutter multiplies makes it seem shorter. Nothing unless all frames that
-// `weights` reaches show the marker.
+// The velocity of the mean of a marker's corners, px/s. Velocities of single corners are twice as
+// noisy, and noise in the velocities makes the estimated shutter time too short. Nothing unless all
+// frames that `weights` reaches show the marker.
 std::optional<Eigen::Vector2d> MeasureVelocity(const FrameWindow& window,
                                                const Eigen::VectorXd& weights, int marker_id) {
   const int reach = static_cast<int>(weights.size()) / 2;

@@ -12,15 +12,16 @@
 
 namespace velamap {
 
-// Velocities of the corners of one image by point2D_idx, px/s.
+// Velocities of the corners by image and point2D_idx, px/s.
 using CornerVelocities = std::map<ImageId, std::vector<Eigen::Vector2d>>;
 
-// The slope of a polynomial through the places of a marker in the frame, the two before and the two
-// after it (or one each), whether camera, boat or cloth moves. The velocities of its corners, and
-// of markers that the neighbouring frames do not show, follow from the affine field that fits all
-// markers of the image best. Over a shake of 3 Hz the straight line through two frames at 30 Hz is
-// 7 % too slow, the polynomial through five 0.5 %. Steps between frames may take 0.15 s;
-// photographs have no velocities. Images without velocities are missing.
+// Velocities relative to the picture, whether camera, boat or cloth moves. The velocity of a marker
+// is the slope of the polynomial through its places in the frame and in the two before and the two
+// after it (or one each). The velocities of its corners, and of markers that the neighbouring
+// frames do not show, follow from the affine field that fits all markers of the image best. For a
+// shake of 3 Hz, the straight line through two frames at 30 Hz is 7 % too slow, the polynomial
+// through five 0.5 %. Frames more than 0.15 s apart are not used together; photographs have no
+// velocities. Images without velocities are missing.
 CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images);
 
 // How far a corner moves between the time when the middle row is read and the time when its own row

@@ -34,10 +34,10 @@ struct MarkerAdjustmentOptions {
   // markers in the images. What the estimated image formation leaves open is added (root of the sum
   // of squares). 0: nothing beyond that.
   double inset_sigma_px = 0.01;
-  // The error is a parameter with this prior, told from the scale by markers that are seen small
-  // and large, oblique and straight. Whatever else depends on these is taken for an inset, too: on
-  // a rendered sail 0.031 +- 0.006 px are found where the truth is 0.013 px, and the scale gets
-  // worse.
+  // Estimates that error, with inset_sigma_px as its prior. Markers that are seen small and large,
+  // oblique and straight tell it from the scale. Whatever else depends on size and slant is taken
+  // for an inset, too: on a rendered sail 0.031 +- 0.006 px are found where the truth is 0.013 px,
+  // and the scale gets worse.
   bool estimate_inset = false;
   // The calibration is the prior of what is refined. Only those extra parameters are refined that
   // it names.

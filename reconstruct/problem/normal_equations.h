@@ -1,8 +1,8 @@
 // The normal equations of a marker problem at its solution, and the covariance that follows.
 //
-// The parameters are the corners of the markers and the globals (poses but the first, velocities,
-// intrinsics, inset, print scale), all in their tangent spaces. Only the globals couple one marker
-// with another:
+// The parameters are the corners of the markers and the globals (poses but the first, intrinsics,
+// rolling shutter, inset, print scale, scales of parts), all in their tangent spaces. Only the
+// globals couple one marker with another:
 //
 //   H = | D  W |   D block-diagonal by marker,    S = B - W^T D^-1 W = L L^T,
 //       | W' B |   cov(markers) = D^-1 + F F^T,   F = D^-1 W L^-T.

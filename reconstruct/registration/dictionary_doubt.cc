@@ -9,7 +9,7 @@
 namespace velamap {
 
 std::string DictionaryDoubt(const std::vector<DatabaseImage>& images) {
-  // Fewer do not give an image its place among the others.
+  // With fewer markers, an image can hardly be placed relative to the others.
   constexpr double kFewMarkersPerImage = 3.0;
   std::map<int, int> num_images_of;  // by id
   std::size_t num_detections = 0, num_images = 0;

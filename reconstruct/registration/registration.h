@@ -23,8 +23,10 @@ struct RegisteredFrame {
   std::vector<int> marker_ids;               // inliers, ascending
   std::vector<int> outlier_ids;              // markers that do not fit their position in the shape
   std::vector<std::string> outlier_reasons;  // kGlobal: by outlier_ids; empty with kThesis
-  double rms_error_m = 0.0;                  // of the alignment with the mean shape
-  std::string reason;                        // why it is not registered, else empty
+  // kGlobal: of the reprojection errors, as lengths at the distance of the markers. kThesis: of the
+  // alignment with the mean shape.
+  double rms_error_m = 0.0;
+  std::string reason;  // why it is not registered, else empty
 };
 
 struct DroppedMarker {
@@ -33,8 +35,8 @@ struct DroppedMarker {
   std::string reason;
   // The images agree on its place, but the layout contradicts it.
   bool is_false = false;
-  // Its side over that of the others, both in units of marker_length, where they differ by far more
-  // than print does.
+  // Its side in units of its marker_length, divided by the median of all markers; set where the two
+  // differ by far more than errors of print explain.
   std::optional<double> size_ratio{};
 };
 
