@@ -179,7 +179,8 @@ TEST(LayoutCorrection, ALineThatRunsBackwardsIsNamedAndTurned) {
   std::reverse(line.begin(), line.end());
   const LayoutProposal correction = CorrectLayout(SampleSail(), given);
   EXPECT_THAT(correction.contradictions,
-              ElementsAre(AllOf(HasSubstr("line h4"), HasSubstr("against"))));
+              ElementsAre(AllOf(HasSubstr("line h4"), HasSubstr("opposite"),
+                                HasSubstr("from marker 45 to 55"))));
   ExpectSameLines(correction.layout, SampleLayout());
 }
 
