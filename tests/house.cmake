@@ -20,9 +20,9 @@ house_folder(importer/camera PUBLIC
 house_folder(importer/layout PUBLIC
   code_search dictionary frame_choice known_point layout layout_writer prior_shape)
 house_folder(importer/print PUBLIC
-  drawing drawing_writer marker_sheets placement print_options sheet_plan)
+  drawing drawing_writer marker_sheets placement png_file print_options sheet_plan)
 house_folder(importer/video PUBLIC
-  frame_image frame_source image_file picture_metadata source_file video_options
+  frame_image frame_source image_file jpeg_codec picture_metadata source_file video_options
   written_frame)
 house_folder(importer/detect PUBLIC
   chessboard corner_colors detection detection_options duplicates gray_levels interpolate marker_alignment

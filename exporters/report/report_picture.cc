@@ -1,14 +1,13 @@
 #include "exporters/report/report_picture.h"
 
 #include <algorithm>
-#include <vector>
 
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "importer/video/image_file.h"
+#include "importer/video/jpeg_codec.h"
 
 namespace velamap {
 namespace {
@@ -24,9 +23,7 @@ ReportPicture MakeReportPicture(const std::string& image_path, int max_side_px) 
   picture.problem.clear();
   const double scale = static_cast<double>(max_side_px) / std::max(image.cols, image.rows);
   if (scale < 1) cv::resize(image, image, {}, scale, scale, cv::INTER_AREA);
-  std::vector<unsigned char> jpeg;
-  cv::imencode(".jpg", image, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
-  picture.jpeg_base64 = Base64({jpeg.begin(), jpeg.end()});
+  picture.jpeg_base64 = Base64(EncodeJpeg(image, kJpegQuality));
   return picture;
 }
 

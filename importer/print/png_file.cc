@@ -6,6 +6,7 @@
 #include <png.h>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/base/error.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -22,24 +23,30 @@ void Flush(png_structp) {}
   throw std::logic_error(std::string("libpng: ") + message);
 }
 
-std::string Encode(const cv::Mat& gray, double px_per_mm) {
+}  // namespace
+
+std::string EncodePng(const cv::Mat& image, std::optional<double> px_per_mm) {
+  VELAMAP_CHECK(image.type() == CV_8UC1 || image.type() == CV_8UC3);
+  const bool is_gray = image.channels() == 1;
   std::string bytes;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, Fail, nullptr);
   png_infop info = png_create_info_struct(png);
   png_set_write_fn(png, &bytes, Append, Flush);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(gray.cols), static_cast<png_uint_32>(gray.rows),
-               8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
-  const auto px_per_m = static_cast<png_uint_32>(std::lround(1000 * px_per_mm));
-  png_set_pHYs(png, info, px_per_m, px_per_m, PNG_RESOLUTION_METER);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.cols),
+               static_cast<png_uint_32>(image.rows), 8,
+               is_gray ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  if (px_per_mm) {
+    const auto px_per_m = static_cast<png_uint_32>(std::lround(1000 * *px_per_mm));
+    png_set_pHYs(png, info, px_per_m, px_per_m, PNG_RESOLUTION_METER);
+  }
   png_write_info(png, info);
-  for (int row = 0; row < gray.rows; ++row) png_write_row(png, gray.ptr(row));
+  if (!is_gray) png_set_bgr(png);
+  for (int row = 0; row < image.rows; ++row) png_write_row(png, image.ptr(row));
   png_write_end(png, info);
   png_destroy_write_struct(&png, &info);
   return bytes;
 }
-
-}  // namespace
 
 std::string MarkerPng(const cv::Mat& cells, double length_mm, double margin_mm, double dpi) {
   const double cell_mm = length_mm / cells.cols;
@@ -50,7 +57,7 @@ std::string MarkerPng(const cv::Mat& cells, double length_mm, double margin_mm, 
   cv::resize(cells, gray, {}, cell_px, cell_px, cv::INTER_NEAREST);
   cv::copyMakeBorder(gray, gray, margin_px, margin_px, margin_px, margin_px, cv::BORDER_CONSTANT,
                      cv::Scalar(255));
-  return Encode(gray, px_per_mm);
+  return EncodePng(gray, px_per_mm);
 }
 
 }  // namespace velamap

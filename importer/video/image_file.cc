@@ -5,10 +5,13 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
+
+#include "importer/video/ffmpeg_picture.h"
+#include "importer/video/jpeg_codec.h"
 
 namespace velamap {
 namespace {
@@ -18,6 +21,17 @@ using Bytes = std::vector<std::uint8_t>;
 bool StartsWith(const Bytes& bytes, const std::vector<std::uint8_t>& signature) {
   return bytes.size() >= signature.size() &&
          std::equal(signature.begin(), signature.end(), bytes.begin());
+}
+
+bool IsJpeg(const Bytes& bytes) { return StartsWith(bytes, {0xFF, 0xD8}); }
+
+bool IsPng(const Bytes& bytes) {
+  return StartsWith(bytes, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'});
+}
+
+std::uint32_t BigEndian32(const std::uint8_t* bytes) {
+  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 |
+         std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
 // Walks the segments of a JPEG to its end-of-image marker (ITU T.81, annex B). A search for the two
@@ -50,12 +64,36 @@ bool JpegHasEnd(const Bytes& bytes) {
 bool PngHasEnd(const Bytes& bytes) {
   std::size_t i = 8;
   while (i + 12 <= bytes.size()) {
-    std::size_t length = 0;
-    for (std::size_t k = 0; k < 4; ++k) length = length << 8 | bytes[i + k];
     if (std::memcmp(&bytes[i + 4], "IEND", 4) == 0) return true;
-    i += 12 + length;
+    i += std::size_t{12} + BigEndian32(&bytes[i]);
   }
   return false;
+}
+
+// What the header says, so that nothing large is decoded in vain; nothing for other formats.
+std::optional<cv::Size2d> StoredSize(const Bytes& bytes) {
+  constexpr std::size_t kPngSize = 16;  // behind signature, length and type of the first chunk
+  if (IsPng(bytes) && bytes.size() >= kPngSize + 8) {
+    return cv::Size2d(BigEndian32(&bytes[kPngSize]), BigEndian32(&bytes[kPngSize + 4]));
+  }
+  if (IsJpeg(bytes)) return JpegSize(bytes);
+  return std::nullopt;
+}
+
+cv::Mat Decode(const Bytes& bytes, std::size_t max_pixels, std::string* reason) {
+  const auto is_small = [&](const cv::Size2d& size) {
+    if (size.area() <= static_cast<double>(max_pixels)) return true;
+    *reason = fmt::format("has {} x {} pixels; pictures of at most {} are read", size.width,
+                          size.height, max_pixels);
+    return false;
+  };
+  const std::optional<cv::Size2d> stored_size = StoredSize(bytes);
+  if (stored_size && !is_small(*stored_size)) return {};
+  cv::Mat color;
+  if (IsJpeg(bytes)) color = DecodeJpeg(bytes);
+  if (color.empty()) color = DecodeWithFfmpeg(bytes);
+  if (color.empty()) *reason = "not an image that can be decoded";
+  return is_small(color.size()) ? color : cv::Mat();
 }
 
 }  // namespace
@@ -73,23 +111,10 @@ cv::Mat DecodeImageFile(const std::string& path, std::string* reason, std::size_
     *reason = "cannot be read";
   } else if (bytes.empty()) {
     *reason = "the file is empty";
-  } else if ((StartsWith(bytes, {0xFF, 0xD8}) && !JpegHasEnd(bytes)) ||
-             (StartsWith(bytes, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'}) &&
-              !PngHasEnd(bytes))) {
+  } else if ((IsJpeg(bytes) && !JpegHasEnd(bytes)) || (IsPng(bytes) && !PngHasEnd(bytes))) {
     *reason = "the file is cut off";
   } else {
-    try {
-      const cv::Mat color = cv::imdecode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-      if (color.total() > max_pixels) {
-        *reason = fmt::format("has {} x {} pixels; pictures of at most {} are read", color.cols,
-                              color.rows, max_pixels);
-        return {};
-      }
-      if (!color.empty()) return color;
-    } catch (const cv::Exception&) {
-      // Falls through: OpenCV throws for some damaged files and returns nothing for others.
-    }
-    *reason = "not an image that can be decoded";
+    return Decode(bytes, max_pixels, reason);
   }
   return {};
 }

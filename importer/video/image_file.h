@@ -12,7 +12,7 @@ namespace velamap {
 // Beyond the largest cameras. A picture of one colour that is larger takes little space on disk and
 // minutes to search.
 inline constexpr std::int64_t kMaxImageFileSize = std::int64_t{1} << 30;
-inline constexpr std::size_t kMaxImagePixels = 500'000'000;
+inline constexpr std::size_t kMaxImagePixels = 250'000'000;
 
 // Decodes the file to BGR, 8 bit, without the rotation of its metadata, which COLMAP ignores too.
 // Returns an empty image and a reason if the file is missing, empty, cut off, too large or not an

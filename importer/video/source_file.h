@@ -20,7 +20,7 @@ struct SourceFile {
   std::uint64_t content_hash = 0;
 };
 
-// Whether the name has an extension of an image that OpenCV reads (.jpg, .png, .tif ...).
+// Whether the name has an extension of an image that velamap reads (.jpg, .png, .tif ...).
 bool HasImageExtension(const std::string& path);
 
 // Throws InputError if the file cannot be read.

@@ -132,6 +132,14 @@ cv::Mat Convert(const AVFrame& frame, AVPixelFormat target, int type, int flags)
 
 // Converts as OpenCV's VideoCapture does, so that both yield the same colours.
 cv::Mat ConvertToColor(const AVFrame& frame) {
+  const AVPixFmtDescriptor* format = Format(frame);
+  if (HasFlag(*format, AV_PIX_FMT_FLAG_RGB) && format->comp[0].depth == 16 &&
+      !HasFlag(*format, AV_PIX_FMT_FLAG_PLANAR | AV_PIX_FMT_FLAG_FLOAT)) {
+    // To 8 bits swscale goes by way of YUV, which is off by up to two levels.
+    cv::Mat image = Convert(frame, AV_PIX_FMT_BGR48LE, CV_16UC3, SWS_BICUBIC);
+    image.convertTo(image, CV_8U, 255.0 / 65535.0);
+    return image;
+  }
   return Convert(frame, AV_PIX_FMT_BGR24, CV_8UC3, SWS_BICUBIC);
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const cv::Size kSize(320, 200);
+const cv::Size kPictureSize(320, 200);
 constexpr int kInterval = 1, kGroup = 120 * kInterval;  // FramesPerGroup()
 
 // A video of some groups of frames, imported as a whole and in parts.
@@ -44,11 +44,11 @@ class DatabaseMergerTest : public testing::Test {
   template <typename MarkersOf, typename Draw>
   void WriteVideo(int num_frames, const MarkersOf& markers_of, const Draw& draw) {
     cv::VideoWriter writer(importer_.image_path, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
-                           kSize);
+                           kPictureSize);
     ASSERT_TRUE(writer.isOpened());
     const auto dictionary = LoadDictionary(importer_.layout.dictionary).aruco;
     for (int i = 0; i < num_frames; ++i) {
-      cv::Mat picture = DrawMarkers(dictionary, kSize, markers_of(i));
+      cv::Mat picture = DrawMarkers(dictionary, kPictureSize, markers_of(i));
       draw(i, &picture);
       cv::GaussianBlur(picture, picture, cv::Size(), 0.7);
       writer << picture;
@@ -66,7 +66,7 @@ class DatabaseMergerTest : public testing::Test {
     };
     WriteVideo(num_frames, markers_of, [](int i, cv::Mat* picture) {
       const int x = 151 + Swing(i);
-      if (i > 5) cv::line(*picture, {x, 0}, {x, kSize.height}, cv::Scalar::all(0), 4);
+      if (i > 5) cv::line(*picture, {x, 0}, {x, kPictureSize.height}, cv::Scalar::all(0), 4);
     });
   }
 

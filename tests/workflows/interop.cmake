@@ -7,13 +7,17 @@ velamap_test(NAME colmap_interop_test LABEL colmap
     interop/colmap_tracks_test.cc
     interop/colmap_truth_test.cc
     run_velamap.cc
+    stylus_workspace.cc
   LIBRARIES SQLiteCpp sqlite3
+  PROPERTIES ${needs_stylus}
 )
 
 velamap_test(NAME sample_test LABEL colmap
   SOURCES
     run_velamap.cc
+    stylus_workspace.cc
     commands/sample_test.cc
+  PROPERTIES ${needs_stylus}
 )
 
 foreach(test colmap_interop_test sample_test)
@@ -35,5 +39,6 @@ if(BASH_PROGRAM)
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/interop/colmap_lines_test.sh
                    ${PROJECT_SOURCE_DIR})
   set_tests_properties(interop.colmap_lines PROPERTIES
-    LABELS colmap SKIP_RETURN_CODE 77 TIMEOUT 400 ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>")
+    LABELS colmap SKIP_RETURN_CODE 77 TIMEOUT 400 ${needs_stylus})
+  set_property(TEST interop.colmap_lines APPEND PROPERTY ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>")
 endif()

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <fmt/ranges.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/files.h"
 #include "importer/layout/layout_writer.h"
+#include "importer/print/png_file.h"
 #include "importer/text/id_ranges.h"
 #include "workflows/check/clip_check.h"
 #include "workflows/check/clip_verdict.h"
@@ -143,11 +143,7 @@ void Run(const Options& options) {
   if (check.proposal) WriteProposal(*check.proposal, options);
   const std::string& path = options.paths.output_path;
   if (path.empty()) return;
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", check.marked_frame, png);
-  WriteFileAtomically(path, [&](std::ostream& out) {
-    out.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
-  });
+  WriteFileAtomically(path, [&](std::ostream& out) { out << EncodePng(check.marked_frame); });
   fmt::print(std::cout, "frame_path: {} ({})\n", path, check.marked_frame_name);
 }
 

@@ -1,11 +1,12 @@
 #include "tests/exporters/report/report_example.h"
 
+#include <fstream>
 #include <map>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "exporters/scale/metric_shape.h"
+#include "importer/video/jpeg_codec.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/true_model.h"
 
@@ -54,7 +55,7 @@ void DrawCentralImage(const Model& model, const std::filesystem::path& folder) {
         cvRound(point.x_in_image_px.x()), cvRound(point.x_in_image_px.y()));
   }
   for (const auto& [marker_id, outline] : outlines) cv::fillConvexPoly(picture, outline, {0, 0, 0});
-  cv::imwrite((folder / image.name).string(), picture);
+  std::ofstream(folder / image.name) << EncodeJpeg(picture, 95);
 }
 
 }  // namespace velamap

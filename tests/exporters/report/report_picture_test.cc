@@ -1,8 +1,10 @@
 #include "exporters/report/report_picture.h"
 
-#include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
+#include <fstream>
 
+#include <gmock/gmock.h>
+
+#include "importer/print/png_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
@@ -20,7 +22,7 @@ TEST(ReportPicture, Base64IsThatOfRfc4648) {
 TEST(ReportPicture, LargeImagesShrink) {
   const TempDir dir;
   const std::string path = (dir / "large.png").string();
-  cv::imwrite(path, cv::Mat(600, 900, CV_8UC3, cv::Scalar(10, 200, 30)));
+  std::ofstream(path) << EncodePng(cv::Mat(600, 900, CV_8UC3, cv::Scalar(10, 200, 30)));
   const ReportPicture small = MakeReportPicture(path, 90), large = MakeReportPicture(path, 2000);
   EXPECT_EQ(small.problem, "");
   EXPECT_EQ(small.jpeg_base64.substr(0, 4), "/9j/");  // ff d8 ff

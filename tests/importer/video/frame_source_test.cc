@@ -10,7 +10,6 @@
 #include <opencv2/videoio.hpp>
 
 #include "importer/base/error.h"
-#include "importer/video/image_file.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 
@@ -46,78 +45,6 @@ std::vector<int> FrameNumbers(const std::vector<Frame>& frames) {
   std::vector<int> numbers;
   for (const Frame& frame : frames) numbers.push_back(frame.frame_number.value());
   return numbers;
-}
-
-TEST(DecodeImageFile, TellsWholeFromBrokenFiles) {
-  const TempDir dir;
-  for (const char* name : {"a.jpg", "a.png", "a.tif", "a.bmp"}) {
-    const std::string path = dir / name;
-    cv::imwrite(path, NoiseImage(80, 60));
-    std::string reason;
-    EXPECT_EQ(DecodeImageFile(path, &reason).size(), cv::Size(80, 60)) << name << ": " << reason;
-  }
-  for (const char* name : {"a.jpg", "a.png"}) {
-    for (const double fraction : {0.99, 0.5, 0.1}) {
-      const std::string path = dir / name;
-      cv::imwrite(path, NoiseImage(80, 60));
-      CutFile(path, fraction);
-      std::string reason;
-      EXPECT_TRUE(DecodeImageFile(path, &reason).empty());
-      EXPECT_EQ(reason, "the file is cut off") << name << " " << fraction;
-    }
-  }
-}
-
-TEST(DecodeImageFile, AcceptsDataBehindTheEndOfAJpeg) {
-  const TempDir dir;
-  const std::string path = dir / "a.jpg";
-  cv::imwrite(path, NoiseImage(80, 60));
-  std::ofstream(path, std::ios::app) << "what phones append";
-  std::string reason;
-  EXPECT_FALSE(DecodeImageFile(path, &reason).empty()) << reason;
-}
-
-TEST(DecodeImageFile, IsNotFooledByThePreviewOfACutJpeg) {
-  // A preview in an APP1 segment has an end-of-image marker of its own.
-  const TempDir dir;
-  std::vector<std::uint8_t> jpeg;
-  cv::imencode(".jpg", NoiseImage(80, 60), jpeg);
-  std::vector<std::uint8_t> bytes = {0xFF, 0xD8, 0xFF, 0xE1, 0x00, 0x06, 0xFF, 0xD8, 0xFF, 0xD9};
-  bytes.insert(bytes.end(), jpeg.begin() + 2, jpeg.end());
-  const auto write = [&](std::size_t size) {
-    std::ofstream(dir / "a.jpg", std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(size));
-  };
-  std::string reason;
-  write(bytes.size());
-  EXPECT_FALSE(DecodeImageFile(dir / "a.jpg", &reason).empty()) << reason;
-  write(bytes.size() / 2);
-  EXPECT_TRUE(DecodeImageFile(dir / "a.jpg", &reason).empty());
-}
-
-TEST(DecodeImageFile, RefusesWhatIsTooLarge) {
-  const TempDir dir;
-  std::string reason;
-  cv::imwrite(dir / "a.png", cv::Mat(60, 80, CV_8UC1, cv::Scalar(9)));
-  EXPECT_FALSE(DecodeImageFile(dir / "a.png", &reason, 4800).empty());
-  EXPECT_TRUE(DecodeImageFile(dir / "a.png", &reason, 4799).empty());
-  EXPECT_EQ(reason, "has 80 x 60 pixels; pictures of at most 4799 are read");
-  std::filesystem::resize_file(dir / "a.png", kMaxImageFileSize + 1);
-  EXPECT_TRUE(DecodeImageFile(dir / "a.png", &reason).empty());
-  EXPECT_EQ(reason, "has 1073741825 bytes; pictures of at most 1073741824 are read");
-}
-
-TEST(DecodeImageFile, SaysWhyThereIsNoImage) {
-  const TempDir dir;
-  std::string reason;
-  EXPECT_TRUE(DecodeImageFile(dir / "none.jpg", &reason).empty());
-  EXPECT_EQ(reason, "cannot be read");
-  std::ofstream(dir / "empty.jpg").close();
-  EXPECT_TRUE(DecodeImageFile(dir / "empty.jpg", &reason).empty());
-  EXPECT_EQ(reason, "the file is empty");
-  std::ofstream(dir / "text.jpg") << "no picture";
-  EXPECT_TRUE(DecodeImageFile(dir / "text.jpg", &reason).empty());
-  EXPECT_EQ(reason, "not an image that can be decoded");
 }
 
 TEST(ImageFolder, ListsNestedImagesInNaturalOrder) {
@@ -159,22 +86,6 @@ TEST(ImageFolder, BrokenImageIsNotLoaded) {
   std::string reason;
   EXPECT_FALSE(source->Load(&*frame, &reason));
   EXPECT_EQ(reason, "the file is cut off");
-}
-
-TEST(ImageFolder, PicturesAreNotTurnedByTheirMetadata) {
-  // An EXIF orientation of 6 (turned by 90 degrees) in front of the JPEG's own segments.
-  const TempDir dir;
-  std::vector<std::uint8_t> jpeg;
-  cv::imencode(".jpg", NoiseImage(80, 60), jpeg);
-  const std::vector<std::uint8_t> exif = {
-      0xFF, 0xE1, 0x00, 0x22, 'E', 'x', 'i', 'f', 0, 0, 'M', 'M', 0, 42, 0, 0, 0, 8,
-      0,    1,    0x01, 0x12, 0,   3,   0,   0,   0, 1, 0,   6,   0, 0,  0, 0, 0, 0};
-  jpeg.insert(jpeg.begin() + 2, exif.begin(), exif.end());
-  std::ofstream(dir / "a.jpg", std::ios::binary)
-      .write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
-  EXPECT_EQ(cv::imread(dir / "a.jpg").size(), cv::Size(60, 80)) << "the test's EXIF is not read";
-  std::string reason;
-  EXPECT_EQ(DecodeImageFile(dir / "a.jpg", &reason).size(), cv::Size(80, 60)) << reason;
 }
 
 TEST(OpenFrameSource, NamesWhatIsWrong) {

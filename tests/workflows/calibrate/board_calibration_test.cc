@@ -3,15 +3,16 @@
 #include "workflows/calibrate/board_calibration.h"
 
 #include <array>
+#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/layout/dictionary.h"
+#include "importer/print/png_file.h"
 #include "tests/support/board_renderer.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
@@ -45,8 +46,8 @@ void RenderPictures(Kind kind, std::uint32_t seed, const std::filesystem::path& 
   int number = 0;
   for (const Rigid3& pose : DrawBoardPoses(kTruth, board, kNumPictures, seed)) {
     options.seed = 1000 * seed + static_cast<std::uint32_t>(number);
-    cv::imwrite((folder / ("picture_" + std::to_string(100 + number++) + ".png")).string(),
-                RenderBoard(kTruth, pose, board, options));
+    std::ofstream(folder / ("picture_" + std::to_string(100 + number++) + ".png"))
+        << EncodePng(RenderBoard(kTruth, pose, board, options));
   }
 }
 
@@ -93,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Boards, BoardCalibrationTest,
 
 TEST(BoardCalibration, APictureWithoutTheChessboardSaysWhatToCount) {
   const TempDir dir;
-  cv::imwrite((dir.path() / "a.png").string(), cv::Mat(240, 320, CV_8U, 128));
+  std::ofstream(dir / "a.png") << EncodePng(cv::Mat(240, 320, CV_8U, 128));
   ExpectThrows<DataError>([&] { CalibrateWithBoard(OptionsFor(Kind::kChessboard, dir.path())); },
                           {"chessboard of 7 x 6 inner corners", "where four squares meet"});
 }

@@ -19,6 +19,7 @@
 #include "reconstruct/model/model_io.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
+#include "tests/workflows/stylus_workspace.h"
 
 namespace velamap {
 namespace {
@@ -242,10 +243,7 @@ TEST(CubeTest, NamesAndOrderOfThePhotographsHardlyChangeTheShape) {
 }
 
 TEST(StylusTest, AllMarkersComeNearTheDesign) {
-  const TempDir dir;
-  const ProgramRun run = Reconstruct(kStylus, kStylus / "images", dir / "stylus");
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const MarkerShape shape = ReadShapeCsv((dir / "stylus/shape/shape.csv").string());
+  const MarkerShape shape = ReadShapeCsv((StylusWorkspace() / "shape/shape.csv").string());
   EXPECT_EQ(NumWholeMarkers(shape), 8);
   const ShapeComparison comparison = CompareWithReference(kStylus, shape);
   EXPECT_EQ(comparison.num_points, 32);

@@ -4,6 +4,7 @@
 
 #include "tests/workflows/interop/colmap_tools.h"
 #include "tests/workflows/run_velamap.h"
+#include "tests/workflows/stylus_workspace.h"
 
 namespace velamap {
 namespace {
@@ -18,12 +19,7 @@ TEST_F(ColmapGuiTest, ShowsPointsAndCamerasOfAResult) {
       GTEST_SKIP() << program << " is not on the PATH";
     }
   }
-  const fs::path sample = fs::path(VELAMAP_SOURCE_DIR) / "sample_project/stylus";
-  const ProgramRun result =
-      RunVelamap({"automatic_reconstructor", "--image_path", (sample / "images").string(),
-                  "--camera_path", (sample / "camera.yml").string(), "--layout_path",
-                  (sample / "layout.yml").string(), "--workspace_path", path("stylus")});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  CopyStylusWorkspace(path("stylus"));
   fs::create_directories(VELAMAP_PICTURE_DIR);
   const std::string picture = (fs::path(VELAMAP_PICTURE_DIR) / "stylus.png").string();
   fs::remove(picture);

@@ -14,6 +14,7 @@
 #include "reconstruct/seed_model.h"
 #include "tests/workflows/interop/colmap_tools.h"
 #include "tests/workflows/run_velamap.h"
+#include "tests/workflows/stylus_workspace.h"
 
 namespace velamap {
 namespace {
@@ -228,12 +229,7 @@ class ColmapResultTest : public ColmapTracksTest {
   void SetUp() override {
     ColmapTracksTest::SetUp();
     if (IsSkipped()) return;
-    const fs::path sample = fs::path(VELAMAP_SOURCE_DIR) / "sample_project/stylus";
-    const ProgramRun run =
-        RunVelamap({"automatic_reconstructor", "--image_path", (sample / "images").string(),
-                    "--camera_path", (sample / "camera.yml").string(), "--layout_path",
-                    (sample / "layout.yml").string(), "--workspace_path", path("workspace")});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    CopyStylusWorkspace(path("workspace"));
     model_ = ReadModel(result());
   }
 

@@ -1,0 +1,30 @@
+// JPEG files through libjpeg-turbo.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "importer/video/video_picture.h"
+
+namespace velamap {
+
+// The size that the header gives; nothing if libjpeg-turbo cannot decode the file to BGR, as it is
+// with four inks.
+std::optional<cv::Size> JpegSize(const std::vector<std::uint8_t>& bytes);
+
+// BGR, 8 bit; damaged data are decoded as far as possible. Empty if nothing can be decoded.
+cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes);
+
+// The bytes of a file with chroma at half the width and height. `image` is BGR, 8 bit; `quality`
+// runs from 1 to 100.
+std::string EncodeJpeg(const cv::Mat& image, int quality);
+
+// Takes the planes over as they are; `luma` has full range.
+std::string EncodeJpeg(const cv::Mat& luma, const ChromaPlanes& chroma, int quality);
+
+}  // namespace velamap
