@@ -188,10 +188,10 @@ void LimitFrames(GlobalRegistration* global) {
       global->solution.NumRegistered() <= global->options.global.max_num_frames) {
     return;
   }
-  std::vector<double> sigma_of_frame;
+  std::vector<double> sigma_factor_of_frame;
   int first_idx = -1, most_fits = -1;
   for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
-    sigma_of_frame.push_back(std::max(global->noise.factor_of_frame[idx], 1e-9));
+    sigma_factor_of_frame.push_back(std::max(global->noise.factor_of_frame[idx], 1e-9));
     if (!global->solution.cam_from_shape[idx]) continue;
     const bool is_named = global->image_idx_of_frame[idx] == global->central_image_idx;
     const int num_fits = is_named ? static_cast<int>(problem.observations.size()) + 1
@@ -201,8 +201,8 @@ void LimitFrames(GlobalRegistration* global) {
       first_idx = static_cast<int>(idx);
     }
   }
-  const std::vector<int> chosen = ChooseViews(problem, global->solution, sigma_of_frame, first_idx,
-                                              global->options.global.max_num_frames);
+  const std::vector<int> chosen = ChooseViews(problem, global->solution, sigma_factor_of_frame,
+                                              first_idx, global->options.global.max_num_frames);
   for (int idx = 0; idx < static_cast<int>(problem.frames.size()); ++idx) {
     if (global->solution.cam_from_shape[static_cast<std::size_t>(idx)] &&
         !std::binary_search(chosen.begin(), chosen.end(), idx)) {

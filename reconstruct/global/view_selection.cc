@@ -33,7 +33,7 @@ struct CenterView {
 };
 
 std::vector<CenterView> ViewsOf(const MapProblem& problem, const MapSolution& solution,
-                                int frame_idx, double sigma_px) {
+                                int frame_idx, double sigma_factor) {
   std::vector<CenterView> views;
   const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(frame_idx)];
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
@@ -45,7 +45,7 @@ std::vector<CenterView> ViewsOf(const MapProblem& problem, const MapSolution& so
     Eigen::Matrix<double, 2, 3> ray_from_x;
     ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
     const Eigen::Matrix<double, 2, 3> jacobian =
-        observation.px_from_ray[0] * ray_from_x * rotation / sigma_px;
+        observation.px_from_ray[0] * ray_from_x * rotation / (sigma_factor * observation.sigma_px);
     views.push_back({marker_idx, jacobian.transpose() * jacobian});
   }
   return views;
@@ -76,7 +76,7 @@ std::vector<int> ChooseCandidateFrames(const std::vector<const DatabaseImage*>& 
 }
 
 std::vector<int> ChooseViews(const MapProblem& problem, const MapSolution& solution,
-                             const std::vector<double>& sigma_of_frame, int first_idx,
+                             const std::vector<double>& sigma_factor_of_frame, int first_idx,
                              int max_num_frames) {
   std::vector<int> registered;
   for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
@@ -89,7 +89,7 @@ std::vector<int> ChooseViews(const MapProblem& problem, const MapSolution& solut
   std::vector<Eigen::Matrix3d> information(problem.markers.size(), Eigen::Matrix3d::Zero());
   for (const int idx : registered) {
     views[static_cast<std::size_t>(idx)] =
-        ViewsOf(problem, solution, idx, sigma_of_frame[static_cast<std::size_t>(idx)]);
+        ViewsOf(problem, solution, idx, sigma_factor_of_frame[static_cast<std::size_t>(idx)]);
     for (const CenterView& view : views[static_cast<std::size_t>(idx)]) {
       information[view.marker_idx] += kPrior * view.information;
     }

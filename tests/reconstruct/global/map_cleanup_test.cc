@@ -245,6 +245,20 @@ TEST(LimitFrames, FrameThatTheUserNamedStays) {
   }
 }
 
+TEST(LimitFrames, TakesFramesWithSharpCornersFirst) {
+  GrownMap grown(SailWithNoise(24, true, TestSeed()));
+  grown.global.is_video = true;
+  grown.global.central_image_idx = 0;
+  for (MapObservation& observation : grown.global.problem.observations) {
+    if (observation.frame_idx % 2 == 1) observation.sigma_px *= 5;
+  }
+  grown.options.global.max_num_frames = 8;
+  LimitFrames(&grown.global);
+  for (std::size_t idx = 1; idx < 24; idx += 2) {
+    EXPECT_FALSE(grown.global.solution.cam_from_shape[idx]) << idx;
+  }
+}
+
 TEST(LimitFrames, PhotographsAllStay) {
   GrownMap grown(SailWithNoise(12, false, TestSeed()));
   grown.options.global.max_num_frames = 4;
