@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "importer/base/error.h"
+#include "importer/camera/camera_projection.h"
 #include "importer/camera/turned_camera.h"
 #include "reconstruct/adjust/camera_adjustment.h"
 #include "reconstruct/camera/focal_evidence.h"
@@ -53,7 +54,7 @@ struct Start {
 Cameras Scaled(const Cameras& cameras, double factor) {
   Cameras scaled = cameras;
   for (auto& [camera_id, camera] : scaled) {
-    const std::size_t num_focal = camera.model == CameraModel::kOpenCVFisheye ? 2 : 1;
+    const std::size_t num_focal = NumFocalLengths(camera.model);
     for (std::size_t i = 0; i < num_focal; ++i) {
       camera.params[i] = std::clamp(camera.params[i] * factor, kMinFocal * LargerSide(camera),
                                     kMaxFocal * LargerSide(camera));
