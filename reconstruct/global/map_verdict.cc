@@ -9,6 +9,7 @@
 
 #include "importer/base/statistics.h"
 #include "importer/geometry/quad.h"
+#include "reconstruct/global/map_refinement.h"
 
 namespace velamap {
 namespace {
@@ -76,7 +77,6 @@ std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_s
 // marker's own size is added as one measurement, because its error is the same in all frames.
 double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
                    int marker_idx) {
-  constexpr double kSizeSigma = 0.02;  // of the prior in the map
   const MapMarker& marker = problem.Marker(marker_idx);
   const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
   const double factor = std::max(noise.factor, kMinFactor);
@@ -94,7 +94,7 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
         observation.px_from_ray[0] * ray_from_x * rotation / sigma_px;
     information += jacobian.transpose() * jacobian;
     const Eigen::Vector3d toward = rotation.transpose() * x.normalized();
-    const double along_sigma = x.norm() * (kSizeSigma + sigma_px / observation.side_px);
+    const double along_sigma = x.norm() * (kScaleSigma + sigma_px / observation.side_px);
     by_size = toward * toward.transpose() / (along_sigma * along_sigma);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information + by_size);
