@@ -39,13 +39,6 @@ void CheckEnough(const Model& model, std::size_t num_images_before) {
                   model.images.size(), num_images_before));
 }
 
-// The world becomes the first image's camera.
-void MoveToFirstCamera(Model* model) {
-  const Rigid3 first_from_world = model->images.front().cam_from_world;
-  TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
-  model->images.front().cam_from_world = Rigid3{};  // exactly, without rounding
-}
-
 // 1 sigma of the size of each marker, as a fraction, by the inset of its corners, which shortens a
 // side by two insets.
 std::map<int, double> InsetSigmas(const MarkerSolution& solution) {
@@ -257,13 +250,7 @@ void MarkerAdjuster::Finish() {
   }
   UpdatePointErrors(&solution_.model);
   summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(solution_.model));
-  if (!(summary_.error_after_px.mean <= solution_.options.max_mean_error_px)) {
-    throw DataError(fmt::format(
-        "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
-        "of {}; does the calibration belong to these images?",
-        summary_.error_after_px.mean, solution_.options.max_mean_error_px,
-        OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
-  }
+  CheckMeanError(summary_.error_after_px.mean, solution_.options.max_mean_error_px);
   const std::vector<std::string> weaknesses =
       FindWeakGeometry(solution_.model, summary_.uncertainty.points);
   if (solution_.options.find_camera) CheckFocalLength(summary_.cameras, weaknesses);
