@@ -154,11 +154,10 @@ std::vector<CameraModelScore> MarkerAdjuster::CrossValidateCameraModel(
 }
 
 void MarkerAdjuster::WidenCameraSigmas() {
-  // Finish() has moved the image points to the middle row; the fits need them as recorded. The
-  // inverse is exact to first order only.
+  // Finish() has moved the image points to the middle row; the fits need them as recorded.
   MarkerSolution as_recorded = solution_;
-  MoveToMiddleRow(-solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
-                  &as_recorded.model);
+  MoveFromMiddleRow(solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
+                    &as_recorded.model);
   for (auto& [camera_id, sigmas] : JackknifeCameras(as_recorded)) {
     EstimatedCamera& found = summary_.cameras.at(camera_id);
     AddInset(solution_.weights.inset_as_scale, found.camera, &sigmas);
