@@ -237,7 +237,7 @@ void MarkerAdjuster::Finish() {
       std::sqrt(Trace(uncertainty.points) /
                 static_cast<double>(uncertainty.points.point3D_ids.size()));
   summary_.uncertainty = std::move(uncertainty);
-  WarnOfSlowShutter();
+  WarnOfSlowShutter(summary_.uncertainty, &solution_);
   MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
                   &solution_.model);
   if (solution_.options.find_camera) {
@@ -258,16 +258,6 @@ void MarkerAdjuster::Finish() {
 
 std::map<CameraId, EstimatedCamera> MarkerAdjuster::EstimateCameras() const {
   return CamerasOf(solution_.model, *Linearize(solution_));
-}
-
-void MarkerAdjuster::WarnOfSlowShutter() {
-  constexpr double kSlowest_s = 0.04;  // a frame at 25 frames a second
-  const AdjustmentUncertainty& uncertainty = summary_.uncertainty;
-  if (!(std::abs(uncertainty.rolling_shutter_s) > kSlowest_s)) return;
-  solution_.warnings.push_back(fmt::format(
-      "the rows of a frame seem to be read over {:.0f} +- {:.0f} ms, longer than cameras take: is "
-      "the video stabilised, slowed down or sped up? Film without stabilisation, at normal speed",
-      1e3 * std::abs(uncertainty.rolling_shutter_s), 1e3 * uncertainty.rolling_shutter_sigma_s));
 }
 
 int MarkerAdjuster::ReviseCorners() {
