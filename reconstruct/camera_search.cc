@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "importer/base/error.h"
+#include "importer/camera/camera_projection.h"
 #include "importer/camera/turned_camera.h"
 #include "reconstruct/adjust/camera_adjustment.h"
 #include "reconstruct/camera/focal_evidence.h"
@@ -23,6 +24,8 @@ namespace {
 using Cameras = std::map<CameraId, Camera>;
 
 constexpr double kMinFocal = 0.25, kMaxFocal = 8.0;  // times the larger side
+// From this sigma of its logarithm on, the markers tell too little of the focal length.
+constexpr double kVagueLogSigma = 0.1;
 
 int LargerSide(const Camera& camera) { return std::max(camera.width_px, camera.height_px); }
 
@@ -53,7 +56,7 @@ struct Start {
 Cameras Scaled(const Cameras& cameras, double factor) {
   Cameras scaled = cameras;
   for (auto& [camera_id, camera] : scaled) {
-    const std::size_t num_focal = camera.model == CameraModel::kOpenCVFisheye ? 2 : 1;
+    const std::size_t num_focal = NumFocalLengths(camera.model);
     for (std::size_t i = 0; i < num_focal; ++i) {
       camera.params[i] = std::clamp(camera.params[i] * factor, kMinFocal * LargerSide(camera),
                                     kMaxFocal * LargerSide(camera));
@@ -87,7 +90,6 @@ struct Lens {
 // Cameras with weak evidence share the evidence of the others, relative to the larger side.
 Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const Cameras& guesses,
             const RegistrationOptions& registration, const MarkerAdjustmentOptions& adjustment) {
-  constexpr double kVague = 0.1;
   const std::map<CameraId, CameraId> upright = UprightCameras(guesses);
   std::map<CameraId, std::vector<SquareView>> views;
   for (const auto& [camera_id, guess] : guesses) {
@@ -117,7 +119,7 @@ Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const C
   }
   for (auto& [camera_id, camera] : lens.cameras) {
     if (!(information > 0)) break;
-    if (log_sigmas[camera_id] < kVague) continue;
+    if (log_sigmas[camera_id] < kVagueLogSigma) continue;
     const double factor =
         std::exp(sum / information) * LargerSide(camera) / MeanFocalLength(camera);
     camera = Scaled({{camera_id, camera}}, factor).at(camera_id);
@@ -134,7 +136,7 @@ Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const C
 std::vector<Start> Starts(const std::vector<DatabaseImage>& images, const Cameras& guesses,
                           const RegistrationOptions& registration,
                           const MarkerAdjustmentOptions& adjustment) {
-  constexpr double kVague = 0.1, kMaxStep = 0.7;
+  constexpr double kMaxStep = 0.7;
   const Lens straight =
       LensOf(CameraModel::kSimpleRadial, images, guesses, registration, adjustment);
   const Lens fisheye =
@@ -147,7 +149,7 @@ std::vector<Start> Starts(const std::vector<DatabaseImage>& images, const Camera
   std::vector<Start> starts = {{"straight lines", straight.cameras}, {"fisheye", fisheye.cameras}};
   if (fisheye.cost < straight.cost) std::swap(starts[0], starts[1]);
   starts.push_back({"the database's", guesses});
-  if (straight.log_sigma > kVague) {
+  if (straight.log_sigma > kVagueLogSigma) {
     const double step = std::min(kMaxStep, 2.0 * straight.log_sigma);
     starts.push_back({"longer", Scaled(straight.cameras, std::exp(step))});
     starts.push_back({"shorter", Scaled(straight.cameras, std::exp(-step))});

@@ -11,6 +11,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/text_file.h"
+#include "importer/camera/camera_projection.h"
 #include "importer/camera/storage_check.h"
 
 namespace velamap {
@@ -223,14 +224,11 @@ Camera ScaleToImageSize(const Camera& camera, int width_px, int height_px,
   Camera scaled = camera;
   scaled.width_px = width_px;
   scaled.height_px = height_px;
-  const bool one_focal_length = camera.model == CameraModel::kSimplePinhole ||
-                                camera.model == CameraModel::kSimpleRadial ||
-                                camera.model == CameraModel::kRadial;
-  std::size_t i = 0;
-  scaled.params[i++] *= one_focal_length ? 0.5 * (scale_x + scale_y) : scale_x;
-  if (!one_focal_length) scaled.params[i++] *= scale_y;
-  scaled.params[i++] *= scale_x;
-  scaled.params[i++] *= scale_y;
+  const std::size_t center = NumFocalLengths(camera.model);
+  scaled.params[0] *= center == 1 ? 0.5 * (scale_x + scale_y) : scale_x;
+  if (center == 2) scaled.params[1] *= scale_y;
+  scaled.params[center] *= scale_x;
+  scaled.params[center + 1] *= scale_y;
   return scaled;
 }
 

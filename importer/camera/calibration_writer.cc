@@ -67,11 +67,10 @@ void WriteCalibration(const EstimatedCamera& estimate, const std::string& origin
 std::string DescribeCamera(const EstimatedCamera& estimate) {
   const Camera& camera = estimate.camera;
   const std::vector<double>&values = camera.params, &sigmas = estimate.sigmas;
-  const bool has_one = HasOneFocalLength(camera.model);
-  const std::size_t center = has_one ? 1 : 2;
+  const std::size_t center = NumFocalLengths(camera.model);
   std::string text = fmt::format("{}, focal length {:.1f} +- {:.1f}", CameraModelName(camera.model),
                                  values[0], sigmas[0]);
-  if (!has_one) text += fmt::format(" and {:.1f} +- {:.1f}", values[1], sigmas[1]);
+  if (center == 2) text += fmt::format(" and {:.1f} +- {:.1f}", values[1], sigmas[1]);
   text += fmt::format(" px, principal point ({:.1f} +- {:.1f}, {:.1f} +- {:.1f}) px",
                       values[center], sigmas[center], values[center + 1], sigmas[center + 1]);
   for (std::size_t i = center + 2; i < values.size(); ++i) {

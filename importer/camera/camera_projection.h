@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 
 #include <Eigen/Core>
@@ -17,6 +18,9 @@ inline bool HasOneFocalLength(CameraModel model) {
   return model == CameraModel::kSimplePinhole || model == CameraModel::kSimpleRadial ||
          model == CameraModel::kRadial;
 }
+
+// The focal lengths are the first parameters; the two of the principal point follow.
+inline std::size_t NumFocalLengths(CameraModel model) { return HasOneFocalLength(model) ? 1 : 2; }
 
 // Brown-Conrady with an optional rational denominator; n = (k1 k2 p1 p2 k3 k4 k5 k6).
 template <typename T, typename K>

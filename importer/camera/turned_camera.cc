@@ -14,7 +14,7 @@ int NumQuarters(int quarter_turns) { return ((quarter_turns % 4) + 4) % 4; }
 Camera TurnOnce(const Camera& camera) {
   Camera turned = camera;
   std::swap(turned.width_px, turned.height_px);
-  const std::size_t center = HasOneFocalLength(camera.model) ? 1 : 2;
+  const std::size_t center = NumFocalLengths(camera.model);
   if (center == 2) std::swap(turned.params[0], turned.params[1]);
   turned.params[center] = camera.height_px - camera.params[center + 1];
   turned.params[center + 1] = camera.params[center];

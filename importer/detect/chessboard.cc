@@ -13,6 +13,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
+#include "importer/camera/camera.h"
 #include "importer/detect/corner_colors.h"
 
 namespace velamap {
@@ -24,7 +25,6 @@ constexpr double kSigmaOfEdgeWidth = 0.02;
 // Half a window around a corner as a part of the distance to the nearest other one, so that the
 // window holds the edges of no other corner.
 constexpr double kWindowOfSquare = 0.4;
-constexpr float kOpenCVToImage = 0.5F;  // OpenCV puts the origin at the first pixel's centre
 
 // The corners in the image, row by row.
 struct CornerGrid {
@@ -190,6 +190,7 @@ FrameDetections DetectChessboard(const Chessboard& board, const Frame& frame) {
   }
   grid = Refined(frame.gray, Oriented(frame.gray, std::move(grid)));
   const double sigma_px = kSigmaOfEdgeWidth * EdgeWidthPx(frame.gray, grid);
+  constexpr auto kShiftPx = static_cast<float>(kImageFromOpenCvPx);
   for (const int row : BlockBegins(board.num_rows)) {
     for (const int column : BlockBegins(board.num_columns)) {
       MarkerDetection marker;
@@ -198,8 +199,7 @@ FrameDetections DetectChessboard(const Chessboard& board, const Frame& frame) {
           grid.At(column, row), grid.At(column + 1, row), grid.At(column + 1, row + 1),
           grid.At(column, row + 1)};
       for (std::size_t c = 0; c < corners_px.size(); ++c) {
-        marker.corners_in_image_px[c] = {corners_px[c].x + kOpenCVToImage,
-                                         corners_px[c].y + kOpenCVToImage};
+        marker.corners_in_image_px[c] = {corners_px[c].x + kShiftPx, corners_px[c].y + kShiftPx};
       }
       marker.corner_sigma_px.fill(sigma_px);
       detections.markers.push_back(marker);

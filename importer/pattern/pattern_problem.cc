@@ -127,13 +127,17 @@ bool Start(const QuadCorners& corners_px, const ImageFormationParameters& format
   constexpr double kMinCellPx = 2.5;
   constexpr double kUnknownSigma = 0.25, kHeldSigma = 0.02;
   const bool shows_margins = QuadMeanSide(corners_px) >= kMinCellPx * problem->model.num_cells;
+  constexpr double kUnheldSigma = 1e3;  // of the corners, px, and of dark and light
+  constexpr double kBlurSigmaPx = 0.7, kGradientSigma = 0.15, kSurroundSigma = 0.3;
   // The light of the marker's cells and of the quiet zone differs little once the tone curve is
   // known. A looser prior lets a narrow, dim quiet zone pass for a wide one.
   constexpr double kInnerLightSigma = 0.02;
-  P::Vector sigma;
-  sigma << P::Vector::Constant(1e3).head<8>(), 0.7, 0.7, 1e3, 1e3, 0.15, 0.15, 0.3,
-      kInnerLightSigma, Eigen::Vector4d::Constant(kBendOfDiagonal * problem->model.diagonal_px),
-      Eigen::Vector4d::Ones();
+  P::Vector sigma = P::Vector::Constant(kUnheldSigma);  // those of the margins follow
+  sigma[P::kBlurU] = sigma[P::kBlurV] = kBlurSigmaPx;
+  sigma[P::kGradientX] = sigma[P::kGradientY] = kGradientSigma;
+  sigma[P::kSurround] = kSurroundSigma;
+  sigma[P::kInnerLight] = kInnerLightSigma;
+  sigma.segment<4>(P::kBendU).setConstant(kBendOfDiagonal * problem->model.diagonal_px);
   problem->weight = (kPixelNoise * sigma.cwiseInverse()).cwiseAbs2();
   ImageFormationParameters quiet_zone = formation;
   if (formation.quiet_zone_sigma_cells == 0) {

@@ -21,14 +21,6 @@ constexpr double kMinCellPx = 4.0;
 // into which dark squares around it blur stays lighter.
 constexpr double kMaxDarkness = 0.35;
 
-double MeanCellPx(const Quad& quad, int num_cells) {
-  double perimeter_px = 0.0;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    perimeter_px += (quad[(i + 1) % kNumCorners] - quad[i]).norm();
-  }
-  return perimeter_px / kNumCorners / num_cells;
-}
-
 // Corner i is at (u, v) of the unit square.
 constexpr std::array<std::array<double, 2>, kNumCorners> kCornersInSquare = {
     {{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
@@ -52,7 +44,7 @@ bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner,
 
 int RefineSaddleCorners(const cv::Mat& gray, int num_cells, Quad* corners_px) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
-  const double cell_px = MeanCellPx(*corners_px, num_cells);
+  const double cell_px = QuadMeanSide(*corners_px) / num_cells;
   if (cell_px < kMinCellPx) return 0;
   const UnitSquareMap map(*corners_px);
   std::vector<std::size_t> saddles;

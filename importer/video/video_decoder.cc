@@ -25,19 +25,13 @@ namespace {
 // After so many failures in a row the rest of the file is taken as broken.
 constexpr int kMaxNumFailures = 4096;
 
-struct FormatCloser {
+struct FfmpegFreer {
   void operator()(AVFormatContext* format) const { avformat_close_input(&format); }
-};
-struct CodecFreer {
   void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
-};
-struct PacketFreer {
   void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-};
-struct FrameFreer {
   void operator()(AVFrame* frame) const { av_frame_free(&frame); }
 };
-using FormatPtr = std::unique_ptr<AVFormatContext, FormatCloser>;
+using FormatPtr = std::unique_ptr<AVFormatContext, FfmpegFreer>;
 
 [[noreturn]] void ThrowUnreadable(const std::string& path) {
   throw InputError(
@@ -225,9 +219,9 @@ class VideoDecoder::Stream {
 
   FormatPtr format_;
   AVStream* stream_;
-  std::unique_ptr<AVCodecContext, CodecFreer> codec_;
-  std::unique_ptr<AVPacket, PacketFreer> packet_;
-  std::unique_ptr<AVFrame, FrameFreer> frame_;
+  std::unique_ptr<AVCodecContext, FfmpegFreer> codec_;
+  std::unique_ptr<AVPacket, FfmpegFreer> packet_;
+  std::unique_ptr<AVFrame, FfmpegFreer> frame_;
   std::int64_t skip_before_time_ = std::numeric_limits<std::int64_t>::min();
 };
 

@@ -32,7 +32,7 @@ WarpMatrix WarpsAt(double u, double v) {
 }
 
 Eigen::Vector2d PrincipalPoint(const Camera& camera) {
-  const std::size_t first = HasOneFocalLength(camera.model) ? 1 : 2;
+  const std::size_t first = NumFocalLengths(camera.model);
   return {camera.params[first], camera.params[first + 1]};
 }
 

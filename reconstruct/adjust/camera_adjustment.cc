@@ -35,7 +35,7 @@ double Explained(const Model& model) {
 }
 
 // One radial term alone cannot follow a wide lens.
-void GiveRoom(Model* model) {
+void AddSecondRadialTerm(Model* model) {
   for (auto& [camera_id, camera] : model->cameras) {
     if (camera.model == CameraModel::kSimpleRadial) {
       camera = ConvertCamera(camera, CameraModel::kRadial);
@@ -46,7 +46,7 @@ void GiveRoom(Model* model) {
 CameraAdjustment AdjustTied(const MarkerAdjustmentOptions& free, const Layout& layout,
                             const CornerErrors& corner_errors, Model tied,
                             const TurnedCameras& turned) {
-  GiveRoom(&tied);
+  AddSecondRadialTerm(&tied);
   MarkerAdjuster begin(free, layout, corner_errors, std::move(tied));
   begin.PrepareSeed();
   MarkerAdjuster adjuster = MarkerAdjuster::AdjustedFrom(&begin);
@@ -83,8 +83,8 @@ CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Lay
 namespace {
 
 // Throws DataError where the wanted model fails and another one is far better: that is the reason.
-void BlameModel(const std::vector<CameraModelScore>& scores, CameraModel wanted,
-                const DataError& failure) {
+void ThrowIfAnotherIsBetter(const std::vector<CameraModelScore>& scores, CameraModel wanted,
+                            const DataError& failure) {
   constexpr double kFarBetter = 0.5;
   const auto best = std::min_element(scores.begin(), scores.end(),
                                      [](const CameraModelScore& a, const CameraModelScore& b) {
@@ -122,7 +122,7 @@ CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& option
   try {
     adjuster.Finish();
   } catch (const DataError& error) {
-    if (wanted) BlameModel(result.scores, *wanted, error);
+    if (wanted) ThrowIfAnotherIsBetter(result.scores, *wanted, error);
     throw;
   }
   adjuster.WidenCameraSigmas();

@@ -211,12 +211,12 @@ CrossValidation CrossValidateCameraModels(const MarkerSolution& solution,
 
 MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution) {
   std::optional<MarkerSolution> best;
-  double least_px = std::numeric_limits<double>::infinity();
+  double least_factor = std::numeric_limits<double>::infinity();
   for (const CameraModel model : kModels) {
     if (model == CameraModel::kOpenCVFisheye && !SeesWideAngles(solution)) continue;
     std::optional<MarkerSolution> trial = RefinedAs(model, solution);
-    if (!trial || trial->weights.corner_factor >= least_px) continue;
-    least_px = trial->weights.corner_factor;
+    if (!trial || trial->weights.corner_factor >= least_factor) continue;
+    least_factor = trial->weights.corner_factor;
     best = std::move(trial);
   }
   return best ? std::move(*best) : solution;

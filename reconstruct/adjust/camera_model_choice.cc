@@ -18,7 +18,7 @@ constexpr std::array<CameraModel, 4> kModelsOfClips = {CameraModel::kSimpleRadia
                                                        CameraModel::kRadial, CameraModel::kOpenCV,
                                                        CameraModel::kOpenCVFisheye};
 
-constexpr double kMinRayLength = 0.7;  // of a fisheye, tangent
+constexpr double kWideRayLength = 0.7;  // tangent; a fisheye is considered beyond it
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void SetCameraModel(CameraModel model, MarkerSolution* solution) {
 bool SeesWideAngles(const MarkerSolution& solution) {
   const auto& cameras = solution.model.cameras;
   return std::any_of(cameras.begin(), cameras.end(),
-                     [](const auto& entry) { return MaxRayLength(entry.second) > kMinRayLength; });
+                     [](const auto& entry) { return MaxRayLength(entry.second) > kWideRayLength; });
 }
 
 bool HasFoldedCamera(const MarkerSolution& solution) {

@@ -55,7 +55,7 @@ void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
 }
 
 void AddInset(double inset_as_scale, const Camera& camera, std::vector<double>* sigmas) {
-  const std::size_t num_focal = HasOneFocalLength(camera.model) ? 1 : 2;
+  const std::size_t num_focal = NumFocalLengths(camera.model);
   for (std::size_t i = 0; i < num_focal; ++i) {
     (*sigmas)[i] = std::hypot((*sigmas)[i], inset_as_scale * camera.params[i]);
   }

@@ -39,13 +39,6 @@ void CheckEnough(const Model& model, std::size_t num_images_before) {
                   model.images.size(), num_images_before));
 }
 
-// The world becomes the first image's camera.
-void MoveToFirstCamera(Model* model) {
-  const Rigid3 first_from_world = model->images.front().cam_from_world;
-  TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
-  model->images.front().cam_from_world = Rigid3{};  // exactly, without rounding
-}
-
 // 1 sigma of the size of each marker, as a fraction, by the inset of its corners, which shortens a
 // side by two insets.
 std::map<int, double> InsetSigmas(const MarkerSolution& solution) {
@@ -161,11 +154,10 @@ std::vector<CameraModelScore> MarkerAdjuster::CrossValidateCameraModel(
 }
 
 void MarkerAdjuster::WidenCameraSigmas() {
-  // Finish() has moved the image points to the middle row; the fits need them as recorded. The
-  // inverse is exact to first order only.
+  // Finish() has moved the image points to the middle row; the fits need them as recorded.
   MarkerSolution as_recorded = solution_;
-  MoveToMiddleRow(-solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
-                  &as_recorded.model);
+  MoveFromMiddleRow(solution_.state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
+                    &as_recorded.model);
   for (auto& [camera_id, sigmas] : JackknifeCameras(as_recorded)) {
     EstimatedCamera& found = summary_.cameras.at(camera_id);
     AddInset(solution_.weights.inset_as_scale, found.camera, &sigmas);
@@ -245,7 +237,7 @@ void MarkerAdjuster::Finish() {
       std::sqrt(Trace(uncertainty.points) /
                 static_cast<double>(uncertainty.points.point3D_ids.size()));
   summary_.uncertainty = std::move(uncertainty);
-  WarnOfSlowShutter();
+  WarnOfSlowShutter(summary_.uncertainty, &solution_);
   MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
                   &solution_.model);
   if (solution_.options.find_camera) {
@@ -257,13 +249,7 @@ void MarkerAdjuster::Finish() {
   }
   UpdatePointErrors(&solution_.model);
   summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(solution_.model));
-  if (!(summary_.error_after_px.mean <= solution_.options.max_mean_error_px)) {
-    throw DataError(fmt::format(
-        "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
-        "of {}; does the calibration belong to these images?",
-        summary_.error_after_px.mean, solution_.options.max_mean_error_px,
-        OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
-  }
+  CheckMeanError(summary_.error_after_px.mean, solution_.options.max_mean_error_px);
   const std::vector<std::string> weaknesses =
       FindWeakGeometry(solution_.model, summary_.uncertainty.points);
   if (solution_.options.find_camera) CheckFocalLength(summary_.cameras, weaknesses);
@@ -272,16 +258,6 @@ void MarkerAdjuster::Finish() {
 
 std::map<CameraId, EstimatedCamera> MarkerAdjuster::EstimateCameras() const {
   return CamerasOf(solution_.model, *Linearize(solution_));
-}
-
-void MarkerAdjuster::WarnOfSlowShutter() {
-  constexpr double kSlowest_s = 0.04;  // a frame at 25 frames a second
-  const AdjustmentUncertainty& uncertainty = summary_.uncertainty;
-  if (!(std::abs(uncertainty.rolling_shutter_s) > kSlowest_s)) return;
-  solution_.warnings.push_back(fmt::format(
-      "the rows of a frame seem to be read over {:.0f} +- {:.0f} ms, longer than cameras take: is "
-      "the video stabilised, slowed down or sped up? Film without stabilisation, at normal speed",
-      1e3 * std::abs(uncertainty.rolling_shutter_s), 1e3 * uncertainty.rolling_shutter_sigma_s));
 }
 
 int MarkerAdjuster::ReviseCorners() {

@@ -76,7 +76,6 @@ class MarkerAdjuster {
   // Returns the number of corners that were removed or restored.
   int ReviseCorners();
   void RemoveUnderconstrainedParts();
-  void WarnOfSlowShutter();
 
   MarkerSolution solution_;
   std::size_t num_images_before_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "reconstruct/adjust/corner_calibration.h"
@@ -36,6 +37,15 @@ bool ShowsRollingShutter(const MarkerSolution& solution) {
                 1e3 * sigma_s);
   return sigmas * sigmas > InformationCriterion(1, trial) &&
          std::abs(state.rolling_shutter_s) > kFastest_s;
+}
+
+void WarnOfSlowShutter(const AdjustmentUncertainty& uncertainty, MarkerSolution* solution) {
+  constexpr double kSlowest_s = 0.04;  // a frame at 25 frames a second
+  if (!(std::abs(uncertainty.rolling_shutter_s) > kSlowest_s)) return;
+  solution->warnings.push_back(fmt::format(
+      "the rows of a frame seem to be read over {:.0f} +- {:.0f} ms, longer than cameras take: is "
+      "the video stabilised, slowed down or sped up? Film without stabilisation, at normal speed",
+      1e3 * std::abs(uncertainty.rolling_shutter_s), 1e3 * uncertainty.rolling_shutter_sigma_s));
 }
 
 }  // namespace velamap

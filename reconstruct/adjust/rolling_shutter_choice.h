@@ -1,8 +1,10 @@
-// Whether the frames of a video show that their rows are read one after another.
+// Whether the frames of a video show that their rows are read one after another, and a warning
+// where this takes implausibly long.
 
 #pragma once
 
 #include "reconstruct/adjust/marker_solution.h"
+#include "reconstruct/model/adjustment_uncertainty.h"
 
 namespace velamap {
 
@@ -12,5 +14,8 @@ namespace velamap {
 // as sensors take. Returns false without velocities of the corners, without
 // estimate_rolling_shutter, and where the option gives the time.
 bool ShowsRollingShutter(const MarkerSolution& solution);
+
+// Adds a warning where the rows take longer to read than those of any camera.
+void WarnOfSlowShutter(const AdjustmentUncertainty& uncertainty, MarkerSolution* solution);
 
 }  // namespace velamap

@@ -10,6 +10,7 @@
 #include "importer/base/natural_order.h"
 #include "importer/base/statistics.h"
 #include "importer/camera/camera_jacobian.h"
+#include "importer/camera/camera_projection.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/pose_step.h"
 #include "reconstruct/model/reprojection.h"
@@ -31,8 +32,8 @@ class OwnCameraProblem : public LeastSquaresProblem<kNumUnknowns> {
 
   OwnCameraProblem(const Camera& camera, const std::vector<SeenPoint>& points, double scale_px)
       : camera_(camera),
-        center_(camera.params[HasOneFocalLength(camera.model) ? 1 : 2],
-                camera.params[HasOneFocalLength(camera.model) ? 2 : 3]),
+        center_(camera.params[NumFocalLengths(camera.model)],
+                camera.params[NumFocalLengths(camera.model) + 1]),
         points_(points),
         loss_{9.0 * scale_px * scale_px} {}
 

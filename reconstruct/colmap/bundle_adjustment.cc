@@ -134,8 +134,7 @@ void CopyGeometry(const Model& result, Model* model) {
     point.x_in_world = result.points3D.at(point3D_id).x_in_world;
   }
   // Changes nothing where COLMAP has held the first image's pose; other versions may not.
-  const Rigid3 first_from_world = model->images.front().cam_from_world;
-  TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
+  MoveToFirstCamera(model);
 }
 
 Model ReadResult(const std::string& path, const std::string& log_path) {
@@ -213,13 +212,7 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
   }
   UpdatePointErrors(&adjusted);
   summary.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(adjusted));
-  if (!(summary.error_after_px.mean <= options.max_mean_error_px)) {
-    throw DataError(fmt::format(
-        "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
-        "of {}; does the calibration belong to these images?",
-        summary.error_after_px.mean, options.max_mean_error_px,
-        OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
-  }
+  CheckMeanError(summary.error_after_px.mean, options.max_mean_error_px);
   *model = std::move(adjusted);
   return summary;
 }

@@ -1,5 +1,7 @@
 #include "reconstruct/colmap/bundle_adjustment_options.h"
 
+#include <fmt/format.h>
+
 #include "importer/base/error.h"
 
 namespace velamap {
@@ -43,6 +45,14 @@ void BundleAdjustmentOptions::Check() const {
                      ": is empty; give COLMAP's program");
   }
   CheckRanges(*this);
+}
+
+void CheckMeanError(double mean_error_px, double max_mean_error_px) {
+  if (mean_error_px <= max_mean_error_px) return;
+  throw DataError(fmt::format(
+      "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
+      "of {}; does the calibration belong to these images?",
+      mean_error_px, max_mean_error_px, OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
 }
 
 }  // namespace velamap

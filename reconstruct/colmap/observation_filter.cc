@@ -28,7 +28,7 @@ void AddResidual(const ObservationError& error, AxisResiduals* residuals) {
 double RobustSigmaAboutZero(AxisResiduals residuals) {
   if (residuals.empty()) return std::numeric_limits<double>::infinity();
   for (double& residual : residuals) residual = std::abs(residual);
-  return 1.4826 * Median(std::move(residuals));
+  return kMadToSigma * Median(std::move(residuals));
 }
 
 double OutlierThreshold(const BundleAdjustmentOptions& options, double sigma_px) {

@@ -31,9 +31,4 @@ double StepOf(const std::vector<StandingMarker>& markers, const MarkerChain& cha
 // on one only.
 std::vector<MarkerChain> FindChains(const std::vector<StandingMarker>& markers);
 
-// Clusters of the markers of `rest` by single linkage: each is in one cluster, in the order of
-// `rest`.
-std::vector<MarkerChain> FindClusters(const std::vector<StandingMarker>& markers,
-                                      const MarkerChain& rest);
-
 }  // namespace velamap

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "importer/base/statistics.h"
+#include "reconstruct/evidence/marker_clusters.h"
 #include "reconstruct/evidence/marker_links.h"
 
 namespace velamap {

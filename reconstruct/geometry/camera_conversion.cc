@@ -36,9 +36,9 @@ class RayError {
 };
 
 Camera StartOf(const Camera& camera, CameraModel model) {
-  const std::size_t center = HasOneFocalLength(camera.model) ? 1 : 2;
-  Camera result{model, camera.width_px, camera.height_px, {MeanFocalLength(camera)}};
-  if (!HasOneFocalLength(model)) result.params.push_back(result.params.front());
+  const std::size_t center = NumFocalLengths(camera.model);
+  Camera result{model, camera.width_px, camera.height_px, {}};
+  result.params.assign(NumFocalLengths(model), MeanFocalLength(camera));
   result.params.push_back(camera.params[center]);
   result.params.push_back(camera.params[center + 1]);
   result.params.resize(static_cast<std::size_t>(NumCameraParams(model)), 0.0);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kJudgedField = 0.7;
 constexpr double kClearly = 1.0 / 3.0;  // smaller
 
-int NumFocalLengths(CameraModel model) { return HasOneFocalLength(model) ? 1 : 2; }
+int BeginOfDistortion(CameraModel model) { return static_cast<int>(NumFocalLengths(model)) + 2; }
 
 // 0 for a tangential parameter. `parameter` counts from the principal point.
 int PowerOfRay(CameraModel model, int parameter) {
@@ -37,7 +37,7 @@ double RelativeMovement(CameraModel model, int parameter, double ray_length) {
 Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(prior.free.size()));
   for (std::size_t i = 0; i < prior.free.size(); ++i) {
-    const int distortion = prior.free[i] - NumFocalLengths(prior.model) - 2;
+    const int distortion = prior.free[i] - BeginOfDistortion(prior.model);
     if (distortion < 0 || PowerOfRay(prior.model, distortion) == 0) continue;
     gradient[static_cast<Eigen::Index>(i)] =
         RelativeMovement(prior.model, distortion, kJudgedField * prior.max_ray_length);
@@ -54,7 +54,7 @@ Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
 // How far 1 sigma of the first distortion parameter moves a ray in the judged field, relative to
 // its distance from the optical axis.
 double RadialSigma(const IntrinsicsPrior& prior) {
-  const std::size_t k1 = static_cast<std::size_t>(NumFocalLengths(prior.model)) + 2;
+  const std::size_t k1 = NumFocalLengths(prior.model) + 2;
   if (prior.sigmas.size() <= k1) return 0.0;
   return prior.sigmas[k1] * RelativeMovement(prior.model, 0, kJudgedField * prior.max_ray_length);
 }
@@ -90,14 +90,14 @@ bool IsUnnamed(const Camera& calibration, int index) {
 
 IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrinsics& free,
                                     double sigma) {
-  const int num_focal = NumFocalLengths(calibration.model);
+  const auto num_focal = static_cast<int>(NumFocalLengths(calibration.model));
   const double focal_px = MeanFocalLength(calibration);
   IntrinsicsPrior prior;
   prior.model = calibration.model;
   prior.max_ray_length = MaxRayLength(calibration);
   prior.mean = calibration.params;
   for (int i = 0; i < static_cast<int>(calibration.params.size()); ++i) {
-    const int distortion = i - num_focal - 2;
+    const int distortion = i - BeginOfDistortion(calibration.model);
     prior.sigmas.push_back(distortion < 0 ? sigma * focal_px
                                           : sigma / RelativeMovement(calibration.model, distortion,
                                                                      prior.max_ray_length));
@@ -112,7 +112,7 @@ IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrins
 IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
   constexpr double kFocalSigma = 1.0, kCenterSigma = 0.02;
   constexpr double kRadialSigma = 0.3, kTangentialSigma = 0.01;
-  const int num_focal = NumFocalLengths(camera.model);
+  const auto num_focal = static_cast<int>(NumFocalLengths(camera.model));
   const double focal_px = MeanFocalLength(camera);
   Camera central = camera;
   std::fill(central.params.begin() + num_focal, central.params.end(), 0.0);
@@ -128,7 +128,7 @@ IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
   std::iota(prior.free.begin(), prior.free.end(), 0);
   std::iota(prior.held.begin(), prior.held.end(), kBeginOfDenominator);
   for (int i = 0; i < static_cast<int>(prior.sigmas.size()); ++i) {
-    const int distortion = i - num_focal - 2;
+    const int distortion = i - BeginOfDistortion(camera.model);
     double& sigma = prior.sigmas[static_cast<std::size_t>(i)];
     if (i < num_focal) {
       sigma = kFocalSigma * focal_px;
@@ -172,7 +172,7 @@ FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const Intrinsics
     }
     return IsClearlySmaller(largest_sigma, 1.0, largest_change);
   };
-  const int num_focal = NumFocalLengths(prior.model);
+  const auto num_focal = static_cast<int>(NumFocalLengths(prior.model));
   FreeIntrinsics determined = free;
   determined.focal_length = free.focal_length && is_determined(0, num_focal);
   determined.principal_point = free.principal_point && is_determined(num_focal, num_focal + 2);
@@ -188,7 +188,7 @@ bool IsWithin(const IntrinsicsPrior& prior, const Camera& camera) {
   const Eigen::VectorXd change = Change(prior, camera);
   bool is_within = std::abs(RadialGradient(prior).dot(change)) <= RadialSigma(prior);
   for (std::size_t i = 0; i < prior.free.size(); ++i) {
-    if (prior.free[i] >= NumFocalLengths(prior.model) + 2) break;
+    if (prior.free[i] >= BeginOfDistortion(prior.model)) break;
     is_within = is_within && std::abs(change[static_cast<Eigen::Index>(i)]) <=
                                  prior.sigmas[static_cast<std::size_t>(prior.free[i])];
   }
@@ -196,7 +196,7 @@ bool IsWithin(const IntrinsicsPrior& prior, const Camera& camera) {
 }
 
 std::string DescribeRefinement(const Camera& calibration, const Camera& refined) {
-  const auto num_focal = static_cast<std::size_t>(NumFocalLengths(refined.model));
+  const std::size_t num_focal = NumFocalLengths(refined.model);
   const std::vector<double>& from = calibration.params;
   const std::vector<double>& to = refined.params;
   std::string text = fmt::format(

@@ -7,11 +7,7 @@
 namespace velamap {
 
 int GlobalRegistration::NumFits(int marker_idx) const {
-  int count = 0;
-  for (const int idx : problem.Marker(marker_idx).observation_idxs) {
-    count += solution.fits[static_cast<std::size_t>(idx)];
-  }
-  return count;
+  return velamap::NumFits(problem, solution, marker_idx);
 }
 
 int GlobalRegistration::NumFitsInFrame(int frame_idx) const {

@@ -20,14 +20,6 @@ constexpr double kJoinRatio = 0.5;
 // A map of this many frames is good enough for all frames that see it to join at once.
 constexpr int kManyFrames = 16;
 
-int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx) {
-  int count = 0;
-  for (const int idx : problem.Marker(marker_idx).observation_idxs) {
-    count += solution.fits[static_cast<std::size_t>(idx)];
-  }
-  return count;
-}
-
 bool IsRegistered(const MapSolution& solution, int frame_idx) {
   return solution.cam_from_shape[static_cast<std::size_t>(frame_idx)].has_value();
 }

@@ -142,6 +142,14 @@ void MarkFits(const MapProblem& problem, double factor, MapSolution* solution) {
   }
 }
 
+int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx) {
+  int count = 0;
+  for (const int idx : problem.Marker(marker_idx).observation_idxs) {
+    count += solution.fits[static_cast<std::size_t>(idx)];
+  }
+  return count;
+}
+
 std::array<Eigen::Vector3d, kNumCorners> CornersInShape(const MapMarker& marker,
                                                         const Sim3& shape_from_marker) {
   std::array<Eigen::Vector3d, kNumCorners> corners;

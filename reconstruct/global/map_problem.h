@@ -93,6 +93,9 @@ double GrowthTolerance(const MapObservation& observation);
 // `factor` * GrowthTolerance.
 void MarkFits(const MapProblem& problem, double factor, MapSolution* solution);
 
+// How many observations of the marker fit.
+int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx);
+
 // The corners of a marker in the shape frame, m.
 std::array<Eigen::Vector3d, kNumCorners> CornersInShape(const MapMarker& marker,
                                                         const Sim3& shape_from_marker);

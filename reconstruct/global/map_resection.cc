@@ -192,8 +192,8 @@ bool IsAmbiguous(const std::vector<PoseHypothesis>& hypotheses) {
   constexpr double kRatio = 2.0, kNegligible = 1e-3;
   if (hypotheses.size() < 2) return false;
   const PoseHypothesis &best = hypotheses[0], &rival = hypotheses[1];
-  const double num_known = static_cast<double>(best.observation_idxs.size());
-  return rival.cost < kRatio * best.cost + kNegligible * num_known &&
+  const double num_agreeing = static_cast<double>(best.observation_idxs.size());
+  return rival.cost < kRatio * best.cost + kNegligible * num_agreeing &&
          rival.observation_idxs.size() >= best.observation_idxs.size();
 }
 

@@ -9,6 +9,7 @@
 
 #include "importer/base/statistics.h"
 #include "importer/geometry/quad.h"
+#include "reconstruct/global/map_refinement.h"
 
 namespace velamap {
 namespace {
@@ -72,15 +73,18 @@ std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_s
   return width_px;
 }
 
-// 1 sigma of the centre in its least certain direction, for fixed frames. The distance by the
-// marker's own size is added as one measurement, because its error is the same in all frames.
+// 1 sigma of the centre in its least certain direction, for fixed frames. Where these look from one
+// side, the distance follows from the marker's size in the image. Its print is off by the same part
+// in all frames, which is an unknown with one prior and is eliminated: however many frames look
+// from one side, the distance is no more certain than the print.
 double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
                    int marker_idx) {
-  constexpr double kSizeSigma = 0.02;  // of the prior in the map
   const MapMarker& marker = problem.Marker(marker_idx);
   const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
   const double factor = std::max(noise.factor, kMinFactor);
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), by_size = information;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d with_side = Eigen::Vector3d::Zero();
+  double of_side = 1 / (kScaleSigma * kScaleSigma);
   for (const int idx : marker.observation_idxs) {
     if (!solution.fits[static_cast<std::size_t>(idx)]) continue;
     const MapObservation& observation = problem.Observation(idx);
@@ -92,12 +96,16 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
     const double sigma_px = factor * observation.sigma_px;
     const Eigen::Matrix<double, 2, 3> jacobian =
         observation.px_from_ray[0] * ray_from_x * rotation / sigma_px;
-    information += jacobian.transpose() * jacobian;
-    const Eigen::Vector3d toward = rotation.transpose() * x.normalized();
-    const double along_sigma = x.norm() * (kSizeSigma + sigma_px / observation.side_px);
-    by_size = toward * toward.transpose() / (along_sigma * along_sigma);
+    // Logarithm of the size in the image: that of the side, minus that of the distance.
+    const Eigen::Vector3d log_distance_by_x = rotation.transpose() * x / x.squaredNorm();
+    const double size_weight = std::pow(observation.side_px / sigma_px, 2);
+    information += jacobian.transpose() * jacobian +
+                   size_weight * log_distance_by_x * log_distance_by_x.transpose();
+    with_side += size_weight * log_distance_by_x;
+    of_side += size_weight;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information + by_size);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
+      information - with_side * with_side.transpose() / of_side);
   return 1 / std::sqrt(solver.eigenvalues()[0]);
 }
 

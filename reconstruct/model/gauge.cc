@@ -17,16 +17,19 @@ void OrderForGauge(ImageId first_image_id, Model* model) {
   VELAMAP_CHECK(first != images.end());
   std::rotate(images.begin(), first, std::next(first));
 
-  const Rigid3 first_from_world = images.front().cam_from_world;
-  TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
-  images.front().cam_from_world = Rigid3{};  // exactly, without rounding
-
+  MoveToFirstCamera(model);
   const auto second = std::max_element(std::next(images.begin()), images.end(),
                                        [](const ModelImage& a, const ModelImage& b) {
                                          return std::abs(a.cam_from_world.translation.x()) <
                                                 std::abs(b.cam_from_world.translation.x());
                                        });
   if (second != images.end()) std::rotate(std::next(images.begin()), second, std::next(second));
+}
+
+void MoveToFirstCamera(Model* model) {
+  const Rigid3 first_from_world = model->images.front().cam_from_world;
+  TransformModel({1.0, first_from_world.rotation, first_from_world.translation}, model);
+  model->images.front().cam_from_world = Rigid3{};  // without rounding
 }
 
 void TransformModel(const Sim3& new_from_world, Model* model) {

@@ -16,6 +16,9 @@ namespace velamap {
 // id.
 void OrderForGauge(ImageId first_image_id, Model* model);
 
+// The camera of the first image becomes the world frame, exactly.
+void MoveToFirstCamera(Model* model);
+
 // Transforms the model into another world frame: x_in_new = new_from_world * x_in_world.
 void TransformModel(const Sim3& new_from_world, Model* model);
 

@@ -123,6 +123,21 @@ std::vector<Eigen::Vector2d> VelocitiesOf(const FrameWindow& window) {
   return velocities;
 }
 
+// Adds `factor` times ShutterDirection to the image points whose velocities are known.
+template <typename Factor>
+void AddShutter(const CornerVelocities& velocities_px_s, const Factor& factor, Model* model) {
+  for (ModelImage& image : model->images) {
+    const auto velocities = velocities_px_s.find(image.image_id);
+    if (velocities == velocities_px_s.end()) continue;
+    const Camera& camera = model->cameras.at(image.camera_id);
+    for (std::size_t i = 0; i < image.points2D.size(); ++i) {
+      Eigen::Vector2d& x_px = image.points2D[i].x_in_image_px;
+      const Eigen::Vector2d& velocity_px_s = velocities->second.at(i);
+      x_px += factor(camera, velocity_px_s) * ShutterDirection(camera, x_px, velocity_px_s);
+    }
+  }
+}
+
 }  // namespace
 
 CornerVelocities CornerVelocitiesOf(const std::vector<DatabaseImage>& images) {
@@ -162,16 +177,25 @@ Eigen::Vector2d ShutterDirection(const Camera& camera, const Eigen::Vector2d& x_
 void MoveToMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
                      Model* model) {
   if (rolling_shutter_s == 0) return;
-  for (ModelImage& image : model->images) {
-    const auto velocities = velocities_px_s.find(image.image_id);
-    if (velocities == velocities_px_s.end()) continue;
-    const Camera& camera = model->cameras.at(image.camera_id);
-    for (std::size_t i = 0; i < image.points2D.size(); ++i) {
-      Eigen::Vector2d& x_in_image_px = image.points2D[i].x_in_image_px;
-      x_in_image_px -=
-          rolling_shutter_s * ShutterDirection(camera, x_in_image_px, velocities->second.at(i));
-    }
-  }
+  AddShutter(
+      velocities_px_s, [&](const Camera&, const Eigen::Vector2d&) { return -rolling_shutter_s; },
+      model);
+}
+
+void MoveFromMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
+                       Model* model) {
+  if (rolling_shutter_s == 0) return;
+  // MoveToMiddleRow multiplies the distance from the middle row by this, and with it
+  // ShutterDirection.
+  const auto scale = [&](const Camera& camera, const Eigen::Vector2d& velocity_px_s) {
+    return 1.0 - rolling_shutter_s * velocity_px_s.y() / camera.height_px;
+  };
+  AddShutter(
+      velocities_px_s,
+      [&](const Camera& camera, const Eigen::Vector2d& velocity_px_s) {
+        return rolling_shutter_s / scale(camera, velocity_px_s);
+      },
+      model);
 }
 
 }  // namespace velamap

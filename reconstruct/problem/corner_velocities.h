@@ -33,4 +33,9 @@ Eigen::Vector2d ShutterDirection(const Camera& camera, const Eigen::Vector2d& x_
 void MoveToMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
                      Model* model);
 
+// Undoes MoveToMiddleRow: moves the image points back to where they are while their own rows are
+// read.
+void MoveFromMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
+                       Model* model);
+
 }  // namespace velamap

@@ -9,6 +9,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "importer/base/natural_order.h"
 #include "importer/base/parallel.h"
 #include "reconstruct/geometry/covariance_update.h"
 #include "reconstruct/problem/marker_uncertainty.h"
@@ -133,7 +134,7 @@ std::vector<int> GroupImages(const Model& model, const MarkerState& state) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&model](std::size_t a, std::size_t b) {
-    return model.images[a].name < model.images[b].name;
+    return NaturalLess(model.images[a].name, model.images[b].name);
   });
   const std::size_t num_groups = std::min(count, kMaxNumGroups);
   std::vector<int> groups(count);

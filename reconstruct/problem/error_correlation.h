@@ -11,8 +11,9 @@
 
 namespace velamap {
 
-// Divides the images, in order of their names, into up to five groups of about equal size. Returns
-// the group, 0, 1, ..., of each image of the state.
+// Divides the images, in the natural order of their names, into up to five groups of about equal
+// size, so that neighbours in time share a group. Returns the group, 0, 1, ..., of each image of
+// the state.
 std::vector<int> GroupImages(const Model& model, const MarkerState& state);
 
 // The factor, 1 or more, by which the corners' sigmas have to grow to account for common errors. It

@@ -128,23 +128,20 @@ class ProblemBuilder {
       AddPrior(std::move(error), {marker.x_in_world.data(), &state_.print_scale,
                                   &state_.part_scales.at(marker.part)});
     }
-    if (EstimatesInset()) {
-      AddPrior(MakePrior({0.0}, {options_.inset_sigma_px}), {&state_.inset_px});
-    }
-    if (print_scale_sigma_ > 0) {
-      AddPrior(MakePrior({0.0}, {print_scale_sigma_}), {&state_.print_scale});
-    }
+    if (EstimatesInset()) AddPriorAroundZero(options_.inset_sigma_px, &state_.inset_px);
+    if (print_scale_sigma_ > 0) AddPriorAroundZero(print_scale_sigma_, &state_.print_scale);
     for (auto& [part, scale] : state_.part_scales) {
-      if (weights_.part_scale_sigma > 0) {
-        AddPrior(MakePrior({0.0}, {weights_.part_scale_sigma}), {&scale});
-      }
+      if (weights_.part_scale_sigma > 0) AddPriorAroundZero(weights_.part_scale_sigma, &scale);
     }
     if (weights_.frees_rolling_shutter) {
-      AddPrior(MakePrior({0.0}, {kRollingShutterSigma_s}), {&state_.rolling_shutter_s});
+      AddPriorAroundZero(kRollingShutterSigma_s, &state_.rolling_shutter_s);
     }
     for (auto& [camera_id, intrinsics] : state_.intrinsics) {
       const IntrinsicsPrior prior = PriorOf(calibration.at(camera_id));
-      if (!prior.free.empty()) AddPrior(MakePrior(prior.mean, prior.sigmas), {intrinsics.data()});
+      if (!prior.free.empty()) {
+        AddPrior(std::make_unique<ParameterPriorError>(prior.mean, prior.sigmas),
+                 {intrinsics.data()});
+      }
       if (options_.find_camera && !HasOneFocalLength(prior.model)) {
         AddPrior(std::make_unique<PixelShapeError>(static_cast<int>(intrinsics.size()),
                                                    kPixelShapeSigma),
@@ -198,6 +195,10 @@ class ProblemBuilder {
     result_.prior_residuals.push_back(AddResidual(std::move(error), blocks));
   }
 
+  void AddPriorAroundZero(double sigma, double* value) {
+    AddPrior(std::make_unique<ParameterPriorError>(std::vector{0.0}, std::vector{sigma}), {value});
+  }
+
   void AddView(std::size_t image_idx, const std::vector<SeenCorner>& view,
                const std::vector<double>* sigmas_px,
                const std::vector<Eigen::Vector2d>* velocities_px_s, MarkerBlock* marker) {
@@ -227,11 +228,6 @@ class ProblemBuilder {
                                           std::move(observations), weights_.loss_sigmas),
         {marker->x_in_world.data(), block.cam_from_world.data(), &state_.inset_px,
          state_.intrinsics.at(image.camera_id).data(), &state_.rolling_shutter_s}));
-  }
-
-  static std::unique_ptr<ceres::CostFunction> MakePrior(std::vector<double> mean,
-                                                        std::vector<double> sigma) {
-    return std::make_unique<ParameterPriorError>(std::move(mean), std::move(sigma));
   }
 
   bool EstimatesInset() const { return options_.estimate_inset && options_.inset_sigma_px > 0; }

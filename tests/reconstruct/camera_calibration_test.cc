@@ -120,7 +120,7 @@ CameraCalibration Calibrate(const std::vector<DatabaseImage>& images,
 
 // Focal lengths and principal point, in sigmas.
 std::vector<double> ErrorsInSigmas(const EstimatedCamera& found, const Camera& truth) {
-  const std::size_t num_focal = HasOneFocalLength(found.camera.model) ? 1 : 2;
+  const std::size_t num_focal = NumFocalLengths(found.camera.model);
   std::vector<double> errors;
   for (std::size_t i = 0; i < num_focal + 2; ++i) {
     const double expected = truth.params[i < num_focal ? i : 2 + i - num_focal];

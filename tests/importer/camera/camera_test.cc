@@ -56,7 +56,7 @@ TEST(Camera, ImageFromCamAndCamFromImageAreInverse) {
 TEST(Camera, JacobiansAgreeWithCentralDifferences) {
   constexpr double kStep = 1e-6;
   for (const Camera& camera : AllModels()) {
-    const int num_before_distortion = HasOneFocalLength(camera.model) ? 3 : 4;
+    const std::size_t num_before_distortion = NumFocalLengths(camera.model) + 2;
     for (const Eigen::Vector3d& x_in_cam : PointsInCam()) {
       const Eigen::Vector2d ray = x_in_cam.hnormalized();
       const RayFunction image = ImageFromRayWithJacobian(camera.model, camera.params.data(), ray);
@@ -71,7 +71,7 @@ TEST(Camera, JacobiansAgreeWithCentralDifferences) {
         EXPECT_LT((image.by_ray.col(axis) - difference).norm(), 1e-5 * difference.norm())
             << CameraModelName(camera.model);
         const Eigen::Vector2d focal(camera.params[0],
-                                    camera.params[HasOneFocalLength(camera.model) ? 0 : 1]);
+                                    camera.params[NumFocalLengths(camera.model) - 1]);
         EXPECT_LT((focal.cwiseProduct(distorted.by_ray.col(axis)) - difference).norm(),
                   1e-5 * difference.norm())
             << CameraModelName(camera.model);

@@ -5,9 +5,11 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "reconstruct/global/map_refinement.h"
 #include "tests/reconstruct/global/scene_map.h"
 #include "tests/support/test_seed.h"
 
@@ -268,6 +270,47 @@ TEST(SupportOf, SigmaIsThatOfTheCentreAndScalesWithTheMap) {
     fewer.fits[static_cast<std::size_t>(observation_idxs[i])] = 0;
   }
   EXPECT_GT(SupportOf(map.problem, fewer, noise, marker_idx).sigma_m, placed.sigma_m);
+}
+
+// The sigma of a marker that only one frame sees, divided by its distance from it. The frame shows
+// it `num_times`, as frames at the same place would.
+double DistanceSigmaOfOneView(SceneMap map, int num_times, double* size_sigma) {
+  MapSolution solution = map.TrueSolution();
+  MapNoise noise;
+  noise.factor_of_frame.assign(map.problem.frames.size(), 1.0);
+  const int marker_idx = map.MarkerIdx(kMiddleId);
+  std::vector<int>& idxs =
+      map.problem.markers[static_cast<std::size_t>(marker_idx)].observation_idxs;
+  const MapObservation observation = map.problem.Observation(idxs.front());
+  idxs = {idxs.front()};
+  for (int i = 1; i < num_times; ++i) {
+    idxs.push_back(static_cast<int>(map.problem.observations.size()));
+    map.problem.observations.push_back(observation);
+    solution.fits.push_back(1);
+  }
+  const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+  *size_sigma = observation.sigma_px / observation.side_px;
+  return SupportOf(map.problem, solution, noise, marker_idx).sigma_m /
+         (pose * map.TruePlace(marker_idx).translation).norm();
+}
+
+TEST(SupportOf, ErrorOfTheSideIsTheSameInAllFrames) {
+  double size_sigma = 0.0;
+  EXPECT_NEAR(DistanceSigmaOfOneView(NoisySail(0.4, TestSeed()), 1, &size_sigma),
+              std::hypot(kScaleSigma, size_sigma), 1e-9);
+  EXPECT_NEAR(DistanceSigmaOfOneView(NoisySail(0.4, TestSeed()), 100, &size_sigma),
+              std::hypot(kScaleSigma, size_sigma / 10), 1e-9);
+}
+
+TEST(SupportOf, OrderOfTheFramesChangesNothing) {
+  SceneMap map = NoisySail(0.4, TestSeed());
+  const MapSolution truth = map.TrueSolution();
+  const MapNoise noise = EstimateNoise(map.problem, truth);
+  const int marker_idx = map.MarkerIdx(kMiddleId);
+  const double sigma_m = SupportOf(map.problem, truth, noise, marker_idx).sigma_m;
+  auto& idxs = map.problem.markers[static_cast<std::size_t>(marker_idx)].observation_idxs;
+  std::reverse(idxs.begin(), idxs.end());
+  EXPECT_NEAR(SupportOf(map.problem, truth, noise, marker_idx).sigma_m / sigma_m, 1.0, 1e-9);
 }
 
 }  // namespace

@@ -144,5 +144,36 @@ TEST(CornerVelocities, PointsMoveToTheMiddleRow) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(x_px(1, i), image.points2D[i].x_in_image_px);
 }
 
+TEST(CornerVelocities, WayBackFromTheMiddleRowIsExact) {
+  Model model;
+  model.cameras[1] = {CameraModel::kSimplePinhole, 640, 480, {500, 320, 240}};
+  ModelImage image;
+  image.image_id = 7;
+  image.camera_id = 1;
+  CornerVelocities velocities;
+  for (const double y : {-5.0, 0.0, 130.0, 240.0, 475.0}) {
+    for (const double velocity_px_s : {-3000.0, 0.0, 40.0, 3000.0}) {
+      image.points2D.push_back({{100, y}, 0});
+      velocities[7].emplace_back(700, velocity_px_s);
+    }
+  }
+  model.images = {image};
+  const auto largest_shift_px = [&] {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < image.points2D.size(); ++i) {
+      const Eigen::Vector2d shift =
+          model.images[0].points2D[i].x_in_image_px - image.points2D[i].x_in_image_px;
+      largest = std::max(largest, shift.norm());
+    }
+    return largest;
+  };
+  for (const double rolling_shutter_s : {-0.03, 0.03}) {
+    MoveToMiddleRow(rolling_shutter_s, velocities, &model);
+    EXPECT_GT(largest_shift_px(), 40);
+    MoveFromMiddleRow(rolling_shutter_s, velocities, &model);
+    EXPECT_LT(largest_shift_px(), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace velamap

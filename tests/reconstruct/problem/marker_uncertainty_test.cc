@@ -4,6 +4,8 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <ceres/crs_matrix.h>
 #include <gtest/gtest.h>
@@ -132,6 +134,20 @@ TEST(CornerRedundancy, IsWhatTheDenseHatMatrixLeaves) {
   const MarkerJacobian jacobian = EvaluateJacobian(problem);
   EXPECT_NEAR(CornerRedundancy(jacobian, *InvertNormalEquations(jacobian, 1)),
               static_cast<double>(num_corners) - leverages.head(num_corners).sum(), 1e-6);
+}
+
+TEST(GroupImages, NeighboursInTimeShareAGroupWithoutLeadingZeros) {
+  Model model;
+  model.cameras[1] = {CameraModel::kSimplePinhole, 640, 480, {500, 320, 240}};
+  for (int number = 10; number >= 1; --number) {
+    ModelImage image;
+    image.image_id = static_cast<ImageId>(number);
+    image.camera_id = 1;
+    image.name = "frame_" + std::to_string(number) + ".png";
+    model.images.push_back(image);
+  }
+  EXPECT_EQ(GroupImages(model, MakeMarkerState(model, {})),
+            (std::vector<int>{4, 4, 3, 3, 2, 2, 1, 1, 0, 0}));
 }
 
 // Enough images for several panels of columns.
