@@ -2,8 +2,8 @@
 # Configures and builds velamap.
 # usage: workflows/build.sh PRESET [TARGET]
 # PRESET: release, debug, ci (release, warnings are errors), sanitize (clang with the address and
-# undefined-behaviour sanitizers), tsan (clang with the thread sanitizer) or fuzz (the fuzz targets).
-# TARGET: such as velamap; default all, with sanitizers the unit tests.
+# undefined-behaviour sanitizers) or tsan (clang with the thread sanitizer).
+# TARGET: such as velamap; default all, with sanitizers the unit tests and the fuzz targets.
 # VELAMAP_JOBS: parallel compilers, default one a core (each takes up to 1 GB of memory).
 set -euo pipefail
 

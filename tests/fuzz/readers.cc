@@ -21,6 +21,9 @@
 #include "importer/detect/detection_options.h"
 #include "importer/layout/dictionary.h"
 #include "importer/layout/layout.h"
+#include "importer/print/png_file.h"
+#include "importer/video/image_file.h"
+#include "importer/video/jpeg_codec.h"
 #include "importer/video/video_options.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model_io.h"
@@ -72,6 +75,29 @@ std::function<void(const Bytes&)> OfFile(const std::string& name, const Read& re
 
 std::function<std::vector<Bytes>()> Texts(std::vector<Bytes> texts) {
   return [texts = std::move(texts)] { return texts; };
+}
+
+// ---- pictures
+
+void ReadPicture(const std::string& path) {
+  std::string reason;
+  if (DecodeImageFile(path, &reason).empty()) throw InputError(reason);
+}
+
+std::vector<Bytes> PictureSeeds() {
+  cv::Mat image(5, 7, CV_8UC3);
+  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 256);
+  const Bytes pixels(reinterpret_cast<const char*>(image.data), 7 * 5);
+  // A TIFF of seven by five grey pixels: header, pixels, one zero to an even offset, and the tags
+  // of width, height, compression, colours, offset, rows a strip and bytes.
+  Bytes tiff = Bytes("II*\0\x2c\0\0\0", 8) + pixels + Bytes("\0\x07\0", 3);
+  for (const auto& [tag, value] : std::initializer_list<std::pair<int, int>>{
+           {256, 7}, {257, 5}, {259, 1}, {262, 1}, {273, 8}, {278, 5}, {279, 35}}) {
+    for (const int field : {tag, 3, 1, 0, value, 0}) {
+      tiff += {static_cast<char>(field & 255), static_cast<char>(field >> 8)};
+    }
+  }
+  return {EncodeJpeg(image, 80), EncodePng(image), "P5 7 5 255\n" + pixels, tiff + Bytes(4, '\0')};
 }
 
 // ---- options and layouts
@@ -269,6 +295,7 @@ const std::map<std::string, FuzzedReader>& FuzzedReaders() {
        {OfFile("camera.yml", ReadCalibration), Texts({kCalibration, kXml, kJson, kCamerasTxt})}},
       {"dictionary", {OfFile("dictionary.yml", LoadDictionary), Texts({kDictionary})}},
       {"layout", {OfFile("layout.yml", ReadLayout), Texts({kLayout})}},
+      {"picture", {OfFile("picture", ReadPicture), PictureSeeds}},
       {"project_file",
        {OfFile("project.ini", ReadProjectFile),
         Texts({"[Video]\nfirst_frame=3\nframe_step=2\n[Registration]\nmethod=thesis\n"})}},

@@ -9,9 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds="$(awk -v minutes="$1" 'BEGIN { print int(60 * minutes) }')"
 shift
 
-workflows/build.sh fuzz
-programs=build/fuzz/tests/fuzz
-build=build/fuzz
+workflows/build.sh sanitize fuzz_targets
+export programs=build/sanitize/tests/fuzz build=build/fuzz seconds
 mkdir -p "$build/findings"
 "$programs/make_seeds" "$build/seeds"
 
@@ -21,15 +20,18 @@ if [[ ${#readers[@]} -eq 0 ]]; then
 fi
 # The libraries for CAD files keep their tables until the program ends.
 export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
-found=()
-for reader in "${readers[@]}"; do
-  mkdir -p "$build/corpus/$reader"
-  log="$build/findings/$reader.log"
-  "$programs/fuzz_$reader" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=3000 \
-    -max_len=65536 -detect_leaks=0 -artifact_prefix="$build/findings/$reader-" \
-    "$build/corpus/$reader" "$build/seeds/$reader" > "$log" 2>&1 || found+=("$reader")
-  echo "$reader: $(grep --only-matching --text 'Done [0-9]* runs in [0-9]* second' "$log" ||
+
+fuzz() {  # READER
+  local log="$build/findings/$1.log" status=0
+  mkdir -p "$build/corpus/$1"
+  "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=3000 -max_len=65536 \
+    -detect_leaks=0 -artifact_prefix="$build/findings/$1-" "$build/corpus/$1" "$build/seeds/$1" \
+    > "$log" 2>&1 || status=1
+  echo "$1: $(grep --only-matching --text 'Done [0-9]* runs in [0-9]* second' "$log" ||
     tail -n 1 "$log")"
-done
-for reader in "${found[@]}"; do echo "error: $reader: see build/fuzz/findings/$reader.log" >&2; done
-[[ ${#found[@]} -eq 0 ]]
+  [[ $status -eq 0 ]] || echo "error: $1: see $log" >&2
+  return "$status"
+}
+export -f fuzz
+printf '%s\n' "${readers[@]}" |
+  xargs --max-procs="${VELAMAP_JOBS:-$(nproc)}" -I '{}' bash -c 'fuzz "$1"' - '{}'
