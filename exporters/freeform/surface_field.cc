@@ -254,12 +254,12 @@ FieldValue SurfaceField::Evaluate(const Eigen::Vector3d& x_in_shape_m) const {
   return {scale_m_ * value, gradient};
 }
 
-std::vector<double> SurfaceField::Sigmas(
-    const std::vector<Eigen::Vector3d>& points_in_shape_m) const {
+std::vector<double> SurfaceField::Sigmas(const std::vector<Eigen::Vector3d>& points_in_shape_m,
+                                         int num_threads) const {
   constexpr std::size_t kPerBlock = 64;  // solved together, which is faster than one by one
   const double variance = amplitude_ * amplitude_;
   std::vector<double> sigmas_m(points_in_shape_m.size());
-  ParallelFor((sigmas_m.size() + kPerBlock - 1) / kPerBlock, 0, [&](std::size_t block) {
+  ParallelFor((sigmas_m.size() + kPerBlock - 1) / kPerBlock, num_threads, [&](std::size_t block) {
     const std::size_t first = block * kPerBlock;
     const std::size_t size = std::min(kPerBlock, sigmas_m.size() - first);
     Eigen::MatrixXd whitened(weights_.size(), size);

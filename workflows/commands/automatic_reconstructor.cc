@@ -95,6 +95,7 @@ void Validate(Options* options) {
   }
   options->adjustment.Complete(options->general.num_threads);
   CompleteSailOptions(options->surface, &options->exporter);
+  options->exporter.num_threads = options->general.num_threads;
   CompleteImporter(*options, &options->importer);
   CheckFrameChoice(options->exporter.frame, options->importer.layout);
   options->importer.allowed_frames = options->importer.video;

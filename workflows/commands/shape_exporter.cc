@@ -56,6 +56,7 @@ void Validate(Options* options) {
   options->exporter.model_output_path = options->paths.output_path;
   options->exporter.shape_output_path = options->paths.shape_path;
   options->exporter.origin.version = kVersion;
+  options->exporter.num_threads = options->general.num_threads;
 }
 
 Verdict Judge(const ShapeExportReport& report, const Layout& layout) {
