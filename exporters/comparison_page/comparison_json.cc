@@ -85,7 +85,7 @@ Json ShapeJson(const Comparison& comparison) {
                {"num_markers", deviation.markers.size()},
                {"mean_mm", Rounded(kMmPerM * distance_m.mean)},
                {"rms_mm", Rounded(kMmPerM * distance_m.rms)},
-               {"largest_mm", Rounded(kMmPerM * std::max(-distance_m.min, distance_m.max))}};
+               {"largest_mm", Rounded(kMmPerM * distance_m.MaxAbs())}};
   if (alignment.method != AlignmentMethod::kNone) {
     json["residual_mm"] = Rounded(kMmPerM * alignment.residual_m.rms);
   }
@@ -259,8 +259,7 @@ Json SurfaceJson(const DeflectionReport& deflections) {
 double LargestDistance_mm(const std::vector<Comparison>& series) {
   double largest_m = 0.0;
   for (const Comparison& comparison : series) {
-    const Statistics& distance_m = comparison.deviation.distance_m;
-    largest_m = std::max({largest_m, -distance_m.min, distance_m.max});
+    largest_m = std::max(largest_m, comparison.deviation.distance_m.MaxAbs());
     for (const DeflectionField& field : comparison.deflections.fields) {
       for (const auto& deflection : field.deflections) {
         if (deflection) largest_m = std::max(largest_m, std::abs(deflection->distance_m));

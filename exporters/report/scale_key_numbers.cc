@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -100,19 +99,10 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
 
 std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit) {
   if (audit.distances.empty()) return std::nullopt;
-  const CheckedDistance* worst = nullptr;
-  int num_found = 0;
-  for (const CheckedDistance& checked : audit.distances) {
-    if (!checked.distance_m) continue;
-    ++num_found;
-    const bool is_worse =
-        worst == nullptr ||
-        std::make_pair(checked.FailsAsCheck(), std::abs(checked.DifferenceInSigmas())) >
-            std::make_pair(worst->FailsAsCheck(), std::abs(worst->DifferenceInSigmas()));
-    if (is_worse) worst = &checked;
-  }
+  const CheckedDistance* worst = WorstDistance(audit);
   const auto num_failed = static_cast<int>(FailedChecks(audit).size());
-  const int num_checks = NumChecks(audit), num_all = static_cast<int>(audit.distances.size());
+  const int num_found = NumDistancesFound(audit), num_checks = NumChecks(audit),
+            num_all = static_cast<int>(audit.distances.size());
   KeyNumber number{KeyNumberKind::kMeasuredDistances,
                    num_failed > 0 ? fmt::format("{} of {} checks failed", num_failed, num_checks)
                                   : fmt::format("{} of {}", num_found, num_all),
