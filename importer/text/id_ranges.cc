@@ -45,4 +45,16 @@ std::optional<std::vector<int>> ParseIdRange(std::string_view text) {
   return ids;
 }
 
+std::optional<std::vector<int>> ParseIdList(std::string_view text) {
+  std::vector<int> ids;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    const auto range = ParseIdRange(text.substr(0, comma));
+    if (!range) return std::nullopt;
+    ids.insert(ids.end(), range->begin(), range->end());
+    if (comma == std::string_view::npos) return ids;
+    text.remove_prefix(comma + 1);
+  }
+}
+
 }  // namespace velamap

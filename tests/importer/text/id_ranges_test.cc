@@ -28,5 +28,13 @@ TEST(IdRanges, ARangeRunsUpOrDown) {
   }
 }
 
+TEST(IdRanges, AListHasCommas) {
+  EXPECT_THAT(ParseIdList("3,17,21-19"),
+              testing::Optional(testing::ElementsAre(3, 17, 21, 20, 19)));
+  for (const char* text : {"", ",", "3,", "3, 4", "3;4", "3,-4", "3,4-", "3,,4"}) {
+    EXPECT_EQ(ParseIdList(text), std::nullopt) << text;
+  }
+}
+
 }  // namespace
 }  // namespace velamap
