@@ -147,14 +147,6 @@ double Maximize(double low, double high, const Function& function) {
   return (low + high) / 2;
 }
 
-// Every k-th row, so that at most kMaxLikelihoodRows remain; points and normals alike.
-std::vector<Eigen::Index> RowsForLikelihood(Eigen::Index num_rows) {
-  const Eigen::Index step = (num_rows + kMaxLikelihoodRows - 1) / kMaxLikelihoodRows;
-  std::vector<Eigen::Index> chosen;
-  for (Eigen::Index i = 0; i < num_rows; i += step) chosen.push_back(i);
-  return chosen;
-}
-
 struct Parameters {
   double amplitude = 1.0;
   double sigma_factor = 1.0;  // of the sigmas of the points
@@ -162,7 +154,9 @@ struct Parameters {
 
 Parameters MaximizeLikelihood(const Rows& all, const Eigen::VectorXd& all_sigmas,
                               bool sigmas_are_known) {
-  const std::vector<Eigen::Index> chosen = RowsForLikelihood(all.Size());
+  // Every k-th row, so that at most kMaxLikelihoodRows remain; points and normals alike.
+  const Eigen::Index step = (all.Size() + kMaxLikelihoodRows - 1) / kMaxLikelihoodRows;
+  const auto chosen = Eigen::seq(0, all.Size() - 1, step);
   const Rows rows = {all.places(chosen, Eigen::all), all.directions(chosen, Eigen::all),
                      all.targets(chosen)};
   const Eigen::MatrixXd covariance = UnitCovariance(rows), drift = DriftOf(rows);
