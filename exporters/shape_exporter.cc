@@ -153,7 +153,8 @@ ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
       MeasureShape(model, layout, options.frame, options.scale_by, uncertainty);
   const PointCovariance* covariance = CovarianceOf(report);
   report.sail = ComputeSail(report.shape, report.frame, layout, covariance, options.sail);
-  report.freeform = ComputeFreeform(report.shape, layout, covariance, options.sail.mesh);
+  report.freeform =
+      ComputeFreeform(report.shape, layout, covariance, options.sail.mesh, options.num_threads);
   return report;
 }
 

@@ -32,6 +32,7 @@ struct ShapeExporterOptions {
   SailOptions sail;
   SailFileOptions files;  // the unit is also that of parts without lines
   ShapeOrigin origin;     // for shape.json
+  int num_threads = 0;    // 0: one a core; never changes the result
 };
 
 struct ShapeExportReport {

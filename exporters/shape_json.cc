@@ -11,7 +11,6 @@
 #include "importer/camera/calibration_writer.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/text/output_date.h"
-#include "importer/text/shown_text.h"
 
 namespace velamap {
 namespace {
@@ -85,15 +84,6 @@ Json CamerasOf(const Model& model, const std::optional<bool>& is_found) {
     cameras.push_back(std::move(object));
   }
   return cameras;
-}
-
-// Without the folders in the reasons, because shape.json is passed on to others.
-Json VerdictJson(const Verdict& verdict) {
-  Json reasons = Json::array();
-  for (const VerdictReason& reason : verdict.reasons) {
-    reasons.push_back({{"level", StatusName(reason.level)}, {"text", WithoutFolders(reason.text)}});
-  }
-  return {{"level", StatusName(verdict.level)}, {"reasons", std::move(reasons)}};
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #include "exporters/compare/comparison_ply.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -66,8 +64,7 @@ PlyElement<Face<kSize>> FaceElement() {
 
 void WriteComparisonPly(const ShapeDeviation& deviation, std::optional<double> color_limit_m,
                         std::ostream& out) {
-  const double limit_m = color_limit_m.value_or(
-      std::max(std::abs(deviation.distance_m.min), std::abs(deviation.distance_m.max)));
+  const double limit_m = color_limit_m.value_or(deviation.distance_m.MaxAbs());
   PlyElement<Vertex> vertices{"vertex", {}, {}};
   AddPosition(&vertices);
   vertices.Add("nx", PlyType::kFloat, [](const Vertex& v) { return v.normal.x(); });

@@ -10,8 +10,8 @@
 #include "exporters/shape/common_corners.h"
 #include "exporters/shape/sail_lines.h"
 #include "importer/base/error.h"
-#include "importer/base/numbers.h"
 #include "importer/geometry/alignment.h"
+#include "importer/text/id_ranges.h"
 
 namespace velamap {
 namespace {
@@ -143,9 +143,8 @@ AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::stri
 }
 
 std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& what) {
-  const auto ids = ParseNumberList<int>(text);
-  const auto is_id = [](int id) { return id >= 0 && id <= kMaxMarkerId; };
-  if (!ids || !std::all_of(ids->begin(), ids->end(), is_id)) {
+  const auto ids = ParseIdList(text);
+  if (!ids) {
     throw InputError(fmt::format(
         "{}: expected a list of marker ids such as 120,121,122, found '{}'", what, text));
   }

@@ -28,7 +28,7 @@ const char* AlignmentMethodName(AlignmentMethod method);
 // Throws InputError naming `what` for any other name.
 AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::string& what);
 
-// Parses marker ids separated by commas, such as "120,121". Throws InputError naming `what`.
+// Parses marker ids and ranges of them, such as "120,125-130". Throws InputError naming `what`.
 std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& what);
 
 struct AlignmentOptions {

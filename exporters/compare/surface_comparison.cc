@@ -1,7 +1,6 @@
 #include "exporters/compare/surface_comparison.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -91,9 +90,7 @@ SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MeshDi
 double LargestDistance(const SurfaceComparison& comparison) {
   double largest_m = 0.0;
   for (const SurfaceDeviation& part : comparison.parts) {
-    if (part.statistics_m.count == 0) continue;
-    largest_m =
-        std::max({largest_m, std::abs(part.statistics_m.min), std::abs(part.statistics_m.max)});
+    largest_m = std::max(largest_m, part.statistics_m.MaxAbs());
   }
   return largest_m;
 }

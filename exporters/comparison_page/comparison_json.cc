@@ -85,7 +85,7 @@ Json ShapeJson(const Comparison& comparison) {
                {"num_markers", deviation.markers.size()},
                {"mean_mm", Rounded(kMmPerM * distance_m.mean)},
                {"rms_mm", Rounded(kMmPerM * distance_m.rms)},
-               {"largest_mm", Rounded(kMmPerM * std::max(-distance_m.min, distance_m.max))}};
+               {"largest_mm", Rounded(kMmPerM * distance_m.MaxAbs())}};
   if (alignment.method != AlignmentMethod::kNone) {
     json["residual_mm"] = Rounded(kMmPerM * alignment.residual_m.rms);
   }
@@ -106,11 +106,11 @@ bool AreOfOneRow(const SectionDifference& a, const SectionDifference& b) {
   return a.part == b.part && a.section == b.section && a.number == b.number;
 }
 
-const SectionDifference* FindDifference(const SectionComparison& sections,
+const SectionDifference* FindDifference(const std::vector<SectionDifference>& differences,
                                         const SectionDifference& like) {
-  const auto it = std::find_if(sections.differences.begin(), sections.differences.end(),
+  const auto it = std::find_if(differences.begin(), differences.end(),
                                [&](const SectionDifference& d) { return AreOfOneRow(d, like); });
-  return it == sections.differences.end() ? nullptr : &*it;
+  return it == differences.end() ? nullptr : &*it;
 }
 
 // Those of all shapes, each once, in the order of the first shape that has it.
@@ -118,10 +118,7 @@ std::vector<SectionDifference> AllNumbers(const std::vector<Comparison>& series)
   std::vector<SectionDifference> all;
   for (const Comparison& comparison : series) {
     for (const SectionDifference& d : comparison.sections.differences) {
-      const bool is_there =
-          std::any_of(all.begin(), all.end(),
-                      [&](const SectionDifference& other) { return AreOfOneRow(d, other); });
-      if (!is_there) all.push_back(d);
+      if (FindDifference(all, d) == nullptr) all.push_back(d);
     }
   }
   return all;
@@ -145,7 +142,7 @@ Json NumbersJson(const std::vector<Comparison>& series) {
   for (const SectionDifference& number : numbers) {
     Json values = Json::array();
     for (const Comparison& comparison : series) {
-      const SectionDifference* d = FindDifference(comparison.sections, number);
+      const SectionDifference* d = FindDifference(comparison.sections.differences, number);
       if (d == nullptr) {
         values.push_back(nullptr);
         continue;
@@ -259,8 +256,7 @@ Json SurfaceJson(const DeflectionReport& deflections) {
 double LargestDistance_mm(const std::vector<Comparison>& series) {
   double largest_m = 0.0;
   for (const Comparison& comparison : series) {
-    const Statistics& distance_m = comparison.deviation.distance_m;
-    largest_m = std::max({largest_m, -distance_m.min, distance_m.max});
+    largest_m = std::max(largest_m, comparison.deviation.distance_m.MaxAbs());
     for (const DeflectionField& field : comparison.deflections.fields) {
       for (const auto& deflection : field.deflections) {
         if (deflection) largest_m = std::max(largest_m, std::abs(deflection->distance_m));
@@ -290,11 +286,8 @@ std::string ComparisonJson(const ComparisonPageInput& input) {
   json["surfaces"] = Json::array();
   for (const Comparison& comparison : input.series) {
     json["shapes"].push_back(ShapeJson(comparison));
-    if (!comparison.deflections.fields.empty()) {
-      json["surfaces"].push_back(SurfaceJson(comparison.deflections));
-    } else {
-      json["surfaces"].push_back(nullptr);
-    }
+    const DeflectionReport& deflections = comparison.deflections;
+    json["surfaces"].push_back(deflections.fields.empty() ? Json() : SurfaceJson(deflections));
   }
   json["numbers"] = NumbersJson(input.series);
   json["profiles"] = ProfilesJson(input);

@@ -17,12 +17,8 @@ constexpr double kByChance = 0.0455;  // beyond two sigmas
 constexpr double kSame_m = 1e-6;
 constexpr std::size_t kMaxNamed = 4;
 
-double LargestOf(const Statistics& distance_m) {
-  return std::max(std::abs(distance_m.min), std::abs(distance_m.max));
-}
-
 bool IsSame(const ShapeDeviation& deviation) {
-  return LargestOf(deviation.distance_m) < kSame_m && LargestOf(deviation.difference_m) < kSame_m;
+  return deviation.distance_m.MaxAbs() < kSame_m && deviation.difference_m.MaxAbs() < kSame_m;
 }
 
 // The significant differences of section numbers, the most significant first.

@@ -16,19 +16,6 @@ struct GridSize {
   double num_u = 1, num_v = 1;  // cells; double, because a refused mesh may have more than 2^31
 };
 
-// Parameters that sample the whole surface.
-std::vector<double> Probes(const Eigen::ArrayXd& knots) {
-  constexpr int kPerSpan = 6;
-  std::vector<double> probes = {0.0};
-  for (Eigen::Index k = 0; k + 1 < knots.size(); ++k) {
-    if (knots(k + 1) <= knots(k)) continue;
-    for (int i = 1; i <= kPerSpan; ++i) {
-      probes.push_back(knots(k) + (knots(k + 1) - knots(k)) * i / kPerSpan);
-    }
-  }
-  return probes;
-}
-
 struct Extremes {
   double speed_u = 0, speed_v = 0;               // largest |S_u|, |S_v|, m
   double bend_uu = 0, bend_uv = 0, bend_vv = 0;  // largest |second derivative|, m
@@ -38,8 +25,8 @@ struct Extremes {
 // within the tangent plane.
 Extremes FindExtremes(const SplineSurface& surface) {
   Extremes extremes;
-  const std::vector<double> vs = Probes(surface.knots_v);
-  for (const double u : Probes(surface.knots_u)) {
+  const std::vector<double> vs = SpanSamples(surface.knots_v);
+  for (const double u : SpanSamples(surface.knots_u)) {
     for (const double v : vs) {
       const SurfaceJet jet = EvaluateJet(surface, u, v);
       extremes.speed_u = std::max(extremes.speed_u, jet.x_u.norm());

@@ -14,20 +14,6 @@ namespace {
 
 using ScalarSpline = Eigen::Spline<double, 1>;
 
-constexpr int kSamplesPerSpan = 6;
-
-// Equidistant parameters within each knot span, including both ends.
-std::vector<double> SpanSamples(const Eigen::ArrayXd& knots, int per_span) {
-  std::vector<double> samples = {knots(0)};
-  for (Eigen::Index k = 0; k + 1 < knots.size(); ++k) {
-    if (knots(k + 1) <= knots(k)) continue;
-    for (int i = 1; i <= per_span; ++i) {
-      samples.push_back(knots(k) + (knots(k + 1) - knots(k)) * i / per_span);
-    }
-  }
-  return samples;
-}
-
 // One row of basis function values per parameter.
 Eigen::MatrixXd BasisValues(const Eigen::ArrayXd& knots, int degree,
                             const std::vector<double>& parameters) {
@@ -109,6 +95,18 @@ Eigen::MatrixXd BasisRow(const Eigen::ArrayXd& knots, int degree, double paramet
   return row;
 }
 
+std::vector<double> SpanSamples(const Eigen::ArrayXd& knots) {
+  constexpr int kPerSpan = 6;
+  std::vector<double> samples = {knots(0)};
+  for (Eigen::Index k = 0; k + 1 < knots.size(); ++k) {
+    if (knots(k + 1) <= knots(k)) continue;
+    for (int i = 1; i <= kPerSpan; ++i) {
+      samples.push_back(knots(k) + (knots(k + 1) - knots(k)) * i / kPerSpan);
+    }
+  }
+  return samples;
+}
+
 std::vector<QuadratureNode> SpanQuadrature(const Eigen::ArrayXd& knots) {
   constexpr std::array<double, 4> kNodes = {-0.8611363115940526, -0.3399810435848563,
                                             0.3399810435848563, 0.8611363115940526};
@@ -174,8 +172,8 @@ double SurfaceArea(const SplineSurface& surface) {
 
 std::vector<SurfaceFoot> ProjectOnSurface(const SplineSurface& surface,
                                           const std::vector<Eigen::Vector3d>& points_in_shape_m) {
-  const std::vector<double> us = SpanSamples(surface.knots_u, kSamplesPerSpan);
-  const std::vector<double> vs = SpanSamples(surface.knots_v, kSamplesPerSpan);
+  const std::vector<double> us = SpanSamples(surface.knots_u);
+  const std::vector<double> vs = SpanSamples(surface.knots_v);
   const Eigen::MatrixXd basis_u = BasisValues(surface.knots_u, surface.degree_u, us);
   const Eigen::MatrixXd basis_v = BasisValues(surface.knots_v, surface.degree_v, vs);
   std::vector<Eigen::Vector3d> samples;

@@ -31,6 +31,9 @@ struct SplineSurface {
 // row per order, one column per pole. Orders above the degree are zero.
 Eigen::MatrixXd BasisRow(const Eigen::ArrayXd& knots, int degree, double parameter, int max_order);
 
+// Equidistant parameters that sample the whole surface: six steps in each knot span.
+std::vector<double> SpanSamples(const Eigen::ArrayXd& knots);
+
 // Four Gauss-Legendre nodes per knot span, which integrate products of two cubics exactly.
 struct QuadratureNode {
   double parameter = 0.0;

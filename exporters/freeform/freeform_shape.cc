@@ -37,13 +37,13 @@ std::vector<FreeformPart> FreeformParts(const MarkerShape& shape, const Layout& 
 
 FreeformSurface FitPart(const MarkerShape& shape, const FreeformPart& part, const Layout& layout,
                         const PointCovariance* own_covariance,
-                        const std::optional<MeshOptions>& mesh) {
+                        const std::optional<MeshOptions>& mesh, int num_threads) {
   std::vector<FreeformMarker> markers;
   for (const int id : part.marker_ids) {
     const ShapeMarker* marker = FindWholeMarker(shape, id);
     if (marker != nullptr) markers.push_back(MakeFreeformMarker(*marker, own_covariance));
   }
-  return FitFreeformSurface(markers, layout.marker_length_m, mesh);
+  return FitFreeformSurface(markers, layout.marker_length_m, mesh, num_threads);
 }
 
 void WriteResiduals(const FreeformShape& freeform, std::ostream& out) {
@@ -69,7 +69,7 @@ std::string SizeText(const FreeformSurface& surface) {
 
 FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
                               const PointCovariance* covariance,
-                              const std::optional<MeshOptions>& mesh) {
+                              const std::optional<MeshOptions>& mesh, int num_threads) {
   const std::optional<PointCovariance> own = WithoutSharedErrors(covariance);
   FreeformShape freeform;
   for (const FreeformPart& part : FreeformParts(shape, layout)) {
@@ -82,9 +82,9 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
       continue;
     }
     const auto fit = [&] {
-      freeform.surfaces.push_back({part.name,
-                                   number == 1 ? "freeform" : fmt::format("freeform_{}", number),
-                                   FitPart(shape, part, layout, own ? &*own : nullptr, mesh)});
+      freeform.surfaces.push_back(
+          {part.name, number == 1 ? "freeform" : fmt::format("freeform_{}", number),
+           FitPart(shape, part, layout, own ? &*own : nullptr, mesh, num_threads)});
       return freeform.surfaces.back().surface.notes;
     };
     AttemptSurface(name, fit, &freeform.notes, &freeform.surface_error);

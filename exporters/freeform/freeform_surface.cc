@@ -141,7 +141,7 @@ EdgeMeasure ByDeviation(double deviation_m) {
 // Divides the triangles so far that the sigma, which has its maxima between the markers, is nearly
 // linear on each of them, and further as asked for.
 TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marker_length_m,
-                    const std::optional<MeshOptions>& options) {
+                    const std::optional<MeshOptions>& options, int num_threads) {
   constexpr double kSigmaTriangles = 2000, kEnoughTriangles = 1e5;
   const double area_m2 = AreaOf(coarse);
   const auto length_for = [area_m2](double num_triangles) {
@@ -151,8 +151,8 @@ TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marke
     return PointNear(field, x, reach_m);
   };
   TriangleMesh mesh = RefineMesh(std::move(coarse), ByLength(length_for(kSigmaTriangles)),
-                                 near_surface, kMaxFreeformTriangles);
-  mesh.sigmas_m = field.Sigmas(mesh.vertices_m);
+                                 near_surface, kMaxFreeformTriangles, num_threads);
+  mesh.sigmas_m = field.Sigmas(mesh.vertices_m, num_threads);
   EdgeMeasure measure = ByLength(std::max(marker_length_m / 2, length_for(kEnoughTriangles)));
   // Most triangles are smaller than the largest that the edge length allows.
   const double least_edge_m = 2 * length_for(kMaxFreeformTriangles);
@@ -164,7 +164,7 @@ TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marke
   if (options && options->chord_deviation_mm) {
     measure = ByDeviation(kMPerMm * *options->chord_deviation_mm);
   }
-  mesh = RefineMesh(std::move(mesh), measure, near_surface, kMaxFreeformTriangles);
+  mesh = RefineMesh(std::move(mesh), measure, near_surface, kMaxFreeformTriangles, num_threads);
   if (mesh.triangles.size() > kMaxFreeformTriangles) {
     if (options) RefuseMesh(*options, least_edge_m);
     throw DataError(
@@ -177,7 +177,7 @@ TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marke
 
 std::vector<FreeformResidual> Residuals(const std::vector<FreeformMarker>& markers,
                                         const std::vector<FrontMarker>& moved,
-                                        const SurfaceField& field) {
+                                        const SurfaceField& field, int num_threads) {
   std::vector<Eigen::Vector3d> feet;
   std::vector<FreeformResidual> residuals;
   for (std::size_t k = 0; k < markers.size(); ++k) {
@@ -189,7 +189,7 @@ std::vector<FreeformResidual> Residuals(const std::vector<FreeformMarker>& marke
                            field.PointSigma(kNumCorners * k + i), 0.0});
     }
   }
-  const std::vector<double> sigmas_m = field.Sigmas(feet);
+  const std::vector<double> sigmas_m = field.Sigmas(feet, num_threads);
   for (std::size_t i = 0; i < feet.size(); ++i) residuals[i].surface_sigma_m = sigmas_m[i];
   return residuals;
 }
@@ -259,7 +259,7 @@ FreeformMarker MakeFreeformMarker(const ShapeMarker& marker,
 
 FreeformSurface FitFreeformSurface(const std::vector<FreeformMarker>& markers,
                                    double marker_length_m,
-                                   const std::optional<MeshOptions>& options) {
+                                   const std::optional<MeshOptions>& options, int num_threads) {
   CheckCount(markers.size());
   const SurfaceField field = MakeField(markers);
   const std::vector<FrontMarker> moved = MoveToSurface(markers, field);
@@ -269,8 +269,8 @@ FreeformSurface FitFreeformSurface(const std::vector<FreeformMarker>& markers,
   FreeformSurface surface;
   if (std::set<int>(pieces.begin(), pieces.end()).size() > 1) {
     std::vector<std::string> notes;
-    surface =
-        FitFreeformSurface(ConnectedMarkers(markers, pieces, &notes), marker_length_m, options);
+    surface = FitFreeformSurface(ConnectedMarkers(markers, pieces, &notes), marker_length_m,
+                                 options, num_threads);
     surface.notes.insert(surface.notes.begin(), notes.begin(), notes.end());
     return surface;
   }
@@ -280,11 +280,11 @@ FreeformSurface FitFreeformSurface(const std::vector<FreeformMarker>& markers,
     mesh.normals.insert(mesh.normals.end(), marker.normals.begin(), marker.normals.end());
   }
   const bool is_closed = CountOpenEdges(mesh.triangles) == 0;
-  surface.mesh = Refine(std::move(mesh), field, marker_length_m, options);
+  surface.mesh = Refine(std::move(mesh), field, marker_length_m, options, num_threads);
   surface.area_m2 = AreaOf(surface.mesh);
   if (is_closed) surface.volume_m3 = VolumeOf(surface.mesh);
   surface.rms_sigma_m = RmsSigma(surface.mesh);
-  surface.residuals = Residuals(markers, moved, field);
+  surface.residuals = Residuals(markers, moved, field, num_threads);
   std::vector<double> distances_m;
   for (const FreeformResidual& residual : surface.residuals)
     distances_m.push_back(residual.distance_m);

@@ -60,8 +60,9 @@ constexpr std::size_t kMaxFreeformTriangles = 1'000'000;
 // says otherwise. Markers that stand apart from most others are left out. Throws DataError for too
 // few or too many markers, for markers that are in groups far from each other or look in different
 // directions, and for markers that contradict one another; InputError for more than
-// kMaxFreeformTriangles.
+// kMaxFreeformTriangles. `num_threads` 0: one a core; never changes the result.
 FreeformSurface FitFreeformSurface(const std::vector<FreeformMarker>& markers,
-                                   double marker_length_m, const std::optional<MeshOptions>& mesh);
+                                   double marker_length_m, const std::optional<MeshOptions>& mesh,
+                                   int num_threads = 0);
 
 }  // namespace velamap

@@ -34,7 +34,8 @@ Middles LongEdges(const TriangleMesh& mesh, const EdgeMeasure& measure) {
   return middles;
 }
 
-void AddMiddles(const NearSurface& near_surface, Middles* middles, TriangleMesh* grown) {
+void AddMiddles(const NearSurface& near_surface, int num_threads, Middles* middles,
+                TriangleMesh* grown) {
   TriangleMesh& mesh = *grown;
   std::vector<Edge> edges;
   const std::size_t first = mesh.vertices_m.size();
@@ -46,7 +47,7 @@ void AddMiddles(const NearSurface& near_surface, Middles* middles, TriangleMesh*
   }
   mesh.vertices_m.resize(first + edges.size());
   mesh.normals.resize(first + edges.size());
-  ParallelFor(edges.size(), 0, [&](std::size_t i) {
+  ParallelFor(edges.size(), num_threads, [&](std::size_t i) {
     const Eigen::Vector3d &a = mesh.vertices_m[edges[i].first],
                           &b = mesh.vertices_m[edges[i].second];
     const SurfacePoint point = near_surface((a + b) / 2, (b - a).norm());
@@ -85,11 +86,12 @@ std::vector<std::array<int, 3>> Divide(std::array<int, 3> t, const Middles& midd
 }  // namespace
 
 TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
-                        const NearSurface& near_surface, std::size_t max_triangles) {
+                        const NearSurface& near_surface, std::size_t max_triangles,
+                        int num_threads) {
   while (mesh.triangles.size() <= max_triangles) {
     Middles middles = LongEdges(mesh, measure);
     if (middles.empty()) break;
-    AddMiddles(near_surface, &middles, &mesh);
+    AddMiddles(near_surface, num_threads, &middles, &mesh);
     std::vector<std::array<int, 3>> divided;
     for (const auto& triangle : mesh.triangles) {
       for (const auto& part : Divide(triangle, middles, mesh.vertices_m)) divided.push_back(part);

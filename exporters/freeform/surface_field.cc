@@ -147,14 +147,6 @@ double Maximize(double low, double high, const Function& function) {
   return (low + high) / 2;
 }
 
-// Every k-th row, so that at most kMaxLikelihoodRows remain; points and normals alike.
-std::vector<Eigen::Index> RowsForLikelihood(Eigen::Index num_rows) {
-  const Eigen::Index step = (num_rows + kMaxLikelihoodRows - 1) / kMaxLikelihoodRows;
-  std::vector<Eigen::Index> chosen;
-  for (Eigen::Index i = 0; i < num_rows; i += step) chosen.push_back(i);
-  return chosen;
-}
-
 struct Parameters {
   double amplitude = 1.0;
   double sigma_factor = 1.0;  // of the sigmas of the points
@@ -162,7 +154,9 @@ struct Parameters {
 
 Parameters MaximizeLikelihood(const Rows& all, const Eigen::VectorXd& all_sigmas,
                               bool sigmas_are_known) {
-  const std::vector<Eigen::Index> chosen = RowsForLikelihood(all.Size());
+  // Every k-th row, so that at most kMaxLikelihoodRows remain; points and normals alike.
+  const Eigen::Index step = (all.Size() + kMaxLikelihoodRows - 1) / kMaxLikelihoodRows;
+  const auto chosen = Eigen::seq(0, all.Size() - 1, step);
   const Rows rows = {all.places(chosen, Eigen::all), all.directions(chosen, Eigen::all),
                      all.targets(chosen)};
   const Eigen::MatrixXd covariance = UnitCovariance(rows), drift = DriftOf(rows);
@@ -254,12 +248,12 @@ FieldValue SurfaceField::Evaluate(const Eigen::Vector3d& x_in_shape_m) const {
   return {scale_m_ * value, gradient};
 }
 
-std::vector<double> SurfaceField::Sigmas(
-    const std::vector<Eigen::Vector3d>& points_in_shape_m) const {
+std::vector<double> SurfaceField::Sigmas(const std::vector<Eigen::Vector3d>& points_in_shape_m,
+                                         int num_threads) const {
   constexpr std::size_t kPerBlock = 64;  // solved together, which is faster than one by one
   const double variance = amplitude_ * amplitude_;
   std::vector<double> sigmas_m(points_in_shape_m.size());
-  ParallelFor((sigmas_m.size() + kPerBlock - 1) / kPerBlock, 0, [&](std::size_t block) {
+  ParallelFor((sigmas_m.size() + kPerBlock - 1) / kPerBlock, num_threads, [&](std::size_t block) {
     const std::size_t first = block * kPerBlock;
     const std::size_t size = std::min(kPerBlock, sigmas_m.size() - first);
     Eigen::MatrixXd whitened(weights_.size(), size);

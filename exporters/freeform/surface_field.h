@@ -50,8 +50,10 @@ class SurfaceField {
 
   FieldValue Evaluate(const Eigen::Vector3d& x_in_shape_m) const;
 
-  // One standard deviation of the surface along its normal at each of these points on it, m.
-  std::vector<double> Sigmas(const std::vector<Eigen::Vector3d>& points_in_shape_m) const;
+  // One standard deviation of the surface along its normal at each of these points on it, m, with
+  // up to `num_threads` threads (0: one a core).
+  std::vector<double> Sigmas(const std::vector<Eigen::Vector3d>& points_in_shape_m,
+                             int num_threads) const;
 
   // Where the line of steepest slope from this point meets the surface; nothing if it ends before,
   // or further away than `max_distance_m`.

@@ -44,14 +44,6 @@ Json KeyNumbersJson(const ReportInput& input) {
   return numbers;
 }
 
-Json JsonOf(const Verdict& verdict) {
-  Json reasons = Json::array();
-  for (const VerdictReason& reason : verdict.reasons) {
-    reasons.push_back({{"level", StatusName(reason.level)}, {"text", reason.text}});
-  }
-  return {{"level", StatusName(verdict.level)}, {"reasons", std::move(reasons)}};
-}
-
 Json JsonOf(const Histogram& histogram) {
   return {{"first_border", histogram.first_border},
           {"bin_width", histogram.bin_width},
@@ -234,7 +226,7 @@ std::string ReportJson(const ReportInput& input) {
   if (!input.created.empty()) json["created"] = input.created;
   json["origin"] = OriginJson(input);
   json["frame"] = JsonOf(input.frame.value_or(FrameOfCentralCamera(input.metric_model)));
-  json["verdict"] = JsonOf(MakeVerdict(input));
+  json["verdict"] = VerdictJson(MakeVerdict(input));
   json["key_numbers"] = KeyNumbersJson(input);
   json["markers"] = MarkersJson(input, errors);
   json["images"] = ImagesJson(input);

@@ -58,8 +58,7 @@ std::optional<Eigen::Matrix3d> CenterEllipsoid(const ReportInput& input,
 
 void AddWholeMarker(const ReportInput& input, const ShapeMarker& marker, ReportJsonValue* json) {
   const double length_m = MarkerLength(input.layout, marker.marker_id);
-  double mean_side_m = 0;
-  for (const double side_m : MarkerSides(marker)) mean_side_m += side_m / kNumCorners;
+  const double mean_side_m = MeanSide(MarkerSides(marker));
   (*json)["centre"] = VectorJson(*marker.x_in_shape_m[0]);
   (*json)["length_mm"] = kMmPerM * length_m;
   (*json)["side_deviation_percent"] = 100 * (mean_side_m / length_m - 1);

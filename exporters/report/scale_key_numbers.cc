@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -29,14 +29,44 @@ bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
   });
 }
 
+// Nothing where nothing tells how well the scale is known.
+std::optional<double> SigmaPercent(const ScaleEstimate& scale) {
+  if (!scale.relative_sigma || std::isnan(*scale.relative_sigma)) return std::nullopt;
+  return 100 * *scale.relative_sigma;
+}
+
+// A small spread is no praise for a scale that is hardly known: one marker never contradicts
+// itself.
+void JudgeScaleSigma(const ScaleEstimate& scale, KeyNumber* number) {
+  const std::optional<double> sigma_percent = SigmaPercent(scale);
+  const ReportStatus of_sigma =
+      sigma_percent ? LowIsGood(*sigma_percent, kGoodScaleSigma_percent, kBadScaleSigma_percent)
+                    : ReportStatus::kCheck;
+  if (of_sigma <= number->status) return;
+  number->status = of_sigma;
+  if (sigma_percent) {
+    number->advice =
+        "the images do not determine the scale any better: measure a distance (distances, use: "
+        "scale), or use larger markers with a wider white margin";
+    return;
+  }
+  const std::string reason = scale.num_markers == 1
+                                 ? "the size rests on one marker, so its error is unknown"
+                                 : "nothing tells how well the size is known";
+  number->meaning += "; " + reason;
+  number->advice =
+      reason + ": use more markers of known size, or measure a distance (distances, use: scale)";
+}
+
 }  // namespace
 
 KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
                       const AdjustmentUncertainty* uncertainty) {
   const double spread_percent = 100 * scale.relative_spread;
-  const double sigma_percent = 100 * scale.relative_sigma.value_or(0.0);
   std::string value = fmt::format("{:.2f} % spread", spread_percent);
-  if (scale.relative_sigma) value = fmt::format("\u00b1{:.3f} %, {}", sigma_percent, value);
+  if (const auto sigma_percent = SigmaPercent(scale)) {
+    value = fmt::format("\u00b1{:.3f} %, {}", *sigma_percent, value);
+  }
   KeyNumber number{
       KeyNumberKind::kScale, value,
       fmt::format("standard deviations of the metric scale and of the scales from each of {} "
@@ -45,14 +75,7 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
       LowIsGood(spread_percent, kGoodScaleSpread_percent, kBadScaleSpread_percent),
       "the sizes of the markers contradict each other: check their prints and marker_length, and "
       "measure a distance (distances, use: scale)"};
-  const ReportStatus of_sigma =
-      LowIsGood(sigma_percent, kGoodScaleSigma_percent, kBadScaleSigma_percent);
-  if (of_sigma > number.status) {
-    number.status = of_sigma;
-    number.advice =
-        "the images do not determine the scale any better: measure a distance (distances, use: "
-        "scale), or use larger markers with a wider white margin";
-  }
+  JudgeScaleSigma(scale, &number);
   if (audit != nullptr && !FailedChecks(*audit).empty()) {
     number.meaning += "; measured distances contradict it";
     number.status = ReportStatus::kBad;
@@ -76,19 +99,10 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
 
 std::optional<KeyNumber> DistancesNumber(const ScaleAudit& audit) {
   if (audit.distances.empty()) return std::nullopt;
-  const CheckedDistance* worst = nullptr;
-  int num_found = 0;
-  for (const CheckedDistance& checked : audit.distances) {
-    if (!checked.distance_m) continue;
-    ++num_found;
-    const bool is_worse =
-        worst == nullptr ||
-        std::make_pair(checked.FailsAsCheck(), std::abs(checked.DifferenceInSigmas())) >
-            std::make_pair(worst->FailsAsCheck(), std::abs(worst->DifferenceInSigmas()));
-    if (is_worse) worst = &checked;
-  }
+  const CheckedDistance* worst = WorstDistance(audit);
   const auto num_failed = static_cast<int>(FailedChecks(audit).size());
-  const int num_checks = NumChecks(audit), num_all = static_cast<int>(audit.distances.size());
+  const int num_found = NumDistancesFound(audit), num_checks = NumChecks(audit),
+            num_all = static_cast<int>(audit.distances.size());
   KeyNumber number{KeyNumberKind::kMeasuredDistances,
                    num_failed > 0 ? fmt::format("{} of {} checks failed", num_failed, num_checks)
                                   : fmt::format("{} of {}", num_found, num_all),

@@ -5,6 +5,9 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "importer/text/shown_text.h"
 
 namespace velamap {
 
@@ -47,6 +50,14 @@ void PrintVerdict(const Verdict& verdict, std::ostream& out) {
   for (const VerdictReason& reason : verdict.reasons) {
     out << "verdict_reason: " << StatusName(reason.level) << "; " << reason.text << '\n';
   }
+}
+
+nlohmann::ordered_json VerdictJson(const Verdict& verdict) {
+  auto reasons = nlohmann::ordered_json::array();
+  for (const VerdictReason& reason : verdict.reasons) {
+    reasons.push_back({{"level", StatusName(reason.level)}, {"text", WithoutFolders(reason.text)}});
+  }
+  return {{"level", StatusName(verdict.level)}, {"reasons", std::move(reasons)}};
 }
 
 }  // namespace velamap

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "exporters/report/report_data.h"
 #include "exporters/report/report_key_numbers.h"
 
@@ -44,5 +46,8 @@ Verdict MakeVerdict(const ReportInput& input);
 
 // `verdict: good|check|bad` and a line `verdict_reason: ...` for each reason.
 void PrintVerdict(const Verdict& verdict, std::ostream& out);
+
+// Level and reasons for the files that are passed on to others: without the folders in the reasons.
+nlohmann::ordered_json VerdictJson(const Verdict& verdict);
 
 }  // namespace velamap

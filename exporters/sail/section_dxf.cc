@@ -45,16 +45,17 @@ void WritePoint(const DxfOutput& out, const Eigen::Vector3d& x_mm) {
   }
 }
 
-// R12 allows at most 31 capital letters, digits, $, - and _.
+constexpr std::size_t kMaxLayerName = 31;  // of R12
+
+// R12 allows capital letters, digits, $, - and _.
 std::string LayerName(const std::string& name) {
-  constexpr std::size_t kMaxLength = 31;
   std::string layer;
   for (const char character : name) {
     const auto c = static_cast<unsigned char>(character);
     const bool is_allowed = c < 128 && (std::isalnum(c) || c == '-' || c == '$');
     layer += is_allowed ? static_cast<char>(std::toupper(c)) : '_';
   }
-  return layer.substr(0, kMaxLength);
+  return layer.substr(0, kMaxLayerName);
 }
 
 // One unique layer name per section.
@@ -62,10 +63,11 @@ std::vector<std::string> SectionLayers(const SectionReport& report) {
   std::vector<std::string> layers;
   std::set<std::string> used = {"MARKERS", "CHORDS", "NAMES"};
   for (const Section& section : report.sections) {
-    std::string layer = LayerName(section.part + "_" + section.name);
+    const std::string name = LayerName(section.part + "_" + section.name);
+    std::string layer = name;
     for (int i = 2; !used.insert(layer).second; ++i) {
       const std::string suffix = fmt::format("_{}", i);
-      layer = LayerName(section.part + "_" + section.name).substr(0, 31 - suffix.size()) + suffix;
+      layer = name.substr(0, kMaxLayerName - suffix.size()) + suffix;
     }
     layers.push_back(layer);
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -14,11 +13,10 @@
 #include "importer/camera/camera_jacobian.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/pose_step.h"
+#include "importer/geometry/quad.h"
 
 namespace velamap {
 namespace {
-
-using Corners = std::array<Eigen::Vector2d, kNumCorners>;
 
 // The normal equations of one point with fixed cameras.
 class PointEquations : public GaussNewtonEquations<3> {
@@ -58,14 +56,14 @@ std::map<ImageId, const ModelImage*> ImagesById(const Model& model) {
 }
 
 // The four image points of every marker whose corners an image sees all.
-std::map<int, Corners> WholeMarkersIn(const ModelImage& image) {
+std::map<int, QuadCorners> WholeMarkersIn(const ModelImage& image) {
   std::map<int, std::map<int, Eigen::Vector2d>> corners;
   for (const Point2D& point : image.points2D) {
     if (!IsCornerPoint3DId(point.point3D_id)) continue;
     const CornerId id = CornerFromPoint3DId(point.point3D_id);
     corners[id.marker_id][id.corner] = point.x_in_image_px;
   }
-  std::map<int, Corners> whole;
+  std::map<int, QuadCorners> whole;
   for (const auto& [marker_id, by_corner] : corners) {
     if (by_corner.size() < kNumCorners) continue;
     for (const auto& [corner, x] : by_corner) whole[marker_id][corner - 1] = x;
@@ -78,10 +76,7 @@ std::map<int, double> SidesInImages(const Model& model) {
   std::map<int, std::pair<double, double>> sums;
   for (const auto& [image_id, image] : ImagesById(model)) {
     for (const auto& [marker_id, corners] : WholeMarkersIn(*image)) {
-      double side_px = 0.0;
-      for (int i = 0; i < kNumCorners; ++i) {
-        side_px += (corners[(i + 1) % kNumCorners] - corners[i]).norm() / kNumCorners;
-      }
+      const double side_px = QuadMeanSide(corners);
       sums[marker_id].first += side_px * side_px;
       sums[marker_id].second += side_px;
     }
@@ -217,13 +212,13 @@ void IntersectPoint(const Model& model, const std::map<ImageId, const ModelImage
 
 // Corrects corners that the detector sees `inset_px` too far inside along both sides of the marker.
 void MoveOut(double inset_px, ModelImage* image) {
-  const std::map<int, Corners> markers = WholeMarkersIn(*image);
+  const std::map<int, QuadCorners> markers = WholeMarkersIn(*image);
   for (Point2D& point : image->points2D) {
     if (!IsCornerPoint3DId(point.point3D_id)) continue;
     const CornerId id = CornerFromPoint3DId(point.point3D_id);
     const auto marker = markers.find(id.marker_id);
     if (marker == markers.end()) continue;
-    const Corners& corners = marker->second;
+    const QuadCorners& corners = marker->second;
     const Eigen::Vector2d& here = corners[id.corner - 1];
     const Eigen::Vector2d& next = corners[id.corner % kNumCorners];
     const Eigen::Vector2d& previous = corners[(id.corner + 2) % kNumCorners];
@@ -233,9 +228,7 @@ void MoveOut(double inset_px, ModelImage* image) {
 
 }  // namespace
 
-double MarkerSidesMeasured::Mean() const {
-  return std::accumulate(sides.begin(), sides.end(), 0.0) / kNumCorners;
-}
+double MarkerSidesMeasured::Mean() const { return MeanSide(sides); }
 
 double MarkerSidesMeasured::HorizontalOverVertical() const {
   return (sides[0] + sides[2]) / (sides[1] + sides[3]);

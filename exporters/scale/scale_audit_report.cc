@@ -124,24 +124,14 @@ void PrintParts(const ScaleAudit& audit, std::ostream& out) {
 }
 
 void PrintDistances(const ScaleAudit& audit, std::ostream& out) {
-  const CheckedDistance* worst = nullptr;
-  int num_found = 0;
-  for (const CheckedDistance& checked : audit.distances) {
-    if (!checked.distance_m) continue;
-    ++num_found;
-    // Failed checks first, as in the report.
-    if (worst == nullptr ||
-        std::make_pair(checked.FailsAsCheck(), std::abs(checked.DifferenceInSigmas())) >
-            std::make_pair(worst->FailsAsCheck(), std::abs(worst->DifferenceInSigmas()))) {
-      worst = &checked;
-    }
-  }
   if (audit.distances.empty()) return;
-  out << fmt::format("known_distances: {} of {} reconstructed", num_found, audit.distances.size());
+  out << fmt::format("known_distances: {} of {} reconstructed", NumDistancesFound(audit),
+                     audit.distances.size());
   if (audit.distance_deviation) {
     out << ", checks off by "
         << PercentText(*audit.distance_deviation, audit.distance_deviation_sigma);
   }
+  const CheckedDistance* worst = WorstDistance(audit);
   if (worst != nullptr) out << ", worst " << ShortText(*worst);
   out << '\n';
 }
@@ -169,6 +159,24 @@ int NumChecks(const ScaleAudit& audit) {
                                         [](const CheckedDistance& checked) {
                                           return checked.distance_m && !checked.known.is_scale_bar;
                                         }));
+}
+
+int NumDistancesFound(const ScaleAudit& audit) {
+  return static_cast<int>(
+      std::count_if(audit.distances.begin(), audit.distances.end(),
+                    [](const CheckedDistance& checked) { return checked.distance_m.has_value(); }));
+}
+
+const CheckedDistance* WorstDistance(const ScaleAudit& audit) {
+  const auto badness = [](const CheckedDistance& checked) {
+    return std::make_pair(checked.FailsAsCheck(), std::abs(checked.DifferenceInSigmas()));
+  };
+  const CheckedDistance* worst = nullptr;
+  for (const CheckedDistance& checked : audit.distances) {
+    if (!checked.distance_m) continue;
+    if (worst == nullptr || badness(checked) > badness(*worst)) worst = &checked;
+  }
+  return worst;
 }
 
 std::vector<std::string> ScaleWarnings(const ScaleAudit& audit) {

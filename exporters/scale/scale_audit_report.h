@@ -22,6 +22,13 @@ std::vector<const CheckedDistance*> FailedChecks(const ScaleAudit& audit);
 // Number of distances that check the shape and are in it.
 int NumChecks(const ScaleAudit& audit);
 
+// Number of distances that are in the shape.
+int NumDistancesFound(const ScaleAudit& audit);
+
+// The one of these that is farthest off: checks that fail come before those that are used, however
+// far these are off. Null if there is none.
+const CheckedDistance* WorstDistance(const ScaleAudit& audit);
+
 // `12-45.3 +15.10 mm (+5.2 sigmas)` for a distance that is in the shape.
 std::string ShortText(const CheckedDistance& checked);
 

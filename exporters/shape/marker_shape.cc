@@ -1,6 +1,7 @@
 #include "exporters/shape/marker_shape.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -44,6 +45,10 @@ std::array<double, kNumCorners> MarkerSides(const ShapeMarker& marker) {
     sides[i] = (*marker.x_in_shape_m[next + 1] - *marker.x_in_shape_m[i + 1]).norm();
   }
   return sides;
+}
+
+double MeanSide(const std::array<double, kNumCorners>& sides) {
+  return std::accumulate(sides.begin(), sides.end(), 0.0) / kNumCorners;
 }
 
 }  // namespace velamap

@@ -44,5 +44,6 @@ double MarkerArea(const ShapeMarker& marker);
 
 // Lengths of the sides 1-2, 2-3, 3-4, 4-1, m. Needs a whole marker.
 std::array<double, kNumCorners> MarkerSides(const ShapeMarker& marker);
+double MeanSide(const std::array<double, kNumCorners>& sides);
 
 }  // namespace velamap

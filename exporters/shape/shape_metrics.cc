@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "exporters/shape/common_corners.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
@@ -89,8 +91,9 @@ MarkerMetrics MetricsOfMarker(const ShapeMarker& marker, double printed_side_m,
   metrics.area_error_percent = 100.0 * area_error_m2 / printed_area_m2;
   metrics.area_sigma_mm2 = Times(kMmPerM * kMmPerM, SigmaOf(covariance, AreaGradient(marker)));
   metrics.mean_side_sigma_mm = Times(kMmPerM, SigmaOf(covariance, MeanSideGradient(marker)));
-  for (const double side_m : MarkerSides(marker)) {
-    metrics.mean_side_mm += side_m * kMmPerM / kNumCorners;
+  const auto sides_m = MarkerSides(marker);
+  metrics.mean_side_mm = kMmPerM * MeanSide(sides_m);
+  for (const double side_m : sides_m) {
     side_errors_mm->push_back(std::abs(side_m - printed_side_m) * kMmPerM);
     metrics.side_error_mm += side_errors_mm->back() / kNumCorners;
   }

@@ -2,23 +2,18 @@
 
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 
 namespace velamap {
 namespace {
-
-double MeanSide(const ShapeMarker& marker) {
-  const auto sides_m = MarkerSides(marker);
-  return std::accumulate(sides_m.begin(), sides_m.end(), 0.0) / kNumCorners;
-}
 
 std::optional<SurfaceMarker> Find(const std::map<int, const ShapeMarker*>& whole_markers,
                                   int marker_id) {
   const auto found = whole_markers.find(marker_id);
   if (found == whole_markers.end()) return std::nullopt;
   const ShapeMarker& marker = *found->second;
-  SurfaceMarker result{marker_id, *marker.x_in_shape_m[0], std::nullopt, MeanSide(marker)};
+  SurfaceMarker result{marker_id, *marker.x_in_shape_m[0], std::nullopt,
+                       MeanSide(MarkerSides(marker))};
   const std::optional<Eigen::Vector3d>& sigma_m = marker.sigma_m[0];
   if (sigma_m) result.sigma_m = std::sqrt(sigma_m->squaredNorm() / 3);
   return result;

@@ -8,6 +8,8 @@
 
 namespace velamap {
 
+double Statistics::MaxAbs() const { return std::max(std::abs(min), std::abs(max)); }
+
 Statistics ComputeStatistics(std::vector<double> values) {
   Statistics statistics;
   if (values.empty()) return statistics;

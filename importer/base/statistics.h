@@ -14,6 +14,8 @@ struct Statistics {
   double min = 0.0;
   double max = 0.0;
   double rms = 0.0;
+
+  double MaxAbs() const;  // the largest without its sign
 };
 
 // All zero for no values.

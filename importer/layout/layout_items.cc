@@ -9,6 +9,7 @@
 
 #include "importer/base/ids.h"
 #include "importer/base/numbers.h"
+#include "importer/text/id_ranges.h"
 
 namespace velamap {
 namespace {
@@ -104,10 +105,6 @@ FrameChoice ReadFrameMarkers(const YamlItem& map) {
 }
 
 }  // namespace
-
-bool ParseMarkerId(const std::string& text, int* id) {
-  return ParseNumber(text, id) && *id >= 0 && *id <= kMaxMarkerId;
-}
 
 int ReadMarkerId(const YamlItem& item) {
   int id = -1;

@@ -11,9 +11,6 @@
 
 namespace velamap {
 
-// Returns whether the text is a marker id.
-bool ParseMarkerId(const std::string& text, int* id);
-
 int ReadMarkerId(const YamlItem& item);
 double ReadMetres(const YamlItem& item);
 

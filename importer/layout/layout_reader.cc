@@ -20,6 +20,7 @@
 #include "importer/layout/layout.h"
 #include "importer/layout/layout_items.h"
 #include "importer/layout/yaml_item.h"
+#include "importer/text/id_ranges.h"
 
 namespace velamap {
 namespace {
@@ -35,9 +36,17 @@ std::vector<int> ReadMarkerIds(const YamlItem& list) {
   std::vector<int> ids;
   std::set<int> seen;
   ForEachElement(list, [&](const YamlItem& item) {
-    ids.push_back(ReadMarkerId(item));
-    if (!seen.insert(ids.back()).second) {
-      item.Fail(fmt::format("marker {} is named twice on this line", ids.back()));
+    const auto range = ParseIdRange(item.Text());
+    if (!range) {
+      item.Fail(
+          fmt::format("'{}' is not a marker id or a range of them such as 0-16; expected whole "
+                      "numbers from 0 to {}",
+                      item.Text(), kMaxMarkerId));
+    }
+    for (const int id : *range) {
+      ids.push_back(id);
+      if (seen.insert(id).second) continue;
+      item.Fail(fmt::format("marker {} is named twice on this line", id));
     }
   });
   return ids;
@@ -111,11 +120,16 @@ std::vector<LayoutPart> ReadParts(const YamlItem& item) {
 std::map<int, double> ReadMarkerLengths(const YamlItem& item) {
   std::map<int, double> lengths_m;
   ForEachKey(item, [&](const std::string& name, const YamlItem& value) {
-    int id = -1;
-    if (!ParseMarkerId(name, &id)) {
-      value.Fail(fmt::format("'{}' is not a marker id; expected {{id: length in m}}", name));
+    const auto range = ParseIdRange(name);
+    if (!range) {
+      value.Fail(fmt::format(
+          "'{}' is not a marker id or a range of them; expected {{id: length in m}}", name));
     }
-    lengths_m[id] = ReadMarkerLength(value);
+    const double length_m = ReadMarkerLength(value);
+    for (const int id : *range) {
+      if (lengths_m.emplace(id, length_m).second) continue;
+      value.Fail(fmt::format("marker {} is given a second length", id));
+    }
   });
   return lengths_m;
 }

@@ -1,12 +1,10 @@
 #include "importer/print/print_options.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
 #include "importer/base/ids.h"
-#include "importer/base/numbers.h"
+#include "importer/text/id_ranges.h"
 
 namespace velamap {
 namespace {
@@ -28,11 +26,10 @@ bool IsBoard(Arrangement arrangement) {
 
 OptionGroup DescribeOptions(PrintOptions* options) {
   const auto set_ids = [options](const std::string& text, const std::string& option) {
-    const auto ids = ParseNumberList<int>(text);
-    if (!ids ||
-        std::any_of(ids->begin(), ids->end(), [](int id) { return id < 0 || id > kMaxMarkerId; })) {
+    const auto ids = ParseIdList(text);
+    if (!ids) {
       throw InputError(
-          fmt::format("{}: '{}' is not a list of marker ids; give ids such as 3,17 (0 to {})",
+          fmt::format("{}: '{}' is not a list of marker ids; give ids such as 3,17,20-25 (0 to {})",
                       option, text, kMaxMarkerId));
     }
     options->ids = *ids;
@@ -59,8 +56,8 @@ OptionGroup DescribeOptions(PrintOptions* options) {
        Common({"num_markers", &options->num_markers, "count", "markers: how many",
                FromTo(0, kMaxMarkerId + 1)}),
        {"first_id", &options->first_id, "id", "id of the first marker", FromTo(0, kMaxMarkerId)},
-       {"ids", ParsedValue{&options->ids, "", set_ids}, "id,id,...",
-        "print only these, such as those that were lost"}}};
+       {"ids", ParsedValue{&options->ids, "", set_ids}, "ids",
+        "print only these, such as those that were lost: 3,17,20-25"}}};
 }
 
 void PrintOptions::Check() const {

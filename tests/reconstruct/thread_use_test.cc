@@ -1,11 +1,4 @@
-// How many threads the registration and the adjustment start. Their results do not depend on it, so
-// that no other test would notice an option that nobody reads.
-
-#include <dlfcn.h>
-#include <pthread.h>
-
-#include <algorithm>
-#include <atomic>
+// How many threads the registration and the adjustment start.
 
 #include <gtest/gtest.h>
 
@@ -13,47 +6,10 @@
 #include "reconstruct/register_frames.h"
 #include "tests/reconstruct/registration_fixture.h"
 #include "tests/reconstruct/scene_model.h"
-
-namespace {
-
-std::atomic<int> num_alive{0};
-std::atomic<int> max_num_alive{0};
-
-template <typename Function>
-Function* Original(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
-}  // namespace
-
-// These stand before the functions of the C library for all code of this program. A thread is alive
-// until it is joined, so that the counts do not depend on how fast threads work.
-extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
-                              void* (*start)(void*), void* argument) {
-  const int alive = ++num_alive;
-  for (int most = max_num_alive; most < alive;) {
-    if (max_num_alive.compare_exchange_weak(most, alive)) break;
-  }
-  return Original<decltype(pthread_create)>("pthread_create")(thread, attributes, start, argument);
-}
-
-extern "C" int pthread_join(pthread_t thread, void** result) {
-  --num_alive;
-  return Original<decltype(pthread_join)>("pthread_join")(thread, result);
-}
+#include "tests/support/thread_count.h"
 
 namespace velamap {
 namespace {
-
-// The most threads that work at the same time, with the calling one.
-template <typename Work>
-int NumThreadsOf(const Work& work) {
-  const int num_before = num_alive;
-  max_num_alive = num_before;
-  work();
-  EXPECT_EQ(num_alive, num_before);
-  return max_num_alive - num_before + 1;
-}
 
 class ThreadUse : public testing::TestWithParam<int> {
  protected:

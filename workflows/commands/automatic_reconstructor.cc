@@ -70,7 +70,7 @@ CommandSyntax Declare(Options* options) {
     syntax.groups.push_back(group);
   }
   syntax.preset = &options->preset;
-  syntax.groups.push_back(DescribeOptions(&options->general));
+  syntax.groups.push_back(DescribeOptions(&options->general, GeneralUse::kThreadsAndSeed));
   syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
                                           "1: log and report show files with their folders; 0: "
                                           "without, so that they can be passed on"});
@@ -95,6 +95,7 @@ void Validate(Options* options) {
   }
   options->adjustment.Complete(options->general.num_threads);
   CompleteSailOptions(options->surface, &options->exporter);
+  options->exporter.num_threads = options->general.num_threads;
   CompleteImporter(*options, &options->importer);
   CheckFrameChoice(options->exporter.frame, options->importer.layout);
   options->importer.allowed_frames = options->importer.video;

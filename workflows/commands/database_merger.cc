@@ -31,7 +31,8 @@ CommandSyntax Declare(Options* options) {
                                  "merged database, the same as from one import of the whole video; "
                                  "replaces an earlier database of velamap"))}},
            DescribeOptions(&options->markers, true),
-           DescribeOptions(&options->general)}};
+           // Not read, as one thread does it all; but a script gives it to every step of an import.
+           DescribeOptions(&options->general, GeneralUse::kThreads)}};
 }
 
 void Validate(Options* options) {

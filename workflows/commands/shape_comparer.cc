@@ -93,7 +93,7 @@ OptionGroup AlignmentGroup(AlignmentOptions* alignment) {
             "auto, reference_part, markers, best_fit or none; auto: the reference part where three "
             "of its markers are in both, else best fit"}),
        {"align_markers", ParsedValue{&alignment->marker_ids, "", set_ids}, "ids",
-        "for --align markers, such as 120,121,122"},
+        "for --align markers, such as 120,125-130"},
        ChoiceOption("align_start", &alignment->starts_as_is, {{false, "auto"}, {true, "as_is"}},
                     "best fit onto a surface: from several starts, or from where the shape is")}};
 }
@@ -124,7 +124,8 @@ CommandSyntax Declare(Options* options) {
           "trim1/shape --layout_path layout.yml --comparison_path comparison",
           {InputGroup(options), AlignmentGroup(&options->comparison.alignment),
            DescribeOptions(&options->comparison.edge), OutputGroup(options),
-           DescribeOptions(&options->comparison.grid), DescribeOptions(&options->general)}};
+           DescribeOptions(&options->comparison.grid),
+           DescribeOptions(&options->general, GeneralUse::kLog)}};
 }
 
 // The check of ParseOptions() knows options of one path only.

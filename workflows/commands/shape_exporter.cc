@@ -41,7 +41,7 @@ CommandSyntax Declare(Options* options) {
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
     syntax.groups.push_back(group);
   }
-  syntax.groups.push_back(DescribeOptions(&options->general));
+  syntax.groups.push_back(DescribeOptions(&options->general, GeneralUse::kThreads));
   syntax.preset = &options->preset;
   return syntax;
 }
@@ -56,6 +56,7 @@ void Validate(Options* options) {
   options->exporter.model_output_path = options->paths.output_path;
   options->exporter.shape_output_path = options->paths.shape_path;
   options->exporter.origin.version = kVersion;
+  options->exporter.num_threads = options->general.num_threads;
 }
 
 Verdict Judge(const ShapeExportReport& report, const Layout& layout) {

@@ -56,7 +56,7 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->plan),
        DescribeOptions(&options->sail),
        DescribeOptions(&options->grid),
-       DescribeOptions(&options->general)}};
+       DescribeOptions(&options->general, GeneralUse::kThreadsAndSeed)}};
 }
 
 void CheckCamera(const Options& options) {

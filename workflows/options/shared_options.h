@@ -69,7 +69,11 @@ Option ColmapLogOption(PathOptions* paths);
 Option BackendOption(AdjustmentBackend* backend);
 Option ScaleOption(ScaleMethod* scale_by);
 
-OptionGroup DescribeOptions(GeneralOptions* options);
+// Which of the GeneralOptions a command reads beside the level of the log; others are not offered,
+// so that nobody relies on them.
+enum class GeneralUse { kLog, kSeed, kThreads, kThreadsAndSeed };
+
+OptionGroup DescribeOptions(GeneralOptions* options, GeneralUse use);
 // A command that detects nothing has no use for a dictionary.
 OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary);
 

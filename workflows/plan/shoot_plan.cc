@@ -174,17 +174,12 @@ ShootPlan MakeShootPlan(const PlannedSurface& surface, const Camera& camera,
 
 Verdict JudgePlan(const ShootPlan& plan) {
   constexpr double kGoodShare = 0.8, kBadShare = 0.5, kShortest_s = 1.0 / 4000;
-  Verdict verdict;
-  const auto add = [&](ReportStatus level, const std::string& text) {
-    verdict.reasons.push_back({level, text});
-  };
+  VerdictReasons reasons;
   const auto judge = [&](double value, double good, double bad, const std::string& text) {
-    if (value < good) add(value < bad ? ReportStatus::kBad : ReportStatus::kCheck, text);
+    if (value < good) reasons.Add(value < bad ? ReportStatus::kBad : ReportStatus::kCheck, text);
   };
   const PlannedVariant& planned = plan.plan();
-  if (!planned.precision) {
-    add(ReportStatus::kBad, "these views give no shape: " + planned.failure);
-  }
+  if (!planned.precision) reasons.Bad("these views give no shape: " + planned.failure);
   const std::string closer = "go closer, film with more pixels, or print larger markers";
   judge(plan.along_path.found, kGoodShare, kBadShare,
         fmt::format("a view finds {} of the markers, {} are in the picture: {}",
@@ -199,11 +194,10 @@ Verdict JudgePlan(const ShootPlan& plan) {
                     "around further",
                     plan.path.arc_deg));
   if (plan.shutters.front().exposure_s < kShortest_s) {
-    add(ReportStatus::kCheck,
-        "few cameras have such a short exposure: go slower, or hold the camera steadier");
+    reasons.Check("few cameras have such a short exposure: go slower, or hold the camera steadier");
   }
   if (!plan.surface.markers_left_out.empty()) {
-    add(ReportStatus::kCheck,
+    reasons.Check(
         fmt::format("not planned, because the layout does not say where they are: {}: give "
                     "--shape_path",
                     IdRanges(plan.surface.markers_left_out)));
@@ -216,17 +210,12 @@ Verdict JudgePlan(const ShootPlan& plan) {
       }
     }
     if (!missing.empty()) {
-      add(ReportStatus::kCheck,
+      reasons.Check(
           fmt::format("found in fewer than two views: {}: {}", IdRanges(missing), closer));
     }
-    for (const std::string& warning : planned.precision->warnings) {
-      add(ReportStatus::kCheck, warning);
-    }
+    for (const std::string& warning : planned.precision->warnings) reasons.Check(warning);
   }
-  std::stable_sort(verdict.reasons.begin(), verdict.reasons.end(),
-                   [](const auto& a, const auto& b) { return a.level > b.level; });
-  if (!verdict.reasons.empty()) verdict.level = verdict.reasons.front().level;
-  return verdict;
+  return reasons.Take();
 }
 
 }  // namespace velamap

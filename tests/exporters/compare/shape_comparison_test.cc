@@ -262,6 +262,7 @@ TEST(ShapeComparison, NamesOfTheMethods) {
 
 TEST(ShapeComparison, ListOfMarkers) {
   EXPECT_THAT(MarkerIdsFromText("120,7,0", "--align_markers"), ElementsAre(120, 7, 0));
+  EXPECT_THAT(MarkerIdsFromText("120-122,7", "--align_markers"), ElementsAre(120, 121, 122, 7));
   for (const char* text : {"", "1,", "1;2", "1, 2", "a", "-1", "8192", "1,,2"}) {
     ExpectThrows<InputError>([&] { MarkerIdsFromText(text, "--align_markers"); },
                              {"--align_markers", "120,121"});

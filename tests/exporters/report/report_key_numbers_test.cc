@@ -1,5 +1,6 @@
 #include "exporters/report/report_key_numbers.h"
 
+#include <limits>
 #include <optional>
 
 #include <gmock/gmock.h>
@@ -136,6 +137,25 @@ TEST_F(ReportKeyNumbers, AScaleThatIsHardlyKnownIsNotGood) {
   EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("measure a distance"));
   example_.scale.relative_sigma = 0.031;
   EXPECT_EQ(Find(KeyNumberKind::kScale).status, ReportStatus::kBad);
+}
+
+TEST_F(ReportKeyNumbers, AScaleOfUnknownSigmaIsNotGood) {
+  example_.scale.relative_spread = 0.0;
+  example_.scale.relative_sigma.reset();
+  example_.scale.num_markers = 1;
+  EXPECT_EQ(Find(KeyNumberKind::kScale).status, ReportStatus::kCheck);
+  EXPECT_EQ(Find(KeyNumberKind::kScale).value, "0.00 % spread");
+  EXPECT_THAT(Find(KeyNumberKind::kScale).meaning, HasSubstr("the size rests on one marker"));
+  EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("the size rests on one marker"));
+  EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("measure a distance"));
+  example_.scale.num_markers = 26;
+  EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("nothing tells how well the size is"));
+  example_.scale.relative_sigma = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(Find(KeyNumberKind::kScale).status, ReportStatus::kCheck);
+  EXPECT_EQ(Find(KeyNumberKind::kScale).value, "0.00 % spread");
+  example_.scale.relative_spread = 0.031;  // which weighs more
+  EXPECT_EQ(Find(KeyNumberKind::kScale).status, ReportStatus::kBad);
+  EXPECT_THAT(Find(KeyNumberKind::kScale).advice, HasSubstr("contradict each other"));
 }
 
 TEST_F(ReportKeyNumbers, ImagesCountThoseLeftOut) {

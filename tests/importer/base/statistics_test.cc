@@ -34,6 +34,12 @@ TEST(ComputeStatistics, OneValueHasNoDeviation) {
   EXPECT_EQ(s.rms, 3);
 }
 
+TEST(ComputeStatistics, TheLargestIsTakenWithoutItsSign) {
+  EXPECT_EQ(ComputeStatistics({-5, 2, 3}).MaxAbs(), 5);
+  EXPECT_EQ(ComputeStatistics({-5, 2, 7}).MaxAbs(), 7);
+  EXPECT_EQ(ComputeStatistics({}).MaxAbs(), 0);
+}
+
 TEST(ComputeStatistics, OrderOfTheInputIsWithoutEffect) {
   std::vector<double> values;
   for (int i = 0; i < 1000; ++i) values.push_back(std::sin(i) * std::pow(10, i % 9));
