@@ -70,7 +70,7 @@ CommandSyntax Declare(Options* options) {
     syntax.groups.push_back(group);
   }
   syntax.preset = &options->preset;
-  syntax.groups.push_back(DescribeOptions(&options->general, GeneralUse::kThreadsAndSeed));
+  syntax.groups.push_back(DescribeOptions(&options->general));
   syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
                                           "1: log and report show files with their folders; 0: "
                                           "without, so that they can be passed on"});

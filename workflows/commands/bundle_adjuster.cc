@@ -41,7 +41,7 @@ CommandSyntax Declare(Options* options) {
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->adjustment.colmap),
            DescribeOptions(&options->adjustment.markers),
-           DescribeOptions(&options->general, GeneralUse::kThreads)},
+           DescribeOptions(&options->general)},
           &options->preset};
 }
 

@@ -61,7 +61,7 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->calibration.detection),
        DescribeOptions(&options->calibration.video),
-       DescribeOptions(&options->general, GeneralUse::kThreads)}};
+       DescribeOptions(&options->general)}};
 }
 
 std::optional<CameraModel> ModelOf(WantedModel wanted) {

@@ -61,7 +61,7 @@ CommandSyntax Declare(Options* options) {
            RegistrationGroup(&sweep->registration),
            DescribeOptions(&sweep->adjustment.colmap),
            DescribeOptions(&sweep->adjustment.markers),
-           DescribeOptions(&options->general, GeneralUse::kThreadsAndSeed)},
+           DescribeOptions(&options->general)},
           &options->preset};
 }
 

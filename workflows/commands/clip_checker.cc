@@ -47,7 +47,7 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->markers, true),
        DescribeOptions(&options->check.detection),
        DescribeOptions(&options->check.video),
-       DescribeOptions(&options->general, GeneralUse::kThreads)}};
+       DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {

@@ -31,8 +31,7 @@ CommandSyntax Declare(Options* options) {
                                  "merged database, the same as from one import of the whole video; "
                                  "replaces an earlier database of velamap"))}},
            DescribeOptions(&options->markers, true),
-           // Not read, as one thread does it all; but a script gives it to every step of an import.
-           DescribeOptions(&options->general, GeneralUse::kThreads)}};
+           DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {

@@ -39,7 +39,7 @@ CommandSyntax Declare(Options* options) {
              PresetOption(&options->preset)}},
            DescribeOptions(&options->markers, false),
            DescribeOptions(&options->registration),
-           DescribeOptions(&options->general, GeneralUse::kThreadsAndSeed)},
+           DescribeOptions(&options->general)},
           &options->preset};
 }
 

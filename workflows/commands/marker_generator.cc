@@ -36,7 +36,7 @@ CommandSyntax Declare(Options* options) {
            DescribeOptions(&options->print.sail),
            DescribeOptions(&options->print.grid),
            DescribeOptions(&options->print.codes),
-           DescribeOptions(&options->general, GeneralUse::kSeed)}};
+           DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {

@@ -63,7 +63,7 @@ CommandSyntax Declare(Options* options) {
            DescribeOptions(&options->markers, true),
            DescribeOptions(&options->importer.detection),
            DescribeOptions(&options->importer.video),
-           DescribeOptions(&options->general, GeneralUse::kThreads)},
+           DescribeOptions(&options->general)},
           &options->preset};
 }
 

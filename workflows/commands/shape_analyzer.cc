@@ -46,7 +46,7 @@ CommandSyntax Declare(Options* options) {
                            "file for all metrics and the tables of markers and distances")),
          PathOption("json_path", PathUse::kWritesFile, &options->json_path, "the same as JSON")}},
        DescribeOptions(&options->markers, false),
-       DescribeOptions(&options->general, GeneralUse::kLog)}};
+       DescribeOptions(&options->general)}};
 }
 
 void Validate(Options* options) {

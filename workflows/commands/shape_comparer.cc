@@ -124,8 +124,7 @@ CommandSyntax Declare(Options* options) {
           "trim1/shape --layout_path layout.yml --comparison_path comparison",
           {InputGroup(options), AlignmentGroup(&options->comparison.alignment),
            DescribeOptions(&options->comparison.edge), OutputGroup(options),
-           DescribeOptions(&options->comparison.grid),
-           DescribeOptions(&options->general, GeneralUse::kLog)}};
+           DescribeOptions(&options->comparison.grid), DescribeOptions(&options->general)}};
 }
 
 // The check of ParseOptions() knows options of one path only.

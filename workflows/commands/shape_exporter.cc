@@ -41,7 +41,7 @@ CommandSyntax Declare(Options* options) {
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
     syntax.groups.push_back(group);
   }
-  syntax.groups.push_back(DescribeOptions(&options->general, GeneralUse::kThreads));
+  syntax.groups.push_back(DescribeOptions(&options->general));
   syntax.preset = &options->preset;
   return syntax;
 }

@@ -56,7 +56,7 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->plan),
        DescribeOptions(&options->sail),
        DescribeOptions(&options->grid),
-       DescribeOptions(&options->general, GeneralUse::kThreadsAndSeed)}};
+       DescribeOptions(&options->general)}};
 }
 
 void CheckCamera(const Options& options) {

@@ -87,25 +87,19 @@ Option ScaleOption(ScaleMethod* scale_by) {
       "that agree, or from the mean side of all; the marker-aware adjustment needs no scale");
 }
 
-OptionGroup DescribeOptions(GeneralOptions* options, GeneralUse use) {
-  OptionGroup group = {"General",
-                       {ChoiceOption("log_level", &options->log_level,
-                                     {{LogLevel::kError, "error"},
-                                      {LogLevel::kWarn, "warn"},
-                                      {LogLevel::kInfo, "info"},
-                                      {LogLevel::kDebug, "debug"}},
-                                     "least severe messages that are shown")}};
-  if (use == GeneralUse::kSeed || use == GeneralUse::kThreadsAndSeed) {
-    group.options.push_back({"random_seed", &options->random_seed, "seed",
-                             "seed of the random numbers; the same seed gives the same result",
-                             AtLeast(0)});
-  }
-  if (use == GeneralUse::kThreads || use == GeneralUse::kThreadsAndSeed) {
-    group.options.push_back({"num_threads", &options->num_threads, "count",
-                             "number of threads; 0: one per core; the result does not depend on it",
-                             FromTo(0, 1024)});
-  }
-  return group;
+OptionGroup DescribeOptions(GeneralOptions* options) {
+  return {
+      "General",
+      {ChoiceOption("log_level", &options->log_level,
+                    {{LogLevel::kError, "error"},
+                     {LogLevel::kWarn, "warn"},
+                     {LogLevel::kInfo, "info"},
+                     {LogLevel::kDebug, "debug"}},
+                    "least severe messages that are shown"),
+       {"random_seed", &options->random_seed, "seed",
+        "seed of the random numbers; the same seed gives the same result", AtLeast(0)},
+       {"num_threads", &options->num_threads, "count",
+        "number of threads; 0: one per core; the result does not depend on it", FromTo(0, 1024)}}};
 }
 
 OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary) {

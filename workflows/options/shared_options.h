@@ -69,11 +69,7 @@ Option ColmapLogOption(PathOptions* paths);
 Option BackendOption(AdjustmentBackend* backend);
 Option ScaleOption(ScaleMethod* scale_by);
 
-// Which of the GeneralOptions a command reads beside the level of the log; others are not offered,
-// so that nobody relies on them.
-enum class GeneralUse { kLog, kSeed, kThreads, kThreadsAndSeed };
-
-OptionGroup DescribeOptions(GeneralOptions* options, GeneralUse use);
+OptionGroup DescribeOptions(GeneralOptions* options);
 // A command that detects nothing has no use for a dictionary.
 OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary);
 

@@ -26,7 +26,6 @@
 namespace velamap {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::StartsWith;
 
 std::vector<Option> OptionsOf(const Command& command) {
@@ -173,27 +172,6 @@ TEST(OptionTables, CheckNamesTheOptionsOfTheCommandLine) {
   MarkerAdjustmentOptions options;
   options.loss_sigmas = -1;
   ExpectThrows<InputError>([&] { options.Check(); }, {"--MarkerAdjustment.loss: -1"});
-}
-
-std::set<std::string> CommandsWith(const std::string& option) {
-  std::set<std::string> commands;
-  for (const Command& command : AllCommands()) {
-    if (OptionNames(command.syntax).count(option) > 0) commands.insert(command.syntax.name);
-  }
-  return commands;
-}
-
-// An option that a command takes and does not read would promise what nobody keeps.
-TEST(OptionTables, SeedAndThreadsAreOfferedWhereTheyAreRead) {
-  EXPECT_THAT(CommandsWith("random_seed"),
-              ElementsAre("automatic_reconstructor", "central_frame_sweeper", "frame_registrator",
-                          "marker_generator", "shoot_planner"));
-  EXPECT_THAT(
-      CommandsWith("num_threads"),
-      ElementsAre("automatic_reconstructor", "bundle_adjuster", "camera_calibrator",
-                  "central_frame_sweeper", "clip_checker",
-                  "database_merger",  // for scripts that give it to each step of an import
-                  "frame_registrator", "marker_importer", "shape_exporter", "shoot_planner"));
 }
 
 // A value that the parser accepts, as a project file has it.
