@@ -103,9 +103,9 @@ Names CommandsOf(const std::string& path, const std::map<std::string, Names>& op
 
 // What stands in the quotes of a line of code, one after another.
 std::string QuotedText(const std::string& line) {
-  static const std::regex quoted(R"re("((?:[^"\\]|\\.)*)")re");
+  static const std::regex quoted(R"re("((?:[^"\\]|\\.)*)")re"), no_code(R"(^\s*(//|#include))");
   std::string text;
-  if (std::regex_search(line, std::regex(R"(^\s*(//|#include))"))) return text;
+  if (line.find('"') == std::string::npos || std::regex_search(line, no_code)) return text;
   for (std::sregex_iterator it(line.begin(), line.end(), quoted), end; it != end; ++it) {
     text += (*it)[1].str() + "\n";
   }
