@@ -1,15 +1,13 @@
 #include "importer/video/ffmpeg_picture.h"
 
-#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <new>
-#include <utility>
+#include <string_view>
 
 extern "C" {
 #include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 }
 
 #include "importer/video/video_picture.h"
@@ -17,33 +15,39 @@ extern "C" {
 namespace velamap {
 namespace {
 
-// By the name of FFmpeg's demuxer. Each decoder takes a whole file as one packet.
-constexpr std::pair<const char*, AVCodecID> kPictureCodecs[] = {
-    {"png_pipe", AV_CODEC_ID_PNG},         {"tiff_pipe", AV_CODEC_ID_TIFF},
-    {"bmp_pipe", AV_CODEC_ID_BMP},         {"webp_pipe", AV_CODEC_ID_WEBP},
-    {"j2k_pipe", AV_CODEC_ID_JPEG2000},    {"pgm_pipe", AV_CODEC_ID_PGM},
-    {"ppm_pipe", AV_CODEC_ID_PPM},         {"pbm_pipe", AV_CODEC_ID_PBM},
-    {"sunrast_pipe", AV_CODEC_ID_SUNRAST}, {"exr_pipe", AV_CODEC_ID_EXR},
+struct Signature {
+  std::string_view bytes;
+  AVCodecID codec;
 };
 
-// Looks at the first bytes only.
+// How files begin. Each decoder takes a whole file as one packet, and refuses a RIFF file that is
+// no WebP.
+constexpr Signature kSignatures[] = {
+    {"\x89PNG", AV_CODEC_ID_PNG},
+    {"\xFF\xD8", AV_CODEC_ID_MJPEG},
+    {{"II*\0", 4}, AV_CODEC_ID_TIFF},
+    {{"MM\0*", 4}, AV_CODEC_ID_TIFF},
+    {"BM", AV_CODEC_ID_BMP},
+    {"RIFF", AV_CODEC_ID_WEBP},
+    {{"\0\0\0\x0CjP  ", 8}, AV_CODEC_ID_JPEG2000},
+    {"\xFF\x4F\xFF\x51", AV_CODEC_ID_JPEG2000},
+    {"P1", AV_CODEC_ID_PBM},
+    {"P2", AV_CODEC_ID_PGM},
+    {"P3", AV_CODEC_ID_PPM},
+    {"P4", AV_CODEC_ID_PBM},
+    {"P5", AV_CODEC_ID_PGM},
+    {"P6", AV_CODEC_ID_PPM},
+    {"\x59\xA6\x6A\x95", AV_CODEC_ID_SUNRAST},
+    {"\x76\x2F\x31\x01", AV_CODEC_ID_EXR},
+};
+
+// Null for other files.
 const AVCodec* FindDecoder(const std::vector<std::uint8_t>& bytes) {
-  // FFmpeg would take a JPEG for a film of one picture.
-  if (bytes.size() > 2 && bytes[0] == 0xFF && bytes[1] == 0xD8) {
-    return avcodec_find_decoder(AV_CODEC_ID_MJPEG);
-  }
-  std::vector<std::uint8_t> head(
-      bytes.begin(),
-      bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 4096)));
-  AVProbeData probe = {};
-  probe.filename = "";
-  probe.buf_size = static_cast<int>(head.size());
-  head.resize(head.size() + AVPROBE_PADDING_SIZE);
-  probe.buf = head.data();
-  const AVInputFormat* format = av_probe_input_format(&probe, 1);
-  if (format == nullptr) return nullptr;
-  for (const auto& [name, codec] : kPictureCodecs) {
-    if (std::strcmp(format->name, name) == 0) return avcodec_find_decoder(codec);
+  const std::string_view file(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  for (const Signature& signature : kSignatures) {
+    if (file.substr(0, signature.bytes.size()) == signature.bytes) {
+      return avcodec_find_decoder(signature.codec);
+    }
   }
   return nullptr;
 }

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -105,9 +104,9 @@ cv::Mat DecodeImageFile(const std::string& path, std::string* reason, std::size_
     *reason = fmt::format("has {} bytes; pictures of at most {} are read", size, kMaxImageFileSize);
     return {};
   }
+  Bytes bytes(static_cast<std::size_t>(std::max(size, std::int64_t{0})));
   stream.seekg(0);
-  const Bytes bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream.is_open() || stream.bad()) {
+  if (!stream.read(reinterpret_cast<char*>(bytes.data()), size)) {
     *reason = "cannot be read";
   } else if (bytes.empty()) {
     *reason = "the file is empty";

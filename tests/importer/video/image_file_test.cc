@@ -74,6 +74,16 @@ TEST(DecodeImageFile, ReadsWhatOpenCvReads) {
   }
 }
 
+TEST(DecodeImageFile, HeaderOfAPgmMayBeOneLine) {
+  const TempDir dir;
+  std::string reason;
+  std::ofstream(dir / "a.pgm") << "P5 3 2 255\n"
+                               << "abcdef";
+  const cv::Mat image = DecodeImageFile(dir / "a.pgm", &reason);
+  ASSERT_EQ(image.size(), cv::Size(3, 2)) << reason;
+  EXPECT_EQ(image.at<cv::Vec3b>(1, 2), cv::Vec3b('f', 'f', 'f'));
+}
+
 TEST(DecodeImageFile, TellsWholeFromBrokenFiles) {
   const TempDir dir;
   for (const char* name : {"a.jpg", "a.png", "a.tif", "a.bmp"}) {
