@@ -11,6 +11,8 @@
 #include <string>
 #include <system_error>
 
+#include <opencv2/core.hpp>
+
 #include "exporters/design/mesh_reader.h"
 #include "importer/base/error.h"
 #include "importer/base/parallel.h"
@@ -19,6 +21,8 @@
 
 namespace velamap {
 namespace {
+
+constexpr char kOutOfMemory[] = "out of memory; use fewer images or fewer threads";
 
 enum ExitCode { kOk = 0, kNoResult = 1, kBadInput = 2, kExternalTool = 3, kBrokenInvariant = 4 };
 
@@ -70,8 +74,12 @@ int Main(int argc, char** argv) {
   } catch (const ExternalToolError& error) {
     return fail(kExternalTool, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(kBadInput, "out of memory; use fewer images or fewer threads");
+    return fail(kBadInput, kOutOfMemory);
   } catch (const std::exception& error) {
+    const auto* opencv_error = dynamic_cast<const cv::Exception*>(&error);
+    if (opencv_error != nullptr && opencv_error->code == cv::Error::StsNoMem) {
+      return fail(kBadInput, kOutOfMemory);
+    }
     const auto* system_error = dynamic_cast<const std::system_error*>(&error);
     if (system_error != nullptr &&
         system_error->code() == std::errc::resource_unavailable_try_again) {

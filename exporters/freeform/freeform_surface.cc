@@ -164,6 +164,9 @@ TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marke
   if (options && options->chord_deviation_mm) {
     measure = ByDeviation(kMPerMm * *options->chord_deviation_mm);
   }
+  if (options && EstimateNumTriangles(mesh, measure) > 4.0 * kMaxFreeformTriangles) {
+    RefuseMesh(*options, least_edge_m);
+  }
   mesh = RefineMesh(std::move(mesh), measure, near_surface, kMaxFreeformTriangles, num_threads);
   if (mesh.triangles.size() > kMaxFreeformTriangles) {
     if (options) RefuseMesh(*options, least_edge_m);

@@ -1,9 +1,11 @@
 #include "exporters/freeform/mesh_refinement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
+#include "importer/base/error.h"
 #include "importer/base/parallel.h"
 
 namespace velamap {
@@ -88,9 +90,14 @@ std::vector<std::array<int, 3>> Divide(std::array<int, 3> t, const Middles& midd
 TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
                         const NearSurface& near_surface, std::size_t max_triangles,
                         int num_threads) {
-  while (mesh.triangles.size() <= max_triangles) {
+  // Each round takes the longest edges down to kLongest, so that a hundred make 1e15 of it.
+  constexpr int kMaxRounds = 100;
+  for (int round = 0; mesh.triangles.size() <= max_triangles; ++round) {
     Middles middles = LongEdges(mesh, measure);
     if (middles.empty()) break;
+    if (round == kMaxRounds) {
+      throw DataError("the triangles cannot be divided as far as asked for; ask for less");
+    }
     AddMiddles(near_surface, num_threads, &middles, &mesh);
     std::vector<std::array<int, 3>> divided;
     for (const auto& triangle : mesh.triangles) {
@@ -99,6 +106,18 @@ TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
     mesh.triangles = std::move(divided);
   }
   return mesh;
+}
+
+double EstimateNumTriangles(const TriangleMesh& mesh, const EdgeMeasure& measure) {
+  const double unit_area = std::sqrt(3.0) / 4;  // of a triangle whose sides measure 1
+  double sum = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const double ab = measure(mesh, a, b), bc = measure(mesh, b, c), ca = measure(mesh, c, a);
+    const double half = (ab + bc + ca) / 2;  // Heron's formula; measures may not make a triangle
+    const double area = std::sqrt(std::max(0.0, half * (half - ab) * (half - bc) * (half - ca)));
+    sum += std::max({1.0, ab, bc, ca, area / unit_area});
+  }
+  return sum;
 }
 
 }  // namespace velamap

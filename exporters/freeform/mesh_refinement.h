@@ -23,9 +23,13 @@ using NearSurface =
 // Halves edges, the longest ones first, until none has a measure above 1 or the mesh has more than
 // `max_triangles`. Triangles with one, two or three halved edges become two, three or four. New
 // vertices are moved to the surface on up to `num_threads` threads (0: one a core); their sigmas,
-// if the mesh has any, are the means of those at the ends. The mesh has to have normals.
+// if the mesh has any, are the means of those at the ends. The mesh has to have normals. Throws
+// DataError if that does not end, because `measure` does not shrink with the edges.
 TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
                         const NearSurface& near_surface, std::size_t max_triangles,
                         int num_threads);
+
+// How many triangles that takes about. Those that are long in one direction are divided along it.
+double EstimateNumTriangles(const TriangleMesh& mesh, const EdgeMeasure& measure);
 
 }  // namespace velamap

@@ -115,7 +115,16 @@ fs::path AbsolutePath(const fs::path& path) {
   std::error_code error;
   const fs::path absolute = fs::absolute(path, error);
   CheckRead(error, path);
-  return absolute.lexically_normal();
+  // The folder above a link is that of the folder it leads to, not that of the link.
+  fs::path result;
+  for (const fs::path& part : absolute) {
+    if (part == "..") {
+      result = CanonicalPath(result).parent_path();
+    } else if (part != ".") {
+      result /= part;
+    }
+  }
+  return result;
 }
 
 fs::path CanonicalPath(const fs::path& path) {

@@ -48,6 +48,7 @@ std::map<CameraId, Camera> ReadCameraRows(const std::string& path, SQLite::Datab
     if (static_cast<int>(camera.params.size()) != NumCameraParams(*model)) {
       fail("a wrong number of parameters");
     }
+    if (camera.width_px <= 0 || camera.height_px <= 0) fail("a picture without pixels");
     if (!(SmallestFocalLength(camera) > 0)) fail("a focal length that is not positive");
     cameras.emplace(query.getColumn(0).getUInt(), camera);
   }

@@ -23,7 +23,8 @@ CameraId InsertCamera(const Camera& camera, bool is_calibrated, SQLite::Database
 bool AllCamerasAreCalibrated(SQLite::Database* database);
 
 // Leaves out cameras whose model velamap does not have, and therefore has not imported. Throws
-// InputError for a wrong number of parameters or a focal length that is not positive.
+// InputError for a wrong number of parameters, a picture without pixels or a focal length that is
+// not positive.
 std::map<CameraId, Camera> ReadCameraRows(const std::string& path, SQLite::Database* database);
 
 }  // namespace velamap

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -11,6 +12,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/replacement.h"
+#include "importer/database/camera_table.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/sqlite_blob.h"
 
@@ -183,6 +185,7 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
   for (const auto& [name, type] : kAddedColumns) {
     columns += std::string(", ") + (names.count(name) > 0 ? name : "NULL");
   }
+  const std::map<CameraId, Camera> cameras = ReadCameraRows(path, database);
   std::vector<DatabaseImage> images;
   SQLite::Statement query(
       *database, fmt::format("SELECT images.image_id, camera_id, name, frame_number, time_s, "
@@ -197,6 +200,12 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
       image.camera_id = query.getColumn(1).getUInt();
       image.detections.image_name = query.getColumn(2).getString();
       CheckImageName(image.detections.image_name, path + ": table images");
+      if (cameras.count(image.camera_id) == 0) {
+        throw InputError(fmt::format(
+            "{}: image {} names camera {}, which the database lacks or has with a model that "
+            "velamap does not know; import the pictures anew",
+            path, image.detections.image_name, image.camera_id));
+      }
       if (!query.isColumnNull(3)) image.detections.frame_number = query.getColumn(3).getInt();
       if (!query.isColumnNull(4)) image.detections.time_s = query.getColumn(4).getDouble();
       images.push_back(std::move(image));

@@ -185,6 +185,25 @@ std::vector<BadInput> Numbers() {
          RunSql(dir / "workspace/database.db",
                 "UPDATE marker_detections SET marker_id = marker_id + 10000");
        }},
+      {"ADatabaseWithoutTheCamerasOfItsImages",
+       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
+       "--output_path @/out",
+       2, "names camera 1",
+       [](const fs::path& dir) { RunSql(dir / "workspace/database.db", "DELETE FROM cameras"); }},
+      {"AnUnknownCameraModelOfADatabase",
+       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
+       "--output_path @/out",
+       2, "does not know",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db", "UPDATE cameras SET model = 99");
+       }},
+      {"ACameraWithoutPixelsInADatabase",
+       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
+       "--output_path @/out",
+       2, "without pixels",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db", "UPDATE cameras SET width = 0");
+       }},
       {"FocalLengthBelowZeroExported", exported, 2, "not positive", negative},
       {"FocalLengthBelowZeroAdjusted", adjusted, 2, "not positive", negative},
       {"AFarPointExported", exported, 2, "has a coordinate beyond", far},

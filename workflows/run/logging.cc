@@ -176,8 +176,12 @@ void ReportError(const std::string& message) {
   WriteToTerminal(line.data(), line.size());
   if (log_file == nullptr) return;
   line.pop_back();
-  log_file->log(spdlog::details::log_msg("velamap", spdlog::level::info, line));
-  log_file->flush();
+  try {
+    log_file->log(spdlog::details::log_msg("velamap", spdlog::level::info, line));
+    log_file->flush();
+  } catch (const spdlog::spdlog_ex&) {
+    // The disk is full, and the terminal has the line.
+  }
 }
 
 }  // namespace velamap

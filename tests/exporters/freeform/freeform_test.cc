@@ -154,6 +154,10 @@ TEST(Freeform, ResolutionIsAsAskedFor) {
   options.edge_length_mm = 1e-2;
   ExpectThrows<InputError>([&] { FitFreeformSurface(markers, 0.05, options); },
                            {"--Surface.edge_length", "triangles"});
+  options = {};
+  options.chord_deviation_mm = 1e-6;  // refused before triangles are divided for minutes
+  ExpectThrows<InputError>([&] { FitFreeformSurface(markers, 0.05, options); },
+                           {"--Surface.chord_deviation", "triangles"});
 }
 
 // A square of markers on a plane, as on a face of the cube. Many corners are on one circle.

@@ -73,6 +73,18 @@ TEST(Files, FoldersAreAbsoluteAndWithoutTrailingSlash) {
   EXPECT_THROW(AbsoluteFolder(""), InputError);
 }
 
+TEST(Files, TheFolderAboveALinkIsThatOfItsTarget) {
+  const TempDir dir;
+  const fs::path folder = fs::canonical(dir.path());
+  fs::create_directories(folder / "other/deep");
+  fs::create_directory_symlink("other/deep", folder / "link");
+  EXPECT_EQ(AbsolutePath(folder / "link/../a.csv"), folder / "other/a.csv");
+  Touch(folder / "a.csv");
+  WriteFileAtomically(folder / "link/../a.csv", [](std::ostream& out) { out << "new"; });
+  EXPECT_EQ(FileSize(folder / "a.csv"), 1u);
+  EXPECT_EQ(FileSize(folder / "other/a.csv"), 3u);
+}
+
 TEST(Files, ListingsFollowLinksAndLeaveHiddenFilesOut) {
   const TempDir dir;
   fs::create_directories(dir / "photos/.thumbnails");
