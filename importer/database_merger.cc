@@ -164,13 +164,12 @@ void WriteParts(const std::vector<PartContent>& parts, ColmapDatabase* database)
   for (const PartContent& part : parts) {
     for (const DatabaseImage& image : part.images) {
       const std::string& name = image.detections.image_name;
-      const auto camera = part.cameras.find(image.camera_id);
-      if (camera == part.cameras.end() || !names.insert(name).second) {
+      if (!names.insert(name).second) {
         throw InputError(fmt::format(
-            "{}: image {} {}; import the part again", part.path, name,
-            camera == part.cameras.end() ? "has no camera" : "is in an earlier part, too"));
+            "{}: image {} is in an earlier part, too; import the part again", part.path, name));
       }
-      const CameraId camera_id = database->AddCamera(camera->second, part.is_calibrated);
+      const CameraId camera_id =
+          database->AddCamera(part.cameras.at(image.camera_id), part.is_calibrated);
       database->AddImage(camera_id, image.detections, part.record.detector);
     }
     if (part.video && !has_video) database->WriteSource(kVideoSource, *part.video);

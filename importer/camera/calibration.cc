@@ -56,6 +56,12 @@ std::vector<double> ReadMatrix(const cv::FileNode& node, const std::string& path
     if (node.isSeq()) {
       node >> values;
     } else if (node.isMap()) {
+      constexpr int kMaxSide = 100;  // OpenCV allocates what the file claims before it reads it
+      for (const char* side : {"rows", "cols"}) {
+        if (!node[side].isInt() || static_cast<int>(node[side]) > kMaxSide) {
+          Fail(path, fmt::format("key '{}': {} of at most {} are expected", key, side, kMaxSide));
+        }
+      }
       node >> matrix;
       matrix = matrix.reshape(1, 1);
       matrix.convertTo(matrix, CV_64F);
@@ -132,14 +138,7 @@ void AppendDistortion(std::vector<double> distortion, bool fisheye, const std::s
 }
 
 Camera ReadOpenCvCalibration(const std::string& text, const std::string& path) {
-  CheckStorageText(text, path);
-  cv::FileStorage storage;
-  try {
-    storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
-  } catch (const cv::Exception& exception) {
-    Fail(path, fmt::format("not a readable OpenCV FileStorage file ({})", exception.err));
-  }
-  if (!storage.isOpened()) Fail(path, "not a readable OpenCV FileStorage file");
+  const cv::FileStorage storage = OpenStorage(text, path, "OpenCV FileStorage file");
   Camera camera;
   camera.width_px = ReadImageSize(storage, path, "image_width");
   camera.height_px = ReadImageSize(storage, path, "image_height");

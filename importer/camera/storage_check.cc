@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
+#include <opencv2/core.hpp>
 #include <pugixml.hpp>
 
 #include "importer/base/csv.h"
@@ -80,6 +81,22 @@ void CheckStorageText(const std::string& text, const std::string& path) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_xml = begin != std::string::npos && text[begin] == '<';
   is_xml ? CheckXml(text, path) : CheckYaml(text, path);
+}
+
+cv::FileStorage OpenStorage(const std::string& text, const std::string& path,
+                            const std::string& kind) {
+  CheckStorageText(text, path);
+  std::string reason;
+  try {
+    cv::FileStorage storage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    if (storage.isOpened()) {
+      storage["any_key"];  // throws where OpenCV takes for text what the checks took for a map
+      return storage;
+    }
+  } catch (const cv::Exception& exception) {
+    reason = fmt::format(" ({})", exception.err);
+  }
+  throw InputError(fmt::format("{}: not a readable {}{}", path, kind, reason));
 }
 
 }  // namespace velamap

@@ -142,17 +142,7 @@ int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
 
 Dictionary ReadDictionaryFile(const std::string& path) {
   const std::string text = ReadTextFile(path, "dictionary file");
-  CheckStorageText(text, path);
-  cv::FileStorage storage;
-  try {
-    storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
-  } catch (const cv::Exception& exception) {
-    throw InputError(
-        fmt::format("{}: not a readable cv::aruco dictionary file ({})", path, exception.err));
-  }
-  if (!storage.isOpened()) {
-    throw InputError(fmt::format("{}: not a readable cv::aruco dictionary file", path));
-  }
+  const cv::FileStorage storage = OpenStorage(text, path, "cv::aruco dictionary file");
   const int num_markers = RequireInt(storage, path, "nmarkers", 1, kMaxMarkerId + 1);
   const int marker_size = RequireInt(storage, path, "markersize", 3, 20);
   const int max_bits = marker_size * marker_size;

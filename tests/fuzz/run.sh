@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Fuzzes every reader: tests/fuzz/run.sh MINUTES [READER...], MINUTES for each of them (0.2: a short
-# look). The corpus grows in build/fuzz/corpus. Files that were neither read nor refused are left in
-# build/fuzz/findings; each goes, once mended, into tests/fuzz/findings/READER, which fuzz_test reads.
+# look). VELAMAP_FUZZ_SEED: for the same inputs again. The corpus grows in build/fuzz/corpus. Files that
+# were neither read nor refused are left in build/fuzz/findings; each goes, once mended, into
+# tests/fuzz/findings/READER, which fuzz_test reads.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -24,9 +25,9 @@ export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
 fuzz() {  # READER
   local log="$build/findings/$1.log" status=0
   mkdir -p "$build/corpus/$1"
-  "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=3000 -max_len=65536 \
-    -detect_leaks=0 -artifact_prefix="$build/findings/$1-" "$build/corpus/$1" "$build/seeds/$1" \
-    > "$log" 2>&1 || status=1
+  "$programs/fuzz_$1" -seed="${VELAMAP_FUZZ_SEED:-0}" -max_total_time="$seconds" -timeout=30 \
+    -rss_limit_mb=3000 -max_len=65536 -detect_leaks=0 -artifact_prefix="$build/findings/$1-" \
+    "$build/corpus/$1" "$build/seeds/$1" > "$log" 2>&1 || status=1
   echo "$1: $(grep --only-matching --text 'Done [0-9]* runs in [0-9]* second' "$log" ||
     tail -n 1 "$log")"
   [[ $status -eq 0 ]] || echo "error: $1: see $log" >&2

@@ -206,7 +206,7 @@ TEST_F(DatabaseMergerTest, RefusesPartsThatWereChanged) {
   sqlite.exec("UPDATE marker_part SET part = 2");
   ExpectRefusal({first, second}, {second, "frame_000000.jpg is in an earlier part, too"});
   sqlite.exec("UPDATE images SET camera_id = 9");
-  ExpectRefusal({first, second}, {second, "frame_000000.jpg has no camera"});
+  ExpectRefusal({first, second}, {second, "frame_000000.jpg names camera 9"});
 }
 
 TEST_F(DatabaseMergerTest, RefusesPartsOfDifferentImports) {
