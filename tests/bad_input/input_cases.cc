@@ -166,41 +166,29 @@ std::vector<BadInput> Numbers() {
     WriteTextFile(dir / "model/points3D.txt",
                   std::regex_replace(text, std::regex("\\n(\\d+) \\S+ "), "\n$1 1e200 "));
   };
+  const std::string registered =
+      "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
+      "--output_path @/out";
   return {
       {"FocalLengthBelowZeroInOneAxis", Call("grey", "bad.txt"), 2, "must be positive",
        Write("bad.txt", "1 PINHOLE 320 240 300 -300 160 120\n")},
-      {"FocalLengthBelowZeroInADatabase",
-       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
-       "--output_path @/out",
-       2, "not positive",
+      {"FocalLengthBelowZeroInADatabase", registered, 2, "not positive",
        [](const fs::path& dir) {
          RunSql(dir / "workspace/database.db",
                 "UPDATE cameras SET params = CAST(zeroblob(8) || substr(params, 9) AS BLOB)");
        }},
-      {"MarkerIdsOfADatabaseOutOfRange",
-       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
-       "--output_path @/out",
-       2, "is no marker id",
+      {"MarkerIdsOfADatabaseOutOfRange", registered, 2, "is no marker id",
        [](const fs::path& dir) {
          RunSql(dir / "workspace/database.db",
                 "UPDATE marker_detections SET marker_id = marker_id + 10000");
        }},
-      {"ADatabaseWithoutTheCamerasOfItsImages",
-       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
-       "--output_path @/out",
-       2, "names camera 1",
+      {"ADatabaseWithoutTheCamerasOfItsImages", registered, 2, "names camera 1",
        [](const fs::path& dir) { RunSql(dir / "workspace/database.db", "DELETE FROM cameras"); }},
-      {"AnUnknownCameraModelOfADatabase",
-       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
-       "--output_path @/out",
-       2, "does not know",
+      {"AnUnknownCameraModelOfADatabase", registered, 2, "does not know",
        [](const fs::path& dir) {
          RunSql(dir / "workspace/database.db", "UPDATE cameras SET model = 99");
        }},
-      {"ACameraWithoutPixelsInADatabase",
-       "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
-       "--output_path @/out",
-       2, "without pixels",
+      {"ACameraWithoutPixelsInADatabase", registered, 2, "without pixels",
        [](const fs::path& dir) {
          RunSql(dir / "workspace/database.db", "UPDATE cameras SET width = 0");
        }},
