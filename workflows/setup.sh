@@ -18,6 +18,7 @@ test_packages=(
   xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium poppler-utils librsvg2-bin
   python3-vtk9 gmsh  # readers of what others mesh
   clang libclang-rt-dev llvm clang-format-14  # llvm: names functions in the sanitizers' reports
+  lld  # links the tests five times as fast
   man-db zsh mmdebstrap  # pages and completions that are installed; package.sh --try
   snakemake  # workflows/dataset; its test on Slurm wants slurmctld slurmd slurm-client munge, too
 )
