@@ -26,6 +26,13 @@ cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
   parameters->adaptiveThreshWinSizeMin = 5;
   parameters->adaptiveThreshWinSizeMax = 13;
   parameters->adaptiveThreshWinSizeStep = 8;
+  // Every outline is decoded. OpenCV keeps the largest of close outlines before it reads their
+  // codes: where a narrow margin lies on a dark ground, that is the edge of the paper, which gives
+  // no code.
+  parameters->minMarkerDistanceRate = 0.0;
+  // Reads the middle of each cell. Blur and an outline a pixel off spoil its rim, so that of
+  // markers with cells of 4 px twice as many are found (measured on rendered photographs).
+  parameters->perspectiveRemoveIgnoredMarginPerCell = 0.3;
   parameters->minDistanceToBorder = kMinBorderDistancePx;
   parameters->markerBorderBits = border_bits;
   parameters->minMarkerPerimeterRate = options.min_marker_perimeter_rate;
@@ -51,6 +58,29 @@ cv::Rect Surroundings(const QuadCorners& corners, int reach_px) {
 
 bool Contains(const cv::Rect& outer, const cv::Rect& inner) { return (outer & inner) == inner; }
 
+// Whether the outline is darker on its inside, as that of a marker is. The edge of its paper on a
+// darker ground is not, but may give the same code.
+bool IsDarkInside(const cv::Mat& gray, const std::vector<cv::Point2f>& outline_px) {
+  constexpr int kNumSamples = 8;  // of a side
+  constexpr float kOffsetPx = 1.5F;
+  const cv::Point2f center = (outline_px[0] + outline_px[1] + outline_px[2] + outline_px[3]) / 4;
+  const auto gray_at = [&](const cv::Point2f& x) {
+    return static_cast<int>(gray.at<std::uint8_t>(std::clamp(cvRound(x.y), 0, gray.rows - 1),
+                                                  std::clamp(cvRound(x.x), 0, gray.cols - 1)));
+  };
+  int outside_minus_inside = 0;
+  for (int c = 0; c < kNumCorners; ++c) {
+    const cv::Point2f side = outline_px[(c + 1) % kNumCorners] - outline_px[c];
+    for (int i = 0; i < kNumSamples; ++i) {
+      const cv::Point2f on_side = outline_px[c] + (i + 0.5F) / kNumSamples * side;
+      const cv::Point2f inwards = center - on_side;
+      const cv::Point2f step = inwards * (kOffsetPx / std::max(1.0, cv::norm(inwards)));
+      outside_minus_inside += gray_at(on_side - step) - gray_at(on_side + step);
+    }
+  }
+  return outside_minus_inside > 0;
+}
+
 void SearchRegion(const cv::Mat& gray, const cv::Rect& region, const Dictionary& dictionary,
                   int border_bits, const ArucoDetectionOptions& options,
                   std::vector<MarkerQuad>* quads) {
@@ -66,6 +96,7 @@ void SearchRegion(const cv::Mat& gray, const cv::Rect& region, const Dictionary&
                            MakeParameters(border_bits, options, std::max(gray.cols, gray.rows),
                                           std::max(region.width, region.height)));
   for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (!IsDarkInside(dark_on_light, corners[i])) continue;
     MarkerQuad quad;
     quad.marker_id = ids[i];
     for (int c = 0; c < kNumCorners; ++c)

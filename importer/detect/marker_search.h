@@ -42,8 +42,8 @@ bool IsLargeEnough(const QuadCorners& corners, const cv::Size& image_size,
 bool IsSearchable(const QuadCorners& corners, const cv::Size& image_size,
                   const ArucoDetectionOptions& options);
 
-// A marker may be found along the outer and the inner contour of its black border, or in two
-// regions. Keeps the outer one.
+// A marker may be found at several thresholds, along the outer and the inner contour of its black
+// border, or in two regions. Keeps the outer one.
 std::vector<MarkerQuad> RemoveNested(std::vector<MarkerQuad> quads);
 
 }  // namespace velamap

@@ -1,7 +1,5 @@
 #include "importer/detect/chessboard.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>

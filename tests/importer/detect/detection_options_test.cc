@@ -1,7 +1,5 @@
 #include "importer/detect/detection_options.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"

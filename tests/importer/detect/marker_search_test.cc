@@ -1,8 +1,13 @@
 #include "importer/detect/marker_search.h"
 
+#include <random>
+
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "tests/importer/marker_builders.h"
+#include "tests/support/marker_renderer.h"
+#include "tests/support/test_seed.h"
 
 namespace velamap {
 namespace {
@@ -60,6 +65,84 @@ TEST_F(SearchMarkersTest, TheSmallestPerimeterIsThatOfTheWholeImage) {
   EXPECT_EQ(SearchMarkers(gray_, dictionary_, 1, options).size(), 3u);
   EXPECT_TRUE(SearchMarkers(gray_, dictionary_, 1, options, {{300, 21, 64, 64}}).empty());
   EXPECT_EQ(SearchMarkers(gray_, dictionary_, 1, {}, {{300, 21, 64, 64}}).size(), 1u);
+}
+
+// A marker 1 m away whose side takes `side_px` in kTurnedCamera, turned in its plane and slanted.
+constexpr double kFocalLengthPx = 200.0;
+const Camera kTurnedCamera{
+    CameraModel::kPinhole, 120, 120, {kFocalLengthPx, kFocalLengthPx, 60, 60}};
+
+PlacedMarkerInCam TurnedAndSlanted(int marker_id, double side_px, double turn_rad,
+                                   double slant_rad) {
+  const double half_m = 0.5 * side_px / kFocalLengthPx;
+  const Eigen::Matrix3d cam_from_marker = (Eigen::AngleAxisd(slant_rad, Eigen::Vector3d::UnitY()) *
+                                           Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()))
+                                              .toRotationMatrix();
+  const auto at = [&](double x, double y) {
+    return Eigen::Vector3d(cam_from_marker * Eigen::Vector3d(x * half_m, y * half_m, 0) +
+                           Eigen::Vector3d::UnitZ());
+  };
+  return {marker_id, {at(-1, -1), at(1, -1), at(1, 1), at(-1, 1)}};
+}
+
+// OpenCV keeps the largest of close outlines before it reads the codes, which is that of the paper.
+TEST(SearchMarkers, TheEdgeOfNarrowPaperOnADarkGroundHidesNoMarker) {
+  std::mt19937 random(TestSeed());
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_50");
+  constexpr int kNumDraws = 200, kNumCells = 6;
+  int num_found = 0;
+  for (int draw = 0; draw < kNumDraws; ++draw) {
+    RenderOptions options;
+    options.seed = static_cast<std::uint32_t>(draw);
+    options.background = between(60, 130);
+    options.blur_sigma_px = between(0.4, 1.1);
+    options.noise_sigma = between(0, 3);
+    const double side_px = between(28, 60);
+    options.quiet_zone_cells = kNumCells * std::max(between(0.05, 0.12), 2.0 / side_px);
+    const PlacedMarkerInCam marker =
+        TurnedAndSlanted(draw % 50, side_px, between(0, 2 * CV_PI), between(0, 40) * kRadPerDeg);
+    const std::vector<MarkerQuad> found = SearchMarkers(
+        RenderMarkers(kTurnedCamera, {marker}, dictionary, 1, options), dictionary, 1, {});
+    if (found.empty()) continue;
+    ++num_found;
+    ASSERT_EQ(found.size(), 1u) << draw;
+    EXPECT_EQ(found[0].marker_id, marker.marker_id) << draw;
+    for (int c = 0; c < kNumCorners; ++c) {
+      const Eigen::Vector2d corner_px =
+          kFocalLengthPx * marker.corners_in_cam[c].hnormalized() + Eigen::Vector2d(59.5, 59.5);
+      // The paper's corner is 3 px and more away.
+      EXPECT_LT((found[0].corners_px[c] - corner_px).norm(), 2.3) << draw;
+    }
+  }
+  EXPECT_GE(num_found, 0.97 * kNumDraws);
+}
+
+// Cells of 3.6 to 5 px, blurred by up to a quarter of a cell: an outline that is a pixel off spoils
+// the rim of each.
+TEST(SearchMarkers, CodesOfSmallCellsAreRead) {
+  std::mt19937 random(TestSeed());
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const Dictionary dictionary = LoadDictionary("DICT_5X5_250");
+  constexpr int kNumDraws = 200, kNumCells = 7;
+  int num_found = 0;
+  for (int draw = 0; draw < kNumDraws; ++draw) {
+    RenderOptions options;
+    options.seed = static_cast<std::uint32_t>(draw);
+    options.background = 200;
+    options.blur_sigma_px = between(0.7, 1.0);
+    options.noise_sigma = between(0, 3);
+    const PlacedMarkerInCam marker = TurnedAndSlanted(
+        draw, kNumCells * between(3.6, 5.0), between(0, 2 * CV_PI), between(0, 40) * kRadPerDeg);
+    const std::vector<MarkerQuad> found = SearchMarkers(
+        RenderMarkers(kTurnedCamera, {marker}, dictionary, 1, options), dictionary, 1, {});
+    num_found += found.size() == 1 && found[0].marker_id == draw;
+  }
+  EXPECT_GE(num_found, 0.9 * kNumDraws);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 namespace velamap {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 const CodeSymmetries kHalf = {{5, {2}}, {6, {2}}};
