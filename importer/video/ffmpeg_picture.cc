@@ -55,7 +55,7 @@ const AVCodec* FindDecoder(const std::vector<std::uint8_t>& bytes) {
 }  // namespace
 
 cv::Mat DecodeWithFfmpeg(const std::vector<std::uint8_t>& bytes) {
-  av_log_set_level(AV_LOG_QUIET);  // it would print lines of its own about a broken file
+  av_log_set_level(AV_LOG_QUIET);  // it would print its own lines about a broken file
   const AVCodec* decoder = FindDecoder(bytes);
   if (decoder == nullptr || bytes.size() > std::numeric_limits<int>::max()) return {};
   const auto codec = std::unique_ptr<AVCodecContext, void (*)(AVCodecContext*)>(

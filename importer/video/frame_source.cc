@@ -19,6 +19,7 @@
 #include "importer/base/files.h"
 #include "importer/base/natural_order.h"
 #include "importer/base/numbers.h"
+#include "importer/base/replacement.h"
 #include "importer/video/image_file.h"
 #include "importer/video/interlacing.h"
 #include "importer/video/video_decoder.h"
@@ -28,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// OpenCV would print lines of its own about a broken file.
+// OpenCV would print its own lines about a broken file.
 void SilenceOpenCv() {
   static std::once_flag once;
   std::call_once(once,
@@ -58,6 +59,7 @@ std::vector<std::string> ListImages(const fs::path& folder) {
                     "folder of images or a video file",
                     folder.string()));
   }
+  for (const std::string& name : names) CheckImageName(name, folder.string());
   if (!others.empty()) {
     spdlog::warn("{}: left out, because their names are not those of images: {}, such as {}",
                  folder.string(), others.size(), others.front());
@@ -138,6 +140,7 @@ class VideoFile : public FrameSource {
       frame.frame_number = read->number;
       frame.time_s = read->time_s;
       frame.picture = std::move(read->picture);
+      frame.is_whole = read->is_whole;
       const std::chrono::duration<double> decoding = std::chrono::steady_clock::now() - begin;
       frame.decode_s = decoding.count();
       return frame;
@@ -146,6 +149,10 @@ class VideoFile : public FrameSource {
   }
 
   bool Load(Frame* frame, std::string* reason) const override {
+    if (!frame->is_whole) {
+      *reason = "the file is damaged there";
+      return false;
+    }
     frame->gray = frame->picture->Gray();
     CheckFields(*frame);
     if (!frame->gray.empty()) return true;
@@ -155,6 +162,8 @@ class VideoFile : public FrameSource {
   }
 
   bool IsVideo() const override { return true; }
+
+  int NumDamagedPackets() const override { return decoder_.NumDamagedPackets(); }
 
   int NumFrames() const override { return num_frames_; }
 

@@ -26,7 +26,9 @@ struct Frame {
   cv::Mat color;                        // photographs only: BGR, 8 bit, once loaded
   std::optional<VideoPicture> picture;  // video only
   double decode_s = 0.0;                // video only: wall time of Next()
-  std::optional<SourceFile> source;     // photographs only, once loaded
+  // False for a frame of a video that is damaged in the file, or builds on one that is.
+  bool is_whole = true;
+  std::optional<SourceFile> source;  // photographs only, once loaded
 };
 
 // The whole frame, BGR, 8 bit.
@@ -41,11 +43,15 @@ class FrameSource {
 
   // Fills the pixels of a frame, which Next() leaves empty so that many threads can decode image
   // files and compute grey images in parallel. Thread-safe. Returns false, with a warning and the
-  // reason, if the file is not a whole image. Throws InputError for an interlaced video whose two
-  // fields are of different moments.
+  // reason, if the file is not a whole image, and without a warning for a frame that is not whole,
+  // because one packet may damage hundreds of them. Throws InputError for an interlaced video whose
+  // two fields are of different moments.
   virtual bool Load(Frame* frame, std::string* reason) const = 0;
 
   virtual bool IsVideo() const = 0;
+
+  // Compressed pictures of a video that are damaged, of those read so far.
+  virtual int NumDamagedPackets() const { return 0; }
 
   // The largest number of frames to come; 0 if the container does not say.
   virtual int NumFrames() const = 0;

@@ -9,7 +9,7 @@
 
 namespace velamap {
 
-// Beyond the largest cameras. A picture of one colour that is larger takes little space on disk and
+// More than any camera has. A larger picture of a single colour takes little space on disk but
 // minutes to search.
 inline constexpr std::int64_t kMaxImageFileSize = std::int64_t{1} << 30;
 inline constexpr std::size_t kMaxImagePixels = 250'000'000;

@@ -17,7 +17,11 @@ struct VideoFrame {
   // by the frame rate.
   std::optional<double> time_s;
   VideoPicture picture;  // turned as the metadata say: NumQuarterTurns()
+  bool is_whole = true;  // false: the file is damaged there, or before, up to a key frame
 };
+
+// FFmpeg's state.
+class VideoStream;
 
 class VideoDecoder {
  public:
@@ -52,15 +56,16 @@ class VideoDecoder {
   // The number of frames of the video, once Next() has returned nothing.
   int NumFramesRead() const;
 
- private:
-  class Stream;
+  // Of those read so far; some of them may have no frame.
+  int NumDamagedPackets() const;
 
+ private:
   // The time, moved so that it is not before that of the last frame.
   double CountOn(double time_s, double frames_per_second);
 
   std::string path_;
   int num_threads_;
-  std::unique_ptr<Stream> stream_;
+  std::unique_ptr<VideoStream> stream_;
   int num_quarter_turns_ = 0;
   int next_number_ = 0;
   std::optional<double> last_time_s_;

@@ -42,7 +42,7 @@ bool IsFullRange(const AVFrame& frame) {
          std::strncmp(format->name, "yuvj", 4) == 0;
 }
 
-// Whether the first plane is the luma with one byte a pixel.
+// Whether the first plane is the luma with one byte per pixel.
 bool HasPlainLuma(const AVFrame& frame) {
   const AVPixFmtDescriptor* format = Format(frame);
   const AVComponentDescriptor& luma = format->comp[0];
@@ -75,7 +75,7 @@ void StretchChroma(const std::uint8_t* limited, int num_pixels, std::uint8_t* fu
   StretchLimitedRange<240, 9069, 1>(limited, num_pixels, full);
 }
 
-// Whether the planes are luma, Cb and Cr with one byte a value, chroma of half the width and
+// Whether the planes are luma, Cb and Cr with one byte per value, chroma of half the width and
 // height.
 bool HasPlainHalfSizeChroma(const AVFrame& frame) {
   return frame.format == AV_PIX_FMT_YUV420P || frame.format == AV_PIX_FMT_YUVJ420P;

@@ -21,7 +21,7 @@ struct ChromaPlanes {
 // A value that shares the decoder's memory. Many threads may read it.
 class VideoPicture {
  public:
-  // Takes a reference of its own and copies no pixels. All that follows is turned clockwise by
+  // Takes its own reference and copies no pixels. All that follows is turned clockwise by
   // `num_quarter_turns` (0 to 3).
   explicit VideoPicture(const AVFrame& frame, int num_quarter_turns = 0);
 

@@ -4,13 +4,19 @@
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <ostream>
 
 #include <fmt/format.h>
 
+#include "importer/base/atomic_output.h"
 #include "importer/base/files.h"
+#include "importer/video/jpeg_codec.h"
 
 namespace velamap {
 namespace {
+
+constexpr int kJpegQuality = 92;
 
 // The comment's segment (ITU T.81, B.2.4.5): marker, length of what follows, text.
 std::string MarkOf(std::uint64_t hash) {
@@ -21,7 +27,7 @@ std::string MarkOf(std::uint64_t hash) {
          text;
 }
 
-// Behind the start of the image and the segment APP0, which has to be the first.
+// The mark follows the start of the image and the segment APP0, which has to be the first.
 std::size_t PlaceOfMark(std::string_view jpeg) {
   constexpr std::size_t kStart = 2, kHead = 6;
   if (jpeg.size() < kHead || jpeg.substr(kStart, 2) != "\xFF\xE0") return kStart;
@@ -30,6 +36,14 @@ std::size_t PlaceOfMark(std::string_view jpeg) {
 }
 
 }  // namespace
+
+void WriteFrameImage(const Frame& frame, const std::filesystem::path& path) {
+  const std::optional<ChromaPlanes> chroma =
+      frame.picture ? frame.picture->HalfSizeChroma() : std::nullopt;
+  const std::string jpeg = chroma ? EncodeJpeg(frame.gray, *chroma, kJpegQuality)
+                                  : EncodeJpeg(ColorImage(frame), kJpegQuality);
+  WriteFileAtomicallyUnsynced(path, [&](std::ostream& out) { out << WithFrameMark(jpeg); });
+}
 
 std::string WithFrameMark(std::string_view jpeg) {
   std::string marked(jpeg);

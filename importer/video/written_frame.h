@@ -1,5 +1,6 @@
-// The mark of the JPEG files that velamap writes: a comment that holds the hash of the rest, which
-// tells them from pictures of the user, and from frames that the user has changed.
+// The JPEG files into which frames of a video are written. Each carries a mark, a comment that
+// holds the hash of the rest, which tells it from pictures of the user and from frames that the
+// user has changed.
 
 #pragma once
 
@@ -7,7 +8,16 @@
 #include <string>
 #include <string_view>
 
+#include "importer/video/frame_source.h"
+
 namespace velamap {
+
+// Writes a loaded frame as a marked JPEG: the whole file or none, without waiting for the disk (see
+// SyncFileSystem() of importer/base/atomic_output.h). Planes of a video that JPEG can hold are
+// taken over, with the frame's grey image as luma. This is twice as fast as a conversion through
+// BGR, and the file read as grey is the image that the detector saw. Throws InputError if the file
+// cannot be written.
+void WriteFrameImage(const Frame& frame, const std::filesystem::path& path);
 
 std::string WithFrameMark(std::string_view jpeg);
 

@@ -1,4 +1,4 @@
-#include "importer/video/frame_image.h"
+#include "importer/video/written_frame.h"
 
 #include <sys/syscall.h>
 #include <unistd.h>

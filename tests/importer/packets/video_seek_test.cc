@@ -1,4 +1,4 @@
-#include "importer/video/video_seek.h"
+#include "importer/packets/video_seek.h"
 
 #include <algorithm>
 

@@ -1,0 +1,42 @@
+// Which frames of a video are not as they were recorded: those of damaged packets, and those that
+// build on them.
+
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "importer/packets/video_seek.h"
+
+namespace velamap {
+
+// Packets count from 0 in the order of decoding. Thread-safe, because FFmpeg's threads tell of
+// damage while later packets are read.
+class PacketDamage {
+ public:
+  // Adds the next packet and returns its number. `time` is that of presentation, or
+  // VideoPacket::kNoTime.
+  std::int64_t Add(std::int64_t time, bool is_key);
+
+  void Mark(std::int64_t packet_idx);
+
+  // Whether the frame of this packet shows what was recorded. A decoder hides damage, and the
+  // frames up to the next key frame repeat what it has put in the place. Pictures that are shown
+  // before the key frame that they follow are built upon by none that are shown after it, but build
+  // on those before the key frame. All packets up to this one must have been decoded.
+  bool IsWhole(std::int64_t packet_idx) const;
+
+  int NumDamaged() const;  // packets
+
+ private:
+  struct Packet {
+    bool is_key, is_leading, is_damaged;
+  };
+
+  mutable std::mutex mutex_;
+  std::vector<Packet> packets_;
+  std::int64_t key_time_ = VideoPacket::kNoTime;  // of the last key frame
+};
+
+}  // namespace velamap
