@@ -19,6 +19,7 @@ struct FrameResult {
   FrameDetections detections;
   Camera camera;                       // for the frame's size
   std::string skipped_because;         // not empty: the file was no whole image
+  bool is_damaged = false;             // skipped, because a video is damaged there
   std::optional<SourceFile> source;    // of a photograph
   PriorShapeAgreement prior_shape;     // of the markers that were found without it
   std::optional<MarkerTracks> tracks;  // of a video, after this frame

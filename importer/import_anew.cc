@@ -1,13 +1,15 @@
 #include "importer/import_anew.h"
 
-#include <filesystem>
-#include <map>
-#include <string>
-#include <vector>
+#include <fstream>
+#include <optional>
+#include <ostream>
 
+#include <fmt/format.h>
+
+#include "importer/base/atomic_output.h"
+#include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/database/colmap_database.h"
-#include "importer/database/database_writer.h"
 #include "importer/import_checks.h"
 #include "importer/video/frame_source.h"
 #include "importer/video/source_file.h"
@@ -18,10 +20,62 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void RemoveFrames(const fs::path& folder, const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    if (NumberOfVideoFrame(name) && IsWrittenFrame(folder / name)) RemoveAll(folder / name);
+constexpr char kStagedDatabase[] = "database.db", kStagedFrames[] = "frames";
+
+// Written when the new import is whole. If the database is not beside it any more, it has replaced
+// the earlier one, and what the record says has to be done.
+constexpr char kReplacementRecord[] = "replacement";
+
+struct Replacement {
+  fs::path frame_folder;                          // seen from the folder of the database
+  std::map<std::string, std::uint64_t> obsolete;  // files there that have to go, and their hashes
+};
+
+fs::path StageOf(const std::string& database_path) {
+  const fs::path file = CanonicalPath(database_path);
+  return file.parent_path() / ("." + file.filename().string() + ".velamap-anew");
+}
+
+// With zero bytes between the texts, because names may hold anything else.
+void WriteReplacement(const Replacement& replacement, const fs::path& path) {
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << replacement.frame_folder.string() << '\0';
+    for (const auto& [name, hash] : replacement.obsolete) out << name << '\0' << hash << '\0';
+  });
+}
+
+Replacement ReadReplacement(const fs::path& path) {
+  Replacement replacement;
+  std::ifstream stream(path, std::ios::binary);
+  std::string text, hash;
+  if (std::getline(stream, text, '\0')) replacement.frame_folder = text;
+  while (std::getline(stream, text, '\0') && std::getline(stream, hash, '\0')) {
+    replacement.obsolete[text] = std::strtoull(hash.c_str(), nullptr, 10);
   }
+  return replacement;
+}
+
+// Once more has the same effect: a run may be killed here, too.
+void MoveFrames(const fs::path& stage) {
+  const Replacement replacement = ReadReplacement(stage / kReplacementRecord);
+  const fs::path folder = AbsolutePath(stage.parent_path() / replacement.frame_folder);
+  if (IsFolder(stage / kStagedFrames)) {
+    for (const fs::path& frame : FolderEntries(stage / kStagedFrames)) {
+      const fs::path target = folder / frame.filename();
+      // A picture of the user that has come meanwhile stays.
+      if (!Exists(target) || IsWrittenFrame(target)) MoveFile(frame, target);
+    }
+  }
+  for (const auto& [name, hash] : replacement.obsolete) {
+    if (IsRegularFile(folder / name) && HashOfFile(folder / name) == hash) RemoveAll(folder / name);
+  }
+  if (IsFolder(folder)) SyncFileSystem(folder);
+}
+
+// The record goes first: without it, what is left is an unfinished import, whatever that is.
+void RemoveStage(const fs::path& stage) {
+  RemoveAll(stage / kReplacementRecord);
+  RemoveAll(stage);
 }
 
 // A copy that is as the photograph was when it was imported, while the photograph is another now.
@@ -31,34 +85,78 @@ bool IsOutdatedCopy(const fs::path& copy, const fs::path& original, const Source
          HasSameContent(known, copy.string());
 }
 
+// Ends what another program has left in a journal, which SQLite would else take for one of the new
+// database.
+void SettleJournals(const std::string& path) {
+  { const ColmapDatabase earlier(path, ColmapDatabase::Mode::kReadWriteCreate); }
+  if (Exists(path + "-wal")) {
+    throw InputError(fmt::format(
+        "{}: another program has it open; close it (the COLMAP GUI?) and run again", path));
+  }
+  RemoveAll(path + "-journal");
+}
+
 }  // namespace
 
-void RemoveEarlierImport(const MarkerImporterOptions& options) {
-  if (!Exists(options.database_path)) return;
-  std::vector<std::string> names;
-  std::map<std::string, SourceFile> sources;
+ImportAnew::ImportAnew(const MarkerImporterOptions& options)
+    : options_(options), staged_(options), stage_(StageOf(options.database_path)) {
   {
-    const ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
-    for (const auto& [name, image_id] : database.ReadImageIdsByName()) names.push_back(name);
-    sources = database.ReadSources();
+    const ColmapDatabase earlier(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
+    for (const auto& [name, id] : earlier.ReadImageIdsByName()) earlier_names_.push_back(name);
+    earlier_sources_ = earlier.ReadSources();
   }
-  OpenFrameSource(options.image_path, options.video, {}, options.num_threads);
-  CheckFrameFolder(options, names);
-  const fs::path folder = options.frame_output_path;
-  std::vector<fs::path> outdated;
-  for (const std::string& name : names) {
-    const auto known = sources.find(name);
-    if (options.is_only_source && known != sources.end() &&
-        IsOutdatedCopy(folder / name, fs::path(options.image_path) / name, known->second)) {
-      outdated.push_back(folder / name);
+  CheckFrameFolder(options, earlier_names_);
+  CreateFolders(stage_);
+  staged_.database_path = stage_ / kStagedDatabase;
+  if (!options.frame_output_path.empty()) staged_.frame_output_path = stage_ / kStagedFrames;
+}
+
+ImportAnew::~ImportAnew() {
+  if (!has_replaced_) RemoveStage(stage_);
+}
+
+std::vector<std::string> ImportAnew::ObsoleteFiles() const {
+  std::vector<std::string> obsolete;
+  const fs::path folder = options_.frame_output_path;
+  if (folder.empty()) return obsolete;
+  const bool is_video = !IsFolder(options_.image_path);  // else the frames may be the photographs
+  for (const std::string& name : earlier_names_) {
+    const auto known = earlier_sources_.find(name);
+    const bool is_old_frame = is_video && NumberOfVideoFrame(name) &&
+                              IsWrittenFrame(folder / name) &&
+                              !Exists(fs::path(staged_.frame_output_path) / name);
+    if (is_old_frame ||
+        (options_.is_only_source && known != earlier_sources_.end() &&
+         IsOutdatedCopy(folder / name, fs::path(options_.image_path) / name, known->second))) {
+      obsolete.push_back(name);
     }
   }
-  // In this order: only the database tells which copies are outdated, and frames without a database
-  // are written anew, while a database without its frames would not notice.
-  for (const fs::path& copy : outdated) RemoveAll(copy);
-  RemoveDatabase(options.database_path);
-  const bool is_video = !IsFolder(options.image_path);  // else the frames may be the photographs
-  if (is_video && !folder.empty()) RemoveFrames(folder, names);
+  return obsolete;
+}
+
+void ImportAnew::Replace() {
+  const fs::path database = CanonicalPath(options_.database_path);
+  Replacement replacement;
+  const fs::path folder = options_.frame_output_path;
+  if (!folder.empty()) {
+    replacement.frame_folder = CanonicalPath(folder).lexically_proximate(database.parent_path());
+  }
+  for (const std::string& name : ObsoleteFiles()) {
+    replacement.obsolete[name] = HashOfFile(folder / name);
+  }
+  WriteReplacement(replacement, stage_ / kReplacementRecord);
+  SettleJournals(database.string());
+  MoveFile(staged_.database_path, database);
+  has_replaced_ = true;
+  SyncFileSystem(database.parent_path());
+  SettleReplacement(options_.database_path);
+}
+
+void SettleReplacement(const std::string& database_path) {
+  const fs::path stage = StageOf(database_path);
+  if (!IsFolder(stage) || IsLink(stage)) return;
+  if (Exists(stage / kReplacementRecord) && !Exists(stage / kStagedDatabase)) MoveFrames(stage);
+  RemoveStage(stage);
 }
 
 }  // namespace velamap

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Another dictionary or polarity has to find this many times as many markers a frame to be
+// Another dictionary or polarity has to find this many times as many markers per frame to be
 // suggested.
 constexpr double kConvincingRatio = 10.0;
 
@@ -65,7 +65,7 @@ void CheckPhotograph(const MarkerImporterOptions& options, const std::string& na
                                  options.database_path, file.string(), SourceText(known),
                                  kImportAnewRemedy));
   }
-  // Photographs of several folders may share a database outside of a workspace.
+  // Photographs of several folders may share a database outside a workspace.
   if (!options.is_only_source && !IsSamePlace(known, file)) return;
   throw InputError(fmt::format("{}: holds {}, which is not in {} (it was {}); {}",
                                options.database_path, name, options.image_path, SourceText(known),
@@ -147,7 +147,7 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
                       const std::vector<std::string>& known_names) {
   const std::string& folder = options.frame_output_path;
   if (folder.empty() || IsFolder(options.image_path) || !IsFolder(folder)) return;
-  if (!options.part) RemoveUnfinished(folder);  // other parts may be writing there now
+  RemoveUnfinished(folder);
   const std::set<std::string> known(known_names.begin(), known_names.end());
   for (const fs::path& file : FolderEntries(folder)) {
     const std::string name = file.filename().string();

@@ -2,7 +2,7 @@
 // MergeDatabases() (database_merger.h) puts together. The result is that of one import, row for
 // row:
 //
-//   tracking   begins anew with every group of frames (track/marker_tracking.h), and a part is a
+//   tracking   starts again with every group of frames (track/marker_tracking.h), and a part is a
 //              number of whole groups
 //   formation  what camera and print do to edges is estimated from the beginning of the whole video
 //              in every part
@@ -22,7 +22,7 @@
 
 namespace velamap {
 
-// The number of frames after which the tracking begins anew.
+// The number of frames after which the tracking starts again.
 std::int64_t FramesPerGroup(const ArucoDetectionOptions& detection);
 
 // The frames of one part of the frames that `whole` selects: groups are shared out evenly in order,

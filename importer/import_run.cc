@@ -14,8 +14,8 @@
 #include "importer/frame_camera.h"
 #include "importer/import_checks.h"
 #include "importer/import_part.h"
-#include "importer/video/frame_image.h"
 #include "importer/video/source_file.h"
+#include "importer/video/written_frame.h"
 
 namespace velamap {
 namespace {
@@ -67,6 +67,7 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
     AddToSample(frame_idx, frame->gray);
     result.source = frame->source;
   }
+  result.is_damaged = !frame->is_whole;
   result.times = TakeStageTimes();
   result.reading_s = frame->decode_s;
   return result;
@@ -78,6 +79,10 @@ void ImportRun::Consume(const FrameResult& result) {
   report_.times += result.times;
   reading_s_ += result.reading_s;
   const FrameDetections& detections = result.detections;
+  if (result.is_damaged) {
+    ++report_.num_frames_damaged;
+    return;
+  }
   if (!result.skipped_because.empty()) {
     report_.skipped.push_back({detections.image_name, result.skipped_because});
     return;
@@ -112,6 +117,12 @@ ImportReport ImportRun::Finish(double cpu_s, int num_threads) {
                                  options_.image_path, report_.skipped.size(),
                                  report_.skipped.front().image_name,
                                  report_.skipped.front().reason));
+  }
+  report_.num_packets_damaged = source_->NumDamagedPackets();
+  if (report_.num_frames_read == 0 && report_.num_frames_damaged > 0 && !held_markers_) {
+    throw InputError(fmt::format(
+        "{}: the file is damaged: none of {} frames is whole; copy it from the camera again",
+        options_.image_path, report_.num_frames_damaged));
   }
   if (few_found_) CheckMarkersFound(options_, detector_.dictionary.name, sample_, report_);
   writer_.Commit();

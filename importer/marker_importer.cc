@@ -1,6 +1,5 @@
 #include "importer/marker_importer.h"
 
-#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -77,33 +76,25 @@ void CompleteDatabase(const MarkerImporterOptions& options, const FrameDetector&
   report->num_pairs = WriteAllMatches(database);
 }
 
-}  // namespace
-
-ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressCallback& progress) {
-  TakeStageTimes();  // drops those of an earlier call on this thread
+void CheckImporterOptions(const MarkerImporterOptions& options) {
   options.detection.Check();
   options.video.Check();
   if (options.num_threads < 0) {
     throw InputError(
-        fmt::format("--num_threads: {} is negative; give 0 for one a core", options.num_threads));
+        fmt::format("--num_threads: {} is negative; give 0 for one per core", options.num_threads));
   }
   if (!options.camera && !options.prior_shape.empty()) {
     throw InputError(
         "--prior_shape_path: says where markers are only with a calibration; give --camera_path, "
         "such as the camera.yml of an earlier result, or leave the prior shape out");
   }
-  const int num_threads = NumThreads(options.num_threads);
-  ArucoDetectionOptions detection = options.detection;
-  if (IsFolder(options.image_path)) detection.search = SearchMode::kExhaustive;
   CheckImagePath(options.image_path);
-  FrameDetector detector = options.chessboard
-                               ? MakeChessboardDetector(*options.chessboard)
-                               : MakeFrameDetector(options.layout, detection, options.prior_shape);
+}
 
-  const std::optional<VideoOptions> frames = FramesToSearch(options);
-
-  const FileLock lock(LockOfDatabase(options.database_path), options.database_path);
-  if (options.import_anew) RemoveEarlierImport(options);
+// Imports into a database that is new or may be added to, and removes a new one if that fails.
+ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector detector,
+                        const std::optional<VideoOptions>& frames,
+                        const ProgressCallback& progress) {
   NewDatabaseGuard guard(options.database_path);
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
   std::vector<std::string> known_names;
@@ -123,12 +114,35 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
   if (frames) {
     MarkerImporterOptions searched = options;
     searched.video = *frames;
-    report = ImportFrames(searched, detector, known_names, num_threads, progress, &database);
+    report = ImportFrames(searched, detector, known_names, NumThreads(options.num_threads),
+                          progress, &database);
   }
   report.num_images_present = static_cast<int>(known_names.size());
   CompleteDatabase(options, detector, &database, &report);
   report.times += TakeStageTimes();
   guard.Keep();
+  return report;
+}
+
+}  // namespace
+
+ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressCallback& progress) {
+  TakeStageTimes();  // drops those of an earlier call on this thread
+  CheckImporterOptions(options);
+  ArucoDetectionOptions detection = options.detection;
+  if (IsFolder(options.image_path)) detection.search = SearchMode::kExhaustive;
+  const FrameDetector detector =
+      options.chessboard ? MakeChessboardDetector(*options.chessboard)
+                         : MakeFrameDetector(options.layout, detection, options.prior_shape);
+  const std::optional<VideoOptions> frames = FramesToSearch(options);
+  const FileLock lock(LockOfDatabase(options.database_path), options.database_path);
+  SettleReplacement(options.database_path);
+  if (!options.import_anew || !Exists(options.database_path)) {
+    return ImportInto(options, detector, frames, progress);
+  }
+  ImportAnew anew(options);
+  const ImportReport report = ImportInto(anew.Staged(), detector, frames, progress);
+  anew.Replace();
   return report;
 }
 

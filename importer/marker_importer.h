@@ -45,9 +45,10 @@ struct MarkerImporterOptions {
   // Video only: the part of the frames to import, for MergeDatabases(); nothing: all. No marker in
   // a part is no error.
   std::optional<VideoPart> part;
-  // Whether an earlier import is removed first: the database, and the pictures that it made.
+  // Whether all is imported again, beside an earlier import, which it replaces when it is whole:
+  // the database, and the pictures that it made.
   bool import_anew = false;
-  int num_threads = 0;  // 0: one a core
+  int num_threads = 0;  // 0: one per core
 };
 
 struct SkippedImage {
@@ -67,6 +68,9 @@ struct ImportReport {
   PriorShapeAgreement prior_shape;     // of all frames
   std::vector<int> ids_not_in_layout;  // detected and rejected, because no part names them
   std::vector<SkippedImage> skipped;   // unreadable files
+  // Frames of a video that were left out because the file is damaged there or before them, and the
+  // places where it is, some of which may hold no frame at all.
+  int num_frames_damaged = 0, num_packets_damaged = 0;
   // CPU times are sums over the threads. Decoding has the CPU time that no other stage claims,
   // because FFmpeg decodes on threads of its own. The stages overlap, so wall times are those of
   // the reading thread (decode), the mean of the working threads (detect, refine, images) and those
@@ -83,7 +87,7 @@ struct ImportReport {
 // without a calibration, a layout whose ids the dictionary does not have, a database that was made
 // with another camera, other detector settings or pictures that have changed since, one that
 // another velamap imports into, and a frame that would replace a picture that velamap did not
-// write. What an earlier import made stays where a new one (import_anew) cannot begin. Throws
+// write. What an earlier import made stays as it is where a new one (import_anew) fails. Throws
 // DataError that names the dictionaries and polarity that would have found markers if there are
 // none.
 ImportReport ImportMarkers(const MarkerImporterOptions& options,

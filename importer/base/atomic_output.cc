@@ -1,14 +1,20 @@
 #include "importer/base/atomic_output.h"
 
 #include <fcntl.h>
+#include <linux/fs.h>
 #include <stdio.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <locale>
+#include <sstream>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -25,8 +31,41 @@ namespace fs = std::filesystem;
   throw InputError(fmt::format("{}: cannot be written: {}", path.string(), why));
 }
 
-fs::path TemporarySibling(const fs::path& path) {
-  return path.parent_path() / TemporaryName(path.filename().string());
+[[noreturn]] void ThrowCannotRead(const fs::path& path, int error) {
+  throw InputError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(error)));
+}
+
+// A file that is closed at the end.
+class OpenFile {
+ public:
+  OpenFile(const fs::path& path, int flags)
+      : number_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  ~OpenFile() { Close(); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  int number() const { return number_; }
+
+  // Some file systems notice a full disk only here.
+  bool Close() {
+    const int number = std::exchange(number_, -1);
+    return number < 0 || close(number) == 0;
+  }
+
+ private:
+  int number_;
+};
+
+// Returns false, with the reason in errno, if not everything can be written.
+bool WriteAll(int file, const char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t written = write(file, data, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    data += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return true;
 }
 
 // Returns the path that a file in a temporary folder will have when the folder has been renamed.
@@ -61,12 +100,12 @@ void WriteStream(const fs::path& path, const fs::path& shown_path,
 
 void WriteAndRename(const fs::path& path, bool is_synced,
                     const std::function<void(std::ostream&)>& write) {
-  // A link stays a link: the file that it points at is replaced.
   std::error_code error;
-  const fs::path target = AbsoluteFolder(IsLink(path) ? CanonicalPath(path) : path);
+  const fs::path target = CanonicalPath(path);
   if (Exists(target) && !IsRegularFile(target)) {
     ThrowCannotWrite(path, "it exists and is not a regular file; choose another output path");
   }
+  CheckNotProtected(path);
   CreateFolders(target.parent_path());
   const fs::path temporary_path = TemporarySibling(target);
   try {
@@ -91,7 +130,7 @@ void WriteRecords(const fs::path& folder) {
 
 }  // namespace
 
-AtomicFolder::AtomicFolder(const fs::path& path) : path_(AbsoluteFolder(path)) {
+AtomicFolder::AtomicFolder(const fs::path& path) : path_(CanonicalPath(path)) {
   CheckReplaceableFolder(path_);
   CreateFolders(path_.parent_path());
   std::error_code error;
@@ -140,6 +179,16 @@ void WriteFileAtomically(const fs::path& path, const std::function<void(std::ost
   WriteAndRename(path, true, write);
 }
 
+void WriteSealedPage(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    std::ostringstream page;
+    page.imbue(std::locale::classic());
+    page.precision(out.precision());
+    write(page);
+    out << WithSeal(page.str(), "<!-- ", " -->");
+  });
+}
+
 void WriteFileAtomicallyUnsynced(const fs::path& path,
                                  const std::function<void(std::ostream&)>& write) {
   WriteAndRename(path, false, write);
@@ -148,6 +197,59 @@ void WriteFileAtomicallyUnsynced(const fs::path& path,
 void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   WriteStream(path, FinalPath(path), write);
   Sync(path, fsync);
+}
+
+void CopyFile(const fs::path& from, const fs::path& to, const fs::path& shown_to) {
+  OpenFile source(from, O_RDONLY | O_NONBLOCK);  // waits for no writer of a pipe
+  struct stat status {};
+  if (source.number() < 0 || fstat(source.number(), &status) != 0) ThrowCannotRead(from, errno);
+  if (!S_ISREG(status.st_mode)) ThrowCannotRead(from, ENOTSUP);
+  OpenFile copy(to, O_WRONLY | O_CREAT | O_TRUNC);
+  if (copy.number() < 0) ThrowCannotWrite(shown_to, std::strerror(errno));
+  if (ioctl(copy.number(), FICLONE, source.number()) != 0) {
+    // std::filesystem::copy_file calls a full disk an input/output error.
+    std::vector<char> buffer(1 << 20);
+    ssize_t size = 0;
+    while ((size = read(source.number(), buffer.data(), buffer.size())) != 0) {
+      if (size < 0 && errno == EINTR) continue;
+      if (size < 0) ThrowCannotRead(from, errno);
+      if (!WriteAll(copy.number(), buffer.data(), static_cast<std::size_t>(size))) {
+        ThrowCannotWrite(shown_to, std::strerror(errno));
+      }
+    }
+  }
+  fchmod(copy.number(), status.st_mode & 0777);  // some file systems know no such rights
+  if (!copy.Close()) ThrowCannotWrite(shown_to, std::strerror(errno));
+}
+
+void CopyFile(const fs::path& from, const fs::path& to) { CopyFile(from, to, to); }
+
+void CloneFile(const fs::path& from, const fs::path& to) {
+  const fs::path target = CanonicalPath(to);
+  CreateFolders(target.parent_path());
+  const fs::path temporary_path = TemporarySibling(target);
+  try {
+    CopyFile(from, temporary_path, to);
+    std::error_code error;
+    fs::rename(temporary_path, target, error);
+    if (error) ThrowCannotWrite(to, error.message());
+  } catch (...) {
+    RemoveAll(temporary_path);
+    throw;
+  }
+}
+
+void MoveFile(const fs::path& from, const fs::path& to) {
+  const fs::path target = CanonicalPath(to);
+  CreateFolders(target.parent_path());
+  std::error_code error;
+  fs::rename(from, target, error);
+  if (error == std::errc::cross_device_link) {
+    CloneFile(from, target);
+    RemoveAll(from);
+    return;
+  }
+  if (error) ThrowCannotWrite(to, error.message());
 }
 
 void SyncFileSystem(const fs::path& folder) { Sync(folder, syncfs); }

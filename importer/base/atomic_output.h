@@ -1,5 +1,6 @@
 // Output that exists as a whole or not at all: it is written to a temporary sibling and renamed
-// when it is complete.
+// when it is complete. A link stays a link: what it leads to is replaced. What is write-protected
+// is not replaced. Siblings that a killed run has left are removed where the next one writes.
 
 #pragma once
 
@@ -34,6 +35,10 @@ class AtomicFolder {
 void WriteFileAtomically(const std::filesystem::path& path,
                          const std::function<void(std::ostream&)>& write);
 
+// The same for an HTML page, with a seal (replacement.h).
+void WriteSealedPage(const std::filesystem::path& path,
+                     const std::function<void(std::ostream&)>& write);
+
 // The same without waiting for the disk: for many files in a row, which SyncFileSystem() secures in
 // one go.
 void WriteFileAtomicallyUnsynced(const std::filesystem::path& path,
@@ -41,6 +46,22 @@ void WriteFileAtomicallyUnsynced(const std::filesystem::path& path,
 
 // The same without the rename, for files inside an AtomicFolder.
 void WriteFile(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+// Copies a file; what `to` held is replaced. The copy takes no space where the file system can
+// share blocks. The message names `from` if that cannot be read, and else `shown_to`, which is `to`
+// unless it is given.
+void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to);
+void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to,
+              const std::filesystem::path& shown_to);
+
+// A copy that an edit of the original does not change, nor the other way round. It is there as a
+// whole or not at all, and replaces `to`. Creates the missing parents of `to`. Throws InputError as
+// CopyFile() does.
+void CloneFile(const std::filesystem::path& from, const std::filesystem::path& to);
+
+// Renames a file, which replaces `to`; copies it where they are in different file systems. Creates
+// the missing parents of `to`.
+void MoveFile(const std::filesystem::path& from, const std::filesystem::path& to);
 
 // Waits until everything that was written to the file system of `folder` has reached the disk.
 // Throws InputError, naming the folder, if some of it cannot be written.

@@ -53,6 +53,21 @@ void WriteHolder(int file) {
   if (!written) spdlog::debug("the lock's file cannot be written");  // the lock holds all the same
 }
 
+// Whether the file is empty, as after a crash, or holds the record of a holder. Any other one of
+// this name is the user's.
+bool IsLockOfOurs(int file) {
+  struct stat status {};
+  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return false;
+  if (status.st_size == 0) return true;
+  std::istringstream words(ReadHolder(file));
+  std::time_t since = 0;
+  long process_id = 0;
+  std::string host, more;
+  constexpr std::time_t kBeforeAnyLock = 1'000'000'000;
+  return status.st_size <= static_cast<off_t>(kMaxRecordSize) && (words >> since >> process_id) &&
+         since > kBeforeAnyLock && process_id > 0 && (words >> host, !(words >> more));
+}
+
 // Whether `path` still leads to the open file: its last holder may have removed it.
 bool IsStillThere(const std::filesystem::path& path, int file) {
   struct stat of_path {
@@ -99,6 +114,13 @@ FileLock::FileLock(const std::filesystem::path& path, const std::string& what) :
           fmt::format("{}: another velamap works here{}{}; wait until it has finished, or choose "
                       "another folder",
                       what, holder.empty() ? "" : " ", holder));
+    }
+    if (!IsLockOfOurs(file)) {
+      close(file);
+      throw InputError(
+          fmt::format("{}: velamap did not write this file, which has the name of its lock; move "
+                      "it away",
+                      path.string()));
     }
     if (IsStillThere(path, file)) {
       file_ = file;

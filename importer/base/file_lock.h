@@ -18,9 +18,9 @@ class FileLock {
  public:
   // Takes the lock whose file is `path`, and writes since when and by which process it is held.
   // Throws InputError, which begins with `what` and names the holder, if another process or
-  // FileLock holds it. If the lock file cannot be opened, the run continues without a lock, because
-  // writing will normally fail as well and report the reason. If the file system has no locks, a
-  // warning says so.
+  // FileLock holds it, or if a file of this name is not one of ours. If the lock file cannot be
+  // opened, the run continues without a lock, because writing will normally fail as well and report
+  // the reason. If the file system has no locks, a warning says so.
   FileLock(const std::filesystem::path& path, const std::string& what);
   ~FileLock();  // removes the file
   bool IsHeld() const { return file_ >= 0; }

@@ -1,8 +1,5 @@
 #include "importer/base/files.h"
 
-#include <fcntl.h>
-#include <linux/fs.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,7 +16,6 @@
 
 #include "importer/base/error.h"
 #include "importer/base/file_lock.h"
-#include "importer/base/replacement.h"
 
 namespace velamap {
 namespace {
@@ -45,21 +41,14 @@ fs::file_type TypeOf(const fs::path& path) {
   return type;
 }
 
-void CheckReadable(const fs::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) CheckRead(std::error_code(errno, std::generic_category()), path);
-  close(file);
-}
-
-// Whether the file system could make `to` a copy that shares its blocks with `from`.
-bool ShareBlocks(const fs::path& from, const fs::path& to) {
-  const int source = open(from.c_str(), O_RDONLY | O_CLOEXEC);
-  const int copy =
-      source < 0 ? -1 : open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  const bool shared = copy >= 0 && ioctl(copy, FICLONE, source) == 0;
-  if (copy >= 0) close(copy);
-  if (source >= 0) close(source);
-  return shared;
+fs::path FromRoot(const fs::path& path) {
+  if (path.empty()) CheckRead(std::make_error_code(std::errc::no_such_file_or_directory), path);
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  if (!error) return absolute;
+  throw InputError(
+      fmt::format("{}: the current folder cannot be read ({}); change to a folder that is there",
+                  Shown(path), error.message()));
 }
 
 // No folder of a user is called so.
@@ -112,12 +101,9 @@ std::uintmax_t FileSize(const fs::path& path) {
 }
 
 fs::path AbsolutePath(const fs::path& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
-  CheckRead(error, path);
   // The folder above a link is that of the folder it leads to, not that of the link.
   fs::path result;
-  for (const fs::path& part : absolute) {
+  for (const fs::path& part : FromRoot(path)) {
     if (part == "..") {
       result = CanonicalPath(result).parent_path();
     } else if (part != ".") {
@@ -128,12 +114,34 @@ fs::path AbsolutePath(const fs::path& path) {
 }
 
 fs::path CanonicalPath(const fs::path& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
-  CheckRead(error, path);
-  const fs::path canonical = fs::weakly_canonical(absolute, error);
-  CheckRead(error, path);
-  return canonical;
+  constexpr int kMaxNumLinks = 40;  // as in Linux
+  const fs::path absolute = FromRoot(path);
+  std::deque<fs::path> parts(absolute.begin(), absolute.end());
+  fs::path result;
+  for (int num_links = 0; !parts.empty();) {
+    const fs::path part = parts.front();
+    parts.pop_front();
+    if (part.empty() || part == ".") continue;
+    if (part == "..") {
+      result = result.parent_path();
+      continue;
+    }
+    std::error_code error;
+    const fs::path next = result / part;
+    const fs::file_type type = fs::symlink_status(next, error).type();
+    if (type != fs::file_type::not_found) CheckRead(error, path);
+    if (type != fs::file_type::symlink) {
+      result = next;
+      continue;
+    }
+    const fs::path target = fs::read_symlink(next, error);
+    if (++num_links > kMaxNumLinks) {
+      error = std::make_error_code(std::errc::too_many_symbolic_link_levels);
+    }
+    CheckRead(error, path);
+    parts.insert(parts.begin(), target.begin(), target.end());  // an absolute one begins anew: "/"
+  }
+  return result;
 }
 
 fs::path AbsoluteFolder(const fs::path& path) {
@@ -184,8 +192,12 @@ void CreateFolders(const fs::path& path) {
 }
 
 TemporaryFolder::TemporaryFolder() {
+  const char* wanted = std::getenv("TMPDIR");
+  const fs::path parent = wanted != nullptr && *wanted != '\0' ? wanted : "/tmp";
   std::error_code error;
-  const fs::path parent = fs::temp_directory_path(error);
+  if (!fs::is_directory(parent, error) && !error) {
+    error = std::make_error_code(std::errc::not_a_directory);
+  }
   if (!error) RemoveAbandoned(parent);
   // Another run that comes between the folder and the lock takes the folder for abandoned, and
   // removes it.
@@ -203,12 +215,11 @@ TemporaryFolder::TemporaryFolder() {
     } catch (const InputError&) {
     }
   }
-  const char* wanted = std::getenv("TMPDIR");
   if (!error) error = std::make_error_code(std::errc::resource_unavailable_try_again);
   throw InputError(
       fmt::format("TMPDIR {}: no folder for temporary files can be made there: {}; set TMPDIR to a "
                   "folder that can be written",
-                  wanted != nullptr ? wanted : parent.string(), error.message()));
+                  parent.string(), error.message()));
 }
 
 TemporaryFolder::~TemporaryFolder() { RemoveAll(path_); }
@@ -216,19 +227,6 @@ TemporaryFolder::~TemporaryFolder() { RemoveAll(path_); }
 bool IsSameFile(const fs::path& path1, const fs::path& path2) {
   std::error_code error;
   return fs::equivalent(path1, path2, error) && !error;
-}
-
-void CloneFile(const fs::path& from, const fs::path& to) {
-  CheckReadable(from);  // an error of the copy does not say which of the two it means
-  CreateFolders(to.parent_path());
-  const fs::path temporary_path = to.parent_path() / TemporaryName(to.filename().string());
-  std::error_code error;
-  if (!ShareBlocks(from, temporary_path)) {
-    fs::copy_file(CanonicalPath(from), temporary_path, fs::copy_options::overwrite_existing, error);
-  }
-  if (!error) fs::rename(temporary_path, to, error);
-  if (error) RemoveAll(temporary_path);
-  CheckWritten(error, to);
 }
 
 std::uint64_t Hash(std::string_view bytes, std::uint64_t hash) {
@@ -246,12 +244,6 @@ std::uint64_t HashOfFile(const fs::path& path) {
   }
   if (!stream.eof()) throw InputError(Shown(path) + ": cannot be read");
   return hash;
-}
-
-void CopyFile(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
-  CheckWritten(error, to);
 }
 
 void RemoveAll(const fs::path& path) noexcept {

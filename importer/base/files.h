@@ -26,10 +26,11 @@ bool IsLink(const std::filesystem::path& path) noexcept;
 
 std::uintmax_t FileSize(const std::filesystem::path& path);
 
-// Without "." and "..".
+// Without "." and "..", with links as they are named: for what people read.
 std::filesystem::path AbsolutePath(const std::filesystem::path& path);
 
-// Absolute, links resolved as far as the path exists.
+// Where the file is, or will be when it is written: all links are followed, those that lead to
+// nothing too. Outputs are compared with inputs by it, and written to it, so that a link stays one.
 std::filesystem::path CanonicalPath(const std::filesystem::path& path);
 
 // AbsolutePath() without the trailing slash, so that its parent is the folder that holds it.
@@ -46,12 +47,6 @@ std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folde
 // Creates the folder and its missing parents; nothing happens if it is there.
 void CreateFolders(const std::filesystem::path& path);
 
-// A copy that an edit of the original does not change, nor the other way round. It takes no space
-// where the file system can share blocks. It is there as a whole or not at all, and replaces `to`.
-// Creates the missing parents of `to`. The message names `from` if that cannot be read, and else
-// `to`.
-void CloneFile(const std::filesystem::path& from, const std::filesystem::path& to);
-
 // Whether both paths lead to one file, which has several names or is reached through links. False
 // unless both exist.
 bool IsSameFile(const std::filesystem::path& path1, const std::filesystem::path& path2);
@@ -61,17 +56,14 @@ std::uint64_t Hash(std::string_view bytes, std::uint64_t hash = 0xcbf29ce4842223
 
 std::uint64_t HashOfFile(const std::filesystem::path& path);
 
-// Copies a file; `to` is replaced.
-void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to);
-
 // Removes a file, or a folder with everything in it. What cannot be removed stays.
 void RemoveAll(const std::filesystem::path& path) noexcept;
 
 // Removes a file or an empty folder; a folder that holds something stays.
 void RemoveFileOrEmptyFolder(const std::filesystem::path& path) noexcept;
 
-// A fresh folder in TMPDIR, or in /tmp, that is removed with everything in it: at the end, or by
-// the next run where a run was killed.
+// A fresh folder in TMPDIR, or in /tmp if that is not set or empty, that is removed with everything
+// in it: at the end, or by the next run where a run was killed.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -23,8 +23,8 @@ bool ParseNumber(std::string_view text, T* value) {
   return true;
 }
 
-// Parses numbers that are separated by commas, such as 12,15,40. Nothing unless each of them is one
-// number.
+// Parses numbers that are separated by commas, such as 12,15,40. Nothing unless all of them are
+// numbers.
 template <typename T>
 std::optional<std::vector<T>> ParseNumberList(std::string_view text) {
   std::vector<T> numbers;

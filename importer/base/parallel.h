@@ -14,7 +14,7 @@ void UseOwnThreadsOnly();
 // Returns `num_threads`, or the number of cores if it is 0, but at least 1.
 int NumThreads(int num_threads);
 
-// Calls work(idx) once for every 0 <= idx < count, on up to `num_threads` threads (0: one a core)
+// Calls work(idx) once for every 0 <= idx < count, on up to `num_threads` threads (0: one per core)
 // including the calling one. The calls run in any order and in parallel, so each must write to its
 // own memory. If the system refuses a thread, the threads that have started do the work. The first
 // exception of a call is thrown again when all threads have ended; indices that no thread has taken

@@ -1,14 +1,20 @@
 #include "importer/base/replacement.h"
 
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
+#include <array>
+#include <cerrno>
+#include <climits>
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <mutex>
 #include <optional>
+#include <regex>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,6 +40,44 @@ std::map<std::string, std::string> ReadFolderRecord(const fs::path& folder) {
     hash_of_name[line.substr(kHashDigits + 1)] = line.substr(0, kHashDigits);
   }
   return hash_of_name;
+}
+
+constexpr char kSeal[] = "as velamap wrote it: ";
+
+std::string ReadBytes(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+bool BeginsAsOneOfOurs(const std::string& text) {
+  const auto begins = [&](const std::string& with) { return text.rfind(with, 0) == 0; };
+  const std::string first_line = text.substr(0, text.find('\n'));
+  const std::size_t title = text.find("<title>");
+  const std::string title_line =
+      title == std::string::npos ? "" : text.substr(title, text.find("</title>", title) - title);
+  return begins("image_name,registered,num_markers,") ||   // registration.csv
+         begins("[\n {\n  \"stage\": \"") ||               // timing.json
+         begins("%YAML:1.0\n---\n# found by velamap ") ||  // camera.yml
+         (begins("<!DOCTYPE html>") &&                     // report, calibration.html
+          title_line.find("velamap") != std::string::npos) ||
+         (begins("$ ") && first_line.find(" bundle_adjuster ") != std::string::npos);  // colmap.log
+}
+
+// Of a text without a seal, too.
+bool HasItsSeal(const std::string& text) {
+  const std::size_t seal = text.rfind(kSeal);
+  if (seal == std::string::npos) return true;
+  constexpr std::size_t kLongestEnd = 5;                // " -->" and the end of the line
+  const std::size_t line = text.rfind('\n', seal) + 1;  // 0 if there is none
+  const std::size_t hash = seal + sizeof(kSeal) - 1;
+  return text.size() <= hash + kHashDigits + kLongestEnd &&
+         text.substr(hash, kHashDigits) == HashText(Hash(text.substr(0, line)));
+}
+
+// What step commands write beside their results.
+bool IsTableOrLogOfOurs(const fs::path& path) {
+  const bool is_name = path.filename() == "registration.csv" || path.filename() == "colmap.log";
+  return is_name && IsRegularFile(path) && !IsLink(path) && BeginsAsOneOfOurs(ReadBytes(path));
 }
 
 // The device and number of a file that exists, which all its names share.
@@ -69,7 +113,35 @@ void CheckApart(const Place& output, const Place& other) {
   }
 }
 
-constexpr char kTemporaryMark[] = ".tmp-";
+// The name of unfinished output: .NAME.velamap-tmp-MACHINE-PROCESS-COUNT, and of SQLite's files
+// beside an unfinished database.
+constexpr char kTemporaryMark[] = ".velamap-tmp-";
+
+struct UnfinishedName {
+  std::string final_name, machine;
+  pid_t process_id = 0;
+};
+
+// Others share a folder over the network, and their processes have numbers of their own.
+std::string ThisMachine() {
+  std::array<char, HOST_NAME_MAX + 1> name{};
+  gethostname(name.data(), name.size() - 1);
+  return HashText(Hash(name.data()));
+}
+
+std::optional<UnfinishedName> ParseUnfinished(const std::string& name) {
+  static const std::regex pattern(
+      R"(\.(.+)\.velamap-tmp-([0-9a-f]{16})-([0-9]{1,9})-[0-9]{1,9}(-journal|-wal|-shm)?)");
+  std::smatch match;
+  if (name.find(kTemporaryMark) == std::string::npos || !std::regex_match(name, match, pattern)) {
+    return std::nullopt;
+  }
+  return UnfinishedName{match[1], match[2], static_cast<pid_t>(std::stol(match[3]))};
+}
+
+bool IsAbandoned(const UnfinishedName& name) {
+  return name.machine == ThisMachine() && kill(name.process_id, 0) != 0 && errno == ESRCH;
+}
 
 }  // namespace
 
@@ -94,6 +166,7 @@ void CheckReplaceableFolder(const fs::path& path) {
         "{}: cannot be written: it exists and is not a folder; choose another output path",
         path.string()));
   }
+  CheckNotProtected(path);
   const std::map<std::string, std::string> hash_of_name = ReadFolderRecord(path);
   for (const fs::path& entry : FolderEntries(path)) {
     const std::string name = entry.filename().string();
@@ -105,11 +178,28 @@ void CheckReplaceableFolder(const fs::path& path) {
     const auto recorded = hash_of_name.find(name);
     const bool is_ours = recorded != hash_of_name.end() && IsRegularFile(entry) && !IsLink(entry);
     if (is_ours && HashText(HashOfFile(entry)) == recorded->second) continue;
+    if (recorded == hash_of_name.end() && IsTableOrLogOfOurs(entry)) continue;
     throw InputError(fmt::format(
         "{}: the output folder holds {}, which {}; move it away or choose another folder",
         path.string(), name,
         is_ours ? "was changed after velamap wrote it" : "velamap did not write there"));
   }
+}
+
+void CheckOwnFile(const std::string& used_by, const fs::path& path) {
+  if (!IsRegularFile(path)) return;
+  const std::string text = ReadBytes(path);
+  const bool is_ours = text.empty() || BeginsAsOneOfOurs(text);
+  if (is_ours && HasItsSeal(text)) return;
+  throw InputError(fmt::format(
+      "{}: {} would be replaced, but {}; move it away, or choose another place", used_by,
+      path.string(), is_ours ? "was changed after velamap wrote it" : "velamap did not write it"));
+}
+
+std::string WithSeal(const std::string& text, const std::string& comment_begin,
+                     const std::string& comment_end) {
+  const std::string body = text.empty() || text.back() == '\n' ? text : text + '\n';
+  return body + comment_begin + kSeal + HashText(Hash(body)) + comment_end + '\n';
 }
 
 void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPath>& outputs) {
@@ -124,7 +214,12 @@ void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPat
     }
   }
   for (const UsedPath& output : outputs) {
-    if (output.is_replaced_folder) CheckReplaceableFolder(output.path);
+    if (output.is_replaced_folder) {
+      CheckReplaceableFolder(output.path);
+    } else if (IsRegularFile(output.path)) {
+      CheckNotProtected(output.path);
+    }
+    if (output.is_default_name) CheckOwnFile(output.used_by, output.path);
   }
 }
 
@@ -133,6 +228,13 @@ void CheckImageName(const std::string& name, const std::string& where) {
   const bool leads_out = path.empty() || path.is_absolute() ||
                          name.find('\0') != std::string::npos ||
                          std::find(path.begin(), path.end(), fs::path("..")) != path.end();
+  const std::size_t line_break = name.find_first_of("\r\n");
+  if (line_break != std::string::npos) {
+    throw InputError(
+        fmt::format("{}: the name of the image '{}...' holds a line break, where lists of images "
+                    "end a line; rename the image",
+                    where, name.substr(0, line_break)));
+  }
   if (!leads_out) return;
   throw InputError(fmt::format(
       "{}: the image name '{}' leads out of the folder of images; names such as day1/a.jpg are "
@@ -140,25 +242,46 @@ void CheckImageName(const std::string& name, const std::string& where) {
       where, name.c_str()));
 }
 
-std::string TemporaryName(const std::string& name) {
-  static std::atomic<int> counter{0};
-  return fmt::format(".{}{}{}-{}", name, kTemporaryMark, getpid(), counter++);
+void CheckNotProtected(const fs::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) return;
+  // The first test holds for the administrator, too, who may write everything.
+  constexpr mode_t kWritable = S_IWUSR | S_IWGRP | S_IWOTH;
+  if ((status.st_mode & kWritable) != 0 && access(path.c_str(), W_OK) == 0) return;
+  throw InputError(
+      fmt::format("{}: cannot be written: it is write-protected; choose another output path, or "
+                  "change its permissions (chmod u+w)",
+                  path.string()));
+}
+
+fs::path TemporarySibling(const fs::path& path) {
+  static int counter = 0;
+  static std::mutex mutex;
+  static std::set<fs::path> cleared;
+  const fs::path folder = path.parent_path();
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (cleared.insert(folder).second) {
+    try {
+      RemoveUnfinished(folder);
+    } catch (const InputError&) {
+      // A folder that cannot be listed can be written to all the same.
+    }
+  }
+  constexpr std::size_t kMaxNameSize = 180;  // with what is added, a name has at most 255 bytes
+  return folder / fmt::format(".{}{}{}-{}-{}", path.filename().string().substr(0, kMaxNameSize),
+                              kTemporaryMark, ThisMachine(), getpid(), counter++);
 }
 
 std::string FinalName(const std::string& name) {
-  const std::size_t mark = name.rfind(kTemporaryMark);
-  if (name.empty() || name.front() != '.' || mark == std::string::npos || mark <= 1) return name;
-  const std::string numbers = name.substr(mark + sizeof(kTemporaryMark) - 1);
-  const bool is_ours = numbers.find('-') != std::string::npos &&
-                       numbers.find_first_not_of("0123456789-") == std::string::npos;
-  return is_ours ? name.substr(1, mark - 1) : name;
+  const std::optional<UnfinishedName> unfinished = ParseUnfinished(name);
+  return unfinished ? unfinished->final_name : name;
 }
 
 void RemoveUnfinished(const fs::path& folder) {
   if (!IsFolder(folder)) return;
   for (const fs::path& entry : FolderEntries(folder)) {
-    const std::string name = entry.filename().string();
-    if (FinalName(name) != name) RemoveAll(entry);
+    const std::optional<UnfinishedName> name = ParseUnfinished(entry.filename().string());
+    if (name && IsAbandoned(*name)) RemoveAll(entry);
   }
 }
 

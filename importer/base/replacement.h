@@ -1,9 +1,11 @@
 // What velamap may replace, and what it may not: the one rule for all commands.
 //
 //   file     one that the user has named as output, unless it is an input or the output of another
-//            option, under whatever name
-//   folder   as a whole, if velamap wrote every file in it and nobody has changed one since. Each
-//            folder that velamap writes holds a record of its files, kFolderRecord
+//            option, under whatever name. Under a name that the user has not given, only one that
+//            velamap wrote (CheckOwnFile)
+//   folder   as a whole, unless it is write-protected, if velamap wrote every file in it and nobody
+//            has changed one since. Each folder that velamap writes holds a record of its files,
+//            kFolderRecord
 //   picture  in a folder of pictures: only frames that velamap wrote (video/written_frame.h)
 //
 // Names that come from files must not lead to other places: CheckImageName().
@@ -24,9 +26,20 @@ inline constexpr char kFolderRecord[] = ".velamap";
 std::string MakeFolderRecord(const std::filesystem::path& folder);
 
 // Throws InputError, naming the path and the first such file, if the folder holds a file that
-// velamap did not write there, or that was changed afterwards; the same for its sub-folders.
+// velamap did not write there, or that was changed afterwards; the same for its sub-folders. Tables
+// and logs that commands write beside the folders of their results may lie in it, too.
 // Nothing happens if the path is missing.
 void CheckReplaceableFolder(const std::filesystem::path& path);
+
+// Throws InputError, which begins with `used_by`, if the path is a file that does not begin as one
+// of velamap's tables, pages, calibrations or logs, or that was changed after velamap sealed it.
+// Nothing happens if it is missing.
+void CheckOwnFile(const std::string& used_by, const std::filesystem::path& path);
+
+// `text` and a last line, a comment, with the hash of it. The line begins with `comment_begin` and
+// ends with `comment_end`, such as "# " and "".
+std::string WithSeal(const std::string& text, const std::string& comment_begin,
+                     const std::string& comment_end);
 
 // Whether the path is the folder or lies in it; links count as what they lead to.
 bool IsInside(const std::filesystem::path& path, const std::filesystem::path& folder);
@@ -36,26 +49,33 @@ struct UsedPath {
   std::string used_by;  // such as --csv_path, for messages
   std::filesystem::path path;
   bool is_replaced_folder = false;  // outputs only: a folder that is replaced as a whole
+  bool is_default_name = false;     // outputs only: a file whose name the user has not given
 };
 
 // Throws InputError, naming both options, if an output is one of the inputs or another output, also
-// through links, or lies in a folder that is replaced, or if such a folder holds an input or is not
-// replaceable.
+// through links, or lies in a folder that is replaced, if such a folder holds an input or is not
+// replaceable, or if a file under a default name is not velamap's.
 void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPath>& outputs);
 
 // Throws InputError that begins with `where` if the name of an image leads out of the folder of
 // images: an absolute one, or one with "..".
 void CheckImageName(const std::string& name, const std::string& where);
 
-// Output that is not finished has such a name, which no other process or thread of this machine
-// uses, beside its place.
-std::string TemporaryName(const std::string& name);
+// Throws InputError, naming the path, for a file or folder that is write-protected: nobody may
+// write it, or not this user. Replacing it would need no such right. Nothing happens if it is
+// missing.
+void CheckNotProtected(const std::filesystem::path& path);
+
+// Where output is written until it is finished: beside its place, under a name that no other
+// process or thread uses. Removes what killed runs have left there (RemoveUnfinished()), once a
+// folder.
+std::filesystem::path TemporarySibling(const std::filesystem::path& path);
 
 // The name that unfinished output will have, and other names as they are.
 std::string FinalName(const std::string& name);
 
-// Removes what an interrupted run has left unfinished in the folder. For folders that no other run
-// writes to now. Nothing happens if the folder is missing.
+// Removes what killed runs of this machine have left unfinished in the folder: the name of such a
+// file tells the process, which is no more. Nothing happens if the folder is missing.
 void RemoveUnfinished(const std::filesystem::path& folder);
 
 }  // namespace velamap

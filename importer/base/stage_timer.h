@@ -39,8 +39,8 @@ class ImportTimes {
   std::array<BusyTime, kNumImportStages> times_;
 };
 
-// Charges the time of its life to `stage`. An enclosing timer of the same thread is paused
-// meanwhile. Takes half a microsecond.
+// Charges its lifetime to `stage`. An enclosing timer of the same thread is paused meanwhile. Takes
+// half a microsecond.
 class StageTimer {
  public:
   explicit StageTimer(ImportStage stage);

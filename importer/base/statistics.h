@@ -15,7 +15,7 @@ struct Statistics {
   double max = 0.0;
   double rms = 0.0;
 
-  double MaxAbs() const;  // the largest without its sign
+  double MaxAbs() const;  // the largest absolute value
 };
 
 // All zero for no values.

@@ -85,6 +85,79 @@ TEST(Files, TheFolderAboveALinkIsThatOfItsTarget) {
   EXPECT_EQ(FileSize(folder / "other/a.csv"), 3u);
 }
 
+TEST(Files, ALinkLeadsWhereItsFileWillBeWritten) {
+  const TempDir dir;
+  const fs::path folder = fs::canonical(dir.path());
+  fs::create_directories(folder / "other");
+  fs::create_symlink("other/new", folder / "link");  // to what is not there yet
+  fs::create_symlink(folder / "link", folder / "again");
+  fs::create_symlink("circle", folder / "circle");
+  EXPECT_EQ(CanonicalPath(folder / "again"), folder / "other/new");
+  EXPECT_EQ(CanonicalPath(folder / "none/../link/./a/"), folder / "other/new/a");
+  EXPECT_EQ(CanonicalPath("/../tmp"), fs::canonical("/tmp"));
+  ExpectThrows<InputError>([&] { CanonicalPath(folder / "circle/a"); },
+                           {folder / "circle/a", "levels of symbolic links"});
+  ExpectThrows<InputError>(
+      [&] {
+        CheckOutputs({}, {{"--csv", folder / "other/new"}, {"--json", folder / "again"}});
+      },
+      {"--json: ", "is the --csv too"});
+  const auto write = [](std::ostream& out) { out << "whole"; };
+  WriteFileAtomically(folder / "again", write);
+  EXPECT_EQ(FileSize(folder / "other/new"), 5u);
+  Touch(folder / "photo");
+  CloneFile(folder / "photo", folder / "link");
+  EXPECT_EQ(FileSize(folder / "other/new"), 1u);
+  MoveFile(folder / "photo", folder / "again");
+  EXPECT_TRUE(fs::is_symlink(folder / "again") && fs::is_symlink(folder / "link"));
+  EXPECT_THAT(FolderEntries(folder / "other"), ElementsAre(folder / "other/new"));
+}
+
+TEST(Files, AFolderIsReplacedWhereItsLinkLeads) {
+  const TempDir dir;
+  fs::create_directories(dir / "disk");
+  fs::create_symlink("disk/shape", dir / "shape");
+  for (int i = 0; i < 2; ++i) {
+    AtomicFolder shape(dir / "shape");
+    WriteFile(shape.TemporaryPath() / "a.csv", [](std::ostream& out) { out << "a"; });
+    shape.Commit();
+    EXPECT_TRUE(fs::is_symlink(dir / "shape"));
+    EXPECT_TRUE(fs::is_regular_file(dir / "disk/shape/a.csv"));
+    EXPECT_EQ(FolderEntries(dir / "disk").size(), 1u);
+  }
+}
+
+TEST(Files, LongNamesThatTheSystemTakesCanBeWritten) {
+  const TempDir dir;
+  const fs::path path = dir / std::string(250, 'n');
+  WriteFileAtomically(path, [](std::ostream& out) { out << "a"; });
+  EXPECT_EQ(FileSize(path), 1u);
+}
+
+TEST(Files, ACurrentFolderThatIsGoneIsAnInputError) {
+  const TempDir dir;
+  const fs::path before = fs::current_path();
+  fs::create_directory(dir / "gone");
+  fs::current_path(dir / "gone");
+  fs::remove(dir / "gone");
+  for (const auto& call : {std::function<void()>([] { AbsolutePath("a.csv"); }),
+                           std::function<void()>([] { CanonicalPath("a.csv"); }),
+                           std::function<void()>([] { AbsoluteFolder("a.csv"); })}) {
+    ExpectThrows<InputError>(call, {"a.csv", "current folder"});
+  }
+  fs::current_path(before);
+}
+
+TEST(TemporaryFolder, OfAnEmptySettingIsThatOfTheSystem) {
+  const char* earlier = std::getenv("TMPDIR");
+  const std::string restored = earlier == nullptr ? "" : earlier;
+  setenv("TMPDIR", "", 1);
+  { EXPECT_EQ(TemporaryFolder().path().parent_path(), "/tmp"); }
+  setenv("TMPDIR", "/nowhere", 1);
+  ExpectThrows<InputError>([] { TemporaryFolder(); }, {"TMPDIR /nowhere", "set TMPDIR"});
+  restored.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", restored.c_str(), 1);
+}
+
 TEST(Files, ListingsFollowLinksAndLeaveHiddenFilesOut) {
   const TempDir dir;
   fs::create_directories(dir / "photos/.thumbnails");
@@ -112,7 +185,7 @@ TEST(TemporaryFolder, OfAKilledRunIsRemovedByTheNext) {
   const fs::path workspace = dir / "velamap_result";  // of a run that was killed, too
   for (const fs::path& folder : {killed, empty, theirs, workspace}) fs::create_directory(folder);
   Touch(workspace / ".velamap.lock");
-  Touch(killed / "lock");
+  std::ofstream(killed / "lock").close();
   Touch(killed / "file");
   fs::create_symlink(theirs, dir / ".velamap_scratch_linked");
   {

@@ -1,7 +1,11 @@
 #include "importer/base/replacement.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <ctime>
 #include <fstream>
+#include <functional>
 
 #include <gmock/gmock.h>
 
@@ -33,7 +37,7 @@ TEST(ReplaceableFolder, IsOneWhoseFilesAreAllOurs) {
   WriteFolder(dir / "sparse/0");
   WriteFolder(dir / "sparse/0");
   CheckReplaceableFolder(dir / "sparse");
-  Write(dir / "sparse/.0.tmp-17-0", "left by an interrupted run");
+  Write(TemporarySibling(dir / "sparse/0"), "not finished");
   CheckReplaceableFolder(dir / "sparse");
 }
 
@@ -59,6 +63,105 @@ TEST(ReplaceableFolder, IsNoneWithAForeignOrChangedFile) {
     fs::remove(dir / name);
   }
   CheckReplaceableFolder(dir / "sparse");
+}
+
+TEST(ReplaceableFolder, MayHoldTablesAndLogsOfStepCommands) {
+  const TempDir dir;
+  WriteFolder(dir / "sparse/0");
+  Write(dir / "sparse/registration.csv", "image_name,registered,num_markers,num_outliers\n");
+  Write(dir / "sparse/colmap.log", "$ colmap bundle_adjuster --input_path in\n");
+  CheckReplaceableFolder(dir / "sparse");
+  Write(dir / "sparse/registration.csv", "name,email\n");
+  ExpectThrows<InputError>([&] { CheckReplaceableFolder(dir / "sparse"); }, {"registration.csv"});
+}
+
+TEST(OwnFile, IsToldByItsBeginningAndSeal) {
+  const TempDir dir;
+  const fs::path file = dir / "file";
+  const auto check = [&] { CheckOwnFile("--report_path", file); };
+  EXPECT_NO_THROW(check());  // missing
+  for (const std::string ours : {"", "image_name,registered,num_markers,x\na,1,2,3\n",
+                                 "[\n {\n  \"stage\": \"import\"\n }]\n",
+                                 "%YAML:1.0\n---\n# found by velamap 0.2.0\nimage_width: 3\n",
+                                 "<!DOCTYPE html>\n<title>boat – velamap report</title>\n"}) {
+    Write(file, ours);
+    EXPECT_NO_THROW(check()) << ours;
+  }
+  for (const std::string theirs : {"name,email\n", "{}", "%YAML:1.0\n---\nimage_width: 3\n",
+                                   "<!DOCTYPE html>\n<title>Holidays</title>\n<p>with velamap\n"}) {
+    Write(file, theirs);
+    ExpectThrows<InputError>(check, {"--report_path: ", file.string(), "did not write it"});
+  }
+  const std::string page = "<!DOCTYPE html>\n<title>velamap</title>\n<p>text";
+  const std::string sealed = WithSeal(page, "<!-- ", " -->");
+  Write(file, sealed);
+  EXPECT_NO_THROW(check());
+  std::string edited = sealed;
+  edited.replace(edited.find("text"), 4, "note");
+  for (const std::string& changed : {edited, sealed + "note\n", "<!DOCTYPE html>\n" + sealed}) {
+    Write(file, changed);
+    ExpectThrows<InputError>(check, {"was changed after velamap wrote it"});
+  }
+}
+
+// Whoever runs the test: the administrator may write everything.
+TEST(ReplaceableFolder, IsNoneThatIsWriteProtected) {
+  const TempDir dir;
+  WriteFolder(dir / "sparse");
+  fs::permissions(dir / "sparse", fs::perms::owner_read | fs::perms::owner_exec);
+  for (const auto& write : {std::function<void()>([&] { CheckReplaceableFolder(dir / "sparse"); }),
+                            std::function<void()>([&] { WriteFolder(dir / "sparse"); })}) {
+    ExpectThrows<InputError>(write, {dir / "sparse", "write-protected"});
+  }
+  fs::permissions(dir / "sparse", fs::perms::owner_all);
+  WriteFolder(dir / "sparse");
+  Write(dir / "table.csv", "kept");
+  fs::permissions(dir / "table.csv", fs::perms::owner_read);
+  ExpectThrows<InputError>([&] { WriteFileAtomically(dir / "table.csv", [](std::ostream&) {}); },
+                           {dir / "table.csv", "write-protected"});
+  ExpectThrows<InputError>(
+      [&] {
+        CheckOutputs({}, {{"--csv_path", dir / "table.csv"}});
+      },
+      {dir / "table.csv", "write-protected"});
+}
+
+TEST(UnfinishedOutput, OfAKilledProcessIsRemovedAndNoOther) {
+  const TempDir dir;
+  const fs::path own = TemporarySibling(dir / "own");
+  Write(own, "of a run that goes on");
+  for (const char* name : {".notes.tmp-2024-05", ".notes.velamap-tmp-2024-05", ".velamap-tmp-1-1",
+                           ".a.velamap-tmp-0123456789abcdef-17-0"}) {
+    Write(dir / name, "of the user, or of another machine");
+  }
+  const pid_t killed = fork();
+  if (killed == 0) {
+    fs::create_directories(TemporarySibling(dir / "sparse") / "seed");
+    const fs::path database = TemporarySibling(dir / "merged.db");
+    Write(database, "left");
+    Write(database.string() + "-journal", "left");
+    _exit(0);
+  }
+  waitpid(killed, nullptr, 0);
+  EXPECT_EQ(FolderEntries(dir.path()).size(), 8u);
+  RemoveUnfinished(dir.path());
+  EXPECT_EQ(FolderEntries(dir.path()).size(), 5u);
+  EXPECT_TRUE(fs::exists(own));
+  EXPECT_EQ(FinalName(own.filename()), "own");
+  EXPECT_EQ(FinalName(".notes.velamap-tmp-2024-05"), ".notes.velamap-tmp-2024-05");
+}
+
+TEST(UnfinishedOutput, IsRemovedWhereTheNextOneIsWritten) {
+  const TempDir dir;
+  fs::create_directory(dir / "out");
+  const pid_t killed = fork();
+  if (killed == 0) {
+    Write(TemporarySibling(dir / "out/a.csv"), "left");
+    _exit(0);
+  }
+  waitpid(killed, nullptr, 0);
+  WriteFileAtomically(dir / "out/b.csv", [](std::ostream& out) { out << "whole"; });
+  EXPECT_EQ(FolderEntries(dir / "out").size(), 1u);
 }
 
 TEST(ReplaceableFolder, IsLookedAtAgainBeforeItIsReplaced) {
@@ -125,6 +228,29 @@ TEST(ImageNames, MustNotLeadOut) {
         std::string(".."), std::string(), std::string("a\0.jpg", 6)}) {
     ExpectThrows<InputError>([&] { CheckImageName(name, "database.db"); },
                              {"database.db", "leads out"});
+  }
+}
+
+TEST(ImageNames, HoldNoLineBreaks) {
+  for (const char* name : {"a\nb.jpg", "a.jpg\r"}) {
+    ExpectThrows<InputError>([&] { CheckImageName(name, "photos"); }, {"photos", "line break"});
+  }
+}
+
+TEST(FileLock, LeavesAFileOfTheUser) {
+  const TempDir dir;
+  const std::string text = "42 notes\nof mine";
+  for (const std::string& notes :
+       {text, std::string("1700000000 4711 host\n") + std::string(300, 'x')}) {
+    Write(dir / ".lock", notes);
+    ExpectThrows<InputError>([&] { FileLock lock(dir / ".lock", "database.db"); },
+                             {dir / ".lock", "did not write"});
+    EXPECT_EQ(fs::file_size(dir / ".lock"), notes.size());
+  }
+  for (const char* left : {"", "1700000000 4711 host\n"}) {  // by a run that was killed
+    Write(dir / ".lock", left);
+    { const FileLock lock(dir / ".lock", "database.db"); }
+    EXPECT_FALSE(fs::exists(dir / ".lock"));
   }
 }
 
