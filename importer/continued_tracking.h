@@ -1,4 +1,4 @@
-// How an import goes on where an earlier one of the same video has ended or was interrupted.
+// How an import continues where an earlier one of the same video ended or was interrupted.
 
 #pragma once
 

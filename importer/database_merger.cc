@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/file_lock.h"
 #include "importer/base/files.h"
@@ -197,7 +198,7 @@ MergeReport MergeDatabases(const DatabaseMergerOptions& options) {
   const FileLock lock(LockOfDatabase(output.string()), output.string());
   // Throws unless velamap may write there.
   if (Exists(output)) ColmapDatabase(output.string(), ColmapDatabase::Mode::kReadWriteCreate);
-  const std::string beside = output.parent_path() / TemporaryName(output.filename().string());
+  const std::string beside = TemporarySibling(output);
   const NewDatabaseGuard guard(beside);  // never kept: removed when it has been copied
   {
     ColmapDatabase database(beside, ColmapDatabase::Mode::kReadWriteCreate);

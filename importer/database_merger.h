@@ -12,7 +12,7 @@ namespace velamap {
 struct DatabaseMergerOptions {
   std::vector<std::string> database_paths;  // of all parts, in any order; they stay as they are
   std::string output_path;                  // a database of velamap that is there is replaced
-  Layout layout;                            // that of the imports
+  Layout layout;                            // the layout of the imports
 };
 
 struct MergeReport {

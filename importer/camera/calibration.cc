@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <locale>
 #include <sstream>
 
@@ -58,9 +57,14 @@ std::vector<double> ReadMatrix(const cv::FileNode& node, const std::string& path
     } else if (node.isMap()) {
       constexpr int kMaxSide = 100;  // OpenCV allocates what the file claims before it reads it
       for (const char* side : {"rows", "cols"}) {
-        if (!node[side].isInt() || static_cast<int>(node[side]) > kMaxSide) {
-          Fail(path, fmt::format("key '{}': {} of at most {} are expected", key, side, kMaxSide));
+        const int size = node[side].isInt() ? static_cast<int>(node[side]) : 0;
+        if (size < 1 || size > kMaxSide) {
+          Fail(path, fmt::format("key '{}': 1 to {} {} are expected", key, kMaxSide, side));
         }
+      }
+      const std::string type = node["dt"].isString() ? node["dt"].string() : "";
+      if (type != "d" && type != "f" && type != "i") {
+        Fail(path, fmt::format("key '{}': dt is '{}'; expected d, numbers of 64 bits", key, type));
       }
       node >> matrix;
       matrix = matrix.reshape(1, 1);
@@ -69,8 +73,10 @@ std::vector<double> ReadMatrix(const cv::FileNode& node, const std::string& path
     } else {
       Fail(path, fmt::format("key '{}': a matrix is expected", key));
     }
-  } catch (const cv::Exception& exception) {
-    Fail(path, fmt::format("key '{}': not a readable matrix ({})", key, exception.err));
+  } catch (const cv::Exception&) {
+    Fail(path, fmt::format("key '{}': not a readable matrix; a list of numbers is expected, or "
+                           "rows, cols, dt: d and as many numbers as data",
+                           key));
   }
   for (const double value : values) {
     if (!std::isfinite(value)) Fail(path, fmt::format("key '{}': a value is not finite", key));
@@ -194,6 +200,22 @@ Camera ReadColmapCamera(const std::string& text, const std::string& path) {
   return *camera;
 }
 
+// Numbers beyond these are of no camera, and later steps would blame other input.
+void CheckRangeOfParams(const Camera& camera, const std::string& path) {
+  constexpr double kMaxSides = 1e4;
+  const double side_px = std::max(camera.width_px, camera.height_px);
+  const std::size_t num_focal = NumFocalLengths(camera.model);
+  for (std::size_t i = 0; i < num_focal + 2; ++i) {
+    const double value_px = camera.params[i];
+    const bool is_small = i < num_focal && value_px * kMaxSides < side_px;
+    if (std::abs(value_px) <= kMaxSides * side_px && !is_small) continue;
+    Fail(path, fmt::format("a {} of {:g} px is out of range for pictures of {} x {} px; check the "
+                           "calibration",
+                           i < num_focal ? "focal length" : "principal point", value_px,
+                           camera.width_px, camera.height_px));
+  }
+}
+
 }  // namespace
 
 Camera ReadCalibration(const std::string& path) {
@@ -201,7 +223,10 @@ Camera ReadCalibration(const std::string& path) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool storage = text.compare(begin, 5, "%YAML") == 0 || text.compare(begin, 1, "<") == 0 ||
                        text.compare(begin, 1, "{") == 0;
-  return storage ? ReadOpenCvCalibration(text.substr(begin), path) : ReadColmapCamera(text, path);
+  const Camera camera =
+      storage ? ReadOpenCvCalibration(text.substr(begin), path) : ReadColmapCamera(text, path);
+  CheckRangeOfParams(camera, path);
+  return camera;
 }
 
 Camera ScaleToImageSize(const Camera& camera, int width_px, int height_px,

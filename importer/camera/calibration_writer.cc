@@ -9,6 +9,7 @@
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/replacement.h"
 #include "importer/camera/camera_projection.h"
 
 namespace velamap {
@@ -61,7 +62,7 @@ std::string CalibrationText(const EstimatedCamera& estimate, const std::string& 
 void WriteCalibration(const EstimatedCamera& estimate, const std::string& origin,
                       const std::string& path) {
   const std::string text = CalibrationText(estimate, origin);
-  WriteFileAtomically(path, [&text](std::ostream& out) { out << text; });
+  WriteFileAtomically(path, [&text](std::ostream& out) { out << WithSeal(text, "# ", ""); });
 }
 
 std::string DescribeCamera(const EstimatedCamera& estimate) {

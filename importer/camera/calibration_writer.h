@@ -19,11 +19,11 @@ struct EstimatedCamera {
 // k1, k2, p1, ... of the distortion parameter at `index`.
 const char* DistortionName(CameraModel model, std::size_t index);
 
-// An OpenCV FileStorage file (YAML) with the keys of ReadCalibration(), and for readers
-// focal_length_sigma_px (x, y), principal_point_sigma_px (x, y) and distortion_sigma, by
-// distortion_coefficients, which programs that read calibrations ignore. Models with one focal
-// length or fewer coefficients become the OpenCV model that holds them exactly. `origin` is one
-// line on where the camera comes from, a comment in the file.
+// An OpenCV FileStorage file (YAML) with the keys of ReadCalibration(), and three for the reader,
+// which other programs ignore: focal_length_sigma_px (x, y), principal_point_sigma_px (x, y) and
+// distortion_sigma, in the order of distortion_coefficients. Models with one focal length or fewer
+// coefficients become the OpenCV model that holds them exactly. `origin` says in one line where the
+// camera comes from; it becomes a comment in the file.
 std::string CalibrationText(const EstimatedCamera& estimate, const std::string& origin);
 
 // Writes the text to `path`, whole or not at all. Throws InputError where that fails.

@@ -49,8 +49,8 @@ std::optional<CameraModel> CameraModelFromId(int model_id);
 int NumCameraParams(CameraModel model);
 
 // A guess at a camera without calibration: SIMPLE_RADIAL without distortion, its principal point in
-// the centre. `focal_px` is the focal length if something is known of it; 0 stands for COLMAP's
-// guess, 1.2 times the larger side.
+// the centre. `focal_px` is the focal length if it is roughly known, else 0 for COLMAP's guess, 1.2
+// times the larger side.
 Camera UnknownCamera(int width_px, int height_px, double focal_px = 0.0);
 
 // Mean of the focal lengths in x and y, px.
@@ -68,7 +68,7 @@ std::optional<Eigen::Vector2d> CamFromImage(const Camera& camera,
                                             const Eigen::Vector2d& x_in_image_px);
 
 // Distance of the image's farthest corner from the optical axis, as a tangent (the length of the
-// undistorted ray). Where the distortion cannot be inverted there, that of the distorted ray.
+// undistorted ray). Where the distortion cannot be inverted there, the length of the distorted ray.
 double MaxRayLength(const Camera& camera);
 
 // Whether rays farther from the optical axis are seen farther from the principal point, in every

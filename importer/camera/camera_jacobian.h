@@ -1,4 +1,5 @@
-// Derivatives of the camera models of camera_projection.h by the ray, by automatic differentiation.
+// Derivatives of the camera models of camera_projection.h with respect to the ray, by automatic
+// differentiation.
 
 #pragma once
 
@@ -25,7 +26,7 @@ RayFunction DifferentiateByRay(const Function& function, const Eigen::Vector2d& 
   return result;
 }
 
-// The distorted ray. `k` are the parameters behind the principal point.
+// The distorted ray. `k` are the parameters after the principal point.
 inline RayFunction DistortRayWithJacobian(CameraModel model, const double* k,
                                           const Eigen::Vector2d& ray) {
   return DifferentiateByRay(

@@ -12,12 +12,12 @@ namespace velamap {
 // 90 degrees (any integer; multiples of 4 change nothing). Exact for every model.
 Camera TurnCamera(const Camera& camera, int quarter_turns);
 
-// Where the turn takes an image position, px; `camera` is that of the picture before it.
+// The image position (px) after the turn; `camera` is the camera of the picture before the turn.
 Eigen::Vector2d TurnInImage(const Camera& camera, int quarter_turns,
                             const Eigen::Vector2d& x_in_image_px);
 
-// Whether one picture is as wide as the other is high and the other way round, but for a scale (to
-// half a pixel), and neither is square.
+// Whether one size is the other turned by 90 degrees, up to a scale (to half a pixel). False for
+// squares.
 bool IsTransposedSize(const Camera& camera, int width_px, int height_px);
 
 }  // namespace velamap

@@ -12,7 +12,7 @@ class Statement;
 
 namespace velamap {
 
-// Where a value stands, for messages.
+// The place of a value, for messages.
 struct TablePlace {
   const std::string& path;  // of the database
   const char* table;

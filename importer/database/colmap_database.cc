@@ -43,19 +43,15 @@ void InsertKeypoints(SQLite::Database& database, ImageId image_id,
       descriptors.insert(descriptors.end(), descriptor.begin(), descriptor.end());
     }
   }
-  const std::int64_t num_keypoints = static_cast<std::int64_t>(keypoints.size() / 2);
-  SQLite::Statement insert_keypoints(
-      database, "INSERT INTO keypoints(image_id, rows, cols, data) VALUES(?, ?, 2, ?)");
-  insert_keypoints.bind(1, image_id);
-  insert_keypoints.bind(2, num_keypoints);
-  BindBlob(insert_keypoints, 3, keypoints);
-  insert_keypoints.exec();
-  SQLite::Statement insert_descriptors(
-      database, "INSERT INTO descriptors(image_id, rows, cols, data) VALUES(?, ?, 128, ?)");
-  insert_descriptors.bind(1, image_id);
-  insert_descriptors.bind(2, num_keypoints);
-  BindBlob(insert_descriptors, 3, descriptors);
-  insert_descriptors.exec();
+  const auto insert = [&](const char* sql, const auto& values) {
+    SQLite::Statement statement(database, sql);
+    statement.bind(1, image_id);
+    statement.bind(2, static_cast<std::int64_t>(keypoints.size() / 2));
+    BindBlob(statement, 3, values);
+    statement.exec();
+  };
+  insert("INSERT INTO keypoints(image_id, rows, cols, data) VALUES(?, ?, 2, ?)", keypoints);
+  insert("INSERT INTO descriptors(image_id, rows, cols, data) VALUES(?, ?, 128, ?)", descriptors);
 }
 
 }  // namespace
@@ -66,7 +62,7 @@ ColmapDatabase::ColmapDatabase(const std::string& path, Mode mode, int busy_time
   CheckDatabaseFile(path, writing);
   const bool existed = Exists(path);
   try {
-    if (existed && writing) CheckUnfinishedCanBeAddedTo(path);
+    if (existed && writing) CheckUnfinishedCanBeAddedTo(CanonicalPath(path).string());
     Guarded(path,
             [&] { writing ? OpenForWriting(busy_timeout_ms) : OpenForReading(busy_timeout_ms); });
   } catch (...) {
@@ -77,8 +73,9 @@ ColmapDatabase::ColmapDatabase(const std::string& path, Mode mode, int busy_time
 }
 
 void ColmapDatabase::OpenForWriting(int busy_timeout_ms) {
+  // From the root on, since SQLite gives names such as :memory: and file:a another meaning.
   database_ = std::make_unique<SQLite::Database>(
-      path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms);
+      CanonicalPath(path_).string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms);
   // Matches of a pair take some kilobytes, which fill pages of the usual 4096 bytes badly. SQLite
   // ignores this for a database that has tables.
   database_->exec("PRAGMA page_size = 16384");
@@ -94,10 +91,11 @@ void ColmapDatabase::OpenForWriting(int busy_timeout_ms) {
 }
 
 void ColmapDatabase::OpenForReading(int busy_timeout_ms) {
-  const bool has_log = IsRegularFile(path_ + "-wal") && FileSize(path_ + "-wal") > 0;
+  const std::string file = CanonicalPath(path_).string();
+  const bool has_log = IsRegularFile(file + "-wal") && FileSize(file + "-wal") > 0;
   // A connection without write access would leave -wal and -shm files beside a database that COLMAP
   // has put into write-ahead mode. SQLite falls back to reading if the file is write-protected.
-  database_ = std::make_unique<SQLite::Database>(path_, SQLite::OPEN_READWRITE, busy_timeout_ms);
+  database_ = std::make_unique<SQLite::Database>(file, SQLite::OPEN_READWRITE, busy_timeout_ms);
   // Leaves a log that another program has written in place.
   if (has_log) {
     sqlite3_db_config(database_->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
@@ -244,7 +242,10 @@ std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
     while (query.executeStep()) {
       const std::string name = query.getColumn(0).getString();
       CheckImageName(name, path_ + ": table images");
-      ids.emplace(name, query.getColumn(1).getUInt());
+      if (ids.emplace(name, query.getColumn(1).getUInt()).second) continue;
+      throw InputError(fmt::format(
+          "{}: table images: two images are named {}; remove one of them, or import anew", path_,
+          name));
     }
     return ids;
   });

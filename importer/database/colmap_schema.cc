@@ -10,6 +10,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/database/marker_detections_table.h"
@@ -90,7 +91,7 @@ void CheckDatabaseFile(const std::string& path, bool writing) {
         fmt::format("{}: there is no such database; make it with velamap marker_importer", path));
   }
   if (!exists) {
-    const std::filesystem::path folder = AbsolutePath(path).parent_path();
+    const std::filesystem::path folder = CanonicalPath(path).parent_path();
     if (!IsFolder(folder)) {
       throw InputError(
           fmt::format("{}: cannot be created: there is no folder {}", path, folder.string()));

@@ -15,14 +15,11 @@ std::filesystem::path LockOfDatabase(const std::string& path) {
   return file.parent_path() / ("." + file.filename().string() + ".lock");
 }
 
-void RemoveDatabase(const std::string& path) {
-  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) RemoveAll(path + suffix);
-}
-
 NewDatabaseGuard::NewDatabaseGuard(const std::string& path) : path_(path), is_new_(!Exists(path)) {}
 
 NewDatabaseGuard::~NewDatabaseGuard() {
-  if (is_new_) RemoveDatabase(path_);
+  if (!is_new_) return;
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) RemoveAll(path_ + suffix);
 }
 
 DatabaseWriter::DatabaseWriter(const std::string& detector, const std::optional<SourceFile>& video,

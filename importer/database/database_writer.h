@@ -15,13 +15,12 @@
 
 namespace velamap {
 
-// The lock of the runs that write to a database: beside it, whatever links lead to it.
+// The lock of the runs that write to a database. It lies beside the file itself, so that runs that
+// reach the file through different links share it.
 std::filesystem::path LockOfDatabase(const std::string& path);
 
-// Removes the file and SQLite's files beside it.
-void RemoveDatabase(const std::string& path);
-
-// Removes a database that this run has created, unless Keep() was called.
+// Removes a database that this run has created, with SQLite's files beside it, unless Keep() was
+// called.
 class NewDatabaseGuard {
  public:
   explicit NewDatabaseGuard(const std::string& path);  // before the database is opened
@@ -36,7 +35,7 @@ class NewDatabaseGuard {
   bool is_new_;
 };
 
-// Writes images in one transaction a batch.
+// Writes images in one transaction per batch.
 class DatabaseWriter {
  public:
   // For `detector` see ColmapDatabase::AddImage(). `video` is noted with the first image.

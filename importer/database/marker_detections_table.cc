@@ -187,6 +187,7 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
   }
   const std::map<CameraId, Camera> cameras = ReadCameraRows(path, database);
   std::vector<DatabaseImage> images;
+  std::set<std::string> image_names;
   SQLite::Statement query(
       *database, fmt::format("SELECT images.image_id, camera_id, name, frame_number, time_s, "
                              "rejected_because, {} FROM images JOIN marker_detections "
@@ -200,6 +201,11 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
       image.camera_id = query.getColumn(1).getUInt();
       image.detections.image_name = query.getColumn(2).getString();
       CheckImageName(image.detections.image_name, path + ": table images");
+      if (!image_names.insert(image.detections.image_name).second) {
+        throw InputError(fmt::format(
+            "{}: table images: two images are named {}; remove one of them, or import anew", path,
+            image.detections.image_name));
+      }
       if (cameras.count(image.camera_id) == 0) {
         throw InputError(fmt::format(
             "{}: image {} names camera {}, which the database lacks or has with a model that "

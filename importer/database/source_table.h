@@ -16,7 +16,7 @@ class Database;
 
 namespace velamap {
 
-// The name under which a video stands, the source of all its frames.
+// The name of a video's row; the video is the source of all its frames.
 inline constexpr char kVideoSource[] = "";
 
 // Creates the table if it is missing, or brings it up to date. Replaces the row of that name.

@@ -29,7 +29,9 @@ void ThrowInputError(const std::string& path, const SQLite::Exception& exception
       message = "a damaged database; delete it and import again";
       break;
     default:
-      message = fmt::format("SQLite reports: {}", exception.what());
+      message = fmt::format(
+          "SQLite reports: {}; give a database of velamap marker_importer, or import anew",
+          exception.what());
   }
   throw InputError(fmt::format("{}: {}", path, message));
 }

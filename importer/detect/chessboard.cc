@@ -19,10 +19,10 @@
 namespace velamap {
 namespace {
 
-// 1 sigma of a corner's coordinate as a part of the width of an edge, from a tenth to nine tenths
-// of its contrast. On rendered boards the errors are 0.1 to 1.5 sigmas.
+// 1 sigma of a corner's coordinate as a fraction of the width of an edge, from a tenth to nine
+// tenths of its contrast. On rendered boards the errors are 0.1 to 1.5 sigmas.
 constexpr double kSigmaOfEdgeWidth = 0.02;
-// Half a window around a corner as a part of the distance to the nearest other one, so that the
+// Half a window around a corner as a fraction of the distance to the nearest other one, so that the
 // window holds the edges of no other corner.
 constexpr double kWindowOfSquare = 0.4;
 

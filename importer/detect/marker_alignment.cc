@@ -13,8 +13,8 @@
 namespace velamap {
 namespace {
 
-// Scans across a side: their number, how many have to find the edge, and the part of the side that
-// is left out at either end.
+// Scans across a side: their number, how many have to find the edge, and the fraction of the side
+// that is left out at either end.
 constexpr int kNumScans = 9;
 constexpr int kMinScans = 6;
 constexpr double kFirstScan = 0.14;

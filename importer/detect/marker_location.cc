@@ -15,7 +15,7 @@ namespace {
 constexpr double kMinCorrelation = 0.8;
 constexpr double kSureCorrelation = 0.9;  // the search does not go further out
 
-// How far the grey level of a cell has to be from the middle one, as a part of the contrast.
+// How far the grey level of a cell has to be from the middle one, as a fraction of the contrast.
 constexpr double kMinCellContrast = 0.1;
 
 // The pixel at the centre of each cell of the marker, and of one ring of light cells around it.

@@ -2,7 +2,6 @@
 #include "importer/base/statistics.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -20,7 +19,7 @@ constexpr double kMinAgreement = 0.9;
 constexpr double kMinCosineHalfTurn = 0.70710678118654752;
 constexpr double kMinCosineQuarterTurn = 0.92387953251128674;
 // Tolerance of a place, which bent cloth and perspective change: in sides of the other marker, and
-// as a part of the distance.
+// as a fraction of the distance.
 constexpr double kMaxPlaceError = 0.5;
 constexpr double kMaxRelativePlaceError = 0.3;
 

@@ -18,7 +18,7 @@ struct BalancedEdges {
 // inner edges show, as far as that exceeds the scatter of the samples.
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads);
 
-// Inner edges and outlines both tell how large the markers are. They disagree if only one of them
+// Inner edges and outlines both show how large the markers are. They disagree if only one of them
 // is moved: by what lies around a narrow quiet zone, by a noise filter that takes the zone for
 // noise, or by a printer. If they disagree by more than the scatter of the samples, either may be
 // right: the corners are moved half of the way, and half of the disagreement is 1 sigma.

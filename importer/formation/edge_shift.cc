@@ -11,7 +11,7 @@ namespace {
 
 using P = PatternParameters;
 
-// Least squares of the residuals at inner edges on their derivative by a shift.
+// Least-squares fit of a shift to the residuals at inner edges.
 struct ShiftSums {
   double by_residual = 0.0, squares = 0.0;
 
@@ -34,7 +34,8 @@ struct SampleShift {
   ShiftSums across_rows, across_columns, outwards, outwards_far_from_corners;
 };
 
-// The derivative of grey values by the distance of all corners from the centre, along both sides.
+// The derivative of grey values with respect to the distance of all corners from the centre, along
+// both sides.
 double ByCornersOutwards(const PatternPixels& pixels, const QuadCorners& corners_px) {
   const Eigen::Vector2d center =
       0.25 * (corners_px[0] + corners_px[1] + corners_px[2] + corners_px[3]);

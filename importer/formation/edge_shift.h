@@ -1,9 +1,9 @@
-// Where the edges inside of markers lie, compared with the fitted models.
+// Where the edges inside markers lie, compared with the fitted models.
 //
 // The tone curve and the spread of ink move edges between dark and light cells to one side, towards
 // dark or towards light. The corners of a marker follow its outer edges, which all have the same
 // polarity; inner edges have both, so that they show what is left of such a shift, whatever its
-// cause and whatever the shape of a blurred edge. They also tell how large the marker is, which no
+// cause and whatever the shape of a blurred edge. They also show how large the marker is, which no
 // shift that is the same for all edges changes.
 
 #pragma once
@@ -19,7 +19,7 @@ struct EdgeShift {
   // Half of the difference between the edges that the rows and that the columns of the images
   // cross: many cameras treat the two directions differently, which no parameter describes.
   double half_difference_blurs = 0.0;
-  // How far outside of the fitted corners the inner edges place the corners, along both sides, px.
+  // How far outside the fitted corners the inner edges place the corners, along both sides, px.
   double corners_outwards_px = 0.0;
   double corners_sigma_px = 0.0;  // from the scatter of the samples, and from rounded corners
 };

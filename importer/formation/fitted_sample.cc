@@ -20,7 +20,7 @@ cv::Point PatchFromBox(const PatternProblem& problem) {
   return problem.box.tl() - problem.patch.origin_px;
 }
 
-// Modelled grey values less those of the patch, which is without the sharpening, in the box of the
+// Modelled grey values minus those of the patch, which is without the sharpening, in the box of the
 // problem; zero where no pixel counts.
 VELAMAP_CLONE_FOR_AVX2 cv::Mat Differences(const FittedSample& sample) {
   const PatternProblem& problem = sample.problem;
@@ -59,8 +59,8 @@ cv::Mat ToneSlopes(const PatternProblem& problem, const ToneCurve& tone) {
   return slopes;
 }
 
-// Modelled less recorded grey values. The sharpening is applied to the differences again; otherwise
-// the apparent noise would depend on the sharpening.
+// Modelled minus recorded grey values. The sharpening is applied to the differences again;
+// otherwise the apparent noise would depend on the sharpening.
 std::vector<float> ResidualsOf(const FittedSample& sample, const ImageFormation& formation) {
   cv::Mat difference = Differences(sample);
   const ImageFormationParameters& parameters = formation.parameters();
@@ -88,8 +88,8 @@ double RmsOf(const std::vector<float>& residuals) {
   return std::sqrt(sum / static_cast<double>(residuals.size()));
 }
 
-// Another tone curve moves edges by a part of their blur. A fit that ends further from where the
-// marker was found, as where white is clipped and tells little, has lost it.
+// Another tone curve moves edges by a fraction of their blur. A fit that ends further from where
+// the marker was found, as where white is clipped and says little, has lost it.
 bool HasRunAway(const FittedSample& sample) {
   constexpr double kMaxShiftPx = 2.0, kMaxShiftCells = 0.5;
   const QuadCorners found_px = CornersOf(sample.problem.mean);

@@ -35,7 +35,7 @@ struct FittedSample {
   std::vector<float> residuals;     // at these places; empty: the fit failed
 };
 
-// Whether the image tells only a limit of the value there, which the fit agrees with; its residual
+// Whether the pixel gives only a limit of the value there, with which the fit agrees; the residual
 // is zero.
 bool IsClipped(const FittedSample& sample, const SamplePlace& place);
 
@@ -43,9 +43,9 @@ bool IsClipped(const FittedSample& sample, const SamplePlace& place);
 std::optional<FittedSample> FitSample(const FormationSample& sample,
                                       const ImageFormation& formation);
 
-// Fits a sample anew, from the fit with the tone curve `before`. All pixels of most samples count
-// and the tolerance is small, so that differences of residuals give derivatives. A fit that fails
-// or loses the marker leaves the sample where it was, without residuals.
+// Fits a sample again, starting from its fit with the tone curve `before`. All pixels of most
+// samples count and the tolerance is small, so that differences of residuals give derivatives. A
+// fit that fails or loses the marker leaves the sample where it was, without residuals.
 void RefitSample(const ImageFormation& formation, const ToneCurve& before, FittedSample* sample);
 
 }  // namespace velamap

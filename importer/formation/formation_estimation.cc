@@ -123,8 +123,8 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
   constexpr double kMinQuietZoneSigma = 0.1;  // cells; scissors
   constexpr int kFewIterations = 2;
   if (samples.empty()) return {};
-  // Some samples tell which description of the camera is right, and nearly its parameters; then all
-  // take few steps.
+  // Some of the samples decide which description of the camera is right, and nearly give its
+  // parameters; then all take few steps.
   const FormationPriors priors = PriorsFor(samples);
   State by_gray, by_light;
   for (const std::vector<FormationSample>& some : {SomeOf(samples), samples}) {

@@ -1,5 +1,5 @@
 // What a camera and a print do to edges, estimated from markers: the image formation that explains
-// the pixels of all samples best. Each sample keeps parameters of its own (corners, blur, levels,
+// the pixels of all samples best. Each sample has its own parameters (corners, blur, levels,
 // margins); the image formation is common to all.
 
 #pragma once
@@ -13,11 +13,12 @@ namespace velamap {
 
 // Levenberg-Marquardt over gamma, S, sharpening, its radius, the ink's spread and the camera's
 // shift of edges, with a Cauchy loss and priors around a usual camera and printer; the samples are
-// fitted again after each step. A part of the samples starts from several gammas and tells whether
-// grey values or light are sharpened; then all samples take a few steps. The shifts of edges and of
-// outlines then follow the places of inner edges (balanced_edges.h), and pixels at the corners of
-// outlines get the weight that their residuals ask for. `is_inverted`: the samples hold 255 less
-// the recorded grey values. The number of threads (0: one a core) does not change the result.
+// fitted again after each step. Some of the samples are fitted from several starting gammas and
+// decide whether grey values or light are sharpened; then all samples take a few steps. The shifts
+// of edges and of outlines then follow the places of inner edges (balanced_edges.h), and pixels at
+// the corners of outlines get the weight that their residuals ask for. `is_inverted`: the samples
+// hold 255 minus the recorded grey values. The number of threads (0: one per core) does not change
+// the result.
 FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples, bool is_inverted,
                                     int num_threads = 1);
 

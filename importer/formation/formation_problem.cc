@@ -14,12 +14,12 @@ constexpr int kCount = kNumFormationParameters;
 using State = FormationState;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
 
-// Blur, demosaicing, filters and compression give neighbouring pixels errors in common: about so
-// many of them tell as much as one independent pixel. If all counted, they would overrule the
+// Blur, demosaicing, filters and compression give neighbouring pixels errors in common: about this
+// many of them say as much as one independent pixel. If all counted, they would overrule the
 // priors.
 constexpr double kPixelsAlike = 10.0;
 
-// Of derivatives by differences.
+// The steps for derivatives by differences.
 const FormationVector kStep =
     (FormationVector() << 0.02, 0.004, 0.02, 0.04, 0.0004, 0.02).finished();
 

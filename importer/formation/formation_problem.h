@@ -11,8 +11,8 @@
 
 namespace velamap {
 
-// What is known before of usual cameras, and of what printers do to the edge of a dark area: means,
-// 1 sigma, and limits.
+// Prior knowledge of usual cameras, and of what printers do to the edge of a dark area: means, 1
+// sigma, and limits.
 struct FormationPriors {
   FormationVector mean, sigma, min, max;
 };
@@ -40,7 +40,7 @@ class FormationProblem : public LeastSquaresProblem<kNumFormationParameters> {
 
   // The part of FormationEstimate::inset_sigma_px that the parameters cause, at their minimum. The
   // residuals of a sample have errors in common (which no parameter describes), so that the scatter
-  // of the samples' gradients tells the covariance (Huber 1967, White 1980), but few samples may
+  // of the samples' gradients gives the covariance (Huber 1967, White 1980), but few samples may
   // agree by chance: it is no smaller than for independent residuals.
   double InsetSigma(const FormationState& state) const;
 

@@ -51,8 +51,8 @@ FormationState MovedTo(const FormationVector& parameters, const FormationState& 
 // Widths of the quiet zones of all samples, cells.
 std::vector<double> QuietZones(const FormationState& state);
 
-// All samples together tell how wide the quiet zone is where each is too small to do so alone: the
-// prior moves to the median until it no longer changes.
+// All samples together determine the width of the quiet zone where each alone is too small to do
+// so: the prior moves to the median until it no longer changes.
 FormationState WithPooledQuietZone(FormationState state, int num_threads);
 
 // Robust standard deviation of the residuals at straight edges and within cells, grey levels;

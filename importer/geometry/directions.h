@@ -8,8 +8,8 @@
 
 namespace velamap {
 
-// In rad, 0 to pi. Exact for small angles, too, unlike the arc cosine. The vectors need no
-// length 1.
+// In rad, 0 to pi. Unlike the arc cosine, exact for small angles, too. The vectors need not have
+// unit length.
 double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 // The 24 rotations of a cube onto itself.

@@ -63,8 +63,8 @@ class GaussNewtonEquations {
 
 struct LeastSquaresOptions {
   int max_iterations = 20;
-  // As a part of the Hessian's diagonal. It is divided by ten after a step that lowers the cost,
-  // multiplied by ten after one that does not, and ends the search beyond the maximum.
+  // As a fraction of the Hessian's diagonal. It is divided by ten after a step that lowers the
+  // cost, multiplied by ten after one that does not, and ends the search beyond the maximum.
   double initial_damping = 1e-4;
   double max_damping = 1e6;
   // A step smaller than this, as the problem measures it, is taken without an evaluation and ends

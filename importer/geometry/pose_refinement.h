@@ -17,7 +17,7 @@ struct RayObservation {
   Eigen::Vector2d ray;
 };
 
-// Residuals are projected less observed rays; a pose with a point behind the camera is rejected.
+// Residuals are projected minus observed rays; a pose with a point behind the camera is rejected.
 template <typename Loss>
 struct RayPoseProblem : LeastSquaresProblem<6> {
   using Parameters = Rigid3;  // cam_from_world

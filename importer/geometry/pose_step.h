@@ -19,7 +19,7 @@ inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& a) {
   return matrix;
 }
 
-// Derivative of the ray of a point by that point.
+// Derivative of the ray of a point with respect to the point.
 inline Eigen::Matrix<double, 2, 3> RayByPoint(const Eigen::Vector3d& x_in_cam) {
   const double inverse = 1 / x_in_cam.z();
   Eigen::Matrix<double, 2, 3> jacobian;
@@ -28,8 +28,9 @@ inline Eigen::Matrix<double, 2, 3> RayByPoint(const Eigen::Vector3d& x_in_cam) {
   return jacobian;
 }
 
-// Chain rule for a rotation: given the derivative of a quantity by the point R x, returns its
-// derivative by a rotation vector applied to R on the left. `rotated` is R x.
+// Chain rule for a rotation: given the derivative of a quantity with respect to the point R x,
+// returns its derivative with respect to a rotation vector applied to R on the left. `rotated` is R
+// x.
 inline Eigen::Matrix<double, 2, 3> ByRotation(const Eigen::Matrix<double, 2, 3>& by_point,
                                               const Eigen::Vector3d& rotated) {
   Eigen::Matrix<double, 2, 3> by_rotation;
@@ -38,8 +39,8 @@ inline Eigen::Matrix<double, 2, 3> ByRotation(const Eigen::Matrix<double, 2, 3>&
   return by_rotation;
 }
 
-// Derivative of R x by the unit quaternion (x y z w) of R, from
-// R x = x + 2 w (v x x) + 2 v x (v x x) with its vector part v.
+// Derivative of R x with respect to the unit quaternion (x y z w) of R, from R x = x + 2 w (v x x)
+// + 2 v x (v x x) with its vector part v.
 inline Eigen::Matrix<double, 3, 4> RotatedFromQuaternion(const Eigen::Quaterniond& q,
                                                          const Eigen::Vector3d& x) {
   const Eigen::Vector3d v = q.vec();

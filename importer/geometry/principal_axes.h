@@ -17,7 +17,7 @@ struct PrincipalAxes {
 
 PrincipalAxes AxesOfScatter(const Eigen::Vector3d& mean, const Eigen::Matrix3d& scatter);
 
-// Needs a point.
+// `points` must not be empty.
 PrincipalAxes ComputePrincipalAxes(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace velamap

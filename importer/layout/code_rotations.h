@@ -20,7 +20,7 @@ inline int Distance(const Rotations& a, const Rotations& b) {
                   std::min(Distance(a[2], b[0]), Distance(a[3], b[0])));
 }
 
-// To its own rotations: a quarter turn forth differs as much as one back.
+// To its own rotations: a quarter turn forwards differs by as much as one backwards.
 inline int DistanceToItself(const Rotations& code) {
   return std::min(Distance(code[0], code[1]), Distance(code[0], code[2]));
 }

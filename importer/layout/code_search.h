@@ -17,7 +17,7 @@ using MarkerCode = std::uint64_t;
 struct CodeSet {
   int bits_per_side = 0;
   std::vector<MarkerCode> codes;  // by marker id
-  int min_distance = 0;           // bits in which two codes differ at least, over all rotations
+  int min_distance = 0;           // the fewest bits in which two codes differ, over all rotations
   int num_symmetric = 0;          // the last ones, which look the same when turned
 };
 

@@ -37,7 +37,7 @@ Dictionary MakeDictionary(const std::string& name, const CodeSet& codes);
 // The text of a dictionary file, which LoadDictionary() and cv::aruco read.
 std::string DictionaryText(const Dictionary& dictionary);
 
-// Draws the marker and its border with one pixel a cell, 8 bit, zero for black. Row 0 runs from
+// Draws the marker and its border with one pixel per cell, 8 bit, zero for black. Row 0 runs from
 // corner 0 to 1 and column 0 from corner 0 to 3.
 cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits);
 

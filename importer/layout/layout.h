@@ -74,7 +74,8 @@ struct Layout {
 // keys, a marker twice on one line or in two parts or with two lengths, a length that is not
 // between 0.1 mm and 10 m, a negative id, an edge that its lines do not allow, a distance of a
 // marker that no part names, of a point from itself, or without a sigma, and a known point that is
-// given twice, of a marker that no part names, or without a coordinate or a sigma.
+// given twice, of a marker that no part names, or without a coordinate or a sigma. Warns of a
+// length of a marker that no part names.
 Layout ReadLayout(const std::string& path);
 
 // The layout of --dictionary and --marker_length: no lines, and every id is accepted.

@@ -1,9 +1,7 @@
 #include "importer/layout/layout_items.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -28,13 +28,13 @@ void CheckMarkersAreNamed(const std::vector<int>& marker_ids, const Layout& layo
 // explained by `meaning`, or is only a check.
 bool TakesPart(const YamlItem& item, const std::string& word, const std::string& meaning);
 
-// The list of measured distances. `layout` has its parts.
+// The list of measured distances. `layout` already has its parts.
 std::vector<KnownDistance> ReadDistances(const YamlItem& list, const Layout& layout);
 
-// The list of points with measured coordinates. `layout` has its parts.
+// The list of points with measured coordinates. `layout` already has its parts.
 std::vector<KnownPoint> ReadKnownPoints(const YamlItem& list, const Layout& layout);
 
-// The frame of the result. `layout` has its parts, its reference part and its known points.
+// The frame of the result. `layout` already has its parts, its reference part and its known points.
 FrameChoice ReadFrame(const YamlItem& item, const Layout& layout);
 
 }  // namespace velamap

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
@@ -134,6 +134,21 @@ std::map<int, double> ReadMarkerLengths(const YamlItem& item) {
   return lengths_m;
 }
 
+// Other markers are left out, whatever their length.
+void WarnOfUnusedLengths(const YamlItem& item, const Layout& layout) {
+  if (!layout.HasMarkers()) return;
+  const std::vector<int> ids = MarkerIds(layout);
+  ForEachKey(item, [&](const std::string& name, const YamlItem& value) {
+    const std::vector<int> range = *ParseIdRange(name);
+    const bool names_one = std::any_of(range.begin(), range.end(), [&](int id) {
+      return std::binary_search(ids.begin(), ids.end(), id);
+    });
+    if (names_one) return;
+    spdlog::warn("{}:{}: {}: no part names marker {}, so its length changes nothing", value.path,
+                 value.node.Mark().line + 1, value.key, name);
+  });
+}
+
 int ReadBorderBits(const YamlItem& item) {
   int border_bits = 0;
   if (!ParseNumber(item.Text(), &border_bits) || border_bits < 1 || border_bits > 8) {
@@ -186,13 +201,12 @@ Layout ReadLayout(const std::string& path) {
   }
   const YamlItem top{path, root, ""};
   Layout layout;
-  std::optional<YamlItem> reference, distances, known_points, frame;
+  std::optional<YamlItem> lengths, reference, distances, known_points, frame;
   ReadMap(
       top,
       {{"dictionary", [&](const YamlItem& v) { layout.dictionary = ReadDictionaryName(v); }},
        {"marker_length", [&](const YamlItem& v) { layout.marker_length_m = ReadMarkerLength(v); }},
-       {"marker_lengths",
-        [&](const YamlItem& v) { layout.marker_lengths_m = ReadMarkerLengths(v); }},
+       {"marker_lengths", [&](const YamlItem& v) { lengths.emplace(v); }},
        {"border_bits", [&](const YamlItem& v) { layout.border_bits = ReadBorderBits(v); }},
        {"parts", [&](const YamlItem& v) { layout.parts = ReadParts(v); }},
        {"reference_part", [&](const YamlItem& v) { reference.emplace(v); }},
@@ -201,6 +215,10 @@ Layout ReadLayout(const std::string& path) {
        {"frame", [&](const YamlItem& v) { frame.emplace(v); }}});
   if (layout.dictionary.empty()) top.Fail("key 'dictionary' is missing, such as DICT_4X4_50");
   if (layout.marker_length_m == 0.0) top.Fail("key 'marker_length' is missing (metres)");
+  if (lengths) {
+    layout.marker_lengths_m = ReadMarkerLengths(*lengths);
+    WarnOfUnusedLengths(*lengths, layout);
+  }
   if (reference) {
     layout.reference_part = ReadString(*reference);
     bool known = false;

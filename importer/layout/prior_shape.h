@@ -11,7 +11,7 @@
 
 namespace velamap {
 
-// Corners 1..4 by marker id, in the shape frame, m. Another scale serves as well.
+// Corners 1..4 by marker id, in the shape frame, m. The scale may be arbitrary.
 using PriorShape = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 
 // How well the detections of frames agree with a prior shape. Frames with too few of its markers to

@@ -43,7 +43,7 @@ void ReadMap(const YamlItem& map, const KeyHandlers& handlers,
 
 void ForEachElement(const YamlItem& list, const std::function<void(const YamlItem&)>& handle);
 
-// Returns a name that stands in files and tables. Throws InputError for one that cannot.
+// Returns a name that is fit for files and tables. Throws InputError for one that is not.
 std::string CheckedName(const std::string& name, const YamlItem& item);
 std::string ReadString(const YamlItem& item);
 bool ReadBool(const YamlItem& item);

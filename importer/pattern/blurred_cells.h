@@ -29,8 +29,8 @@ using LightCells = std::array<std::int32_t, kMaxRingedCells>;
 static_assert(kMaxRingedCells <= 32);
 
 // The weights of the blurred columns (or rows) at a group of places: for each place those of the
-// cells first ... first + count - 1, counted with the rings, and their derivatives by the place and
-// by the blur.
+// cells first ... first + count - 1, counted with the rings, and their derivatives with respect to
+// the place and the blur.
 struct Shares {
   int count = 0;
   Ints first;
@@ -100,7 +100,8 @@ inline bool Reaches(int num_rings, const Shares& shares, int num_cells) {
          shares.largest_first + shares.count > num_cells + 2 * kRing - num_rings;
 }
 
-// Lightness of the blurred pattern and its derivatives by u, v and the two blurs (all in cells).
+// Lightness of the blurred pattern and its derivatives with respect to u, v and the two blurs (all
+// in cells).
 struct Blended {
   Floats value{}, by_u{}, by_v{}, by_blur_u{}, by_blur_v{};
   Floats by_u_v{}, by_uu_vv{};
@@ -108,8 +109,8 @@ struct Blended {
 
 namespace internal {
 
-// The contribution of one row, or of all columns, to a group of places, and its derivatives by the
-// place and by the blur.
+// The contribution of one row, or of all columns, to a group of places, and its derivatives with
+// respect to the place and the blur.
 struct Sums {
   Floats value{}, by_x{}, by_blur{};
 };
@@ -197,8 +198,8 @@ inline Blended BlendGround(const Shares& u, const Shares& v, int num_cells) {
           -a.by_blur * b.by_blur / (u.blur * v.blur)};
 }
 
-// The surroundings of the quiet zone, and the derivatives by its widths: before the first column,
-// after the last column, before the first row, after the last row.
+// The surroundings of the quiet zone, and the derivatives with respect to its widths: before the
+// first column, after the last column, before the first row, after the last row.
 struct Around {
   Blended blended;
   std::array<FloatsArray<1>, 4> by_margin{};

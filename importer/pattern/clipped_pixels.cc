@@ -37,7 +37,7 @@ VELAMAP_CLONE_FOR_AVX2 cv::Mat ModelPatch(const PatternProblem& problem,
   return modelled;
 }
 
-// Cuts the patch of the problem anew, with the model's values for the pixels of its box that are
+// Cuts the patch of the problem again, with the model's values for the pixels of its box that are
 // clipped and that the model has beyond their limit. False for none.
 bool RestoreClippedPixels(const cv::Mat& gray, const ImageFormation& formation,
                           const PatternParameters::Vector& parameters, PatternProblem* problem) {

@@ -93,7 +93,7 @@ class FitEquations {
   double Rms() const { return std::sqrt(squared_residuals() / num_observations_); }
 
   // `inverse` is the inverse of the Hessian; squared_slope(jacobian) is the squared slope of the
-  // grey levels. The leverage is averaged over a part of the observations.
+  // grey levels. The leverage is averaged over some of the observations.
   template <typename SquaredSlope>
   ResidualNoise Noise(const Matrix& inverse, const SquaredSlope& squared_slope) const {
     constexpr std::size_t kStride = 4;

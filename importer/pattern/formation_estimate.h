@@ -23,14 +23,14 @@ struct ImageFormationParameters {
   double sharpening = 0.0;
   double sharpening_radius_px = 1.0;
   double ink_spread_sides = 0.0;
-  // Noise filters, compression and tone curves of other shapes move edges by a part of their blur,
-  // which is the same in all directions of the image. Ink moves them by a length on the paper,
-  // which a slant shortens.
+  // Noise filters, compression and tone curves of other shapes move edges by a fraction of their
+  // blur, which is the same in all directions of the image. Ink moves them by a length on the
+  // paper, which a slant shortens.
   double edge_shift_blurs = 0.0;
   // What lies around a narrow quiet zone, and noise filters that take the zone for noise, move the
-  // outline of the black square beside what they do to the edges within.
+  // outline of the black square, in addition to the shift of all edges.
   double outline_shift_blurs = 0.0;
-  // The images hold 255 less the recorded grey values, so that inverted prints look upright. Light
+  // The images hold 255 minus the recorded grey values, so that inverted prints look upright. Light
   // stays what the camera received: bright cells then have less of it than dark ones.
   bool is_inverted = false;
   // Sharpening of light, before the tone curve, which makes dark halos strong and bright ones weak.
@@ -50,7 +50,7 @@ struct FormationEstimate {
   int num_samples = 0;      // that could be fitted; 0: nothing is known
   double noise_gray = 0.0;  // robust standard deviation of the residuals, grey levels
   // 1 sigma of the error that the uncertainty of the parameters, and what no parameter describes,
-  // cause in all corners alike: each is found so far inside (or outside) of its marker along both
+  // cause in all corners alike: each is found this far inside (or outside) its marker along both
   // sides, px.
   double inset_sigma_px = 0.0;
 };

@@ -9,8 +9,8 @@ namespace {
 
 using P = PatternParameters;
 
-// The part of a blurred place within the rows (or columns) of the black square, and the part within
-// these and the quiet zone.
+// The fraction of a blurred place within the rows (or columns) of the black square, and the
+// fraction within these and the quiet zone.
 struct Within {
   double square = 1.0, quiet_zone = 1.0;
 };

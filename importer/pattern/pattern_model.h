@@ -56,8 +56,8 @@ struct PatternModel {
 
 // Fills in the lightness of the cells: those of the marker are known (zero for black), the
 // surroundings of the quiet zone are read from the image. The quiet zone and the black border blur
-// into the places where it is read; their part is subtracted, by the corners, blurs and grey levels
-// of `parameters`.
+// into the places where it is read; their contribution is subtracted, as computed from the corners,
+// blurs and grey levels of `parameters`.
 void FillLightness(const GrayPatch& patch, const cv::Mat& cells,
                    const PatternParameters::Vector& parameters, PatternModel* model);
 

@@ -19,10 +19,11 @@ namespace velamap {
 // A group of pixels of the model. Single precision is enough for a step.
 struct PatternPixels {
   Floats gray;
-  FloatsArray<PatternParameters::kCount> jacobian;  // by the parameters
+  FloatsArray<PatternParameters::kCount> jacobian;  // with respect to the parameters
 };
 
-// Squared slope of the grey levels, (grey levels / px)^2: the derivatives by all corners together.
+// Squared slope of the grey levels, (grey levels / px)^2: the derivatives with respect to all
+// corners together.
 inline Floats SquaredSlope(const FloatsArray<PatternParameters::kCount>& jacobian) {
   Floats slope_x{}, slope_y{};
   for (std::size_t i = 0; i < 2 * kNumCorners; i += 2) {
@@ -95,7 +96,7 @@ class PatternPicture {
     return is_near;
   }
 
-  // Whether a place is further inside of the black square than half a cell; -1 for yes.
+  // Whether a place is further inside the black square than half a cell; -1 for yes.
   Ints IsAmongInnerCells(Floats x, Floats y) const {
     const Place place = ToSquare(x, y);
     const auto border = static_cast<float>(0.5 / model_.num_cells);
@@ -174,7 +175,7 @@ class PatternPicture {
     Floats u, v, u_by_x, u_by_y, v_by_x, v_by_y;
   };
 
-  // Moves every edge towards the light side by the ink's spread and by a part of its blur, to
+  // Moves every edge towards the light side by the ink's spread and by a fraction of its blur, to
   // second order. `blur_u`, `blur_v`: in cells. The derivatives stay as they are, which is enough
   // for a step.
   void ApplySpread(Floats blur_u, Floats blur_v, Blended* pattern) const {

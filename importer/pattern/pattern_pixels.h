@@ -20,8 +20,8 @@ struct ChosenPixels {
 };
 
 // About `max_pixels` of the pixels that the model covers with these parameters. If there are more,
-// every k-th one of those near an edge, which tell where the corners are, and a few others, which
-// tell the levels. Corners of outlines without weight are left out, and pixels that do not count.
+// every k-th of those near an edge, which determine the corners, and a few others, which determine
+// the levels. Corners of outlines without weight are left out, and pixels that do not count.
 ChosenPixels ChoosePixels(const PatternProblem& problem,
                           const PatternParameters::Vector& parameters, int max_pixels);
 

@@ -123,7 +123,7 @@ bool Start(const QuadCorners& corners_px, const ImageFormationParameters& format
   p[P::kDark] = lights.dark;
   p[P::kLight] = lights.light;
   problem->mean = p;
-  // Smaller cells blur into each other, so that one marker does not tell its margins.
+  // Smaller cells blur into each other, so that one marker does not determine its margins.
   constexpr double kMinCellPx = 2.5;
   constexpr double kUnknownSigma = 0.25, kHeldSigma = 0.02;
   const bool shows_margins = QuadMeanSide(corners_px) >= kMinCellPx * problem->model.num_cells;

@@ -15,7 +15,8 @@
 
 namespace velamap {
 
-// The last fit of a marker uses at most so many pixels and ends at this change of its corners.
+// The last fit of a marker uses at most this many pixels and ends when its corners change by less
+// than this.
 constexpr int kMaxPatternPixels = 1000;
 constexpr double kPatternTolerancePx = 0.005;
 

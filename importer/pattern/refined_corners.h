@@ -24,8 +24,8 @@ struct RefinedCorners {
 class ResidualNoise {
  public:
   ResidualNoise() = default;
-  // Sums over pixels of weight * residual^2 and of weight * (1 - leverage); the leverage is the
-  // part of its own noise that the fit of a pixel follows.
+  // Sums over pixels of weight * residual^2 and of weight * (1 - leverage); the leverage of a pixel
+  // is the fraction of its noise that the fit follows.
   ResidualNoise(double weighted_squares, double weights)
       : weighted_squares_(weighted_squares), weights_(weights) {}
 

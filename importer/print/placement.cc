@@ -71,7 +71,7 @@ int NumMarkersAt(const Sail& sail, double height, int wanted) {
                   1 + static_cast<int>(std::floor(std::max(0.0, room) / sail.pitch_mm + 1e-9)));
 }
 
-// Where the horizontal lines are, as parts of the luff.
+// Where the horizontal lines are, as fractions of the luff.
 struct LineHeights {
   double first = 0.0, step = 0.0;
 };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/Geometry>
 
 #include "importer/base/ids.h"
 
@@ -18,7 +19,7 @@ constexpr double kBorder_mm = 12.0;
 constexpr double kTitle_mm = 5.0, kWords_mm = 3.2, kRow_mm = 5.0;
 constexpr double kCell_mm = 21.0;  // of the table: "123: 12.345"
 
-// The page as a pen that goes down.
+// A page that is filled with lines of text from the top down.
 struct PageWriter {
   Drawing page;
   double y_mm = kBorder_mm;
@@ -43,7 +44,7 @@ struct PageWriter {
   }
 };
 
-// From the surface to a place on the page.
+// Maps the surface (x right, y up, mm) onto the page.
 struct PictureMap {
   double scale = 1.0;
   Eigen::Vector2d origin_mm = Eigen::Vector2d::Zero();
@@ -53,27 +54,22 @@ struct PictureMap {
   }
 };
 
-PictureMap FitInto(const Placement& placement, const Eigen::Vector2d& min_mm,
-                   const Eigen::Vector2d& max_mm) {
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e30), high = -low;
-  const auto take = [&](const Eigen::Vector2d& point, double reach) {
-    low = low.cwiseMin(point - Eigen::Vector2d::Constant(reach));
-    high = high.cwiseMax(point + Eigen::Vector2d::Constant(reach));
-  };
-  for (const Eigen::Vector2d& corner : placement.sail_mm) take(corner, 0);
+PictureMap FitInto(const Eigen::AlignedBox2d& free_mm, const Placement& placement) {
+  Eigen::AlignedBox2d surface_mm;
+  for (const Eigen::Vector2d& corner : placement.sail_mm) surface_mm.extend(corner);
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(0.5 * placement.sticker_mm);
   for (const PlacedLine& line : placement.horizontal) {
     for (const MarkerPlace& marker : line.markers) {
-      take(marker.center_mm, 0.5 * placement.sticker_mm);
+      surface_mm.extend(marker.center_mm - reach).extend(marker.center_mm + reach);
     }
   }
   PictureMap map;
-  map.scale = ((max_mm - min_mm).array() / (high - low).array()).minCoeff();
-  map.origin_mm = 0.5 * (min_mm + max_mm);
-  map.origin_mm -= map.scale * 0.5 * Eigen::Vector2d(low.x() + high.x(), -(low.y() + high.y()));
+  map.scale = (free_mm.sizes().array() / surface_mm.sizes().array()).minCoeff();
+  map.origin_mm = free_mm.center() - map(surface_mm.center());
   return map;
 }
 
-// The least distance between neighbours of the picture, which the size of type depends on.
+// The least distance between neighbouring markers, mm: it limits the size of the type.
 double LeastDistance(const Placement& placement) {
   double least = 1e30;
   const MarkerPlace* first_below = nullptr;
@@ -97,11 +93,8 @@ void DrawSailEdges(const Placement& placement, const PictureMap& map, Drawing* p
   const auto write = [&](const std::string& text, const Eigen::Vector2d& place, TextAnchor anchor) {
     page->texts.push_back({text, place, kWords_mm, anchor, false, kSail});
   };
-  const auto metres = [&](int from, int to) {
-    const auto& corners = placement.sail_mm;
-    return (corners[static_cast<std::size_t>(from)] - corners[static_cast<std::size_t>(to)])
-               .norm() /
-           1000;
+  const auto metres = [&](std::size_t from, std::size_t to) {
+    return (placement.sail_mm[from] - placement.sail_mm[to]).norm() / 1000;
   };
   write("tack", tack + Eigen::Vector2d(0, 4.2), TextAnchor::kMiddle);
   write("clew", clew + Eigen::Vector2d(0, 4.2), TextAnchor::kMiddle);
@@ -119,16 +112,11 @@ double HalfSquare(const Placement& placement, const PictureMap& map) {
   return 0.5 * std::max(1.0, map.scale * placement.length_mm);
 }
 
-std::map<int, Eigen::Vector2d> PlacesOnPage(const Placement& placement, const PictureMap& map) {
-  std::map<int, Eigen::Vector2d> places;
+void DrawLines(const Placement& placement, const PictureMap& map, double type_mm, Drawing* page) {
+  std::map<int, Eigen::Vector2d> places;  // on the page, by marker id
   for (const PlacedLine& line : placement.horizontal) {
     for (const MarkerPlace& marker : line.markers) places[marker.marker_id] = map(marker.center_mm);
   }
-  return places;
-}
-
-void DrawLines(const Placement& placement, const PictureMap& map, double type_mm, Drawing* page) {
-  const std::map<int, Eigen::Vector2d> places = PlacesOnPage(placement, map);
   const double half = HalfSquare(placement, map);
   for (const MarkerLine& line : placement.vertical) {
     Stroke stroke{{}, 0.25, kVertical};
@@ -213,40 +201,39 @@ Drawing DrawPicture(const PlacementPlan& plan, const Paper& paper) {
     const std::vector<std::string> instructions = Instructions(placement);
     const double below_mm = 1.4 * kWords_mm * double(instructions.size()) +
                             double(plan.rigid_parts.size()) * (4.4 * kWords_mm + 2.0) + 18.0;
-    const Eigen::Vector2d min_mm(kBorder_mm + 8.0, pen.y_mm + 9.0);
-    const Eigen::Vector2d max_mm(pen.page.width_mm - kBorder_mm, pen.Bottom() - below_mm);
-    const PictureMap map = FitInto(placement, min_mm, max_mm);
+    const Eigen::AlignedBox2d free_mm(
+        Eigen::Vector2d(kBorder_mm + 8.0, pen.y_mm + 9.0),
+        Eigen::Vector2d(pen.page.width_mm - kBorder_mm, pen.Bottom() - below_mm));
+    const PictureMap map = FitInto(free_mm, placement);
     const double type_mm = std::clamp(0.32 * map.scale * LeastDistance(placement), 0.8, 3.0);
     DrawSailEdges(placement, map, &pen.page);
     DrawLines(placement, map, type_mm, &pen.page);
     DrawMarkers(placement, map, type_mm, &pen.page);
-    pen.y_mm = max_mm.y() + 14.0;
+    pen.y_mm = free_mm.max().y() + 14.0;
     for (const std::string& line : instructions) pen.Write(line, kWords_mm, false);
   }
   for (const LayoutPart& part : plan.rigid_parts) WriteRigidPart(part, &pen);
   return pen.page;
 }
 
-// Lines of words that make up the table of one line of markers.
 struct TableRow {
   std::vector<std::string> cells;
   bool is_heading = false;
 };
 
-std::vector<TableRow> TableOfLine(const PlacedLine& line, bool is_sail, std::size_t num_columns) {
-  std::vector<TableRow> rows;
-  rows.push_back({{is_sail ? fmt::format("{}    luff: {:.3f} m from the tack    leech: {:.3f} m "
-                                         "from the clew    {} markers",
-                                         line.name, line.luff_mm / 1000, line.leech_mm / 1000,
-                                         line.markers.size())
-                           : fmt::format("{}    {} markers", line.name, line.markers.size())},
-                  true});
+void AddTableOfLine(const PlacedLine& line, bool is_sail, std::size_t num_columns,
+                    std::vector<TableRow>* rows) {
+  rows->push_back({{is_sail ? fmt::format("{}    luff: {:.3f} m from the tack    leech: {:.3f} m "
+                                          "from the clew    {} markers",
+                                          line.name, line.luff_mm / 1000, line.leech_mm / 1000,
+                                          line.markers.size())
+                            : fmt::format("{}    {} markers", line.name, line.markers.size())},
+                   true});
   for (std::size_t i = 0; i < line.markers.size(); ++i) {
-    if (i % num_columns == 0) rows.push_back({});
-    rows.back().cells.push_back(
+    if (i % num_columns == 0) rows->push_back({});
+    rows->back().cells.push_back(
         fmt::format("{}: {:.3f}", line.markers[i].marker_id, line.markers[i].along_mm / 1000));
   }
-  return rows;
 }
 
 void WriteRow(const TableRow& row, PageWriter* pen) {
@@ -260,14 +247,6 @@ void WriteRow(const TableRow& row, PageWriter* pen) {
     pen->page.texts.push_back(
         {row.cells[i], {kBorder_mm + 4.0 + kCell_mm * double(i), pen->y_mm}, kWords_mm});
   }
-}
-
-std::vector<TableRow> TableOfVerticalLines(const Placement& placement) {
-  std::vector<TableRow> rows;
-  for (const MarkerLine& line : placement.vertical) {
-    rows.push_back({{fmt::format("{}    {}", line.name, fmt::join(line.marker_ids, " "))}, false});
-  }
-  return rows;
 }
 
 std::vector<Drawing> DrawTable(const Placement& placement, const Paper& paper) {
@@ -285,12 +264,12 @@ std::vector<Drawing> DrawTable(const Placement& placement, const Paper& paper) {
       std::max<std::size_t>(1, static_cast<std::size_t>((pen.Width() - 4.0) / kCell_mm));
   std::vector<TableRow> rows;
   for (const PlacedLine& line : placement.horizontal) {
-    const std::vector<TableRow> more = TableOfLine(line, !placement.sail_mm.empty(), num_columns);
-    rows.insert(rows.end(), more.begin(), more.end());
+    AddTableOfLine(line, !placement.sail_mm.empty(), num_columns, &rows);
   }
   rows.push_back({{"Vertical lines, from below"}, true});
-  const std::vector<TableRow> vertical = TableOfVerticalLines(placement);
-  rows.insert(rows.end(), vertical.begin(), vertical.end());
+  for (const MarkerLine& line : placement.vertical) {
+    rows.push_back({{fmt::format("{}    {}", line.name, fmt::join(line.marker_ids, " "))}});
+  }
   for (const TableRow& row : rows) {
     // A heading does not end a page.
     if (pen.y_mm + (row.is_heading ? 3 : 1) * kRow_mm > pen.Bottom()) {

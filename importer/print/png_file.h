@@ -13,8 +13,8 @@ namespace velamap {
 std::string EncodePng(const cv::Mat& image, std::optional<double> px_per_mm = std::nullopt);
 
 // The bytes of a PNG of the cells (zero is dark, CV_8UC1) with `margin_mm` of white around them, a
-// whole number of pixels a cell and at least `dpi`. Its resolution (pHYs) makes the cells together
-// `length_mm` wide where programs keep to it.
+// whole number of pixels per cell and at least `dpi`. Its resolution (pHYs) makes the cells
+// together `length_mm` wide where programs keep to it.
 std::string MarkerPng(const cv::Mat& cells, double length_mm, double margin_mm, double dpi);
 
 }  // namespace velamap

@@ -62,7 +62,7 @@ void AddMarkers(const std::vector<int>& ids, PrintPlan* plan) {
   }
 }
 
-// Adds a rigid part of markers that follow those of the plan, which motion is measured against.
+// Adds a rigid part as the reference part; its ids follow those of the plan.
 void AddHull(int num_markers, int first_id, PrintPlan* plan) {
   if (num_markers == 0) return;
   const std::vector<int> ids = MarkerIds(plan->layout);

@@ -70,7 +70,7 @@ double DefaultMargin(double length_mm, int num_cells);
 Sticker MakeSticker(const PrintedMarker& marker, int num_cells, const PrintSheetOptions& options);
 
 // Sheets in the order of the markers, as few as possible, upright unless more fit on turned paper;
-// markers of different sizes get sheets of their own. Throws InputError, naming the option, for a
+// markers of different sizes get separate sheets. Throws InputError, naming the option, for a
 // marker that does not fit on the paper.
 std::vector<Sheet> PlanSheets(const std::vector<PrintedMarker>& markers, int num_cells,
                               const PrintSheetOptions& options);

@@ -1,5 +1,5 @@
-// A program in a process group of its own. It ends with this process, however that ends. No shell
-// takes part.
+// A program in its own process group, started without a shell. It ends when this process ends,
+// however that happens.
 
 #pragma once
 
@@ -36,8 +36,8 @@ class ChildProcess {
   // Starts `words`, the program (a name on the PATH, or a path) and its arguments, with the
   // variables `environment` ("NAME=value") only. Its standard input is empty. Throws
   // std::system_error if the system starts no more processes. The program and whatever it starts in
-  // its group are killed when it has ended, when this object goes, and when the thread that has
-  // made it or the whole process ends.
+  // its group are killed when it has ended, when this object is destroyed, and when the thread that
+  // has made it or the whole process ends.
   ChildProcess(std::vector<std::string> words, std::vector<std::string> environment);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;

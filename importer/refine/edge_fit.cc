@@ -1,8 +1,5 @@
 #include "importer/refine/edge_fit.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <Eigen/Cholesky>
 
 #include "importer/detect/gray_levels.h"

@@ -30,8 +30,8 @@ struct EdgeSampleGroup {
   Floats distance_px;  // outwards from the sampled line
   Floats gray;
   Floats cover;
-  Floats inner;  // grey level of the cell beyond the border, less dark
-  Floats outer;  // grey level beyond the quiet zone, less light
+  Floats inner;  // grey level of the cell beyond the border, minus dark
+  Floats outer;  // grey level beyond the quiet zone, minus light
   Floats inner_depth_px;
   Floats outer_depth_px;
 };
@@ -78,7 +78,8 @@ struct EdgeFit {
   EdgeEquations equations;  // near the minimum
 };
 
-// Grey levels of the model at a group of samples, and their derivatives by the parameters.
+// Grey levels of the model at a group of samples, and their derivatives with respect to the
+// parameters.
 Floats EvaluateEdge(const EdgeParameters& parameters, const EdgeSampleGroup& samples,
                     EdgeEquations::Jacobian* jacobian);
 

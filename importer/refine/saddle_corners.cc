@@ -17,8 +17,8 @@ namespace {
 using Quad = QuadCorners;
 
 constexpr double kMinCellPx = 4.0;
-// The touching square is as dark as the marker to within this part of the contrast. A quiet zone
-// into which dark squares around it blur stays lighter.
+// The touching square is as dark as the marker to within this fraction of the contrast. A quiet
+// zone into which dark squares around it blur stays lighter.
 constexpr double kMaxDarkness = 0.35;
 
 // Corner i is at (u, v) of the unit square.

@@ -8,15 +8,15 @@
 
 namespace velamap {
 
-// Whether WithoutFolders() leaves the folders there. Not at the start of the program.
+// Sets whether WithoutFolders() leaves the folders in; at the start of the program it does not.
 void ShowFolders(bool show);
 
-// Names a file or folder that texts may mention. WithoutFolders() recognises the folders above it
-// even where their names hold spaces.
+// Registers a file or folder that texts may mention, so that WithoutFolders() recognises the
+// folders above it even where their names hold spaces.
 void MentionPath(const std::filesystem::path& path);
 
-// The text with the last name only of each absolute path: of one that begins as a mentioned path
-// does, and of each word that begins with a slash.
+// The text with every absolute path cut down to its last name: words that begin with a slash, and
+// paths whose folders are those of a mentioned path.
 std::string WithoutFolders(const std::string& text);
 
 }  // namespace velamap

@@ -8,9 +8,9 @@
 namespace velamap {
 namespace {
 
-// The inflow at which the band along a border is searched, as a part of the width of the picture,
-// and how much wider than the largest marker the band is.
-constexpr double kMinInflowPart = 0.004;
+// The inflow at which the band along a border is searched, as a fraction of the width of the
+// picture, and how much wider than the largest marker the band is.
+constexpr double kMinInflowFraction = 0.004;
 constexpr double kBandPerMarker = 1.3;
 
 }  // namespace
@@ -22,7 +22,7 @@ BorderInflow AddInflow(const std::vector<PointMotion>& motions, const cv::Size& 
   inflow_px[1] += LocalMotion(motions, {0.5 * w, 0.0}).y();
   inflow_px[2] -= LocalMotion(motions, {w, 0.5 * h}).x();
   inflow_px[3] -= LocalMotion(motions, {0.5 * w, h}).y();
-  // Limited, because other things may come in when the picture returns from a long motion outwards.
+  // Limited below: when the picture returns from a long motion outwards, what comes in may be new.
   for (double& inflow : inflow_px) inflow = std::max(inflow, -0.02 * size.width);
   return inflow_px;
 }
@@ -32,7 +32,7 @@ std::vector<cv::Rect> BorderRegions(double marker_px, const cv::Size& size,
   std::vector<cv::Rect> regions;
   for (std::size_t side = 0; side < inflow_px->size(); ++side) {
     double& inflow = (*inflow_px)[side];
-    if (inflow < kMinInflowPart * size.width) continue;
+    if (inflow < kMinInflowFraction * size.width) continue;
     const int depth_px = static_cast<int>(kBandPerMarker * marker_px + inflow) + kSearchReachPx + 4;
     cv::Rect band(0, 0, size.width, size.height);
     (side % 2 == 0 ? band.width : band.height) = depth_px;

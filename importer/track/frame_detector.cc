@@ -32,7 +32,7 @@ std::string PriorShapeText(const PriorShape& prior_shape) {
   return text;
 }
 
-// The layout's ids must be those of markers that the dictionary has.
+// The dictionary must have all ids of the layout.
 void CheckLayoutIds(const Layout& layout, const Dictionary& dictionary) {
   std::vector<int> ids = MarkerIds(layout);
   for (const auto& [id, length_m] : layout.marker_lengths_m) ids.push_back(id);
@@ -55,6 +55,10 @@ void WarnOfSymmetries(const FrameDetector& detector) {
   spdlog::warn(
       "{}: markers {} look the same when turned: their corners are numbered by their neighbours",
       detector.dictionary.name, fmt::join(ids, " "));
+}
+
+std::string DescribeCodes(const std::string& dictionary_name, int border_bits) {
+  return fmt::format("dictionary={} border_bits={}", dictionary_name, border_bits);
 }
 
 // A checksum of what dictionary and layout tell an import. Only a tracked search uses the lines.
@@ -128,9 +132,9 @@ std::string DescribeDetector(const FrameDetector& detector) {
     search += " formation=estimated";
   }
   return fmt::format(
-      "dictionary={} border_bits={} corner_refinement={} min_marker_perimeter_rate={} "
-      "error_correction_rate={} inverted={} {}{}",
-      detector.dictionary.name, detector.border_bits,
+      "{} corner_refinement={} min_marker_perimeter_rate={} error_correction_rate={} inverted={} "
+      "{}{}",
+      DescribeCodes(detector.dictionary.name, detector.border_bits),
       CornerRefinementName(detector.options.corner_refinement),
       detector.options.min_marker_perimeter_rate, detector.options.error_correction_rate,
       detector.options.inverted ? 1 : 0, DescribeLayout(detector, detector.options.search), search);
@@ -141,6 +145,21 @@ bool IsOfLayout(const std::string& description, const FrameDetector& detector) {
     if (description.find(DescribeLayout(detector, search)) != std::string::npos) return true;
   }
   return false;
+}
+
+void CheckDictionaryOf(const std::string& description, const Layout& layout,
+                       const std::string& database_path) {
+  if (layout.dictionary.empty() || description.rfind("dictionary=", 0) != 0) return;
+  const std::string of_layout =
+      DescribeCodes(LoadDictionary(layout.dictionary).name, layout.border_bits);
+  const std::size_t end = description.find(' ', description.find(" border_bits=") + 1);
+  const std::string of_database = description.substr(0, end);
+  if (of_database == of_layout) return;
+  throw InputError(
+      fmt::format("--layout_path: the layout has {}, but {} holds markers of {}; give the layout "
+                  "of the import, "
+                  "or import anew",
+                  of_layout, database_path, of_database));
 }
 
 std::vector<MarkerQuad> SearchInFrame(const FrameDetector& detector, const cv::Mat& gray) {

@@ -83,6 +83,12 @@ std::string DescribeDetector(const FrameDetector& detector);
 // `detector`, whatever its options.
 bool IsOfLayout(const std::string& description, const FrameDetector& detector);
 
+// Throws InputError, naming both, if `description` is of another dictionary or border than the
+// layout's. Nothing happens for a layout without a dictionary and for descriptions of other kinds.
+// `database_path` is where the description stands.
+void CheckDictionaryOf(const std::string& description, const Layout& layout,
+                       const std::string& database_path);
+
 // The steps after the search. `gray` is the frame in grey, `quads` are the markers found in it.
 // Thread-safe.
 FrameDetections DetectInFrame(const FrameDetector& detector, const Frame& frame,

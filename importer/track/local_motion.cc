@@ -12,9 +12,8 @@ constexpr double kSmallSpreadPx = 50.0;
 
 }  // namespace
 
-// With q = from - mean(from) and d the displacement less its mean, the similarity's linear part
-// (s -r; r s) minimizes sum |d - (s q + r J q)|^2 + spread^2 (s^2 + r^2), where J is a quarter
-// turn.
+// With q = from - mean(from) and d the displacement minus its mean, the similarity's linear part (s
+// -r; r s) minimizes sum |d - (s q + r J q)|^2 + spread^2 (s^2 + r^2), where J is a quarter turn.
 Eigen::Vector2d LocalMotion(const std::vector<PointMotion>& motions,
                             const Eigen::Vector2d& point_px) {
   if (motions.empty()) return Eigen::Vector2d::Zero();

@@ -15,7 +15,7 @@ struct PointMotion {
 };
 
 // Displacement (px) of `point_px` by a similarity fitted to the nearest of `motions`. Rotation and
-// change of scale are regularized where these stand close together. Zero without motions.
+// change of scale are regularized where the motions lie close together. Zero without motions.
 Eigen::Vector2d LocalMotion(const std::vector<PointMotion>& motions,
                             const Eigen::Vector2d& point_px);
 

@@ -11,12 +11,13 @@
 namespace velamap {
 namespace {
 
-// If the regions fill a larger part of the picture than this, the whole frame is searched instead.
-constexpr double kMaxSearchedPart = 0.6;
+// If the regions fill a larger fraction of the picture than this, the whole frame is searched
+// instead.
+constexpr double kMaxSearchedFraction = 0.6;
 
-// Finding fewer than this part of the expected markers means a jerk or a cut. Small markers are
+// Finding fewer than this fraction of the expected markers means a jerk or a cut. Small markers are
 // found in some frames only, so each counts by its hit rate.
-constexpr double kMinFoundPart = 0.5;
+constexpr double kMinFoundFraction = 0.5;
 
 // Adds the marker if it is located at its place; false if not.
 bool AddLocated(const FrameSearch& search, int marker_id, const QuadCorners& expected,
@@ -40,7 +41,7 @@ void LocateOrAddRegion(const FrameSearch& search, int marker_id, const TrackPred
 bool SearchRegions(const FrameSearch& search, std::vector<cv::Rect> regions,
                    std::vector<MarkerQuad>* quads) {
   regions = MergeRegions(std::move(regions));
-  if (AreaOf(regions) > kMaxSearchedPart * search.image_size.area()) return false;
+  if (AreaOf(regions) > kMaxSearchedFraction * search.image_size.area()) return false;
   if (!regions.empty()) {
     const std::vector<MarkerQuad> found = search.search_regions(regions);
     quads->insert(quads->end(), found.begin(), found.end());
@@ -105,7 +106,7 @@ bool HasLostTrack(const std::vector<MarkerTrack>& tracks, const std::vector<int>
     num_expected += tracks[t].hit_rate;
     num_found += is_found;
   }
-  return num_found < kMinFoundPart * num_expected;
+  return num_found < kMinFoundFraction * num_expected;
 }
 
 // Both passes; nothing where the whole frame has to be searched.

@@ -32,7 +32,7 @@ std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, c
 
 // Expects every marker of the prior shape that faces the camera and whose id is not found. Its
 // place is its reprojection, shifted by the departures of the found markers around it. Leaves out
-// markers that lie farther outside of the image than their reach.
+// markers that lie farther outside the image than their reach.
 std::vector<ExpectedMarker> ExpectByPriorShape(const PriorShape& prior_shape, const Camera& camera,
                                                const PriorShapeView& view,
                                                const std::vector<MarkerQuad>& found);

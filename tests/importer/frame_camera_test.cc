@@ -1,6 +1,5 @@
 #include "importer/frame_camera.h"
 
-#include <cmath>
 #include <fstream>
 
 #include <gtest/gtest.h>

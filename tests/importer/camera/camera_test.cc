@@ -4,6 +4,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 
 #include "importer/camera/camera_jacobian.h"

@@ -1,16 +1,12 @@
 #include "importer/database/colmap_database.h"
 
 #include <filesystem>
-#include <iterator>
 #include <map>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 
-#include "importer/base/error.h"
-#include "tests/importer/marker_builders.h"
-#include "tests/support/error_matchers.h"
-#include "tests/support/temp_dir.h"
+#include "tests/importer/database/database_builders.h"
 
 namespace velamap {
 namespace {
@@ -18,37 +14,27 @@ namespace {
 namespace fs = std::filesystem;
 using Mode = ColmapDatabase::Mode;
 
-const Camera kCamera{CameraModel::kOpenCV, 1920, 1080, {1400.1, 1410, 960, 540, .1, .2, .3, .4}};
-
-FrameDetections SomeDetections(const std::string& name) {
-  FrameDetections detections;
-  detections.image_name = name;
-  detections.markers = {SquareMarker(2, 100.123456789, 50), SquareMarker(79, 300, 1.0 / 3.0)};
-  detections.markers[0].part = "sail";
-  detections.markers[0].colors[3] = {1, 20, 255};
-  detections.markers[0].corner_sigma_px = {0.01, 0.02, 1.0 / 30, 0.04};
-  detections.markers[1].is_fallback = true;
-  detections.rejected = {{SquareMarker(5, 700, 700), "not in layout"}};
-  return detections;
-}
-
-int NumFiles(const TempDir& dir) {
-  return static_cast<int>(std::distance(fs::directory_iterator(dir.path()), {}));
-}
-
 template <typename T>
 std::vector<T> Blob(const SQLite::Column& column) {
   const T* begin = static_cast<const T*>(column.getBlob());
   return {begin, begin + static_cast<std::size_t>(column.getBytes()) / sizeof(T)};
 }
 
-void ExpectEqual(const MarkerDetection& a, const MarkerDetection& b) {
-  EXPECT_EQ(a.marker_id, b.marker_id);
-  EXPECT_EQ(a.corners_in_image_px, b.corners_in_image_px);
-  EXPECT_EQ(a.colors, b.colors);
-  EXPECT_EQ(a.part, b.part);
-  EXPECT_EQ(a.corner_sigma_px, b.corner_sigma_px);
-  EXPECT_EQ(a.is_fallback, b.is_fallback);
+// SQLite would take these names for a database in memory and for an address.
+TEST(ColmapDatabase, AnyNameIsThatOfAFile) {
+  const TempDir dir;
+  const fs::path before = fs::current_path();
+  fs::current_path(dir.path());
+  for (const char* name : {":memory:", "file:a.db?mode=memory", "file::memory:"}) {
+    {
+      ColmapDatabase database(name, Mode::kReadWriteCreate);
+      database.AddCamera(kDatabaseCamera, true);
+    }
+    EXPECT_TRUE(fs::is_regular_file(dir / name)) << name;
+    EXPECT_EQ(ColmapDatabase(name, Mode::kReadOnly).ReadCameras().size(), 1u) << name;
+  }
+  EXPECT_EQ(NumFiles(dir), 3);
+  fs::current_path(before);
 }
 
 TEST(ColmapDatabase, RoundTrip) {
@@ -63,15 +49,15 @@ TEST(ColmapDatabase, RoundTrip) {
   {
     ColmapDatabase database(path, Mode::kReadWriteCreate);
     EXPECT_FALSE(database.ReadDetector());
-    const CameraId camera_id = database.AddCamera(kCamera);
-    EXPECT_EQ(database.AddCamera(kCamera), camera_id);
+    const CameraId camera_id = database.AddCamera(kDatabaseCamera);
+    EXPECT_EQ(database.AddCamera(kDatabaseCamera), camera_id);
     EXPECT_EQ(database.AddImage(camera_id, video_frame, "how"), 1u);
     EXPECT_EQ(database.AddImage(camera_id, photograph, "how"), 2u);
     EXPECT_EQ(database.AddImage(camera_id, nothing, "how"), 3u);
   }
   EXPECT_EQ(NumFiles(dir), 1) << "a journal was left behind";
   const ColmapDatabase database(path, Mode::kReadOnly);
-  EXPECT_EQ(database.ReadCameras(), (std::map<CameraId, Camera>{{1, kCamera}}));
+  EXPECT_EQ(database.ReadCameras(), (std::map<CameraId, Camera>{{1, kDatabaseCamera}}));
   EXPECT_EQ(database.ReadDetector(), "how");
   EXPECT_EQ(database.ReadImageIdsByName().at("sub/photo.jpg"), 2u);
   const std::vector<DatabaseImage> images = database.ReadImages();
@@ -98,7 +84,7 @@ TEST(ColmapDatabase, IsWhatSqliteAndColmapExpect) {
   const std::string path = dir / "database.db";
   {
     ColmapDatabase database(path, Mode::kReadWriteCreate);
-    const CameraId camera_id = database.AddCamera(kCamera);
+    const CameraId camera_id = database.AddCamera(kDatabaseCamera);
     database.AddImage(camera_id, SomeDetections("a.jpg"), "how");
     database.AddImage(camera_id, SomeDetections("b.jpg"), "how");
     database.WriteMatches(2, 1, {{0, 4}, {1, 5}});
@@ -131,44 +117,6 @@ TEST(ColmapDatabase, IsWhatSqliteAndColmapExpect) {
             4);
 }
 
-// What earlier versions of velamap wrote: no columns for sigmas and fallbacks, and the detector in
-// every row.
-void MakeOlder(const std::string& path) {
-  SQLite::Database sqlite(path, SQLite::OPEN_READWRITE);
-  sqlite.exec("ALTER TABLE marker_detections ADD COLUMN detector TEXT NOT NULL DEFAULT 'how'");
-  sqlite.exec("DROP TABLE marker_detector");
-  sqlite.exec("ALTER TABLE marker_detections DROP COLUMN corner_sigmas");
-  sqlite.exec("ALTER TABLE marker_detections DROP COLUMN is_fallback");
-}
-
-TEST(ColmapDatabase, OlderDetectionsAreReadAndAddedTo) {
-  const TempDir dir;
-  const std::string path = dir / "database.db";
-  {
-    ColmapDatabase database(path, Mode::kReadWriteCreate);
-    database.AddImage(database.AddCamera(kCamera), SomeDetections("a.jpg"), "how");
-  }
-  MakeOlder(path);
-  MarkerDetection unknown = SomeDetections("a.jpg").markers[0];
-  unknown.corner_sigma_px = {};
-  {
-    const ColmapDatabase database(path, Mode::kReadOnly);
-    EXPECT_EQ(database.ReadDetector(), "how");
-    ExpectEqual(database.ReadImages().at(0).detections.markers.at(0), unknown);
-    EXPECT_FALSE(database.ReadImages().at(0).detections.markers.at(1).is_fallback);
-  }
-  {
-    ColmapDatabase database(path, Mode::kReadWriteCreate);
-    database.AddImage(1, SomeDetections("b.jpg"), "how");
-  }
-  EXPECT_EQ(ColmapDatabase(path, Mode::kReadOnly).ReadDetector(), "how");
-  const std::vector<DatabaseImage> images = ColmapDatabase(path, Mode::kReadOnly).ReadImages();
-  ASSERT_EQ(images.size(), 2u);
-  ExpectEqual(images[0].detections.markers.at(0), unknown);
-  ExpectEqual(images[1].detections.markers.at(0), SomeDetections("b.jpg").markers[0]);
-  ExpectEqual(images[1].detections.markers.at(1), SomeDetections("b.jpg").markers[1]);
-}
-
 // A video of a hundred frames with fifty markers: SQLite takes a third, and no text is repeated.
 TEST(ColmapDatabase, TakesLittleMoreThanItsNumbers) {
   const TempDir dir;
@@ -183,7 +131,7 @@ TEST(ColmapDatabase, TakesLittleMoreThanItsNumbers) {
   {
     ColmapDatabase database(path, Mode::kReadWriteCreate);
     ColmapDatabase::Transaction transaction(&database);
-    const CameraId camera_id = database.AddCamera(kCamera);
+    const CameraId camera_id = database.AddCamera(kDatabaseCamera);
     for (int i = 0; i < kNumImages; ++i) {
       detections.image_name = std::to_string(i);
       database.AddImage(camera_id, detections, detector);
@@ -204,7 +152,7 @@ TEST(ColmapDatabase, UnknownSigmasAreNull) {
   const std::string path = dir / "database.db";
   {
     ColmapDatabase database(path, Mode::kReadWriteCreate);
-    database.AddImage(database.AddCamera(kCamera), SomeDetections("a.jpg"), "how");
+    database.AddImage(database.AddCamera(kDatabaseCamera), SomeDetections("a.jpg"), "how");
   }
   SQLite::Database sqlite(path);
   SQLite::Statement query(sqlite,
@@ -226,7 +174,7 @@ TEST(ColmapDatabase, ReplacedDetectionsTakeTheMatchesOfTheirImageAlong) {
   more.rejected.clear();
   {
     ColmapDatabase database(path, Mode::kReadWriteCreate);
-    const CameraId camera_id = database.AddCamera(kCamera);
+    const CameraId camera_id = database.AddCamera(kDatabaseCamera);
     for (const char* name : {"a.jpg", "b.jpg", "c.jpg"}) {
       database.AddImage(camera_id, SomeDetections(name), "how");
     }
@@ -283,7 +231,7 @@ TEST(ColmapDatabase, RollbackLeavesNothing) {
   const TempDir dir;
   const std::string path = dir / "database.db";
   ColmapDatabase database(path, Mode::kReadWriteCreate);
-  const CameraId camera_id = database.AddCamera(kCamera);
+  const CameraId camera_id = database.AddCamera(kDatabaseCamera);
   {
     const ColmapDatabase::Transaction transaction(&database);
     database.AddImage(camera_id, SomeDetections("a.jpg"), "how");
@@ -296,81 +244,6 @@ TEST(ColmapDatabase, RollbackLeavesNothing) {
     transaction.Commit();
   }
   EXPECT_EQ(database.ReadImages().size(), 1u);
-}
-
-TEST(ColmapDatabase, WithoutDetectionsOfVelamapThereIsNothingToRead) {
-  const TempDir dir;
-  const std::string path = dir / "database.db";
-  { ColmapDatabase database(path, Mode::kReadWriteCreate); }
-  SQLite::Database(path, SQLite::OPEN_READWRITE).exec("DROP TABLE marker_detections");
-  const ColmapDatabase database(path, Mode::kReadOnly);
-  ExpectThrows<InputError>([&] { database.ReadImages(); },
-                           {path, "no marker detections", "marker_importer"});
-}
-
-TEST(ColmapDatabase, LockedDatabaseIsNamed) {
-  const TempDir dir;
-  const std::string path = dir / "database.db";
-  { ColmapDatabase database(path, Mode::kReadWriteCreate); }
-  SQLite::Database other(path, SQLite::OPEN_READWRITE);
-  other.exec("BEGIN EXCLUSIVE");
-  ExpectThrows<InputError>([&] { ColmapDatabase(path, Mode::kReadWriteCreate, 20); },
-                           {path, "locked by another program"});
-}
-
-TEST(ColmapDatabase, ReadsAWriteAheadDatabaseAndLeavesNoExtraFiles) {
-  // COLMAP leaves its databases in this mode.
-  const TempDir dir;
-  const std::string path = dir / "database.db";
-  {
-    ColmapDatabase database(path, Mode::kReadWriteCreate);
-    database.AddImage(database.AddCamera(kCamera), SomeDetections("a.jpg"), "how");
-  }
-  {
-    SQLite::Database sqlite(path, SQLite::OPEN_READWRITE);
-    EXPECT_EQ(sqlite.execAndGet("PRAGMA journal_mode=WAL").getString(), "wal");
-  }
-  { EXPECT_EQ(ColmapDatabase(path, Mode::kReadOnly).ReadImages().size(), 1u); }
-  EXPECT_EQ(NumFiles(dir), 1);
-  {
-    ColmapDatabase database(path, Mode::kReadWriteCreate);
-    database.AddImage(database.AddCamera(kCamera), SomeDetections("b.jpg"), "how");
-  }
-  EXPECT_EQ(NumFiles(dir), 1);
-}
-
-// The tables and columns that COLMAP 3.12 and 4.x add to a database that they open. Without a row
-// in `frames` COLMAP makes each image a frame of its own, so none may come from us.
-TEST(ColmapDatabase, AddsToADatabaseThatALaterColmapHasOpened) {
-  const TempDir dir;
-  const std::string path = dir / "database.db";
-  {
-    ColmapDatabase database(path, Mode::kReadWriteCreate);
-    database.AddImage(database.AddCamera(kCamera), SomeDetections("a.jpg"), "how");
-  }
-  SQLite::Database(path, SQLite::OPEN_READWRITE)
-      .exec(
-          "CREATE TABLE rigs(rig_id INTEGER PRIMARY KEY, ref_sensor_id INTEGER NOT NULL,"
-          " ref_sensor_type INTEGER NOT NULL);"
-          "CREATE TABLE frames(frame_id INTEGER PRIMARY KEY, rig_id INTEGER NOT NULL);"
-          "CREATE TABLE frame_data(frame_id INTEGER NOT NULL, data_id INTEGER NOT NULL,"
-          " sensor_id INTEGER NOT NULL, sensor_type INTEGER NOT NULL);"
-          "ALTER TABLE descriptors ADD COLUMN type INTEGER NOT NULL DEFAULT 0;"
-          "ALTER TABLE two_view_geometries ADD COLUMN camera1 BLOB;"
-          "PRAGMA user_version = 4020000");
-  {
-    ColmapDatabase database(path, Mode::kReadWriteCreate);
-    database.AddImage(database.AddCamera(kCamera), SomeDetections("b.jpg"), "how");
-    database.WriteMatches(1, 2, {{0, 0}});
-    EXPECT_EQ(database.ReadImages().size(), 2u);
-  }
-  SQLite::Database sqlite(path);
-  for (const char* table : {"images", "keypoints", "descriptors"}) {
-    EXPECT_EQ(sqlite.execAndGet(std::string("SELECT count(*) FROM ") + table).getInt(), 2) << table;
-  }
-  for (const char* table : {"rigs", "frames", "frame_data"}) {
-    EXPECT_EQ(sqlite.execAndGet(std::string("SELECT count(*) FROM ") + table).getInt(), 0) << table;
-  }
 }
 
 }  // namespace

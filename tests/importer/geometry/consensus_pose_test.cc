@@ -1,7 +1,5 @@
 #include "importer/geometry/consensus_pose.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include "importer/geometry/units.h"

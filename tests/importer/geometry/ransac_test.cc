@@ -1,7 +1,6 @@
 #include "importer/geometry/ransac.h"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 

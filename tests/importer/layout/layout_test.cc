@@ -1,6 +1,5 @@
 #include "importer/layout/layout.h"
 
-#include <cmath>
 #include <fstream>
 
 #include <gmock/gmock.h>

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "importer/base/error.h"
+#include "tests/support/error_matchers.h"
+
 namespace velamap {
 namespace {
 
@@ -39,6 +42,23 @@ TEST(MakeFrameDetector, KeepsMarkersOfThePriorShapeThatCanBeDetected) {
   const FrameDetector detector = MakeFrameDetector(layout, {}, prior);
   EXPECT_EQ(detector.prior_shape.size(), 2u);
   EXPECT_EQ(detector.prior_shape.count(2), 0u);
+}
+
+TEST(CheckDictionaryOf, OtherDictionariesAndBordersAreRefused) {
+  Layout layout = MakeLayout("DICT_4X4_50", 0.1);
+  const std::string description = DescribeDetector(MakeFrameDetector(layout, {}));
+  const auto check = [&] { CheckDictionaryOf(description, layout, "a.db"); };
+  EXPECT_NO_THROW(check());
+  layout.dictionary = "4x4_50";
+  EXPECT_NO_THROW(check());
+  layout.dictionary = "";
+  EXPECT_NO_THROW(check());
+  layout.dictionary = "DICT_4X4_100";
+  ExpectThrows<InputError>(check, {"a.db", "DICT_4X4_100", "DICT_4X4_50 "});
+  EXPECT_NO_THROW(CheckDictionaryOf("a chessboard of 9 x 6", layout, "a.db"));
+  layout.dictionary = "DICT_4X4_50";
+  layout.border_bits = 2;
+  ExpectThrows<InputError>(check, {"border_bits=2", "border_bits=1"});
 }
 
 TEST(DescribeDetector, NamesThePriorShape) {
