@@ -61,14 +61,55 @@ std::string HelpHint(const CommandSyntax& syntax) {
 }
 
 // `dashes` stand before the names of options where the unknown one stands.
-std::string DidYouMean(const OptionsByName& options, const std::string& unknown_name,
-                       const std::string& dashes) {
+std::string DidYouMean(const std::string& unknown_name, const std::vector<std::string>& names,
+                       const std::string& dashes = "") {
+  const std::string nearest = NearestName(unknown_name, names);
+  return nearest.empty() ? "" : fmt::format("did you mean {}{}? ", dashes, nearest);
+}
+
+std::string DidYouMeanOption(const OptionsByName& options, const std::string& unknown_name) {
   std::vector<std::string> names = {"help", "help_all"};
   for (const auto& [name, option] : options) names.push_back(option.name);
   // --help=1 is no misspelling of another option.
   if (std::find(names.begin(), names.end(), unknown_name) != names.end()) return "";
-  const std::string nearest = NearestName(unknown_name, names);
-  return nearest.empty() ? "" : fmt::format("did you mean {}{}? ", dashes, nearest);
+  return DidYouMean(unknown_name, names, "--");
+}
+
+// Empty for a name without a section.
+std::string SectionOf(const std::string& name) {
+  const std::size_t dot = name.find('.');
+  return dot == std::string::npos ? "" : name.substr(0, dot);
+}
+
+// What is wrong with a key that neither this command nor another one has.
+std::string DescribeUnknownKey(const OptionsByName& options, std::set<std::string> known_names,
+                               const std::string& name) {
+  for (const auto& [known_name, option] : options) known_names.insert(known_name);
+  std::set<std::string> sections;
+  for (const std::string& known_name : known_names) sections.insert(SectionOf(known_name));
+  const std::string section = SectionOf(name);
+  if (sections.count(section) > 0) {
+    return fmt::format("unknown key {}; {}", name,
+                       DidYouMean(name, {known_names.begin(), known_names.end()}));
+  }
+  sections.erase("");
+  return fmt::format("unknown section [{}] of the key {}; {}", section, name,
+                     DidYouMean(section, {sections.begin(), sections.end()}));
+}
+
+// Throws InputError for an option without its value, after which the parser takes the next word.
+void CheckTypedValue(const CommandSyntax& syntax, const Option& option, const std::string& given_as,
+                     const po::option& given) {
+  const std::string& value = given.value.front();
+  const bool is_next_word = given.original_tokens.size() > 1;
+  if (is_next_word && value.rfind("--", 0) == 0) {
+    throw InputError(fmt::format("{}: needs a value, and {} looks like the next option; {}",
+                                 given_as, value, HelpHint(syntax)));
+  }
+  if (value.empty() && option.path_use != PathUse::kNone) {
+    throw InputError(fmt::format(
+        "{}: needs a value and has an empty one; give a path, or leave it out", given_as));
+  }
 }
 
 void AddGiven(const Option& option, const std::string& name, const GivenValue& given,
@@ -108,8 +149,9 @@ GivenValues ReadCommandLine(const CommandSyntax& syntax, const OptionsByName& op
       const std::string& name = given.string_key;
       if (given.unregistered) {
         throw InputError(fmt::format("--{}: unknown option; {}{}", name,
-                                     DidYouMean(options, name, "--"), HelpHint(syntax)));
+                                     DidYouMeanOption(options, name), HelpHint(syntax)));
       }
+      CheckTypedValue(syntax, options.at(name), "--" + name, given);
       AddGiven(options.at(name), name, {given.value.front(), "--" + name}, &values);
     }
   } catch (const po::error& error) {
@@ -138,8 +180,8 @@ GivenValues ReadProjectFile(const CommandSyntax& syntax, const OptionsByName& op
             fmt::format("{}: {}: a project file names no other; remove it", path, name));
       }
       if (given.unregistered) {
-        throw InputError(fmt::format("{}: unknown key {}; {}{}", path, name,
-                                     DidYouMean(options, name, ""), HelpHint(syntax)));
+        throw InputError(fmt::format(
+            "{}: {}{}", path, DescribeUnknownKey(options, known_names, name), HelpHint(syntax)));
       }
       AddGiven(options.at(name), name, {given.value.front(), path + ": " + name}, &values);
     }
@@ -209,9 +251,12 @@ void AddPreset(const CommandSyntax& syntax, const OptionsByName& options, GivenV
 }  // namespace
 
 OptionGroup ProjectGroup(std::string* project_path) {
-  return {"Project file",
-          {Common(PathOption(kProjectPath, PathUse::kReadsFile, project_path,
-                             "ini file with the same options; the command line wins over it"))}};
+  return {
+      "Project file",
+      {Common(PathOption(kProjectPath, PathUse::kReadsFile, project_path,
+                         "ini file with the same options, of this and other commands; the command "
+                         "line wins over it, and only what is typed there is refused where it "
+                         "changes nothing"))}};
 }
 
 std::set<std::string> OptionNames(const CommandSyntax& syntax) {
@@ -228,6 +273,9 @@ bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& a
   groups.push_back(ProjectGroup(&project_path));
   const OptionsByName options = IndexByName(groups);
   GivenValues values = ReadCommandLine(syntax, options, arguments);
+  if (syntax.typed != nullptr) {
+    for (const auto& [name, value] : values) syntax.typed->insert(name);
+  }
   if (const auto project = values.find(kProjectPath); project != values.end()) {
     CheckInputKind(project->second.given_as, project->second.text);
     GivenValues from_file = ReadProjectFile(syntax, options, project->second.text, known_names);

@@ -15,12 +15,17 @@
 
 namespace velamap {
 
+// The options that were typed on the command line, by their first names without dashes: explicit
+// wishes, where those of a project file may be meant for another command.
+using TypedNames = std::set<std::string>;
+
 struct CommandSyntax {
   std::string name;
   std::string description;  // one line
   std::string example;      // arguments of a typical call
   std::vector<OptionGroup> groups;
   Preset* preset = nullptr;  // of a command with PresetOption()
+  TypedNames* typed = nullptr;
 };
 
 // --project_path, which every command has beside its own options.
@@ -31,12 +36,12 @@ std::set<std::string> OptionNames(const CommandSyntax& syntax);
 
 // Sets the options that `arguments`, which follow the command's name, and their project file give.
 // The file may hold `known_names`, the options of all commands, so that one file serves them all.
-// What neither gives comes from the preset, whose effect is then known.
+// What neither gives comes from the preset, whose effect is then known. Fills `syntax.typed`.
 // Returns false, having set nothing, when help is asked for (help_text.h). Throws InputError:
 // an option that is unknown (names the nearest), given twice or by two of its names, without a
-// value, with one of another type or beyond its range, or required and missing; a project file that
-// is missing or malformed, or holds an unknown key; an output that is one of the inputs
-// (path_check.h).
+// value, as a path with an empty one, with one of another type or beyond its range, or required and
+// missing; a project file that is missing or malformed, or holds an unknown key; an output that is
+// one of the inputs (path_check.h).
 bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& arguments,
                   const std::set<std::string>& known_names);
 

@@ -1,7 +1,6 @@
 #include "workflows/options/path_check.h"
 
 #include <filesystem>
-#include <set>
 #include <sstream>
 #include <string>
 #include <variant>
@@ -57,7 +56,8 @@ void AddShape(const std::string& used_by, const fs::path& path, UsedPaths* paths
   AddModelFiles(used_by, AbsoluteFolder(path).parent_path() / "sparse" / "0", paths);
 }
 
-void AddUse(PathUse use, const std::string& used_by, const std::string& path, UsedPaths* paths) {
+void AddUse(PathUse use, const std::string& used_by, const std::string& path, bool is_default_name,
+            UsedPaths* paths) {
   switch (use) {
     case PathUse::kNone:
       return;
@@ -73,7 +73,7 @@ void AddUse(PathUse use, const std::string& used_by, const std::string& path, Us
     case PathUse::kReadsShape:
       return AddShape(used_by, path, paths);
     case PathUse::kWritesFile:
-      return paths->outputs.push_back({used_by, path});
+      return paths->outputs.push_back({used_by, path, false, is_default_name});
     case PathUse::kWritesFolder:
       return paths->outputs.push_back({used_by, path, true});
     case PathUse::kAddsToFolder:
@@ -133,12 +133,15 @@ void CompletePaths(const std::vector<OptionGroup>& groups) {
       const auto* target = std::get_if<std::string*>(&option.target);
       if (target == nullptr) continue;
       std::string* path = *target;
+      // To a log is added.
+      const bool is_default_name =
+          path->empty() && fs::path(option.name_beside).extension() != ".log";
       if (path->empty() && option.beside != nullptr && !option.beside->empty()) {
         *path = (AbsoluteFolder(*option.beside).parent_path() / option.name_beside).string();
       }
       if (path->empty() || option.path_use == PathUse::kNone) continue;
       MentionPath(*path);
-      AddUse(option.path_use, "--" + option.name, *path, &paths);
+      AddUse(option.path_use, "--" + option.name, *path, is_default_name, &paths);
     }
   }
   CheckKinds(paths);

@@ -21,7 +21,8 @@ std::vector<std::string> PathsFromText(const std::string& text, const std::strin
 
 // Once the options are set: sets outputs that are left out to the file beside another output, and
 // throws InputError where CheckOutputs() (importer/base/replacement.h) does, for an input that is a
-// pipe or a device, and for an output that is a pipe or a folder. Registers the paths, so that logs
+// pipe or a device, for an output that is a pipe or a folder, and for a file of the user's where an
+// output goes that is left out. Registers the paths, so that logs
 // and reports leave out their folders (importer/text/shown_text.h).
 void CompletePaths(const std::vector<OptionGroup>& groups);
 

@@ -20,8 +20,8 @@ struct SurfaceFileOptions {
 // --frame, --scale_by, --Section.*, --Surface.* and --unit, which set `exporter` and `surface`.
 std::vector<OptionGroup> SailGroups(ShapeExporterOptions* exporter, SurfaceFileOptions* surface);
 
-// Once the options are set: reads the file of the edges and checks everything. Throws InputError
-// that names the option or file.
+// Called once the options are set: reads the file of the edges and checks everything. Throws
+// InputError that names the option or file.
 void CompleteSailOptions(const SurfaceFileOptions& surface, ShapeExporterOptions* exporter);
 
 }  // namespace velamap

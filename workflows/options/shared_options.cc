@@ -48,8 +48,8 @@ Option DatabasePathOption(PathUse use, PathOptions* paths, const std::string& de
 
 Option ImportAnewOption(MarkerImporterOptions* importer) {
   return {"import_anew", &importer->import_anew, "0|1",
-          "1: discard the detections in the database and import all pictures again, for example "
-          "because they have changed"};
+          "1: import all pictures again, for example because they have changed, and replace the "
+          "detections in the database"};
 }
 
 Option ModelInputOption(PathOptions* paths) {
@@ -136,8 +136,9 @@ Layout LoadLayout(const MarkerOptions& options, bool with_dictionary) {
     return ReadLayout(options.layout_path);
   }
   if (!has_length || (with_dictionary && options.dictionary.empty())) {
-    throw InputError(fmt::format("--layout_path: missing; give a layout file, or --marker_length{}",
-                                 with_dictionary ? " and --dictionary" : ""));
+    throw InputError(
+        fmt::format("--layout_path: missing; give a layout file, or --marker_length{}",
+                    with_dictionary && options.dictionary.empty() ? " and --dictionary" : ""));
   }
   return MakeLayout(options.dictionary, *options.marker_length_m);
 }

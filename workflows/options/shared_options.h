@@ -21,7 +21,7 @@ namespace velamap {
 struct GeneralOptions {
   LogLevel log_level = LogLevel::kInfo;
   int random_seed = 0;
-  int num_threads = 0;  // 0: one a core
+  int num_threads = 0;  // 0: one per core
 };
 
 // Files and folders; each command declares those that it reads or writes.
@@ -53,6 +53,7 @@ struct CommandOptions {
   MarkerOptions markers;
   GeneralOptions general;
   Preset preset;
+  TypedNames typed;
 };
 
 Option Required(Option option);
@@ -93,8 +94,8 @@ std::string ShapeFile(const std::string& path);
 // that is not a shape.csv or has no whole marker.
 PriorShape LoadPriorShape(const std::string& prior_shape_path);
 
-// Once the options are set: completes those of a stage by what the command's options and the files
-// that they name say, and checks them. Throws InputError where a file or a value is bad.
+// Called once the options are set: completes the options of a stage from the command's options and
+// the files that they name, and checks them. Throws InputError where a file or a value is bad.
 void CompleteImporter(const CommandOptions& options, MarkerImporterOptions* importer);
 void CompleteRegistration(const GeneralOptions& options, RegistrationOptions* registration);
 

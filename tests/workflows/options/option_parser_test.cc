@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
+#include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 #include "workflows/commands/commands.h"
@@ -140,6 +141,40 @@ TEST(OptionParserTest, RefusesMissingRepeatedAndStrayArguments) {
   EXPECT_THAT(ErrorOf({"--path", "p", "q"}), HasSubstr("'q'"));
 }
 
+TEST(OptionParserTest, ALackingValueIsNamedWhateverFollows) {
+  EXPECT_EQ(ErrorOf({"--path", "--text", "x"}),
+            "--path: needs a value, and --text looks like the next option; see velamap walker "
+            "--help_all");
+  EXPECT_THAT(ErrorOf({"--path", "--txet", "x"}), HasSubstr("--path: needs a value, and --txet"));
+  EXPECT_EQ(ErrorOf({"--path=--odd"}), "");
+}
+
+TEST(OptionParserTest, APathIsNotEmpty) {
+  Values values;
+  CommandSyntax syntax = MakeSyntax(&values);
+  syntax.groups[0].options[1].path_use = PathUse::kReadsFile;
+  for (const auto& given : std::vector<std::vector<std::string>>{{"--text", ""}, {"--text="}}) {
+    std::vector<std::string> arguments = {"--path", "p"};
+    arguments.insert(arguments.end(), given.begin(), given.end());
+    ExpectThrows<InputError>([&] { ParseOptions(syntax, arguments, {}); },
+                             {"--text: needs a value"});
+  }
+}
+
+TEST(OptionParserTest, TypedNamesAreThoseOfTheCommandLine) {
+  const TempDir temp_dir;
+  const std::string file = (temp_dir / "project.ini").string();
+  WriteTextFile(file, "[Walk]\ncount=3\n");
+  Values values;
+  TypedNames typed;
+  CommandSyntax syntax = MakeSyntax(&values);
+  syntax.typed = &typed;
+  ASSERT_TRUE(
+      ParseOptions(syntax, {"--goal", "p", "--Walk.length", "0.25", "--project_path", file}, {}));
+  EXPECT_EQ(values.count, 3);
+  EXPECT_EQ(typed, (TypedNames{"path", "Walk.length", "project_path"}));
+}
+
 TEST(OptionParserTest, AbbreviationsAreNoOptions) {
   EXPECT_THAT(ErrorOf({"--pat", "p"}), HasSubstr("--pat: unknown option"));
 }
@@ -164,6 +199,12 @@ TEST(OptionParserTest, ProjectFileErrorsNameFileAndKey) {
 
   WriteTextFile(file, "[Walk]\ncuont=3\n");
   EXPECT_THAT(ErrorOf(arguments), HasSubstr(file + ": unknown key Walk.cuont; did you mean"));
+  WriteTextFile(file, "[Wlak]\ncount=3\n");
+  EXPECT_THAT(
+      ErrorOf(arguments),
+      HasSubstr(file + ": unknown section [Wlak] of the key Wlak.count; did you mean Walk?"));
+  WriteTextFile(file, "[Walk]\nhelp=3\nheight=1\n");
+  EXPECT_THAT(ErrorOf(arguments), Not(HasSubstr("did you mean help")));
   WriteTextFile(file, "[Walk]\ncount=three\n");
   EXPECT_THAT(ErrorOf(arguments), HasSubstr(file + ": Walk.count: 'three'"));
   WriteTextFile(file, "no equals sign\n");

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

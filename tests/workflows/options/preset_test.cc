@@ -16,7 +16,6 @@ namespace velamap {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 struct ParsedValues {
   Preset preset;

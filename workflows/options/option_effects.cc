@@ -1,0 +1,94 @@
+#include "workflows/options/option_effects.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+#include "importer/base/files.h"
+
+namespace velamap {
+namespace {
+
+bool StandsFor(const std::string& name_or_section, const std::string& name) {
+  return name_or_section.back() == '.' ? name.rfind(name_or_section, 0) == 0
+                                       : name == name_or_section;
+}
+
+std::vector<std::string> NamesIn(const OptionGroup& group) {
+  std::vector<std::string> names;
+  for (const Option& option : group.options) names.push_back(option.name);
+  return names;
+}
+
+}  // namespace
+
+void RefuseWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
+                         const std::string& reason) {
+  for (const std::string& name : names) {
+    const auto found = std::find_if(typed.begin(), typed.end(),
+                                    [&](const std::string& one) { return StandsFor(name, one); });
+    if (found == typed.end()) continue;
+    throw InputError(
+        fmt::format("--{}: it would change nothing, because {}; leave it out", *found, reason));
+  }
+}
+
+void RefuseVideoOptions(const CommandOptions& options) {
+  const std::string& image_path = options.paths.image_path;
+  if (!IsFolder(image_path)) return;
+  RefuseWithoutEffect(
+      options.typed, {"Video.", "frame_output_path", "MarkerAdjustment.rolling_shutter"},
+      fmt::format("the pictures in --image_path {} are photographs and no video", image_path));
+}
+
+void RefuseOptionsOfOtherBackend(const TypedNames& typed, AdjustmentBackend backend) {
+  if (backend == AdjustmentBackend::kColmap) {
+    RefuseWithoutEffect(typed, {"MarkerAdjustment."},
+                        "--backend colmap adjusts without knowing markers (--backend both or "
+                        "markers would use it)");
+  }
+  if (backend == AdjustmentBackend::kMarkers) {
+    RefuseWithoutEffect(
+        typed,
+        {"BundleAdjustment.function_tolerance", "BundleAdjustment.remove_outliers",
+         "BundleAdjustment.max_num_rounds", "BundleAdjustment.outlier_ratio",
+         "BundleAdjustment.min_outlier_error", "BundleAdjustment.time_limit"},
+        "--backend markers adjusts without COLMAP (--backend both or colmap would use it)");
+  }
+}
+
+void RefuseOptionsOfOtherMethod(const TypedNames& typed, RegistrationMethod method) {
+  RegistrationOptions options;
+  if (method == RegistrationMethod::kGlobal) {
+    RefuseWithoutEffect(typed, NamesIn(DescribeOptions(&options.thesis)),
+                        "--Registration.method is global (thesis would use it)");
+  } else {
+    RefuseWithoutEffect(typed, NamesIn(DescribeOptions(&options.global)),
+                        "--Registration.method is thesis (global would use it)");
+  }
+}
+
+void RefuseKnownCamera(const TypedNames& typed, const MarkerAdjustmentOptions& adjustment,
+                       const std::string& missing) {
+  const std::string name = OptionName(&MarkerAdjustmentOptions::find_camera);
+  if (adjustment.find_camera || typed.count(name.substr(2)) == 0) return;
+  throw InputError(fmt::format(
+      "{}: 0 needs a calibration, and {}; give one to automatic_reconstructor or marker_importer "
+      "(--camera_path), or leave {} out",
+      name, missing, name));
+}
+
+void RefuseSailOptions(const TypedNames& typed, const Layout& layout) {
+  const bool has_lines = std::any_of(layout.parts.begin(), layout.parts.end(),
+                                     [](const auto& part) { return !part.horizontal.empty(); });
+  if (has_lines) return;
+  RefuseWithoutEffect(
+      typed,
+      {"Section.", "Surface.luff_extension", "Surface.leech_extension", "Surface.foot_extension",
+       "Surface.head_extension", "Surface.edges_path", "Surface.grid_sections",
+       "Surface.grid_points"},
+      "no part of the layout has horizontal lines, which sections and the surface of a sail need");
+}
+
+}  // namespace velamap

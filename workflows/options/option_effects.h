@@ -1,0 +1,36 @@
+// Options that would change nothing: a wish that cannot be granted is refused. Only options that
+// were typed are wishes; a project file serves several commands, and a preset many cases.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "importer/layout/layout.h"
+#include "reconstruct/registration/registration_options.h"
+#include "workflows/options/option_parser.h"
+#include "workflows/options/shared_options.h"
+#include "workflows/run/adjustment.h"
+
+namespace velamap {
+
+// Throws InputError for the first of `names` that was typed. A name that ends with a dot stands for
+// all options of that section. `reason` says why the option changes nothing.
+void RefuseWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
+                         const std::string& reason);
+
+// Options of videos, where --image_path is a folder of photographs.
+void RefuseVideoOptions(const CommandOptions& options);
+
+// Options of the way of adjustment and of the method of registration that were not chosen.
+void RefuseOptionsOfOtherBackend(const TypedNames& typed, AdjustmentBackend backend);
+void RefuseOptionsOfOtherMethod(const TypedNames& typed, RegistrationMethod method);
+
+// --MarkerAdjustment.find_camera 0 where there is no calibration, which `missing` says.
+void RefuseKnownCamera(const TypedNames& typed, const MarkerAdjustmentOptions& adjustment,
+                       const std::string& missing);
+
+// Options of sections and of a sail's surface, where the layout has no part with lines.
+void RefuseSailOptions(const TypedNames& typed, const Layout& layout);
+
+}  // namespace velamap
