@@ -1,6 +1,5 @@
 #include "workflows/calibrate/board_calibration.h"
 
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

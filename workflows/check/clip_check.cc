@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -135,6 +134,7 @@ class Checker {
         options_.image_path, SpreadOverClip(video, num_looked_at, kNumFramesWithPixels),
         kNumFramesWithPixels, options_.num_threads);
     facts.num_frames_read = static_cast<int>(clip.frames.size());
+    facts.num_frames_damaged = clip.num_damaged;
     facts.is_video = clip.is_video;
     facts.width_px = clip.frames[0].gray.cols;
     facts.height_px = clip.frames[0].gray.rows;
@@ -170,10 +170,12 @@ class Checker {
     importer.video = video;
     try {
       Progress progress("looking at frames");
-      check_.facts.num_frames_read =
+      const ImportReport report =
           ImportMarkers(importer, [&progress](int done, int total, const std::string& message) {
             progress.Update(done, total, message);
-          }).num_frames_read;
+          });
+      check_.facts.num_frames_read = report.num_frames_read;
+      check_.facts.num_frames_damaged = report.num_frames_damaged;
     } catch (const DataError& error) {
       check_.facts.no_markers_because = error.what();
       if (options_.proposes_layout) FindFaults(clip, {}, layout, importer.detection);

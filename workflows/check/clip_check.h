@@ -26,7 +26,7 @@ struct ClipCheckOptions {
   ArucoDetectionOptions detection;
   VideoOptions video;
   int num_frames = 40;  // to look at, of a video
-  int num_threads = 0;  // 0: one a core
+  int num_threads = 0;  // 0: one per core
 };
 
 struct ClipCheck {

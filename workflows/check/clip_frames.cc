@@ -1,7 +1,6 @@
 #include "workflows/check/clip_frames.h"
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -33,6 +32,8 @@ ClipFrames ReadClipFrames(const std::string& image_path, const VideoOptions& vid
   std::vector<std::string> reasons(clip.frames.size());
   ParallelFor(clip.frames.size(), num_threads,
               [&](std::size_t i) { source->Load(&clip.frames[i], &reasons[i]); });
+  clip.num_damaged = static_cast<int>(std::count_if(
+      clip.frames.begin(), clip.frames.end(), [](const Frame& frame) { return !frame.is_whole; }));
   const auto unreadable =
       std::stable_partition(clip.frames.begin(), clip.frames.end(),
                             [](const Frame& frame) { return !frame.gray.empty(); });

@@ -11,6 +11,7 @@ namespace velamap {
 
 struct ClipFrames {
   std::vector<Frame> frames;  // loaded, in order
+  int num_damaged = 0;        // left out, because a video is damaged there
   bool is_video = false;
 };
 

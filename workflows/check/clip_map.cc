@@ -23,7 +23,7 @@
 namespace velamap {
 namespace {
 
-// An id that is seen in fewer frames, as a part of the median, is likely a misread one.
+// An id that is seen in fewer frames than this fraction of the median is probably misread.
 constexpr double kSeldom = 0.2;
 constexpr int kMinFrames = 2;
 // A body of fewer markers cannot be told from misread ids.
@@ -104,8 +104,8 @@ std::vector<DatabaseImage> Only(std::vector<DatabaseImage> images, const std::se
   return images;
 }
 
-// Sets the lengths of markers that are far from their length in the layout: those of similar size
-// get their median. Returns false if there are none.
+// Sets the lengths of markers that are far from their length in the layout. Markers of similar size
+// get the median of their lengths. Returns false if there are none.
 bool FindOtherLengths(const Registration& registration, Layout* layout) {
   constexpr double kSameSize = 1.1;
   std::vector<std::pair<double, int>> others;  // length, id

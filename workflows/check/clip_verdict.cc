@@ -1,8 +1,5 @@
 #include "workflows/check/clip_verdict.h"
 
-#include <algorithm>
-#include <utility>
-
 #include <fmt/format.h>
 
 #include "importer/text/id_ranges.h"
@@ -104,6 +101,12 @@ class Judge {
   }
 
   void JudgeFrames() {
+    if (facts_.num_frames_damaged > 0) {
+      reasons_.Check(fmt::format(
+          "{} of {} frames looked at are damaged in the file and left out: copy it from the camera "
+          "again, or film again",
+          facts_.num_frames_damaged, facts_.num_frames_damaged + facts_.num_frames_read));
+    }
     if (facts_.num_frames_of_id.empty()) return;
     const double share =
         static_cast<double>(facts_.num_frames_with_few_markers) / facts_.num_frames_read;

@@ -54,8 +54,8 @@ class Corrector {
     });
   }
 
-  // The markers of the row; those that the clip does not show stay behind the ones that the layout
-  // has before them.
+  // The markers of the row; those that the clip does not show stay after the ones that precede them
+  // in the layout.
   void WriteLine(const ComparedLine& line) {
     Ids ids = line.row, not_found;
     auto place = ids.begin();  // behind the last marker of the layout's line

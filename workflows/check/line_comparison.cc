@@ -13,7 +13,7 @@ std::size_t PlaceOf(const Ids& ids, int id) {
   return static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
 }
 
-// Those of `ids` that `of` holds, in their order.
+// The ids that `of` holds, too, in the order of `ids`.
 Ids Common(const Ids& ids, const Ids& of) {
   Ids common;
   std::copy_if(ids.begin(), ids.end(), std::back_inserter(common),
@@ -21,7 +21,7 @@ Ids Common(const Ids& ids, const Ids& of) {
   return common;
 }
 
-// The longest part of `ids` that is in the order of `row`, which holds them all.
+// The longest subsequence of `ids` in the order of `row`, which holds them all.
 Ids LongestInOrder(const Ids& ids, const Ids& row) {
   std::vector<std::size_t> length(ids.size(), 1), previous(ids.size(), ids.size());
   std::size_t last = 0;

@@ -1,5 +1,5 @@
-// Markers that were printed mirrored or with black and white exchanged: a search of the pictures as
-// they are passes over them, or takes them for other markers.
+// Markers that were printed mirrored or with black and white exchanged. An ordinary search misses
+// them or takes them for other markers.
 
 #pragma once
 
@@ -15,7 +15,7 @@
 namespace velamap {
 
 struct PrintFaults {
-  // Frames that show the marker so, by id; two at least.
+  // Number of frames (at least two) that show the marker so, by marker id.
   std::map<int, int> mirrored, inverted;
 };
 

@@ -14,12 +14,14 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/replacement.h"
 #include "importer/camera/calibration_writer.h"
 #include "importer/text/output_date.h"
 #include "importer/text/shown_text.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/sail_options.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/adjustment.h"
@@ -84,6 +86,9 @@ CommandSyntax Declare(Options* options) {
 // Checks everything that can be checked without touching the workspace.
 void Validate(Options* options) {
   ShowFolders(options->full_paths);
+  RefuseVideoOptions(*options);
+  RefuseOptionsOfOtherBackend(options->typed, options->adjustment.backend);
+  RefuseOptionsOfOtherMethod(options->typed, options->registration.method);
   CompleteRegistration(options->general, &options->registration);
   if (options->paths.camera_path.empty()) {
     if (!options->adjustment.UsesMarkers()) {
@@ -91,12 +96,16 @@ void Validate(Options* options) {
           "--camera_path: missing; --backend colmap cannot adjust an unknown camera: give a "
           "calibration, or --backend both or markers");
     }
+    RefuseKnownCamera(options->typed, options->adjustment.markers, "--camera_path is missing");
     options->adjustment.markers.find_camera = true;
+    CheckOwnFile("--workspace_path",
+                 WorkspacePaths{AbsoluteFolder(options->paths.workspace_path)}.Camera());
   }
   options->adjustment.Complete(options->general.num_threads);
   CompleteSailOptions(options->surface, &options->exporter);
   options->exporter.num_threads = options->general.num_threads;
   CompleteImporter(*options, &options->importer);
+  RefuseSailOptions(options->typed, options->importer.layout);
   CheckFrameChoice(options->exporter.frame, options->importer.layout);
   options->importer.allowed_frames = options->importer.video;
   options->importer.video = NarrowToReach(options->importer.video, options->registration);
@@ -159,6 +168,7 @@ ShapeOrigin OriginOf(const Options& options, const AdjustmentResult& adjustment)
 ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
                         const ReconstructionSummary& summary) {
   const ShapeExportReport& shape = summary.shape;
+  WarnOfOtherMarkers(shape.metrics);
   WarnOfMissingSections(shape.sail.sections);
   ReportInput input = MakeReportInput(shape, options.importer.layout);
   input.title = Source(options).filename().string();
@@ -180,7 +190,7 @@ ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, con
   for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
     input.found_cameras.push_back(camera);
   }
-  input.warnings = LoggedWarnings();  // before those that a key number says, too
+  input.warnings = LoggedWarnings();  // before the next line logs what key numbers say, too
   LogContradictions(shape);
   input.options = TypedOptions(options.arguments);
   input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
@@ -231,7 +241,7 @@ void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const 
   WriteFileAtomically(paths.RegistrationCsv(),
                       [&seed](std::ostream& out) { WriteRegistrationCsv(seed.registration, out); });
   clock->End("export");
-  WriteFileAtomically(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
+  WriteSealedPage(paths.Report(), [&input](std::ostream& out) { WriteReport(input, out); });
   clock->End("report");
   RemoveOtherImages(model, seed.image_names, options.paths.image_path, paths.Images());
   summary->num_images = static_cast<int>(model.images.size());
@@ -275,7 +285,9 @@ void Run(const Options& options) {
 
 Command AutomaticReconstructor() {
   const auto options = std::make_shared<Options>();
-  return {Declare(options.get()), [options](const Arguments& arguments) {
+  CommandSyntax syntax = Declare(options.get());
+  syntax.typed = &options->typed;
+  return {syntax, [options](const Arguments& arguments) {
             options->arguments = arguments;
             SetLogLevel(options->general.log_level);
             Validate(options.get());

@@ -11,8 +11,10 @@
 #include "importer/database/colmap_database.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/adjustment.h"
+#include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
 
@@ -47,6 +49,12 @@ CommandSyntax Declare(Options* options) {
 
 void Validate(Options* options) {
   LogPreset(options->preset);
+  RefuseOptionsOfOtherBackend(options->typed, options->adjustment.backend);
+  if (!options->adjustment.UsesMarkers()) {
+    RefuseWithoutEffect(options->typed, {"database_path"},
+                        "--backend colmap adjusts without the corners' sigmas (--backend both or "
+                        "markers would use it)");
+  }
   options->adjustment.Complete(options->general.num_threads);
 }
 
@@ -63,7 +71,7 @@ void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOption
   for (const DatabaseImage& image : images) detections[image.image_id] = &image.detections;
   for (ModelImage& image : model->images) {
     const auto found = detections.find(image.image_id);
-    if (found == detections.end() ||
+    if (found == detections.end() || found->second->image_name != image.name ||
         image.points2D.size() != kNumCorners * found->second->markers.size()) {
       throw InputError(fmt::format(
           "{}: image {} is not the one of {}: give the database that the model was made from",
@@ -77,12 +85,16 @@ void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOption
 }
 
 // A camera that was found instead of calibrated is refined, so that the sigmas contain it.
-CornerErrors LoadCorners(const Options& options, AdjustmentOptions* adjustment, Model* model) {
+CornerErrors LoadCorners(const Options& options, const Layout& layout,
+                         AdjustmentOptions* adjustment, Model* model) {
   if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) return {};
   const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
+  CheckLayoutOfDatabase(database, options.paths.database_path, layout);
   const std::vector<DatabaseImage> images = database.ReadImages();
   RestoreKeypoints(images, options.paths, model);
   if (!database.HasCalibration() && !adjustment->markers.find_camera) {
+    RefuseKnownCamera(options.typed, adjustment->markers,
+                      options.paths.database_path + " was made without");
     spdlog::info("{}: made without a calibration; the camera is refined",
                  options.paths.database_path);
     adjustment->markers.find_camera = true;
@@ -112,7 +124,7 @@ void Run(const Options& options) {
   const Layout layout = LoadAdjustmentLayout(options);
   Model model = ReadModel(options.paths.input_path);
   AdjustmentOptions adjustment = options.adjustment;
-  const CornerErrors corner_errors = LoadCorners(options, &adjustment, &model);
+  const CornerErrors corner_errors = LoadCorners(options, layout, &adjustment, &model);
   const AdjustmentResult result =
       AdjustModel(adjustment, layout, corner_errors, options.paths.log_path, &model);
   clock.End("adjust", static_cast<int>(model.images.size()));

@@ -11,6 +11,7 @@
 #include "importer/base/error.h"
 #include "workflows/calibrate/board_calibration.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
 
 namespace velamap {
@@ -86,13 +87,17 @@ std::optional<CameraModel> ModelOf(WantedModel wanted) {
 
 void Validate(Options* options) {
   BoardCalibrationOptions& calibration = options->calibration;
+  RefuseVideoOptions(*options);
   calibration.detection.Check();
   calibration.video.Check();
   calibration.image_path = options->paths.image_path;
   calibration.calibration.camera_model = ModelOf(options->camera_model);
   calibration.calibration.num_threads = options->general.num_threads;
   calibration.layout = LoadGivenLayout(options->markers, true);
-  if (options->chessboard.empty()) return;
+  if (options->chessboard.empty()) {
+    RefuseWithoutEffect(options->typed, {"Board."}, "--Board.chessboard is missing");
+    return;
+  }
   calibration.chessboard = ParseChessboard(options->chessboard, "--Board.chessboard");
   if (calibration.layout) {
     throw InputError(
@@ -129,9 +134,8 @@ void Run(const Options& options) {
                                CameraModelName(calibration.camera.camera.model),
                                calibration.UsedViews().size(), calibration.Score().unseen_error_px),
                    options.paths.output_path);
-  WriteFileAtomically(options.report_path, [&](std::ostream& out) {
-    WriteCalibrationPage(calibration, result.board, out);
-  });
+  WriteSealedPage(options.report_path,
+                  [&](std::ostream& out) { WriteCalibrationPage(calibration, result.board, out); });
   Print(calibration, std::cout);
   fmt::print(std::cout, "camera_path: {}\nreport_path: {}\n", options.paths.output_path,
              options.report_path);

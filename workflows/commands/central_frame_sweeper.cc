@@ -9,6 +9,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/central_frame_sweep.h"
 #include "workflows/run/progress.h"
@@ -68,6 +69,8 @@ CommandSyntax Declare(Options* options) {
 void Validate(Options* options) {
   LogPreset(options->preset);
   CentralFrameSweepOptions& sweep = options->sweep;
+  RefuseOptionsOfOtherMethod(options->typed, sweep.registration.method);
+  RefuseOptionsOfOtherBackend(options->typed, sweep.adjustment.backend);
   sweep.database_path = options->paths.database_path;
   CompleteRegistration(options->general, &sweep.registration);
   sweep.adjustment.Complete(options->general.num_threads);

@@ -14,6 +14,7 @@
 #include "workflows/check/clip_verdict.h"
 #include "workflows/check/layout_proposal.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
 
 namespace velamap {
@@ -52,6 +53,7 @@ CommandSyntax Declare(Options* options) {
 
 void Validate(Options* options) {
   ClipCheckOptions& check = options->check;
+  RefuseVideoOptions(*options);
   check.detection.Check();
   check.video.Check();
   check.image_path = options->paths.image_path;

@@ -6,6 +6,7 @@
 #include <fmt/ostream.h>
 
 #include "importer/base/error.h"
+#include "importer/text/output_date.h"
 #include "workflows/options/help_text.h"
 #include "workflows/options/nearest_name.h"
 
@@ -83,6 +84,7 @@ void RunCommandLine(const Arguments& arguments) {
   if (!ParseOptions(command.syntax, rest, AllOptionNames())) {
     return PrintHelp(command.syntax, AskedHelp(rest).value(), std::cout);
   }
+  OutputDate();  // a date that is none is an error before the work, not after it
   command.run(rest);
 }
 

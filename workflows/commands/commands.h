@@ -26,7 +26,9 @@ struct Command {
 template <typename Options>
 Command MakeCommand(const std::shared_ptr<Options>& options, CommandSyntax (*declare)(Options*),
                     void (*validate)(Options*), void (*run)(const Options&)) {
-  return {declare(options.get()), [=](const Arguments&) {
+  CommandSyntax syntax = declare(options.get());
+  syntax.typed = &options->typed;
+  return {syntax, [=](const Arguments&) {
             SetLogLevel(options->general.log_level);
             validate(options.get());
             run(*options);

@@ -38,7 +38,7 @@ void Validate(Options* options) {
   options->merger.output_path = options->paths.output_path;
   options->merger.database_paths =
       PathsFromText(options->database_paths, "--database_paths", "part1.db,part2.db");
-  // The check of ParseOptions() knows options of one path only.
+  // ParseOptions() checks only options that hold a single path.
   std::vector<UsedPath> inputs;
   for (const std::string& path : options->merger.database_paths) {
     CheckInputKind("--database_paths", path);

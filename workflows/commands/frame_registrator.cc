@@ -9,6 +9,7 @@
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/seed_model.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
@@ -45,6 +46,7 @@ CommandSyntax Declare(Options* options) {
 
 void Validate(Options* options) {
   LogPreset(options->preset);
+  RefuseOptionsOfOtherMethod(options->typed, options->registration.method);
   CompleteRegistration(options->general, &options->registration);
 }
 

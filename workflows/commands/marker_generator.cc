@@ -17,6 +17,7 @@ struct Options {
   std::string output_path;
   GeneralOptions general;
   PrintOptions print;
+  TypedNames typed;
 };
 
 CommandSyntax Declare(Options* options) {

@@ -10,6 +10,7 @@
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/pipeline.h"
 #include "workflows/run/stage_times.h"
@@ -69,6 +70,7 @@ CommandSyntax Declare(Options* options) {
 
 void Validate(Options* options) {
   LogPreset(options->preset);
+  RefuseVideoOptions(*options);
   MarkerImporterOptions& importer = options->importer;
   CompleteImporter(*options, &importer);
   importer.database_path = options->paths.database_path;
@@ -80,6 +82,7 @@ void Print(const ImportReport& report, const PathOptions& paths, std::ostream& o
   fmt::print(out, "images_present: {}\n", report.num_images_present);
   fmt::print(out, "images_without_markers: {}\n", report.num_images_without_markers);
   fmt::print(out, "images_skipped: {}\n", report.skipped.size());
+  fmt::print(out, "frames_damaged: {}\n", report.num_frames_damaged);
   fmt::print(out, "markers: {}\n", report.num_markers);
   fmt::print(out, "markers_rejected: {}\n", report.num_rejected);
   fmt::print(out, "markers_without_corner_fit: {}\n", report.num_fallbacks);

@@ -15,6 +15,7 @@
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
+#include "workflows/run/summary.h"
 
 namespace velamap {
 namespace {
@@ -91,8 +92,8 @@ ModelOfShape LoadModel(const MarkerShape& shape, const PathOptions& paths) {
   if (paths.input_path.empty()) return result;
   result.model = ReadModel(paths.input_path);
   CheckModelOfShape(*result.model, shape, paths);
-  if (HasUncertainty(paths.input_path) && IsShapeOf(shape, *result.model)) {
-    result.uncertainty = ReadUncertainty(paths.input_path);
+  if (IsShapeOf(shape, *result.model)) {
+    result.uncertainty = ReadUncertaintyOf(*result.model, paths.input_path);
   }
   return result;
 }
@@ -103,7 +104,11 @@ MetricsReport Analyze(const Options& options) {
   const ModelOfShape source = LoadModel(shape, options.paths);
   const PointCovariance* covariance = source.Covariance();
   MetricsReport report;
-  if (layout) AddMetrics(ComputeShapeMetrics(shape, *layout, covariance), &report);
+  if (layout) {
+    const ShapeMetrics metrics = ComputeShapeMetrics(shape, *layout, covariance);
+    WarnOfOtherMarkers(metrics);
+    AddMetrics(metrics, &report);
+  }
   if (source.model) {
     AddMetrics(ComputeModelMetrics(*source.model, MarkerIds(layout.value_or(Layout()))), &report);
   }

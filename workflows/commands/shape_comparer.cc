@@ -15,6 +15,7 @@
 #include "importer/text/output_date.h"
 #include "workflows/commands/commands.h"
 #include "workflows/commands/compared_shapes.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/path_check.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/version.h"
@@ -127,7 +128,7 @@ CommandSyntax Declare(Options* options) {
            DescribeOptions(&options->comparison.grid), DescribeOptions(&options->general)}};
 }
 
-// The check of ParseOptions() knows options of one path only.
+// ParseOptions() checks only options that hold a single path.
 void CheckSeries(const Options& options) {
   if (options.series_paths.empty()) return;
   for (const auto& [option, path] : {std::pair{"--output_path", options.paths.output_path},
@@ -152,7 +153,36 @@ void CheckSeries(const Options& options) {
   CheckOutputs(inputs, outputs);
 }
 
+void RefuseUnusedOptions(const Options& options) {
+  const std::string& reference = options.paths.reference_path;
+  const std::string what = "the --reference_path " + reference;
+  if (!IsMeshPath(reference)) {
+    RefuseWithoutEffect(options.typed, {"reference_unit", "chord_deviation", "edge_tolerance"},
+                        what + " is a shape in m and no surface");
+  } else {
+    RefuseWithoutEffect(options.typed, {"reference_uncertainty_path"},
+                        what + " is a surface, which has no uncertainty");
+    if (HasOwnUnit(reference)) {
+      RefuseWithoutEffect(options.typed, {"reference_unit"}, what + " names its unit itself");
+    } else {
+      RefuseWithoutEffect(options.typed, {"chord_deviation"},
+                          what + " consists of triangles already");
+    }
+  }
+  if (options.comparison_path.empty() || options.layout_path.empty()) {
+    RefuseWithoutEffect(options.typed, {"Surface."},
+                        "a grid is written with --comparison_path and --layout_path only");
+  }
+  if (options.comparison_path.empty() && options.paths.output_path.empty() &&
+      options.surface_path.empty()) {
+    RefuseWithoutEffect(options.typed, {"color_limit"},
+                        "no picture is written (--comparison_path, --output_path or "
+                        "--surface_path)");
+  }
+}
+
 void Validate(Options* options) {
+  RefuseUnusedOptions(*options);
   if (!options->surface_path.empty() && options->layout_path.empty()) {
     throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
   }

@@ -7,6 +7,7 @@
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/sail_options.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/stage_times.h"
@@ -36,6 +37,8 @@ CommandSyntax Declare(Options* options) {
              "folder of shape.csv, sections, surface, PLY and CAD files; left out: none is "
              "written")),
          {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"},
+         {"metashape", &options->exporter.metashape, "0|1",
+          "also write the corners as markers and as reference coordinates for Agisoft Metashape"},
          PresetOption(&options->preset)}},
        DescribeOptions(&options->markers, false)}};
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
@@ -52,6 +55,11 @@ void Validate(Options* options) {
     throw InputError(
         "--shape_path: missing; give --shape_path, --output_path or both to say what to write");
   }
+  if (options->paths.shape_path.empty()) {
+    RefuseWithoutEffect(options->typed,
+                        {"ascii_ply", "unit", "Surface.grid_sections", "Surface.grid_points"},
+                        "without --shape_path no files of the shape are written");
+  }
   CompleteSailOptions(options->surface, &options->exporter);
   options->exporter.model_output_path = options->paths.output_path;
   options->exporter.shape_output_path = options->paths.shape_path;
@@ -60,9 +68,10 @@ void Validate(Options* options) {
 }
 
 Verdict Judge(const ShapeExportReport& report, const Layout& layout) {
+  WarnOfOtherMarkers(report.metrics);
   WarnOfMissingSections(report.sail.sections);
   ReportInput input = MakeReportInput(report, layout);
-  input.warnings = LoggedWarnings();  // before those that a key number says, too
+  input.warnings = LoggedWarnings();  // before the next line logs what key numbers say, too
   LogContradictions(report);
   return MakeVerdict(input);
 }
@@ -78,11 +87,10 @@ void Print(const ShapeExportReport& report, const Verdict& verdict, const PathOp
 void Run(const Options& options) {
   StageClock clock;
   const Layout layout = LoadLayout(options.markers, false);
+  RefuseSailOptions(options.typed, layout);
   const Model model = ReadModel(options.paths.input_path);
-  std::optional<AdjustmentUncertainty> uncertainty;
-  if (HasUncertainty(options.paths.input_path)) {
-    uncertainty = ReadUncertainty(options.paths.input_path);
-  }
+  const std::optional<AdjustmentUncertainty> uncertainty =
+      ReadUncertaintyOf(model, options.paths.input_path);
   const ShapeExportReport report =
       ComputeShape(model, layout, options.exporter, uncertainty ? &*uncertainty : nullptr);
   const Verdict verdict = Judge(report, layout);

@@ -16,6 +16,7 @@
 #include "importer/print/print_options.h"
 #include "importer/print/sheet_plan.h"
 #include "workflows/commands/commands.h"
+#include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/plan/plan_drawing.h"
 #include "workflows/plan/plan_writer.h"
@@ -59,6 +60,23 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->general)}};
 }
 
+void RefuseUnusedOptions(const Options& options) {
+  if (!options.paths.camera_path.empty()) {
+    RefuseWithoutEffect(options.typed, {"lens", "width", "height"},
+                        "the calibration of --camera_path says what the camera is");
+  }
+  if (!options.paths.shape_path.empty()) {
+    RefuseWithoutEffect(
+        options.typed,
+        {"Plan.surface", "Sail.", "Grid.", "hull_markers", "Plan.camber", "Plan.twist"},
+        "the markers are where --shape_path has them");
+  } else if (options.arrangement == Arrangement::kSail) {
+    RefuseWithoutEffect(options.typed, {"Grid."}, "--Plan.surface is sail");
+  } else {
+    RefuseWithoutEffect(options.typed, {"Sail."}, "--Plan.surface is grid");
+  }
+}
+
 void CheckCamera(const Options& options) {
   if (options.paths.camera_path.empty() || !options.plan.field_of_view_deg) return;
   throw InputError(
@@ -72,6 +90,7 @@ void Validate(Options* options) {
   options->sail.Check();
   options->grid.Check();
   CheckCamera(*options);
+  RefuseUnusedOptions(*options);
   if (options->markers.layout_path.empty() && options->markers.dictionary.empty()) {
     options->markers.dictionary = kDefaultDictionary;
   }

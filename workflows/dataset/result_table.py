@@ -82,7 +82,7 @@ def row_of(clip: dict[str, Any], output: Path) -> dict[str, Any]:
 
 
 def csv_of(tags: list[str], rows: list[dict[str, Any]]) -> str:
-    """One figure a cell, with a decimal point; empty: there is none."""
+    """One figure per cell, with a decimal point; empty: there is none."""
     sections = dict.fromkeys(section_column(section, figure) for row in rows
                              for section in row.get("sections", []) for figure in SECTION_FIGURES)
     columns = list(RESULT_COLUMNS)

@@ -44,7 +44,7 @@ struct ShootPlanOptions {
   double twist_deg = 10.0;
 
   std::uint32_t seed = 0;
-  int num_threads = 0;  // 0: one a core; never changes the result
+  int num_threads = 0;  // 0: one per core; never changes the result
 
   void Check() const;  // throws InputError that names the option
 

@@ -28,7 +28,8 @@ BentSurface Bend(const Placement& placement, double camber, double twist_rad) {
   const Eigen::Vector2d clew_mm = placement.sail_mm[1];
   const double luff_mm = placement.sail_mm[2].y(), foot_mm = clew_mm.norm();
   return [=](const Eigen::Vector2d& place_mm) -> Eigen::Vector3d {
-    // The place as the point `along` of a line parallel to the foot at the part `up` of the luff.
+    // The place as the point `along` of a line parallel to the foot at the fraction `up` of the
+    // luff.
     const double along = place_mm.x() / clew_mm.x();
     const double up = (place_mm.y() - along * clew_mm.y()) / luff_mm;
     const double chord = std::max(1e-6, 1 - up);
@@ -54,7 +55,7 @@ ShapeMarker MakeMarker(int marker_id, const std::string& part, double length_m,
   return marker;
 }
 
-// Upright, its plane that of the surface at its centre.
+// Upright, in the tangent plane of the surface at its centre.
 Rigid3 TouchSurface(const BentSurface& surface, const Eigen::Vector2d& place_mm) {
   constexpr double kStep_mm = 1.0;
   const auto tangent = [&](const Eigen::Vector2d& step_mm) -> Eigen::Vector3d {
@@ -67,7 +68,7 @@ Rigid3 TouchSurface(const BentSurface& surface, const Eigen::Vector2d& place_mm)
   return {Eigen::Quaterniond(axes), surface(place_mm)};
 }
 
-// A row below the foot, as on a hull, its ends below those of the lowest line.
+// A row below the foot, as on a hull, its ends below the ends of the lowest line.
 void AddRigidPart(const LayoutPart& part, const Placement& placement, const Layout& layout,
                   MarkerShape* shape) {
   const PlacedLine& lowest = placement.horizontal.front();

@@ -55,7 +55,7 @@ ViewSummary Summarize(const PlannedSurface& surface,
 // Width of a marker of which half of the views are found, px.
 double NarrowPxForHalf(int num_cells);
 
-// 1 sigma of a corner's coordinate, px, where that of a marker of 20 px is `corner_sigma_px`.
+// 1 sigma of a corner's coordinate, px; `corner_sigma_px` is the sigma on a marker of 20 px.
 double CornerSigma(double corner_sigma_px, double side_px);
 
 // The longest path of a marker in the picture while the shutter is open: half a cell of its narrow

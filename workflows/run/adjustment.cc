@@ -20,7 +20,7 @@ namespace {
 // Corners are accurate to a few tenths of a pixel, so a larger error has another cause.
 constexpr double kSuspiciousErrorPx = 1.0;
 
-// Gives cameras without distortion one of zero, so that it can be refined.
+// Gives cameras without distortion parameters ones that are zero, so that they can be refined.
 void AddDistortion(Model* model) {
   for (auto& [camera_id, camera] : model->cameras) {
     const Camera distorted = WithDistortionParams(camera);
@@ -170,8 +170,8 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
 
 void WriteAdjustedModel(const Model& model, const AdjustmentResult& result,
                         const std::string& path) {
-  WriteModel(model, path, ModelFormat::kBinaryAndText, [&result](const std::string& folder) {
-    if (result.uncertainty) WriteUncertainty(*result.uncertainty, folder);
+  WriteModel(model, path, ModelFormat::kBinaryAndText, [&](const std::string& folder) {
+    if (result.uncertainty) WriteUncertainty(*result.uncertainty, folder, &model);
   });
 }
 

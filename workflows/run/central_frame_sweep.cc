@@ -97,6 +97,7 @@ class Sweep {
   Sweep(const CentralFrameSweepOptions& options, const Layout& layout)
       : options_(options), layout_(layout) {
     const ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadOnly);
+    CheckLayoutOfDatabase(database, options.database_path, layout);
     images_ = database.ReadImages();
     if (!database.HasCalibration()) {
       throw InputError(fmt::format(
@@ -173,7 +174,8 @@ class Sweep {
     Write(*row, report, result, Judge(report, num_warnings));
   }
 
-  // By the warnings that all central frames share and those of this one, from `first_own` on.
+  // Judges by the warnings that all central frames share and, from `first_own` on, by those of this
+  // one.
   Verdict Judge(const ShapeExportReport& report, std::size_t first_own) const {
     ReportInput input = MakeReportInput(report, layout_);
     input.warnings = LoggedWarnings();
@@ -204,7 +206,7 @@ class Sweep {
   PosedImages posed_;
   CornerErrors corner_errors_;
   std::size_t num_shared_warnings_ = 0;  // of the log, before the first central frame
-  std::optional<Model> adjusted_;        // around the central frame before
+  std::optional<Model> adjusted_;        // around the previous central frame
 };
 
 double Completeness(const SweepRow& row) {

@@ -65,7 +65,7 @@ std::vector<SweepRow> SweepCentralFrames(const CentralFrameSweepOptions& options
 // equal rows are compared by their mean area error. -1 if no row has a result.
 int BestRow(const std::vector<SweepRow>& rows);
 
-// One row a central frame. Columns: central_frame, image_name, num_images, num_markers,
+// One row per central frame. Columns: central_frame, image_name, num_images, num_markers,
 // reconstruction_ratio, reprojection_error_px_mean, central_reprojection_error_px_mean,
 // area_error_mm2_mean, area_error_mm2_max, area_error_percent_mean, start (cold or warm), wall_s,
 // cpu_s, reason.

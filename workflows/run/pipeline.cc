@@ -9,7 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "importer/base/numbers.h"
-#include "importer/database/colmap_database.h"
+#include "importer/track/frame_detector.h"
 #include "reconstruct/evidence/unnamed_markers.h"
 #include "reconstruct/seed_model.h"
 #include "reconstruct/thesis/frame_selection.h"
@@ -114,6 +114,13 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
   ClearProgressLine();
   spdlog::info("{} images added, {} were in the database before, {} markers found",
                report.num_images_added, report.num_images_present, report.num_markers);
+  if (report.num_frames_damaged > 0 || report.num_packets_damaged > 0) {
+    spdlog::warn(
+        "{}: the file is damaged in {} places; {} of {} frames, which show them or build on them, "
+        "are left out: copy it from the camera again, or record again",
+        options.image_path, report.num_packets_damaged, report.num_frames_damaged,
+        report.num_frames_read + report.num_frames_damaged);
+  }
   if (report.num_fallbacks > 0) {
     spdlog::info(
         "the corners of {} markers come from cv::cornerSubPix: their edges were not fitted",
@@ -128,10 +135,17 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
   return report;
 }
 
+void CheckLayoutOfDatabase(const ColmapDatabase& database, const std::string& database_path,
+                           const Layout& layout) {
+  const std::optional<std::string> detector = database.ReadDetector();
+  if (detector) CheckDictionaryOf(*detector, layout, database_path);
+}
+
 SeedResult RegisterDatabase(const std::string& database_path, const Layout& layout,
                             const RegistrationOptions& options,
                             const MarkerAdjustmentOptions& adjustment) {
   const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly);
+  CheckLayoutOfDatabase(database, database_path, layout);
   const std::vector<DatabaseImage> images = database.ReadImages();
   std::map<CameraId, Camera> cameras = database.ReadCameras();
   SeedResult seed;

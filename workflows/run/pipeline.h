@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exporters/report/report_data.h"
+#include "importer/database/colmap_database.h"
 #include "importer/marker_importer.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/model/model.h"
@@ -37,6 +38,10 @@ VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions&
 
 // ImportMarkers() with a progress bar; logs what was found and what is odd.
 ImportReport ImportImages(const MarkerImporterOptions& options);
+
+// Throws InputError, naming both dictionaries, if the layout's is not that of the import.
+void CheckLayoutOfDatabase(const ColmapDatabase& database, const std::string& database_path,
+                           const Layout& layout);
 
 // Registers the images of a database and makes the seed model; logs the decisions. Where the
 // database was made without a calibration, its cameras are found first

@@ -37,7 +37,7 @@ std::string ColmapCommand(const WorkspacePaths& paths) {
 
 void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
   const ShapeMetrics& metrics = summary.shape.metrics;
-  fmt::print(out, "markers: {}", metrics.num_markers);
+  fmt::print(out, "markers: {}", metrics.NumWholeOfLayout());
   if (metrics.num_layout_markers) fmt::print(out, " of {}", *metrics.num_layout_markers);
   if (summary.shape.uncertainty) {
     std::vector<double> sigmas_mm;

@@ -15,6 +15,7 @@
 #include "exporters/scale/scale_audit_report.h"
 #include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
+#include "importer/text/id_ranges.h"
 
 namespace velamap {
 namespace {
@@ -207,6 +208,14 @@ void LogContradictions(const ShapeExportReport& report) {
   for (const std::string& warning : KnownPointWarnings(report.known_points)) spdlog::warn(warning);
 }
 
+void WarnOfOtherMarkers(const ShapeMetrics& metrics) {
+  if (metrics.other_marker_ids.empty()) return;
+  spdlog::warn(
+      "{} markers of the shape are not in the layout and are taken to have its marker_length: {}; "
+      "is it the layout of this surface?",
+      metrics.other_marker_ids.size(), IdRanges(metrics.other_marker_ids));
+}
+
 void WarnOfMissingSections(const SectionReport& sections) {
   for (const MissingSection& missing : sections.missing) {
     // What the layout alone decides is said, but is no reason to check this clip.
@@ -227,8 +236,11 @@ ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layou
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   const ShapeMetrics& metrics = report.metrics;
   const Eigen::Vector3d box_m = BoundingBox(report.shape);
-  out << "markers_reconstructed: " << metrics.num_markers;
+  out << "markers_reconstructed: " << metrics.NumWholeOfLayout();
   if (metrics.num_layout_markers) out << " of " << *metrics.num_layout_markers << " in the layout";
+  if (!metrics.other_marker_ids.empty()) {
+    out << ", and " << metrics.other_marker_ids.size() << " others";
+  }
   out << '\n';
   if (metrics.reconstruction_ratio) {
     fmt::print(out, "reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);

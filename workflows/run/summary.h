@@ -38,6 +38,9 @@ std::string ShellQuote(const std::string& text);
 // Logs which measured distances and known points contradict the shape.
 void LogContradictions(const ShapeExportReport& report);
 
+// Warns of markers that the layout does not name.
+void WarnOfOtherMarkers(const ShapeMetrics& metrics);
+
 // Warns of lines and heights that have no section, with the reason.
 void WarnOfMissingSections(const SectionReport& sections);
 

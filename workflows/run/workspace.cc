@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
@@ -102,9 +103,12 @@ Workspace::Workspace(const std::string& path, const std::string& image_path) {
 std::vector<UsedPath> WorkspaceOutputs(const std::string& path, const std::string& used_by) {
   const WorkspacePaths paths{AbsoluteFolder(path)};
   std::vector<UsedPath> outputs;
-  for (const fs::path& file : {paths.Database(), paths.RegistrationCsv(), paths.Report(),
-                               paths.Timing(), paths.Log(), paths.ColmapLog()}) {
+  // To the logs and the database is added.
+  for (const fs::path& file : {paths.Database(), paths.Log(), paths.ColmapLog()}) {
     outputs.push_back({used_by, file});
+  }
+  for (const fs::path& file : {paths.RegistrationCsv(), paths.Report(), paths.Timing()}) {
+    outputs.push_back({used_by, file, false, true});
   }
   for (const fs::path& folder : {paths.Sparse(), paths.Shape()}) {
     outputs.push_back({used_by, folder, true});

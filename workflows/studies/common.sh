@@ -132,8 +132,9 @@ reconstruct_steps() {
   local database=(--database_path "${DATABASE:-$clip/database.db}")
   local adjustment=(--log_level warn)
   if [[ -n "${BACKEND:-}" ]]; then
-    adjustment=(--backend "$BACKEND" "${database[@]}" "${layout[@]}")
-    if [[ "${EXACT_PRINT:-0}" -eq 1 ]]; then
+    adjustment=(--backend "$BACKEND" "${layout[@]}")
+    if [[ "$BACKEND" != colmap ]]; then adjustment+=("${database[@]}"); fi
+    if [[ "$BACKEND" != colmap && "${EXACT_PRINT:-0}" -eq 1 ]]; then
       adjustment+=(--MarkerAdjustment.common_print_tolerance 0)
     fi
   fi

@@ -70,6 +70,8 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
       {"focus", ReportStatus::kCheck, [](ClipFacts* facts) { facts->blur_px = 2.5; }},
       {"50 % of the frames", ReportStatus::kCheck,
        [](ClipFacts* facts) { facts->num_frames_with_few_markers = 20; }},
+      {"3 of 43 frames looked at are damaged", ReportStatus::kCheck,
+       [](ClipFacts* facts) { facts->num_frames_damaged = 3; }},
       {"by 15 degrees", ReportStatus::kCheck,
        [](ClipFacts* facts) { facts->precision->parallax_deg = 15; }},
       {"by 5 degrees", ReportStatus::kBad,

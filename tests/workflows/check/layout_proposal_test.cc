@@ -18,11 +18,9 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
-using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 
 const std::string kSail = std::string(VELAMAP_SOURCE_DIR) + "/sample_project/sail/";
 

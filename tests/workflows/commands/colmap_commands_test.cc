@@ -12,7 +12,6 @@
 namespace velamap {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 

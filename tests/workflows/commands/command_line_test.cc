@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/scoped_date.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 
@@ -174,6 +175,15 @@ TEST(CommandLineTest, UnknownNamesListWhatThereIs) {
       {"bundle_adjuster", "--input_path", "/n", "--output_path", "/out", "--backend", "markers"});
   EXPECT_EQ(length.exit_code, 2);
   EXPECT_THAT(length.err, HasSubstr("--layout_path: missing"));
+}
+
+TEST(CommandLineTest, ADateThatIsNoneIsRefusedBeforeTheWork) {
+  const ScopedDate date("yesterday");
+  const ProgramRun run = RunVelamap({"marker_importer", "--image_path", "/n", "--database_path",
+                                     "/out/new.db", "--marker_length", "0.1"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("SOURCE_DATE_EPOCH: expected seconds since 1970"));
+  EXPECT_EQ(NumErrorLines(run.err), 1);
 }
 
 TEST(CommandLineTest, FullStandardOutputIsNoSuccess) {

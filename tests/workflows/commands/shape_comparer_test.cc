@@ -1,7 +1,6 @@
 // The command shape_comparer on files.
 
 #include <filesystem>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

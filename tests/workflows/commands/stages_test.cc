@@ -1,6 +1,7 @@
 // The single commands on databases and models of a synthetic scene, without pictures.
 
 #include <SQLiteCpp/Database.h>
+#include <fmt/format.h>
 
 #include "exporters/formats/shape_csv.h"
 #include "reconstruct/model/model_io.h"
@@ -160,6 +161,22 @@ TEST_F(StagesTest, ExporterGivesTheTruthBack) {
   EXPECT_EQ(analysis.exit_code, 0) << analysis.err;
   EXPECT_THAT(analysis.out, HasSubstr("num_markers: 12\n"));
   EXPECT_THAT(analysis.out, HasSubstr("num_points: 48\n"));
+}
+
+TEST_F(StagesTest, MarkersOutsideTheLayoutAreCountedApart) {
+  WriteModel(TrueModel(scene_, kOtherUnit_m), path("model"), ModelFormat::kBinary);
+  const std::vector<int> ids = MarkerIds(scene_.layout);
+  ASSERT_EQ(ids.size(), 12u);
+  WriteTextFile(dir_ / "part.yml",
+                fmt::format("dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  board: "
+                            "{{markers: [{}, {}, {}, {}]}}\n",
+                            ids[0], ids[1], ids[2], ids[3]));
+  const ProgramRun run =
+      RunVelamap({"shape_exporter", "--input_path", path("model"), "--layout_path",
+                  path("part.yml"), "--shape_path", path("shape")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("markers_reconstructed: 4 of 4 in the layout, and 8 others\n"));
+  EXPECT_THAT(run.err, HasSubstr("8 markers of the shape are not in the layout"));
 }
 
 TEST_F(StagesTest, ExporterOnAFullDiskLeavesNothing) {

@@ -96,6 +96,18 @@ class ColmapTracksTest : public ColmapTest {
     RunCommand(arguments);
   }
 
+  // The model that COLMAP's mapper makes of the database.
+  Model Map() {
+    fs::create_directory(dir_ / "mapped");
+    fs::create_directory(dir_ / "images");
+    std::vector<std::string> arguments = {"mapper",       "--database_path", database(),
+                                          "--image_path", path("images"),    "--output_path",
+                                          path("mapped")};
+    AddMarkerOptions(&arguments);
+    RunCommand(arguments);
+    return ReadModel(path("mapped/0"));
+  }
+
   // What lets `mapper` and `point_triangulator` live on a few markers a pair.
   static void AddMarkerOptions(std::vector<std::string>* arguments) {
     AddOption({"Mapper.min_num_matches"}, "4", arguments);
@@ -155,14 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ColmapMatchesTest,
 TEST_F(ColmapTracksTest, MapperFindsTheTracksOfTheMarkers) {
   WriteUnmatched(MakeScene(SceneKind::kCube));
   Match();
-  fs::create_directory(dir_ / "mapped");
-  fs::create_directory(dir_ / "images");
-  std::vector<std::string> arguments = {"mapper",       "--database_path", database(),
-                                        "--image_path", path("images"),    "--output_path",
-                                        path("mapped")};
-  AddMarkerOptions(&arguments);
-  RunCommand(arguments);
-  const Model model = ReadModel(path("mapped/0"));
+  const Model model = Map();
   const auto images = ReadImages(database());
   const int num_corners = ExpectTracksOfOneCornerEach(model, images);
   EXPECT_EQ(model.images.size(), images.size());
@@ -181,14 +186,7 @@ TEST_F(ColmapTracksTest, MapperFindsAllTracksInThePairsOfALongClip) {
   SyntheticScene scene = MakeSyntheticScene(options);
   AddNoise({0.1, 0.0, 0.0, 0.0, 1}, &scene);
   WriteSceneDatabase(scene, database());
-  fs::create_directory(dir_ / "mapped");
-  fs::create_directory(dir_ / "images");
-  std::vector<std::string> arguments = {"mapper",       "--database_path", database(),
-                                        "--image_path", path("images"),    "--output_path",
-                                        path("mapped")};
-  AddMarkerOptions(&arguments);
-  RunCommand(arguments);
-  const Model model = ReadModel(path("mapped/0"));
+  const Model model = Map();
   const auto images = ReadImages(database());
   EXPECT_EQ(model.images.size(), images.size());
   EXPECT_EQ(ExpectTracksOfOneCornerEach(model, images), NumCorners(images, 2));

@@ -1,6 +1,5 @@
 #include "workflows/run/central_frame_sweep.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>

@@ -12,7 +12,6 @@ namespace velamap {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
 TEST(StageTimes, SleepTakesWallTimeAndWorkTakesCpuTime) {

@@ -1,9 +1,13 @@
 #include "workflows/run/workspace.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
+#include "importer/base/replacement.h"
 #include "importer/database/colmap_database.h"
 #include "importer/video/written_frame.h"
 #include "tests/support/temp_dir.h"
@@ -105,7 +109,14 @@ TEST(WorkspaceTest, MustNotLieAmongThePhotographs) {
 
 TEST(WorkspaceTest, ClearsAwayWhatAnInterruptedRunLeft) {
   const TempDir temp_dir;
-  fs::create_directories(temp_dir / "workspace/.sparse.tmp-17-0/seed");
+  fs::create_directory(temp_dir / "workspace");
+  const pid_t killed = fork();
+  if (killed == 0) {
+    fs::create_directories(TemporarySibling(temp_dir / "workspace/sparse") / "seed");
+    _exit(0);
+  }
+  waitpid(killed, nullptr, 0);
+  EXPECT_EQ(ListFolder(temp_dir / "workspace").size(), 1u);
   WriteTextFile(temp_dir / "workspace/velamap.log", "log");
   EXPECT_EQ(ErrorOf(temp_dir / "workspace", "photos"), "");
   EXPECT_THAT(ListFolder(temp_dir / "workspace"), ElementsAre("velamap.log"));
