@@ -1,7 +1,6 @@
 #include "reconstruct/camera_calibration.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <utility>
 

@@ -30,7 +30,7 @@ struct CameraCalibrationOptions {
   int max_num_views = 60;
   // Nothing: the model that predicts unseen pictures best.
   std::optional<CameraModel> camera_model;
-  int num_threads = 0;  // 0: one a core; never changes the result
+  int num_threads = 0;  // 0: one per core; never changes the result
 };
 
 struct CalibrationView {
@@ -60,7 +60,7 @@ struct CameraCalibration {
 };
 
 // `guesses` are the cameras of the database. Throws DataError for pictures of several cameras or a
-// zoomed one, pictures that are all alike, and those that do not tell the focal length.
+// zoomed one, pictures that are all alike, and those that do not determine the focal length.
 CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
                                   const std::vector<DatabaseImage>& images,
                                   const std::map<CameraId, Camera>& guesses, const Layout& layout,

@@ -24,7 +24,7 @@ namespace {
 using Cameras = std::map<CameraId, Camera>;
 
 constexpr double kMinFocal = 0.25, kMaxFocal = 8.0;  // times the larger side
-// From this sigma of its logarithm on, the markers tell too little of the focal length.
+// From this sigma of its logarithm on, the markers say too little about the focal length.
 constexpr double kVagueLogSigma = 0.1;
 
 int LargerSide(const Camera& camera) { return std::max(camera.width_px, camera.height_px); }

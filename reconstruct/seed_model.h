@@ -17,11 +17,11 @@ namespace velamap {
 // image comes first and is the origin; reconstruct/model/gauge.h defines the order of the others.
 // Images with fewer than two markers are left out, and so are points with fewer than two
 // observations unless the registration has a single frame. Throws DataError if no point or fewer
-// than two images are left (for a single frame: none).
+// than two images are left (no image, for a registration of a single frame).
 Model MakeSeedModel(const Registration& registration, const std::vector<DatabaseImage>& images,
                     const std::map<CameraId, Camera>& cameras);
 
-// One row an image with markers: image_name, registered, num_markers, num_outliers, rms_error_mm,
+// One row per image with markers: image_name, registered, num_markers, num_outliers, rms_error_mm,
 // reason, outliers (marker ids, each with its reason where the method gives one).
 void WriteRegistrationCsv(const Registration& registration, std::ostream& out);
 

@@ -1,6 +1,5 @@
 #include "reconstruct/adjust/calibration_choice.h"
 
-#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,7 +12,7 @@
 namespace velamap {
 namespace {
 
-// What freeing some intrinsics brings.
+// What is gained by freeing some intrinsics.
 struct IntrinsicsVerdict {
   double improvement = 0.0;   // of the sum of squares
   double criterion = 0.0;     // the improvement that is significant for the number of parameters

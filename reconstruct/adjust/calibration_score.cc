@@ -18,8 +18,8 @@ namespace {
 constexpr int kFocal = 0, kFirstDistortion = 4, kNumWarps = 8;
 using WarpMatrix = Eigen::Matrix<double, 2, kNumWarps>;
 
-// If the adjustment absorbs nearly all of a warp, its effect is that of another shape, and the rest
-// is rounding. A warp needs at least this share of its information.
+// If the adjustment absorbs nearly all of a warp, it has the same effect as another shape, and the
+// rest is rounding. A warp needs at least this share of its information.
 constexpr double kMinShareOfInformation = 1e-6;
 
 // Displacements, px, at (u, v): distance from the principal point in half diagonals of the image.
@@ -40,7 +40,7 @@ double HalfDiagonal(const Camera& camera) {
   return 0.5 * std::hypot(camera.width_px, camera.height_px);
 }
 
-// Derivatives of all residuals by the warps of one camera.
+// Derivatives of all residuals with respect to the warps of one camera.
 RowMajorMatrix DesignMatrix(const Model& model, const MarkerProblem& problem, CameraId camera_id,
                             Eigen::Index num_rows) {
   const Camera& camera = model.cameras.at(camera_id);

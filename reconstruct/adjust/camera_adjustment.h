@@ -46,14 +46,14 @@ CalibrationAdjustment AdjustForCalibration(const MarkerAdjustmentOptions& option
 
 // Returns `step`, the step of the focal length that a verdict on steadiness (camera_steadiness.h)
 // names, if it is real. A suspicious one is measured on `seed`, the model before its adjustment;
-// without a seed it is not taken for real.
+// without a seed it does not count as real.
 std::optional<FocalStep> ConfirmFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           const Model* seed, const std::optional<FocalStep>& step);
 
-// Measures a step of the focal length at `step` by an adjustment with a camera of its own for the
-// images from there on; `model` is the one before its adjustment. Nothing where the focal lengths
-// agree to 1 % or within their sigmas, or where one part alone cannot be adjusted.
+// Measures a step of the focal length at `step` by an adjustment in which the images from there on
+// have their own camera; `model` is the model before its adjustment. Nothing where the focal
+// lengths agree to 1 % or within their sigmas, or where one part alone cannot be adjusted.
 std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           Model model, FocalStep step);

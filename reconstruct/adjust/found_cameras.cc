@@ -1,6 +1,5 @@
 #include "reconstruct/adjust/found_cameras.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>

@@ -24,7 +24,7 @@ void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
 
 // Adds the effect of an inset of all corners to the sigmas of the focal lengths: an inset changes
 // by how much the squares seem to be foreshortened, and no picture shows it. `inset_as_scale`: 1
-// sigma of the inset, in parts of a side.
+// sigma of the inset, as a fraction of a side.
 void AddInset(double inset_as_scale, const Camera& camera, std::vector<double>* sigmas);
 
 }  // namespace velamap

@@ -27,12 +27,13 @@ struct MarkerSize {
   int num_sides = 0;
   double ratio = 0.0;
   double block_variance = 0.0;  // part of the ratio's variance that other markers do not share
-  // Shared part: the factor of the covariance times the ratio's gradient, and the inset last.
+  // The part that markers share: the factor of the covariance times the ratio's gradient, with the
+  // inset last.
   Eigen::VectorXd by_factor;
 };
 
-// The inset of a marker differs from that of the others by about as much as theirs from the truth:
-// what is behind its margin, or its blur, is its own.
+// The inset counts twice, as an error that all markers share and as an equally large one of each
+// marker, because blur and the background behind the margin vary between markers.
 std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCovariance& covariance,
                                        const std::map<int, double>& inset_sigmas) {
   std::vector<MarkerSize> sizes;
@@ -66,8 +67,8 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCov
 // Deviations of the ratios from the median of other markers, and the variances that image noise
 // gives them. Errors that all these markers share (the scale) cancel.
 struct Deviations {
-  std::vector<double> values;
-  std::vector<double> variances;
+  explicit Deviations(std::size_t size) : values(size), variances(size) {}
+  std::vector<double> values, variances;
 };
 
 using MarkerIdxs = std::vector<std::size_t>;  // into the sizes
@@ -79,7 +80,7 @@ Eigen::VectorXd MeanByFactor(const std::vector<MarkerSize>& sizes, const MarkerI
 }
 
 void Compare(const std::vector<MarkerSize>& sizes, const MarkerIdxs& idxs, const MarkerIdxs& others,
-             double more_variance, Deviations* deviations) {
+             double extra_variance, Deviations* deviations) {
   std::vector<double> ratios;
   for (const std::size_t i : others) ratios.push_back(sizes[i].ratio);
   const double median = Median(std::move(ratios));
@@ -87,7 +88,7 @@ void Compare(const std::vector<MarkerSize>& sizes, const MarkerIdxs& idxs, const
   for (const std::size_t i : idxs) {
     deviations->values[i] = sizes[i].ratio / median - 1.0;
     deviations->variances[i] = sizes[i].block_variance +
-                               (sizes[i].by_factor - mean_by_factor).squaredNorm() + more_variance;
+                               (sizes[i].by_factor - mean_by_factor).squaredNorm() + extra_variance;
   }
 }
 
@@ -98,7 +99,7 @@ MarkerIdxs AllOf(const std::vector<MarkerSize>& sizes) {
 }
 
 Deviations FindDeviations(const std::vector<MarkerSize>& sizes) {
-  Deviations deviations{std::vector<double>(sizes.size()), std::vector<double>(sizes.size())};
+  Deviations deviations(sizes.size());
   Compare(sizes, AllOf(sizes), AllOf(sizes), 0.0, &deviations);
   return deviations;
 }
@@ -110,10 +111,10 @@ std::map<std::string, MarkerIdxs> GroupByPart(const std::vector<MarkerSize>& siz
 }
 
 // Deviations of the markers from their own parts. The median of a part with few markers means
-// little, so these are compared with all markers; `part_scale_sigma` is the sigma of the parts'
-// differences.
+// little, so these markers are compared with all others, between whose parts the scale differs by
+// `part_scale_sigma`.
 Deviations FindDeviationsInParts(const std::vector<MarkerSize>& sizes, double part_scale_sigma) {
-  Deviations deviations{std::vector<double>(sizes.size()), std::vector<double>(sizes.size())};
+  Deviations deviations(sizes.size());
   for (const auto& [part, idxs] : GroupByPart(sizes)) {
     if (idxs.size() >= kMinMarkersOfPart) {
       Compare(sizes, idxs, idxs, 0.0, &deviations);
@@ -220,8 +221,8 @@ std::string DisagreementText(const std::vector<PartSize>& parts, std::size_t idx
       parts[idx].part, difference.value > 0 ? "larger" : "smaller");
 }
 
-// Sets the members on parts where one differs from the others by more than chance, and by enough to
-// matter beside `print_scale_sigma`.
+// Sets what the verdict says of parts if one differs from the others by more than chance, and by
+// enough to matter beside `print_scale_sigma`.
 void JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
                 double print_scale_sigma, MarkerSizeVerdict* verdict) {
   const std::vector<PartSize> parts = MeasureParts(sizes, print_tolerance);
@@ -236,12 +237,10 @@ void JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
     scatter += from_mean * from_mean / (count - 1);
     noise += std::pow(differences[i].sigma, 2) * (count - 1) / (count * count);
   }
-  auto worst = differences.begin();  // of two, both are equally far from the other
-  if (parts.size() > 2) {
-    worst = std::max_element(
-        differences.begin(), differences.end(),
-        [](const PartDifference& a, const PartDifference& b) { return a.Sigmas() < b.Sigmas(); });
-  }
+  // Two parts differ from each other equally: the first stands for both.
+  const auto worst = std::max_element(
+      differences.begin(), parts.size() > 2 ? differences.end() : differences.begin() + 1,
+      [](const PartDifference& a, const PartDifference& b) { return a.Sigmas() < b.Sigmas(); });
   if (worst->Sigmas() <= kMaxSigmas || std::abs(worst->value) <= print_scale_sigma) return;
   verdict->part_scale_sigma = std::sqrt(std::max(scatter - noise, 0.0));
   verdict->part_disagreement =
@@ -260,8 +259,7 @@ double MedianScale(const MarkerState& state) {
   }
   if (scales.empty()) {
     throw DataError(
-        "no marker of the model has two neighbouring corners, so that its size is "
-        "unknown");
+        "no marker of the model has two neighbouring corners, so that its size is unknown");
   }
   return Median(std::move(scales));
 }

@@ -22,7 +22,7 @@ MarkerProblem MakeProblem(const MarkerSolution& solution, const MarkerWeights& w
                            weights, state);
 }
 
-// The parameters of `model`, whose images and markers are among those of the solution.
+// The parameters of `model`, which has no images or markers that the solution lacks.
 MarkerState MakeState(const MarkerSolution& solution, const Model& model) {
   MarkerState state = MakeMarkerState(model, *solution.layout);
   state.rolling_shutter_s = solution.state.rolling_shutter_s;
@@ -32,7 +32,8 @@ MarkerState MakeState(const MarkerSolution& solution, const Model& model) {
   return state;
 }
 
-// Holds the distortion at the calibration where it has come to fold over. Returns whether it did.
+// Resets the distortion to the calibration and holds it there if the adjustment has made it fold
+// over. Returns whether it has.
 bool HoldFoldedDistortion(MarkerSolution* solution) {
   const MarkerAdjustmentOptions& options = solution->options;
   if (!options.refine_extra_params || options.find_camera) return false;

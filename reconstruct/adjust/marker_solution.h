@@ -59,10 +59,10 @@ double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearizati
 // Residuals of the corners of another model with the weights of the solution, without loss.
 std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution);
 
-// Sum of the squares of all residuals, in sigmas, less what the loss takes off.
+// Sum of the squares of all residuals, in sigmas, minus what the loss takes off.
 double SumOfSquares(const MarkerSolution& solution);
 
-// The decrease of SumOfSquares that is significant for so many more parameters: the Bayesian
+// The decrease of SumOfSquares that is significant for this many more parameters: the Bayesian
 // information criterion (Schwarz, "Estimating the Dimension of a Model", 1978).
 double InformationCriterion(int num_parameters, const MarkerSolution& solution);
 

@@ -15,7 +15,7 @@ namespace velamap {
 // estimate_rolling_shutter, and where the option gives the time.
 bool ShowsRollingShutter(const MarkerSolution& solution);
 
-// Adds a warning where the rows take longer to read than those of any camera.
+// Adds a warning where the rows take longer to read than any camera needs.
 void WarnOfSlowShutter(const AdjustmentUncertainty& uncertainty, MarkerSolution* solution);
 
 }  // namespace velamap

@@ -68,8 +68,8 @@ BoardFlaws FindBoardFlaws(const Model& model, const PointCovariance& points) {
     const double height_m = 0.5 * ((x[3] - x[0]).norm() + (x[2] - x[1]).norm());
     stretch_sum += std::log(width_m / height_m);
     sides_m.push_back(0.5 * (width_m + height_m));
-    // Adds the derivative of log(width / height) by one end of a side; the other end has the
-    // opposite.
+    // Adds the derivative of log(width / height) with respect to one end of a side; the other end
+    // has the opposite.
     const auto add = [&gradient, id = marker_id, corners = x](std::size_t from, std::size_t to,
                                                               double by_length) {
       const Eigen::Vector3d by_end = 0.5 * by_length * (corners[to] - corners[from]).normalized();

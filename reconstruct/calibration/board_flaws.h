@@ -10,7 +10,7 @@ namespace velamap {
 struct BoardFlaws {
   double extent_m = 0.0;  // largest distance between two points
   bool is_flat = false;   // else a cube or a sail; nothing below is known then
-  // Distances of the points from their plane, RMS and largest, and the part of the RMS that their
+  // Distances of the points from their plane, RMS and largest, and how much of the RMS their
   // uncertainty explains.
   double bend_m = 0.0, max_bend_m = 0.0, bend_sigma_m = 0.0;
   // By how much the markers are wider than high, as a fraction: paper shrinks and printers feed

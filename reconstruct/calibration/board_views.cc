@@ -48,7 +48,7 @@ BoardView Describe(const DatabaseImage& image, double unknown_sigma_px) {
   return view;
 }
 
-// What the views that are taken tell of each cell, by tilt.
+// What the chosen views show of each cell, by tilt.
 class Coverage {
  public:
   Coverage(const PictureGrid& grid, double median_sigma_px)

@@ -26,7 +26,7 @@ struct ResidualCell {
 std::vector<ResidualCell> ResidualsInCells(const std::vector<CalibrationResidual>& residuals,
                                            const PictureGrid& grid);
 
-// RMS over the corners of their cell's mean residual, less what independent residuals would leave
+// RMS over the corners of their cell's mean residual, minus what independent residuals would leave
 // in a mean. Cells with fewer than eight corners do not count.
 double SystematicResidual(const std::vector<ResidualCell>& cells);
 

@@ -1,6 +1,6 @@
 // Whether all images of a model were taken by one camera that kept its lens.
 //
-// The points stay where the model has them, and every image alone gets a pose, a focal length and a
+// The points stay where the model has them, and every image gets its own pose, focal length and
 // principal point. A lens that was zoomed, a second camera and a stabilised picture, whose
 // principal point wanders, show as values that scatter beyond their sigmas.
 
@@ -36,7 +36,7 @@ struct FocalStep {
   double sigmas = 0.0;  // of the step, by the sigmas of the images or their scatter
 
   // Certain: at least 2 % and 8 sigmas. The points of the model were found with one focal length
-  // and hide a part of a step, so a smaller one (0.3 % and 3 sigmas) is suspicious: an adjustment
+  // and hide part of a step, so a smaller one (0.3 % and 3 sigmas) is suspicious: an adjustment
   // with two cameras has to confirm it.
   bool IsCertain() const;
   bool IsSuspicious() const;

@@ -33,7 +33,7 @@ Option ColmapPathOption(BundleAdjustmentOptions* options);
 OptionGroup DescribeOptions(BundleAdjustmentOptions* options);
 
 // Throws DataError where an adjusted model's mean reprojection error is above max_mean_error_px or
-// no number.
+// not a number.
 void CheckMeanError(double mean_error_px, double max_mean_error_px);
 
 }  // namespace velamap

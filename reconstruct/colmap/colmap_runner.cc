@@ -5,7 +5,6 @@
 
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -80,7 +79,7 @@ std::string DescribeFailure(int wait_status) {
 class Log {
  public:
   explicit Log(const std::string& path) {
-    CreateFolders(AbsolutePath(path).parent_path());
+    CreateFolders(CanonicalPath(path).parent_path());
     stream_.open(path, std::ios::app | std::ios::binary);
     if (!stream_) throw InputError(fmt::format("{}: the log cannot be written", path));
   }

@@ -10,7 +10,7 @@
 namespace velamap {
 
 // Removes observations of points behind the camera, and those whose error is far beyond the usual
-// one of the model, of their image and of their point; an image or a point that is misplaced as a
+// error of the model, of their image and of their point; an image or a point that is misplaced as a
 // whole keeps its observations. To be called before the first adjustment. Appends to `removed`.
 void RemoveSeedOutliers(const BundleAdjustmentOptions& options, Model* model,
                         std::vector<RemovedObservation>* removed);

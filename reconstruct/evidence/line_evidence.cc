@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kNumSigmas = 3.0;
 // A gap in the line costs at most this many steps for each place that it spans, however wide it is:
-// the line may be torn there. This is more than the price of one end and less than that of both.
+// the line may be torn there. This is more than the price of one end and less than the price of
+// both.
 constexpr double kTornSteps = 12.0;
 
 // The price of leaving a marker out, in steps. A true marker between two others causes a detour of

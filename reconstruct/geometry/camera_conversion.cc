@@ -1,7 +1,5 @@
 #include "reconstruct/geometry/camera_conversion.h"
 
-#include <cmath>
-
 #include <ceres/dynamic_autodiff_cost_function.h>
 #include <ceres/manifold.h>
 #include <ceres/problem.h>

@@ -120,7 +120,7 @@ IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
   central.params[static_cast<std::size_t>(num_focal)] = 0.5 * camera.width_px;
   central.params[static_cast<std::size_t>(num_focal) + 1] = 0.5 * camera.height_px;
   IntrinsicsPrior prior = MakeIntrinsicsPrior(central, {true, true, true}, kRadialSigma);
-  // Coefficients that a calibration does not name are free as well, but for the denominator.
+  // Coefficients that a calibration does not name are free as well, except the denominator.
   const std::size_t num_free =
       std::min(prior.sigmas.size(), static_cast<std::size_t>(kBeginOfDenominator));
   prior.free.resize(num_free);

@@ -30,7 +30,7 @@ struct IntrinsicsPrior {
   CameraModel model = CameraModel::kPinhole;
   double max_ray_length = 0.0;  // MaxRayLength
   std::vector<double> mean;
-  std::vector<double> sigmas;  // of the held ones, too
+  std::vector<double> sigmas;  // of free and held parameters
   std::vector<int> free;       // indices of the parameters that may change, ascending
   std::vector<int> held;       // all others, ascending
 };
@@ -45,11 +45,12 @@ struct IntrinsicsPrior {
 IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrinsics& free,
                                     double sigma);
 
-// The prior of a camera that nobody calibrated: any focal length (a normal prior around that of
-// `camera`, as wide as it), the principal point in the centre to 2 % of the larger side, and no
-// distortion to 30 % at the image's farthest corner by each radial parameter and to 1 % by each
-// tangential one. All parameters are free but the denominator of FULL_OPENCV, which would run away
-// with the numerator. Depends only on the model, the size and the focal length of `camera`.
+// The prior of a camera that nobody calibrated: any focal length (a normal prior around the one of
+// `camera`, whose sigma is that focal length itself), the principal point in the centre with a
+// sigma of 2 % of the larger side, and no distortion. 1 sigma of each radial parameter moves the
+// image's farthest corner by 30 %, 1 sigma of each tangential one by 1 %. All parameters are free
+// except the denominator of FULL_OPENCV, which would run away with the numerator. Depends only on
+// the model, the size and the focal length of `camera`.
 IntrinsicsPrior UnknownCameraPrior(const Camera& camera);
 
 // 1 sigma of the relative difference of the two focal lengths of a camera that nobody calibrated:
@@ -59,7 +60,8 @@ constexpr double kPixelShapeSigma = 1e-3;
 // Whether the calibration has distortion parameters that its file does not name.
 bool HasUnnamedDistortion(const Camera& calibration);
 
-// The camera as the model with radial distortion that contains it, where it has none.
+// Gives a pinhole camera the parameters of radial distortion, all zero: PINHOLE becomes OPENCV,
+// SIMPLE_PINHOLE becomes SIMPLE_RADIAL. Other cameras stay as they are.
 Camera WithDistortionParams(const Camera& camera);
 
 // The groups of `free` that the images determine clearly better than the calibration does.

@@ -29,7 +29,8 @@ struct PointCovariance {
   int IndexOf(Point3DId point3D_id) const;
 };
 
-// A linear function of points: the derivative of a reported quantity by each point (per m).
+// A linear function of points: the derivative of a reported quantity with respect to each point
+// (per m).
 using PointGradient = std::vector<std::pair<Point3DId, Eigen::Vector3d>>;
 
 // Covariance of two linear functions, in the product of their units. Throws std::logic_error for

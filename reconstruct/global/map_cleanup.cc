@@ -16,7 +16,7 @@ namespace {
 
 // Errors of print do not change a side by more than this factor from the median of the others.
 constexpr double kMaxSizeRatio = 1.25;
-// An id is at two places when the second has at least this part of the support of the first.
+// An id is at two places when the second has at least this fraction of the support of the first.
 constexpr double kRivalRatio = 0.6;
 // A frame is blurred when its corners scatter this many times as much as all corners.
 constexpr double kBlurRatio = 3.0;
@@ -38,7 +38,16 @@ bool FitsAs(const GlobalRegistration& global, int observation_idx, int as_marker
                            places.front()) <= GrowthTolerance(observation);
 }
 
-// Whether these observations of one marker show another one, which so many more frames see that the
+// The same for any number of turns from `min_quarters` on.
+bool FitsRenumbered(const GlobalRegistration& global, int observation_idx, int as_marker_idx,
+                    int min_quarters) {
+  for (int quarters = min_quarters; quarters < kNumCorners; ++quarters) {
+    if (FitsAs(global, observation_idx, as_marker_idx, quarters)) return true;
+  }
+  return false;
+}
+
+// Whether these observations of one marker show another marker, which far more frames see: then the
 // id was misread here.
 bool SeeAnotherMarker(const GlobalRegistration& global, int marker_idx,
                       const std::vector<int>& observation_idxs) {
@@ -65,15 +74,12 @@ bool SeeMarkerRotated(const GlobalRegistration& global, int marker_idx,
                       const std::vector<int>& observation_idxs) {
   if (global.solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].empty()) return false;
   return std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
-    for (int quarters = 1; quarters < kNumCorners; ++quarters) {
-      if (FitsAs(global, observation_idx, marker_idx, quarters)) return true;
-    }
-    return false;
+    return FitsRenumbered(global, observation_idx, marker_idx, 1);
   });
 }
 
-// The markers whose places explain all observations that fit this one, each perhaps with its
-// corners numbered from another one, as a misread code has them.
+// The markers whose places explain all observations that fit this marker, whichever corner each is
+// numbered from: a misread code may start at any.
 std::vector<int> RivalsOf(const GlobalRegistration& global, int marker_idx) {
   std::vector<int> rival_ids;
   for (int other_idx = 0; other_idx < static_cast<int>(global.problem.markers.size());
@@ -85,10 +91,7 @@ std::vector<int> RivalsOf(const GlobalRegistration& global, int marker_idx) {
     const auto& observation_idxs = global.problem.Marker(marker_idx).observation_idxs;
     if (std::all_of(observation_idxs.begin(), observation_idxs.end(), [&](int observation_idx) {
           return !global.solution.fits[static_cast<std::size_t>(observation_idx)] ||
-                 FitsAs(global, observation_idx, other_idx, 0) ||
-                 FitsAs(global, observation_idx, other_idx, 1) ||
-                 FitsAs(global, observation_idx, other_idx, 2) ||
-                 FitsAs(global, observation_idx, other_idx, 3);
+                 FitsRenumbered(global, observation_idx, other_idx, 0);
         })) {
       rival_ids.push_back(global.problem.Marker(other_idx).marker_id);
     }

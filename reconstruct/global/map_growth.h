@@ -12,10 +12,10 @@ namespace velamap {
 
 struct MapGrowthOptions {
   int min_num_inliers = 2;  // markers that have to agree for a frame to join
-  int max_num_frames = 0;   // stop at so many registered frames; 0: all
+  int max_num_frames = 0;   // stop at this many registered frames; 0: all
   bool adjust = true;       // after every round; a precise map can do without
   std::uint32_t random_seed = 0;
-  int num_threads = 1;  // 0: one a core; never changes the result
+  int num_threads = 1;  // 0: one per core; never changes the result
 };
 
 // Registers the frames of `frame_idxs` as far as possible. Frames that see most of the map come

@@ -13,7 +13,8 @@ namespace {
 
 // Sigma of a coordinate of a corner where the detector gives none, px.
 constexpr double kDefaultSigmaPx = 0.2;
-// Errors that the detector's sigma does not cover: the lens, and bent squares (part of the side).
+// Errors that the detector's sigma does not cover: the lens, and bent squares (fraction of the
+// side).
 constexpr double kSigmaFloorPx = 0.05;
 constexpr double kBendSigma = 0.004;
 

@@ -68,7 +68,7 @@ struct MapSolution {
 
 // Estimates the pose of every marker alone. The frames get their frame_idx in the order
 // of `images`.
-// `num_threads` 0: one a core.
+// `num_threads` 0: one per core.
 MapProblem MakeMapProblem(const std::vector<const DatabaseImage*>& images,
                           const std::map<CameraId, Camera>& cameras, const Layout& layout,
                           int num_threads = 0);

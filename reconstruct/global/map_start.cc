@@ -144,11 +144,11 @@ MapSolution StartFromPair(const MapProblem& problem, const std::pair<int, int>& 
 }
 
 double ExplainedObservations(const MapProblem& problem, const MapSolution& solution) {
-  constexpr double kSigmas = 6.0, kPartOfGrowthTolerance = 0.5;
+  constexpr double kSigmas = 6.0, kFractionOfTolerance = 0.5;
   double explained = 0.0;
   for (const MapObservation& observation : problem.observations) {
     const double tolerance_px = std::max(kSigmas * observation.sigma_px,
-                                         kPartOfGrowthTolerance * GrowthTolerance(observation));
+                                         kFractionOfTolerance * GrowthTolerance(observation));
     const double relative = ReprojectionError(problem, solution, observation) / tolerance_px;
     explained += std::max(0.0, 1 - relative * relative);
   }

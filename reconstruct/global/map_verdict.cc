@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-// The nominal sigma is a guess; the noise of corners is not taken to be below this part of it.
+// The nominal sigma is a guess; the noise of corners is not taken to be below this fraction of it.
 constexpr double kMinFactor = 0.3;
 
 // Converts a median RMS error of four corners to 1 sigma of a coordinate.
@@ -74,9 +74,9 @@ std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_s
 }
 
 // 1 sigma of the centre in its least certain direction, for fixed frames. Where these look from one
-// side, the distance follows from the marker's size in the image. Its print is off by the same part
-// in all frames, which is an unknown with one prior and is eliminated: however many frames look
-// from one side, the distance is no more certain than the print.
+// side, the distance follows from the marker's size in the image. Its print is off by the same
+// fraction in all frames, which is an unknown with one prior and is eliminated: however many frames
+// look from one side, the distance is no more certain than the print.
 double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
                    int marker_idx) {
   const MapMarker& marker = problem.Marker(marker_idx);
@@ -96,7 +96,7 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
     const double sigma_px = factor * observation.sigma_px;
     const Eigen::Matrix<double, 2, 3> jacobian =
         observation.px_from_ray[0] * ray_from_x * rotation / sigma_px;
-    // Logarithm of the size in the image: that of the side, minus that of the distance.
+    // log(size in the image) = log(side) - log(distance).
     const Eigen::Vector3d log_distance_by_x = rotation.transpose() * x / x.squaredNorm();
     const double size_weight = std::pow(observation.side_px / sigma_px, 2);
     information += jacobian.transpose() * jacobian +

@@ -84,7 +84,8 @@ std::vector<int> ChooseViews(const MapProblem& problem, const MapSolution& solut
   }
   if (static_cast<int>(registered.size()) <= max_num_frames) return registered;
   std::vector<std::vector<CenterView>> views(problem.frames.size());
-  // A small part of the information of all views, so that determinants are not zero at the start.
+  // A small fraction of the information of all views, so that determinants are not zero at the
+  // start.
   constexpr double kPrior = 1e-3;
   std::vector<Eigen::Matrix3d> information(problem.markers.size(), Eigen::Matrix3d::Zero());
   for (const int idx : registered) {

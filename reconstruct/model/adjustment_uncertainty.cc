@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
@@ -17,9 +18,9 @@ namespace velamap {
 namespace {
 
 // Layout of the file: magic, version, eight doubles, CalibrationEvidence, points, blocks, factor,
-// signs; little-endian.
+// signs, hash of the model (from version 5 on); little-endian.
 constexpr char kMagic[8] = {'V', 'E', 'L', 'A', 'U', 'N', 'C', '\0'};
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5, kVersionWithoutHash = 4;
 
 // In the order of the file, after num_changes.
 constexpr std::array<double CalibrationEvidence::*, 9> kEvidenceMembers = {
@@ -135,7 +136,18 @@ void CheckShapes(const PointCovariance& points, const UncertaintyReader& reader)
 
 }  // namespace
 
-void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder) {
+std::uint64_t HashOfPoints(const Model& model) {
+  std::uint64_t hash = Hash("points");
+  for (const auto& [point3D_id, point] : model.points3D) {
+    const double* x = point.x_in_world.data();
+    hash = Hash({reinterpret_cast<const char*>(&point3D_id), sizeof(point3D_id)}, hash);
+    hash = Hash({reinterpret_cast<const char*>(x), 3 * sizeof(double)}, hash);
+  }
+  return hash == 0 ? 1 : hash;
+}
+
+void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder,
+                      const Model* model) {
   const std::filesystem::path path = FilePath(folder);
   std::ofstream out(path, std::ios::binary);
   Write(kMagic, sizeof(kMagic), &out);
@@ -156,6 +168,7 @@ void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::strin
   for (const Eigen::MatrixXd& block : points.blocks) WriteMatrix(block, &out);
   WriteMatrix(points.factor, &out);
   WriteMatrix(points.signs, &out);
+  Write(model == nullptr ? std::uint64_t{0} : HashOfPoints(*model), &out);
   out.close();
   if (!out) throw InputError(path.string() + ": cannot be written");
 }
@@ -169,7 +182,8 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   if (!std::equal(magic, magic + sizeof(magic), kMagic))
     reader.Fail("is not an uncertainty file of velamap");
   const auto version = reader.Read<std::uint32_t>();
-  if (version != kVersion) reader.Fail(fmt::format("has the unknown version {}", version));
+  if (version != kVersion && version != kVersionWithoutHash)
+    reader.Fail(fmt::format("has the unknown version {}", version));
   AdjustmentUncertainty uncertainty;
   uncertainty.relative_scale_sigma = reader.Read<double>();
   uncertainty.variance_factor = reader.Read<double>();
@@ -192,8 +206,32 @@ AdjustmentUncertainty ReadUncertainty(const std::string& folder) {
   const Eigen::MatrixXd signs = reader.ReadMatrix();
   if (signs.cols() != 1) reader.Fail("is broken");
   points.signs = signs;
+  if (version != kVersionWithoutHash) uncertainty.model_hash = reader.Read<std::uint64_t>();
   reader.ExpectEnd();
   CheckShapes(points, reader);
+  return uncertainty;
+}
+
+std::optional<AdjustmentUncertainty> ReadUncertaintyOf(const Model& model,
+                                                       const std::string& folder) {
+  if (!HasUncertainty(folder)) return std::nullopt;
+  AdjustmentUncertainty uncertainty = ReadUncertainty(folder);
+  const std::string path = FilePath(folder).string();
+  const auto& ids = uncertainty.points.point3D_ids;
+  const bool has_all = std::all_of(ids.begin(), ids.end(), [&](Point3DId point3D_id) {
+    return model.points3D.count(point3D_id) > 0;
+  });
+  const bool is_known = uncertainty.model_hash != 0;
+  if (!has_all || (is_known && uncertainty.model_hash != HashOfPoints(model))) {
+    throw InputError(fmt::format(
+        "{}: is of another model than the one beside it; run velamap bundle_adjuster --backend "
+        "markers again, or remove the file",
+        path));
+  }
+  if (!is_known) {
+    spdlog::warn("{}: does not say of which model it is; it is taken to be of the one beside it",
+                 path);
+  }
   return uncertainty;
 }
 

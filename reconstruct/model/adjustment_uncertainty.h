@@ -3,10 +3,13 @@
 
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "reconstruct/geometry/point_covariance.h"
 #include "reconstruct/model/calibration_evidence.h"
+#include "reconstruct/model/model.h"
 
 namespace velamap {
 
@@ -37,12 +40,24 @@ struct AdjustmentUncertainty {
   double rolling_shutter_s = 0.0;
   double rolling_shutter_sigma_s = 0.0;
   CalibrationEvidence calibration;
+  std::uint64_t model_hash = 0;  // HashOfPoints() of its model, where a file says it; else 0
 };
 
+// Of the ids and coordinates of all points; never 0.
+std::uint64_t HashOfPoints(const Model& model);
+
 // The file in `folder`. ReadUncertainty throws InputError that names the file if it is missing (see
-// HasUncertainty), truncated or of another format.
-void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder);
+// HasUncertainty), truncated or of another format. `model`, which may be null, is the model in the
+// folder, whose hash the file holds.
+void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder,
+                      const Model* model = nullptr);
 bool HasUncertainty(const std::string& folder);
 AdjustmentUncertainty ReadUncertainty(const std::string& folder);
+
+// The uncertainty of the model in `folder`; nothing if there is none. Throws InputError where
+// ReadUncertainty() does and if it is of another model. Warns of a file that does not say of which
+// model it is, as those of earlier versions.
+std::optional<AdjustmentUncertainty> ReadUncertaintyOf(const Model& model,
+                                                       const std::string& folder);
 
 }  // namespace velamap

@@ -22,7 +22,7 @@ struct SeenPoint {
   Eigen::Vector2d x_in_image_px;
 };
 
-// The observations of `image` whose points `model` has; the image may be that of another model.
+// The observations of `image` whose points `model` has; the image may belong to another model.
 std::vector<SeenPoint> SeenPointsOf(const Model& model, const ModelImage& image);
 
 // Returns one entry for each observation, ordered by point, then by position in the track.

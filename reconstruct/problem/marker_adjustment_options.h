@@ -29,15 +29,15 @@ struct MarkerAdjustmentOptions {
   // cloth, which bends, and on parts that the layout calls rigid. 0: unknown.
   double cloth_flatness = 0.01;
   double rigid_flatness = 1e-3;
-  // 1 sigma of an error that all corners share, px: each is seen too far inside (or outside) its
-  // marker by so much along both sides. It widens the scale's sigma according to the size of the
-  // markers in the images. What the estimated image formation leaves open is added (root of the sum
-  // of squares). 0: nothing beyond that.
+  // 1 sigma of an error that all corners share, px: each is seen this far inside (or outside) its
+  // marker along both sides. It widens the scale's sigma according to the size of the markers in
+  // the images. What the estimated image formation leaves open is added (root of the sum of
+  // squares). 0: nothing beyond that.
   double inset_sigma_px = 0.01;
   // Estimates that error, with inset_sigma_px as its prior. Markers that are seen small and large,
-  // oblique and straight tell it from the scale. Whatever else depends on size and slant is taken
-  // for an inset, too: on a rendered sail 0.031 +- 0.006 px are found where the truth is 0.013 px,
-  // and the scale gets worse.
+  // obliquely and head-on distinguish it from the scale. Whatever else depends on size and slant is
+  // taken for an inset, too: on a rendered sail 0.031 +- 0.006 px are found where the truth is
+  // 0.013 px, and the scale gets worse.
   bool estimate_inset = false;
   // The calibration is the prior of what is refined. Only those extra parameters are refined that
   // it names.
@@ -60,7 +60,7 @@ struct MarkerAdjustmentOptions {
   int max_num_iterations = 100;
   int min_track_length = 2;
   double max_mean_error_px = 5.0;
-  int num_threads = 0;  // 0: one a core; never changes the result
+  int num_threads = 0;  // 0: one per core; never changes the result
 
   void Check() const;  // throws InputError that names the option
 };

@@ -21,7 +21,7 @@ using RowMajor = Eigen::Matrix<double, 2, kCols, Eigen::RowMajor>;
 using JacobianMap =
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-// Derivative of the projection by the camera's parameters.
+// Derivative of the projection with respect to the camera's parameters.
 RowMajor<kMaxNumIntrinsics> ProjectionByIntrinsics(CameraModel model, const double* intrinsics,
                                                    const Eigen::Vector2d& ray) {
   using Jet = ceres::Jet<double, kMaxNumIntrinsics>;

@@ -9,7 +9,7 @@
 //   inset        1      apparent inset of all corners, px
 //   intrinsics   3..12  parameters of one camera, in COLMAP's order
 //   shutter      1      time from the first row of an image to the last, s
-//   print scale  1      scale of all printed sides, less 1
+//   print scale  1      scale of all printed sides, minus 1
 //   part scale   1      the same for the sides on one part of the layout, in addition
 // clang-format on
 
@@ -44,9 +44,9 @@ inline Eigen::Map<const Eigen::Vector3d> CornerOfBlock(const double* marker, int
 }
 
 // Applies the Cauchy loss to a whitened residual r itself, so that one residual block can hold
-// several corners with a loss each: r becomes g r with |g r|^2 = a^2 log(1 + |r|^2 / a^2) and
-// a = loss_sigmas. Infinite loss_sigmas: no loss. `jacobian` is the derivative of the result by r
-// and may be null.
+// several corners with a loss each: r becomes g r with |g r|^2 = a^2 log(1 + |r|^2 / a^2) and a =
+// loss_sigmas. Infinite loss_sigmas: no loss. `jacobian` is the derivative of the result with
+// respect to r and may be null.
 Eigen::Vector2d RobustResidual(const Eigen::Vector2d& whitened, double loss_sigmas,
                                Eigen::Matrix2d* jacobian);
 

@@ -30,7 +30,7 @@ struct MarkerWeights {
   double print_scale_by_bars = 0.0;
   // The time from the first row of an image to the last is a parameter instead of an option.
   bool frees_rolling_shutter = false;
-  // 1 sigma of the scale of each part's prints around that of all; 0: parts agree.
+  // 1 sigma of the scale of each part's prints around the scale of all; 0: parts agree.
   double part_scale_sigma = 0.0;
   // Without scale bars only its prior determines the scale of the print. It is then constant while
   // the cost is minimized, because it would slow down the last digits, and a parameter for the

@@ -39,7 +39,7 @@ struct MarkerState {
   double rolling_shutter_s = 0.0;  // from the first row of an image to the last
   double inset_px = 0.0;
   double print_scale = 0.0;
-  // Scale of the prints of each part, less 1, in addition to print_scale.
+  // Scale of the prints of each part, minus 1, in addition to print_scale.
   std::map<std::string, double> part_scales;
 };
 

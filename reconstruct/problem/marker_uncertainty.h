@@ -28,7 +28,7 @@ Eigen::MatrixXd BarCovariance(const std::vector<ScaleBar>& bars, const MarkerSta
 Eigen::MatrixXd GlobalCovariance(const MarkerProblem& problem, const MarkerCovariance& covariance,
                                  const double* block);
 
-// Number of the corners' residuals less the number of parameters that they determine.
+// Number of the corners' residuals minus the number of parameters that they determine.
 double CornerRedundancy(const MarkerJacobian& jacobian, const MarkerCovariance& covariance);
 
 // Everything but the variance factor, the correlation factor and the share of large residuals.

@@ -54,7 +54,7 @@ struct MarkerCovariance {
 };
 
 // Nothing where the data leave a combination of parameters undetermined. Runs on up to
-// `num_threads` threads (0: one a core), which do not change the result.
+// `num_threads` threads (0: one per core), which do not change the result.
 std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jacobian,
                                                       int num_threads);
 

@@ -24,7 +24,7 @@ std::vector<ScaleBar> FindScaleBars(const MarkerState& state, const Layout& layo
 // Length of the bar in the state, m.
 double BarLength(const ScaleBar& bar, const MarkerState& state);
 
-// Derivative of the bar's length by the coordinates of all points, 3n.
+// Derivative of the bar's length with respect to the coordinates of all points, 3n.
 Eigen::VectorXd BarGradient(const ScaleBar& bar, const MarkerState& state);
 
 }  // namespace velamap

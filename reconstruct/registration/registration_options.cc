@@ -41,7 +41,7 @@ OptionGroup DescribeOptions(ThesisRegistrationOptions* options) {
             "(thesis)",
             AtLeast(0)},
            {"Registration.frequency_threshold", &options->frequency_threshold, "fraction",
-            "part of the registered frames that has to see a marker (thesis, time order)",
+            "fraction of the registered frames that must see a marker (thesis, time order)",
             FromTo(0, 1)},
            {"Registration.num_mean_iterations", &options->num_mean_iterations, "count",
             "iterations of the weighted mean (thesis)", AtLeast(0)},

@@ -1,4 +1,4 @@
-// Options of the registration: common ones, and those of each method.
+// Options of the registration, common to both methods or of one of them.
 
 #pragma once
 
@@ -33,7 +33,7 @@ struct ThesisRegistrationOptions {
   int skip = 10;                     // s, frames between selected ones (time order)
   int neighborhood = 5;              // m, frames on each side of the skip that compete (time order)
   double ransac_max_error_m = 0.0;   // 0: the marker's side (the thesis's 100 mm)
-  double frequency_threshold = 0.3;  // beta, part of the selected frames that see a marker (time)
+  double frequency_threshold = 0.3;  // beta, fraction of frames that see a marker (time order)
   int num_mean_iterations = 30;
   double mean_sigma_m = 0.6;
   ThesisVariant variant = ThesisVariant::kRobust;
@@ -55,7 +55,7 @@ struct RegistrationOptions {
   int min_num_inliers = 2;    // fewest shared markers that agree for a frame to be registered
   int min_num_frames = 2;     // fewest frames that see a marker
   int random_seed = 0;
-  int num_threads = 0;  // 0: one a core; never changes the result
+  int num_threads = 0;  // 0: one per core; never changes the result
   ThesisRegistrationOptions thesis;
   GlobalRegistrationOptions global;
 

@@ -21,7 +21,8 @@ struct CentralFrame {
   std::string reason;
 };
 
-// The frame whose markers are seen most often in the other frames; of equals the first.
+// The frame whose markers are seen most often in the other frames; the first of several that are
+// equal.
 CentralFrame ChooseCentralFrame(const std::vector<FrameShape>& frames);
 
 struct FrameSearchOptions {

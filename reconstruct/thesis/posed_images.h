@@ -22,7 +22,7 @@ struct PosedImages {
   std::vector<const Camera*> cameras;
 };
 
-// Poses the markers on up to `num_threads` threads (0: one a core).
+// Poses the markers on up to `num_threads` threads (0: one per core).
 PosedImages PoseImages(const std::vector<DatabaseImage>& images,
                        const std::map<CameraId, Camera>& cameras, const Layout& layout,
                        int num_threads = 0);

@@ -10,6 +10,8 @@ velamap_test(NAME reconstruct_evidence_test LABEL unit
 # The default registration: its parts, then the whole.
 velamap_test(NAME reconstruct_global_test LABEL unit
   SOURCES
+    global/false_detections_test.cc
+    global/frame_cleanup_test.cc
     global/global_registration_test.cc
     global/map_adjustment_test.cc
     global/map_cleanup_test.cc

@@ -10,6 +10,7 @@
 #include "reconstruct/model/reprojection.h"
 #include "tests/reconstruct/scene_model.h"
 #include "tests/reconstruct/sheet_model.h"
+#include "tests/support/error_matchers.h"
 
 namespace velamap {
 namespace {
@@ -285,12 +286,7 @@ TEST_F(MarkerAdjustment, ErrorsAboveTheLimitAreADataError) {
   const std::string before = Bytes(model);
   MarkerAdjustmentOptions options;
   options.max_mean_error_px = 2.0;
-  try {
-    Adjust(&model, options);
-    ADD_FAILURE() << "no error";
-  } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--BundleAdjustment.max_mean_error"));
-  }
+  ExpectThrows<DataError>([&] { Adjust(&model, options); }, {"--BundleAdjustment.max_mean_error"});
   EXPECT_EQ(Bytes(model), before);
 }
 

@@ -1,7 +1,6 @@
 // What AdjustWithColmap does when COLMAP fails or lies. Shell scripts stand in for it: their
 // arguments are `bundle_adjuster -h`, or `bundle_adjuster --input_path $3 --output_path $5 ...`.
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 

@@ -15,6 +15,7 @@
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
 #include "tests/reconstruct/sheet_model.h"
+#include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
@@ -22,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 class BundleAdjustment : public testing::Test {
@@ -216,13 +216,8 @@ TEST_F(BundleAdjustment, ParametersThatTheCalibrationDoesNotNameAreNotFreed) {
   const std::string before = Bytes(model);
   BundleAdjustmentOptions options;
   options.refine_extra_params = true;
-  try {
-    Adjust(&model, options);
-    ADD_FAILURE() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--BundleAdjustment.refine_extra_params"));
-    EXPECT_THAT(error.what(), HasSubstr("--backend markers"));
-  }
+  ExpectThrows<InputError>([&] { Adjust(&model, options); },
+                           {"--BundleAdjustment.refine_extra_params", "--backend markers"});
   EXPECT_EQ(Bytes(model), before);
 }
 
@@ -244,12 +239,7 @@ TEST_F(BundleAdjustment, ErrorsAboveTheLimitAreADataError) {
   AddImageNoise(3.0, 2, &model);
   BundleAdjustmentOptions options;
   options.max_mean_error_px = 2.0;
-  try {
-    Adjust(&model, options);
-    ADD_FAILURE() << "no error";
-  } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--BundleAdjustment.max_mean_error"));
-  }
+  ExpectThrows<DataError>([&] { Adjust(&model, options); }, {"--BundleAdjustment.max_mean_error"});
 }
 
 // COLMAP 3.8 fixes x of the second image's translation. Where its true value is zero, an error of

@@ -1,7 +1,6 @@
 #include "reconstruct/evidence/layout_evidence.h"
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 #include <set>
 

@@ -1,7 +1,5 @@
 #include "reconstruct/evidence/marker_rows.h"
 
-#include <algorithm>
-#include <cmath>
 #include <random>
 
 #include <gmock/gmock.h>

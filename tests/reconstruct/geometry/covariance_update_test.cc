@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "tests/reconstruct/dense_covariance.h"
+
 namespace velamap {
 namespace {
 
@@ -28,16 +30,6 @@ class Covariances : public testing::Test {
     Eigen::MatrixXd matrix(rows, cols);
     for (double& value : matrix.reshaped()) value = normal(random_);
     return matrix;
-  }
-
-  static Eigen::MatrixXd Dense(const PointCovariance& points) {
-    Eigen::MatrixXd dense = points.factor * points.signs.asDiagonal() * points.factor.transpose();
-    Eigen::Index begin = 0;
-    for (const Eigen::MatrixXd& block : points.blocks) {
-      dense.block(begin, begin, block.rows(), block.rows()) += block;
-      begin += block.rows();
-    }
-    return dense;
   }
 
   static double RelativeError(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <numeric>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/reconstruct/global/scene_map.h"
+#include "tests/reconstruct/global/grown_map.h"
 #include "tests/support/test_seed.h"
 
 namespace velamap {
@@ -17,61 +15,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-// The true map of a scene as the state that cleanup works on. The state refers to the options and
-// to the map, so they live together.
-struct GrownMap {
-  RegistrationOptions options;
-  SceneMap map;
-  GlobalRegistration global{options, {}, {}, false, -1, {}, {}, {}, {}, {}, {}};
-
-  explicit GrownMap(SyntheticScene scene) : map(std::move(scene)) {
-    for (const DatabaseImage& image : map.images) global.images.push_back(&image);
-    global.image_idx_of_frame.resize(map.images.size());
-    std::iota(global.image_idx_of_frame.begin(), global.image_idx_of_frame.end(), 0);
-    global.reason_of_image.resize(map.images.size());
-    global.problem = map.problem;
-    global.solution = map.TrueSolution();
-    Update();
-  }
-  GrownMap(const GrownMap&) = delete;
-
-  // Fits and noise of the solution as it stands.
-  void Update() {
-    MarkFits(global.problem, 1.0, &global.solution);
-    global.noise = EstimateNoise(global.problem, global.solution);
-  }
-
-  std::vector<int> DroppedIds() const {
-    std::vector<int> ids;
-    for (const auto& [marker_idx, dropped] : global.dropped_markers) {
-      EXPECT_EQ(dropped.marker_id, global.problem.Marker(marker_idx).marker_id);
-      EXPECT_FALSE(dropped.reason.empty());
-      EXPECT_TRUE(global.solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].empty());
-      EXPECT_EQ(global.NumFits(marker_idx), 0);
-      ids.push_back(dropped.marker_id);
-    }
-    return ids;
-  }
-
-  std::vector<int> LeftOutFrames() const {
-    std::vector<int> frame_idxs;
-    for (std::size_t idx = 0; idx < global.problem.frames.size(); ++idx) {
-      const bool is_registered = global.solution.cam_from_shape[idx].has_value();
-      EXPECT_EQ(global.reason_of_image[idx].empty(), is_registered) << idx;
-      if (is_registered) continue;
-      EXPECT_EQ(global.NumFitsInFrame(static_cast<int>(idx)), 0);
-      frame_idxs.push_back(static_cast<int>(idx));
-    }
-    return frame_idxs;
-  }
-};
-
-SyntheticScene SailWithNoise(int num_frames, bool video, std::uint32_t seed) {
-  SyntheticScene scene = MakeScene(SceneKind::kSail, num_frames, video);
-  AddNoise({0.2, 0.0, 0.0, 0, seed}, &scene);
-  return scene;
-}
 
 TEST(Cleanup, TakesNothingOutOfAGoodMap) {
   GrownMap grown(SailWithNoise(15, false, TestSeed()));
@@ -185,96 +128,6 @@ TEST(DropWrongSizes, CommonScaleOfAllMarkersChangesNothing) {
   DropWrongSizes(&grown.global);
   EXPECT_THAT(grown.DroppedIds(), ElementsAre(3));
   EXPECT_THAT(grown.global.dropped_markers.at(3).reason, HasSubstr("1.50 times as long"));
-}
-
-TEST(LeaveOutBlurredFrames, LeavesOutTheBlurredAlone) {
-  SyntheticScene scene = SailWithNoise(26, false, TestSeed());
-  BlurFrames(1.2, TestSeed() + 1, &scene);
-  GrownMap grown(std::move(scene));
-  LeaveOutBlurredFrames(&grown.global);
-  EXPECT_THAT(grown.LeftOutFrames(), ElementsAre(5, 15, 25));
-  EXPECT_THAT(grown.global.reason_of_image[15], HasSubstr("blurred"));
-}
-
-TEST(LeaveOutBlurredFrames, FrameThatTheUserNamedStays) {
-  SyntheticScene scene = SailWithNoise(26, false, TestSeed());
-  BlurFrames(1.2, TestSeed() + 1, &scene);
-  GrownMap grown(std::move(scene));
-  grown.global.central_image_idx = 15;
-  LeaveOutBlurredFrames(&grown.global);
-  EXPECT_THAT(grown.LeftOutFrames(), ElementsAre(5, 25));
-}
-
-TEST(LeaveOutBlurredFrames, FrameThatAMarkerNeedsStays) {
-  SyntheticScene scene = SailWithNoise(16, false, TestSeed());
-  BlurFrames(1.2, TestSeed() + 1, &scene);
-  // Marker 7 is seen by the blurred frames and by one more.
-  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
-    if (i == 5 || i == 10 || i == 15) continue;
-    auto& markers = scene.frames[i].markers;
-    markers.erase(std::remove_if(markers.begin(), markers.end(),
-                                 [](const auto& m) { return m.marker_id == 7; }),
-                  markers.end());
-  }
-  ASSERT_NE(FindDetection(7, &scene.frames[5]), nullptr);
-  ASSERT_EQ(FindDetection(7, &scene.frames[15]) == nullptr, false);
-  GrownMap grown(std::move(scene));
-  LeaveOutBlurredFrames(&grown.global);
-  EXPECT_THAT(grown.LeftOutFrames(), IsEmpty());
-}
-
-TEST(LimitFrames, KeepsAsManyFramesOfAVideoAsTheOptionSays) {
-  for (const int max_num_frames : {4, 10}) {
-    GrownMap grown(SailWithNoise(24, true, TestSeed()));
-    grown.global.is_video = true;
-    grown.options.global.max_num_frames = max_num_frames;
-    LimitFrames(&grown.global);
-    EXPECT_EQ(grown.global.solution.NumRegistered(), max_num_frames);
-    EXPECT_EQ(static_cast<int>(grown.LeftOutFrames().size()), 24 - max_num_frames);
-  }
-}
-
-TEST(LimitFrames, FrameThatTheUserNamedStays) {
-  for (const int central_idx : {0, 11, 23}) {
-    GrownMap grown(SailWithNoise(24, true, TestSeed()));
-    grown.global.is_video = true;
-    grown.global.central_image_idx = central_idx;
-    grown.options.global.max_num_frames = 4;
-    LimitFrames(&grown.global);
-    EXPECT_TRUE(grown.global.solution.cam_from_shape[static_cast<std::size_t>(central_idx)]);
-  }
-}
-
-TEST(LimitFrames, TakesFramesWithSharpCornersFirst) {
-  GrownMap grown(SailWithNoise(24, true, TestSeed()));
-  grown.global.is_video = true;
-  grown.global.central_image_idx = 0;
-  for (MapObservation& observation : grown.global.problem.observations) {
-    if (observation.frame_idx % 2 == 1) observation.sigma_px *= 5;
-  }
-  grown.options.global.max_num_frames = 8;
-  LimitFrames(&grown.global);
-  for (std::size_t idx = 1; idx < 24; idx += 2) {
-    EXPECT_FALSE(grown.global.solution.cam_from_shape[idx]) << idx;
-  }
-}
-
-TEST(LimitFrames, PhotographsAllStay) {
-  GrownMap grown(SailWithNoise(12, false, TestSeed()));
-  grown.options.global.max_num_frames = 4;
-  LimitFrames(&grown.global);
-  EXPECT_THAT(grown.LeftOutFrames(), IsEmpty());
-}
-
-TEST(LimitFrames, ChoosesTheSameFramesInAnyShapeFrame) {
-  GrownMap grown(SailWithNoise(24, true, TestSeed())), moved(SailWithNoise(24, true, TestSeed()));
-  moved.global.solution = Transformed(ArbitrarySimilarity(1.0), moved.global.solution);
-  for (GrownMap* map : {&grown, &moved}) {
-    map->global.is_video = true;
-    map->options.global.max_num_frames = 6;
-    LimitFrames(&map->global);
-  }
-  EXPECT_EQ(grown.LeftOutFrames(), moved.LeftOutFrames());
 }
 
 TEST(DropContradictions, DoesNotDependOnTheFrameAndTheScaleOfTheMap) {

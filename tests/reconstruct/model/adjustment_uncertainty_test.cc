@@ -77,6 +77,37 @@ TEST_F(UncertaintyFile, ComesBackToTheLastBit) {
   EXPECT_EQ(found.scale_change, written.scale_change);
 }
 
+TEST_F(UncertaintyFile, IsTiedToItsModel) {
+  Model model;
+  EXPECT_FALSE(ReadUncertaintyOf(model, Folder()));
+  for (const Point3DId id : uncertainty_.points.point3D_ids) {
+    model.points3D[id].x_in_world = Eigen::Vector3d(1.0, 2.0, static_cast<double>(id));
+  }
+  WriteUncertainty(uncertainty_, Folder(), &model);
+  ASSERT_TRUE(ReadUncertaintyOf(model, Folder()));
+  EXPECT_EQ(ReadUncertaintyOf(model, Folder())->points.factor, uncertainty_.points.factor);
+  Model other = model;
+  other.points3D.begin()->second.x_in_world.x() += 1e-12;
+  EXPECT_THROW(ReadUncertaintyOf(other, Folder()), InputError);
+  other = model;
+  other.points3D[9999].x_in_world.setOnes();
+  EXPECT_THROW(ReadUncertaintyOf(other, Folder()), InputError);
+  WriteUncertainty(uncertainty_, Folder());  // does not say of which model
+  EXPECT_TRUE(ReadUncertaintyOf(other, Folder()));
+  other.points3D.erase(uncertainty_.points.point3D_ids.front());
+  EXPECT_THROW(ReadUncertaintyOf(other, Folder()), InputError);
+}
+
+TEST_F(UncertaintyFile, FilesOfTheEarlierVersionAreRead) {
+  WriteUncertainty(uncertainty_, Folder());
+  std::string bytes = FileBytes();
+  bytes[8] = '\x04';
+  bytes.resize(bytes.size() - sizeof(std::uint64_t));
+  WriteBytes(bytes);
+  EXPECT_EQ(ReadUncertainty(Folder()).points.signs, uncertainty_.points.signs);
+  EXPECT_EQ(ReadUncertainty(Folder()).model_hash, 0u);
+}
+
 TEST_F(UncertaintyFile, NoPointsAndNoFactorAreFine) {
   WriteUncertainty({}, Folder());
   EXPECT_TRUE(ReadUncertainty(Folder()).points.IsEmpty());

@@ -1,6 +1,5 @@
 // Our models through the eyes of the installed COLMAP.
 
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <regex>

@@ -9,7 +9,6 @@
 namespace velamap {
 namespace {
 
-using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Key;
 using testing::UnorderedElementsAre;

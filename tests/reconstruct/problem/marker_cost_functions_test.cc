@@ -2,8 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <random>
 
 #include <ceres/gradient_checker.h>
 #include <ceres/manifold.h>

@@ -15,10 +15,18 @@
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/adjust/scale_bar_verdict.h"
 #include "reconstruct/problem/error_correlation.h"
+#include "tests/reconstruct/dense_covariance.h"
 #include "tests/reconstruct/scene_model.h"
 
 namespace velamap {
 namespace {
+
+MarkerWeights WeightsWithoutLoss() {
+  MarkerWeights weights;
+  weights.loss_sigmas = std::numeric_limits<double>::infinity();
+  weights.print_tolerance = 1e-3;
+  return weights;
+}
 
 SyntheticScene TinyScene() {
   SyntheticSceneOptions options;
@@ -44,16 +52,6 @@ Eigen::MatrixXd DenseJacobian(const MarkerProblem& problem) {
   return dense;
 }
 
-Eigen::MatrixXd Dense(const PointCovariance& points) {
-  Eigen::MatrixXd dense = points.factor * points.signs.asDiagonal() * points.factor.transpose();
-  Eigen::Index begin = 0;
-  for (const Eigen::MatrixXd& block : points.blocks) {
-    dense.block(begin, begin, block.rows(), block.rows()) += block;
-    begin += block.rows();
-  }
-  return dense;
-}
-
 // Everything at once: a marker with three corners, intrinsics, rolling shutter, inset, print scale,
 // bars.
 TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
@@ -75,9 +73,7 @@ TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
   options.common_print_tolerance = 0.003;
   options.estimate_inset = true;
   MarkerState state = MakeMarkerState(model, scene.layout);
-  MarkerWeights weights;
-  weights.loss_sigmas = std::numeric_limits<double>::infinity();
-  weights.print_tolerance = 1e-3;
+  MarkerWeights weights = WeightsWithoutLoss();
   weights.frees_rolling_shutter = true;
   weights.scale_bars = FindScaleBars(state, scene.layout);
   ASSERT_EQ(weights.scale_bars.size(), 2u);
@@ -121,9 +117,7 @@ TEST(CornerRedundancy, IsWhatTheDenseHatMatrixLeaves) {
   const SyntheticScene scene = TinyScene();
   const Model model = MakeSceneModel(scene);
   MarkerState state = MakeMarkerState(model, scene.layout);
-  MarkerWeights weights;
-  weights.loss_sigmas = std::numeric_limits<double>::infinity();
-  weights.print_tolerance = 1e-3;
+  const MarkerWeights weights = WeightsWithoutLoss();
   const MarkerProblem problem = MakeMarkerProblem({}, model, {}, model.cameras, weights, &state);
   const Eigen::MatrixXd dense = DenseJacobian(problem);
   const Eigen::VectorXd scales = dense.colwise().norm().cwiseInverse();
@@ -160,9 +154,7 @@ TEST(MarkerCovariance, IsTheSameForAnyNumberOfThreads) {
   AddNoise({0.2, 0, 0, 5, 1}, &scene);
   const Model model = MakeSceneModel(scene);
   MarkerState state = MakeMarkerState(model, scene.layout);
-  MarkerWeights weights;
-  weights.loss_sigmas = std::numeric_limits<double>::infinity();
-  weights.print_tolerance = 1e-3;
+  const MarkerWeights weights = WeightsWithoutLoss();
   const MarkerProblem problem = MakeMarkerProblem({}, model, {}, model.cameras, weights, &state);
   const std::vector<int> groups = GroupImages(model, state);
   const MarkerJacobian jacobian = EvaluateJacobian(problem);
