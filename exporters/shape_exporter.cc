@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exporters/datum/known_points_report.h"
+#include "exporters/formats/metashape_markers.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
@@ -78,6 +79,12 @@ void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions
   const MetricsReport metrics = MetricsOf(report);
   WriteFile(folder / "metrics.csv", [&](std::ostream& out) { WriteMetricsCsv(metrics, out); });
   WriteFile(folder / "metrics.json", [&](std::ostream& out) { WriteMetricsJson(metrics, out); });
+  if (options.metashape) {
+    WriteFile(folder / "metashape_markers.xml",
+              [&](std::ostream& out) { WriteMetashapeMarkers(report.metric_model, out); });
+    WriteFile(folder / "metashape_reference.csv",
+              [&](std::ostream& out) { WriteMetashapeReference(report.shape, out); });
+  }
   WriteSailFiles(report.sail, report.shape, report.frame, options.files, folder);
   WriteFreeformFiles(report.freeform, report.frame, options.files.unit, folder);
   // The last one, because it lists the others.
@@ -169,7 +176,8 @@ void WriteShape(const ShapeExportReport& report, const ShapeExporterOptions& opt
   if (!folders.model.empty()) {
     WriteModel(report.metric_model, folders.model.string(), ModelFormat::kBinaryAndText,
                [&](const std::string& folder) {
-                 if (report.uncertainty) WriteUncertainty(*report.uncertainty, folder);
+                 if (!report.uncertainty) return;
+                 WriteUncertainty(*report.uncertainty, folder, &report.metric_model);
                });
   }
   // Committed last, so that an error while writing the model keeps the old shape beside the old

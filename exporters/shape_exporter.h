@@ -27,12 +27,13 @@ struct ShapeExporterOptions {
   std::string model_output_path;  // folder of the metric model, binary and text; empty for none
   std::string shape_output_path;  // folder of shape.csv, shape.ply, ...; empty for none
   bool ascii_ply = false;
+  bool metashape = false;                         // also the files of formats/metashape_markers.h
   std::optional<FrameChoice> frame;               // without it, ChooseFrame() decides
   ScaleMethod scale_by = ScaleMethod::kAgreeing;  // of a model without uncertainty
   SailOptions sail;
-  SailFileOptions files;  // the unit is also that of parts without lines
+  SailFileOptions files;  // the unit also applies to parts without lines
   ShapeOrigin origin;     // for shape.json
-  int num_threads = 0;    // 0: one a core; never changes the result
+  int num_threads = 0;    // 0: one per core; never changes the result
 };
 
 struct ShapeExportReport {

@@ -27,7 +27,7 @@ struct ShapeOrigin {
 // Names of files, and what they hold in one line.
 using DescribedFiles = std::vector<std::pair<std::string, std::string>>;
 
-// The files of a shape that are in `folder`, sorted by name. `unit` is that of the formats that
+// The files of a shape that are in `folder`, sorted by name. `unit` is the unit of the formats that
 // name none.
 DescribedFiles DescribeShapeFiles(const std::filesystem::path& folder, LengthUnit unit);
 

@@ -90,6 +90,9 @@ void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report) {
             {"missing_marker_ids", metrics.missing_marker_ids}},
            report);
   }
+  if (!metrics.other_marker_ids.empty()) {
+    Append({{"other_marker_ids", metrics.other_marker_ids}}, report);
+  }
   if (metrics.num_sail_markers) {
     Append({{"num_sail_markers", *metrics.num_sail_markers},
             {"sail_reconstruction_ratio", metrics.sail_reconstruction_ratio.value()}},

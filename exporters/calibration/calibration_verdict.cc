@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,7 +17,7 @@ constexpr std::size_t kManyEmptyParts = 3;              // of nine
 constexpr double kGoodSigma = 0.003, kBadSigma = 0.02;  // of the focal length
 constexpr double kGoodCenterSigma = 0.003;              // of the picture's larger side
 constexpr double kGoodUnseenPx = 0.5, kBadUnseenPx = 2.0;
-// Where residuals that lie close together share so much of the error, the model lacks something.
+// Where residuals that lie close together share this much of the error, the model lacks something.
 constexpr double kMaxPatternShare = 0.6, kMaxPatternPx = 0.05;
 constexpr std::size_t kFewViews = 10;
 constexpr double kMaxOutliers = 0.1;  // share
@@ -141,7 +140,7 @@ class Judge {
     } else if (sigma > kGoodSigma) {
       reasons_.Check(focal);
     }
-    const std::size_t center = HasOneFocalLength(found.camera.model) ? 1 : 2;
+    const std::size_t center = NumFocalLengths(found.camera.model);
     const double center_px = std::max(found.sigmas[center], found.sigmas[center + 1]);
     const double side_px = std::max(found.camera.width_px, found.camera.height_px);
     if (center_px > kGoodCenterSigma * side_px) {

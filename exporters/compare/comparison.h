@@ -41,8 +41,8 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
                    const MeshDistance& reference, const Layout& layout,
                    const ComparisonOptions& options);
 
-// The figures of all shapes, without rounding errors. Those of several shapes have a row for each
-// in the table shapes, and the name of the shape in each row of the other tables.
+// The figures of all shapes, without rounding errors. For several shapes, the table `shapes` has a
+// row for each, and every row of the other tables names its shape.
 MetricsReport MakeReport(const std::vector<Comparison>& series);
 
 // Names shapes by their paths: the file, or the folder that holds a folder `shape` or a shape.csv.

@@ -34,7 +34,8 @@ void FaceLikeMarkers(const MarkerShape& shape, const FittedSurface& fit, Surface
   for (Eigen::Vector3d& normal : grid->normals) normal = -normal;
 }
 
-std::optional<double> Together(const std::optional<double>& a, const std::optional<double>& b) {
+std::optional<double> CombinedSigma(const std::optional<double>& a,
+                                    const std::optional<double>& b) {
   if (!a || !b) return std::nullopt;
   return std::hypot(*a, *b);
 }
@@ -53,7 +54,7 @@ DeflectionField FieldBetween(const MarkerShape& shape, const MarkerShape& refere
     Deflection deflection;
     deflection.vector_m = EvaluatePoint(of_shape.surface, u, v) - field.reference.vertices_m[i];
     deflection.distance_m = deflection.vector_m.dot(field.reference.normals[i]);
-    deflection.sigma_m = Together(SigmaAt(of_shape, u, v), SigmaAt(of_reference, u, v));
+    deflection.sigma_m = CombinedSigma(SigmaAt(of_shape, u, v), SigmaAt(of_reference, u, v));
     field.deflections.push_back(deflection);
   }
   return field;

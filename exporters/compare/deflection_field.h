@@ -1,5 +1,5 @@
-// The deflection of a sail: from each point of a grid on the reference's surface the vector to the
-// compared shape's.
+// The deflection of a sail: the vectors from the points of a grid on the reference's surface to the
+// surface of the compared shape.
 //
 // Between two shapes, the vector joins the points of the two surfaces (FitSurface) with the same u
 // and v, both fitted to the markers that both shapes have: it follows the cloth. From a design,
@@ -23,7 +23,7 @@ namespace velamap {
 
 struct Deflection {
   Eigen::Vector3d vector_m = Eigen::Vector3d::Zero();  // from the reference to the shape
-  double distance_m = 0.0;                             // of it, along the reference's normal
+  double distance_m = 0.0;                             // its component along the reference's normal
   // Sigma of the distance by the noise of the markers, without the alignment and without errors
   // that all markers of a shape share. Nothing for a surface through markers without sigma.
   std::optional<double> sigma_m;
@@ -31,11 +31,11 @@ struct Deflection {
 
 struct DeflectionField {
   std::string part;
-  // On the reference, in its frame. Normals point to the side of the reference's faces: those of
-  // its markers, or of the design.
+  // On the reference, in its frame. Normals point to the side that the faces of the reference look
+  // to: of its markers, or of the design.
   SurfaceGrid reference;
   // One per point of the grid; nothing where the shape is more than EdgeOptions::tolerance_mm
-  // beside the design.
+  // beyond the edge of the design.
   std::vector<std::optional<Deflection>> deflections;
 };
 

@@ -204,16 +204,13 @@ void EdgeOptions::Check() const { CheckRanges(*this); }
 
 MeshDistance::MeshDistance(const TriangleMesh& mesh) : index_(std::make_unique<Index>()) {
   VELAMAP_CHECK(!mesh.triangles.empty());
-  Eigen::Vector3d low = mesh.vertices_m.front(), high = low;
-  for (const Eigen::Vector3d& x : mesh.vertices_m) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  index_->diagonal_m = (high - low).norm();
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& x : mesh.vertices_m) box.extend(x);
+  index_->diagonal_m = box.diagonal().norm();
   VELAMAP_CHECK(index_->diagonal_m > 0);
   std::vector<Eigen::Vector3d> welded_m;
   const std::vector<int> numbers =
-      Weld(mesh.vertices_m, low, kWeldTolerance * index_->diagonal_m, &welded_m);
+      Weld(mesh.vertices_m, box.min(), kWeldTolerance * index_->diagonal_m, &welded_m);
   for (const Eigen::Vector3d& x : welded_m) {
     index_->triangles.Vertices.push_back(BVH_Vec3d(x.x(), x.y(), x.z()));
   }

@@ -13,7 +13,6 @@
 namespace velamap {
 namespace {
 
-constexpr std::size_t kMinPoints = kMinPointsOverSurface;
 constexpr double kAlsoFits = 1.2;       // largest ratio of the costs of poses that fit equally well
 constexpr double kOtherPose_rad = 0.1;  // least rotation between different poses
 
@@ -105,10 +104,10 @@ Alignment AlignToMesh(const MarkerShape& shape, const MeshDistance& mesh,
                     AlignmentMethodName(options.method)));
   }
   const Corners corners = CollectCorners(shape);
-  if (corners.ids.size() < kMinPoints) {
+  if (corners.ids.size() < kMinPointsOverSurface) {
     throw DataError(
         fmt::format("{} marker corners are too few for a best fit to a surface, which needs {}",
-                    corners.ids.size(), kMinPoints));
+                    corners.ids.size(), kMinPointsOverSurface));
   }
   return DescribeFit(FitToSurface(corners.x_in_shape_m, mesh, options.starts_as_is), corners, mesh);
 }

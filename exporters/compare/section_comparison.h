@@ -21,7 +21,7 @@ struct SectionDifference {
                         // exit_angle_deg, twist_deg
   double value = 0.0;   // of the shape
   double reference = 0.0;
-  std::optional<double> sigma;         // of value - reference, which are independent
+  std::optional<double> sigma;         // of value - reference, whose errors are independent
   std::optional<double> significance;  // (value - reference) / sigma
 
   double Difference() const { return value - reference; }
@@ -49,9 +49,9 @@ SectionComparison CompareSections(const UncertainShape& shape, const UncertainSh
                                   const Alignment& alignment, const Layout& layout,
                                   const SectionOptions& options = {});
 
-// The sections of a design are those of the markers' feet on its surface, which counts as exact:
-// the same markers on the same cloth, had it the shape of the design. `deviation` is that of
-// CompareWithMesh(); markers beside the surface are missing.
+// Cuts the design through the feet of the markers on its surface, as if the same markers stuck to a
+// sail of exactly this shape. `deviation` comes from CompareWithMesh(); markers that are not over
+// the surface are missing.
 SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
                                   const ShapeDeviation& deviation, const Layout& layout,
                                   const SectionOptions& options = {});

@@ -18,7 +18,8 @@ struct SurfaceDeviation {
   std::string part;
   TriangleMesh mesh;  // of the compared shape, in the reference's frame
   // One per vertex: along the normal of the reference, positive on the side to which it points;
-  // nothing where the vertex is more than EdgeOptions::tolerance_mm beside the reference.
+  // nothing where the vertex is more than EdgeOptions::tolerance_mm beyond the edge of the
+  // reference.
   std::vector<std::optional<double>> distance_m;
   Statistics statistics_m;  // of the known distances
 };
@@ -39,7 +40,7 @@ SurfaceComparison CompareSurfaces(const MarkerShape& aligned_shape, const MeshDi
                                   const Layout& layout, const std::string& part = "",
                                   const EdgeOptions& edge = {});
 
-// The largest known distance without sign, m.
+// The largest absolute value of the known distances, m.
 double LargestDistance(const SurfaceComparison& comparison);
 
 }  // namespace velamap

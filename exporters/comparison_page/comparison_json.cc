@@ -113,7 +113,7 @@ const SectionDifference* FindDifference(const std::vector<SectionDifference>& di
   return it == differences.end() ? nullptr : &*it;
 }
 
-// Those of all shapes, each once, in the order of the first shape that has it.
+// The rows of all shapes, each once, in the order of the first shape that has it.
 std::vector<SectionDifference> AllNumbers(const std::vector<Comparison>& series) {
   std::vector<SectionDifference> all;
   for (const Comparison& comparison : series) {
@@ -161,7 +161,7 @@ Json NumbersJson(const std::vector<Comparison>& series) {
   return rows;
 }
 
-// The profile along its own chord, and as it lies beside that of the reference, mm.
+// The profile along its own chord, and as it lies beside the reference's, mm.
 Json CurveJson(const std::string& name, const Section& section, const Section& reference) {
   Json own = Json::array(), placed = Json::array();
   for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) {
@@ -201,7 +201,7 @@ Json DistanceJson(const MarkerDeviation& marker) {
   return json;
 }
 
-// Markers stand where the reference has them, or where the first shape has those of a design.
+// Markers are shown where the reference has them or, for a design, where the first shape has them.
 Json MarkersJson(const ComparisonPageInput& input) {
   std::map<int, Json> by_id;
   for (std::size_t i = 0; i < input.series.size(); ++i) {

@@ -33,7 +33,8 @@ std::vector<const SectionDifference*> SignificantOf(const SectionComparison& sec
   return significant;
 }
 
-// The one that says most to a sailmaker: camber, draft or twist, where one of them is significant.
+// The difference that says most to a sailmaker: camber, draft or twist, where one of them is
+// significant.
 const SectionDifference* ForTheFirstLine(const std::vector<const SectionDifference*>& significant) {
   for (const char* number : {"camber_percent", "twist_deg", "draft_position_percent"}) {
     for (const SectionDifference* difference : significant) {

@@ -16,7 +16,7 @@ namespace {
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 using ByPose = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-// Largest sigma of a motion that counts as determined, as a share of the radius: 3 degrees.
+// Largest sigma of a motion that counts as determined, as a fraction of the radius: 3 degrees.
 constexpr double kMaxOpen = 0.05;
 
 // The directions in the span of the columns, which are orthonormal: the axes where these span it.
@@ -112,7 +112,7 @@ std::vector<double> SigmasOff(const DatumPoints& points, const PointSet& set, co
   const DatumEquations of_set = Linearize(points, set, pose);
   const SetSystem system = MakeSystem(points, of_set, covariance(rows, rows));
   const std::vector<double> sigmas_of_set = SigmasOfSet(system, of_set.begins);
-  // Derivative of the adjusted pose by the residuals of the set, apart from the sign.
+  // Derivative of the adjusted pose with respect to the residuals of the set, apart from the sign.
   const Eigen::MatrixXd pose_by_residuals =
       system.pose_covariance * system.by_pose.transpose() * system.whitener;
   std::vector<double> sigmas(points.points.size(), 0.0);
@@ -167,7 +167,7 @@ std::optional<AskedGrowth> GrowthAskedFor(const DatumPoints& points, const Point
   const SetSystem system =
       MakeSystem(points, equations, ResidualCovariance(points, set, pose.rotation));
   const Eigen::VectorXd by_scale = system.whitener * equations.by_scale_m;
-  // What the pose cannot take up.
+  // What the pose cannot absorb.
   const auto without_pose = [&system](const Eigen::VectorXd& values) -> Eigen::VectorXd {
     return values -
            system.by_pose * (system.pose_covariance * (system.by_pose.transpose() * values));

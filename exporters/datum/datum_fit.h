@@ -13,16 +13,16 @@ namespace velamap {
 
 // How far each point, in the set or not, is from where the others of the set put it. A right point
 // is beyond 3 with a probability of 0.27 %, however many of its coordinates are known: for one
-// coordinate, it is the difference over its sigma. 0 for a point that the others say nothing of.
-// The pose is the adjusted one of the set (Baarda, A testing procedure for use in geodetic
+// coordinate, it is the difference over its sigma. 0 for a point about which the others say
+// nothing. `pose` is the adjusted pose of the set (Baarda, A testing procedure for use in geodetic
 // networks, 1968).
 std::vector<double> SigmasOff(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
 
-// The motions that the set leaves undetermined, such as "a turn about z": those known to no better
-// than 3 degrees, as seen from the centre of the points. Empty if there are none.
+// The motions that the set leaves undetermined (1 sigma above 3 degrees as seen from the centre of
+// the points), such as "a turn about z". Empty if there are none.
 std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
 
-// By how much of its size the shape would have to grow to fit the set best, and its sigma.
+// The growth of the shape, as a fraction of its size, that would fit the set best.
 struct AskedGrowth {
   double value = 0.0;
   double sigma = 0.0;

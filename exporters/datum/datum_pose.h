@@ -8,7 +8,7 @@
 
 namespace velamap {
 
-// The inverse of the Cholesky factor of a covariance: whitens residuals. Without the correlations
+// The inverse of the Cholesky factor of a covariance, which whitens residuals. Ignores correlations
 // if rounding has made the matrix indefinite.
 Eigen::MatrixXd Whitener(const Eigen::MatrixXd& covariance);
 
@@ -18,11 +18,11 @@ struct DatumPose {
 };
 
 // The poses to which the search converges, the best first. More than one can fit where few
-// coordinates are given: two points and a level leave a turn to either side. The errors of the
+// coordinates are given: two points and a level allow a turn to either side. The errors of the
 // points count as independent.
 std::vector<DatumPose> FindPoses(const DatumPoints& points, const PointSet& set);
 
-// The least-squares pose for the joint covariance, from one nearby.
+// The least-squares pose for the joint covariance; `pose` is the start.
 DatumPose AdjustPose(const DatumPoints& points, const PointSet& set, Rigid3 pose);
 
 }  // namespace velamap

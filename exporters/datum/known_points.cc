@@ -7,82 +7,20 @@
 #include <fmt/format.h>
 
 #include "exporters/datum/datum_consensus.h"
-#include "exporters/shape/joint_covariance.h"
+#include "exporters/datum/present_points.h"
 #include "exporters/shape/known_distances.h"
-#include "exporters/shape/shape_sigma.h"
 #include "importer/base/statistics.h"
 
 namespace velamap {
 namespace {
 
 constexpr double kMaxScaleSigmas = 3.0;
-// Cameras and prints explain that much of a difference in size, see reconstruct/adjust; a wrong
-// unit or marker_length is farther off.
+// Errors of the camera and of the print change the size by no more than this (reconstruct/adjust);
+// a wrong unit or marker_length changes it by more.
 constexpr double kMaxGrowth = 0.07;
 
-// The points of the layout that are in the shape.
-struct PresentPoints {
-  std::vector<std::size_t> idxs;  // in the layout
-  DatumPoints points;
-  PointSet datum;  // indices into `points` of those that are no checks
-};
-
-std::optional<Eigen::Vector3d> PointInShape(const MarkerShape& shape, const KnownPoint& known) {
-  const ShapeMarker* marker = FindMarker(shape, known.marker_id);
-  return marker == nullptr ? std::nullopt
-                           : marker->x_in_shape_m[static_cast<std::size_t>(known.corner)];
-}
-
-// The covariance of the points in the shape, with zeros for those that `covariance` lacks.
-Eigen::MatrixXd CovarianceOfPoints(const std::vector<KnownPoint>& known,
-                                   const PointCovariance* covariance) {
-  std::vector<PointGradient> gradients;
-  std::vector<Eigen::Index> rows;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      PointGradient gradient;
-      AddPointGradient(known[i].marker_id, known[i].corner, Eigen::Vector3d::Unit(axis), &gradient);
-      if (!HasPointsOf(gradient, covariance)) continue;
-      gradients.push_back(std::move(gradient));
-      rows.push_back(static_cast<Eigen::Index>(3 * i) + axis);
-    }
-  }
-  const auto size = static_cast<Eigen::Index>(3 * known.size());
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(size, size);
-  if (!rows.empty()) all(rows, rows) = JointCovarianceOf(*covariance, gradients);
-  return all;
-}
-
-PresentPoints CollectPresent(const MarkerShape& shape, const std::vector<KnownPoint>& known,
-                             const PointCovariance* covariance) {
-  PresentPoints present;
-  std::vector<KnownPoint> found;
-  DatumPoints& points = present.points;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    const std::optional<Eigen::Vector3d> x = PointInShape(shape, known[i]);
-    if (!x) continue;
-    if (!known[i].is_check) present.datum.push_back(points.points.size());
-    present.idxs.push_back(i);
-    found.push_back(known[i]);
-    points.points.push_back({*x, known[i].x_m, known[i].sigma_m});
-    points.center_in_shape_m += *x;
-  }
-  if (found.empty()) return present;
-  const auto count = static_cast<double>(found.size());
-  points.center_in_shape_m /= count;
-  double squared_m2 = 0.0;
-  for (DatumPoint& point : points.points) {
-    point.x_m -= points.center_in_shape_m;
-    squared_m2 += point.x_m.squaredNorm() / count;
-  }
-  constexpr double kMinRadius_m = 1e-4;  // of points in one place, which determine nothing
-  points.radius_m = std::max(kMinRadius_m, std::sqrt(squared_m2));
-  points.covariance_m2 = CovarianceOfPoints(found, covariance);
-  return present;
-}
-
-// Distances of the known coordinates over those in the shape: their median over all pairs of points
-// with three coordinates.
+// The median, over all pairs of points with three known coordinates, of their known distance
+// divided by their distance in the shape.
 std::optional<double> MedianGrowth(const DatumPoints& points, const PointSet& set) {
   std::vector<double> ratios;
   const auto position = [](const DatumPoint& point) -> std::optional<Eigen::Vector3d> {
@@ -133,8 +71,8 @@ bool IsAmbiguous(const DatumPoints& points, const DatumAgreement& agreement) {
   return false;
 }
 
-// The agreeing points. A wrong size of the shape makes right points disagree: where more of them
-// agree with another size, those are taken, and the size is reported.
+// The points that agree. Right points disagree if the size of the shape is wrong: if more of them
+// agree after the shape is scaled, those are used, and the growth is reported.
 std::optional<DatumAgreement> Agree(const DatumPoints& points, const PointSet& datum) {
   std::optional<DatumAgreement> agreement = FindAgreement(points, datum);
   if (agreement && agreement->used.size() == datum.size()) return agreement;
@@ -147,8 +85,8 @@ std::optional<DatumAgreement> Agree(const DatumPoints& points, const PointSet& d
   return rigid;
 }
 
-// Whether more points agree with one axis reversed. Compares numbers, because a few mirrored points
-// near a plane fit any shape.
+// Whether more points agree with one axis reversed. That some agree says nothing: a few mirrored
+// points near a plane fit any shape.
 bool AreMirrored(const DatumPoints& points, const PointSet& datum,
                  const std::optional<DatumAgreement>& agreement) {
   const std::size_t num_agreeing = agreement ? agreement->used.size() : 0;
@@ -157,7 +95,8 @@ bool AreMirrored(const DatumPoints& points, const PointSet& datum,
   return mirrored && mirrored->used.size() > num_agreeing;
 }
 
-// The probable cause if the points have another size than the shape; empty if they have not.
+// The probable cause of a difference in size between the points and the shape; empty if there is
+// none.
 std::string WrongSize(const DatumPoints& points, const PointSet& datum) {
   const std::optional<double> growth = MedianGrowth(points, datum);
   constexpr double kMillimetres = 1e3;
@@ -192,7 +131,7 @@ void Refuse(const DatumPoints& points, const PointSet& datum, bool are_mirrored,
   fit->reason = "the known points and the shape contradict each other; " + cause;
 }
 
-// What the points in the shape lack for a frame, whatever their places.
+// Why the points that are in the shape cannot fix a frame, wherever they are; empty if they may.
 std::string Lack(const std::vector<ComparedPoint>& points, const PresentPoints& present) {
   std::vector<KnownPoint> found;
   std::vector<std::string> missing;

@@ -27,33 +27,33 @@ enum class PointState {
 struct ComparedPoint {
   KnownPoint known;
   PointState state = PointState::kNotInShape;
-  // Shape less known coordinates, m; 0 along axes that are not known.
+  // Shape minus known coordinates, m; 0 along axes that are not known.
   Eigen::Vector3d difference_m = Eigen::Vector3d::Zero();
   double sigmas_off = 0.0;  // see SigmasOff()
 };
 
 struct KnownPointFit {
   std::vector<ComparedPoint> points;       // in the order of the layout
-  std::optional<Rigid3> known_from_shape;  // not with fewer points than determine it
+  std::optional<Rigid3> known_from_shape;  // nothing where the points do not determine it
   std::string reason;            // why there is none; empty for a layout without known points
-  bool is_contradicted = false;  // that reason is that points and shape contradict each other
-  // Root of the sum of squared residuals over their variances, per redundant coordinate: 1 for
-  // right sigmas. Nothing without a redundant coordinate.
+  bool is_contradicted = false;  // whether the reason is that points and shape disagree
+  // Root of the sum of squared normalized residuals per redundant coordinate: about 1 if the sigmas
+  // are right. Nothing without a redundant coordinate.
   std::optional<double> residual_in_sigmas;
-  std::optional<AskedGrowth> growth;  // that the points ask of the size of the shape
+  std::optional<AskedGrowth> growth;  // nothing where the points do not determine it
 
-  // Whether the size that the points ask for is more than three sigmas from that of the shape.
+  // Whether the points contradict the size of the shape by more than three sigmas.
   bool DoubtsScale() const;
 };
 
 // Fits the shape to the largest set of points that agree with each other. `covariance`, of the
-// corners of the shape (may be null), weighs the points beside their own sigmas and is part of the
-// sigmas of differences. Without it, or for points that it lacks, the shape counts as exact, but
-// for the sigma of its scale (a ratio) if that is known otherwise.
+// corners of the shape (may be null), enters the weights and the sigmas of differences beside the
+// points' own sigmas. Without it, or for points that it lacks, the shape counts as exact except for
+// `scale_sigma`, the sigma of its scale as a ratio.
 KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
                              const PointCovariance* covariance = nullptr, double scale_sigma = 0.0);
 
-// The frame that the fit gives, for ChooseFrame(). Its name has the points that it rests on.
+// The frame that the fit gives, for ChooseFrame(). Its name lists the points that were used.
 FrameAttempt FrameOfKnownPoints(const KnownPointFit& fit);
 
 }  // namespace velamap

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Assimp does not terminate on a PLY file whose header does not end in a line of its own.
+// Assimp does not terminate on a PLY file whose header does not end in a separate line.
 bool HasWholePlyHeader(const fs::path& path) {
   constexpr int kMaxHeaderLines = 10000;
   std::ifstream stream(path, std::ios::binary);

@@ -1,5 +1,5 @@
 // Reads mesh and CAD files in this process, with libraries that crash, hang or take all memory on
-// bad ones. ReadMesh() (mesh_reader.h) calls it in a process of its own.
+// bad ones. ReadMesh() (mesh_reader.h) calls it in a child process.
 
 #pragma once
 
@@ -13,7 +13,7 @@ namespace velamap {
 // Larger files are refused. The largest that velamap writes are OBJ of 5 million triangles.
 inline constexpr std::uintmax_t kMaxMeshFileSize = std::uintmax_t{512} << 20;
 
-// Designs and scans of the size that can be compared.
+// The most vertices or triangles that can be compared.
 inline constexpr std::size_t kMaxMeshElements = 20'000'000;
 
 // Throws InputError naming the file if it cannot be opened as one of these formats: another

@@ -1,5 +1,5 @@
 // Reads a mesh in a child process. A process of many threads may only start another program after
-// fork(), so the child is this program, started anew with arguments that ServeMeshReader() knows.
+// fork(), so the child is this program, started again with arguments that ServeMeshReader() knows.
 
 #pragma once
 
@@ -12,7 +12,7 @@ namespace velamap {
 
 struct MeshLimits {
   int cpu_s = 120;
-  int wall_s = 600;  // for a child that waits
+  int wall_s = 600;  // for a child that waits without using the processor
   std::uint64_t memory_bytes = std::uint64_t{8} << 30;
 };
 

@@ -1,6 +1,6 @@
 // Reads a design or a measured surface as triangles: PLY, STL and OBJ with Assimp, STEP and IGES
-// with Open CASCADE. Both crash or never end on some bad files, so they run in a process of its
-// own, which is this program once more, with limits of time and memory.
+// with Open CASCADE. Both crash or never end on some bad files, so they run in a child process
+// (this program, started again) with limits of time and memory.
 
 #pragma once
 
@@ -24,7 +24,7 @@ bool IsMeshPath(const std::filesystem::path& path);
 // Whether the format names its unit: STEP and IGES.
 bool HasOwnUnit(const std::filesystem::path& path);
 
-// m for PLY; for STL and OBJ what a file of velamap names, and mm for those of other programs.
+// 1 for PLY; for STL and OBJ the unit that files written by velamap name, else 0.001.
 double DefaultMPerUnit(const std::filesystem::path& path);
 
 // 1 for "m", 0.001 for "mm". Throws InputError naming `what` for any other name.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <ostream>
-#include <utility>
 #include <vector>
 
 #include <fmt/chrono.h>

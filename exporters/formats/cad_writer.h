@@ -1,7 +1,7 @@
 // Writes spline surfaces as STEP (AP214) and IGES (5.3) with Open CASCADE. Coordinates and header
 // are in mm. The surface becomes one face with its poles and knots, without approximation. The date
-// in the header is that of the writing, or that of the environment variable SOURCE_DATE_EPOCH
-// (seconds since 1970), with which the same surface gives the same bytes.
+// in the header is OutputDate() (importer/text/output_date.h): where SOURCE_DATE_EPOCH sets it, the
+// same surface gives the same bytes.
 //
 // Calls are serialized, because Open CASCADE keeps its settings in global variables.
 
@@ -36,9 +36,9 @@ struct CadExtras {
   std::vector<CadPoint> points;
 };
 
-// `name`, of the part, becomes the name of the product in STEP and of the surface in IGES. Curves
-// and points keep their names. STEP has them in a second product, which needs a curve. Throws
-// std::logic_error if Open CASCADE fails.
+// `name`, the name of the part, becomes the name of the product in STEP and of the surface in IGES.
+// Curves and points keep their names. STEP has them in a second product, which needs a curve.
+// Throws std::logic_error if Open CASCADE fails.
 void WriteStep(const SplineSurface& surface, const std::string& name, std::ostream& out,
                const CadExtras& extras = {});
 void WriteIges(const SplineSurface& surface, const std::string& name, std::ostream& out,

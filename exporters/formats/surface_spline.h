@@ -47,7 +47,7 @@ struct SurfaceJet {
 };
 SurfaceJet EvaluateJet(const SplineSurface& surface, double u, double v);
 Eigen::Vector3d EvaluatePoint(const SplineSurface& surface, double u, double v);
-// Unit; that of a neighbouring point where the surface degenerates to a point.
+// Unit length. Where the surface degenerates to a point, the normal of a neighbouring point.
 Eigen::Vector3d EvaluateNormal(const SplineSurface& surface, double u, double v);
 
 double SurfaceArea(const SplineSurface& surface);  // m^2

@@ -40,14 +40,14 @@ std::string SizeText(const FreeformSurface& surface);
 
 // Takes the parts without horizontal and vertical lines that name at least kMinFreeformMarkers
 // markers; all markers for a layout without parts. `shape` and `covariance` (may be null) are in
-// one frame. `mesh` is that of SailOptions. `num_threads` 0: one a core; never changes the result.
+// one frame. `mesh` is SailOptions::mesh. `num_threads` 0: one per core; never changes the result.
 FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
                               const PointCovariance* covariance,
                               const std::optional<MeshOptions>& mesh, int num_threads = 0);
 
 // Writes .ply .obj .stl of each surface under its stem, and freeform_residuals.csv with the corners
-// of all of them. `unit` is that of OBJ and STL. `folder` has to exist. Throws InputError if it is
-// not writable.
+// of all of them. `unit` is the unit of OBJ and STL. `folder` has to exist. Throws InputError if it
+// is not writable.
 void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame, LengthUnit unit,
                         const std::filesystem::path& folder);
 

@@ -138,8 +138,8 @@ EdgeMeasure ByDeviation(double deviation_m) {
       kMaxFreeformTriangles));
 }
 
-// Divides the triangles so far that the sigma, which has its maxima between the markers, is nearly
-// linear on each of them, and further as asked for.
+// Divides the triangles until the sigma, which has its maxima between the markers, is nearly linear
+// on each of them, and further if asked to.
 TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marker_length_m,
                     const std::optional<MeshOptions>& options, int num_threads) {
   constexpr double kSigmaTriangles = 2000, kEnoughTriangles = 1e5;
@@ -167,7 +167,14 @@ TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marke
   if (options && EstimateNumTriangles(mesh, measure) > 4.0 * kMaxFreeformTriangles) {
     RefuseMesh(*options, least_edge_m);
   }
-  mesh = RefineMesh(std::move(mesh), measure, near_surface, kMaxFreeformTriangles, num_threads);
+  try {
+    mesh = RefineMesh(std::move(mesh), measure, near_surface, kMaxFreeformTriangles, num_threads);
+  } catch (const DataError& error) {
+    if (!options || !options->chord_deviation_mm) throw;
+    throw InputError(fmt::format("{}: {:.3g} mm cannot be reached on a surface without lines: {}",
+                                 OptionName(&MeshOptions::chord_deviation_mm),
+                                 *options->chord_deviation_mm, error.what()));
+  }
   if (mesh.triangles.size() > kMaxFreeformTriangles) {
     if (options) RefuseMesh(*options, least_edge_m);
     throw DataError(

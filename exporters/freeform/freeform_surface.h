@@ -1,4 +1,4 @@
-// A surface through markers of which no lines are known: of inflatables, tanks, wings, hulls, the
+// A surface through markers that are on no known lines: of inflatables, tanks, wings, hulls, the
 // faces of a cube. It ends at the outer corners of the markers, or closes.
 //
 // All four corners of each marker lie on the surface with their sigmas, and its outward normal says
@@ -24,7 +24,7 @@
 namespace velamap {
 
 // Four corners in their order, and their sigmas along the normal of the marker. Errors that all
-// markers share, such as that of the scale, do not bend the surface and are left out.
+// markers share, such as the error of the scale, do not bend the surface and are left out.
 struct FreeformMarker {
   int marker_id = 0;
   std::array<Eigen::Vector3d, kNumCorners> corners_in_shape_m;
@@ -32,7 +32,7 @@ struct FreeformMarker {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
 };
 
-// Needs a whole marker. `own_covariance` may be null (WithoutSharedErrors() in shape_sigma.h).
+// The marker must be whole. `own_covariance` may be null (WithoutSharedErrors() in shape_sigma.h).
 FreeformMarker MakeFreeformMarker(const ShapeMarker& marker, const PointCovariance* own_covariance);
 
 struct FreeformResidual {
@@ -60,7 +60,7 @@ constexpr std::size_t kMaxFreeformTriangles = 1'000'000;
 // says otherwise. Markers that stand apart from most others are left out. Throws DataError for too
 // few or too many markers, for markers that are in groups far from each other or look in different
 // directions, and for markers that contradict one another; InputError for more than
-// kMaxFreeformTriangles. `num_threads` 0: one a core; never changes the result.
+// kMaxFreeformTriangles. `num_threads` 0: one per core; never changes the result.
 FreeformSurface FitFreeformSurface(const std::vector<FreeformMarker>& markers,
                                    double marker_length_m, const std::optional<MeshOptions>& mesh,
                                    int num_threads = 0);

@@ -1,7 +1,6 @@
 #include "exporters/freeform/marker_front.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>

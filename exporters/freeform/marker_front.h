@@ -1,5 +1,5 @@
-// The coarse triangles of a surface through markers of which no lines are known: two triangles per
-// marker, which look along its normal, and triangles from corner to corner that join them.
+// The coarse triangles of a surface through markers that are on no known lines: two triangles per
+// marker, facing along its normal, and triangles that join the markers from corner to corner.
 //
 // An advancing front adds the triangles from the smallest circle to the largest. The third corner
 // of an open edge is the one of a Delaunay triangulation of the tangent plane there: no other one

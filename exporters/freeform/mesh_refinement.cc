@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -19,21 +20,25 @@ using Middles = std::map<Edge, int>;  // the vertex that halves an edge; by asce
 
 Edge Sorted(int a, int b) { return std::minmax(a, b); }
 
-Middles LongEdges(const TriangleMesh& mesh, const EdgeMeasure& measure) {
-  std::map<Edge, double> measures;
-  double longest = 0.0;
+struct LongEdges {
+  Middles middles;
+  double longest = 0.0;  // measure
+};
+
+LongEdges FindLongEdges(const TriangleMesh& mesh, const EdgeMeasure& measure) {
+  std::vector<std::pair<double, Edge>> too_long;  // most edges twice
+  LongEdges found;
   for (const auto& [a, b, c] : mesh.triangles) {
     for (const Edge& edge : {Sorted(a, b), Sorted(b, c), Sorted(c, a)}) {
-      const auto [it, is_new] = measures.emplace(edge, 0.0);
-      if (is_new) it->second = measure(mesh, edge.first, edge.second);
-      longest = std::max(longest, it->second);
+      const double value = measure(mesh, edge.first, edge.second);
+      found.longest = std::max(found.longest, value);
+      if (value > 1.0) too_long.emplace_back(value, edge);
     }
   }
-  Middles middles;
-  for (const auto& [edge, value] : measures) {
-    if (value > std::max(1.0, kLongest * longest)) middles.emplace(edge, -1);
+  for (const auto& [value, edge] : too_long) {
+    if (value > kLongest * found.longest) found.middles.emplace(edge, -1);
   }
-  return middles;
+  return found;
 }
 
 void AddMiddles(const NearSurface& near_surface, int num_threads, Middles* middles,
@@ -90,12 +95,18 @@ std::vector<std::array<int, 3>> Divide(std::array<int, 3> t, const Middles& midd
 TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
                         const NearSurface& near_surface, std::size_t max_triangles,
                         int num_threads) {
-  // Each round takes the longest edges down to kLongest, so that a hundred make 1e15 of it.
-  constexpr int kMaxRounds = 100;
-  for (int round = 0; mesh.triangles.size() <= max_triangles; ++round) {
-    Middles middles = LongEdges(mesh, measure);
+  // A round takes the longest edges down to kLongest, or two do where a triangle lies badly.
+  constexpr int kMaxRoundsWithoutProgress = 12;
+  constexpr double kProgress = 0.95;
+  double shortest_so_far = std::numeric_limits<double>::infinity();
+  for (int num_idle = 0; mesh.triangles.size() <= max_triangles; ++num_idle) {
+    auto [middles, longest] = FindLongEdges(mesh, measure);
     if (middles.empty()) break;
-    if (round == kMaxRounds) {
+    if (longest < kProgress * shortest_so_far) {
+      shortest_so_far = longest;
+      num_idle = 0;
+    }
+    if (num_idle == kMaxRoundsWithoutProgress) {
       throw DataError("the triangles cannot be divided as far as asked for; ask for less");
     }
     AddMiddles(near_surface, num_threads, &middles, &mesh);

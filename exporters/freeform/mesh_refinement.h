@@ -22,7 +22,7 @@ using NearSurface =
 
 // Halves edges, the longest ones first, until none has a measure above 1 or the mesh has more than
 // `max_triangles`. Triangles with one, two or three halved edges become two, three or four. New
-// vertices are moved to the surface on up to `num_threads` threads (0: one a core); their sigmas,
+// vertices are moved to the surface on up to `num_threads` threads (0: one per core); their sigmas,
 // if the mesh has any, are the means of those at the ends. The mesh has to have normals. Throws
 // DataError if that does not end, because `measure` does not shrink with the edges.
 TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,

@@ -18,8 +18,9 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+
+#include "exporters/freeform/field_regression.h"
 
 namespace velamap {
 
@@ -43,7 +44,7 @@ struct FieldValue {
 class SurfaceField {
  public:
   // A point without a sigma gets the median of the others; if none has one, all get the sigma that
-  // maximizes the likelihood. Sigmas below 1e-5 of the extent count as that. Time grows with the
+  // maximizes the likelihood. Sigmas below 1e-5 of the extent are raised to it. Time grows with the
   // third power of the number of points. Throws DataError without a point or a normal, and for
   // points that are all in one place.
   SurfaceField(const std::vector<FieldPoint>& points, const std::vector<FieldNormal>& normals);
@@ -51,7 +52,7 @@ class SurfaceField {
   FieldValue Evaluate(const Eigen::Vector3d& x_in_shape_m) const;
 
   // One standard deviation of the surface along its normal at each of these points on it, m, with
-  // up to `num_threads` threads (0: one a core).
+  // up to `num_threads` threads (0: one per core).
   std::vector<double> Sigmas(const std::vector<Eigen::Vector3d>& points_in_shape_m,
                              int num_threads) const;
 
@@ -60,7 +61,7 @@ class SurfaceField {
   std::optional<Eigen::Vector3d> Project(const Eigen::Vector3d& x_in_shape_m,
                                          double max_distance_m) const;
 
-  // The sigma that point `idx` was given the weight of, m.
+  // The sigma by which point `idx` was weighted, m.
   double PointSigma(std::size_t idx) const {
     return sigmas_(static_cast<Eigen::Index>(idx)) * scale_m_;
   }
@@ -70,21 +71,12 @@ class SurfaceField {
     return (x_in_shape_m - center_m_) / scale_m_;
   }
 
-  bool IsValue(Eigen::Index row) const { return normals_.row(row).isZero(0); }
-
-  // Coordinates inside are normalized: their origin is the mean of the points, and their unit is
-  // the largest distance of a point from it. Rows are the points, then the normals.
   Eigen::Vector3d center_m_ = Eigen::Vector3d::Zero();
-  double scale_m_ = 1.0;
-  Eigen::MatrixX3d places_;
-  Eigen::MatrixX3d normals_;  // zero rows for points
+  double scale_m_ = 1.0;  // the unit of normalized coordinates
+  FieldRows rows_;        // points, then normals
   Eigen::VectorXd sigmas_;
   double amplitude_ = 1.0;
-  Eigen::LLT<Eigen::MatrixXd> covariance_;
-  Eigen::MatrixXd whitened_drift_;
-  Eigen::LLT<Eigen::MatrixXd> drift_precision_;
-  Eigen::VectorXd drift_;    // coefficients of the polynomial
-  Eigen::VectorXd weights_;  // of the covariance functions
+  FieldSolution solution_;
 };
 
 }  // namespace velamap

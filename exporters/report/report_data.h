@@ -89,7 +89,7 @@ struct ReportSurface {
   std::vector<std::array<int, 3>> triangles;
 };
 
-// When the frames of a video were taken, of those that show markers.
+// Frame rate and duration of a video, over the frames that show markers.
 struct ReportClip {
   double frames_per_s = 0.0;
   double duration_s = 0.0;

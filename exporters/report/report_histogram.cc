@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exporters/formats/round_number.h"
+#include "exporters/scale/round_number.h"
 #include "importer/base/statistics.h"
 
 namespace velamap {

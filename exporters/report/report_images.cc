@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -34,7 +33,7 @@ void AddErrors(const ImageMetrics& metrics, ReportJsonValue* json) {
   (*json)["error_max_px"] = metrics.error_px.max;
 }
 
-// Where the corners of a marker would be seen; nothing if one is outside of the image, or if the
+// Where the corners of a marker would be seen; nothing if one is outside the image, or if the
 // marker faces away.
 std::optional<ReportJsonValue> CornersInImage(const ShapeMarker& marker, const ModelImage& image,
                                               const Camera& camera) {

@@ -31,7 +31,7 @@ KeyNumber MarkersNumber(const ShapeMetrics& metrics) {
                    "markers with all four corners reconstructed", ReportStatus::kNone};
   if (metrics.reconstruction_ratio) {
     const double ratio = *metrics.reconstruction_ratio;
-    number.value = fmt::format("{} of {}, {:.1f} %", metrics.num_markers,
+    number.value = fmt::format("{} of {}, {:.1f} %", metrics.NumWholeOfLayout(),
                                metrics.num_layout_markers.value_or(0), 100 * ratio);
     number.meaning = fmt::format(
         "of the layout's markers with all four corners reconstructed; good from {:.0f} %",

@@ -17,7 +17,7 @@ enum class ReportStatus {
 };
 
 // In order of weight: of two key numbers that are equally bad, a verdict names the earlier one
-// first. Measurements from outside of the images come before causes, and these before effects.
+// first. Measurements from outside the images come before causes, and these before effects.
 enum class KeyNumberKind {
   kDictionary,
   kMeasuredDistances,

@@ -28,7 +28,7 @@ std::map<int, ErrorSum> ErrorsByMarker(const std::vector<ObservationError>& erro
   return errors_of;
 }
 
-// Joint covariance of the centre, m^2; nothing if that of a corner is unknown.
+// Joint covariance of the centre, m^2; nothing if a corner's is unknown.
 std::optional<Eigen::Matrix3d> CenterCovariance(const PointCovariance& points, int marker_id) {
   std::vector<PointGradient> gradients(3);
   for (int axis = 0; axis < 3; ++axis) {

@@ -19,7 +19,7 @@ std::optional<ReportFrame> MakeReportFrame(const ShapeFrame& frame, const Model&
 
 std::vector<ReportSection> MakeReportSections(const SectionReport& sections);
 
-// Those that know something of the rig.
+// The parts whose rig is at least partly known.
 std::vector<ReportRig> MakeReportRigs(const SectionReport& sections);
 
 // The surfaces of sails, with about 10 000 triangles each, then those of parts without lines. One

@@ -29,7 +29,7 @@ bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
   });
 }
 
-// Nothing where nothing tells how well the scale is known.
+// Nothing where it is unknown how well the scale is known.
 std::optional<double> SigmaPercent(const ScaleEstimate& scale) {
   if (!scale.relative_sigma || std::isnan(*scale.relative_sigma)) return std::nullopt;
   return 100 * *scale.relative_sigma;

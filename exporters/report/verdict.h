@@ -20,7 +20,7 @@ struct VerdictReason {
 };
 
 struct Verdict {
-  ReportStatus level = ReportStatus::kGood;  // kGood, kCheck or kBad: that of the first reason
+  ReportStatus level = ReportStatus::kGood;  // kGood, kCheck or kBad: the level of the first reason
   std::vector<VerdictReason> reasons;        // the heaviest first; empty for kGood
 };
 

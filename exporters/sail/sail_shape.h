@@ -28,7 +28,7 @@ struct SailOptions {
   // By default edges of half a marker's side, or longer ones to stay below 100 000 triangles.
   std::optional<MeshOptions> mesh;
 
-  void Check() const;  // throws InputError like those of its members
+  void Check() const;  // throws InputError as the checks of its members do
 };
 
 struct SailFileOptions {

@@ -126,7 +126,7 @@ void AddMarkers(const PartContext& context, const LineCurve& line, Section* sect
   }
 }
 
-// A number of a section less that of the reference.
+// A number of a section minus the reference's.
 Estimate Difference(SectionNumber number, const CenterSet& centers, const NumbersWithGradient& own,
                     const NumbersWithGradient& reference) {
   return {own.numbers[number] - reference.numbers[number],

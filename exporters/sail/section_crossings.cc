@@ -32,8 +32,8 @@ std::string CrossingAlongText(const LineCurve& lower, const LineCurve& upper,
       upper.name, 100 * CutFractions()[place], upper.name, -kMmPerM * gap_m, lower.name);
 }
 
-// The same as seen from the side, along `aside`, where lines of different lengths lie beside each
-// other otherwise than by fractions.
+// The same as seen from the side, along `aside`, where lines of different lengths are compared at
+// other places than by fractions.
 std::string SideViewCrossingText(const LineCurve& lower, const LineCurve& upper,
                                  const Eigen::Vector3d& up, const Eigen::Vector3d& aside) {
   Eigen::Matrix<double, 2, 3> side_from_frame;

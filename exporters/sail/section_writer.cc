@@ -1,6 +1,5 @@
 #include "exporters/sail/section_writer.h"
 
-#include <algorithm>
 #include <array>
 #include <ostream>
 #include <string>

@@ -36,10 +36,10 @@ std::vector<MarkerSidesMeasured> MeasureSides(const MarkerShape& shape);
 // weak prior at the median of all markers.
 std::vector<MarkerSidesMeasured> MeasureSides(const Model& model, const Layout& layout);
 
-// Triangulates every point anew from its image points alone (least squares, fixed cameras), because
-// an adjustment that knows the size of the markers has pulled the points to that size. First moves
-// the image points out of the marker by `apparent_inset_px` (AdjustmentUncertainty). Points that
-// fewer than two images see, or that do not converge, stay.
+// Triangulates every point again, from its image points alone (least squares, fixed cameras),
+// because an adjustment that knows the size of the markers has pulled the points to that size.
+// First moves the image points out of the marker by `apparent_inset_px` (AdjustmentUncertainty).
+// Points that fewer than two images see, or that do not converge, stay.
 void IntersectCorners(double apparent_inset_px, Model* model);
 
 }  // namespace velamap

@@ -5,10 +5,10 @@
 #include <functional>
 #include <map>
 
-#include "exporters/formats/round_number.h"
 #include "exporters/scale/marker_sides.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/robust_fit.h"
+#include "exporters/scale/round_number.h"
 #include "exporters/shape/shape_metrics.h"
 #include "importer/base/statistics.h"
 

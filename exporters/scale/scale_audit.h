@@ -76,7 +76,7 @@ struct ScaleAudit {
 };
 
 // `model`, at any scale, is the source of the shape; it gives the markers their sigmas and sizes in
-// the images. With its `uncertainty`, the sides are measured anew from the image points alone with
+// the images. With its `uncertainty`, the sides are measured again from the image points alone with
 // fixed cameras, because the adjustment has pulled the markers to their printed size, and distances
 // get sigmas.
 ScaleAudit AuditScale(const MarkerShape& shape, const Layout& layout, const Model* model = nullptr,

@@ -35,14 +35,14 @@ const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id);
 // Null also for a marker that is not whole.
 const ShapeMarker* FindWholeMarker(const MarkerShape& shape, int marker_id);
 
-// Outward unit normal, z of the marker frame. Needs a whole marker.
+// Outward unit normal, z of the marker frame. The marker must be whole.
 Eigen::Vector3d MarkerNormal(const ShapeMarker& marker);
 
 // Area of the quadrilateral of the corners, m^2: half the length of the cross product of its
-// diagonals (thesis section 4.3.2). Needs a whole marker.
+// diagonals (thesis section 4.3.2). The marker must be whole.
 double MarkerArea(const ShapeMarker& marker);
 
-// Lengths of the sides 1-2, 2-3, 3-4, 4-1, m. Needs a whole marker.
+// Lengths of the sides 1-2, 2-3, 3-4, 4-1, m. The marker must be whole.
 std::array<double, kNumCorners> MarkerSides(const ShapeMarker& marker);
 double MeanSide(const std::array<double, kNumCorners>& sides);
 

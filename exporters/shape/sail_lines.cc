@@ -1,6 +1,5 @@
 #include "exporters/shape/sail_lines.h"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 

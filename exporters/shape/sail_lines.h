@@ -14,7 +14,7 @@
 
 namespace velamap {
 
-// Needs a whole marker.
+// The marker must be whole.
 Eigen::Vector3d CenterOf(const MarkerShape& shape, int marker_id);
 
 // Each id of the part once, in the order of the layout, lines first.

@@ -143,8 +143,14 @@ bool HasLines(const Layout& layout, const std::string& part_name) {
 void CountMarkers(const Layout& layout, const std::map<int, bool>& is_whole,
                   ShapeMetrics* metrics) {
   if (!layout.HasMarkers()) return;
+  const std::vector<int> layout_ids = MarkerIds(layout);
+  for (const auto& [marker_id, whole] : is_whole) {
+    if (whole && !std::binary_search(layout_ids.begin(), layout_ids.end(), marker_id)) {
+      metrics->other_marker_ids.push_back(marker_id);
+    }
+  }
   int num_markers = 0, num_sail = 0, num_sail_whole = 0;
-  for (const int marker_id : MarkerIds(layout)) {
+  for (const int marker_id : layout_ids) {
     const auto found = is_whole.find(marker_id);
     const bool whole = found != is_whole.end() && found->second;
     if (!whole) metrics->missing_marker_ids.push_back(marker_id);

@@ -1,4 +1,4 @@
-// Errors of a shape by itself (thesis section 4.3.2) and against a reference.
+// Errors of a shape taken by itself (thesis section 4.3.2) and against a reference.
 
 #pragma once
 
@@ -32,6 +32,10 @@ struct ShapeMetrics {
   Statistics side_error_mm;       // |reconstructed - printed side|, four per marker
   int num_markers = 0;            // whole markers
   std::optional<int> num_layout_markers;
+  // Whole markers that the layout does not name, counted in num_markers and in no ratio.
+  std::vector<int> other_marker_ids;
+
+  int NumWholeOfLayout() const { return num_markers - static_cast<int>(other_marker_ids.size()); }
   std::optional<double> reconstruction_ratio;  // of the markers that the layout names
   // The same of the parts with lines of markers, as the thesis counts (4.3.2): the sail without the
   // hull. Nothing if the layout has no lines.

@@ -20,13 +20,13 @@ void AddPointGradient(int marker_id, int corner, const Eigen::Vector3d& weight,
 PointGradient DistanceGradient(const ShapeMarker& marker1, int corner1, const ShapeMarker& marker2,
                                int corner2);
 
-// Gradient of the side from corner `side` (1..4) to the next one. Needs a whole marker.
+// Gradient of the side from corner `side` (1..4) to the next one. The marker must be whole.
 PointGradient SideGradient(const ShapeMarker& marker, int side);
 
-// Gradient of the mean of the four sides. Needs a whole marker.
+// Gradient of the mean of the four sides. The marker must be whole.
 PointGradient MeanSideGradient(const ShapeMarker& marker);
 
-// Gradient of MarkerArea(), m. Needs a whole marker.
+// Gradient of MarkerArea(), m. The marker must be whole.
 PointGradient AreaGradient(const ShapeMarker& marker);
 
 // Whether the covariance is given (not null) and has all points of the gradient.

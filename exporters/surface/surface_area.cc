@@ -11,8 +11,8 @@
 namespace velamap {
 namespace {
 
-// Limits of the surface's area over that of straight strips between the lines. A half cylinder has
-// a ratio of 1.57.
+// Limits of the ratio of the surface's area to the area of straight strips between the lines. A
+// half cylinder has a ratio of 1.57.
 constexpr double kMaxAreaRatio = 1.6, kMaxAreaRatioWithEdges = 4.0;
 
 // The point of a polyline at a fraction of its length.

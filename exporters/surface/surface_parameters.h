@@ -29,7 +29,7 @@ struct SurfaceParameters {
   std::vector<std::string> notes;
 };
 
-// Needs at least two lines with at least three markers each. u is that of MakeSurfaceRows
+// Needs at least two lines with at least three markers each. u comes from MakeSurfaceRows
 // (surface_rows.h); v sums the mean distances between neighbouring rows. `has_markers_between`
 // doubles the knots in v, so that the surface can follow markers between the lines. Throws the same
 // errors as FitSurface.

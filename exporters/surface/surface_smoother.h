@@ -19,9 +19,9 @@ enum class Smoothing {
   kCrossValidation,  // generalized; only the ratios of the weights count
 };
 
-// Fewer markers do not determine their noise. With more, the residuals are the better
-// evidence: sigmas contain errors that markers share, such as that of the scale, which do not make
-// a surface rough.
+// Fewer markers do not determine their noise. With more, the residuals are the better evidence:
+// sigmas contain errors that markers share, such as the error of the scale, which do not make a
+// surface rough.
 constexpr std::size_t kMinCrossValidated = 30;
 
 struct SmoothSurface {

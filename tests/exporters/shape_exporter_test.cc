@@ -1,8 +1,5 @@
 #include "exporters/shape_exporter.h"
 
-#include <algorithm>
-#include <fstream>
-#include <map>
 #include <random>
 #include <set>
 
@@ -13,13 +10,13 @@
 #include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_csv.h"
-#include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/example_covariance.h"
 #include "tests/exporters/example_model.h"
+#include "tests/exporters/exported_files.h"
 #include "tests/exporters/golden_file.h"
 #include "tests/support/export_shape.h"
 #include "tests/support/scoped_date.h"
@@ -28,46 +25,11 @@
 namespace velamap {
 namespace {
 
-namespace fs = std::filesystem;
-using testing::AnyOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::Not;
-using testing::StartsWith;
 using testing::UnorderedElementsAre;
-
-std::set<std::string> FilesIn(const fs::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    names.insert(entry.path().filename().string());
-  }
-  return names;
-}
-
-// Contents of a folder's files, by name. shape.json, STEP and IGES have the
-// date, which the tests set.
-std::map<std::string, std::string> BytesIn(const fs::path& folder) {
-  std::map<std::string, std::string> bytes;
-  for (const std::string& name : FilesIn(folder)) bytes[name] = ReadBytes(folder / name);
-  return bytes;
-}
-
-ShapeExporterOptions OptionsIn(const TempDir& dir) {
-  ShapeExporterOptions options;
-  options.model_output_path = dir / "0";
-  options.shape_output_path = dir / "shape";
-  return options;
-}
-
-std::string ErrorOf(const ShapeExporterOptions& options) {
-  try {
-    ExportShape(ExampleModel(), ExampleLayout(), options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 // Distances between all corners, which do not depend on the world frame.
 std::vector<double> Lengths(const MarkerShape& shape) {
@@ -241,83 +203,6 @@ TEST(ShapeExporter, TheInputModelIsNotNeededToBeWhole) {
   EXPECT_THAT(report.metrics.missing_marker_ids, ElementsAre(6));
   EXPECT_EQ(report.metrics.num_markers, 7);
   EXPECT_NEAR(report.scale.m_per_unit, 1.0, 1e-12);
-}
-
-TEST(ShapeExporter, EitherFolderCanBeLeftOut) {
-  const TempDir dir;
-  ShapeExporterOptions options;
-  options.shape_output_path = (dir / "a" / "shape").string() + "/";
-  ExportShape(ExampleModel(), ExampleLayout(), options);
-  EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre("a"));
-  EXPECT_THAT(FilesIn(dir / "a"), UnorderedElementsAre("shape"));
-  options.shape_output_path.clear();
-  options.model_output_path = dir / "model";
-  ExportShape(ExampleModel(), ExampleLayout(), options);
-  EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre("a", "model"));
-}
-
-TEST(ShapeExporter, FoldersOfOursAreReplacedAsAWhole) {
-  const TempDir dir;
-  for (const char* name : {"shape", "0"}) {
-    AtomicFolder folder(dir / name);
-    std::ofstream(folder.TemporaryPath() / "old.csv") << "old";
-    folder.Commit();
-  }
-  ExportShape(ExampleModel(), ExampleLayout(), OptionsIn(dir));
-  EXPECT_THAT(ReadBytes(dir / "shape" / "scale.csv"), StartsWith("marker_id,"));
-  for (const char* name : {"shape", "0"}) EXPECT_EQ(FilesIn(dir / name).count("old.csv"), 0u);
-  EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre("shape", "0"));  // nothing temporary
-}
-
-TEST(ShapeExporter, FoldersOfOthersStayAsTheyAre) {
-  for (const char* folder : {"shape", "0"}) {
-    const TempDir dir;
-    fs::create_directories(dir / folder);
-    std::ofstream(dir / folder / "thesis.tex") << "precious";
-    EXPECT_THAT(ErrorOf(OptionsIn(dir)), StartsWith((dir / folder).string() + ": "));
-    EXPECT_THAT(ErrorOf(OptionsIn(dir)), HasSubstr("holds thesis.tex"));
-    EXPECT_THAT(ErrorOf(OptionsIn(dir)), HasSubstr("choose another folder"));
-    EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre(folder));
-    EXPECT_THAT(BytesIn(dir / folder),
-                UnorderedElementsAre(std::make_pair("thesis.tex", "precious")));
-  }
-}
-
-TEST(ShapeExporter, AFolderWithTheNameOfAFileIsNotOurs) {
-  const TempDir dir;
-  fs::create_directories(dir / "shape" / "shape.csv");
-  std::ofstream(dir / "shape" / "shape.csv" / "notes.txt") << "precious";
-  EXPECT_THAT(ErrorOf(OptionsIn(dir)), HasSubstr("shape.csv: the output folder holds notes.txt"));
-}
-
-TEST(ShapeExporter, OutputThatIsAFileOrBelowOneIsNamed) {
-  const TempDir dir;
-  std::ofstream(dir / "file") << "precious";
-  for (const std::string& bad : {(dir / "file").string(), (dir / "file" / "below").string()}) {
-    for (const bool is_model : {false, true}) {
-      ShapeExporterOptions options = OptionsIn(dir);
-      (is_model ? options.model_output_path : options.shape_output_path) = bad;
-      // A file in the place of a folder is the one that is named.
-      EXPECT_THAT(ErrorOf(options), StartsWith((dir / "file").string() + ": "));
-      EXPECT_THAT(FilesIn(dir.path()), UnorderedElementsAre("file"));
-    }
-  }
-  EXPECT_EQ(ReadBytes(dir / "file"), "precious");
-}
-
-TEST(ShapeExporter, OneFolderInsideTheOtherIsRefused) {
-  const TempDir dir;
-  const struct {
-    std::string model, shape;
-  } cases[] = {{"out", "out"}, {"out", "out/"}, {"out", "x/../out/shape"}, {"out/0", "out"}};
-  for (const auto& c : cases) {
-    ShapeExporterOptions options;
-    options.model_output_path = dir / c.model;
-    options.shape_output_path = dir / c.shape;
-    EXPECT_THAT(ErrorOf(options), AnyOf(HasSubstr("is the folder of the model too"),
-                                        HasSubstr("is replaced as a whole and must not hold")));
-    EXPECT_TRUE(FilesIn(dir.path()).empty());
-  }
 }
 
 TEST(ShapeExporter, WithoutAScaleNothingIsWritten) {

@@ -1,7 +1,5 @@
 #include "exporters/shape_report.h"
 
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 

@@ -42,6 +42,11 @@ function number(name, key, digits) {
   return {name, value: row => row[key], text: row => fixed(row[key], digits)};
 }
 
+// For figures of any size: `digits` are significant ones.
+function rounded(name, key, digits) {
+  return {name, value: row => row[key], text: row => significant(row[key], digits)};
+}
+
 function text(name, key) {
   return {name, value: row => row[key], isText: true};
 }
@@ -151,9 +156,9 @@ function fillSurfaces(surfaces) {
   if (!surfaces) return;
   byId('surfaces').hidden = false;
   fillTable('table_surfaces', [
-    {name: 'Part', value: row => row.part || 'all markers', isText: true}, number('Area, m²', 'area_m2', 4),
-    number('Volume, m³', 'volume_m3', 5), number('From the markers (RMS), mm', 'distance_mm', 2),
-    number('Sigma, mm', 'sigma_mm', 2),
+    {name: 'Part', value: row => row.part || 'all markers', isText: true},
+    rounded('Area, m²', 'area_m2', 4), rounded('Volume, m³', 'volume_m3', 4),
+    rounded('From the markers (RMS), mm', 'distance_mm', 2), rounded('Sigma, mm', 'sigma_mm', 2),
   ].filter(column => surfaces.some(row => column.value(row) !== undefined)), surfaces);
 }
 

@@ -1,7 +1,5 @@
 // Keys and PLY of a comparison.
 
-#include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include <gmock/gmock.h>

@@ -1,6 +1,5 @@
 #include "exporters/compare/mesh_distance.h"
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -1,7 +1,6 @@
 #include "exporters/compare/mesh_fit.h"
 
 #include <cmath>
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,108 +1,22 @@
 #include "exporters/datum/known_points.h"
 
 #include <cmath>
-#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 
 #include "exporters/datum/known_points_report.h"
-#include "importer/base/error.h"
 #include "importer/base/statistics.h"
-#include "tests/exporters/example_covariance.h"
-#include "tests/exporters/example_model.h"
-#include "tests/support/error_matchers.h"
-#include "tests/support/test_seed.h"
+#include "tests/exporters/datum/known_points_fixture.h"
 
 namespace velamap {
 namespace {
 
-using nlohmann::json;
 using testing::AllOf;
 using testing::AnyOf;
 using testing::Each;
 using testing::HasSubstr;
-using testing::IsEmpty;
-
-// Markers in a box of 3 x 2 x 1 m, whose true coordinates in the user's frame are known.
-class KnownPoints : public testing::Test {
- protected:
-  static constexpr double kSigma_m = 2e-3;
-
-  double Normal() { return std::normal_distribution<double>()(random_); }
-  Eigen::Vector3d Noise(double sigma_m) {
-    return sigma_m * Eigen::Vector3d(Normal(), Normal(), Normal());
-  }
-  Rigid3 RandomMotion() {
-    const Eigen::Quaterniond rotation(Normal(), Normal(), Normal(), Normal());
-    return {rotation.normalized(), 10 * Noise(1)};
-  }
-
-  // Ids 1, 2, ...
-  void MakeShape(int num_markers) {
-    std::uniform_real_distribution<double> uniform(-0.5, 0.5);
-    shape_.markers.clear();
-    layout_.known_points.clear();
-    for (int id = 1; id <= num_markers; ++id) {
-      const Eigen::Vector3d center(3 * uniform(random_), 2 * uniform(random_), uniform(random_));
-      shape_.markers.push_back(SquareMarker(id, 0.1, {RandomMotion().rotation, center}));
-    }
-    known_from_shape_ = RandomMotion();
-  }
-
-  Eigen::Vector3d TrueCoordinates(int marker_id, int corner) const {
-    return known_from_shape_ *
-           FindMarker(shape_, marker_id)->x_in_shape_m[static_cast<std::size_t>(corner)].value();
-  }
-
-  // A point with noise; of the axes in `axes` only.
-  KnownPoint& Add(int marker_id, int corner, double noise_m, const std::string& axes = "xyz") {
-    const Eigen::Vector3d x = TrueCoordinates(marker_id, corner) + Noise(noise_m);
-    KnownPoint point{marker_id, corner, {}, kSigma_m, false};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (axes.find(kAxisNames[axis]) != std::string::npos) {
-        point.x_m[axis] = x[static_cast<Eigen::Index>(axis)];
-      }
-    }
-    layout_.known_points.push_back(point);
-    return layout_.known_points.back();
-  }
-
-  void AddCenters(int num_points, double noise_m) {
-    for (int id = 1; id <= num_points; ++id) Add(id, 0, noise_m);
-  }
-
-  KnownPointFit Fit(const PointCovariance* covariance = nullptr) const {
-    return FitKnownPoints(shape_, layout_, covariance);
-  }
-
-  void ExpectTheTrueFrame(double tolerance, const std::string& what) const {
-    const KnownPointFit fit = Fit();
-    ASSERT_TRUE(fit.known_from_shape) << what << ": " << fit.reason;
-    for (const ShapeMarker& marker : shape_.markers) {
-      const Eigen::Vector3d x = *marker.x_in_shape_m[0];
-      EXPECT_LT((*fit.known_from_shape * x - known_from_shape_ * x).norm(), tolerance) << what;
-    }
-  }
-
-  // A covariance of all corners, with errors that markers share.
-  PointCovariance Covariance(double sigma_m) const {
-    Model model;
-    for (const ShapeMarker& marker : shape_.markers) {
-      for (int corner = 1; corner <= kNumCorners; ++corner) {
-        model.points3D[Point3DIdFromCorner({marker.marker_id, corner})];
-      }
-    }
-    return ExampleCovariance(model, sigma_m, TestSeed());
-  }
-
-  std::mt19937 random_{TestSeed()};
-  MarkerShape shape_;
-  Layout layout_ = MakeLayout("DICT_4X4_50", 0.1);
-  Rigid3 known_from_shape_;
-};
 
 std::vector<PointState> StatesOf(const KnownPointFit& fit) {
   std::vector<PointState> states;
@@ -348,83 +262,6 @@ TEST_F(KnownPoints, PointsOnALineLeaveTheTurnAboutItOpen) {
   AddCenters(5, 0.0);
   EXPECT_THAT(Fit().reason, AnyOf(HasSubstr("a turn about the direction (-0.56 0.83 "),
                                   HasSubstr("a turn about the direction (0.56 -0.83 ")));
-}
-
-TEST_F(KnownPoints, TheNameHasWhatTheFrameRestsOn) {
-  MakeShape(7);
-  AddCenters(4, 0.0);
-  Add(5, 3, 0.0);
-  Add(6, 0, 0.0, "z");
-  Add(7, 0, 0.0).is_check = true;
-  *layout_.known_points[1].x_m[2] += 0.1;  // 2 is left out
-  const FrameAttempt attempt = FrameOfKnownPoints(Fit());
-  EXPECT_EQ(attempt.frame.value().name, "known points 1 3 4 5.3 6:z");
-  EXPECT_THAT(attempt.frame->description, HasSubstr("13 coordinates of 5"));
-  const ShapeFrame frame = ChooseFrame(shape_, layout_, std::nullopt, attempt);
-  EXPECT_EQ(frame.kind, FrameKind::kKnownPoints);
-  EXPECT_TRUE(frame.reasons.empty());
-  EXPECT_EQ(FrameText(frame), frame.name + ": " + attempt.frame->description);
-  // Another frame can still be asked for, and what is asked for is granted or refused.
-  EXPECT_EQ(ChooseFrame(shape_, layout_, FrameChoice{FrameKind::kCamera}, attempt).name, "camera");
-  const FrameChoice choice{FrameKind::kKnownPoints};
-  ExpectThrows<InputError>(
-      [&] {
-        ChooseFrame(shape_, layout_, choice, {std::nullopt, "one is on the moon"});
-      },
-      {"--frame: known_points is not possible: one is on the moon"});
-  ExpectThrows<InputError>([&] { CheckFrameChoice(choice, MakeLayout("DICT_4X4_50", 0.1)); },
-                           {"--frame: known_points", "the layout has no known_points"});
-  layout_.known_points.resize(2);
-  ExpectThrows<InputError>([&] { CheckFrameChoice(choice, layout_); },
-                           {"--frame: known_points", "2 points are given, three are needed"});
-}
-
-TEST_F(KnownPoints, WhereTheyGiveNoFrameTheNextOneIsTakenAndSaysWhy) {
-  MakeShape(3);
-  AddCenters(2, 0.0);
-  const ShapeFrame frame = ChooseFrame(shape_, layout_, std::nullopt, FrameOfKnownPoints(Fit()));
-  EXPECT_EQ(frame.kind, FrameKind::kCamera);
-  ASSERT_FALSE(frame.reasons.empty());
-  EXPECT_EQ(frame.reasons[0], "not by known_points: 2 points are given, three are needed");
-}
-
-TEST_F(KnownPoints, MetricsHaveARowOfEachPoint) {
-  MakeShape(8);
-  AddCenters(5, kSigma_m);
-  Add(6, 0, 0.0, "z");
-  Add(7, 1, 0.0).is_check = true;
-  Add(8, 0, 0.0).is_check = true;
-  *layout_.known_points[0].x_m[0] += 0.1;
-  *layout_.known_points[6].x_m[1] += 0.1;
-  layout_.known_points[7].marker_id = 99;
-  MetricsReport report;
-  const KnownPointFit fit = Fit();
-  AddMetrics(fit, &report);
-  const json metrics =
-      json::parse(Written([&](std::ostream& out) { WriteMetricsJson(report, out); }));
-  EXPECT_EQ(metrics.at("known_point_residual_mm_count"), 5);
-  EXPECT_LT(metrics.at("known_point_residual_mm_rms").get<double>(), 6);
-  EXPECT_EQ(metrics.at("check_point_error_mm_count"), 1);
-  EXPECT_NEAR(metrics.at("check_point_error_mm_max").get<double>(), 100, 15);
-  EXPECT_EQ(metrics.at("num_failed_check_points"), 1);
-  EXPECT_TRUE(metrics.contains("known_point_growth_sigma_percent"));
-  const json& rows = metrics.at("known_points");
-  ASSERT_EQ(rows.size(), 8u);
-  EXPECT_EQ(rows[0].at("result"), "left out: contradicts the others");
-  EXPECT_EQ(rows[1].at("result"), "used");
-  EXPECT_EQ(rows[1].at("use"), "frame");
-  EXPECT_TRUE(rows[5].contains("dz_mm"));
-  EXPECT_FALSE(rows[5].contains("dx_mm"));
-  EXPECT_EQ(rows[6].at("point"), "7.1");
-  EXPECT_EQ(rows[6].at("result"), "fail");
-  EXPECT_EQ(rows[7].at("result"), "not reconstructed");
-  EXPECT_FALSE(rows[7].contains("distance_mm"));
-  EXPECT_THAT(KnownPointsText(fit), HasSubstr("5 of 6 used"));
-  EXPECT_THAT(KnownPointsText(fit), HasSubstr("0 of 2 checks passed, worst 7.1 "));
-  MetricsReport none;
-  AddMetrics(KnownPointFit(), &none);
-  EXPECT_THAT(none.metrics, IsEmpty());
-  EXPECT_THAT(KnownPointWarnings({}), IsEmpty());
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Grids of surfaces and their files, read back by VTK's reader (python3-vtk9) and Gmsh, if they are
 // installed, and by a parser of our own.
 
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <set>

@@ -1,7 +1,5 @@
 #include "exporters/formats/surface_spline.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 

@@ -1,6 +1,5 @@
 #include "exporters/sail/sail_shape.h"
 
-#include <filesystem>
 #include <set>
 #include <sstream>
 
@@ -14,6 +13,7 @@
 #include "importer/base/error.h"
 #include "reconstruct/model/gauge.h"
 #include "tests/exporters/example_model.h"
+#include "tests/exporters/exported_files.h"
 #include "tests/exporters/golden_file.h"
 #include "tests/exporters/sail/sail_shapes.h"
 #include "tests/support/error_matchers.h"
@@ -28,14 +28,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
 using testing::Not;
-
-std::set<std::string> FilesIn(const std::filesystem::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    names.insert(entry.path().filename().string());
-  }
-  return names;
-}
 
 SailShape Compute(const Sail& sail, const SailOptions& options = {}) {
   const ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);

@@ -1,6 +1,5 @@
 #include "exporters/sail/section_writer.h"
 
-#include <cmath>
 #include <map>
 #include <sstream>
 

@@ -81,6 +81,8 @@ TEST(ShapeMetrics, OnlyWholeMarkersOfTheLayoutCountForTheRatio) {
       ComputeShapeMetrics(ShapeFromModel(model, ExampleLayout()), ExampleLayout());
   EXPECT_EQ(metrics.num_markers, 7);
   EXPECT_EQ(metrics.num_layout_markers, 8);
+  EXPECT_THAT(metrics.other_marker_ids, ElementsAre(60));
+  EXPECT_EQ(metrics.NumWholeOfLayout(), 6);
   EXPECT_DOUBLE_EQ(metrics.reconstruction_ratio.value(), 6.0 / 8.0);
   EXPECT_EQ(metrics.num_sail_markers, 6);  // without the hull's two, one of which is missing
   EXPECT_DOUBLE_EQ(metrics.sail_reconstruction_ratio.value(), 5.0 / 6.0);

@@ -1,0 +1,70 @@
+#include "exporters/datum/present_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "exporters/shape/joint_covariance.h"
+#include "exporters/shape/shape_sigma.h"
+
+namespace velamap {
+namespace {
+
+std::optional<Eigen::Vector3d> PointInShape(const MarkerShape& shape, const KnownPoint& known) {
+  const ShapeMarker* marker = FindMarker(shape, known.marker_id);
+  return marker == nullptr ? std::nullopt
+                           : marker->x_in_shape_m[static_cast<std::size_t>(known.corner)];
+}
+
+// The covariance of the points in the shape, with zeros for those that `covariance` lacks.
+Eigen::MatrixXd CovarianceOfPoints(const std::vector<KnownPoint>& known,
+                                   const PointCovariance* covariance) {
+  std::vector<PointGradient> gradients;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      PointGradient gradient;
+      AddPointGradient(known[i].marker_id, known[i].corner, Eigen::Vector3d::Unit(axis), &gradient);
+      if (!HasPointsOf(gradient, covariance)) continue;
+      gradients.push_back(std::move(gradient));
+      rows.push_back(static_cast<Eigen::Index>(3 * i) + axis);
+    }
+  }
+  const auto size = static_cast<Eigen::Index>(3 * known.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(size, size);
+  if (!rows.empty()) all(rows, rows) = JointCovarianceOf(*covariance, gradients);
+  return all;
+}
+
+}  // namespace
+
+PresentPoints CollectPresent(const MarkerShape& shape, const std::vector<KnownPoint>& known,
+                             const PointCovariance* covariance) {
+  PresentPoints present;
+  std::vector<KnownPoint> found;
+  DatumPoints& points = present.points;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const std::optional<Eigen::Vector3d> x = PointInShape(shape, known[i]);
+    if (!x) continue;
+    if (!known[i].is_check) present.datum.push_back(points.points.size());
+    present.idxs.push_back(i);
+    found.push_back(known[i]);
+    points.points.push_back({*x, known[i].x_m, known[i].sigma_m});
+    points.center_in_shape_m += *x;
+  }
+  if (found.empty()) return present;
+  const auto count = static_cast<double>(found.size());
+  points.center_in_shape_m /= count;
+  double squared_m2 = 0.0;
+  for (DatumPoint& point : points.points) {
+    point.x_m -= points.center_in_shape_m;
+    squared_m2 += point.x_m.squaredNorm() / count;
+  }
+  constexpr double kMinRadius_m = 1e-4;  // of points in one place, which determine nothing
+  points.radius_m = std::max(kMinRadius_m, std::sqrt(squared_m2));
+  points.covariance_m2 = CovarianceOfPoints(found, covariance);
+  return present;
+}
+
+}  // namespace velamap
