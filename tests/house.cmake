@@ -21,9 +21,10 @@ house_folder(importer/layout PUBLIC
   code_search dictionary frame_choice known_point layout layout_writer prior_shape)
 house_folder(importer/print PUBLIC
   drawing drawing_writer marker_sheets placement png_file print_options sheet_plan)
+house_folder(importer/packets PUBLIC
+  packet_damage video_seek)
 house_folder(importer/video PUBLIC
-  frame_image frame_source image_file jpeg_codec picture_metadata source_file video_options
-  written_frame)
+  frame_source image_file jpeg_codec picture_metadata source_file video_options written_frame)
 house_folder(importer/detect PUBLIC
   chessboard corner_colors detection detection_options duplicates gray_levels interpolate marker_alignment
   marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
@@ -73,13 +74,13 @@ house_folder(exporters/shape PUBLIC
   sail_lines shape_frame shape_metrics shape_sigma shape_transform)
 house_folder(exporters/formats PUBLIC
   cad_library cad_writer diverging_color length_unit mesh_triangles mesh_writer metrics_report
-  ply_writer round_number shape_csv shape_ply surface_grid surface_spline)
+  metashape_markers ply_writer shape_csv shape_ply surface_grid surface_spline)
 house_folder(exporters/datum PUBLIC
   known_points known_points_report)
 house_folder(exporters/design PUBLIC
   mesh_reader)
 house_folder(exporters/scale PUBLIC
-  metric_scale metric_shape model_metrics scale_audit scale_audit_report scale_csv)
+  metric_scale metric_shape model_metrics round_number scale_audit scale_audit_report scale_csv)
 house_folder(exporters/surface PUBLIC
   surface surface_attempt surface_csv surface_input)
 house_folder(exporters/sail PUBLIC
@@ -106,7 +107,7 @@ house_folder(workflows/plan PUBLIC
 house_folder(workflows/calibrate PUBLIC
   board_calibration)
 house_folder(workflows/options PUBLIC
-  help_text nearest_name option_parser path_check sail_options shared_options)
+  help_text nearest_name option_effects option_parser path_check sail_options shared_options)
 house_folder(workflows/commands PUBLIC
   commands)
 house_folder(workflows/install)

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 std::vector<BadInput> AllCases() {
   std::vector<BadInput> cases;
   for (const auto& some :
-       {OutputCases(), SourceCases(), InputCases(), ProcessCases(), CommandCases()}) {
+       {OutputCases(), SourceCases(), InputCases(), FileCases(), ProcessCases(), CommandCases()}) {
     cases.insert(cases.end(), some.begin(), some.end());
   }
   return cases;
@@ -95,6 +95,31 @@ TEST(BadInputSandbox, IsGood) {
   }
   EXPECT_EQ(ListFolder(dir / "workspace/images").size(), 4u);
   EXPECT_EQ(ListFolder(dir / "frames").size(), 4u);
+}
+
+TEST(BadInputSandbox, WhatStepCommandsLeaveIsAWorkspace) {
+  const TempDir dir;
+  MakeSandbox(dir.path());
+  const std::string layout = "--layout_path @/layout.yml ";
+  for (const std::string& command :
+       {"marker_importer --image_path @/images --camera_path @/camera.yml --database_path "
+        "@/steps/database.db " +
+            layout,
+        "frame_registrator --database_path @/steps/database.db --output_path @/steps/sparse/seed " +
+            layout,
+        "bundle_adjuster --backend markers --input_path @/steps/sparse/seed --output_path "
+        "@/steps/adjusted --database_path @/steps/database.db " +
+            layout,
+        "shape_exporter --input_path @/steps/adjusted --output_path @/steps/sparse/0 --shape_path "
+        "@/steps/shape " +
+            layout,
+        "automatic_reconstructor --image_path @/images --camera_path @/camera.yml --backend "
+        "markers "
+        "--workspace_path @/steps " +
+            layout}) {
+    const ProgramRun run = RunVelamap(ArgumentsIn(dir.path(), command));
+    EXPECT_EQ(run.exit_code, 0) << command << ": " << run.err;
+  }
 }
 
 TEST(BadInputSandbox, WhatHasChangedIsImportedAnewOnRequest) {

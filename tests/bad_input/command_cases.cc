@@ -48,7 +48,10 @@ std::vector<BadInput> Plans() {
        "shoot_planner --field_of_view 90 --layout_path @/layout.yml --Sail.luff 6 --Sail.foot 3 "
        "--Sail.leech 6.2",
        2, "the layout has no horizontal lines"},
-      {"APlanOfAShapeThatIsNone", call + "--shape_path @/layout.yml", 2,
+      {"APlanOfAShapeAndASail", call + "--shape_path @/workspace/shape", 2,
+       "--Sail.foot: it would change nothing"},
+      {"APlanOfAShapeThatIsNone",
+       "shoot_planner --marker_length 0.1 --field_of_view 90 --shape_path @/layout.yml", 2,
        "layout.yml:1: expected the header"},
       {"APlanOverPhotographs", call + "--output_path @/images", 2, "holds 1.png"}};
 }
@@ -70,6 +73,8 @@ std::vector<BadInput> BoardsAndClips() {
            "is the --layout_path too"},
           {"AClipThatEndsBeforeItBegins", clip + "--Video.first_frame 3 --Video.last_frame 1", 2,
            "--Video.last_frame: 1 is before"},
+          {"PhotographsAsAVideo", "clip_checker --image_path @/images --Video.first_frame 3", 2,
+           "--Video.first_frame: it would change nothing"},
           {"AClipThatBeginsAfterItsEnd", clip + "--Video.first_frame 1000", 2, "none at or after"},
           {"APlaylistInPlaceOfAClip", "clip_checker --image_path @/list.m3u8", 2, "list.m3u8",
            Write("list.m3u8",
@@ -134,6 +139,12 @@ std::vector<BadInput> Exports() {
   return {
       {"AUnitThatIsNone", call + "--unit inch", 2, "--unit: 'inch' is unknown"},
       {"APresetThatIsNone", call + "--preset thesys", 2, "--preset: 'thesys' is unknown"},
+      {"HeightsWithoutLines", call + "--Section.heights 1", 2,
+       "--Section.heights: it would change nothing"},
+      {"ATextPlyOfNothing",
+       "shape_exporter --marker_length 0.1 --input_path @/workspace/sparse/0 --output_path @/new "
+       "--ascii_ply 1",
+       2, "--ascii_ply: it would change nothing"},
       {"HeightsThatAreNone", call + "--Section.heights 1,b", 2, "--Section.heights: '1,b'"},
       {"AnEdgeOfOnePoint", call + "--Surface.edges_path @/bad.csv", 2, "one point",
        Write("bad.csv", "edge,x,y,z\nluff,0,0,0\n")},
@@ -166,6 +177,8 @@ std::vector<BadInput> Comparisons() {
        Write("bad.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")},
       {"AChordOfNothing", own + "--chord_deviation 1e-9", 2, "--chord_deviation: 1e-09 is out of"},
       {"AReferenceUnitThatIsNone", own + "--reference_unit feet", 2, "--reference_unit: 'feet'"},
+      {"AUnitOfAShape", own + "--reference_unit mm", 2,
+       "--reference_unit: it would change nothing"},
       {"APartThatIsNone", own + "--part nope", 2, "--part: no marker of part 'nope'"},
       {"AlignedByAMarkerThatIsNone", own + "--align markers --align_markers 0,1,49", 2,
        "the shape has no marker 49"},

@@ -155,6 +155,21 @@ std::vector<BadInput> FoldersOfOthers() {
       {"ShapeOverAFolderOfTheUser",
        "shape_exporter --marker_length 0.1 --input_path " + kSeed + " --shape_path @/home", 2,
        "holds shape.csv", Put("home/shape.csv")},
+      {"ATableOfTheUserInTheWorkspace", kRerun, 2,
+       "registration.csv would be replaced, but velamap did not write it",
+       Put("workspace/registration.csv")},
+      {"AnEditedReport", kRerun, 2, "report.html would be replaced, but was changed",
+       [](const fs::path& dir) {
+         Replace(dir / "workspace/report.html", "</title>", "!</title>");
+       }},
+      {"ATableOfTheUserBesideTheSeed",
+       "frame_registrator --database_path @/workspace/database.db --marker_length 0.1 "
+       "--output_path @/home/seed",
+       2, "registration.csv would be replaced", Put("home/registration.csv")},
+      {"APageOfTheUserBesideTheCamera",
+       "camera_calibrator --image_path @/images --layout_path @/layout.yml --output_path "
+       "@/home/camera.yml",
+       2, "calibration.html would be replaced", Put("home/calibration.html")},
       {"FramesOverPicturesOfTheUser", kImportClip, 2, "frame_000002.jpg",
        Put("frames/frame_000002.jpg")},
       {"AWorkspaceThatIsNone", kRerun + "2", 2, "holds thesis.tex", Put("workspace2/thesis.tex")}};
@@ -220,6 +235,10 @@ std::vector<BadInput> SecondRuns() {
            }},
           {"AnImportIntoTheSameDatabase", kImport, 2, "another velamap works here since",
            hold(".new.db.lock")},
+          {"AFileOfTheUserInPlaceOfTheLock", kImport, 2, ".new.db.lock: velamap did not write this",
+           Put(".new.db.lock")},
+          {"AFileOfTheUserInPlaceOfTheLockOfTheWorkspace", kRerun, 2,
+           ".velamap.lock: velamap did not write this", Put("workspace/.velamap.lock")},
           {"AnImportIntoTheDatabaseOfTheWorkspace",
            kRerun,
            2,

@@ -65,6 +65,9 @@ std::vector<BadInput> ProcessCases() {
                        "--input_path @/workspace/sparse/seed --output_path @/new --log_path @/pipe",
                    2, "pipe is a pipe, whose reader",
                    [](const fs::path& dir) { MakePipe(dir / "pipe"); }});
+  cases.push_back(
+      {"AnImageNameWithALineBreak", kImport, 2, "holds a line break",
+       [](const fs::path& dir) { fs::copy(dir / "images/1.png", dir / "images/five\nsix.png"); }});
   // U+009B begins a command to the terminal as escape and bracket do.
   cases.push_back({"ControlCharactersBeyondAscii",
                    "automatic_reconstructor --image_path @/no\xc2\x9b" + std::string("31mwhere ") +

@@ -38,6 +38,15 @@ inline const std::string kImport =
     "marker_importer --image_path @/images --camera_path @/camera.yml --layout_path @/layout.yml "
     "--database_path @/new.db";
 
+// The main job. On the pictures of grey/ it fails because they show no marker.
+inline std::string MainJob(
+    const std::string& image_path, const std::string& camera_path,
+    const std::string& markers = "--dictionary DICT_4X4_50 --marker_length 0.1") {
+  return "automatic_reconstructor --image_path @/" + image_path + " --camera_path @/" +
+         camera_path + " --workspace_path @/new " + markers;
+}
+inline const std::string kMainJob = MainJob("grey", "camera.yml");
+
 // Makes the folder, which is empty before.
 void MakeSandbox(const fs::path& dir);
 
@@ -57,6 +66,7 @@ std::function<void(const fs::path& dir)> Write(const std::string& name, const st
 std::vector<BadInput> OutputCases();
 std::vector<BadInput> SourceCases();
 std::vector<BadInput> InputCases();
+std::vector<BadInput> FileCases();
 std::vector<BadInput> ProcessCases();
 std::vector<BadInput> CommandCases();
 

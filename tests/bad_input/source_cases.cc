@@ -193,6 +193,29 @@ std::vector<BadInput> Wishes() {
       {"ALayoutOfOtherMarkersAnalyzed",
        "shape_analyzer --shape_path @/workspace/shape --layout_path @/own.yml", 1,
        "is in the layout", write_layout("parts:\n  board: {markers: [40, 41]}\n")},
+      {"ALayoutOfAnotherDictionaryRegistered",
+       "frame_registrator --database_path @/workspace/database.db --output_path @/new/seed "
+       "--layout_path @/own.yml",
+       2, "has dictionary=DICT_5X5_50 border_bits=1, but",
+       [](const fs::path& dir) {
+         WriteTextFile(dir / "own.yml", "dictionary: DICT_5X5_50\nmarker_length: 0.1\n");
+       }},
+      {"ADatabaseOfOtherNames",
+       "bundle_adjuster --backend markers --marker_length 0.1 --output_path @/new/model "
+       "--input_path @/workspace/sparse/0 --database_path @/workspace/database.db",
+       2, "is not the one of",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db", "UPDATE images SET name = 'other_' || name");
+       }},
+      {"ADatabaseWithANameTwice",
+       "frame_registrator --marker_length 0.1 --output_path @/new/seed --database_path "
+       "@/workspace/database.db",
+       2, "two images are named 1.png",
+       [](const fs::path& dir) {
+         RunSql(dir / "workspace/database.db",
+                "CREATE TABLE loose AS SELECT * FROM images; DROP TABLE images; "
+                "ALTER TABLE loose RENAME TO images; UPDATE images SET name = '1.png'");
+       }},
       {"PointsAtOnePlaceForMarkers",
        "bundle_adjuster --backend markers --marker_length 0.1 --input_path @/model --output_path "
        "@/out",

@@ -2,7 +2,6 @@
 // exhaustive search.
 // usage: compare_detections REFERENCE.db OTHER.db
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <map>

@@ -154,6 +154,42 @@ TEST_F(Killed, AVideoGivesTheSameResultWhenRunAgain) {
                               static_cast<unsigned>(Setting("VELAMAP_KILL_SEED", 1)) + 1);
 }
 
+// Whenever it is killed, the earlier import is there or the new one, with the frames of either.
+TEST_F(Killed, AnImportAnewReplacesTheEarlierOneAsAWhole) {
+  WriteLongClip(60, dir_ / "long.avi");
+  const std::string command =
+      "marker_importer --image_path @/long.avi --camera_path @/camera.yml --layout_path "
+      "@/layout.yml --database_path @/new/database.db --frame_output_path @/new/frames ";
+  const std::string other = command + "--Video.frame_step 3 --import_anew 1";
+  fs::create_directory(dir_ / "new");
+  ASSERT_EQ(WaitFor(Start(command, "")), 0) << Messages("");
+  const auto earlier = ResultIn(dir_ / "new");
+  fs::copy(dir_ / "new", dir_ / "earlier", fs::copy_options::recursive);
+  const auto begin = Clock::now();
+  ASSERT_EQ(WaitFor(Start(other, "")), 0) << Messages("");
+  const std::chrono::duration<double> duration = Clock::now() - begin;
+  const auto replaced = ResultIn(dir_ / "new");
+  std::mt19937 random(static_cast<unsigned>(Setting("VELAMAP_KILL_SEED", 1)) + 2);
+  std::uniform_real_distribution<double> moment(0.0, duration.count());
+  for (int i = 0; i < Setting("VELAMAP_KILLS", 8) / 2; ++i) {
+    fs::remove_all(dir_ / "new");
+    fs::copy(dir_ / "earlier", dir_ / "new", fs::copy_options::recursive);
+    const pid_t pid = Start(other, "");
+    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
+    kill(pid, SIGKILL);
+    WaitFor(pid);
+    const std::string database = DatabaseText(dir_ / "new/database.db");
+    const bool is_earlier = database == earlier.at("database.db");
+    EXPECT_TRUE(is_earlier || database == replaced.at("database.db"));
+    // The next import settles what is left: one that adds nothing, or the same one again.
+    const std::string next = i % 2 == 0   ? other
+                             : is_earlier ? command
+                                          : command + "--Video.frame_step 3";
+    ASSERT_EQ(WaitFor(Start(next, "")), 0) << Messages("");
+    ExpectSameResult(i % 2 != 0 && is_earlier ? earlier : replaced);
+  }
+}
+
 // A COLMAP that never ends: a script, whose child has to go as well.
 class Hanging : public Killed {
  protected:

@@ -1,6 +1,5 @@
 #include "tests/support/board_renderer.h"
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -1,7 +1,6 @@
 #include "tests/support/clip_scene.h"
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 
 #include <gtest/gtest.h>

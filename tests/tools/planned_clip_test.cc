@@ -1,7 +1,6 @@
 // What shoot_planner says of a shoot against what becomes of the shoot: a clip rendered along the
 // planned path, its reconstruction, and its truth.
 
-#include <cmath>
 #include <sstream>
 
 #include <gtest/gtest.h>
