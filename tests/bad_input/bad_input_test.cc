@@ -100,6 +100,7 @@ TEST(BadInputSandbox, IsGood) {
 TEST(BadInputSandbox, WhatStepCommandsLeaveIsAWorkspace) {
   const TempDir dir;
   MakeSandbox(dir.path());
+  fs::create_directory(dir / "steps");
   const std::string layout = "--layout_path @/layout.yml ";
   for (const std::string& command :
        {"marker_importer --image_path @/images --camera_path @/camera.yml --database_path "

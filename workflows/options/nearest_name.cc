@@ -10,22 +10,31 @@ namespace {
 
 constexpr int kMaxOfWord = 2;  // letters that a whole word counts as
 
-// Smallest cost of turning the sequence `a` into `b` by insertions, deletions and substitutions.
+// Smallest cost of turning the sequence `a` into `b` by insertions, deletions, substitutions and
+// exchanges of neighbours, which cost as much as an insertion.
 template <typename Sequence, typename Insertion, typename Substitution>
 int EditDistance(const Sequence& a, const Sequence& b, const Insertion& insertion,
                  const Substitution& substitution) {
-  std::vector<int> row = {0};
-  for (const auto& item : b) row.push_back(row.back() + insertion(item));
-  for (const auto& item : a) {
-    int diagonal = row[0];
-    row[0] += insertion(item);
+  // distances[i][j]: of the first i items of `a` from the first j of `b`.
+  std::vector<std::vector<int>> distances(a.size() + 1, std::vector<int>(b.size() + 1, 0));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    distances[i + 1][0] = distances[i][0] + insertion(a[i]);
+  }
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    distances[0][j + 1] = distances[0][j] + insertion(b[j]);
+  }
+  for (std::size_t i = 1; i <= a.size(); ++i) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const int substituted = diagonal + substitution(item, b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + insertion(item), row[j - 1] + insertion(b[j - 1]), substituted});
+      int& distance = distances[i][j];
+      distance = std::min({distances[i - 1][j] + insertion(a[i - 1]),
+                           distances[i][j - 1] + insertion(b[j - 1]),
+                           distances[i - 1][j - 1] + substitution(a[i - 1], b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        distance = std::min(distance, distances[i - 2][j - 2] + insertion(a[i - 1]));
+      }
     }
   }
-  return row.back();
+  return distances[a.size()][b.size()];
 }
 
 // What it costs to write these words, or to strike them out.

@@ -154,6 +154,8 @@ GivenValues ReadCommandLine(const CommandSyntax& syntax, const OptionsByName& op
       CheckTypedValue(syntax, options.at(name), "--" + name, given);
       AddGiven(options.at(name), name, {given.value.front(), "--" + name}, &values);
     }
+  } catch (const po::invalid_command_line_syntax& error) {
+    throw InputError(fmt::format("--{}: needs a value; {}", error.tokens(), HelpHint(syntax)));
   } catch (const po::error& error) {
     throw InputError(fmt::format("{}; {}", error.what(), HelpHint(syntax)));
   }

@@ -292,6 +292,8 @@ TEST(NearestNameTest, SuggestsOnlyWhatIsNear) {
   EXPECT_EQ(NearestName("Registration.max_frames", names), "Registration.max_num_frames");
   EXPECT_EQ(NearestName("marker_imprter", names), "marker_importer");
   EXPECT_EQ(NearestName("hepl", names), "help");
+  EXPECT_EQ(NearestName("Wlak", {"Plan", "Walk"}), "Walk");
+  EXPECT_EQ(NearestName("path_image", {"path_camera", "image_path"}), "image_path");
   EXPECT_EQ(NearestName("zzzzzz", names), "");
   EXPECT_EQ(NearestName("backend", names), "");
   EXPECT_EQ(NearestName("SurfaceGrid.columns", names), "");
