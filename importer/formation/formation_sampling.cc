@@ -17,14 +17,31 @@
 namespace velamap {
 namespace {
 
-constexpr int kMaxSamples = 32, kMinSamples = 2;
+constexpr int kMinSamples = 2;
 constexpr double kMinSidePx = 12.0;
 // How far the sRGB curve of most cameras moves edges of the usual sharpness.
 constexpr double kUnknownInsetPx = 0.2;
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
-// At most `max_num` markers of the layout, spread over the better half by size.
-std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, int max_num,
+// How many samples are cut from a frame: small markers tell less each and take less time, so that
+// they may be as many as fit into a number of pixels.
+struct SampleQuota {
+  int num_large = 0;  // always taken
+  int num_small = 0;  // at most
+  double num_pixels = 0.0;
+};
+constexpr SampleQuota kQuota = {32, 128, 6e5};  // of all frames
+
+SampleQuota QuotaOfFrame(int num_frames) {
+  return {std::max(1, kQuota.num_large / num_frames), std::max(1, kQuota.num_small / num_frames),
+          kQuota.num_pixels / num_frames};
+}
+
+// How far a sample reaches beyond the marker.
+int SampleReachPx(double side_px) { return static_cast<int>(0.6 * side_px) + 8; }
+
+// Markers of the layout, spread over the better half by size.
+std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const SampleQuota& quota,
                                       std::vector<MarkerQuad> quads) {
   quads.erase(std::remove_if(quads.begin(), quads.end(),
                              [&](const MarkerQuad& quad) {
@@ -40,8 +57,13 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, int max_num
   std::stable_sort(quads.begin(), quads.end(), [&](const MarkerQuad& a, const MarkerQuad& b) {
     return preference(a) > preference(b);
   });
+  if (quads.empty()) return {};
   const auto size = static_cast<int>(quads.size());
-  const int num = std::min(max_num, size), num_good = std::max(num, size / 2);
+  const double side_px = QuadMeanSide(quads[quads.size() / 4].corners_px);
+  const double width_px = side_px + 2 * SampleReachPx(side_px);
+  const auto num_that_fit = static_cast<int>(quota.num_pixels / (width_px * width_px));
+  const int num = std::min(size, std::clamp(num_that_fit, quota.num_large, quota.num_small));
+  const int num_good = std::max(num, size / 2);
   std::vector<MarkerQuad> chosen;
   for (int i = 0; i < num; ++i) {
     chosen.push_back(quads[static_cast<std::size_t>(i * num_good / num)]);
@@ -52,7 +74,7 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, int max_num
 // The marker with its surroundings; nothing where its sides cannot be seen.
 std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv::Mat& gray,
                                          const MarkerQuad& quad) {
-  const int reach_px = static_cast<int>(0.6 * QuadMeanSide(quad.corners_px)) + 8;
+  const int reach_px = SampleReachPx(QuadMeanSide(quad.corners_px));
   const Box box = BoundingBox(quad.corners_px);
   const cv::Rect cut =
       cv::Rect(static_cast<int>(box.min.x()) - reach_px, static_cast<int>(box.min.y()) - reach_px,
@@ -74,9 +96,9 @@ std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv
 }
 
 std::vector<FormationSample> CutSamples(const FrameDetector& detector, const cv::Mat& gray,
-                                        int max_num) {
+                                        const SampleQuota& quota) {
   std::vector<FormationSample> samples;
-  for (const MarkerQuad& quad : ChooseMarkers(detector, max_num, SearchInFrame(detector, gray))) {
+  for (const MarkerQuad& quad : ChooseMarkers(detector, quota, SearchInFrame(detector, gray))) {
     auto sample = CutSample(detector, gray, quad);
     if (sample) samples.push_back(std::move(*sample));
   }
@@ -84,8 +106,9 @@ std::vector<FormationSample> CutSamples(const FrameDetector& detector, const cv:
 }
 
 // Reads `num_frames` frames, every `stride`-th, and cuts samples from them. False at the end.
-bool SampleFrames(const FrameDetector& detector, int num_frames, int stride, int num_per_frame,
-                  int num_threads, FrameSource* source, std::vector<FormationSample>* samples) {
+bool SampleFrames(const FrameDetector& detector, int num_frames, int stride,
+                  const SampleQuota& quota, int num_threads, FrameSource* source,
+                  std::vector<FormationSample>* samples) {
   std::vector<Frame> frames;  // without pixels
   bool has_more = true;
   for (int idx = 0; static_cast<int>(frames.size()) < num_frames && has_more; ++idx) {
@@ -98,7 +121,7 @@ bool SampleFrames(const FrameDetector& detector, int num_frames, int stride, int
     Frame frame = std::move(frames[i]);
     std::string reason;
     if (source->Load(&frame, &reason)) {
-      samples_of[i] = CutSamples(detector, frame.gray, num_per_frame);
+      samples_of[i] = CutSamples(detector, frame.gray, quota);
     }
   });
   for (std::vector<FormationSample>& some : samples_of) {
@@ -117,9 +140,9 @@ std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_
       num_in_video == 0 ? kStride : std::clamp(num_in_video / kNumFrames, 1, kStride);
   std::vector<FormationSample> samples;
   for (int stride = first_stride; stride <= kMaxStride; stride *= 2) {
-    const bool has_more = SampleFrames(detector, kNumFrames, stride, kMaxSamples / kNumFrames,
+    const bool has_more = SampleFrames(detector, kNumFrames, stride, QuotaOfFrame(kNumFrames),
                                        num_threads, source, &samples);
-    if (!has_more || static_cast<int>(samples.size()) >= kMaxSamples / 2) break;
+    if (!has_more || static_cast<int>(samples.size()) >= kQuota.num_large / 2) break;
   }
   return samples;
 }
@@ -127,10 +150,12 @@ std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_
 // The choice depends on the contents of the photographs only, which may have any names and order.
 std::vector<FormationSample> SamplePhotographs(const FrameDetector& detector, int num_threads,
                                                FrameSource* source) {
+  constexpr int kMaxFrames = 32;
   const int num_images = std::max(1, source->NumFrames());
+  const int stride = (num_images + kMaxFrames - 1) / kMaxFrames;
   std::vector<FormationSample> samples;
-  SampleFrames(detector, kMaxSamples, (num_images + kMaxSamples - 1) / kMaxSamples,
-               std::max(1, kMaxSamples / num_images), num_threads, source, &samples);
+  SampleFrames(detector, kMaxFrames, stride, QuotaOfFrame(std::min(num_images, kMaxFrames)),
+               num_threads, source, &samples);
   return samples;
 }
 
