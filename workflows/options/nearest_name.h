@@ -7,8 +7,8 @@
 
 namespace velamap {
 
-// The known name that is nearest to `text`; "" if none is near. Two letters exchanged count as one. A
-// whole word too many or missing, such as the section before the dot, counts as two at most.
+// The known name that is nearest to `text`; "" if none is near. Two letters exchanged count as one.
+// A whole word too many or missing, such as the section before the dot, counts as two at most.
 std::string NearestName(const std::string& text, const std::vector<std::string>& names);
 
 }  // namespace velamap
