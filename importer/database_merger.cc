@@ -144,15 +144,17 @@ FrameDetector DetectorOf(const Layout& layout, const PartContent& part) {
 // The state after the last frame, as if it had been reached from the first one.
 std::optional<TrackingState> TrackingOf(const std::vector<PartContent>& parts) {
   std::optional<TrackingState> state;
-  int num_frames = 0;
+  int num_frames = 0, num_damaged = 0;
   for (const PartContent& part : parts) {
     if (!part.tracking) continue;
     state = part.tracking;
     num_frames += part.tracking->num_frames;
+    num_damaged += part.tracking->num_damaged;
   }
   if (!state) return state;
   state->first_frame = parts.front().record.whole.first_frame;
   state->num_frames = num_frames;
+  state->num_damaged = num_damaged;
   return state;
 }
 

@@ -68,6 +68,10 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
     result.source = frame->source;
   }
   result.is_damaged = !frame->is_whole;
+  if (result.is_damaged && turn && IsFirstOfGroup(frame_idx)) {
+    *turn->Wait() = {};
+    result.tracks = MarkerTracks{};
+  }
   result.times = TakeStageTimes();
   result.reading_s = frame->decode_s;
   return result;
@@ -79,10 +83,7 @@ void ImportRun::Consume(const FrameResult& result) {
   report_.times += result.times;
   reading_s_ += result.reading_s;
   const FrameDetections& detections = result.detections;
-  if (result.is_damaged) {
-    ++report_.num_frames_damaged;
-    return;
-  }
+  if (result.is_damaged) return;
   if (!result.skipped_because.empty()) {
     report_.skipped.push_back({detections.image_name, result.skipped_because});
     return;
@@ -118,8 +119,9 @@ ImportReport ImportRun::Finish(double cpu_s, int num_threads) {
                                  report_.skipped.front().image_name,
                                  report_.skipped.front().reason));
   }
-  report_.num_packets_damaged = source_->NumDamagedPackets();
-  if (report_.num_frames_read == 0 && report_.num_frames_damaged > 0 && !held_markers_) {
+  report_.num_frames_damaged = tracking_.num_damaged;
+  if (report_.num_frames_read == 0 && report_.num_frames_damaged > 0 && !held_markers_ &&
+      !options_.part) {
     throw InputError(fmt::format(
         "{}: the file is damaged: none of {} frames is whole; copy it from the camera again",
         options_.image_path, report_.num_frames_damaged));
@@ -142,7 +144,7 @@ std::vector<MarkerQuad> ImportRun::SearchInTurn(int frame_idx, const Frame& fram
     seen_coarsely = SearchInFrameCoarsely(detector_, frame.gray);
   }
   MarkerTracks* tracks = turn->Wait();
-  if ((num_searched_ + frame_idx) % FramesPerGroup(detector_.options) == 0) *tracks = {};
+  if (IsFirstOfGroup(frame_idx)) *tracks = {};
   const int frame_number = frame.frame_number.value_or(frame_idx);
   const FrameSearch search{
       frame.gray.size(),
@@ -161,6 +163,10 @@ std::vector<MarkerQuad> ImportRun::SearchInTurn(int frame_idx, const Frame& fram
   return quads;
 }
 
+bool ImportRun::IsFirstOfGroup(int frame_idx) const {
+  return (num_searched_ + frame_idx) % FramesPerGroup(detector_.options) == 0;
+}
+
 bool ImportRun::Load(Frame* frame, std::string* reason) const {
   const StageTimer timer(ImportStage::kDecode);
   return source_->Load(frame, reason);
@@ -174,6 +180,7 @@ void ImportRun::WriteImage(const Frame& frame, const FrameDetections& detections
 
 void ImportRun::NoteTracking(const FrameResult& result) {
   ++tracking_.num_frames;
+  tracking_.num_damaged += result.is_damaged ? 1 : 0;
   if (const auto number = NumberOfVideoFrame(result.detections.image_name)) {
     tracking_.last_frame = *number;
   }

@@ -41,6 +41,8 @@ class ImportRun {
   // of whole frames, which need no other frame, run before the turn.
   std::vector<MarkerQuad> SearchInTurn(int frame_idx, const Frame& frame, Turn* turn,
                                        FrameResult* result) const;
+  // Whether tracking starts anew with this frame, as it does with the first one of a part.
+  bool IsFirstOfGroup(int frame_idx) const;
   bool Load(Frame* frame, std::string* reason) const;
   void WriteImage(const Frame& frame, const FrameDetections& detections) const;
   void NoteTracking(const FrameResult& result);

@@ -68,9 +68,9 @@ struct ImportReport {
   PriorShapeAgreement prior_shape;     // of all frames
   std::vector<int> ids_not_in_layout;  // detected and rejected, because no part names them
   std::vector<SkippedImage> skipped;   // unreadable files
-  // Frames of a video that were left out because the file is damaged there or before them, and the
-  // places where it is, some of which may hold no frame at all.
-  int num_frames_damaged = 0, num_packets_damaged = 0;
+  // Frames of a video that were left out because the file is damaged there or before them, those of
+  // an earlier import of the same frames among them.
+  int num_frames_damaged = 0;
   // CPU times are sums over the threads. Decoding has the CPU time that no other stage claims,
   // because FFmpeg decodes on threads of its own. The stages overlap, so wall times are those of
   // the reading thread (decode), the mean of the working threads (detect, refine, images) and those

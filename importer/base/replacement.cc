@@ -122,11 +122,16 @@ struct UnfinishedName {
   pid_t process_id = 0;
 };
 
-// Others share a folder over the network, and their processes have numbers of their own.
+// Others share a folder over the network, and containers a machine; the processes of each have
+// numbers of their own.
 std::string ThisMachine() {
   std::array<char, HOST_NAME_MAX + 1> name{};
   gethostname(name.data(), name.size() - 1);
-  return HashText(Hash(name.data()));
+  std::string id;
+  std::ifstream("/etc/machine-id") >> id;
+  std::array<char, 64> processes{};
+  if (readlink("/proc/self/ns/pid", processes.data(), processes.size() - 1) < 0) processes = {};
+  return HashText(Hash(fmt::format("{} {} {}", name.data(), id, processes.data())));
 }
 
 std::optional<UnfinishedName> ParseUnfinished(const std::string& name) {

@@ -67,7 +67,7 @@ ColmapDatabase::ColmapDatabase(const std::string& path, Mode mode, int busy_time
             [&] { writing ? OpenForWriting(busy_timeout_ms) : OpenForReading(busy_timeout_ms); });
   } catch (...) {
     database_.reset();
-    if (!existed) RemoveAll(path);
+    if (!existed) RemoveAll(CanonicalPath(path));
     throw;
   }
 }
@@ -244,7 +244,7 @@ std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
       CheckImageName(name, path_ + ": table images");
       if (ids.emplace(name, query.getColumn(1).getUInt()).second) continue;
       throw InputError(fmt::format(
-          "{}: table images: two images are named {}; remove one of them, or import anew", path_,
+          "{}: table images: two images are named {}; delete the database and import again", path_,
           name));
     }
     return ids;

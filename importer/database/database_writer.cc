@@ -15,7 +15,8 @@ std::filesystem::path LockOfDatabase(const std::string& path) {
   return file.parent_path() / ("." + file.filename().string() + ".lock");
 }
 
-NewDatabaseGuard::NewDatabaseGuard(const std::string& path) : path_(path), is_new_(!Exists(path)) {}
+NewDatabaseGuard::NewDatabaseGuard(const std::string& path)
+    : path_(CanonicalPath(path).string()), is_new_(!Exists(path)) {}
 
 NewDatabaseGuard::~NewDatabaseGuard() {
   if (!is_new_) return;

@@ -203,7 +203,7 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
       CheckImageName(image.detections.image_name, path + ": table images");
       if (!image_names.insert(image.detections.image_name).second) {
         throw InputError(fmt::format(
-            "{}: table images: two images are named {}; remove one of them, or import anew", path,
+            "{}: table images: two images are named {}; delete the database and import again", path,
             image.detections.image_name));
       }
       if (cameras.count(image.camera_id) == 0) {

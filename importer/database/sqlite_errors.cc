@@ -30,7 +30,8 @@ void ThrowInputError(const std::string& path, const SQLite::Exception& exception
       break;
     default:
       message = fmt::format(
-          "SQLite reports: {}; give a database of velamap marker_importer, or import anew",
+          "SQLite reports: {}; give a database of velamap marker_importer, or delete it and import "
+          "again",
           exception.what());
   }
   throw InputError(fmt::format("{}: {}", path, message));

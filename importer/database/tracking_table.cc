@@ -16,11 +16,13 @@ namespace velamap {
 namespace {
 
 constexpr char kTrackingSchema[] = R"(
-CREATE TABLE IF NOT EXISTS marker_tracking (
+DROP TABLE IF EXISTS marker_tracking;
+CREATE TABLE marker_tracking (
     first_frame INTEGER NOT NULL,
     frame_step INTEGER NOT NULL,
     last_frame INTEGER NOT NULL,
     num_frames INTEGER NOT NULL,
+    num_damaged INTEGER NOT NULL,
     tracked_frame INTEGER NOT NULL,
     has_new INTEGER NOT NULL,
     inflow_px BLOB NOT NULL);
@@ -31,13 +33,12 @@ CREATE TABLE IF NOT EXISTS marker_tracks (
     num_lost INTEGER NOT NULL,
     num_found INTEGER NOT NULL,
     hit_rate REAL NOT NULL);
-DELETE FROM marker_tracking;
 DELETE FROM marker_tracks;
 )";
 
 constexpr char kReadState[] =
-    "SELECT first_frame, frame_step, last_frame, num_frames, tracked_frame, has_new, inflow_px"
-    " FROM marker_tracking";
+    "SELECT first_frame, frame_step, last_frame, num_frames, num_damaged, tracked_frame, has_new,"
+    " inflow_px FROM marker_tracking";
 constexpr char kReadTracks[] =
     "SELECT marker_id, corners_px, velocity_px, num_lost, num_found, hit_rate FROM marker_tracks"
     " ORDER BY rowid";
@@ -116,6 +117,7 @@ TrackingState StateOf(const RowReader& row) {
   state.frame_step = row.Int("frame_step", 1);
   state.last_frame = row.Int("last_frame", 0);
   state.num_frames = row.Int("num_frames", 0);
+  state.num_damaged = row.Int("num_damaged", 0);
   state.tracks.frame_number = row.Int("tracked_frame", 0);
   state.tracks.has_new = row.Int("has_new", 0) != 0;
   BorderInflow& inflow_px = state.tracks.inflow_px;
@@ -130,11 +132,11 @@ void WriteTracking(const TrackingState& state, SQLite::Database* database) {
   database->exec(kTrackingSchema);
   SQLite::Statement insert(*database,
                            "INSERT INTO marker_tracking(first_frame, frame_step, last_frame,"
-                           " num_frames, tracked_frame, has_new, inflow_px)"
-                           " VALUES(?, ?, ?, ?, ?, ?, ?)");
+                           " num_frames, num_damaged, tracked_frame, has_new, inflow_px)"
+                           " VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SQLite::bind(insert, state.first_frame, state.frame_step, state.last_frame, state.num_frames,
-               state.tracks.frame_number, state.tracks.has_new ? 1 : 0);
-  BindBlob(insert, 7,
+               state.num_damaged, state.tracks.frame_number, state.tracks.has_new ? 1 : 0);
+  BindBlob(insert, 8,
            std::vector<double>(state.tracks.inflow_px.begin(), state.tracks.inflow_px.end()));
   insert.exec();
   SQLite::Statement insert_track(*database,
@@ -144,9 +146,12 @@ void WriteTracking(const TrackingState& state, SQLite::Database* database) {
 }
 
 std::optional<TrackingState> ReadTracking(const std::string& path, SQLite::Database* database) {
-  if (!database->tableExists("marker_tracking") || !database->tableExists("marker_tracks")) {
-    return std::nullopt;
-  }
+  const bool has_columns = database
+                               ->execAndGet(
+                                   "SELECT COUNT(*) FROM pragma_table_info('marker_tracking')"
+                                   " WHERE name = 'num_damaged'")
+                               .getInt() == 1;
+  if (!has_columns || !database->tableExists("marker_tracks")) return std::nullopt;
   SQLite::Statement states(*database, kReadState);
   if (!states.executeStep()) return std::nullopt;
   TrackingState state = StateOf({{path, "marker_tracking"}, &states});

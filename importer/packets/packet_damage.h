@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <set>
 #include <vector>
 
 #include "importer/packets/video_seek.h"
@@ -24,19 +25,21 @@ class PacketDamage {
   // Whether the frame of this packet shows what was recorded. A decoder hides damage, and the
   // frames up to the next key frame repeat what it has put in the place. Pictures that are shown
   // before the key frame that they follow are built upon by none that are shown after it, but build
-  // on those before the key frame. All packets up to this one must have been decoded.
+  // on those before the key frame. All packets up to this one must have been decoded. A stream that
+  // renews its pictures bit by bit, without key frames, is not whole any more after damage.
   bool IsWhole(std::int64_t packet_idx) const;
-
-  int NumDamaged() const;  // packets
 
  private:
   struct Packet {
-    bool is_key, is_leading, is_damaged;
+    std::int64_t first_idx;  // of the packets that it may build on
+    bool is_leading;         // shown before the key frame that it follows
   };
 
   mutable std::mutex mutex_;
   std::vector<Packet> packets_;
-  std::int64_t key_time_ = VideoPacket::kNoTime;  // of the last key frame
+  std::set<std::int64_t> damaged_idxs_;
+  std::int64_t earlier_key_idx_ = 0, key_idx_ = 0;  // of the last two key frames
+  std::int64_t key_time_ = VideoPacket::kNoTime;    // of the last key frame
 };
 
 }  // namespace velamap

@@ -163,8 +163,6 @@ class VideoFile : public FrameSource {
 
   bool IsVideo() const override { return true; }
 
-  int NumDamagedPackets() const override { return decoder_.NumDamagedPackets(); }
-
   int NumFrames() const override { return num_frames_; }
 
  private:

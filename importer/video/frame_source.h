@@ -50,9 +50,6 @@ class FrameSource {
 
   virtual bool IsVideo() const = 0;
 
-  // Compressed pictures of a video that are damaged, of those read so far.
-  virtual int NumDamagedPackets() const { return 0; }
-
   // The largest number of frames to come; 0 if the container does not say.
   virtual int NumFrames() const = 0;
 };

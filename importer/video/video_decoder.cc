@@ -105,6 +105,4 @@ double VideoDecoder::CountOn(double time_s, double frames_per_second) {
 
 int VideoDecoder::NumFramesRead() const { return next_number_; }
 
-int VideoDecoder::NumDamagedPackets() const { return stream_->NumDamagedPackets(); }
-
 }  // namespace velamap

@@ -56,9 +56,6 @@ class VideoDecoder {
   // The number of frames of the video, once Next() has returned nothing.
   int NumFramesRead() const;
 
-  // Of those read so far; some of them may have no frame.
-  int NumDamagedPackets() const;
-
  private:
   // The time, moved so that it is not before that of the last frame.
   double CountOn(double time_s, double frames_per_second);

@@ -54,8 +54,6 @@ class VideoStream {
   // Whether the frame that was decoded last shows what was recorded.
   bool IsWhole() const;
 
-  int NumDamagedPackets() const { return damage_.NumDamaged(); }
-
  private:
   // Returns false at the end and at a read error.
   bool ReadPacket();

@@ -145,6 +145,10 @@ std::vector<BadInput> Exports() {
        "shape_exporter --marker_length 0.1 --input_path @/workspace/sparse/0 --output_path @/new "
        "--ascii_ply 1",
        2, "--ascii_ply: it would change nothing"},
+      {"MarkersForMetashapeOfNothing",
+       "shape_exporter --marker_length 0.1 --input_path @/workspace/sparse/0 --output_path @/new "
+       "--metashape 1",
+       2, "--metashape: it would change nothing"},
       {"HeightsThatAreNone", call + "--Section.heights 1,b", 2, "--Section.heights: '1,b'"},
       {"AnEdgeOfOnePoint", call + "--Surface.edges_path @/bad.csv", 2, "one point",
        Write("bad.csv", "edge,x,y,z\nluff,0,0,0\n")},

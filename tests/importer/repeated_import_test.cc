@@ -219,5 +219,32 @@ TEST_F(MarkerImporterTest, FailedRunLeavesAnExistingDatabaseAlone) {
   EXPECT_EQ(ReadImages().size(), 1u);
 }
 
+TEST_F(MarkerImporterTest, FailedFirstRunLeavesALinkToADatabaseAlone) {
+  fs::create_symlink("elsewhere.db", options_.database_path);
+  WritePicture("1.png", 0, {});
+  EXPECT_THROW(ImportMarkers(options_), DataError);
+  EXPECT_TRUE(fs::is_symlink(options_.database_path));
+  EXPECT_FALSE(fs::exists(dir_ / "elsewhere.db"));
+  WritePicture("2.png", 0, {1, 2});
+  ImportMarkers(options_);
+  EXPECT_TRUE(fs::is_symlink(options_.database_path));
+  EXPECT_TRUE(fs::exists(dir_ / "elsewhere.db"));
+}
+
+TEST_F(MarkerImporterTest, DamagedFramesAreCountedAgainByALaterRun) {
+  WriteVideo(10);
+  {
+    std::fstream video(options_.image_path, std::ios::in | std::ios::out | std::ios::binary);
+    video.seekp(static_cast<std::streamoff>(fs::file_size(options_.image_path) / 2));
+    video << std::string(300, '\xff');
+  }
+  const ImportReport report = ImportMarkers(options_);
+  EXPECT_GE(report.num_frames_damaged, 1);
+  EXPECT_LT(report.num_frames_read, 10);
+  const ImportReport again = ImportMarkers(options_);
+  EXPECT_EQ(again.num_images_added, 0);
+  EXPECT_EQ(again.num_frames_damaged, report.num_frames_damaged);
+}
+
 }  // namespace
 }  // namespace velamap

@@ -94,7 +94,7 @@ void Validate(Options* options) {
   calibration.calibration.camera_model = ModelOf(options->camera_model);
   calibration.calibration.num_threads = options->general.num_threads;
   calibration.layout = LoadGivenLayout(options->markers, true);
-  if (options->chessboard.empty()) {
+  if (options->typed.count("Board.chessboard") == 0 && options->chessboard.empty()) {
     RefuseWithoutEffect(options->typed, {"Board."}, "--Board.chessboard is missing");
     return;
   }

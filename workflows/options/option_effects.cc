@@ -38,7 +38,9 @@ void RefuseVideoOptions(const CommandOptions& options) {
   const std::string& image_path = options.paths.image_path;
   if (!IsFolder(image_path)) return;
   RefuseWithoutEffect(
-      options.typed, {"Video.", "frame_output_path", "MarkerAdjustment.rolling_shutter"},
+      options.typed,
+      {"Video.", "frame_output_path", "ArucoDetection.full_search_interval",
+       "MarkerAdjustment.rolling_shutter", "MarkerAdjustment.estimate_rolling_shutter"},
       fmt::format("the pictures in --image_path {} are photographs and no video", image_path));
 }
 
@@ -53,8 +55,13 @@ void RefuseOptionsOfOtherBackend(const TypedNames& typed, AdjustmentBackend back
         typed,
         {"BundleAdjustment.function_tolerance", "BundleAdjustment.remove_outliers",
          "BundleAdjustment.max_num_rounds", "BundleAdjustment.outlier_ratio",
-         "BundleAdjustment.min_outlier_error", "BundleAdjustment.time_limit"},
+         "BundleAdjustment.min_outlier_error", "BundleAdjustment.time_limit", "colmap_path",
+         "log_path"},
         "--backend markers adjusts without COLMAP (--backend both or colmap would use it)");
+  }
+  if (backend != AdjustmentBackend::kColmap) {
+    RefuseWithoutEffect(typed, {"scale_by"},
+                        "the adjustment with markers gives metres (--backend colmap would use it)");
   }
 }
 

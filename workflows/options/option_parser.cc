@@ -155,7 +155,7 @@ GivenValues ReadCommandLine(const CommandSyntax& syntax, const OptionsByName& op
       AddGiven(options.at(name), name, {given.value.front(), "--" + name}, &values);
     }
   } catch (const po::invalid_command_line_syntax& error) {
-    throw InputError(fmt::format("--{}: needs a value; {}", error.tokens(), HelpHint(syntax)));
+    throw InputError(fmt::format("{}: needs a value; {}", error.tokens(), HelpHint(syntax)));
   } catch (const po::error& error) {
     throw InputError(fmt::format("{}; {}", error.what(), HelpHint(syntax)));
   }

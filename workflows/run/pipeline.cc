@@ -114,12 +114,11 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
   ClearProgressLine();
   spdlog::info("{} images added, {} were in the database before, {} markers found",
                report.num_images_added, report.num_images_present, report.num_markers);
-  if (report.num_frames_damaged > 0 || report.num_packets_damaged > 0) {
+  if (report.num_frames_damaged > 0) {
     spdlog::warn(
-        "{}: the file is damaged in {} places; {} of {} frames, which show them or build on them, "
-        "are left out: copy it from the camera again, or record again",
-        options.image_path, report.num_packets_damaged, report.num_frames_damaged,
-        report.num_frames_read + report.num_frames_damaged);
+        "{}: the file is damaged: {} frames, which show the damage or build on it, are left out; "
+        "copy it from the camera again, or record again",
+        options.image_path, report.num_frames_damaged);
   }
   if (report.num_fallbacks > 0) {
     spdlog::info(

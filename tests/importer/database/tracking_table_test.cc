@@ -19,6 +19,7 @@ TrackingState Example() {
   state.frame_step = 2;
   state.last_frame = 110;
   state.num_frames = 51;
+  state.num_damaged = 4;
   state.tracks.frame_number = 108;
   state.tracks.has_new = true;
   state.tracks.inflow_px = {0.1, -2.5, 1.0 / 3, 4};
@@ -45,6 +46,7 @@ TEST(TrackingTable, GivesBackWhatWasWritten) {
   EXPECT_EQ(read->frame_step, 2);
   EXPECT_EQ(read->last_frame, 110);
   EXPECT_EQ(read->num_frames, 51);
+  EXPECT_EQ(read->num_damaged, 4);
   EXPECT_EQ(read->tracks.frame_number, 108);
   EXPECT_TRUE(read->tracks.has_new);
   EXPECT_EQ(read->tracks.inflow_px, written.tracks.inflow_px);
@@ -58,6 +60,19 @@ TEST(TrackingTable, GivesBackWhatWasWritten) {
     EXPECT_EQ(track.num_found, expected.num_found);
     EXPECT_EQ(track.hit_rate, expected.hit_rate);
   }
+}
+
+TEST(TrackingTable, OneOfAnEarlierVersionIsReplaced) {
+  const TempDir dir;
+  const std::string path = dir / "database.db";
+  ColmapDatabase(path, Mode::kReadWriteCreate).WriteTracking(Example());
+  SQLite::Database(path, SQLite::OPEN_READWRITE)
+      .exec("ALTER TABLE marker_tracking DROP COLUMN num_damaged");
+  ColmapDatabase database(path, Mode::kReadWriteCreate);
+  EXPECT_FALSE(database.ReadTracking());
+  database.WriteTracking(Example());
+  ASSERT_TRUE(database.ReadTracking());
+  EXPECT_EQ(database.ReadTracking()->num_damaged, 4);
 }
 
 TEST(TrackingTable, ValuesThatNoTrackingGivesAreRefused) {

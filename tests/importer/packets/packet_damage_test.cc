@@ -19,7 +19,6 @@ std::string Left(const std::string& packets, const std::vector<int>& damaged) {
     damage.Add(packet == 'l' ? key_time - 1 : time, packet == 'K');
   }
   for (const int packet_idx : damaged) damage.Mark(packet_idx);
-  EXPECT_EQ(damage.NumDamaged(), static_cast<int>(damaged.size()));
   std::string left = packets;
   for (std::size_t i = 0; i < packets.size(); ++i) {
     if (!damage.IsWhole(static_cast<std::int64_t>(i))) left[i] = '-';
@@ -41,10 +40,9 @@ TEST(PacketDamage, OfPicturesShownBeforeTheirKeyFrameHurtsNoLaterOne) {
   EXPECT_EQ(Left("KppKllpp", {1}), "K--K--pp") << "they build on those before it";
 }
 
-TEST(PacketDamage, EndsInAStreamWithoutKeyFrames) {
-  const std::string left = Left("K" + std::string(999, 'p'), {100});
-  EXPECT_EQ(left.substr(0, 100), "K" + std::string(99, 'p'));
-  EXPECT_EQ(left.substr(100), std::string(300, '-') + std::string(600, 'p'));
+TEST(PacketDamage, DoesNotEndWithoutAKeyFrame) {
+  EXPECT_EQ(Left("K" + std::string(999, 'p'), {100}),
+            "K" + std::string(99, 'p') + std::string(900, '-'));
 }
 
 TEST(PacketDamage, KnowsNothingOfPacketsThatAreNotThere) {
@@ -53,7 +51,6 @@ TEST(PacketDamage, KnowsNothingOfPacketsThatAreNotThere) {
   damage.Mark(-1);
   EXPECT_TRUE(damage.IsWhole(3));
   EXPECT_TRUE(damage.IsWhole(-1));
-  EXPECT_EQ(damage.NumDamaged(), 0);
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ TEST(OptionEffectsTest, PhotographsAreNoVideo) {
   const TempDir dir;
   WriteTextFile(dir / "clip.mp4", "video");
   for (const char* name :
-       {"Video.frame_step", "frame_output_path", "MarkerAdjustment.rolling_shutter"}) {
+       {"Video.frame_step", "frame_output_path", "ArucoDetection.full_search_interval",
+        "MarkerAdjustment.rolling_shutter", "MarkerAdjustment.estimate_rolling_shutter"}) {
     CommandOptions options;
     options.typed = {name};
     options.paths.image_path = (dir / "clip.mp4").string();
@@ -53,6 +54,9 @@ TEST(OptionEffectsTest, EachBackendHasItsOptions) {
   }
   EXPECT_THROW(refuse("BundleAdjustment.outlier_ratio", AdjustmentBackend::kMarkers), InputError);
   EXPECT_NO_THROW(refuse("BundleAdjustment.refine_focal_length", AdjustmentBackend::kMarkers));
+  EXPECT_THROW(refuse("log_path", AdjustmentBackend::kMarkers), InputError);
+  EXPECT_THROW(refuse("scale_by", AdjustmentBackend::kBoth), InputError);
+  EXPECT_NO_THROW(refuse("scale_by", AdjustmentBackend::kColmap));
 }
 
 TEST(OptionEffectsTest, EachMethodHasItsOptions) {
