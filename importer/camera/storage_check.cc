@@ -1,6 +1,7 @@
 #include "importer/camera/storage_check.h"
 
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -95,6 +96,8 @@ cv::FileStorage OpenStorage(const std::string& text, const std::string& path,
     }
   } catch (const cv::Exception& exception) {
     reason = fmt::format(" ({})", exception.err);
+  } catch (const std::length_error&) {  // OpenCV takes a colon at the beginning of a line for a key
+    reason = " (a key without a name)";
   }
   throw InputError(fmt::format("{}: not a readable {}{}", path, kind, reason));
 }

@@ -12,6 +12,8 @@ shift
 
 workflows/build.sh sanitize fuzz_targets
 export programs=build/sanitize/tests/fuzz build=build/fuzz seconds
+# The libraries for CAD files keep their tables until the program ends.
+export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
 mkdir -p "$build/findings"
 "$programs/make_seeds" "$build/seeds"
 
@@ -19,9 +21,6 @@ readers=("$@")
 if [[ ${#readers[@]} -eq 0 ]]; then
   for folder in "$build"/seeds/*/; do readers+=("$(basename "$folder")"); done
 fi
-# The libraries for CAD files keep their tables until the program ends.
-export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
-
 fuzz() {  # READER
   local log="$build/findings/$1.log" status=0
   mkdir -p "$build/corpus/$1"
