@@ -15,7 +15,7 @@ house_folder(importer/geometry PUBLIC
   alignment consensus_pose directions least_squares opencv_pose p3p pose_refinement pose_step principal_axes quad
   ransac rigid3 unit_square_map units)
 house_folder(importer/camera PUBLIC
-  calibration calibration_writer camera camera_jacobian camera_projection storage_check
+  calibration calibration_writer camera camera_jacobian camera_projection storage_reader
   turned_camera)
 house_folder(importer/layout PUBLIC
   code_search dictionary frame_choice known_point layout layout_writer prior_shape)

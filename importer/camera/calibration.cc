@@ -11,7 +11,7 @@
 #include "importer/base/error.h"
 #include "importer/base/text_file.h"
 #include "importer/camera/camera_projection.h"
-#include "importer/camera/storage_check.h"
+#include "importer/camera/storage_reader.h"
 
 namespace velamap {
 namespace {

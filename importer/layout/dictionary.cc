@@ -15,7 +15,7 @@
 #include "importer/base/files.h"
 #include "importer/base/ids.h"
 #include "importer/base/text_file.h"
-#include "importer/camera/storage_check.h"
+#include "importer/camera/storage_reader.h"
 
 namespace velamap {
 namespace {
