@@ -83,8 +83,7 @@ def command_of(clip: Clip, stage: str, options: list[tuple[str, str]]) -> list[s
         words += ["--workspace_path", workspace, "--summary", "json"]
     else:
         words += ["--database_path", f"{workspace}/database.db", "--central_frames",
-                  clip.central_frames, "--output_path", f"{jobs}/sweep.csv",
-                  "--log_path", f"{jobs}/sweep_colmap.log"]
+                  clip.central_frames, "--output_path", f"{jobs}/sweep.csv"]
     for name, value in options:
         words += [f"--{name}", value]
     return words
