@@ -2,8 +2,8 @@
 #   cmake -DOUTPUT=assets.cc -DkReportPage=page.html -DkReportScript="a.js|b.js" ... -P embed.cmake
 # Joins the files of one variable in order.
 
-set(ASSETS kReportPage kCalibrationPage kComparisonPage kReportStyle kReportScript kComparisonScript
-    kReportThree kReportChart kReportLicences)
+set(ASSETS kReportPage kCalibrationPage kComparisonPage kReportView kReportStyle kReportScript
+    kComparisonScript kReportThree kReportChart kReportLicences)
 
 file(WRITE ${OUTPUT}.tmp "#include \"exporters/report/report_assets.h\"\n\nnamespace velamap {\n")
 foreach(asset IN LISTS ASSETS)

@@ -14,8 +14,9 @@ set(COMPARISON_SCRIPT)
 foreach(name elements colours tables scene view3d controls profiles comparison)
   list(APPEND COMPARISON_SCRIPT ${REPORT_DIR}/${name}.js)
 endforeach()
-set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/comparison.html ${COMPARISON_SCRIPT} ${REPORT_DIR}/calibration.html ${REPORT_DIR}/style.css ${REPORT_DIR}/licences.txt
-                 ${REPORT_SCRIPT} ${REPORT_THREE} ${REPORT_CHART})
+set(REPORT_FILES ${REPORT_DIR}/page.html ${REPORT_DIR}/comparison.html ${REPORT_DIR}/calibration.html
+                 ${REPORT_DIR}/view.html ${REPORT_DIR}/style.css ${REPORT_DIR}/licences.txt
+                 ${REPORT_SCRIPT} ${COMPARISON_SCRIPT} ${REPORT_THREE} ${REPORT_CHART})
 foreach(file IN LISTS REPORT_THREE REPORT_CHART)
   if(NOT EXISTS ${file})
     message(FATAL_ERROR "${file} is missing: install libjs-three and libjs-chart.js "
@@ -32,7 +33,8 @@ add_custom_command(
   COMMAND ${CMAKE_COMMAND} -DOUTPUT=${REPORT_ASSETS}
           -DkReportPage=${REPORT_DIR}/page.html -DkReportStyle=${REPORT_DIR}/style.css
           -DkCalibrationPage=${REPORT_DIR}/calibration.html
-          -DkComparisonPage=${REPORT_DIR}/comparison.html "-DkComparisonScript=${COMPARISON_SCRIPT}"
+          -DkComparisonPage=${REPORT_DIR}/comparison.html -DkReportView=${REPORT_DIR}/view.html
+          "-DkComparisonScript=${COMPARISON_SCRIPT}"
           "-DkReportScript=${REPORT_SCRIPT}" "-DkReportThree=${REPORT_THREE}"
           -DkReportChart=${REPORT_CHART} -DkReportLicences=${REPORT_DIR}/licences.txt
           -P ${CMAKE_CURRENT_SOURCE_DIR}/report/embed.cmake

@@ -10,6 +10,7 @@ namespace velamap {
 extern const std::string_view kReportPage;       // HTML with {{NAME}} as placeholders of the others
 extern const std::string_view kCalibrationPage;  // the same, without scripts
 extern const std::string_view kComparisonPage;
+extern const std::string_view kReportView;        // HTML of the 3D view, in the first and the third
 extern const std::string_view kComparisonScript;  // JavaScript of that page
 extern const std::string_view kReportStyle;       // CSS
 extern const std::string_view kReportScript;      // JavaScript of the page

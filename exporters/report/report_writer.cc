@@ -12,6 +12,7 @@ namespace velamap {
 namespace {
 
 std::string_view Asset(std::string_view name) {
+  if (name == "VIEW") return kReportView;
   if (name == "STYLE") return kReportStyle;
   if (name == "SCRIPT") return kReportScript;
   if (name == "THREE") return kReportThree;
