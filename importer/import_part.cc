@@ -58,8 +58,8 @@ std::optional<VideoOptions> FramesToSearch(const MarkerImporterOptions& options)
       OpenFrameSource(options.image_path, options.video, {}, options.num_threads)->NumFrames();
   if (num_frames == 0) {
     throw InputError(fmt::format(
-        "{}: the video does not state how many frames it has, so that there is no velamap "
-        "marker_importer --video_part {}; import it as a whole, or copy it into another container "
+        "{}: the video does not state how many frames it has, so velamap marker_importer "
+        "--video_part {} cannot divide it; import it as a whole, or copy it into another container "
         "with ffmpeg -i VIDEO -c copy copy.mp4",
         options.image_path, PartText(part)));
   }

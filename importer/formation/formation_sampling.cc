@@ -176,7 +176,7 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
             [&](const FormationSample& a, const FormationSample& b) { return key(a) < key(b); });
   FormationEstimate estimate;
   if (static_cast<int>(samples.size()) >= kMinSamples) {
-    spdlog::info("finding what camera and print do to the edges of {} markers", samples.size());
+    spdlog::info("estimating how camera and print change the edges of {} markers", samples.size());
     estimate = EstimateFormation(samples, detector.options.inverted, num_threads);
   }
   if (estimate.num_samples < kMinSamples) {

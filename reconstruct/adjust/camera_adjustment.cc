@@ -99,7 +99,7 @@ void ThrowIfAnotherIsBetter(const std::vector<CameraModelScore>& scores, CameraM
   }
   throw DataError(fmt::format(
       "a {} camera does not describe this lens: it leaves {:.2f} px in unseen pictures, and {} "
-      "leaves {:.2f} px; take that one ({})",
+      "leaves {:.2f} px; use that one ({})",
       CameraModelName(wanted), taken->unseen_error_px, CameraModelName(best->model),
       best->unseen_error_px, failure.what()));
 }

@@ -258,8 +258,7 @@ double MedianScale(const MarkerState& state) {
     }
   }
   if (scales.empty()) {
-    throw DataError(
-        "no marker of the model has two neighbouring corners, so that its size is unknown");
+    throw DataError("no marker of the model has two neighbouring corners, so the scale is unknown");
   }
   return Median(std::move(scales));
 }

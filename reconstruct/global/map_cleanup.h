@@ -6,7 +6,7 @@
 
 namespace velamap {
 
-// Drops markers whose id is seen at two places with support for both.
+// Drops markers whose id is seen in two places with support for both.
 void VoteOnIds(GlobalRegistration* global);
 
 // Drops markers whose side differs from the others by far more than their print explains.
