@@ -63,7 +63,7 @@ bool BeginsAsOneOfOurs(const std::string& text) {
          (begins("$ ") && first_line.find(" bundle_adjuster ") != std::string::npos);  // colmap.log
 }
 
-// Of a text without a seal, too.
+// Also for a text without a seal.
 bool HasItsSeal(const std::string& text) {
   const std::size_t seal = text.rfind(kSeal);
   if (seal == std::string::npos) return true;
@@ -250,7 +250,7 @@ void CheckImageName(const std::string& name, const std::string& where) {
 void CheckNotProtected(const fs::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) return;
-  // The first test holds for the administrator, too, who may write everything.
+  // The first test also holds for the administrator, who may write everything.
   constexpr mode_t kWritable = S_IWUSR | S_IWGRP | S_IWOTH;
   if ((status.st_mode & kWritable) != 0 && access(path.c_str(), W_OK) == 0) return;
   throw InputError(

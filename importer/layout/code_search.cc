@@ -236,7 +236,7 @@ OptionGroup DescribeOptions(CodeSearchOptions* options) {
 
 std::int64_t NumAsymmetricCodes(int bits_per_side) {
   const int num_bits = bits_per_side * bits_per_side;
-  // A code that looks the same after a quarter turn does so after half a turn, too.
+  // A code that looks the same after a quarter turn also does so after half a turn.
   const double num_all = std::pow(2.0, num_bits);
   const double num_half_turn = std::pow(2.0, (num_bits + 1) / 2);
   // Of 8x8 bits there are more than a double counts exactly, but fewer than an int64 holds.

@@ -39,7 +39,7 @@ std::vector<char*> Pointers(std::vector<std::string>& strings) {
 // What comes through the report's pipe. It is written in one piece.
 struct Report {
   int start_error;  // errno; 0 if the program has run
-  int status;       // as of waitpid()
+  int status;       // from waitpid()
 };
 
 // All that the forked processes need. They may call nothing that is not async-signal-safe, because

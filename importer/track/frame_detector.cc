@@ -175,7 +175,7 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
                                          int marker_id, const QuadCorners& expected,
                                          double reach_px) {
   const auto idx = static_cast<std::size_t>(marker_id);
-  if (idx >= detector.looks.size()) return std::nullopt;  // tracks come from a database, too
+  if (idx >= detector.looks.size()) return std::nullopt;  // tracks may come from a database
   const MarkerLook& look = detector.looks[idx];
   const auto located = LocateMarker(gray, expected, look, reach_px);
   if (!located || !IsSearchable(*located, gray.size(), detector.options)) return std::nullopt;

@@ -214,7 +214,7 @@ bool VideoStream::ReadPacket() {
   do {
     av_packet_unref(packet_.get());
     result = Checked(av_read_frame(format_.get(), packet_.get()));
-    // What is between two packets may be damaged, too.
+    // The bytes between two packets may be damaged as well.
     num_failures += result == AVERROR_INVALIDDATA;
   } while (result == AVERROR(EAGAIN) ||
            (result == AVERROR_INVALIDDATA && num_failures < kMaxNumFailures) ||
