@@ -124,7 +124,7 @@ void FindErrorsOfUnseen(const MarkerSolution& trial, std::size_t division,
                         std::vector<ErrorSum>* sums) {
   constexpr std::size_t kMinPoints = 4;
   MarkerSolution fitted = Without(trial, division, kNumDivisions);
-  Minimize(1e-9, &fitted);  // parameters that are hardly determined must forget these images, too
+  Minimize(1e-9, &fitted);  // weakly determined parameters must forget these images as well
   const Model model = InMiddleRow(trial);
   LeastSquaresOptions options;
   options.min_relative_decrease = 1e-6;

@@ -26,7 +26,7 @@ namespace {
 // Frames on which maps grow from several starts.
 constexpr int kMaxStartFrames = 32;
 
-// Twice as many frames of a video are registered as may stay, so that the best can be chosen.
+// Registers twice as many frames of a video as are kept, so that the best can be chosen.
 void ChooseFrames(GlobalRegistration* global) {
   constexpr int kCandidatesPerFrame = 2;
   std::vector<int> chosen(global->images.size());
