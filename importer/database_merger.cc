@@ -23,7 +23,7 @@
 namespace velamap {
 namespace {
 
-// A part without markers holds no images, and has noted no camera and no video.
+// A part without markers holds no images and no record of camera or video.
 struct PartContent {
   std::string path;
   PartRecord record;
@@ -82,7 +82,7 @@ std::string DifferenceOf(const PartContent& a, const PartContent& b) {
     return fmt::format("other detection options, another layout or another prior shape ({}; {})",
                        a.record.detector, b.record.detector);
   }
-  // Only whether there is one: machines differ in the last digits of its values.
+  // Only compares whether there is one: machines differ in the last digits of its values.
   if (a.formation.has_value() != b.formation.has_value()) {
     return "only one holds an estimate of camera and print (table image_formation)";
   }

@@ -28,8 +28,8 @@ std::int64_t FramesPerGroup(const ArucoDetectionOptions& detection) {
 
 std::optional<VideoOptions> FramesOfPart(const VideoPart& part, const VideoOptions& whole,
                                          int num_frames, std::int64_t frames_per_group) {
-  // What is left over belongs to the last group, because containers are off by a frame or so: no
-  // part begins at a frame that is not there.
+  // The remainder belongs to the last group. Containers may be off by a frame or so, and no part
+  // may begin at a frame that does not exist.
   const std::int64_t num_groups = std::max<std::int64_t>(1, num_frames / frames_per_group);
   const auto first_group_of = [&](int number) {
     return ((number - 1) * num_groups + part.count - 1) / part.count;

@@ -122,8 +122,8 @@ struct UnfinishedName {
   pid_t process_id = 0;
 };
 
-// Others share a folder over the network, and containers a machine; the processes of each have
-// numbers of their own.
+// Machines may share a folder over the network, and containers a machine; each numbers its
+// processes separately.
 std::string ThisMachine() {
   std::array<char, HOST_NAME_MAX + 1> name{};
   gethostname(name.data(), name.size() - 1);
@@ -213,7 +213,7 @@ void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPat
     for (const Place& input : input_places) CheckApart(output_places[i], input);
     for (std::size_t k = 0; k < output_places.size(); ++k) {
       if (k == i) continue;
-      // If both are equal, the later one is named first.
+      // The message names the later one first if both are equal.
       CheckApart(output_places[std::max(i, k)], output_places[std::min(i, k)]);
       CheckApart(output_places[i], output_places[k]);
     }

@@ -109,7 +109,7 @@ FrameDetector MakeChessboardDetector(const Chessboard& board) {
   FrameDetector detector;
   detector.chessboard = board;
   detector.options.search = SearchMode::kExhaustive;
-  // The corners of a chessboard are symmetric, so that nothing moves them in or out.
+  // The corners of a chessboard are symmetric, so nothing moves them inwards or outwards.
   detector.options.estimate_formation = false;
   return detector;
 }
