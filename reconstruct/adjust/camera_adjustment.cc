@@ -82,7 +82,7 @@ CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Lay
 
 namespace {
 
-// Throws DataError where the wanted model fails and another one is far better: that is the reason.
+// Throws DataError if the wanted model fails and another one is far better, which explains why.
 void ThrowIfAnotherIsBetter(const std::vector<CameraModelScore>& scores, CameraModel wanted,
                             const DataError& failure) {
   constexpr double kFarBetter = 0.5;

@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-// Errors of print do not change a side by more than this factor from the median of the others.
+// Print errors do not change a side by more than this factor relative to the median of the others.
 constexpr double kMaxSizeRatio = 1.25;
 // An id is in two places when the second has at least this fraction of the support of the first.
 constexpr double kRivalRatio = 0.6;
