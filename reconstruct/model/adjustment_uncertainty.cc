@@ -51,7 +51,7 @@ void WriteCount(std::size_t count, std::ostream* out) {
   Write(static_cast<std::uint64_t>(count), out);
 }
 
-// Reads what Write wrote. Every count is compared with the bytes that are left, so that a damaged
+// Reads the output of Write. Every count is compared with the remaining bytes, so that a damaged
 // file cannot make it allocate all memory.
 class UncertaintyReader {
  public:
