@@ -102,7 +102,7 @@ std::vector<Place> PlacesOf(const std::vector<UsedPath>& paths) {
 
 void CheckApart(const Place& output, const Place& other) {
   if (output.canonical == other.canonical || (output.id && output.id == other.id)) {
-    throw InputError(fmt::format("{}: {} is the {} too; give another", output.used->used_by,
+    throw InputError(fmt::format("{}: {} is also the {}; give another", output.used->used_by,
                                  output.used->path.string(), other.used->used_by));
   }
   if (output.used->is_replaced_folder && IsInside(other.canonical, output.canonical)) {

@@ -215,7 +215,7 @@ CodeSet TakeSymmetricCodesToo(const CodeSearchOptions& options) {
 void CodeSearchOptions::Check() const {
   CheckRanges(*this);
   if (bits_per_side == 1 || bits_per_side == 2) {
-    throw InputError(fmt::format("{}: {} bits a side make too few codes; give {} to {}",
+    throw InputError(fmt::format("{}: {} bits per side allow too few codes; give {} to {}",
                                  OptionName(&CodeSearchOptions::bits_per_side), bits_per_side,
                                  kMinBits, kMaxBits));
   }
@@ -225,7 +225,7 @@ OptionGroup DescribeOptions(CodeSearchOptions* options) {
   return {"Custom dictionary",
           {{"CustomDictionary.bits", &options->bits_per_side, "cells",
             "makes a dictionary of 3x3 to 8x8 bits whose codes differ as much as possible; give "
-            "the cells a side; 0: --dictionary is used",
+            "the cells per side; 0: --dictionary is used",
             FromTo(0, kMaxBits)},
            {"CustomDictionary.size", &options->num_codes, "count",
             "number of its codes; 0: as many as markers are printed", FromTo(0, kMaxMarkerId + 1)},

@@ -158,7 +158,7 @@ void CheckDictionaryOf(const std::string& description, const Layout& layout,
   throw InputError(
       fmt::format("--layout_path: the layout has {}, but {} holds markers of {}; give the layout "
                   "of the import, "
-                  "or import anew",
+                  "or import again",
                   of_layout, database_path, of_database));
 }
 
