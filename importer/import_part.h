@@ -35,7 +35,8 @@ std::optional<VideoOptions> FramesOfPart(const VideoPart& part, const VideoOptio
 // of photographs, and of a video that does not state how many frames it has.
 std::optional<VideoOptions> FramesToSearch(const MarkerImporterOptions& options);
 
-// Throws InputError unless `database` holds the part that options.part names, or both are whole.
+// Throws InputError if an import of options.part, or of a whole source without it, must not add to
+// `database`, because that holds another part, or a part of other frames.
 void CheckPart(const MarkerImporterOptions& options, const ColmapDatabase& database);
 
 // Records which part a database holds, if options.part is set.
