@@ -38,7 +38,7 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
 
 // Throws DataError if the frames hold no marker, or hardly any while another dictionary finds many.
 // With a wrong dictionary or polarity, false ids are found, most of which the layout does not name.
-// The hint to another dictionary therefore comes before any complaint about ids.
+// The suggestion of another dictionary therefore comes before any complaint about ids.
 void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,
                        const ImageSample& sample, const ImportReport& report);
 
