@@ -23,7 +23,7 @@
 namespace velamap {
 namespace {
 
-// A part without markers holds no images, and has noted no camera and no video.
+// A part without markers holds no images and no record of camera or video.
 struct PartContent {
   std::string path;
   PartRecord record;
@@ -77,12 +77,12 @@ std::string DifferenceOf(const PartContent& a, const PartContent& b) {
     return fmt::format("part {} and part {} are of different splits", PartText(a.record.part),
                        PartText(b.record.part));
   }
-  if (!(a.record.whole == b.record.whole)) return "the frames of the whole import are others";
+  if (!(a.record.whole == b.record.whole)) return "the frames of the whole import differ";
   if (a.record.detector != b.record.detector) {
     return fmt::format("other detection options, another layout or another prior shape ({}; {})",
                        a.record.detector, b.record.detector);
   }
-  // Only whether there is one: machines differ in the last digits of its values.
+  // Only compares whether there is one: machines differ in the last digits of its values.
   if (a.formation.has_value() != b.formation.has_value()) {
     return "only one holds an estimate of camera and print (table image_formation)";
   }
@@ -107,12 +107,12 @@ std::vector<PartContent> ReadParts(const std::vector<std::string>& paths) {
     for (std::size_t j = 0; j < i; ++j) {
       const std::string difference = DifferenceOf(parts[j], parts[i]);
       if (difference.empty()) continue;
-      throw InputError(fmt::format("{}: does not go with {}: {}; import both in one way",
+      throw InputError(fmt::format("{}: does not match {}: {}; import both in the same way",
                                    parts[i].path, parts[j].path, difference));
     }
     const VideoPart& part = parts[i].record.part;
     if (i > 0 && part.number == parts[i - 1].record.part.number) {
-      throw InputError(fmt::format("{}: holds part {}, which {} holds, too; name each part once",
+      throw InputError(fmt::format("{}: holds part {}, which {} also holds; name each part once",
                                    parts[i].path, PartText(part), parts[i - 1].path));
     }
   }
@@ -169,7 +169,7 @@ void WriteParts(const std::vector<PartContent>& parts, ColmapDatabase* database)
       const std::string& name = image.detections.image_name;
       if (!names.insert(name).second) {
         throw InputError(fmt::format(
-            "{}: image {} is in an earlier part, too; import the part again", part.path, name));
+            "{}: image {} is also in an earlier part; import the part again", part.path, name));
       }
       const CameraId camera_id =
           database->AddCamera(part.cameras.at(image.camera_id), part.is_calibrated);

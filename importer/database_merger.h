@@ -1,4 +1,4 @@
-// Puts the parts of a video (import_part.h) together into one database.
+// Merges the parts of a video (import_part.h) into one database.
 
 #pragma once
 
@@ -10,8 +10,8 @@
 namespace velamap {
 
 struct DatabaseMergerOptions {
-  std::vector<std::string> database_paths;  // of all parts, in any order; they stay as they are
-  std::string output_path;                  // a database of velamap that is there is replaced
+  std::vector<std::string> database_paths;  // of all parts, in any order; not changed
+  std::string output_path;                  // an existing database of velamap is replaced
   Layout layout;                            // the layout of the imports
 };
 
@@ -21,13 +21,13 @@ struct MergeReport {
   int num_pairs = 0;    // image pairs with matches
 };
 
-// Writes the database that one import of all frames makes: every row of every table is the same.
-// The steps of an import that need all frames (import_completion.h) are done here.
+// Writes the same database, row for row, that a single import of all frames would write. This
+// includes the steps of an import that need all frames (import_completion.h).
 //
 // Throws InputError, naming the database, unless the databases hold all parts of one import, each
-// once and finished: of the same video, camera, frames, detection options and image formation; also
-// for another layout, and for an output that velamap has not made. Throws DataError if no part
-// holds a marker.
+// once and finished, with the same video, camera, frames, detection options and image formation;
+// also for a different layout, and for an existing output that velamap did not write. Throws
+// DataError if no part holds a marker.
 MergeReport MergeDatabases(const DatabaseMergerOptions& options);
 
 }  // namespace velamap

@@ -33,7 +33,7 @@ Camera CameraOfFrame(const MarkerImporterOptions& options, bool is_video, const 
   }
   Camera camera = *options.camera;
   if (IsTransposedSize(camera, width_px, height_px)) {
-    // The calibration is of upright pictures, and the pixels that are used are those of the file.
+    // The calibration is for upright pictures, but the pixels are used as stored in the file.
     camera = TurnCamera(camera, -MetadataOf(options, is_video, frame).quarter_turns);
   }
   try {

@@ -1,4 +1,4 @@
-// The camera of one frame: the calibration as the frame needs it, or a guess where there is none.
+// The camera of one frame: the calibration adapted to the frame, or a guess without a calibration.
 
 #pragma once
 

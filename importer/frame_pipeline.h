@@ -18,7 +18,7 @@ namespace velamap {
 struct FrameResult {
   FrameDetections detections;
   Camera camera;                       // for the frame's size
-  std::string skipped_because;         // not empty: the file was no whole image
+  std::string skipped_because;         // not empty: the file was not a complete image
   bool is_damaged = false;             // skipped, because a video is damaged there
   std::optional<SourceFile> source;    // of a photograph
   PriorShapeAgreement prior_shape;     // of the markers that were found without it
@@ -28,10 +28,10 @@ struct FrameResult {
 };
 
 // Reads all frames of `source`, calls `process` for each on up to `num_threads` threads (frame_idx
-// counts from 0) and `consume` with the results in order on the calling thread. Where the system
-// refuses a thread, the threads that it has given do the work; throws InputError if these are fewer
-// than two. No more than 2 num_threads + 1 frames are in memory. The first exception of any of the
-// three ends all threads and is thrown again here. OpenCV's own threads are switched off meanwhile.
+// counts from 0) and `consume` with the results in order on the calling thread. If the system
+// refuses a thread, the threads that have started do the work; throws InputError if there are fewer
+// than two. No more than 2 num_threads + 1 frames are in memory. The first exception of reading,
+// `process` or `consume` ends all threads and is rethrown. Meanwhile, OpenCV starts no threads.
 void RunFramePipeline(FrameSource* source, int num_threads,
                       const std::function<FrameResult(int frame_idx, Frame* frame)>& process,
                       const std::function<void(int frame_idx, FrameResult result)>& consume);

@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr char kStagedDatabase[] = "database.db", kStagedFrames[] = "frames";
 
-// Written when the new import is whole. If the database is not beside it any more, it has replaced
-// the earlier one, and what the record says has to be done.
+// Written when the new import is complete. If the database is no longer beside it, the database has
+// replaced the earlier one, and the steps in the record remain to be done.
 constexpr char kReplacementRecord[] = "replacement";
 
 struct Replacement {
@@ -55,14 +55,14 @@ Replacement ReadReplacement(const fs::path& path) {
   return replacement;
 }
 
-// Once more has the same effect: a run may be killed here, too.
+// Can be repeated, because a run may also be killed here.
 void MoveFrames(const fs::path& stage) {
   const Replacement replacement = ReadReplacement(stage / kReplacementRecord);
   const fs::path folder = AbsolutePath(stage.parent_path() / replacement.frame_folder);
   if (IsFolder(stage / kStagedFrames)) {
     for (const fs::path& frame : FolderEntries(stage / kStagedFrames)) {
       const fs::path target = folder / frame.filename();
-      // A picture of the user that has come meanwhile stays.
+      // Keeps a picture that the user has put there meanwhile.
       if (!Exists(target) || IsWrittenFrame(target)) MoveFile(frame, target);
     }
   }
@@ -72,20 +72,20 @@ void MoveFrames(const fs::path& stage) {
   if (IsFolder(folder)) SyncFileSystem(folder);
 }
 
-// The record goes first: without it, what is left is an unfinished import, whatever that is.
+// Removes the record first: without it, the rest is treated as an unfinished import.
 void RemoveStage(const fs::path& stage) {
   RemoveAll(stage / kReplacementRecord);
   RemoveAll(stage);
 }
 
-// A copy that is as the photograph was when it was imported, while the photograph is another now.
+// A copy with the content that the photograph had at the import but no longer has.
 bool IsOutdatedCopy(const fs::path& copy, const fs::path& original, const SourceFile& known) {
   return IsRegularFile(copy) && !IsLink(copy) && IsRegularFile(original) &&
          !IsSameFile(copy, original) && !HasSameContent(known, original.string()) &&
          HasSameContent(known, copy.string());
 }
 
-// Ends what another program has left in a journal, which SQLite would else take for one of the new
+// Completes the journal that another program has left; otherwise SQLite would apply it to the new
 // database.
 void SettleJournals(const std::string& path) {
   { const ColmapDatabase earlier(path, ColmapDatabase::Mode::kReadWriteCreate); }

@@ -1,4 +1,4 @@
-// Imports anew beside an earlier import, which stays as it is until the new one is whole.
+// Repeats an import beside an earlier one, which stays as it is until the new one is complete.
 
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace velamap {
 
-// The new import grows in a hidden folder beside the database. The rename of its database over the
-// earlier one is the moment from which on the new one holds; the frames follow. A run that is
-// killed before it leaves the earlier import, one that is killed after it is ended by the next
-// import: SettleReplacement(). The lock of the database has to be held.
+// The new import is written to a hidden folder beside the database. It takes effect when its
+// database is renamed over the earlier one; its frames follow. If a run is killed before the
+// rename, the earlier import stays; if it is killed afterwards, the next import completes the
+// replacement: SettleReplacement(). The lock of the database has to be held.
 class ImportAnew {
  public:
   // Throws InputError if the database is not one of velamap's, or if a picture of the user stands
@@ -24,16 +24,16 @@ class ImportAnew {
   ImportAnew(const ImportAnew&) = delete;
   ImportAnew& operator=(const ImportAnew&) = delete;
 
-  // The options of the import, with the places where it is to write.
+  // The options of the import, with the temporary output paths.
   const MarkerImporterOptions& Staged() const { return staged_; }
 
   // Replaces the database, the frames that the earlier import wrote if those of a video replace
-  // them, and, in a workspace, its copies of photographs that have changed since. To be called when
-  // the new database is closed. Throws InputError if another program works with the earlier one.
+  // them, and, in a workspace, its copies of photographs that have changed since. Call this after
+  // closing the new database. Throws InputError if another program has the earlier one open.
   void Replace();
 
  private:
-  // What of the earlier import has to go: names in the folder of frames.
+  // Files of the earlier import that have to be removed: names in the folder of frames.
   std::vector<std::string> ObsoleteFiles() const;
 
   const MarkerImporterOptions& options_;
@@ -44,8 +44,8 @@ class ImportAnew {
   bool has_replaced_ = false;
 };
 
-// Settles what a killed run has left beside the database: ends a replacement that had begun, and
-// else removes the unfinished import. The lock of the database has to be held.
+// Cleans up what a killed run has left beside the database: completes a replacement that had begun,
+// or removes the unfinished import. The lock of the database has to be held.
 void SettleReplacement(const std::string& database_path);
 
 }  // namespace velamap

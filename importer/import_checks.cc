@@ -40,7 +40,7 @@ void CheckVideo(const MarkerImporterOptions& options,
                                SourceText(known->second), kImportAnewRemedy));
 }
 
-// Frames that are there would be in the result, whatever the options select now.
+// Frames in the database would be in the result even if the options do not select them now.
 void CheckFrames(const MarkerImporterOptions& options,
                  const std::vector<std::string>& known_names) {
   const auto is_left_out = [&](const std::string& name) {
@@ -108,7 +108,7 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
   }
   for (const auto& [camera_id, camera] : database.ReadCameras()) {
     if (!IsSameCalibration(options, camera)) {
-      throw InputError(fmt::format("{}: was made with another calibration than {}; {}",
+      throw InputError(fmt::format("{}: was made with a calibration other than {}; {}",
                                    options.database_path, options.camera_path, kImportAnewRemedy));
     }
   }
@@ -132,7 +132,7 @@ void NoteSources(const MarkerImporterOptions& options, const std::vector<std::st
                  ColmapDatabase* database) {
   if (known_names.empty() || !database->ReadSources().empty()) return;
   spdlog::warn(
-      "{}: made by an earlier velamap, which did not note what it read; it is taken to be of {}",
+      "{}: made by an earlier velamap, which did not record its source; assuming it is from {}",
       options.database_path, options.image_path);
   for (const std::string& name : known_names) {
     const fs::path file = fs::path(options.image_path) / name;

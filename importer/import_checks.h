@@ -11,11 +11,11 @@
 
 namespace velamap {
 
-// With fewer markers a frame than this, those found are probably false ones.
+// With fewer markers per frame than this, those found are probably false ones.
 inline constexpr double kFewMarkersPerFrame = 0.5;
 
 inline constexpr char kImportAnewRemedy[] =
-    "write to a new place, or give --import_anew 1 to import all anew";
+    "write to a new place, or give --import_anew 1 to import everything again";
 
 // Throws InputError if `database` was made with another `detector` (DescribeDetector()) or
 // calibration.
@@ -27,7 +27,7 @@ void CheckExisting(const MarkerImporterOptions& options, const std::string& dete
 void CheckSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
                   const ColmapDatabase& database);
 
-// Notes the photographs of a database that an earlier velamap has made, with a warning.
+// Records the source files of a database that an earlier velamap has made, with a warning.
 void NoteSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
                  ColmapDatabase* database);
 
@@ -37,8 +37,8 @@ void CheckFrameFolder(const MarkerImporterOptions& options,
                       const std::vector<std::string>& known_names);
 
 // Throws DataError if the frames hold no marker, or hardly any while another dictionary finds many.
-// A wrong dictionary or polarity finds false ids, most of which the layout does not name, so the
-// hint at another dictionary comes before any complaint about ids.
+// With a wrong dictionary or polarity, false ids are found, most of which the layout does not name.
+// The suggestion of another dictionary therefore comes before any complaint about ids.
 void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& dictionary_name,
                        const ImageSample& sample, const ImportReport& report);
 

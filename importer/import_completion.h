@@ -8,8 +8,8 @@
 namespace velamap {
 
 // Resolves the rotation of symmetric markers that single frames left open (rotation_evidence.h), in
-// images of this and of earlier runs, and replaces those images in one transaction. Returns by how
-// many the accepted detections grew; negative if new frames contradict earlier resolutions.
+// images of this and of earlier runs, and replaces those images in one transaction. Returns the
+// change in the number of accepted detections; negative if new frames contradict earlier results.
 int ResolveDoubtfulRotations(const FrameDetector& detector, ColmapDatabase* database);
 
 // Writes the matches of all pairs of PairsToMatch() that have none yet. Returns the number of

@@ -28,8 +28,8 @@ std::int64_t FramesPerGroup(const ArucoDetectionOptions& detection) {
 
 std::optional<VideoOptions> FramesOfPart(const VideoPart& part, const VideoOptions& whole,
                                          int num_frames, std::int64_t frames_per_group) {
-  // What is left over belongs to the last group, because containers are off by a frame or so: no
-  // part begins at a frame that is not there.
+  // The remainder belongs to the last group. Containers may be off by a frame or so, and no part
+  // may begin at a frame that does not exist.
   const std::int64_t num_groups = std::max<std::int64_t>(1, num_frames / frames_per_group);
   const auto first_group_of = [&](int number) {
     return ((number - 1) * num_groups + part.count - 1) / part.count;
@@ -58,8 +58,8 @@ std::optional<VideoOptions> FramesToSearch(const MarkerImporterOptions& options)
       OpenFrameSource(options.image_path, options.video, {}, options.num_threads)->NumFrames();
   if (num_frames == 0) {
     throw InputError(fmt::format(
-        "{}: the video does not state how many frames it has, so that there is no velamap "
-        "marker_importer --video_part {}; import it as a whole, or copy it into another container "
+        "{}: the video does not state how many frames it has, so velamap marker_importer "
+        "--video_part {} cannot divide it; import it as a whole, or copy it into another container "
         "with ffmpeg -i VIDEO -c copy copy.mp4",
         options.image_path, PartText(part)));
   }

@@ -1,11 +1,10 @@
-// The import of a long video in parts, each by a job of its own into a database of its own, which
-// MergeDatabases() (database_merger.h) puts together. The result is that of one import, row for
-// row:
+// The import of a long video in parts, each by a separate job into a separate database. The result
+// of MergeDatabases() (database_merger.h) equals that of a single import, row for row:
 //
 //   tracking   starts again with every group of frames (track/marker_tracking.h), and a part is a
 //              number of whole groups
-//   formation  what camera and print do to edges is estimated from the beginning of the whole video
-//              in every part
+//   formation  every part estimates how camera and print change edges from the beginning of the
+//              whole video
 //   the rest   rotations that other frames decide, and matches, need all frames: the merge does
 //   them
 
@@ -25,10 +24,10 @@ namespace velamap {
 // The number of frames after which the tracking starts again.
 std::int64_t FramesPerGroup(const ArucoDetectionOptions& detection);
 
-// The frames of one part of the frames that `whole` selects: groups are shared out evenly in order,
-// and the last part reaches to the end of the video, however many frames the container states.
-// Nothing for a part that has no group, because the video has fewer groups than parts. `num_frames`
-// is the number that `whole` selects, at least about.
+// The frames of one part of the frames that `whole` selects. Groups are distributed evenly and in
+// order, and the last part extends to the end of the video, even if the container states fewer
+// frames. Empty for a part without a group, because the video has fewer groups than parts.
+// `num_frames` is the approximate number of frames that `whole` selects.
 std::optional<VideoOptions> FramesOfPart(const VideoPart& part, const VideoOptions& whole,
                                          int num_frames, std::int64_t frames_per_group);
 
@@ -36,11 +35,11 @@ std::optional<VideoOptions> FramesOfPart(const VideoPart& part, const VideoOptio
 // of photographs, and of a video that does not state how many frames it has.
 std::optional<VideoOptions> FramesToSearch(const MarkerImporterOptions& options);
 
-// Throws InputError if `database` holds a part while options.part is another one or none, or the
-// other way round.
+// Throws InputError if an import of options.part, or of a whole source without it, must not add to
+// `database`, because that holds another part, or a part of other frames.
 void CheckPart(const MarkerImporterOptions& options, const ColmapDatabase& database);
 
-// Notes which part a database holds, if options.part is one.
+// Records which part a database holds, if options.part is set.
 void NotePart(const MarkerImporterOptions& options, const std::string& detector, bool is_finished,
               ColmapDatabase* database);
 

@@ -41,15 +41,15 @@ class ImportRun {
   // of whole frames, which need no other frame, run before the turn.
   std::vector<MarkerQuad> SearchInTurn(int frame_idx, const Frame& frame, Turn* turn,
                                        FrameResult* result) const;
-  // Whether tracking starts anew with this frame, as it does with the first one of a part.
+  // Whether tracking restarts at this frame, as it does at the first frame of a part.
   bool IsFirstOfGroup(int frame_idx) const;
   bool Load(Frame* frame, std::string* reason) const;
   void WriteImage(const Frame& frame, const FrameDetections& detections) const;
   void NoteTracking(const FrameResult& result);
-  // A frame that the database holds is not written again by a later run, so it has to be on the
-  // disk first. The batch goes with the tracks after it.
+  // A later run does not write a frame again that is in the database, so its file has to be on
+  // disk first. The tracks after the batch are stored in the same transaction.
   void SecureBatch() const;
-  // Frames without markers at the end are in no batch.
+  // Covers frames without markers at the end, which are in no batch.
   void SecureTracking() const;
   // Turns sums over threads into the times that ImportReport::times describes.
   void SettleTimes(double cpu_s, int num_threads);

@@ -31,8 +31,8 @@ std::string ProgressLine(const FrameResult& result) {
   return fmt::format("{}: {} markers", detections.image_name, detections.markers.size());
 }
 
-// The estimate that the database holds, so that later frames are treated as the first ones were;
-// else a new one, which is added to the database.
+// The estimate in the database, so that later frames are treated like the first ones; otherwise a
+// new one, which is added to the database.
 FormationEstimate FormationOf(const MarkerImporterOptions& options, const FrameDetector& detector,
                               ColmapDatabase* database) {
   if (const auto known = database->ReadFormation()) return *known;
@@ -64,7 +64,7 @@ ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetec
   return run.Finish(ProcessCpuSeconds() - cpu_begin_s, num_threads);
 }
 
-// Runs the steps that need all frames. Of a part they are left to the merge.
+// Runs the steps that need all frames. For a part, the merge does them.
 void CompleteDatabase(const MarkerImporterOptions& options, const FrameDetector& detector,
                       ColmapDatabase* database, ImportReport* report) {
   const StageTimer timer(ImportStage::kDatabase);

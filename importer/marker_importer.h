@@ -25,28 +25,28 @@ using ProgressCallback = std::function<void(int done, int total, const std::stri
 struct MarkerImporterOptions {
   std::string image_path;     // folder of images, or a video file
   std::string database_path;  // created, or added to
-  // For one image size; scaled for frames of the same aspect ratio, and turned as EXIF says.
-  // Nothing: it is not known, the database gets a guess, and corners do not depend on it.
+  // For one image size; scaled for frames of the same aspect ratio, and turned as EXIF says. Empty
+  // if it is unknown: the database gets a guess, on which the corners do not depend.
   std::optional<Camera> camera;
   std::string camera_path;  // for messages only
   Layout layout;
   ArucoDetectionOptions detection;
   VideoOptions video;
   PriorShape prior_shape;  // empty: none
-  // Its squares are the markers, and the layout says only how long they are.
+  // If set, its squares are the markers, and the layout only gives their length.
   std::optional<Chessboard> chessboard;
   // Video only: the folder into which frames with markers are written as JPEG, so that later steps
   // need not decode the video again; empty: none are written. Photographs stay where they are.
   std::string frame_output_path;
-  // Whether the database must hold nothing of other folders or videos, nor frames that
-  // `allowed_frames` leaves out, of which `video` may choose fewer.
+  // Whether the database must hold no images of other folders or videos and no frames outside of
+  // `allowed_frames`. `video` may select fewer frames than these.
   bool is_only_source = false;
   VideoOptions allowed_frames;
-  // Video only: the part of the frames to import, for MergeDatabases(); nothing: all. No marker in
-  // a part is no error.
+  // Video only: the part of the frames to import, for MergeDatabases(); empty: all. A part without
+  // markers is no error.
   std::optional<VideoPart> part;
-  // Whether all is imported again, beside an earlier import, which it replaces when it is whole:
-  // the database, and the pictures that it made.
+  // Whether everything is imported again. The new database and its pictures replace those of an
+  // earlier import when they are complete.
   bool import_anew = false;
   int num_threads = 0;  // 0: one per core
 };
@@ -68,13 +68,13 @@ struct ImportReport {
   PriorShapeAgreement prior_shape;     // of all frames
   std::vector<int> ids_not_in_layout;  // detected and rejected, because no part names them
   std::vector<SkippedImage> skipped;   // unreadable files
-  // Frames of a video that were left out because the file is damaged there or before them, those of
-  // an earlier import of the same frames among them.
+  // Frames of a video that were left out because the file is damaged there or before them,
+  // including those of an earlier import of the same frames.
   int num_frames_damaged = 0;
-  // CPU times are sums over the threads. Decoding has the CPU time that no other stage claims,
-  // because FFmpeg decodes on threads of its own. The stages overlap, so wall times are those of
-  // the reading thread (decode), the mean of the working threads (detect, refine, images) and those
-  // of the calling thread (database).
+  // CPU times are sums over the threads. Decoding gets the CPU time that no other stage accounts
+  // for, because FFmpeg decodes on threads of its own. The stages overlap, so wall times are those
+  // of the reading thread (decode), the mean over the working threads (detect, refine, images) and
+  // those of the calling thread (database).
   ImportTimes times;
 };
 
@@ -84,12 +84,11 @@ struct ImportReport {
 // are skipped.
 //
 // Throws InputError for unreadable input, a calibration for another image size, a prior shape
-// without a calibration, a layout whose ids the dictionary does not have, a database that was made
-// with another camera, other detector settings or pictures that have changed since, one that
-// another velamap imports into, and a frame that would replace a picture that velamap did not
-// write. What an earlier import made stays as it is where a new one (import_anew) fails. Throws
-// DataError that names the dictionaries and polarity that would have found markers if there are
-// none.
+// without a calibration, a layout with ids that the dictionary does not have, a database that was
+// made with another camera, other detector settings or pictures that have changed since, a database
+// into which another process imports, and a frame that would replace a picture that velamap did not
+// write. If no markers are found, throws DataError that names the dictionaries and polarity that
+// would have found some. If an import with import_anew fails, the earlier one stays as it is.
 ImportReport ImportMarkers(const MarkerImporterOptions& options,
                            const ProgressCallback& progress = {});
 

@@ -3,10 +3,10 @@
 // 1. Views: those that cover the picture and tilt the board in different directions, sharp ones
 //    first (calibration/board_views.h).
 // 2. A camera to begin with, found as for a reconstruction without a calibration (camera_search.h).
-// 3. An adjustment of poses, camera and all corners of the board, which is neither taken to be flat
-//    nor to have exact squares; the camera model by cross-validation
+// 3. An adjustment of poses, camera and all corners of the board, which is assumed neither to be
+//    flat nor to have exact squares. Cross-validation chooses the camera model
 //    (adjust/camera_cross_validation.h). Outliers are left out.
-// 4. Whether one steady camera took the pictures (camera/camera_steadiness.h).
+// 4. A test whether one unchanged camera took the pictures (camera/camera_steadiness.h).
 
 #pragma once
 
@@ -52,7 +52,7 @@ struct CameraCalibration {
   double rolling_shutter_s = 0.0, rolling_shutter_sigma_s = 0.0;
   std::vector<std::string> warnings;
 
-  // The score of the model that was taken.
+  // The score of the chosen model.
   const CameraModelScore& Score() const;
   std::vector<BoardView> UsedViews() const;
   // Divides the picture into `num_cells` along its larger side.

@@ -6,9 +6,9 @@
 // 2. Each start is registered and adjusted with all cameras free. The adjustment also chooses the
 //    camera model (adjust/camera_adjustment.h). Both are repeated with the better camera until it
 //    no longer changes.
-// 3. The start that explains most corners is taken. One that explains nearly all ends the search.
+// 3. The start that explains most corners wins. A start that explains nearly all ends the search.
 //
-// Corners do not depend on the camera, so that nothing is imported again.
+// Corners do not depend on the camera, so nothing has to be imported again.
 
 #pragma once
 
@@ -25,8 +25,8 @@
 namespace velamap {
 
 // The cameras by id, those of turned pictures as turned cameras. `guesses` are the cameras of the
-// database. Registers by the global method whatever `registration` says, and at most 40 frames of a
-// video. Throws DataError where no start leads to a model.
+// database. Always registers by the global method, regardless of `registration`, and at most 40
+// frames of a video. Throws DataError if no start leads to a model.
 std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
                                        const std::map<CameraId, Camera>& guesses,
                                        const Layout& layout, const CornerErrors& corner_errors,

@@ -1,6 +1,6 @@
-// Output that exists as a whole or not at all: it is written to a temporary sibling and renamed
-// when it is complete. A link stays a link: what it leads to is replaced. What is write-protected
-// is not replaced. Siblings that a killed run has left are removed where the next one writes.
+// Atomic output: it is written to a temporary sibling, which is renamed when it is complete. A link
+// stays a link, and its target is replaced. Write-protected files are not replaced. Temporary
+// siblings of a killed run are removed when the next run writes to the same folder.
 
 #pragma once
 
@@ -54,9 +54,8 @@ void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to
 void CopyFile(const std::filesystem::path& from, const std::filesystem::path& to,
               const std::filesystem::path& shown_to);
 
-// A copy that an edit of the original does not change, nor the other way round. It is there as a
-// whole or not at all, and replaces `to`. Creates the missing parents of `to`. Throws InputError as
-// CopyFile() does.
+// Copies a file atomically, replacing `to`; later edits of one file do not change the other.
+// Creates the missing parents of `to`. Throws InputError as CopyFile() does.
 void CloneFile(const std::filesystem::path& from, const std::filesystem::path& to);
 
 // Renames a file, which replaces `to`; copies it where they are in different file systems. Creates

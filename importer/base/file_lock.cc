@@ -47,7 +47,7 @@ std::string WaitForHolder(int file) {
 void WriteHolder(int file) {
   const std::string record =
       fmt::format("{} {} {}\n", std::time(nullptr), getpid(), HostName()).substr(0, kMaxRecordSize);
-  // Removes the record of a holder that was killed first, so that no other run is told of it.
+  // First removes the record of a holder that was killed, so that no other run reports it.
   const bool written = ftruncate(file, 0) == 0 && pwrite(file, record.data(), record.size(), 0) ==
                                                       static_cast<ssize_t>(record.size());
   if (!written) spdlog::debug("the lock's file cannot be written");  // the lock holds all the same
@@ -97,7 +97,7 @@ std::string DescribeLockHolder(const std::string& record, std::time_t now,
 
 FileLock::FileLock(const std::filesystem::path& path, const std::string& what) : path_(path) {
   while (file_ < 0) {
-    // Closed on exec, so that a COLMAP that outlives us does not hold it.
+    // Closed on exec, so that a COLMAP process that outlives us does not hold it.
     int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     // The file of another user can be locked without being written.
     if (file < 0 && errno == EACCES) file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);

@@ -51,7 +51,7 @@ fs::path FromRoot(const fs::path& path) {
                   Shown(path), error.message()));
 }
 
-// No folder of a user is called so.
+// A name that no folder of a user has.
 constexpr std::string_view kScratchName = ".velamap_scratch_XXXXXX";
 constexpr std::string_view kScratchPrefix = kScratchName.substr(0, kScratchName.find("XXXXXX"));
 constexpr char kScratchLock[] = "lock";

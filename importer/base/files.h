@@ -29,8 +29,8 @@ std::uintmax_t FileSize(const std::filesystem::path& path);
 // Without "." and "..", with links as they are named: for what people read.
 std::filesystem::path AbsolutePath(const std::filesystem::path& path);
 
-// Where the file is, or will be when it is written: all links are followed, those that lead to
-// nothing too. Outputs are compared with inputs by it, and written to it, so that a link stays one.
+// Where the file is, or will be when it is written: all links are followed, including dangling
+// ones. Used to compare outputs with inputs, and to write through links instead of replacing them.
 std::filesystem::path CanonicalPath(const std::filesystem::path& path);
 
 // AbsolutePath() without the trailing slash, so that its parent is the folder that holds it.
@@ -62,8 +62,8 @@ void RemoveAll(const std::filesystem::path& path) noexcept;
 // Removes a file or an empty folder; a folder that holds something stays.
 void RemoveFileOrEmptyFolder(const std::filesystem::path& path) noexcept;
 
-// A fresh folder in TMPDIR, or in /tmp if that is not set or empty, that is removed with everything
-// in it: at the end, or by the next run where a run was killed.
+// A new folder in TMPDIR, or in /tmp if that is unset or empty. It is removed with everything in it
+// by the destructor or, if the run is killed, by the next run.
 class TemporaryFolder {
  public:
   TemporaryFolder();

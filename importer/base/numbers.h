@@ -12,7 +12,7 @@
 namespace velamap {
 
 // Returns whether `text` is one number that T holds; `value` is left alone otherwise.
-// Floating-point types accept inf and nan, too.
+// Floating-point types also accept inf and nan.
 template <typename T>
 bool ParseNumber(std::string_view text, T* value) {
   const char* const end = text.data() + text.size();

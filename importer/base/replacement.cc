@@ -63,7 +63,7 @@ bool BeginsAsOneOfOurs(const std::string& text) {
          (begins("$ ") && first_line.find(" bundle_adjuster ") != std::string::npos);  // colmap.log
 }
 
-// Of a text without a seal, too.
+// Also for a text without a seal.
 bool HasItsSeal(const std::string& text) {
   const std::size_t seal = text.rfind(kSeal);
   if (seal == std::string::npos) return true;
@@ -102,7 +102,7 @@ std::vector<Place> PlacesOf(const std::vector<UsedPath>& paths) {
 
 void CheckApart(const Place& output, const Place& other) {
   if (output.canonical == other.canonical || (output.id && output.id == other.id)) {
-    throw InputError(fmt::format("{}: {} is the {} too; give another", output.used->used_by,
+    throw InputError(fmt::format("{}: {} is also the {}; give another", output.used->used_by,
                                  output.used->path.string(), other.used->used_by));
   }
   if (output.used->is_replaced_folder && IsInside(other.canonical, output.canonical)) {
@@ -122,8 +122,8 @@ struct UnfinishedName {
   pid_t process_id = 0;
 };
 
-// Others share a folder over the network, and containers a machine; the processes of each have
-// numbers of their own.
+// Machines may share a folder over the network, and containers a machine; each numbers its
+// processes separately.
 std::string ThisMachine() {
   std::array<char, HOST_NAME_MAX + 1> name{};
   gethostname(name.data(), name.size() - 1);
@@ -213,7 +213,7 @@ void CheckOutputs(const std::vector<UsedPath>& inputs, const std::vector<UsedPat
     for (const Place& input : input_places) CheckApart(output_places[i], input);
     for (std::size_t k = 0; k < output_places.size(); ++k) {
       if (k == i) continue;
-      // If both are equal, the later one is named first.
+      // The message names the later one first if both are equal.
       CheckApart(output_places[std::max(i, k)], output_places[std::min(i, k)]);
       CheckApart(output_places[i], output_places[k]);
     }
@@ -250,7 +250,7 @@ void CheckImageName(const std::string& name, const std::string& where) {
 void CheckNotProtected(const fs::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) return;
-  // The first test holds for the administrator, too, who may write everything.
+  // The first test also holds for the administrator, who may write everything.
   constexpr mode_t kWritable = S_IWUSR | S_IWGRP | S_IWOTH;
   if ((status.st_mode & kWritable) != 0 && access(path.c_str(), W_OK) == 0) return;
   throw InputError(

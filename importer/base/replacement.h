@@ -1,7 +1,7 @@
 // What velamap may replace, and what it may not: the one rule for all commands.
 //
-//   file     one that the user has named as output, unless it is an input or the output of another
-//            option, under whatever name. Under a name that the user has not given, only one that
+//   file     one that the user has named as output, unless it is also an input or the output of
+//            another option, possibly under another name. Under a default name, only a file that
 //            velamap wrote (CheckOwnFile)
 //   folder   as a whole, unless it is write-protected, if velamap wrote every file in it and nobody
 //            has changed one since. Each folder that velamap writes holds a record of its files,
@@ -25,10 +25,10 @@ inline constexpr char kFolderRecord[] = ".velamap";
 // The text of the record for what is in `folder` now; empty if it holds no files.
 std::string MakeFolderRecord(const std::filesystem::path& folder);
 
-// Throws InputError, naming the path and the first such file, if the folder holds a file that
-// velamap did not write there, or that was changed afterwards; the same for its sub-folders. Tables
-// and logs that commands write beside the folders of their results may lie in it, too.
-// Nothing happens if the path is missing.
+// Throws InputError, naming the path and the first such file, if the folder or a sub-folder holds a
+// file that velamap did not write there, or that was changed afterwards. It may also hold tables
+// and logs that commands write beside the folders of their results. Does nothing if the path is
+// missing.
 void CheckReplaceableFolder(const std::filesystem::path& path);
 
 // Throws InputError, which begins with `used_by`, if the path is a file that does not begin as one

@@ -48,8 +48,8 @@ std::optional<CameraModel> CameraModelFromName(const std::string& name);
 std::optional<CameraModel> CameraModelFromId(int model_id);
 int NumCameraParams(CameraModel model);
 
-// A guess at a camera without calibration: SIMPLE_RADIAL without distortion, its principal point in
-// the centre. `focal_px` is the focal length if it is roughly known, else 0 for COLMAP's guess, 1.2
+// A guess at an uncalibrated camera: SIMPLE_RADIAL without distortion, with the principal point in
+// the centre. `focal_px` is the focal length if it is roughly known; 0 gives COLMAP's guess of 1.2
 // times the larger side.
 Camera UnknownCamera(int width_px, int height_px, double focal_px = 0.0);
 

@@ -1,6 +1,5 @@
-// Opens files of OpenCV's FileStorage. Its parsers of YAML, XML and JSON crash or never end on
-// files that are damaged, so that they see only what yaml-cpp and pugixml have read and written
-// again.
+// Opens files of OpenCV's FileStorage. Its parsers of YAML, XML and JSON crash or loop forever on
+// damaged files, so they only see text that yaml-cpp or pugixml has parsed and written again.
 
 #pragma once
 

@@ -73,7 +73,7 @@ ColmapDatabase::ColmapDatabase(const std::string& path, Mode mode, int busy_time
 }
 
 void ColmapDatabase::OpenForWriting(int busy_timeout_ms) {
-  // From the root on, since SQLite gives names such as :memory: and file:a another meaning.
+  // An absolute path, because SQLite gives names such as :memory: and file:a a special meaning.
   database_ = std::make_unique<SQLite::Database>(
       CanonicalPath(path_).string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms);
   // Matches of a pair take some kilobytes, which fill pages of the usual 4096 bytes badly. SQLite

@@ -209,7 +209,7 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
       if (cameras.count(image.camera_id) == 0) {
         throw InputError(fmt::format(
             "{}: image {} names camera {}, which the database lacks or has with a model that "
-            "velamap does not know; import the pictures anew",
+            "velamap does not know; import the pictures again",
             path, image.detections.image_name, image.camera_id));
       }
       if (!query.isColumnNull(3)) image.detections.frame_number = query.getColumn(3).getInt();

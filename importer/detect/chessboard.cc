@@ -86,8 +86,8 @@ double Uprightness(const CornerGrid& grid) {
   return x.x / cv::norm(x) + y.y / cv::norm(y);
 }
 
-// Turns the grid so that its first square is dark, if any turn makes it so. Of the turns that are
-// left, the most upright one is taken.
+// Turns the grid so that its first square is dark, if any turn does that. Of several such turns,
+// chooses the most upright one.
 CornerGrid Oriented(const cv::Mat& gray, CornerGrid grid) {
   if (IsMirrored(grid)) grid = MirroredGrid(grid);
   std::vector<CornerGrid> turns;

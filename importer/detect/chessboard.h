@@ -1,6 +1,6 @@
-// Chessboards for the calibration of a camera. The inner corners of a board are taken in blocks of
-// two by two: each block is a square of the board, whose corners are those of a marker. So a board
-// without any code becomes markers, and all that follows is the same for both.
+// Chessboards for the calibration of a camera. The inner corners of a board are grouped into blocks
+// of two by two. Each block is a square of the board and serves as a marker, so all later steps are
+// the same as for coded markers.
 //
 // The corners are found by radon checkers (Duda and Frese, "Accurate Detection and Localization of
 // Checkerboard Corners for Calibration", BMVC 2018; cv::findChessboardCornersSB), and located by

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kNumNearest = 3;
 
-// The margin in the mean cosine between top sides by which the best turn must beat the second. It
+// The margin of the mean cosine between top sides by which the best turn must beat the second. It
 // means that a marker with half turns is within 75 degrees of its neighbours, with quarter turns
 // within 24.
 constexpr double kMinLead = 0.5;

@@ -190,7 +190,7 @@ std::vector<std::size_t> ResolveRotationsAcrossFrames(const CodeSymmetries& symm
   if (symmetries.empty()) return {};
   const std::vector<FrameDetections> before = *frames;
   for (FrameDetections& frame : *frames) ResolveAlone(symmetries, graph, &frame);
-  // Every round but the last resolves a marker, so that the loop ends.
+  // Every round but the last resolves a marker, so the loop ends.
   for (bool any = true; any;) {
     any = false;
     const KnownRelations known = LearnRelations(symmetries, *frames);

@@ -1,4 +1,4 @@
-// Parts of an image in which markers are to be searched.
+// Regions of an image to search for markers.
 
 #pragma once
 

@@ -14,14 +14,14 @@ struct BalancedEdges {
 };
 
 // If no image formation describes the shape of the blurred edges, the best fit to all pixels leaves
-// the inner edges shifted towards the dark or the light cells. Corrects the edge shift by what the
-// inner edges show, as far as that exceeds the scatter of the samples.
+// the inner edges shifted towards the dark or the light cells. Corrects the edge shift by the part
+// of this residual shift that exceeds the scatter of the samples.
 BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads);
 
-// Inner edges and outlines both show how large the markers are. They disagree if only one of them
-// is moved: by what lies around a narrow quiet zone, by a noise filter that takes the zone for
-// noise, or by a printer. If they disagree by more than the scatter of the samples, either may be
-// right: the corners are moved half of the way, and half of the disagreement is 1 sigma.
+// Inner edges and outlines both determine the size of the markers. They disagree if only one of
+// them is moved: by the surroundings of a narrow quiet zone, by a noise filter that takes the zone
+// for noise, or by a printer. If they disagree by more than the scatter of the samples, either may
+// be right: the corners are moved by half of the difference, which is also their 1 sigma.
 BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads);
 
 }  // namespace velamap

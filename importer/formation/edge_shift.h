@@ -1,10 +1,10 @@
 // Where the edges inside markers lie, compared with the fitted models.
 //
-// The tone curve and the spread of ink move edges between dark and light cells to one side, towards
+// The tone curve and the ink spread move edges between dark and light cells to one side, towards
 // dark or towards light. The corners of a marker follow its outer edges, which all have the same
-// polarity; inner edges have both, so that they show what is left of such a shift, whatever its
-// cause and whatever the shape of a blurred edge. They also show how large the marker is, which no
-// shift that is the same for all edges changes.
+// polarity. Inner edges have both, so they reveal any remaining shift, independently of its cause
+// and of the shape of a blurred edge. They also determine the size of the marker, which a shift
+// common to all edges does not change.
 
 #pragma once
 

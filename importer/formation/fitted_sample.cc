@@ -88,8 +88,8 @@ double RmsOf(const std::vector<float>& residuals) {
   return std::sqrt(sum / static_cast<double>(residuals.size()));
 }
 
-// Another tone curve moves edges by a fraction of their blur. A fit that ends further from where
-// the marker was found, as where white is clipped and says little, has lost it.
+// Another tone curve moves edges by a fraction of their blur. A fit that ends farther away has lost
+// the marker, which happens where white is clipped.
 bool HasRunAway(const FittedSample& sample) {
   constexpr double kMaxShiftPx = 2.0, kMaxShiftCells = 0.5;
   const QuadCorners found_px = CornersOf(sample.problem.mean);

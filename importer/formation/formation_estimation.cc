@@ -19,7 +19,7 @@ using State = FormationState;
 // 1 sigma of the width of one quiet zone around the mean width, cells, while the mean is unknown.
 constexpr double kQuietZoneSigma = 0.25;
 
-// The samples fitted with a camera that is usual but for its gamma.
+// The samples fitted with a usual camera except for its gamma.
 State Start(const std::vector<FormationSample>& samples, const FormationPriors& priors,
             double gamma, const ImageFormationParameters& formation, int num_threads) {
   FormationVector start = priors.mean;
@@ -85,7 +85,7 @@ State Minimized(const std::vector<FormationSample>& samples, const FormationPrio
 }
 
 // Whether the camera sharpens light rather than grey values. Light has to explain the samples
-// clearly better, because under noise and compression both explain them. Gives all pixels the same
+// clearly better, because both can explain noisy and compressed images. Gives all pixels the same
 // weights in both states, so that their costs can be compared.
 bool LightWins(const FormationPriors& priors, int num_threads, State* by_gray, State* by_light) {
   constexpr double kClearlyLess = 0.9;
@@ -151,8 +151,7 @@ FormationEstimate EstimateFormation(const std::vector<FormationSample>& samples,
       std::clamp(RobustSigma(QuietZones(best)), kMinQuietZoneSigma, kQuietZoneSigma);
   estimate.num_samples = static_cast<int>(best.samples.size());
   estimate.noise_gray = NoiseOf(best);
-  // No camera is exactly as either of the two descriptions says, and they may differ by more than
-  // the noise explains.
+  // Neither model describes a camera exactly, and they may differ by more than the noise explains.
   const double by_model_px =
       std::hypot(0.5 * MeanInset(by_gray, by_light), InsetSigmaByModel(winner));
   const FormationProblem problem(priors, NoisesOf(winner), num_threads);

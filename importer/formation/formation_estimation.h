@@ -1,6 +1,6 @@
-// What a camera and a print do to edges, estimated from markers: the image formation that explains
-// the pixels of all samples best. Each sample has its own parameters (corners, blur, levels,
-// margins); the image formation is common to all.
+// Estimates how camera and print change edges: the image formation that explains the pixels of all
+// samples best. Each sample has its own parameters (corners, blur, levels, margins); the image
+// formation is common to all.
 
 #pragma once
 

@@ -14,8 +14,8 @@ constexpr int kCount = kNumFormationParameters;
 using State = FormationState;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kCount>;
 
-// Blur, demosaicing, filters and compression give neighbouring pixels errors in common: about this
-// many of them say as much as one independent pixel. If all counted, they would overrule the
+// Blur, demosaicing, filters and compression correlate the errors of neighbouring pixels: about
+// this many of them are worth one independent pixel. If all counted fully, they would overrule the
 // priors.
 constexpr double kPixelsAlike = 10.0;
 
@@ -63,8 +63,7 @@ Jacobian JacobianOf(const State& state, const std::vector<State>& moved, std::si
   return jacobian;
 }
 
-// Limits the influence of single samples, because one with something in front of it says nothing
-// about the others.
+// Limits the influence of single samples, because an occluded one says nothing about the others.
 double VarianceOfSum(const std::vector<double>& influences) {
   constexpr double kSigmas = 4.0;
   if (influences.empty()) return 0.0;
@@ -146,7 +145,7 @@ FormationProblem::Equations FormationProblem::SumUp(const State& state,
   return equations;
 }
 
-// A fit that fails counts like one that leaves a little more than the noise.
+// A fit that fails counts like one with residuals a little above the noise.
 void FormationProblem::AddSample(const State& state, bool with_derivatives, std::size_t i,
                                  Equations* equations) const {
   constexpr double kFailed = 1.5;  // sigmas

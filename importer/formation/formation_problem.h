@@ -21,8 +21,8 @@ struct FormationPriors {
 // into a fraction of the side. `samples` must not be empty.
 FormationPriors PriorsFor(const std::vector<FormationSample>& samples);
 
-// Residuals count in sigmas of the noise of their sample, so that samples that the model does not
-// describe, whose fits jump between minima, decide nothing.
+// Residuals are divided by the noise of their sample, so samples that the model does not describe,
+// whose fits jump between minima, have hardly any influence.
 class FormationProblem : public LeastSquaresProblem<kNumFormationParameters> {
  public:
   using Parameters = FormationState;
@@ -30,8 +30,8 @@ class FormationProblem : public LeastSquaresProblem<kNumFormationParameters> {
   // `noises`: grey levels; infinite for samples that do not count. The priors must outlive this.
   FormationProblem(const FormationPriors& priors, std::vector<double> noises, int num_threads);
 
-  // Derivatives take six fits of every sample, so that there are none where the cost is higher
-  // than before: such a step is not taken.
+  // Derivatives take six fits of every sample. They are not computed where the cost is higher than
+  // before, because such a step is rejected.
   void Evaluate(const FormationState& state, bool, Equations* equations) const;
 
   FormationState Plus(const FormationState& state, const Step& step) const;

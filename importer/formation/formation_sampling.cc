@@ -23,8 +23,8 @@ constexpr double kMinSidePx = 12.0;
 constexpr double kUnknownInsetPx = 0.2;
 constexpr double kBestSidePx = 40.0;  // the fit of a larger marker takes longer and tells no more
 
-// How many samples are cut from a frame: small markers tell less each and take less time, so that
-// they may be as many as fit into a number of pixels.
+// The number of samples per frame. Each small marker contributes less information and takes less
+// time, so the number follows from a total number of pixels.
 struct SampleQuota {
   int num_large = 0;  // always taken
   int num_small = 0;  // at most
@@ -130,8 +130,8 @@ bool SampleFrames(const FrameDetector& detector, int num_frames, int stride,
   return has_more;
 }
 
-// From the beginning of a video; further on, and farther apart, while too few markers are found.
-// The frames of a short one are closer together.
+// From the beginning of a video; later frames, farther apart, are added while too few markers are
+// found. In a short video the frames are closer together.
 std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_threads,
                                          FrameSource* source) {
   constexpr int kNumFrames = 8, kStride = 5, kMaxStride = 160;
@@ -176,7 +176,7 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
             [&](const FormationSample& a, const FormationSample& b) { return key(a) < key(b); });
   FormationEstimate estimate;
   if (static_cast<int>(samples.size()) >= kMinSamples) {
-    spdlog::info("finding what camera and print do to the edges of {} markers", samples.size());
+    spdlog::info("estimating how camera and print change the edges of {} markers", samples.size());
     estimate = EstimateFormation(samples, detector.options.inverted, num_threads);
   }
   if (estimate.num_samples < kMinSamples) {

@@ -1,4 +1,4 @@
-// What camera and print do to the edges of a source of frames: the first step of an import.
+// How camera and print change edges in a source of frames: the first step of an import.
 
 #pragma once
 

@@ -20,7 +20,7 @@ struct MarkerRays {
   QuadCorners rays;
 };
 
-// The fewest markers that support a pose.
+// The smallest number of markers that support a pose.
 inline constexpr std::size_t kMinConsensus = 4;
 
 struct ConsensusPose {

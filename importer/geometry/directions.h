@@ -8,8 +8,8 @@
 
 namespace velamap {
 
-// In rad, 0 to pi. Unlike the arc cosine, exact for small angles, too. The vectors need not have
-// unit length.
+// In rad, 0 to pi. Unlike the arc cosine, accurate for small angles. The vectors need not have unit
+// length.
 double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 // The 24 rotations of a cube onto itself.

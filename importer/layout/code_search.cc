@@ -215,7 +215,7 @@ CodeSet TakeSymmetricCodesToo(const CodeSearchOptions& options) {
 void CodeSearchOptions::Check() const {
   CheckRanges(*this);
   if (bits_per_side == 1 || bits_per_side == 2) {
-    throw InputError(fmt::format("{}: {} bits a side make too few codes; give {} to {}",
+    throw InputError(fmt::format("{}: {} bits per side allow too few codes; give {} to {}",
                                  OptionName(&CodeSearchOptions::bits_per_side), bits_per_side,
                                  kMinBits, kMaxBits));
   }
@@ -225,7 +225,7 @@ OptionGroup DescribeOptions(CodeSearchOptions* options) {
   return {"Custom dictionary",
           {{"CustomDictionary.bits", &options->bits_per_side, "cells",
             "makes a dictionary of 3x3 to 8x8 bits whose codes differ as much as possible; give "
-            "the cells a side; 0: --dictionary is used",
+            "the cells per side; 0: --dictionary is used",
             FromTo(0, kMaxBits)},
            {"CustomDictionary.size", &options->num_codes, "count",
             "number of its codes; 0: as many as markers are printed", FromTo(0, kMaxMarkerId + 1)},
@@ -236,7 +236,7 @@ OptionGroup DescribeOptions(CodeSearchOptions* options) {
 
 std::int64_t NumAsymmetricCodes(int bits_per_side) {
   const int num_bits = bits_per_side * bits_per_side;
-  // A code that looks the same after a quarter turn does so after half a turn, too.
+  // A code that looks the same after a quarter turn also does so after half a turn.
   const double num_all = std::pow(2.0, num_bits);
   const double num_half_turn = std::pow(2.0, (num_bits + 1) / 2);
   // Of 8x8 bits there are more than a double counts exactly, but fewer than an int64 holds.

@@ -26,7 +26,7 @@ Dictionary LoadDictionary(const std::string& name_or_path);
 
 std::vector<std::string> PredefinedDictionaryNames();
 
-// Whether the name is one of OpenCV's, which other programs know, too.
+// Whether the name is one of OpenCV's, which other programs also know.
 bool IsOpenCvName(const std::string& name);
 
 int NumMarkers(const Dictionary& dictionary);

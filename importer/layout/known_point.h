@@ -24,8 +24,9 @@ struct KnownPoint {
 // "12" for the centre of marker 12, "12.3" for its corner 3, as in the layout file.
 std::string PointName(int marker_id, int corner);
 
-// Why these points cannot fix a frame wherever they are: too few points or coordinates, or an axis
-// along which none is given. Empty where that is left to their places. Checks do not count.
+// The reason why these points cannot fix a frame regardless of their places: too few points or
+// coordinates, or an axis along which none is given. Empty without such a reason. Checks do not
+// count.
 std::string WhatDatumLacks(const std::vector<KnownPoint>& points);
 
 }  // namespace velamap

@@ -78,7 +78,7 @@ struct Layout {
 // length of a marker that no part names.
 Layout ReadLayout(const std::string& path);
 
-// The layout of --dictionary and --marker_length: no lines, and every id is accepted.
+// The layout from --dictionary and --marker_length: no lines, and every id is accepted.
 Layout MakeLayout(const std::string& dictionary, double marker_length_m);
 
 // The length of the black square's outer edge, m.

@@ -134,7 +134,7 @@ std::map<int, double> ReadMarkerLengths(const YamlItem& item) {
   return lengths_m;
 }
 
-// Other markers are left out, whatever their length.
+// Other markers are left out, so their lengths do not matter.
 void WarnOfUnusedLengths(const YamlItem& item, const Layout& layout) {
   if (!layout.HasMarkers()) return;
   const std::vector<int> ids = MarkerIds(layout);
@@ -166,7 +166,7 @@ std::string ReadDictionaryName(const YamlItem& item) {
   return is_file || looks_like_file ? file.string() : name;
 }
 
-// A second document would be passed over: yaml-cpp reads the first one.
+// A second document would be ignored: yaml-cpp reads only the first one.
 void CheckSingleDocument(const std::string& path, const std::string& text) {
   std::istringstream lines(text);
   bool has_content = false, has_ended = false;

@@ -1,5 +1,5 @@
-// Which frames of a video are not as they were recorded: those of damaged packets, and those that
-// build on them.
+// Tells which frames of a video are damaged: those of damaged packets, and those that depend on
+// them.
 
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace velamap {
 
-// Packets count from 0 in the order of decoding. Thread-safe, because FFmpeg's threads tell of
-// damage while later packets are read.
+// Packets are numbered from 0 in the order of decoding. Thread-safe, because FFmpeg's threads
+// report damage while later packets are read.
 class PacketDamage {
  public:
   // Adds the next packet and returns its number. `time` is that of presentation, or

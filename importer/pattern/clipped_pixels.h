@@ -1,9 +1,9 @@
 // Pixels that a camera recorded at the end of its range.
 //
 // White paper in the sun and the bright side of a sharpened edge are often clipped at 255, the dark
-// side at 0. Such a pixel gives a limit of its value, not the value. Taken as it is, it pulls the
-// light level of the marker down, and undoing the sharpening spreads its error to the pixels around
-// it, which moves edges outwards or inwards.
+// side at 0. Such a pixel gives only a limit of its value. If it were used as it is, it would lower
+// the light level of the marker, and undoing the sharpening would spread its error to neighbouring
+// pixels, which moves edges outwards or inwards.
 
 #pragma once
 
@@ -14,15 +14,15 @@
 
 namespace velamap {
 
-// Whether pixels of the box are clipped. False where a fifth of them or more is clipped at each
-// end, as in drawings: if neither level is known, the edges cannot be located, and the values are
-// taken as they are.
+// Whether pixels of the box are clipped. False if a fifth of them or more is clipped at each end,
+// as in drawings: with neither level known, edges could not be located, so the values are used as
+// they are.
 bool HasClippedPixels(const cv::Mat& gray, const cv::Rect& box);
 
-// RefinePatternFit() with the values that a camera without limits would have recorded, by the model
-// `minimum`, in place of the clipped ones, and with no weight for these pixels. Repeated until that
-// moves no corner further than `tolerance_px`. `gray` and `formation` are those that the problem
-// was made with; HasClippedPixels() holds for them. False for a singular system.
+// RefinePatternFit() with the clipped values replaced by those that, according to the model
+// `minimum`, a camera without limits would have recorded, and with no weight for these pixels.
+// Repeated until no corner moves farther than `tolerance_px`. `gray` and `formation` are those that
+// the problem was made with; HasClippedPixels() holds for them. False for a singular system.
 bool RefineBeyondClipping(const cv::Mat& gray, const ImageFormation& formation, int max_pixels,
                           double tolerance_px, PatternProblem* problem, PatternMinimum* minimum);
 

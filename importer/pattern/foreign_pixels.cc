@@ -17,8 +17,8 @@ namespace {
 
 using P = PatternParameters;
 
-// The least residual of a foreign pixel, grey levels. Its unit is the noise of the pixels on edges,
-// so that a model that misses all edges a little finds nothing foreign there. Nothing for too few
+// The smallest residual of a foreign pixel, grey levels. It is a multiple of the noise of pixels on
+// edges, so a model that misses all edges slightly does not make them foreign. Nothing for too few
 // pixels.
 std::optional<double> ForeignLimit(const std::vector<PixelResidual>& residuals, double contrast) {
   constexpr double kContrast = 0.1, kSigmas = 6.0;
@@ -41,7 +41,7 @@ double ShareBeyond(double limit, const std::vector<PixelResidual>& residuals) {
 }
 
 // Marks (8 bit) the pixels of the patch whose residual exceeds the limit, and the pixels around
-// them into which the blur mixes them.
+// them that the blur affects.
 cv::Mat ForeignPixels(const PatternProblem& problem, const P::Vector& parameters, double limit) {
   constexpr double kReach = 2.0;  // blur sigmas
   constexpr int kMaxReachPx = 4;

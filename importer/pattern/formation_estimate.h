@@ -1,8 +1,8 @@
 // How light from a printed marker becomes grey values, beyond the blur that each fit finds itself.
 //
 //   print      dark cells reach ink_spread_sides (of the marker's side) beyond their outlines
-//   camera     edges lie edge_shift_blurs (sigmas of the blur) further towards the light side, and
-//              the outline of the black square outline_shift_blurs further outside
+//   camera     edges move by edge_shift_blurs (sigmas of the blur) towards the light side, and the
+//              outline of the black square by a further outline_shift_blurs outwards
 //   tone       gray = 255 (v - s_amplitude sin(2 pi v)),  v = (light / 255)^(1 / gamma)
 //   sharpening sharpened = gray + sharpening (gray - G gray), or the same with light, before the
 //              tone curve;  G is a Gaussian of sharpening_radius_px
@@ -25,10 +25,10 @@ struct ImageFormationParameters {
   double ink_spread_sides = 0.0;
   // Noise filters, compression and tone curves of other shapes move edges by a fraction of their
   // blur, which is the same in all directions of the image. Ink moves them by a length on the
-  // paper, which a slant shortens.
+  // paper, which is foreshortened on a slanted marker.
   double edge_shift_blurs = 0.0;
-  // What lies around a narrow quiet zone, and noise filters that take the zone for noise, move the
-  // outline of the black square, in addition to the shift of all edges.
+  // The surroundings of a narrow quiet zone, and noise filters that take the zone for noise, move
+  // the outline of the black square in addition to the shift of all edges.
   double outline_shift_blurs = 0.0;
   // The images hold 255 minus the recorded grey values, so that inverted prints look upright. Light
   // stays what the camera received: bright cells then have less of it than dark ones.
@@ -47,10 +47,10 @@ struct ImageFormationParameters {
 
 struct FormationEstimate {
   ImageFormationParameters parameters;
-  int num_samples = 0;      // that could be fitted; 0: nothing is known
+  int num_samples = 0;      // that could be fitted; 0: the parameters are defaults
   double noise_gray = 0.0;  // robust standard deviation of the residuals, grey levels
-  // 1 sigma of the error that the uncertainty of the parameters, and what no parameter describes,
-  // cause in all corners alike: each is found this far inside (or outside) its marker along both
+  // 1 sigma of the error that all corners share because of uncertain parameters and of effects that
+  // no parameter describes: each corner is found this far inside (or outside) its marker along both
   // sides, px.
   double inset_sigma_px = 0.0;
 };

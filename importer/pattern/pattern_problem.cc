@@ -123,14 +123,14 @@ bool Start(const QuadCorners& corners_px, const ImageFormationParameters& format
   p[P::kDark] = lights.dark;
   p[P::kLight] = lights.light;
   problem->mean = p;
-  // Smaller cells blur into each other, so that one marker does not determine its margins.
+  // Smaller cells blur into each other, so one marker does not determine its margins.
   constexpr double kMinCellPx = 2.5;
   constexpr double kUnknownSigma = 0.25, kHeldSigma = 0.02;
   const bool shows_margins = QuadMeanSide(corners_px) >= kMinCellPx * problem->model.num_cells;
   constexpr double kUnheldSigma = 1e3;  // of the corners, px, and of dark and light
   constexpr double kBlurSigmaPx = 0.7, kGradientSigma = 0.15, kSurroundSigma = 0.3;
   // The light of the marker's cells and of the quiet zone differs little once the tone curve is
-  // known. A looser prior lets a narrow, dim quiet zone pass for a wide one.
+  // known. With a looser prior, a narrow, dim quiet zone could be mistaken for a wide one.
   constexpr double kInnerLightSigma = 0.02;
   P::Vector sigma = P::Vector::Constant(kUnheldSigma);  // those of the margins follow
   sigma[P::kBlurU] = sigma[P::kBlurV] = kBlurSigmaPx;

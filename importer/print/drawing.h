@@ -1,4 +1,4 @@
-// What is on a page, as values that do not depend on the file format.
+// The content of a page, independent of the file format.
 //
 // Page frame: x right, y down, origin at the page's top left corner, mm.
 
@@ -42,7 +42,7 @@ struct Text {
   TextAnchor anchor = TextAnchor::kStart;
   bool is_bold = false;
   Color color = kBlack;
-  // Smaller type is taken where the text would be wider.
+  // The type is made smaller if the text would be wider.
   double max_width_mm = kAnyWidth;
   bool has_halo = false;  // white around the letters, where they lie on lines
 };

@@ -30,7 +30,7 @@ cairo_status_t Append(void* closure, const unsigned char* data, unsigned int len
   return CAIRO_STATUS_SUCCESS;
 }
 
-// Nothing here reads files, so that any other failure is a fault of velamap's own.
+// Nothing here reads files, so any other failure is a bug in velamap.
 void CheckStatus(cairo_status_t status) {
   if (status == CAIRO_STATUS_INVALID_STRING) {
     throw InputError(

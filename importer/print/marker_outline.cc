@@ -33,7 +33,7 @@ Sides FindSides(const cv::Mat& cells) {
   return sides;
 }
 
-// Takes the side that goes on from a side that arrived in direction `from`. Where two cells touch
+// Takes the side that continues a side that arrived in direction `from`. Where two cells touch
 // at a corner, two sides start; the one to the right stays with the cell that it came along.
 Direction TakeNext(const GridPoint& point, Direction from, Sides* sides) {
   const auto it = sides->find(point);

@@ -31,9 +31,9 @@ struct PrintReport {
 //   board.svg        the board (board, charuco)
 //   markers/         marker_0012.svg and .png, on request
 //
-// An earlier folder is replaced if it is as velamap left it. Same options, same bytes, with the
-// same fonts and cairo. Throws InputError where MakePrintPlan() does, if a marker or board does not
-// fit on the paper, and if the folder holds anything else or cannot be written.
+// An earlier folder is replaced if nobody has changed it since. The same options give the same
+// bytes, with the same fonts and cairo. Throws InputError as MakePrintPlan() does, if a marker or
+// board does not fit on the paper, and if the folder holds anything else or cannot be written.
 PrintReport PrintMarkers(const PrintOptions& options, const std::string& output_path);
 
 }  // namespace velamap

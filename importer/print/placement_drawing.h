@@ -11,7 +11,7 @@
 
 namespace velamap {
 
-// What is to be stuck where.
+// The markers to stick on, and their places.
 struct PlacementPlan {
   std::vector<Placement> placements;    // none or one
   std::vector<LayoutPart> rigid_parts;  // free places on something rigid, such as the hull

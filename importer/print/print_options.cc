@@ -79,17 +79,17 @@ void PrintOptions::Check() const {
   if (codes.bits_per_side == 0 && (codes.num_codes > 0 || codes.allow_symmetric)) {
     ThrowSuperfluous(
         OptionName(&CodeSearchOptions::num_codes),
-        OptionName(&CodeSearchOptions::bits_per_side) + " is 0, so that no dictionary is made");
+        OptionName(&CodeSearchOptions::bits_per_side) + " is 0, so no dictionary is made");
   }
   if (arrangement != Arrangement::kSail && (sail.luff_m || sail.foot_m || sail.leech_m)) {
-    ThrowSuperfluous(OptionName(&SailPlacementOptions::luff_m), "it goes with --arrangement sail");
+    ThrowSuperfluous(OptionName(&SailPlacementOptions::luff_m), "it is for --arrangement sail");
   }
   if (arrangement != Arrangement::kMarkers && num_markers > 0) {
-    ThrowSuperfluous("--num_markers", "it goes with --arrangement markers");
+    ThrowSuperfluous("--num_markers", "it is for --arrangement markers");
   }
   if (sail.hull_markers > 0 && (arrangement == Arrangement::kMarkers || IsBoard(arrangement))) {
     ThrowSuperfluous(OptionName(&SailPlacementOptions::hull_markers),
-                     "it goes with --arrangement sail, grid or hull");
+                     "it is for --arrangement sail, grid or hull");
   }
   if (IsBoard(arrangement) && (!ids.empty() || sheet.write_png || sheet.write_svg)) {
     ThrowSuperfluous("--ids, --Sheet.svg, --Sheet.png", "a board is printed as a whole");

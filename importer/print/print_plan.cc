@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kDefaultHullMarkers = 8;
 
-// A custom dictionary is made when it is known how many codes it needs.
+// A custom dictionary is made once the number of codes is known.
 PrintedLook LoadLook(const PrintOptions& options) {
   PrintedLook look;
   look.border_bits = options.layout ? options.layout->border_bits : options.border_bits;

@@ -1,4 +1,4 @@
-// What is to be printed: markers, dictionary, places and layout, before anything is drawn.
+// Plan of a print before anything is drawn: markers, dictionary, places and layout.
 
 #pragma once
 

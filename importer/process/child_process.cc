@@ -19,8 +19,8 @@ namespace {
   throw std::system_error(error, std::generic_category());
 }
 
-// Where one of our own standard streams is closed, an end of a pipe would get its number, which the
-// child's stream needs.
+// If one of our own standard streams is closed, a pipe would get its number, which the child's
+// stream needs.
 void MoveBeyondStandardStreams(int* end) {
   if (*end > STDERR_FILENO) return;
   const int moved = fcntl(*end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
@@ -39,7 +39,7 @@ std::vector<char*> Pointers(std::vector<std::string>& strings) {
 // What comes through the report's pipe. It is written in one piece.
 struct Report {
   int start_error;  // errno; 0 if the program has run
-  int status;       // as of waitpid()
+  int status;       // from waitpid()
 };
 
 // All that the forked processes need. They may call nothing that is not async-signal-safe, because
@@ -81,7 +81,7 @@ void Send(const Start& start, const Report& report) {
     Send(start, {errno, 0});
     _exit(EXIT_FAILURE);
   }
-  // The parent's files, its lock among them, and its terminal go with it.
+  // Releases the parent's files, including its lock, and its terminal.
   close_range(0, static_cast<unsigned>(start.report_fd) - 1, 0);
   close_range(static_cast<unsigned>(start.report_fd) + 1, UINT_MAX, 0);
   while (true) {
@@ -139,7 +139,7 @@ ChildProcess::ChildProcess(std::vector<std::string> words, std::vector<std::stri
   sigemptyset(&start.watched);
   sigaddset(&start.watched, SIGTERM);
   sigaddset(&start.watched, SIGCHLD);
-  // Before the watcher is there, so that it misses none.
+  // Before the watcher exists, so that it misses none.
   pthread_sigmask(SIG_BLOCK, &start.watched, &start.original);
   watcher_ = fork();
   if (watcher_ == 0) Watch(start);

@@ -47,7 +47,7 @@ class ChildProcess {
   // or closed them. Nothing at the deadline.
   std::optional<std::string> Read(Time deadline) const;
 
-  // Waits for the end and returns the status as of waitpid(); nothing at the deadline. Throws
+  // Waits for the end and returns the status of waitpid(); nothing at the deadline. Throws
   // std::system_error with the reason if the program could not be started.
   std::optional<int> Wait(Time deadline) const;
 

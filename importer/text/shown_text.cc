@@ -12,8 +12,8 @@ namespace {
 
 std::mutex mutex;
 bool shows_folders = false;
-// With a slash at the end. Folders come after those that they lie in, so that the order is reversed
-// to find the longest first.
+// With a slash at the end. Folders sort after their parents, so the order is reversed to find the
+// longest first.
 std::set<std::string, std::greater<>> mentioned_folders;
 
 constexpr char kEndsOfWords[] = " \t\r\n'\"`,;=()[]{}<>|";

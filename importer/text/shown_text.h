@@ -1,5 +1,5 @@
-// Texts that are meant to be sent around, such as logs and the report: they name files without
-// their folders, which are private, unless the user has asked for them.
+// Text that people share, such as logs and the report. It names files without their folders, which
+// are private, unless the user has asked for them.
 
 #pragma once
 
@@ -15,8 +15,8 @@ void ShowFolders(bool show);
 // folders above it even where their names hold spaces.
 void MentionPath(const std::filesystem::path& path);
 
-// The text with every absolute path cut down to its last name: words that begin with a slash, and
-// paths whose folders are those of a mentioned path.
+// The text with every absolute path reduced to its file name. Paths are words that begin with a
+// slash, and those whose folders are the folders of a mentioned path.
 std::string WithoutFolders(const std::string& text);
 
 }  // namespace velamap

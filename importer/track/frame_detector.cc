@@ -109,7 +109,7 @@ FrameDetector MakeChessboardDetector(const Chessboard& board) {
   FrameDetector detector;
   detector.chessboard = board;
   detector.options.search = SearchMode::kExhaustive;
-  // The corners of a chessboard are symmetric, so that nothing moves them in or out.
+  // The corners of a chessboard are symmetric, so nothing moves them inwards or outwards.
   detector.options.estimate_formation = false;
   return detector;
 }
@@ -158,7 +158,7 @@ void CheckDictionaryOf(const std::string& description, const Layout& layout,
   throw InputError(
       fmt::format("--layout_path: the layout has {}, but {} holds markers of {}; give the layout "
                   "of the import, "
-                  "or import anew",
+                  "or import again",
                   of_layout, database_path, of_database));
 }
 
@@ -175,7 +175,7 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
                                          int marker_id, const QuadCorners& expected,
                                          double reach_px) {
   const auto idx = static_cast<std::size_t>(marker_id);
-  if (idx >= detector.looks.size()) return std::nullopt;  // tracks come from a database, too
+  if (idx >= detector.looks.size()) return std::nullopt;  // tracks may come from a database
   const MarkerLook& look = detector.looks[idx];
   const auto located = LocateMarker(gray, expected, look, reach_px);
   if (!located || !IsSearchable(*located, gray.size(), detector.options)) return std::nullopt;

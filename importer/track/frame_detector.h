@@ -80,7 +80,7 @@ std::optional<QuadCorners> LocateInFrame(const FrameDetector& detector, const cv
 std::string DescribeDetector(const FrameDetector& detector);
 
 // Whether `description`, which DescribeDetector() has made, is of the dictionary and the layout of
-// `detector`, whatever its options.
+// `detector`; its options may differ.
 bool IsOfLayout(const std::string& description, const FrameDetector& detector);
 
 // Throws InputError, naming both, if `description` is of another dictionary or border than the

@@ -24,7 +24,7 @@ struct MarkerTrack {
   double hit_rate = 0.5;                         // running mean of the frames in which it was found
 };
 
-// Where a marker of the last frame should be in this one, and how far from there it is searched.
+// The expected place of a marker of the last frame in this one, and the radius of its search.
 struct TrackPrediction {
   QuadCorners corners_px;
   double margin_px = 0.0;
@@ -47,8 +47,8 @@ std::vector<PointMotion> MotionsOf(const std::vector<MarkerTrack>& tracks,
                                    const std::vector<MarkerQuad>& quads,
                                    const std::vector<int>& quad_of_track);
 
-// The tracks after a frame with `quads`: those that go on, shifted where they are lost, and new
-// ones.
+// The tracks after a frame with `quads`: continued ones, lost ones shifted with their surroundings,
+// and new ones.
 std::vector<MarkerTrack> UpdateTracks(const std::vector<MarkerTrack>& tracks,
                                       const std::vector<MarkerQuad>& quads,
                                       const std::vector<int>& quad_of_track,

@@ -10,9 +10,9 @@
 // layout's lines expect them are located or searched in the same way.
 //
 // Halfway between two full searches a coarse search of the whole frame finds new large markers. The
-// whole frame is searched where far fewer markers are found than usual or the regions fill most of
-// the picture, and then in every next frame as long as this finds new markers. The result depends
-// on the frames and their order only.
+// whole frame is searched if far fewer markers are found than usual or if the regions fill most of
+// the picture, and then in each following frame as long as this finds new markers. The result
+// depends only on the frames and their order.
 //
 // All tracks end after kFullSearchesPerGroup full searches. As with the key frames of an encoded
 // video, no frame depends on a frame before that, so the import of a long video can be split there
@@ -32,8 +32,8 @@
 
 namespace velamap {
 
-// 1800 frames with a full search in every 15th. Small markers that are only found by their tracks
-// are lost where a group begins: 1 % of all markers if these are hardly large enough to be found.
+// 1800 frames with a full search in every 15th. Small markers that only tracking finds are lost at
+// the start of a group: 1 % of all markers if the markers are hardly large enough to be found.
 inline constexpr int kFullSearchesPerGroup = 120;
 
 // The state of the tracking after a frame.

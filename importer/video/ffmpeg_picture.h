@@ -10,9 +10,9 @@
 namespace velamap {
 
 // Decodes the bytes of a PNG, TIFF, BMP, WebP, JPEG 2000, PNM, Sun raster or OpenEXR file, or of a
-// JPEG with four inks, to BGR, 8 bit. Transparency is dropped. Of a file with several pictures the
-// first is taken. Empty for anything else, for damaged files and beyond the 268 million pixels that
-// FFmpeg decodes. Thread-safe.
+// JPEG with four inks, to BGR, 8 bit. Drops transparency. Decodes the first picture of a file with
+// several. Empty for anything else, for damaged files and beyond the 268 million pixels that FFmpeg
+// decodes. Thread-safe.
 cv::Mat DecodeWithFfmpeg(const std::vector<std::uint8_t>& bytes);
 
 }  // namespace velamap

@@ -112,12 +112,12 @@ class VideoFile : public FrameSource {
         num_frames_(CountFrames()),
         is_marked_interlaced_(decoder_.IsMarkedInterlaced()) {
     if (decoder_.NumQuarterTurns() != 0) {
-      LogOnce(spdlog::level::info,
-              fmt::format(
-                  "{}: the metadata turn its pictures by {} degrees, and so they are turned; the "
-                  "calibration has to be of pictures turned alike (OpenCV 4.6 turns some "
-                  "the other way)",
-                  path_, 90 * decoder_.NumQuarterTurns()));
+      LogOnce(
+          spdlog::level::info,
+          fmt::format("{}: its pictures are turned by {} degrees, as its metadata say; the "
+                      "calibration has to come from pictures turned the same way (OpenCV 4.6 turns "
+                      "some the other way)",
+                      path_, 90 * decoder_.NumQuarterTurns()));
     }
     decoder_.SkipTo(options_.first_frame);
   }
@@ -174,7 +174,7 @@ class VideoFile : public FrameSource {
     if (!is_combed && is_marked) {
       LogOnce(
           spdlog::level::info,
-          path_ + ": stored as interlaced; pictures whose two fields are of one moment are used");
+          path_ + ": stored as interlaced, but the two fields of a picture show the same moment");
     }
     if (!is_combed) return;
     const std::string remedy =

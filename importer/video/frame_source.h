@@ -45,7 +45,7 @@ class FrameSource {
   // files and compute grey images in parallel. Thread-safe. Returns false, with a warning and the
   // reason, if the file is not a whole image, and without a warning for a frame that is not whole,
   // because one packet may damage hundreds of them. Throws InputError for an interlaced video whose
-  // two fields are of different moments.
+  // two fields show different moments.
   virtual bool Load(Frame* frame, std::string* reason) const = 0;
 
   virtual bool IsVideo() const = 0;

@@ -69,7 +69,7 @@ bool PngHasEnd(const Bytes& bytes) {
   return false;
 }
 
-// What the header says, so that nothing large is decoded in vain; nothing for other formats.
+// The size in the header, so that no image that is too large is decoded; nothing for other formats.
 std::optional<cv::Size2d> StoredSize(const Bytes& bytes) {
   constexpr std::size_t kPngSize = 16;  // behind signature, length and type of the first chunk
   if (IsPng(bytes) && bytes.size() >= kPngSize + 8) {

@@ -1,4 +1,4 @@
-// Decodes image files and tells whole ones from broken ones.
+// Decodes image files and detects broken ones.
 
 #pragma once
 
@@ -14,7 +14,7 @@ namespace velamap {
 inline constexpr std::int64_t kMaxImageFileSize = std::int64_t{1} << 30;
 inline constexpr std::size_t kMaxImagePixels = 250'000'000;
 
-// Decodes the file to BGR, 8 bit, without the rotation of its metadata, which COLMAP ignores too.
+// Decodes the file to BGR, 8 bit, without the rotation of its metadata, which COLMAP also ignores.
 // Returns an empty image and a reason if the file is missing, empty, cut off, too large or not an
 // image. JPEG and PNG files are checked for their end first, because decoders fill missing pixels
 // with grey.

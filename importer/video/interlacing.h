@@ -1,5 +1,5 @@
-// Interlaced video: two fields, of the even and of the odd lines, that a camera has exposed one
-// after the other. Where something has moved in between, the woven picture has combs at its edges.
+// Interlaced video consists of two fields, the even and the odd lines, exposed one after the other.
+// Where something moved in between, the woven picture has combs at its edges.
 
 #pragma once
 

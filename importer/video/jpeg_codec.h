@@ -13,8 +13,8 @@
 
 namespace velamap {
 
-// The size that the header gives; nothing if libjpeg-turbo cannot decode the file to BGR, as it is
-// with four inks.
+// The size in the header; nothing if libjpeg-turbo cannot decode the file to BGR, such as one with
+// four inks.
 std::optional<cv::Size> JpegSize(const std::vector<std::uint8_t>& bytes);
 
 // BGR, 8 bit; damaged data are decoded as far as possible. Empty if nothing can be decoded.

@@ -1,4 +1,4 @@
-// What a photograph's EXIF says of its camera.
+// What a photograph's EXIF says about its camera.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// Which file a picture or a video was read from, and what was in it then.
+// Which file a picture or a video was read from, and its content at that time.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 namespace velamap {
 
 struct SourceFile {
-  std::string name;             // without folders, because databases are handed on
+  std::string name;             // without folders, because people share databases
   std::uint64_t path_hash = 0;  // of the absolute path without links
   std::uint64_t size = 0;
   std::int64_t modified_s = 0;  // since 1970, UTC
@@ -26,11 +26,11 @@ bool HasImageExtension(const std::string& path);
 // Throws InputError if the file cannot be read.
 SourceFile IdentifySource(const std::string& path);
 
-// Whether the file at `path` has the content that was read from `known`, whatever its name and
-// times. It is not read if nothing has touched it since. Throws InputError if it cannot be read.
+// Whether the file at `path` has the content that was read from `known`; its name and times may
+// differ. It is not read if nothing has touched it since. Throws InputError if it cannot be read.
 bool HasSameContent(const SourceFile& known, const std::string& path);
 
-// Whether `path` is where it was read from, whatever is there now.
+// Whether `path` is where it was read from, even if the file has changed.
 bool IsSamePlace(const SourceFile& known, const std::filesystem::path& path);
 
 // "clip.mp4, 1234 bytes of 2024-05-01 14:02 UTC".

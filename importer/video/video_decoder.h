@@ -37,11 +37,11 @@ class VideoDecoder {
   int NumContainerFrames() const;
 
   // By how many quarters frames are turned clockwise for display, as the metadata of the video say.
-  // cv::VideoCapture turns them, too, and with it calibrations that are made from a video; but the
-  // version 4.6 does so in the wrong direction (github.com/opencv/opencv/issues/22088).
+  // cv::VideoCapture also turns them, and so do calibrations that are made from a video; version
+  // 4.6 turns them in the wrong direction (github.com/opencv/opencv/issues/22088).
   int NumQuarterTurns() const;
 
-  // Whether the container says that the video is interlaced. Its frames may say so, too.
+  // Whether the container says that the video is interlaced. Its frames may also say so.
   bool IsMarkedInterlaced() const;
 
   // Skips the frames before `number` without decoding more of them than that frame needs. To be

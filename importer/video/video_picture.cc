@@ -135,7 +135,7 @@ cv::Mat ConvertToColor(const AVFrame& frame) {
   const AVPixFmtDescriptor* format = Format(frame);
   if (HasFlag(*format, AV_PIX_FMT_FLAG_RGB) && format->comp[0].depth == 16 &&
       !HasFlag(*format, AV_PIX_FMT_FLAG_PLANAR | AV_PIX_FMT_FLAG_FLOAT)) {
-    // To 8 bits swscale goes by way of YUV, which is off by up to two levels.
+    // For 8 bits swscale converts via YUV, which is off by up to two levels.
     cv::Mat image = Convert(frame, AV_PIX_FMT_BGR48LE, CV_16UC3, SWS_BICUBIC);
     image.convertTo(image, CV_8U, 255.0 / 65535.0);
     return image;

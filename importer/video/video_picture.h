@@ -25,7 +25,7 @@ class VideoPicture {
   // `num_quarter_turns` (0 to 3).
   explicit VideoPicture(const AVFrame& frame, int num_quarter_turns = 0);
 
-  // Whether the stream says that the picture consists of two fields, which may be of one moment.
+  // Whether the stream says that the picture has two fields, which may show the same moment.
   bool IsMarkedInterlaced() const;
 
   // 8-bit grey, 0 for black and 255 for white; luma of limited range (16 to 235) is stretched.

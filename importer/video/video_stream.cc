@@ -20,7 +20,7 @@ namespace {
 
 using FormatPtr = std::unique_ptr<AVFormatContext, FfmpegFreer>;
 
-// After so many failures in a row the rest of the file is taken as broken.
+// After this many failures in a row, the rest of the file is considered broken.
 constexpr int kMaxNumFailures = 4096;
 
 [[noreturn]] void ThrowUnreadable(const std::string& path) {
@@ -44,16 +44,16 @@ void CheckHoldsPictures(const std::string& path, const std::string& format) {
                   path, format));
 }
 
-// What FFmpeg logs as an error although every pixel is right: references that were not there to be
-// dropped (cut videos and some cameras), and data about the picture.
+// Messages that FFmpeg logs as errors although every pixel is right: missing references that were
+// to be dropped (cut videos and some cameras), and metadata of the picture.
 bool IsHarmless(const char* message) {
   static constexpr const char* kHarmless[] = {"mmco", "SEI", "APP fields", "VUI", "timecode"};
   return std::any_of(std::begin(kHarmless), std::end(kHarmless),
                      [&](const char* words) { return std::strstr(message, words) != nullptr; });
 }
 
-// FFmpeg's decoders hide damage, and with several threads they lose the flags of a frame that tell
-// of it. But they always log it, in the context of the packet.
+// FFmpeg's decoders conceal damage, and with several threads they lose the flags of a frame that
+// report it. But they always log it, in the context of the packet.
 void NoteLoggedDamage(void* context, int level, const char* format, va_list /*arguments*/) {
   if (context == nullptr) return;
   const bool is_damage =
@@ -214,7 +214,7 @@ bool VideoStream::ReadPacket() {
   do {
     av_packet_unref(packet_.get());
     result = Checked(av_read_frame(format_.get(), packet_.get()));
-    // What is between two packets may be damaged, too.
+    // The bytes between two packets may be damaged as well.
     num_failures += result == AVERROR_INVALIDDATA;
   } while (result == AVERROR(EAGAIN) ||
            (result == AVERROR_INVALIDDATA && num_failures < kMaxNumFailures) ||

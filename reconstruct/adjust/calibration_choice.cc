@@ -12,7 +12,7 @@
 namespace velamap {
 namespace {
 
-// What is gained by freeing some intrinsics.
+// The improvement from freeing some intrinsics.
 struct IntrinsicsVerdict {
   double improvement = 0.0;   // of the sum of squares
   double criterion = 0.0;     // the improvement that is significant for the number of parameters
@@ -81,7 +81,7 @@ FreeIntrinsics SignificantIntrinsics(const MarkerSolution& solution, double sigm
     free = verdict.determined;
     if (!free.Any()) return {};
     verdict = JudgeIntrinsics(solution, free, sigma);
-    // Parameters that are not determined but needed would be replaced by wrong values of others.
+    // Wrong values of other parameters would compensate for needed ones that are not determined.
     const double needed_by_others = first.needed * (1.0 - verdict.criterion / first.criterion);
     if (first.improvement - verdict.improvement > needed_by_others) return {};
   }

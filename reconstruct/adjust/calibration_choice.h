@@ -1,4 +1,5 @@
-// Whether the images contradict the calibration, and which intrinsics they determine better.
+// Decides whether the images contradict the calibration, and which intrinsics they determine
+// better.
 
 #pragma once
 
@@ -23,7 +24,7 @@ struct RefinedIntrinsics {
 // free intrinsics.
 std::optional<RefinedIntrinsics> ChooseIntrinsics(const MarkerSolution& solution);
 
-// Says how far the cameras of the solution are from their calibration: in the log where
+// Reports how far the cameras of the solution are from their calibration: in the log if
 // `calibration_sigma` explains it, else as a warning.
 void ReportRefinement(const FreeIntrinsics& free, double calibration_sigma,
                       MarkerSolution* solution);

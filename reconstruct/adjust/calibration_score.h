@@ -1,4 +1,4 @@
-// Whether another calibration would explain the residuals of an adjustment with a fixed one.
+// Tests whether another calibration would explain the residuals of an adjustment with a fixed one.
 
 #pragma once
 

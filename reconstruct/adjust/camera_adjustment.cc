@@ -82,7 +82,7 @@ CameraAdjustment AdjustCameras(const MarkerAdjustmentOptions& options, const Lay
 
 namespace {
 
-// Throws DataError where the wanted model fails and another one is far better: that is the reason.
+// Throws DataError if the wanted model fails and another one is far better, which explains why.
 void ThrowIfAnotherIsBetter(const std::vector<CameraModelScore>& scores, CameraModel wanted,
                             const DataError& failure) {
   constexpr double kFarBetter = 0.5;
@@ -99,7 +99,7 @@ void ThrowIfAnotherIsBetter(const std::vector<CameraModelScore>& scores, CameraM
   }
   throw DataError(fmt::format(
       "a {} camera does not describe this lens: it leaves {:.2f} px in unseen pictures, and {} "
-      "leaves {:.2f} px; take that one ({})",
+      "leaves {:.2f} px; use that one ({})",
       CameraModelName(wanted), taken->unseen_error_px, CameraModelName(best->model),
       best->unseen_error_px, failure.what()));
 }

@@ -1,4 +1,4 @@
-// The cameras that explain a registration best, where no calibration is given or one is wanted.
+// The cameras that explain a registration best, if no calibration is given or one is to be made.
 
 #pragma once
 

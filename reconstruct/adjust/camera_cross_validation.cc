@@ -124,7 +124,7 @@ void FindErrorsOfUnseen(const MarkerSolution& trial, std::size_t division,
                         std::vector<ErrorSum>* sums) {
   constexpr std::size_t kMinPoints = 4;
   MarkerSolution fitted = Without(trial, division, kNumDivisions);
-  Minimize(1e-9, &fitted);  // parameters that are hardly determined must forget these images, too
+  Minimize(1e-9, &fitted);  // weakly determined parameters must forget these images as well
   const Model model = InMiddleRow(trial);
   LeastSquaresOptions options;
   options.min_relative_decrease = 1e-6;
@@ -169,8 +169,8 @@ std::optional<Trial> TryModel(CameraModel model, const MarkerSolution& solution)
   return trial;
 }
 
-// Whether a model with more parameters is better by more than chance: by 1 sigma of the difference,
-// by its scatter over the images.
+// Whether a model with more parameters is better by more than chance: by more than 1 sigma of the
+// difference, from its scatter over the images.
 bool IsBetter(const Trial& trial, const Trial& taken) {
   if (trial.score.is_folded != taken.score.is_folded) return taken.score.is_folded;
   if (!std::isfinite(taken.score.unseen_error_px)) {

@@ -20,7 +20,7 @@ struct CameraModelScore {
 
 struct CrossValidation {
   std::vector<CameraModelScore> scores;  // by number of parameters, a fisheye last
-  MarkerSolution best;                   // with the model that was taken, refined
+  MarkerSolution best;                   // with the chosen model, refined
 };
 
 // Cross-validation (Stone, "Cross-validatory choice and assessment of statistical predictions",
@@ -29,15 +29,15 @@ struct CrossValidation {
 // each image that was left out gets a pose. The errors that remain at its corners are pooled over
 // the five divisions. Chooses the model with the smallest error, but one with more parameters only
 // if it is better by more than chance, and one that folds over inside the picture only if all do.
-// Chooses `wanted` whatever the errors say. A fisheye is tried where a camera sees more than 35
+// Chooses `wanted` regardless of the errors. A fisheye is tried if a camera sees more than 35
 // degrees off its axis. All models are refined from `solution`, whose options have find_camera, and
 // judged by the same corners. Throws DataError where none can be refined, or the wanted one cannot.
 CrossValidation CrossValidateCameraModels(const MarkerSolution& solution,
                                           std::optional<CameraModel> wanted);
 
-// The solution with the model that leaves the least residuals, whatever it predicts. Corners that
-// contradict even this model are outliers; those that contradict a simpler one may be right, of a
-// lens that it cannot describe.
+// The solution with the model that leaves the smallest residuals, regardless of its predictions.
+// Corners that contradict even this model are outliers; those that contradict only a simpler one
+// may be right, because the simpler model may not describe the lens.
 MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution);
 
 // 1 sigma of the parameters of each camera by the jackknife (Tukey 1958; groups of images are left

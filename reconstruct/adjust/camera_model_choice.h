@@ -16,7 +16,7 @@ namespace velamap {
 // is not used. All models are refined from `solution`, whose options have find_camera, and compared
 // at the corners' sigmas of the one that leaves the smallest residuals. A fisheye is considered
 // where a camera sees more than 35 degrees off its axis. Models that fold over inside the image are
-// taken only where all do. Returns `solution` with the cameras of that model, all cameras alike.
+// chosen only if all do. Returns `solution` with all cameras converted to the chosen model.
 MarkerSolution WithBestCameraModel(const MarkerSolution& solution);
 
 // The cameras as this model, with the prior of an unknown camera.

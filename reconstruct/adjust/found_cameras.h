@@ -23,8 +23,8 @@ void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
                       const std::vector<std::string>& weaknesses);
 
 // Adds the effect of an inset of all corners to the sigmas of the focal lengths: an inset changes
-// by how much the squares seem to be foreshortened, and no picture shows it. `inset_as_scale`: 1
-// sigma of the inset, as a fraction of a side.
+// the apparent foreshortening of the squares, and no picture shows it. `inset_as_scale`: 1 sigma of
+// the inset, as a fraction of a side.
 void AddInset(double inset_as_scale, const Camera& camera, std::vector<double>* sigmas);
 
 }  // namespace velamap

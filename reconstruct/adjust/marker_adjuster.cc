@@ -39,8 +39,8 @@ void CheckEnough(const Model& model, std::size_t num_images_before) {
                   model.images.size(), num_images_before));
 }
 
-// 1 sigma of the size of each marker, as a fraction, by the inset of its corners, which shortens a
-// side by two insets.
+// 1 sigma of the size of each marker, as a fraction, due to the inset of its corners, which
+// shortens a side by two insets.
 std::map<int, double> InsetSigmas(const MarkerSolution& solution) {
   std::map<int, double> sigmas;
   for (const auto& [marker_id, side_px] : MeanSidesPx(solution.model)) {
@@ -214,7 +214,7 @@ bool MarkerAdjuster::AddScaleBars() {
 }
 
 void MarkerAdjuster::Finish() {
-  // Another image is the first one where the first image has been removed.
+  // The first image may have been removed, which makes another one the first.
   MoveToFirstCamera(&solution_.model);
   CornerCalibration calibration = CalibrateBySquares(&solution_);
   auto linearization = std::move(calibration.linearization);

@@ -58,15 +58,15 @@ class MarkerAdjuster {
   // explain the corners significantly better.
   std::optional<MarkerAdjuster> WithBetterCalibration(MarkerAdjuster begin) const;
 
-  // Adds the scale bars that agree with each other; where they contradict the markers, frees the
-  // scale of the print as far as that needs. Returns false where there are none.
+  // Adds the scale bars that agree with each other. If they contradict the markers, widens the
+  // prior of the print's scale accordingly. Returns false if there are no such bars.
   bool AddScaleBars();
 
   // Minimizes to a small fraction of a sigma, then finds the correlation of errors, the covariance,
   // and the warnings and figures of the summary. Image points move to where they are while the
   // middle row is read.
   void Finish();
-  // After Finish: takes the sigmas of the jackknife for the cameras where they are larger.
+  // After Finish: uses the jackknife's sigmas for the cameras where they are larger.
   void WidenCameraSigmas();
 
   Model TakeModel() { return std::move(solution_.model); }
@@ -79,7 +79,7 @@ class MarkerAdjuster {
 
   MarkerSolution solution_;
   std::size_t num_images_before_;
-  std::string part_disagreement_;  // begin of a warning; empty where parts agree
+  std::string part_disagreement_;  // beginning of a warning; empty if parts agree
   MarkerAdjustmentSummary summary_;
 };
 

@@ -17,7 +17,7 @@ namespace velamap {
 namespace {
 
 constexpr double kMaxSigmas = 4.0;
-// With fewer markers, one bad print would pass for the size of the whole part.
+// With fewer markers, one bad print could determine the size of the whole part.
 constexpr std::size_t kMinMarkersOfPart = 3;
 
 // The mean side of a marker divided by the printed length, and its uncertainty.
@@ -221,8 +221,8 @@ std::string DisagreementText(const std::vector<PartSize>& parts, std::size_t idx
       parts[idx].part, difference.value > 0 ? "larger" : "smaller");
 }
 
-// Sets what the verdict says of parts if one differs from the others by more than chance, and by
-// enough to matter beside `print_scale_sigma`.
+// Sets the verdict on parts if one differs from the others by more than chance, and by enough to
+// matter compared with `print_scale_sigma`.
 void JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
                 double print_scale_sigma, MarkerSizeVerdict* verdict) {
   const std::vector<PartSize> parts = MeasureParts(sizes, print_tolerance);
@@ -258,8 +258,7 @@ double MedianScale(const MarkerState& state) {
     }
   }
   if (scales.empty()) {
-    throw DataError(
-        "no marker of the model has two neighbouring corners, so that its size is unknown");
+    throw DataError("no marker of the model has two neighbouring corners, so the scale is unknown");
   }
   return Median(std::move(scales));
 }

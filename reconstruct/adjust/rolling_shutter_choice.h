@@ -1,5 +1,4 @@
-// Whether the frames of a video show that their rows are read one after another, and a warning
-// where this takes implausibly long.
+// Decides whether a video shows a rolling shutter, and warns if it is implausibly slow.
 
 #pragma once
 

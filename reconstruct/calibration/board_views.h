@@ -1,5 +1,5 @@
-// Which pictures of a board serve a calibration: those that fill the picture with corners, show the
-// board tilted in different directions, and are sharp.
+// Chooses the pictures of a board for a calibration: sharp ones that fill the picture with corners
+// and show the board tilted in different directions.
 
 #pragma once
 

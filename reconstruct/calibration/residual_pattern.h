@@ -1,5 +1,5 @@
-// What the residuals of a calibration have in common where they lie close together: a lens that the
-// camera model does not describe.
+// The systematic part of a calibration's residuals: neighbouring residuals that agree show a lens
+// that the camera model does not describe.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// Whether all images of a model were taken by one camera that kept its lens.
+// Tells whether all images of a model were taken by one camera with an unchanged lens.
 //
 // The points stay where the model has them, and every image gets its own pose, focal length and
 // principal point. A lens that was zoomed, a second camera and a stabilised picture, whose
@@ -28,12 +28,12 @@ struct ImageIntrinsics {
 // For images that see at least eight corners; nothing for an image that does not determine them.
 std::vector<ImageIntrinsics> IntrinsicsOfImages(const Model& model);
 
-// A change of the focal length from some image on.
+// A change of the focal length between two consecutive images.
 struct FocalStep {
   std::string first_image_after;  // its name
   CameraId camera_id = 0;         // of that image
   double before_px = 0.0, after_px = 0.0;
-  double sigmas = 0.0;  // of the step, by the sigmas of the images or their scatter
+  double sigmas = 0.0;  // size of the step in sigmas, from those of the images or their scatter
 
   // Certain: at least 2 % and 8 sigmas. The points of the model were found with one focal length
   // and hide part of a step, so a smaller one (0.3 % and 3 sigmas) is suspicious: an adjustment

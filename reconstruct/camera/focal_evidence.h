@@ -1,11 +1,11 @@
 // The focal length of an unknown camera, estimated from single markers.
 //
 // The image of a square determines its pose and, if the square is tilted, constrains the focal
-// length: how far the two sides that run away from the camera converge depends on it (Zhang, "A
-// flexible new technique for camera calibration", 2000, with one plane and square pixels). For each
-// focal length every marker takes its better planar pose (IPPE, two solutions); the remaining
-// errors of its corners depend on the focal length alone. The errors of all markers are pooled with
-// a Cauchy loss, each divided by its corners' sigma, so that precise markers count more.
+// length, which determines how strongly the two receding sides converge (Zhang, "A flexible new
+// technique for camera calibration", 2000, with one plane and square pixels). For each focal
+// length, the better planar pose of every marker is used (IPPE, two solutions); the remaining
+// errors of its corners depend on the focal length alone. The errors of all markers, each divided
+// by its corners' sigma, are pooled with a Cauchy loss.
 
 #pragma once
 
@@ -27,7 +27,7 @@ struct SquareView {
 
 struct FocalEvidence {
   Camera camera;  // without distortion: SIMPLE_RADIAL or OPENCV_FISHEYE, principal point central
-  // 1 sigma of the logarithm of the focal length, by the scatter of the views; large where the
+  // 1 sigma of the logarithm of the focal length, from the scatter of the views; large where the
   // squares face the camera or are too small to tell.
   double log_sigma = 0.0;
   double cost = 0.0;  // sum of the pooled losses; to be compared between lenses of the same views

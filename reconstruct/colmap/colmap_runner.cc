@@ -23,7 +23,7 @@
 namespace velamap {
 namespace {
 
-// No run of COLMAP writes as much, but one that has lost its way may fill the disk.
+// No normal run of COLMAP writes this much, but a runaway one could fill the disk.
 constexpr std::size_t kMaxOutputSize = std::size_t{64} << 20;
 
 std::string CommandLine(const std::string& program, const std::vector<std::string>& arguments) {

@@ -22,7 +22,7 @@ std::vector<RayObservation> ObservationsOf(const Model& model, const ModelImage&
   return observations;
 }
 
-// The seed's pose is good to some pixels, so that least squares find the right minimum.
+// The seed's pose is accurate to some pixels, so least squares finds the right minimum.
 Rigid3 Resect(const Model& model, const ModelImage& image) {
   constexpr double kLossRay = 1e-3;  // 2 px of a lens with a focal length of 2000 px
   const std::vector<RayObservation> observations = ObservationsOf(model, image);

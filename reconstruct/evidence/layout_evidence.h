@@ -1,7 +1,7 @@
-// Finds markers that the layout contradicts. A false quad with a legal code, found at one place in
-// a few images, fits these images as well as a true marker does. It can only be recognized by what
-// is known about the object: markers do not overlap, neighbours on a line are about as far apart as
-// the other markers on it, and most images that should show a marker do.
+// Finds markers that the layout contradicts. A false quad with a legal code that is detected in the
+// same place in a few images fits these images as well as a true marker does. Only knowledge about
+// the object exposes it: markers do not overlap, neighbours on a line are about as far apart as the
+// other markers on it, and most images that should show a marker do.
 //
 // All tests depend on ratios only: they compare lengths with the distances between neighbours or
 // with the extent of a part, and numbers of images with the numbers for the neighbours.

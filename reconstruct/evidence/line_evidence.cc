@@ -50,7 +50,7 @@ double LinkCost(const LinePoint& a, const LinePoint& b, double step_m) {
 }
 
 // The price of leaving out points[idx] between a and b. The uncertainty of the point lengthens both
-// halves of the detour.
+// parts of the detour.
 double CostBetween(const std::vector<LinePoint>& points, std::size_t a, std::size_t b,
                    std::size_t idx, double step_m) {
   const LinePoint& point = points[idx];

@@ -179,7 +179,7 @@ bool ShareMarkers(const MarkerChain& a, const MarkerChain& b) {
   });
 }
 
-// The bend where `b` goes on behind the end of `a`; nothing where it does not.
+// The bend where `b` continues the end of `a`; nothing where it does not.
 std::optional<double> BendAtGap(const std::vector<StandingMarker>& markers, const MarkerChain& a,
                                 const MarkerChain& b) {
   if (!FaceTheSameWay(markers[a.back()], markers[b.front()])) return std::nullopt;

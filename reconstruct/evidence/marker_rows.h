@@ -6,7 +6,7 @@
 //    neighbourhood graph of a finite planar set", Pattern Recognition 12(4), 1980), and if they are
 //    about as far apart as other neighbours there.
 // 2. Rows. At each marker, the links that continue each other are joined, the straightest first. A
-//    row goes on behind a gap of up to two missing markers.
+//    row continues across a gap of up to two missing markers.
 // 3. Groups. Rows that share a marker belong together, and so do parallel rows with equal steps.
 //
 // All tests depend on ratios of distances and on angles only.

@@ -98,9 +98,9 @@ LineVotes VotesFor(const std::vector<std::vector<JudgedLine>>& lines_of_part,
   return votes;
 }
 
-// Whether the layout puts one marker at the place that both claim, and not the other one: most
-// votes are for this one, or the votes for the other one come from more than twice as far. No line
-// contradicts a marker that is on none.
+// Whether the layout supports one marker, and not the other one, in the place that both claim: most
+// votes are for this one, or the votes for the other one come from more than twice as far. A marker
+// that is on no line is not contradicted by one.
 bool BelongsRatherThan(const LineVotes& votes, const LineVotes& of_rival) {
   constexpr double kMuchNearer = 0.5;
   if (votes.num_for == 0 || of_rival.num_asked == 0) return false;

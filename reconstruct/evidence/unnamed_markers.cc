@@ -10,7 +10,7 @@
 namespace velamap {
 namespace {
 
-// In how many images a marker of the model is seen.
+// The number of images that see a marker of the model.
 double UsualNumImages(const Model& model) {
   std::map<int, std::size_t> num_images;
   for (const auto& [point3D_id, point] : model.points3D) {

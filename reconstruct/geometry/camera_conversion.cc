@@ -68,7 +68,7 @@ Camera ConvertCamera(const Camera& camera, CameraModel model) {
   }
   if (problem.NumResidualBlocks() == 0) return result;
   if (model == CameraModel::kFullOpenCV) {
-    // Numerator and denominator can stand in for each other.
+    // Numerator and denominator can compensate for each other.
     problem.SetManifold(result.params.data(),
                         new ceres::SubsetManifold(static_cast<int>(result.params.size()),
                                                   {kBeginOfDenominator, kBeginOfDenominator + 1,

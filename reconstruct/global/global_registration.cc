@@ -26,7 +26,7 @@ namespace {
 // Frames on which maps grow from several starts.
 constexpr int kMaxStartFrames = 32;
 
-// Twice as many frames of a video are registered as may stay, so that the best can be chosen.
+// Registers twice as many frames of a video as are kept, so that the best can be chosen.
 void ChooseFrames(GlobalRegistration* global) {
   constexpr int kCandidatesPerFrame = 2;
   std::vector<int> chosen(global->images.size());
@@ -106,9 +106,9 @@ MapSolution GrowBestMap(const GlobalRegistration& global) {
   return best;
 }
 
-// Adjusts the reversed relief too and takes it if it explains more. A relief that explains less
-// than half after a first adjustment is given up: new places of markers and another adjustment add
-// less than a tenth.
+// Also adjusts the reversed relief and returns it if it explains more. A relief that explains less
+// than half after a first adjustment is given up, because new places of markers and another
+// adjustment add less than a tenth.
 void TryReversedRelief(const MapProblem& problem, int num_threads, MapSolution* solution) {
   constexpr double kRoughly = 4.0, kHopeless = 0.5;
   MapSolution reversed = ReversedRelief(*solution);
@@ -134,7 +134,7 @@ void RegisterAllFrames(GlobalRegistration* global) {
   std::vector<int> all(problem.frames.size());
   std::iota(all.begin(), all.end(), 0);
   MapGrowthOptions growth = global->Growth();
-  // More frames of a video are registered than stay, and those that go need no adjustment.
+  // More frames of a video are registered than are kept; the others need no adjustment.
   growth.adjust = !global->is_video;
   GrowMap(problem, all, growth, &global->solution);
   PlaceUnsettledMarkers(problem, kSettledRatio, 1.0, &global->solution,
@@ -147,8 +147,8 @@ void RegisterAllFrames(GlobalRegistration* global) {
   MarkFits(problem, 1.0, &global->solution);
 }
 
-// Removes outliers at the tolerance of the final noise, and adjusts. What the layout contradicts
-// goes before the last adjustment, so that no figure of the result rests on it.
+// Removes outliers at the tolerance of the final noise, and adjusts. Markers that the layout
+// contradicts are removed before the last adjustment, so that they do not affect the result.
 void RemoveOutliers(const Layout& layout, GlobalRegistration* global) {
   const MapProblem& problem = global->problem;
   DropWrongSizes(global);

@@ -17,7 +17,7 @@
 // 4. Choice. num_starts maps grow to 32 frames, and the one that explains most observations is
 //    kept. If two maps agree within the noise of the corners, no more are grown. The reversed
 //    relief of the winner is tried once more.
-// 5. Cleanup. Misread ids, ids at two places, markers whose side differs by 25 % from the others',
+// 5. Cleanup. Misread ids, ids in two places, markers whose side differs by 25 % from the others',
 //    frames whose corners scatter three times as much as those of the other frames, and
 //    observations beyond five robust sigmas are left out (map_cleanup.h), and so are the markers
 //    that the layout contradicts (evidence/layout_evidence.h).

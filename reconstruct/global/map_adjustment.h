@@ -1,7 +1,7 @@
-// Adjustment of a whole map: all frames' poses and all markers' places at once.
+// Adjustment of a whole map: the poses of all frames and the places of all markers at once.
 //
 // Residuals of an observation are (projected - observed corner) / sigma_px, 8 numbers with a joint
-// Cauchy loss. The residual of a marker is log(scale) / kScaleSigma, with a Cauchy loss too, so
+// Cauchy loss. The residual of a marker is log(scale) / kScaleSigma, also with a Cauchy loss, so
 // that the scale of the map is near the median of its markers. Markers are squares here, which
 // keeps a map of few views well-posed; the bundle adjustment that follows finds the small bends of
 // cloth.

@@ -14,9 +14,9 @@
 namespace velamap {
 namespace {
 
-// Errors of print do not change a side by more than this factor from the median of the others.
+// Print errors do not change a side by more than this factor relative to the median of the others.
 constexpr double kMaxSizeRatio = 1.25;
-// An id is at two places when the second has at least this fraction of the support of the first.
+// An id is in two places when the second has at least this fraction of the support of the first.
 constexpr double kRivalRatio = 0.6;
 // A frame is blurred when its corners scatter this many times as much as all corners.
 constexpr double kBlurRatio = 3.0;
@@ -117,8 +117,8 @@ void VoteOnIds(GlobalRegistration* global) {
         (num_elsewhere < num_here && SeeMarkerRotated(*global, marker_idx, elsewhere_idxs))) {
       continue;
     }
-    global->Drop(marker_idx, fmt::format("its id is at two places, in {} and in {} frames, and "
-                                         "nothing decides between them",
+    global->Drop(marker_idx, fmt::format("its id is seen in two places, in {} and in {} frames, "
+                                         "and nothing decides between them",
                                          num_here, num_elsewhere));
   }
 }

@@ -6,7 +6,7 @@
 
 namespace velamap {
 
-// Drops markers whose id is seen at two places with support for both.
+// Drops markers whose id is seen in two places with support for both.
 void VoteOnIds(GlobalRegistration* global);
 
 // Drops markers whose side differs from the others by far more than their print explains.
@@ -23,8 +23,8 @@ void LeaveOutBlurredFrames(GlobalRegistration* global);
 // `noise`.
 void LimitFrames(GlobalRegistration* global);
 
-// Drops markers that too few frames see and frames that see too few markers, again and again,
-// because each of them takes support from others.
+// Drops markers that too few frames see and frames that see too few markers, repeatedly, because
+// each of them takes support from others.
 void DropUnsupported(GlobalRegistration* global);
 
 }  // namespace velamap

@@ -51,7 +51,7 @@ struct Candidate {
   int num_views;
 };
 
-// Unregistered frames that see something of the map, those that see most first.
+// Unregistered frames that see part of the map, those that see most first.
 std::vector<Candidate> FindCandidates(const MapProblem& problem, const MapSolution& solution,
                                       const std::vector<int>& frame_idxs,
                                       const MapGrowthOptions& options) {
@@ -89,8 +89,8 @@ std::optional<Rigid3> FindPose(const MapProblem& problem, const MapSolution& sol
   return hypotheses.front().cam_from_shape;
 }
 
-// Registers a batch; returns the number of frames that joined. A frame's pose depends on the places
-// of markers only, so that poses are found as many at a time as there are threads.
+// Registers a batch; returns the number of frames that joined. A frame's pose depends only on the
+// places of markers, so poses are computed in parallel.
 int RegisterBatch(const MapProblem& problem, const std::vector<int>& frame_idxs,
                   const MapGrowthOptions& options, double tolerance_factor, bool accept_ambiguous,
                   MapSolution* solution) {
@@ -116,7 +116,7 @@ int RegisterBatch(const MapProblem& problem, const std::vector<int>& frame_idxs,
     if (!poses[i]) continue;
     solution->cam_from_shape[static_cast<std::size_t>(candidates[i].frame_idx)] = poses[i];
     ++num_joined;
-    // A frame that has joined may settle the other ambiguous ones.
+    // A frame that has joined may resolve the other ambiguous ones.
     if (accept_ambiguous) break;
   }
   return num_joined;

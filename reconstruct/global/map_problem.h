@@ -93,7 +93,7 @@ double GrowthTolerance(const MapObservation& observation);
 // `factor` * GrowthTolerance.
 void MarkFits(const MapProblem& problem, double factor, MapSolution* solution);
 
-// How many observations of the marker fit.
+// The number of observations of the marker that fit.
 int NumFits(const MapProblem& problem, const MapSolution& solution, int marker_idx);
 
 // The corners of a marker in the shape frame, m.

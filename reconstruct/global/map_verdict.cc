@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-// The nominal sigma is a guess; the noise of corners is not taken to be below this fraction of it.
+// The nominal sigma is a guess; the noise of corners is at least this fraction of it.
 constexpr double kMinFactor = 0.3;
 
 // Converts a median RMS error of four corners to 1 sigma of a coordinate.
@@ -45,8 +45,9 @@ std::array<double, kNumCorners> CornerErrorsPx(const MapProblem& problem,
   return errors_px;
 }
 
-// A marker as a frame should show it: the width across its shorter direction, px. Nothing where it
-// is turned away or not whole in the image with a margin of half its width, which finding it takes.
+// A marker as a frame should show it: the width across its shorter direction, px. Nothing if it is
+// turned away, or not completely in the image with the margin of half its width that detection
+// needs.
 std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_shape,
                                  const std::array<Eigen::Vector3d, kNumCorners>& corners) {
   const Eigen::Vector3d normal = (corners[0] - corners[1]).cross(corners[2] - corners[1]);
@@ -74,8 +75,8 @@ std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_s
 }
 
 // 1 sigma of the centre in its least certain direction, for fixed frames. Where these look from one
-// side, the distance follows from the marker's size in the image. Its print is off by the same
-// fraction in all frames, which is an unknown with one prior and is eliminated: however many frames
+// side, the distance follows from the marker's size in the image. The error of its print is the
+// same fraction in all frames: one unknown with a prior, which is eliminated. However many frames
 // look from one side, the distance is no more certain than the print.
 double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
                    int marker_idx) {

@@ -51,7 +51,7 @@ void WriteCount(std::size_t count, std::ostream* out) {
   Write(static_cast<std::uint64_t>(count), out);
 }
 
-// Reads what Write wrote. Every count is compared with the bytes that are left, so that a damaged
+// Reads the output of Write. Every count is compared with the remaining bytes, so that a damaged
 // file cannot make it allocate all memory.
 class UncertaintyReader {
  public:
@@ -224,13 +224,12 @@ std::optional<AdjustmentUncertainty> ReadUncertaintyOf(const Model& model,
   const bool is_known = uncertainty.model_hash != 0;
   if (!has_all || (is_known && uncertainty.model_hash != HashOfPoints(model))) {
     throw InputError(fmt::format(
-        "{}: is of another model than the one beside it; run velamap bundle_adjuster --backend "
+        "{}: does not belong to the model beside it; run velamap bundle_adjuster --backend "
         "markers again, or remove the file",
         path));
   }
   if (!is_known) {
-    spdlog::warn("{}: does not say of which model it is; it is taken to be of the one beside it",
-                 path);
+    spdlog::warn("{}: does not say which model it belongs to; assuming the one beside it", path);
   }
   return uncertainty;
 }

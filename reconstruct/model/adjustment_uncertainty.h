@@ -30,10 +30,11 @@ struct AdjustmentUncertainty {
   // Factor of the corners' sigmas in `points` that accounts for errors that several corners have in
   // common; such errors move the shape farther than independent ones. 1 where none are found.
   double correlation_factor = 1.0;
-  // Fraction of the corners in use with residuals above 4 calibrated sigmas (without the
-  // correlation factor).
+  // Fraction of the used corners with residuals above 4 calibrated sigmas (without the correlation
+  // factor).
   double share_above_4_sigma = 0.0;
-  // How far corners appear inside along x and y of the marker. 0: not estimated.
+  // How far corners appear inside of their true place along x and y of the marker. 0: not
+  // estimated.
   double apparent_inset_px = 0.0;
   double apparent_inset_sigma_px = 0.0;
   // Time from the first row of an image to the last. A sigma of 0: not estimated.
@@ -54,9 +55,9 @@ void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::strin
 bool HasUncertainty(const std::string& folder);
 AdjustmentUncertainty ReadUncertainty(const std::string& folder);
 
-// The uncertainty of the model in `folder`; nothing if there is none. Throws InputError where
-// ReadUncertainty() does and if it is of another model. Warns of a file that does not say of which
-// model it is, as those of earlier versions.
+// The uncertainty of the model in `folder`; nothing if there is none. Throws InputError as
+// ReadUncertainty() does, and if it belongs to another model. Warns if the file does not say which
+// model it belongs to, as in earlier versions.
 std::optional<AdjustmentUncertainty> ReadUncertaintyOf(const Model& model,
                                                        const std::string& folder);
 

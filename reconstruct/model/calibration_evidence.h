@@ -26,8 +26,8 @@ struct CalibrationEvidence {
   double shape_change_m = 0.0, shape_change_in_sigmas = 0.0, scale_change = 0.0;
 };
 
-// The chi-squared as a value of the standard normal distribution (Wilson and Hilferty, 1931): how
-// many sigmas the residuals speak against the calibration. 0 where nothing was tested.
+// The chi-squared as a value of the standard normal distribution (Wilson and Hilferty, 1931): by
+// how many sigmas the residuals contradict the calibration. 0 if nothing was tested.
 double SigmasOff(const CalibrationEvidence& evidence);
 
 // Whether the residuals contradict the calibration: beyond chance, and by more than the lens

@@ -38,7 +38,7 @@ void TransformModel(const Sim3& new_from_world, Model* model) {
     point.x_in_world = new_from_world * point.x_in_world;
   }
   for (ModelImage& image : model->images) {
-    // Cam frames are scaled, too: x_in_cam becomes scale * x_in_cam.
+    // Cam frames are scaled as well: x_in_cam becomes scale * x_in_cam.
     Rigid3& pose = image.cam_from_world;
     pose.rotation = (pose.rotation * world_from_new_rotation).normalized();
     pose.translation =

@@ -18,7 +18,7 @@ namespace velamap {
 namespace {
 
 // Geometry is weak where the points' ellipsoids are more elongated than this and the parallax is
-// small. Elongation alone is no proof: the sizes of the markers elongate ellipsoids, too, where
+// small. Elongation alone is no proof: the sizes of the markers also elongate ellipsoids where
 // corners are precise and prints are not.
 constexpr double kMaxElongation = 10.0;
 

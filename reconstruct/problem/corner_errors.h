@@ -1,4 +1,4 @@
-// What the database says about the errors of corners.
+// Errors of corners according to the database.
 
 #pragma once
 

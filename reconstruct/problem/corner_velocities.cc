@@ -11,7 +11,7 @@
 namespace velamap {
 namespace {
 
-// Over a longer time the motion of a hand may have reversed.
+// Over a longer time, a hand-held camera may have reversed its motion.
 constexpr double kLongestStep_s = 0.15;
 
 const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {

@@ -17,7 +17,7 @@
 namespace velamap {
 namespace {
 
-// Few, so that errors that last for a tenth of a video still fall into one group.
+// Few enough that errors that last for a tenth of a video still fall into one group.
 constexpr std::size_t kMaxNumGroups = 5;
 // Simulated errors pass through the adjustment in batches, one draw a column, until their mean is
 // known well enough.

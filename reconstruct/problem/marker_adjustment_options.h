@@ -32,12 +32,12 @@ struct MarkerAdjustmentOptions {
   // 1 sigma of an error that all corners share, px: each is seen this far inside (or outside) its
   // marker along both sides. It widens the scale's sigma according to the size of the markers in
   // the images. What the estimated image formation leaves open is added (root of the sum of
-  // squares). 0: nothing beyond that.
+  // squares). 0: only the latter.
   double inset_sigma_px = 0.01;
   // Estimates that error, with inset_sigma_px as its prior. Markers that are seen small and large,
-  // obliquely and head-on distinguish it from the scale. Whatever else depends on size and slant is
-  // taken for an inset, too: on a rendered sail 0.031 +- 0.006 px are found where the truth is
-  // 0.013 px, and the scale gets worse.
+  // obliquely and head-on distinguish it from the scale. Every other effect that depends on size
+  // and slant is attributed to it as well: on a rendered sail, 0.031 +- 0.006 px are found where
+  // the truth is 0.013 px, and the scale gets worse.
   bool estimate_inset = false;
   // The calibration is the prior of what is refined. Only those extra parameters are refined that
   // it names.
@@ -52,10 +52,10 @@ struct MarkerAdjustmentOptions {
   // The cameras are unknown: refine all parameters, with the prior of an unknown camera
   // (UnknownCameraPrior) in place of the calibration.
   bool find_camera = false;
-  // The rows of a frame are read one after another over this time, while the corners move as the
-  // frames before and after say. Negative: from the bottom up. 0: unknown.
+  // Time from the first row of a frame to the last; corners move meanwhile, with a velocity that
+  // the neighbouring frames show. Negative: rows are read from the bottom up. 0: unknown.
   double rolling_shutter_s = 0.0;
-  // Estimate that time where it is unknown and the frames show it.
+  // Estimate that time if it is unknown and the frames determine it.
   bool estimate_rolling_shutter = true;
   int max_num_iterations = 100;
   int min_track_length = 2;
@@ -67,7 +67,7 @@ struct MarkerAdjustmentOptions {
 
 FreeIntrinsics FreeIntrinsicsOf(const MarkerAdjustmentOptions& options);
 
-// All but the members that BundleAdjustmentOptions has, too: their options set both.
+// All but the members that BundleAdjustmentOptions also has: one option sets both.
 OptionGroup DescribeOptions(MarkerAdjustmentOptions* options);
 
 }  // namespace velamap

@@ -13,8 +13,8 @@
 namespace velamap {
 namespace {
 
-// Work is divided into panels of this many columns or rows, whatever the number of threads, so that
-// all sums are formed in the same order.
+// Work is divided into panels of this many columns or rows, regardless of the number of threads, so
+// that all sums are formed in the same order.
 constexpr Eigen::Index kPanelSize = 64;
 
 template <typename Work>
@@ -166,7 +166,7 @@ std::optional<MarkerCovariance> InvertNormalEquations(const MarkerJacobian& jaco
   const Eigen::LLT<Eigen::MatrixXd> root(schur.selfadjointView<Eigen::Lower>());
   if (root.info() != Eigen::Success) return std::nullopt;
   covariance.root = root.matrixL();
-  // A global of which the markers take up all but rounding is undetermined.
+  // A global parameter is undetermined if the markers absorb all of it except for rounding errors.
   constexpr double kMinShareOfInformation = 1e-14;
   for (Eigen::Index i = 0; i < schur.rows(); ++i) {
     const double left = covariance.root(i, i) * covariance.root(i, i);

@@ -68,7 +68,7 @@ struct ParameterColumns {
 ParameterColumns StepOf(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                         const RowMajorMatrix& errors);
 
-// What is left of such errors after that step.
+// The residuals that remain of such errors after that step.
 RowMajorMatrix ErrorsLeft(const MarkerJacobian& jacobian, const MarkerCovariance& covariance,
                           const RowMajorMatrix& errors);
 

@@ -1,4 +1,4 @@
-// Cost functions of what the marker-aware bundle adjustment knows beforehand: printed markers,
+// Cost functions of the prior knowledge in the marker-aware bundle adjustment: printed markers,
 // measured distances, cameras. Residuals are divided by their sigmas; derivatives are analytic.
 // marker_cost_functions.h lists the parameter blocks.
 

@@ -30,7 +30,7 @@ OptionGroup DescribeOptions(GlobalRegistrationOptions* options) {
 OptionGroup DescribeOptions(ThesisRegistrationOptions* options) {
   return {"Registration of the thesis",
           {{"Registration.num_frames", &options->num_frames, "frames",
-            "frames on each side of the central one, 0: it alone (thesis, time order)", AtLeast(0)},
+            "frames on each side of the central one; 0: none (thesis, time order)", AtLeast(0)},
            {"Registration.skip", &options->skip, "frames",
             "frames from one selected frame to the next (thesis, time order)", AtLeast(1)},
            {"Registration.neighborhood", &options->neighborhood, "frames",

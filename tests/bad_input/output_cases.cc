@@ -26,60 +26,60 @@ std::function<void(const fs::path&)> Put(const std::string& name) {
 std::vector<BadInput> OutputsThatAreInputs() {
   return {
       {"CsvOverTheShape", kAnalyze + kShape + "/shape.csv --csv_path " + kShape + "/shape.csv", 2,
-       "is the --shape_path too"},
+       "is also the --shape_path"},
       {"CsvOverTheShapeOfAFolder", kAnalyze + kShape + " --csv_path " + kShape + "/shape.csv", 2,
-       "is the --shape_path too"},
+       "is also the --shape_path"},
       {"CsvOverTheLayout",
        "shape_analyzer --shape_path " + kShape +
            " --layout_path @/layout.yml --csv_path @/layout.yml",
-       2, "is the --layout_path too"},
+       2, "is also the --layout_path"},
       {"CsvOverTheDictionaryOfTheLayout",
        "shape_analyzer --shape_path " + kShape +
            " --layout_path @/own.yml --csv_path @/dictionary.yml",
-       2, "is the --layout_path too",
+       2, "is also the --layout_path",
        [](const fs::path& dir) {
          WriteTextFile(dir / "dictionary.yml", "dictionary");
          WriteTextFile(dir / "own.yml", "dictionary: dictionary.yml\nmarker_length: 0.1\n");
        }},
       {"CsvThroughASymbolicLink", kAnalyze + kShape + " --csv_path @/link", 2,
-       "is the --shape_path too",
+       "is also the --shape_path",
        [](const fs::path& dir) { fs::create_symlink("workspace/shape/shape.csv", dir / "link"); }},
       {"CsvThroughAHardLink", kAnalyze + kShape + " --csv_path @/hard", 2,
-       "is the --shape_path too",
+       "is also the --shape_path",
        [](const fs::path& dir) {
          fs::create_hard_link(dir / "workspace/shape/shape.csv", dir / "hard");
        }},
       {"CsvThroughAFolderLink", kAnalyze + kShape + " --csv_path @/folder/shape.csv", 2,
-       "is the --shape_path too",
+       "is also the --shape_path",
        [](const fs::path& dir) { fs::create_symlink("workspace/shape", dir / "folder"); }},
       {"CsvOverTheModel",
        kAnalyze + kShape +
            " --input_path @/workspace/sparse/0 --csv_path "
            "@/workspace/sparse/0/points3D.bin",
-       2, "too; give another"},
+       2, "is also the"},
       {"CsvOverTheProjectFile", "shape_analyzer --project_path @/p.ini --csv_path @/p.ini", 2,
-       "is the --project_path too",
+       "is also the --project_path",
        [](const fs::path& dir) {
          WriteTextFile(dir / "p.ini",
                        "marker_length=0.1\nshape_path=" + (dir / "workspace/shape").string());
        }},
       {"JsonOverTheCsv", kAnalyze + kShape + " --csv_path @/a --json_path @/grey/../a", 2,
-       "is the --csv_path too"},
+       "is also the --csv_path"},
       {"ComparisonOverTheReference",
        "shape_comparer --shape_path " + kShape + " --reference_path " + kShape +
            "/shape.csv --output_path " + kShape + "/shape.csv",
-       2, "too; give another"},
+       2, "is also the"},
       {"ComparisonOverTheUncertainty",
        "shape_comparer --shape_path " + kShape + " --reference_path " + kShape +
            " --csv_path @/workspace/sparse/0/uncertainty.bin",
-       2, "too; give another"},
+       2, "is also the"},
       {"LogOverTheDatabase",
        "bundle_adjuster --input_path " + kSeed +
            " --output_path @/out --database_path @/workspace/database.db --log_path "
            "@/workspace/database.db",
-       2, "too; give another"},
+       2, "is also the"},
       {"ModelOverItself", "bundle_adjuster --input_path " + kSeed + " --output_path " + kSeed, 2,
-       "is the --input_path too"},
+       "is also the --input_path"},
       {"ModelOverTheFolderThatHoldsIt",
        "bundle_adjuster --input_path " + kSeed + " --output_path @/workspace/sparse", 2,
        "replaced as a whole"},
@@ -88,10 +88,10 @@ std::vector<BadInput> OutputsThatAreInputs() {
        "replaced as a whole"},
       {"MetricModelOverItself",
        "shape_exporter --marker_length 0.1 --input_path " + kSeed + " --output_path " + kSeed, 2,
-       "is the --input_path too"},
+       "is also the --input_path"},
       {"ShapeOverTheModel",
        "shape_exporter --marker_length 0.1 --input_path " + kSeed + " --shape_path " + kSeed, 2,
-       "is the --input_path too"},
+       "is also the --input_path"},
       {"ShapeInTheMetricModel",
        "shape_exporter --marker_length 0.1 --input_path " + kSeed +
            " --output_path @/out --shape_path @/out/shape",
@@ -103,23 +103,23 @@ std::vector<BadInput> OutputsThatAreInputs() {
       {"TableOverTheDatabase",
        "frame_registrator --marker_length 0.1 --database_path @/workspace/database.db "
        "--output_path @/out --registration_path @/workspace/database.db",
-       2, "is the --database_path too"},
+       2, "is also the --database_path"},
       {"SweepOverTheDatabase",
        "central_frame_sweeper --marker_length 0.1 --database_path @/workspace/database.db "
        "--output_path @/workspace/database.db",
-       2, "is the --database_path too"},
+       2, "is also the --database_path"},
       {"DatabaseOverTheLayout",
        "marker_importer --image_path @/images --camera_path @/camera.yml --layout_path "
        "@/layout.yml --database_path @/layout.yml",
-       2, "is the --layout_path too"},
+       2, "is also the --layout_path"},
       {"DatabaseOverAPhotograph",
        "marker_importer --image_path @/images --camera_path @/camera.yml --layout_path "
        "@/layout.yml --database_path @/images/1.png",
-       2, "is the --image_path too"},
+       2, "is also the --image_path"},
       {"DatabaseOverTheVideo",
        "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
        "@/layout.yml --database_path @/clip.avi",
-       2, "is the --image_path too"},
+       2, "is also the --image_path"},
       {"PriorShapeOfTheSameWorkspace", kRerun + " --prior_shape_path " + kShape, 2,
        "--prior_shape_path"},
       {"CameraOfTheSameWorkspace",

@@ -142,7 +142,7 @@ std::vector<BadInput> Parts() {
       {"PartsMergedOverOne",
        "database_merger --layout_path @/layout.yml --output_path @/2.db --database_paths "
        "@/1.db,@/2.db",
-       2, "is the --database_paths too", import_both},
+       2, "is also the --database_paths", import_both},
       {"PartsMergedOverAPhotograph",
        "database_merger --layout_path @/layout.yml --output_path @/images/1.png --database_paths "
        "@/1.db,@/2.db",

@@ -98,7 +98,7 @@ TEST(ShapeExporter, OneFolderInsideTheOtherIsRefused) {
     ShapeExporterOptions options;
     options.model_output_path = dir / c.model;
     options.shape_output_path = dir / c.shape;
-    EXPECT_THAT(ErrorOf(options), AnyOf(HasSubstr("is the folder of the model too"),
+    EXPECT_THAT(ErrorOf(options), AnyOf(HasSubstr("is also the folder of the model"),
                                         HasSubstr("is replaced as a whole and must not hold")));
     EXPECT_TRUE(FilesIn(dir.path()).empty());
   }

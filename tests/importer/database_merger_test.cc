@@ -193,7 +193,7 @@ TEST_F(DatabaseMergerTest, RefusesWhatIsNotEveryPartOnce) {
   ExpectRefusal({two[0]}, {"part 1/2 is missing", "--video_part 1/2"});
   ExpectRefusal({three[2], three[0]}, {"part 2/3 is missing"});
   ExpectRefusal({two[0], two[1], two[0]}, {two[0], "holds part 2/2", "name each part once"});
-  ExpectRefusal({two[1], three[1]}, {three[1], "does not go with", two[1], "different splits"});
+  ExpectRefusal({two[1], three[1]}, {three[1], "does not match", two[1], "different splits"});
   SQLite::Database(two[1], SQLite::OPEN_READWRITE).exec("UPDATE marker_part SET is_finished = 0");
   ExpectRefusal(two, {two[1], "part 1/2 has not finished"});
 }
@@ -204,7 +204,7 @@ TEST_F(DatabaseMergerTest, RefusesPartsThatWereChanged) {
   fs::copy(first, second);
   SQLite::Database sqlite(second, SQLite::OPEN_READWRITE);
   sqlite.exec("UPDATE marker_part SET part = 2");
-  ExpectRefusal({first, second}, {second, "frame_000000.jpg is in an earlier part, too"});
+  ExpectRefusal({first, second}, {second, "frame_000000.jpg is also in an earlier part"});
   sqlite.exec("UPDATE images SET camera_id = 9");
   ExpectRefusal({first, second}, {second, "frame_000000.jpg names camera 9"});
 }
@@ -217,7 +217,7 @@ TEST_F(DatabaseMergerTest, RefusesPartsOfDifferentImports) {
     const std::string other = dir_ / "other.db";
     fs::copy(parts[0], other, fs::copy_options::overwrite_existing);
     SQLite::Database(other, SQLite::OPEN_READWRITE).exec(change);
-    ExpectRefusal({other, parts[1]}, {other, "does not go with", parts[1], word});
+    ExpectRefusal({other, parts[1]}, {other, "does not match", parts[1], word});
   };
   expect("UPDATE marker_part SET detector = 'another'", "other detection options");
   expect("UPDATE marker_part SET frame_step = 2", "the frames of the whole import");

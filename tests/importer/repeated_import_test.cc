@@ -207,7 +207,7 @@ TEST_F(MarkerImporterTest, OtherWayOfDetectionOrCameraIsRefused) {
   other = options_;
   other.camera->params[0] = 301;
   ExpectThrows<InputError>([&] { ImportMarkers(other); },
-                           {options_.database_path, "another calibration", "camera.yml"});
+                           {options_.database_path, "a calibration other than", "camera.yml"});
   EXPECT_EQ(ReadImages().size(), 1u);
 }
 

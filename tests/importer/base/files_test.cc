@@ -101,7 +101,7 @@ TEST(Files, ALinkLeadsWhereItsFileWillBeWritten) {
       [&] {
         CheckOutputs({}, {{"--csv", folder / "other/new"}, {"--json", folder / "again"}});
       },
-      {"--json: ", "is the --csv too"});
+      {"--json: ", "is also the --csv"});
   const auto write = [](std::ostream& out) { out << "whole"; };
   WriteFileAtomically(folder / "again", write);
   EXPECT_EQ(FileSize(folder / "other/new"), 5u);

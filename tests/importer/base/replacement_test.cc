@@ -185,7 +185,7 @@ TEST(Outputs, AreNoInputsUnderAnyName) {
         [&] {
           CheckOutputs({{"--in", dir / "a"}}, {{"--out", output}});
         },
-        {"--out: " + output.string(), "is the --in too"});
+        {"--out: " + output.string(), "is also the --in"});
   }
   CheckOutputs({{"--in", dir / "a"}}, {{"--out", dir / "b"}});
   // Not there yet, but the same.
@@ -193,7 +193,7 @@ TEST(Outputs, AreNoInputsUnderAnyName) {
       [&] {
         CheckOutputs({}, {{"--csv", dir / "b"}, {"--json", dir / "folder/b"}});
       },
-      {"--json: ", "is the --csv too"});
+      {"--json: ", "is also the --csv"});
 }
 
 TEST(Outputs, FoldersThatAreReplacedHoldNoInputsAndNoOtherOutputs) {
