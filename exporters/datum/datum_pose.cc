@@ -51,7 +51,7 @@ struct DatumProblem : LeastSquaresProblem<6> {
     const Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian = whitener * linear.by_pose;
     const Eigen::VectorXd residuals = whitener * linear.residuals_m;
     equations->Add(jacobian, residuals);
-    // For motions that no coordinate sees.
+    // For motions that no coordinate determines.
     equations->AddToDiagonal(kRegularization * equations->hessian().trace());
   }
 

@@ -9,7 +9,7 @@
 namespace velamap {
 namespace {
 
-constexpr double kMaxReach = 0.5;  // further, a parabola is a guess
+constexpr double kMaxReach = 0.5;  // beyond this, a parabola is a guess
 
 // Whether the surface can continue to an edge of the layout; notes why not.
 bool IsWithinReach(double offset_m, double size_m, const char* edge, SortedInput* sorted) {

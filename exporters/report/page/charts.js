@@ -13,7 +13,7 @@ function setChartDefaults() {
   Chart.defaults.plugins.legend.display = false;
 }
 
-// Draws all charts, or draws them anew in the colours and for the width of the page as it is now.
+// Draws all charts, or redraws them in the current colours and for the current width of the page.
 function drawCharts(data) {
   for (const chart of charts.splice(0)) {
     chart.observer?.disconnect();
