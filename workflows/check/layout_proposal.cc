@@ -14,8 +14,8 @@
 namespace velamap {
 namespace {
 
-// Rows of one direction do not cross. Those of a chessboard's squares do: its diagonals are as much
-// horizontal as vertical.
+// Rows of one direction do not cross. Rows of the squares of a chessboard do: its diagonals are as
+// horizontal as they are vertical.
 bool AreCrossing(const std::vector<std::vector<int>>& rows) {
   std::set<int> ids;
   for (const std::vector<int>& row : rows) {
@@ -125,7 +125,7 @@ struct OtherLength {
   double length_m = 0.0, sigma_m = 0.0;
 };
 
-// Whole millimetres where the measurement allows, else tenths.
+// Rounded to millimetres if the measurement allows it, otherwise to tenths.
 double RoundedLength(const OtherLength& other) {
   constexpr double kNumSigmas = 3.0, kPrint = 5e-3;
   const double whole_m = std::round(other.length_m * kMmPerM) / kMmPerM;
@@ -135,7 +135,7 @@ double RoundedLength(const OtherLength& other) {
 }
 
 std::vector<OtherLength> FindOtherLengths(const ClipMap& map, const Layout& layout) {
-  // Smaller differences are a matter of the print: the audit of the scale judges them.
+  // Smaller differences come from the print: the audit of the scale judges them.
   constexpr double kNumSigmas = 4.0, kLeast = 0.02, kSameLength = 1.04;
   std::vector<std::pair<double, int>> wrong;  // measured length, id
   for (const auto& [marker_id, side] : map.sides) {

@@ -29,7 +29,7 @@ PrintFaults FindPrintFaults(const std::vector<Frame>& frames,
                             const std::map<std::string, const FrameDetections*>& found,
                             const Layout& layout, const ArucoDetectionOptions& detection) {
   ArucoDetectionOptions strict = detection;
-  // Nothing else vouches for these codes.
+  // No other evidence confirms these codes, so none of their bits may be wrong.
   strict.error_correction_rate = 0.0;
   strict.search = SearchMode::kExhaustive;
   const Dictionary dictionary = LoadDictionary(layout.dictionary);

@@ -1,4 +1,4 @@
-// The wishes for a plan of a shoot.
+// The options of a plan of a shoot.
 
 #pragma once
 

@@ -81,7 +81,7 @@ void CheckGivenDistance(const PlannedSurface& surface, const Camera& camera,
       ChooseDistance(surface, camera, path)));
 }
 
-// Pixels a second, where the camera does not follow what it films.
+// Pixels per second, for a camera that does not follow what it films.
 double MotionPxPerS(const Camera& camera, double distance_m, double speed_m_s,
                     double turn_rate_deg_s) {
   return MeanFocalLength(camera) * (speed_m_s / distance_m + kRadPerDeg * turn_rate_deg_s);

@@ -18,7 +18,7 @@
 namespace velamap {
 namespace {
 
-// Images that were left out for a reason that their user wants to know.
+// Images that were left out for a reason that the user should know.
 std::vector<LeftOutImage> NeededImages(const ReconstructionSummary& summary) {
   std::vector<LeftOutImage> images = summary.left_out;
   images.erase(std::remove_if(images.begin(), images.end(),
