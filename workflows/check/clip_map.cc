@@ -84,9 +84,8 @@ std::vector<std::string> DescribeDoubled(const FrameCounts& counts) {
     const int num_frames = counts.num_frames.at(marker_id);
     if (num_twice < std::max<double>(kMinTwice, kOften * num_frames)) continue;
     lines.push_back(
-        fmt::format("marker {} is there twice: {} of the {} frames that show it show it at two "
-                    "places; give one of "
-                    "them another id",
+        fmt::format("marker {} is there twice: {} of its {} frames show it at two places; give one "
+                    "of them another id",
                     marker_id, num_twice, num_frames));
   }
   return lines;

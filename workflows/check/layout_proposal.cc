@@ -77,19 +77,18 @@ LayoutPart PartWithLines(const std::string& name, const RowGroup& rows,
   }
   if (!rows.knows_up) {
     notes->push_back(fmt::format(
-        "{}: NOT SURE what is up: the markers are stuck turned against each other, and the longest "
-        "line is taken to be horizontal; check the directions of all lines",
+        "{}: NOT SURE which way is up: the markers are turned relative to each other, and the "
+        "longest line is taken to be horizontal; check the directions of all lines",
         name));
   }
   if (rows.is_joined_by_likeness) {
     notes->push_back(
-        fmt::format("{}: NOT SURE whether all its lines are on one part: they are parallel with "
-                    "like steps, but "
-                    "no vertical line joins them",
+        fmt::format("{}: NOT SURE whether all its lines are on one part: they are parallel and "
+                    "equally spaced, but no vertical line joins them",
                     name));
   }
   if (!rows.others.empty()) {
-    notes->push_back(fmt::format("{}: markers {} are near its lines and on none of them", name,
+    notes->push_back(fmt::format("{}: markers {} are near its lines but on none of them", name,
                                  IdRanges(rows.others)));
   }
   return part;
@@ -198,8 +197,9 @@ void CorrectLengths(const ClipMap& map, LayoutProposal* proposal) {
         fmt::format("{:.2f} +- {:.2f} mm", kMmPerM * other.length_m, kMmPerM * other.sigma_m);
     for (const int marker_id : other.marker_ids) {
       proposal->contradictions.push_back(fmt::format(
-          "marker {} is {:.1f} mm long and not {:g} mm, as measured against the others", marker_id,
-          kMmPerM * map.sides.at(marker_id).length_m, kMmPerM * MarkerLength(layout, marker_id)));
+          "marker {} is {:.1f} mm long instead of {:g} mm, as measured against the others",
+          marker_id, kMmPerM * map.sides.at(marker_id).length_m,
+          kMmPerM * MarkerLength(layout, marker_id)));
       if (length_m == layout.marker_length_m) {
         layout.marker_lengths_m.erase(marker_id);
       } else {

@@ -78,13 +78,13 @@ std::vector<std::string> DescribeFaults(const PrintFaults& faults, int num_marke
       return;
     }
     for (const auto& [marker_id, count] : counts) {
-      lines.push_back(fmt::format("marker {} is {}, as {} of {} frames show: print it anew",
+      lines.push_back(fmt::format("marker {} is {}, as {} of {} frames show: print it again",
                                   marker_id, how, count, num_frames));
     }
   };
-  describe(faults.mirrored, "mirrored", "print them anew, or film without mirroring");
+  describe(faults.mirrored, "mirrored", "print them again, or film without mirroring");
   describe(faults.inverted, "printed with black and white exchanged",
-           "print them anew, or set " + OptionName(&ArucoDetectionOptions::inverted));
+           "print them again, or set " + OptionName(&ArucoDetectionOptions::inverted));
   return lines;
 }
 

@@ -5,7 +5,7 @@
 # usage: workflows/dataset/run.sh TABLE OUTPUT [--cores N] [--retry_failed] [SNAKEMAKE_OPTION...]
 #
 #   --cores N        jobs run side by side on N cores; the default is all
-#   --retry_failed   compute the clips anew whose jobs have failed
+#   --retry_failed   compute the clips whose jobs have failed again
 #   --profile slurm  on a cluster: workflows/dataset/profiles/slurm
 #
 # Exit code: 0 if every clip has its result, 1 if not (dataset.csv says which and why), 2 for bad input.
