@@ -86,7 +86,7 @@ std::optional<Rigid3> ClosedForm(const DatumPoints& points, const PointSet& set)
   return EstimateRigid3(x_m, known_m, weights);
 }
 
-// The mean shift that the coordinates of each axis ask for after the rotation.
+// The mean shift along each axis that the coordinates require after the rotation.
 Rigid3 Shifted(const DatumPoints& points, const PointSet& set, const Eigen::Quaterniond& rotation) {
   Rigid3 pose{rotation, Eigen::Vector3d::Zero()};
   for (int axis = 0; axis < 3; ++axis) {

@@ -247,7 +247,8 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
   const SectionUp section_up = ChooseSectionUp(shape, frame, layout);
   report.up_reference = section_up.reference;
   if (!section_up.direction) {
-    report.notes.push_back("no sections: the markers of the lines do not determine where up is");
+    report.notes.push_back(
+        "no sections: the markers of the lines do not determine which way is up");
     return report;
   }
   const Eigen::Vector3d& up = *section_up.direction;

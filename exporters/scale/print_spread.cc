@@ -73,7 +73,7 @@ PrintSpread NoteBothExplanations(const Columns& columns) {
   const UncertainValue print_um = EstimateOf(*as_print, 1, kUmPerM);
   const UncertainValue image_px = EstimateOf(*as_image, 1);
   return NotDetermined(
-      fmt::format("the larger markers are larger in the images too, so that {:.3g} +- {:.2g} um in "
+      fmt::format("the larger markers are also larger in the images, so {:.3g} +- {:.2g} um in "
                   "the print and {:.3g} +- {:.2g} px in the image explain the sides equally well",
                   print_um.value, print_um.sigma, image_px.value, image_px.sigma));
 }

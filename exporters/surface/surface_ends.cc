@@ -120,8 +120,8 @@ void NoteEdges(const SortedInput& sorted, const SurfaceOptions& ends,
     }
     if (!continued.at(name) || sigmas_m.empty()) continue;
     notes->push_back(
-        fmt::format("{}: continued beyond the markers; its sigma there is {:.1f} mm in the median, "
-                    "up to {:.1f} mm",
+        fmt::format("{}: continued beyond the markers; its sigma there is {:.1f} mm (median), up "
+                    "to {:.1f} mm",
                     name, kMmPerM * Median(sigmas_m),
                     kMmPerM * *std::max_element(sigmas_m.begin(), sigmas_m.end())));
   }

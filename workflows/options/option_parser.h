@@ -2,7 +2,7 @@
 //
 // Names are in COLMAP's style, --database_path or --Video.frame_step. The file that --project_path
 // names holds the same names, as COLMAP's ini files do: keys without a section first, then
-// [Section] and key=value. The command line wins over the file.
+// [Section] and key=value. The command line takes precedence over the file.
 
 #pragma once
 
