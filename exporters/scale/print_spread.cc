@@ -111,7 +111,7 @@ PrintSpread EstimateSpread(const std::vector<SpreadSample>& samples) {
     spread.note = "print and image separated";
   } else if (image_varies) {
     spread.note =
-        "image only: all markers are printed in one size, so that a spread of the print "
+        "image only: all markers are printed in one size, so a spread of the print "
         "is part of the scale error";
   } else {
     spread.note = has_images ? "print only: all markers have one size in the images"

@@ -164,7 +164,7 @@ function fitEqualScales(chart) {
 // Omits ticks at the ends of an axis that are no round numbers.
 const ROUND_TICKS = {ticks: {includeBounds: false}};
 
-// The curves are wide and flat, so that the height of the chart follows from its width.
+// The curves are wide and flat, so the height of the chart follows from its width.
 function fitHeight(chart, points) {
   const box = chart.canvas.parentElement;
   const length = key => {
