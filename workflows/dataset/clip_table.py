@@ -48,7 +48,7 @@ class Clip:
 
 
 def read_records(path: Path) -> list[tuple[int, list[str]]]:
-    """The records with their line numbers, in UTF-8 or UTF-16; commas, semicolons or tabs separate."""
+    """The records with their line numbers. The file may be UTF-8 or UTF-16, with , ; or tabs."""
     if os.path.exists(path) and not os.path.isfile(path):
         fail(f"{path}: is a folder, a pipe or a device; give a table of clips (CSV)")
     try:
