@@ -1,5 +1,5 @@
-// shape.json, what the tables beside it do not say of themselves: their frame and units, and where
-// the shape comes from. exporters/formats/README.md lists the keys.
+// shape.json holds what the tables beside it leave out: their frame and units, and where the shape
+// comes from. exporters/formats/README.md lists the keys.
 
 #pragma once
 

@@ -5,9 +5,9 @@
 #
 # usage: workflows/run_batch.sh --output_path FOLDER [--keep_going] INPUT... [-- VELAMAP_OPTION...]
 #
-# For a handful of clips with the same options, and without more than jq. workflows/dataset/run.sh
-# (Snakemake) is for a data set: clips with tags and options of their own, side by side, each computed
-# once, and a page of all results.
+# For a handful of clips with the same options; needs only jq. workflows/dataset/run.sh (Snakemake) is
+# for a data set: clips with their own tags and options in parallel jobs, each computed once, and a page
+# of all results.
 #
 # Options after -- go to every call of `velamap automatic_reconstructor`:
 #   workflows/run_batch.sh --output_path results sail1.mp4 sail2.mp4 -- \
@@ -17,7 +17,7 @@
 # VELAMAP: the program; the default is that of build/release, else that on the PATH.
 set -euo pipefail
 
-# Without commands to the terminal, which names of files may hold.
+# Removes commands to the terminal, which file names may hold.
 say() { printf '%s\n' "${*//[[:cntrl:]]/?}"; }
 fail() {
   say "error: $*" >&2
@@ -50,7 +50,7 @@ velamap="${VELAMAP:-$(dirname "${BASH_SOURCE[0]}")/../build/release/workflows/ve
 [[ -x "$velamap" ]] || velamap="$(command -v velamap)" ||
   fail "velamap is neither built (workflows/build.sh release) nor on the PATH"
 
-# sail.mp4 and sail/ both become the workspace sail, so that two inputs of one name would collide.
+# sail.mp4 and sail/ both become the workspace sail, so two inputs of one name would collide.
 workspace_name() {
   local name
   name="$(basename "$(realpath -ms "$1")")"
@@ -66,7 +66,8 @@ keys=(verdict num_images_used num_images num_markers num_layout_markers reconstr
 
 csv_field() { printf '"%s"' "${1//\"/\"\"}"; }
 
-# The text without the folders of absolute paths: the summary is sent around, as velamap's logs are.
+# The text without the folders of absolute paths, because the summary is passed on to others, as velamap's
+# logs are.
 without_folders() {
   local text="$1" folder
   for folder in "$(dirname "$(realpath -ms "$2")")" "$(realpath -ms "$output_path")"; do

@@ -3,7 +3,7 @@
 # sample_project: photographs of a cube with printed markers, and a clip of a sail. Where velamap is
 # installed (/usr/share/velamap), nothing is built: the program on the PATH is used.
 # usage: workflows/sample.sh [FOLDER]   (default: ./workspace; workspaces FOLDER/cube and FOLDER/sail)
-# VELAMAP_PRESET: the build; default release. VELAMAP: a program that is there, instead of a build.
+# VELAMAP_PRESET: the build; default release. VELAMAP: an existing program to use instead of a build.
 set -euo pipefail
 
 folder="$(realpath --canonicalize-missing "${1:-workspace}")"

@@ -34,7 +34,7 @@ void OccupyStandardStreams() {
   }
 }
 
-// Standard output without control characters, as long as it lives.
+// Removes control characters from standard output during its lifetime.
 class PrintableStdout {
  public:
   PrintableStdout() : printable_(std::cout.rdbuf()), original_(std::cout.rdbuf(&printable_)) {}

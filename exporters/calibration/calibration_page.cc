@@ -35,7 +35,7 @@ std::string VerdictHtml(const Verdict& verdict) {
   const std::string level = StatusName(verdict.level);
   const char* meaning = verdict.level == ReportStatus::kGood ? "Good: use the camera file."
                         : verdict.level == ReportStatus::kCheck
-                            ? "Usable, and it could be better."
+                            ? "Usable, but it could be better."
                             : "Bad: do not use the camera file.";
   std::string items;
   for (const VerdictReason& reason : verdict.reasons) {
@@ -107,9 +107,9 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
   if (name == "RESIDUALS") return residuals.svg;
   if (name == "RESIDUALS_CAPTION") {
     return fmt::format(
-        "What is left of the corners' errors: {:.3f} px (RMS). Grey dots: single corners, the "
-        "larger the worse. Red: the mean of each part of the picture, {:.0f} times as long. Arrows "
-        "that point in all directions are noise; arrows in a pattern are a lens that the camera "
+        "Residuals of the corners: {:.3f} px (RMS). Grey dots: single corners; larger dots are "
+        "worse. Red: the mean over each part of the picture, drawn {:.0f} times as long. Arrows "
+        "that point in all directions are noise; arrows in a pattern show a lens that the camera "
         "model does not describe.",
         calibration.error_px.rms, residuals.magnification);
   }
@@ -117,7 +117,7 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
   if (name == "BOARD") return EscapeForMarkup("The board is " + DescribeBoard(calibration.board));
   if (name == "VIEWS_CAPTION") {
     return fmt::format(
-        "{} of the {} pictures that show markers took part; {} of their corners "
+        "{} of the {} pictures that show markers were used; {} of their corners "
         "were left out as outliers.",
         calibration.UsedViews().size(), calibration.num_images, calibration.num_outliers);
   }

@@ -1,5 +1,4 @@
-// A calibration as a page to look at: one HTML file without scripts and without anything from
-// outside.
+// A calibration as a page to look at: one HTML file without scripts or external resources.
 
 #pragma once
 

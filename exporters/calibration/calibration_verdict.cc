@@ -123,7 +123,7 @@ class Judge {
     if (calibration_.num_outliers > kMaxOutliers * num_corners) {
       reasons_.Check(
           fmt::format("{:.0f} % of the corners were left out: does the board keep its shape, and "
-                      "is each marker on it once?",
+                      "does each marker appear on it only once?",
                       100.0 * calibration_.num_outliers / num_corners));
     }
   }
@@ -161,7 +161,7 @@ class Judge {
       reasons_.Check(covered);
     }
     if (calibration_.UsedViews().size() < kFewViews) {
-      reasons_.Check(fmt::format("only {} pictures took part: take {} or more",
+      reasons_.Check(fmt::format("only {} pictures were used: take {} or more",
                                  calibration_.UsedViews().size(), 2 * kFewViews));
     }
     const auto tilts = CountTilts(calibration_);
@@ -202,7 +202,7 @@ double CoveredShare(const CameraCalibration& calibration) {
 }
 
 std::string DescribeBoard(const BoardFlaws& board) {
-  if (!board.is_flat) return "not flat, as a cube or a sail; nothing is wrong with that";
+  if (!board.is_flat) return "not flat, like a cube or a sail; nothing is wrong with that";
   return fmt::format(
       "bent by {:.3f} +- {:.3f} % of its extent (RMS; at most {:.3f} %), printed {:.2f} +- {:.2f} "
       "% {}, squares scatter by {:.2f} %",

@@ -1,4 +1,4 @@
-// What to think of a calibration and what to do better.
+// Judges a calibration and says how to improve it.
 
 #pragma once
 

@@ -1,4 +1,5 @@
-// Poses of points on a surface by iterated closest points (see mesh_fit.h). Private to mesh_fit.cc.
+// Poses of points on a surface by iterative closest points (see mesh_fit.h). Private to
+// mesh_fit.cc.
 
 #pragma once
 

@@ -31,8 +31,8 @@ struct Deflection {
 
 struct DeflectionField {
   std::string part;
-  // On the reference, in its frame. Normals point to the side that the faces of the reference look
-  // to: of its markers, or of the design.
+  // On the reference, in its frame. Normals point to the side that the markers of the reference, or
+  // the faces of the design, face.
   SurfaceGrid reference;
   // One per point of the grid; nothing where the shape is more than EdgeOptions::tolerance_mm
   // beyond the edge of the design.

@@ -1,4 +1,4 @@
-// Fits a shape to a surface by iterated closest points with distances along the normal of the
+// Fits a shape to a surface by iterative closest points with distances along the normal of the
 // surface (Chen and Medioni, "Object modelling by registration of multiple range images", Image and
 // Vision Computing 10(3), 1992). Tukey's weights exclude parts that differ, and several starts
 // avoid local minima.

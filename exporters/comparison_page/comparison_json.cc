@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kNumProfilePoints = 61;
 
-// Six decimals: a nanometre of what is in mm, a micrometre of what is in m.
+// Six decimals: a nanometre for values in mm, a micrometre for values in m.
 Json Rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
 
 Json VectorJson(const Eigen::Vector3d& x) {

@@ -33,7 +33,7 @@ std::vector<const SectionDifference*> SignificantOf(const SectionComparison& sec
   return significant;
 }
 
-// The difference that says most to a sailmaker: camber, draft or twist, where one of them is
+// The difference that tells a sailmaker most: camber, draft or twist, where one of them is
 // significant.
 const SectionDifference* ForTheFirstLine(const std::vector<const SectionDifference*>& significant) {
   for (const char* number : {"camber_percent", "twist_deg", "draft_position_percent"}) {
@@ -65,8 +65,7 @@ std::string FirstLine(const ComparisonPageInput& input) {
     const char* what =
         first.IsAgainstDesign() ? "The shape differs from the design by" : "The shapes differ by";
     if (IsSame(first.deviation)) {
-      return first.IsAgainstDesign() ? "The shape is that of the design."
-                                     : "The shapes are the same.";
+      return first.IsAgainstDesign() ? "The shape matches the design." : "The shapes are the same.";
     }
     return fmt::format("{} {:.3g} mm RMS{}.", what, kMmPerM * first.deviation.distance_m.rms,
                        SectionClause(first));
@@ -75,10 +74,10 @@ std::string FirstLine(const ComparisonPageInput& input) {
   for (const Comparison& comparison : input.series) {
     const double rms_mm = kMmPerM * comparison.deviation.distance_m.rms;
     shapes.push_back(IsSame(comparison.deviation)
-                         ? fmt::format("{} not at all", comparison.name)
-                         : fmt::format("{} by {:.3g} mm RMS", comparison.name, rms_mm));
+                         ? fmt::format("{} none", comparison.name)
+                         : fmt::format("{} {:.3g} mm RMS", comparison.name, rms_mm));
   }
-  return fmt::format("From {} differ: {}.", input.reference_name, fmt::join(shapes, ", "));
+  return fmt::format("Differences from {}: {}.", input.reference_name, fmt::join(shapes, ", "));
 }
 
 // Adds the items of one shape, each after `prefix`.
@@ -118,8 +117,8 @@ class Items {
       return Add(farthest + "; no sigmas are known, so nothing can be called significant");
     }
     Add(
-        fmt::format("{} of {} markers differ significantly, by more than 2 sigmas; noise alone "
-                    "makes about {:.0f} do so; {}",
+        fmt::format("{} of {} markers differ significantly, by more than 2 sigmas; by noise alone, "
+                    "about {:.0f} would; {}",
                     deviation_.num_significant, deviation_.num_with_sigma,
                     kByChance * deviation_.num_with_sigma, farthest));
   }
@@ -160,8 +159,8 @@ class Items {
   void AddEdge() {
     if (deviation_.num_beyond_edge > 0) {
       Add(
-          fmt::format("{} markers lie a little beyond the edge of the design and count by their "
-                      "distance along its normal there",
+          fmt::format("{} markers lie a little beyond the edge of the design; their distance is "
+                      "measured along its normal there",
                       deviation_.num_beyond_edge));
     }
     std::vector<int> beside;
@@ -176,8 +175,7 @@ class Items {
   void AddScale() {
     if (!deviation_.scale || std::abs(*deviation_.scale - 1) < 5e-6) return;
     Add(fmt::format(
-        "the shape is {:.3f} % {} than the reference, which the alignment leaves as it "
-        "is",
+        "the shape is {:.3f} % {} than the reference; the alignment does not change this",
         100 * std::abs(*deviation_.scale - 1), *deviation_.scale > 1 ? "larger" : "smaller"));
   }
 

@@ -18,7 +18,7 @@ std::string NumberUnit(const std::string& number);
 
 struct ComparisonVerdict {
   std::string text;                // one sentence
-  std::vector<std::string> items;  // what lies behind it, and what to know
+  std::vector<std::string> items;  // the figures behind it, and cautions
 };
 
 ComparisonVerdict JudgeComparison(const ComparisonPageInput& input);

@@ -20,7 +20,7 @@ struct DatumAgreement {
 
 // The largest subset of `candidates` whose points agree and which determines the pose, if it has
 // more than half of them. A subset that leaves candidates out needs more than six coordinates,
-// because a pose fits any six, so that no point would be checked by the others.
+// because a pose fits any six, and no point would be checked by the others.
 std::optional<DatumAgreement> FindAgreement(const DatumPoints& points, const PointSet& candidates);
 
 }  // namespace velamap

@@ -51,7 +51,7 @@ struct DatumProblem : LeastSquaresProblem<6> {
     const Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian = whitener * linear.by_pose;
     const Eigen::VectorXd residuals = whitener * linear.residuals_m;
     equations->Add(jacobian, residuals);
-    // For motions that no coordinate sees.
+    // For motions that no coordinate determines.
     equations->AddToDiagonal(kRegularization * equations->hessian().trace());
   }
 
@@ -86,7 +86,7 @@ std::optional<Rigid3> ClosedForm(const DatumPoints& points, const PointSet& set)
   return EstimateRigid3(x_m, known_m, weights);
 }
 
-// The mean shift that the coordinates of each axis ask for after the rotation.
+// The mean shift along each axis that the coordinates require after the rotation.
 Rigid3 Shifted(const DatumPoints& points, const PointSet& set, const Eigen::Quaterniond& rotation) {
   Rigid3 pose{rotation, Eigen::Vector3d::Zero()};
   for (int axis = 0; axis < 3; ++axis) {

@@ -124,7 +124,9 @@ std::string KnownPointsText(const KnownPointFit& fit) {
       fit.points.begin(), fit.points.end(),
       [](const ComparedPoint& a, const ComparedPoint& b) { return Badness(a) < Badness(b); });
   text += ", worst " + ShortText(*worst);
-  if (fit.DoubtsScale()) text += "; the points ask for " + GrowthText(*fit.growth) + " in size";
+  if (fit.DoubtsScale()) {
+    text += "; the points require a change of " + GrowthText(*fit.growth) + " in size";
+  }
   return text;
 }
 
@@ -149,8 +151,8 @@ std::vector<std::string> KnownPointWarnings(const KnownPointFit& fit) {
   }
   if (fit.DoubtsScale()) {
     warnings.push_back(fmt::format(
-        "the known points ask for a shape of another size, by {}; check marker_length, or measure "
-        "a distance (distances, use: scale)",
+        "the known points require a change of {} in the size of the shape; check marker_length, or "
+        "measure a distance (distances, use: scale)",
         GrowthText(*fit.growth)));
   }
   return warnings;

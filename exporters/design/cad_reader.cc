@@ -57,7 +57,7 @@ std::string TailOf(const fs::path& path) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-// Open CASCADE reads what there is of a file that is cut off, and says nothing.
+// Open CASCADE reads a truncated file as far as it goes and reports no error.
 void CheckWholeStep(const fs::path& path) {
   const char* end = "END-ISO-10303-21";
   if (TailOf(path).find(end) == std::string::npos) ThrowCutOff(path, end);

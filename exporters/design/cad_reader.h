@@ -21,9 +21,10 @@ struct CadShape {
 // The extension of a path with its dot, in lower case.
 std::string LowerExtension(const std::filesystem::path& path);
 
-// Reads .step, .stp, .iges and .igs files, in any case of the extension, and converts their unit.
-// Throws InputError naming the file if it has another extension, is cut off, cannot be read, or has
-// no faces. Open CASCADE crashes on some bad files: ReadMesh() calls this in a child process.
+// Reads .step, .stp, .iges and .igs files (extensions in upper or lower case) and converts their
+// unit. Throws InputError naming the file if it has another extension, is cut off, cannot be read,
+// or has no faces. Open CASCADE crashes on some bad files: ReadMesh() calls this in a child
+// process.
 CadShape ReadCad(const std::filesystem::path& path, double chord_deviation_mm);
 
 }  // namespace velamap

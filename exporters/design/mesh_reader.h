@@ -18,7 +18,8 @@ struct MeshReadOptions {
   double chord_deviation_mm = 0.1;  // distance of the triangles from the faces of STEP and IGES
 };
 
-// Whether ReadMesh() knows the extension: .ply .stl .obj .step .stp .iges .igs, in any case.
+// Whether ReadMesh() knows the extension: .ply .stl .obj .step .stp .iges .igs, in upper or lower
+// case.
 bool IsMeshPath(const std::filesystem::path& path);
 
 // Whether the format names its unit: STEP and IGES.

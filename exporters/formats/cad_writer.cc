@@ -158,8 +158,8 @@ void CompleteCurveSet(const CadExtras& extras, const Handle(StepData_StepModel) 
   set->SetElements(elements);
 }
 
-// Adds a product with the curves and points. Open CASCADE writes one set for each edge, so that it
-// gets the first curve only.
+// Adds a product with the curves and points. Open CASCADE writes one set for each edge, so it gets
+// only the first curve.
 void TransferExtras(const CadExtras& extras, STEPControl_Writer* writer) {
   if (extras.curves.empty()) return;
   const TopoDS_Edge edge = MakeEdge(extras.curves.front());

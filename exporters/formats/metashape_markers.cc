@@ -30,7 +30,7 @@ void AppendCameras(const Model& model, pugi::xml_node chunk) {
     const auto [other, is_new] = name_of_label.emplace(label, image.name);
     if (!is_new) {
       throw InputError(fmt::format(
-          "images {} and {}: both are {} in Metashape; give their files names of their own",
+          "images {} and {}: both are {} in Metashape; give their files different names",
           other->second, image.name, label));
     }
     pugi::xml_node camera = cameras.append_child("camera");

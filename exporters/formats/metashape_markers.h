@@ -12,9 +12,8 @@ namespace velamap {
 
 // Writes where each picture shows which corner, as File > Import > Import Markers reads it. Pixels
 // are COLMAP's and Metashape's alike: the centre of the first one is at (0.5, 0.5), see "Camera
-// models" in Metashape's manual. What the adjustment
-// knows of a rolling shutter is taken out of them. Throws InputError if two pictures have one name
-// in Metashape.
+// models" in Metashape's manual. The rolling shutter that the adjustment estimated is removed from
+// them. Throws InputError if two pictures have one name in Metashape.
 void WriteMetashapeMarkers(const Model& model, std::ostream& out);
 
 // Writes the coordinates of the corners as CSV for File > Import > Import Reference, with

@@ -64,7 +64,7 @@ class Front {
       Insert({first, first + 3, first + 2});
       Insert({first, first + 2, first + 1});
     }
-    // Only now, because an edge may be joined to any marker.
+    // Only now, after all markers are added, because an edge may be joined to any of them.
     const std::vector<std::array<int, 3>> squares = triangles_;
     for (const auto& triangle : squares) QueueOpenSides(triangle);
   }

@@ -107,7 +107,7 @@ TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
       num_idle = 0;
     }
     if (num_idle == kMaxRoundsWithoutProgress) {
-      throw DataError("the triangles cannot be divided as far as asked for; ask for less");
+      throw DataError("the triangles cannot be divided that finely; allow larger ones");
     }
     AddMiddles(near_surface, num_threads, &middles, &mesh);
     std::vector<std::array<int, 3>> divided;

@@ -91,7 +91,7 @@ std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& c
       fmt::format("found; focal length {:.1f} \u00b1 {:.1f} px", worst->camera.params.front(),
                   worst->sigmas.front()),
       fmt::format("found from the pictures without a calibration; good up to {:g} % of the focal "
-                  "length, which the sigmas of the shape contain; {}",
+                  "length, whose error the sigmas of the shape include; {}",
                   kGood_percent, DescribeCamera(*worst)),
       LowIsGood(worst_percent, kGood_percent, kBad_percent),
       "the pictures hardly determine the camera: show markers tilted, everywhere in the picture "

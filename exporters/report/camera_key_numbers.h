@@ -24,7 +24,7 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
 std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncertainty);
 
 // The camera that was found where there is no calibration; the least certain one of several. Its
-// uncertainty is part of the shape's sigmas, so that an uncertain one is not a fault in itself.
+// uncertainty is part of the shape's sigmas, so an uncertain camera is not a fault in itself.
 std::optional<KeyNumber> FoundCameraNumber(const std::vector<EstimatedCamera>& cameras);
 
 }  // namespace velamap

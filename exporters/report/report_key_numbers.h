@@ -16,8 +16,8 @@ enum class ReportStatus {
   kBad,    // find the cause before using the shape
 };
 
-// In order of weight: of two key numbers that are equally bad, a verdict names the earlier one
-// first. Measurements from outside the images come before causes, and these before effects.
+// In order of importance: of two equally bad key numbers, a verdict names the earlier one first.
+// Measurements from outside the images come before causes, and these before effects.
 enum class KeyNumberKind {
   kDictionary,
   kMeasuredDistances,

@@ -35,8 +35,7 @@ std::optional<double> SigmaPercent(const ScaleEstimate& scale) {
   return 100 * *scale.relative_sigma;
 }
 
-// A small spread is no praise for a scale that is hardly known: one marker never contradicts
-// itself.
+// A small spread proves nothing if the scale is hardly known: one marker never contradicts itself.
 void JudgeScaleSigma(const ScaleEstimate& scale, KeyNumber* number) {
   const std::optional<double> sigma_percent = SigmaPercent(scale);
   const ReportStatus of_sigma =
@@ -89,10 +88,10 @@ KeyNumber ScaleNumber(const ScaleEstimate& scale, const ScaleAudit* audit,
   const bool is_calibration_doubted =
       uncertainty != nullptr && StatusOf(uncertainty->calibration) > ReportStatus::kGood;
   if (number.status == ReportStatus::kGood && is_calibration_doubted) {
-    number.meaning += "; its sigma assumes a right calibration, which is in doubt";
+    number.meaning += "; its sigma assumes a correct calibration, which is in doubt";
     number.status = ReportStatus::kCheck;
     number.advice =
-        "its sigma assumes a right calibration, which is in doubt: calibrate the camera first";
+        "its sigma assumes a correct calibration, which is in doubt: calibrate the camera first";
   }
   return number;
 }

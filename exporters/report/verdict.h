@@ -21,7 +21,7 @@ struct VerdictReason {
 
 struct Verdict {
   ReportStatus level = ReportStatus::kGood;  // kGood, kCheck or kBad: the level of the first reason
-  std::vector<VerdictReason> reasons;        // the heaviest first; empty for kGood
+  std::vector<VerdictReason> reasons;        // the worst first; empty for kGood
 };
 
 // Collects reasons in the order in which they are found.
@@ -31,7 +31,7 @@ class VerdictReasons {
   void Bad(std::string text) { Add(ReportStatus::kBad, std::move(text)); }
   void Check(std::string text) { Add(ReportStatus::kCheck, std::move(text)); }
 
-  // The heaviest first; of the same level, in the order in which they were added.
+  // The worst first; those of one level in the order in which they were added.
   Verdict Take();
 
  private:
@@ -39,7 +39,7 @@ class VerdictReasons {
 };
 
 // Every key number that is not good is a reason, and every warning is a reason to check. Bad ones
-// come first; of the same level, key numbers in the order of KeyNumberKind, then warnings.
+// come first; within a level, key numbers come in the order of KeyNumberKind, then warnings.
 Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
                     const std::vector<std::string>& warnings);
 Verdict MakeVerdict(const ReportInput& input);

@@ -228,8 +228,8 @@ SectionUp ChooseSectionUp(const MarkerShape& shape, const ShapeFrame& frame, con
   const std::optional<Eigen::Vector3d> sail = SailUp(shape, layout);
   const std::optional<Eigen::Vector3d> along = luff ? luff : sail;
   if (!along) return {frame.up_in_frame, "z of the frame"};
-  // Some layouts list the lines from head to foot. The frame's up, or else that of the lines,
-  // decides which end is the head if it is within 60 degrees of the luff.
+  // Some layouts list the lines from head to foot. The up direction of the frame, or otherwise of
+  // the lines, decides which end is the head if it is within 60 degrees of the luff.
   const std::optional<Eigen::Vector3d>& hint = frame.up_in_frame ? frame.up_in_frame : sail;
   const bool is_down = hint && along->dot(*hint) < -kMinHint;
   return {is_down ? Eigen::Vector3d(-*along) : *along, luff ? "luff" : "lines"};
@@ -247,7 +247,8 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
   const SectionUp section_up = ChooseSectionUp(shape, frame, layout);
   report.up_reference = section_up.reference;
   if (!section_up.direction) {
-    report.notes.push_back("no sections: the markers of the lines do not determine where up is");
+    report.notes.push_back(
+        "no sections: the markers of the lines do not determine which way is up");
     return report;
   }
   const Eigen::Vector3d& up = *section_up.direction;

@@ -72,8 +72,7 @@ struct MissingSection {
   std::string part;
   std::string name;
   std::string reason;
-  // The layout gives the line too few markers for a section: true of every clip, and no fault of
-  // this one.
+  // The layout gives the line too few markers for a section, in this clip and in any other.
   bool is_by_layout = false;
 };
 

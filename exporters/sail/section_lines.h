@@ -42,7 +42,7 @@ struct LineCurve {
 struct MissingLine {
   std::string name;
   std::string reason;
-  bool is_by_layout = false;  // the layout gives the line too few markers, whatever the images show
+  bool is_by_layout = false;  // the layout itself gives the line too few markers
 };
 
 struct PartCurves {

@@ -73,7 +73,7 @@ PrintSpread NoteBothExplanations(const Columns& columns) {
   const UncertainValue print_um = EstimateOf(*as_print, 1, kUmPerM);
   const UncertainValue image_px = EstimateOf(*as_image, 1);
   return NotDetermined(
-      fmt::format("the larger markers are larger in the images too, so that {:.3g} +- {:.2g} um in "
+      fmt::format("the larger markers are also larger in the images, so {:.3g} +- {:.2g} um in "
                   "the print and {:.3g} +- {:.2g} px in the image explain the sides equally well",
                   print_um.value, print_um.sigma, image_px.value, image_px.sigma));
 }
@@ -111,7 +111,7 @@ PrintSpread EstimateSpread(const std::vector<SpreadSample>& samples) {
     spread.note = "print and image separated";
   } else if (image_varies) {
     spread.note =
-        "image only: all markers are printed in one size, so that a spread of the print "
+        "image only: all markers are printed in one size, so a spread of the print "
         "is part of the scale error";
   } else {
     spread.note = has_images ? "print only: all markers have one size in the images"

@@ -26,8 +26,7 @@ struct UncertainValue {
   double sigma = 0.0;
 };
 
-// Spreads count outwards from each edge, so that a side grows by twice the spread; insets are
-// negative.
+// Spreads count outwards from each edge, so a side grows by twice the spread; insets are negative.
 struct PrintSpread {
   std::optional<UncertainValue> print_um;
   std::optional<UncertainValue> image_px;

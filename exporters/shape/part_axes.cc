@@ -27,8 +27,7 @@ std::optional<PartAxes> FitPartAxes(const MarkerShape& shape, const std::vector<
   const PrincipalAxes principal = ComputePrincipalAxes(corners);
   part.center = principal.mean;
   const Eigen::Vector3d along = CenterOf(shape, ids.back()) - CenterOf(shape, ids.front());
-  // A strip around a curved side is about as thick as it is wide, so that noise would turn its
-  // plane.
+  // A strip around a curved side is about as thick as it is wide, and noise would turn its plane.
   constexpr double kMinSpreadRatio = 4.0;  // of variances
   part.is_flat = principal.sums_of_squares[1] >= kMinSpreadRatio * principal.sums_of_squares[0];
   const Eigen::Vector3d normal =

@@ -1,4 +1,4 @@
-// Fits the surfaces of several parts one after the other, so that one that fails stops none.
+// Fits the surfaces of several parts one after the other; one that fails does not stop the others.
 
 #pragma once
 

@@ -9,7 +9,7 @@
 namespace velamap {
 namespace {
 
-constexpr double kMaxReach = 0.5;  // further, a parabola is a guess
+constexpr double kMaxReach = 0.5;  // beyond this, a parabola is a guess
 
 // Whether the surface can continue to an edge of the layout; notes why not.
 bool IsWithinReach(double offset_m, double size_m, const char* edge, SortedInput* sorted) {
@@ -120,8 +120,8 @@ void NoteEdges(const SortedInput& sorted, const SurfaceOptions& ends,
     }
     if (!continued.at(name) || sigmas_m.empty()) continue;
     notes->push_back(
-        fmt::format("{}: continued beyond the markers; its sigma there is {:.1f} mm in the median, "
-                    "up to {:.1f} mm",
+        fmt::format("{}: continued beyond the markers; its sigma there is {:.1f} mm (median), up "
+                    "to {:.1f} mm",
                     name, kMmPerM * Median(sigmas_m),
                     kMmPerM * *std::max_element(sigmas_m.begin(), sigmas_m.end())));
   }

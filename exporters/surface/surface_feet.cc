@@ -8,7 +8,7 @@
 namespace velamap {
 namespace {
 
-// Each fit moves the feet a little further, so that a few steps of Gauss and Newton do.
+// Each fit moves the feet only a little, so a few Gauss-Newton steps are enough.
 void MoveToFoot(const SplineSurface& surface, SurfaceObservation* observation) {
   constexpr int kNumSteps = 3;
   for (int step = 0; step < kNumSteps; ++step) {

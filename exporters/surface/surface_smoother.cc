@@ -47,7 +47,7 @@ void AddKronecker(double factor, const Eigen::MatrixXd& left, const Eigen::Matri
 
 // Integrals of the squared third derivatives, with u and v as lengths on the surface: those that
 // are mainly along the lines, S_uuu and S_uuv, and those mainly across them, S_uvv and S_vvv. A
-// sail is bent more along its lines than across them, so that each pair has a weight of its own.
+// sail is bent more along its lines than across them, so each pair has its own weight.
 struct Penalties {
   Eigen::MatrixXd along, across;
 };

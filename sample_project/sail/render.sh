@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders the clip of this folder anew: a boat that goes 100 degrees around a sail of 5.1 x 2.6 m at
+# Renders the clip of this folder again: a boat that moves 100 degrees around a sail of 5.1 x 2.6 m at
 # 4.5 m, with an action camera. Needs render_clip (workflows/build.sh release render_clip).
 # usage: sample_project/sail/render.sh [FOLDER]   (default: this folder; RENDER_CLIP: the program)
 set -euo pipefail

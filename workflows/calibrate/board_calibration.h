@@ -1,4 +1,4 @@
-// From pictures of a board to its camera: the importer, then the calibration.
+// Calibrates a camera from pictures of a board: runs the importer, then the calibration.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// A look at a clip before any reconstruction, in a few seconds.
+// Checks a clip in a few seconds, before any reconstruction.
 
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a look at a few frames tells about a clip.
+// The facts about a clip that a few of its frames show.
 
 #pragma once
 

@@ -29,7 +29,7 @@ constexpr int kMinFrames = 2;
 // A body of fewer markers cannot be told from misread ids.
 constexpr std::size_t kMinOnBody = 4;
 
-// The detections as they are without a layout: an id that it does not name counts, too.
+// The detections as they are without a layout: ids that it does not name count as well.
 std::vector<DatabaseImage> WithAllIds(std::vector<DatabaseImage> images) {
   for (DatabaseImage& image : images) {
     std::vector<MarkerDetection>& markers = image.detections.markers;
@@ -75,8 +75,7 @@ FrameCounts CountFrames(const std::vector<DatabaseImage>& images) {
   return counts;
 }
 
-// A quad with a false code is at another place in every frame, so that it is hardly ever seen
-// twice.
+// A quad with a false code is at a different place in every frame and is hardly ever seen twice.
 std::vector<std::string> DescribeDoubled(const FrameCounts& counts) {
   constexpr double kOften = 0.2;
   constexpr int kMinTwice = 3;
@@ -85,9 +84,8 @@ std::vector<std::string> DescribeDoubled(const FrameCounts& counts) {
     const int num_frames = counts.num_frames.at(marker_id);
     if (num_twice < std::max<double>(kMinTwice, kOften * num_frames)) continue;
     lines.push_back(
-        fmt::format("marker {} is there twice: {} of the {} frames that show it show it at two "
-                    "places; give one of "
-                    "them another id",
+        fmt::format("marker {} is there twice: {} of its {} frames show it at two places; give one "
+                    "of them another id",
                     marker_id, num_twice, num_frames));
   }
   return lines;

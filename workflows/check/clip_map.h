@@ -1,4 +1,4 @@
-// The markers of a clip in space, whatever a layout says of them.
+// The markers of a clip in space, regardless of the parts and lines of a layout.
 
 #pragma once
 

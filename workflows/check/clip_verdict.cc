@@ -47,7 +47,7 @@ class Judge {
   void JudgeIds() {
     if (facts_.num_frames_of_id.empty()) return;
     if (!facts_.ids_never_seen.empty()) {
-      reasons_.Check(fmt::format("never seen: {}: film them, or take them out of the layout",
+      reasons_.Check(fmt::format("never seen: {}: film them, or remove them from the layout",
                                  IdRanges(facts_.ids_never_seen)));
     }
     std::vector<int> rare;
@@ -72,7 +72,7 @@ class Judge {
     if (side_px < kBadSidePx) {
       reasons_.Bad(text + ": " + remedy);
     } else if (side_px < kGoodSidePx) {
-      reasons_.Check(text + ": the size is known to a few tenths of a percent only; " + remedy);
+      reasons_.Check(text + ": the size is known only to a few tenths of a percent; " + remedy);
     }
   }
 
@@ -128,12 +128,12 @@ class Judge {
     }
     const ClipPrecision& precision = *facts_.precision;
     const std::string text =
-        fmt::format("the camera goes around the object by {:.0f} degrees", precision.parallax_deg);
+        fmt::format("the camera moves {:.0f} degrees around the object", precision.parallax_deg);
     const std::string remedy = "move sideways by a third of the distance or more";
     if (precision.parallax_deg < kBadParallax_deg) {
-      reasons_.Bad(text + " only, which leaves its depth open: " + remedy);
+      reasons_.Bad(text + ", which is too little to determine depth: " + remedy);
     } else if (precision.parallax_deg < kGoodParallax_deg) {
-      reasons_.Check(text + ", which leaves depth less certain than width: " + remedy);
+      reasons_.Check(text + ", which makes depth less certain than width: " + remedy);
     }
     for (const std::string& marker : precision.markers_left_out) {
       reasons_.Check("contradicts the layout: " + marker);

@@ -1,4 +1,4 @@
-// Judges a clip and says what to do better.
+// Judges a clip and says how to improve it.
 
 #pragma once
 

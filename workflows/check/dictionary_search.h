@@ -1,4 +1,4 @@
-// The dictionary of a clip's markers, where nobody names it.
+// Finds the dictionary of a clip's markers if none is given.
 
 #pragma once
 

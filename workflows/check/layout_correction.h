@@ -1,4 +1,4 @@
-// Compares a layout with where the markers of a clip stand, and corrects it.
+// Compares a layout with the places of the markers in a clip, and corrects it.
 
 #pragma once
 

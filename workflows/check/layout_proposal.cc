@@ -14,8 +14,8 @@
 namespace velamap {
 namespace {
 
-// Rows of one direction do not cross. Those of a chessboard's squares do: its diagonals are as much
-// horizontal as vertical.
+// Rows of one direction do not cross. Rows of the squares of a chessboard do: its diagonals are as
+// horizontal as they are vertical.
 bool AreCrossing(const std::vector<std::vector<int>>& rows) {
   std::set<int> ids;
   for (const std::vector<int>& row : rows) {
@@ -77,19 +77,18 @@ LayoutPart PartWithLines(const std::string& name, const RowGroup& rows,
   }
   if (!rows.knows_up) {
     notes->push_back(fmt::format(
-        "{}: NOT SURE what is up: the markers are stuck turned against each other, and the longest "
-        "line is taken to be horizontal; check the directions of all lines",
+        "{}: NOT SURE which way is up: the markers are turned relative to each other, and the "
+        "longest line is taken to be horizontal; check the directions of all lines",
         name));
   }
   if (rows.is_joined_by_likeness) {
     notes->push_back(
-        fmt::format("{}: NOT SURE whether all its lines are on one part: they are parallel with "
-                    "like steps, but "
-                    "no vertical line joins them",
+        fmt::format("{}: NOT SURE whether all its lines are on one part: they are parallel and "
+                    "equally spaced, but no vertical line joins them",
                     name));
   }
   if (!rows.others.empty()) {
-    notes->push_back(fmt::format("{}: markers {} are near its lines and on none of them", name,
+    notes->push_back(fmt::format("{}: markers {} are near its lines but on none of them", name,
                                  IdRanges(rows.others)));
   }
   return part;
@@ -125,7 +124,7 @@ struct OtherLength {
   double length_m = 0.0, sigma_m = 0.0;
 };
 
-// Whole millimetres where the measurement allows, else tenths.
+// Rounded to millimetres if the measurement allows it, otherwise to tenths.
 double RoundedLength(const OtherLength& other) {
   constexpr double kNumSigmas = 3.0, kPrint = 5e-3;
   const double whole_m = std::round(other.length_m * kMmPerM) / kMmPerM;
@@ -135,7 +134,7 @@ double RoundedLength(const OtherLength& other) {
 }
 
 std::vector<OtherLength> FindOtherLengths(const ClipMap& map, const Layout& layout) {
-  // Smaller differences are a matter of the print: the audit of the scale judges them.
+  // Smaller differences come from the print: the audit of the scale judges them.
   constexpr double kNumSigmas = 4.0, kLeast = 0.02, kSameLength = 1.04;
   std::vector<std::pair<double, int>> wrong;  // measured length, id
   for (const auto& [marker_id, side] : map.sides) {
@@ -198,8 +197,9 @@ void CorrectLengths(const ClipMap& map, LayoutProposal* proposal) {
         fmt::format("{:.2f} +- {:.2f} mm", kMmPerM * other.length_m, kMmPerM * other.sigma_m);
     for (const int marker_id : other.marker_ids) {
       proposal->contradictions.push_back(fmt::format(
-          "marker {} is {:.1f} mm long and not {:g} mm, as measured against the others", marker_id,
-          kMmPerM * map.sides.at(marker_id).length_m, kMmPerM * MarkerLength(layout, marker_id)));
+          "marker {} is {:.1f} mm long instead of {:g} mm, as measured against the others",
+          marker_id, kMmPerM * map.sides.at(marker_id).length_m,
+          kMmPerM * MarkerLength(layout, marker_id)));
       if (length_m == layout.marker_length_m) {
         layout.marker_lengths_m.erase(marker_id);
       } else {

@@ -13,7 +13,7 @@ std::size_t PlaceOf(const Ids& ids, int id) {
   return static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
 }
 
-// The ids that `of` holds, too, in the order of `ids`.
+// The ids that `of` holds as well, in the order of `ids`.
 Ids Common(const Ids& ids, const Ids& of) {
   Ids common;
   std::copy_if(ids.begin(), ids.end(), std::back_inserter(common),
@@ -163,7 +163,7 @@ std::string GivenPlace(const std::vector<ComparedLine>& lines, const Layout& lay
                      line.is_vertical ? "vertical" : "horizontal");
 }
 
-// Markers of `line` that stand on another line, on which the layout has them, too.
+// Markers of `line` that stand on another line, on which the layout lists them as well.
 std::vector<std::string> DescribeTwice(const std::vector<ComparedLine>& lines,
                                        const ComparedLine& line) {
   std::vector<std::string> texts;

@@ -8,8 +8,8 @@
 
 namespace velamap {
 
-// Draws outlines and ids: green for markers, red for rejected ones. Enlarges an image of small
-// markers, so that their ids can be read. `image` is BGR.
+// Draws outlines and ids: green for markers, red for rejected ones. Enlarges images with small
+// markers to make their ids readable. `image` is BGR.
 void DrawMarkers(const FrameDetections& detections, cv::Mat* image);
 
 }  // namespace velamap

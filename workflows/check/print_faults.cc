@@ -29,7 +29,7 @@ PrintFaults FindPrintFaults(const std::vector<Frame>& frames,
                             const std::map<std::string, const FrameDetections*>& found,
                             const Layout& layout, const ArucoDetectionOptions& detection) {
   ArucoDetectionOptions strict = detection;
-  // Nothing else vouches for these codes.
+  // No other evidence confirms these codes, so none of their bits may be wrong.
   strict.error_correction_rate = 0.0;
   strict.search = SearchMode::kExhaustive;
   const Dictionary dictionary = LoadDictionary(layout.dictionary);
@@ -78,13 +78,13 @@ std::vector<std::string> DescribeFaults(const PrintFaults& faults, int num_marke
       return;
     }
     for (const auto& [marker_id, count] : counts) {
-      lines.push_back(fmt::format("marker {} is {}, as {} of {} frames show: print it anew",
+      lines.push_back(fmt::format("marker {} is {}, as {} of {} frames show: print it again",
                                   marker_id, how, count, num_frames));
     }
   };
-  describe(faults.mirrored, "mirrored", "print them anew, or film without mirroring");
+  describe(faults.mirrored, "mirrored", "print them again, or film without mirroring");
   describe(faults.inverted, "printed with black and white exchanged",
-           "print them anew, or set " + OptionName(&ArucoDetectionOptions::inverted));
+           "print them again, or set " + OptionName(&ArucoDetectionOptions::inverted));
   return lines;
 }
 

@@ -15,7 +15,7 @@
 namespace velamap {
 
 struct PrintFaults {
-  // Number of frames (at least two) that show the marker so, by marker id.
+  // Number of frames (at least two) that show the marker with this fault, by marker id.
   std::map<int, int> mirrored, inverted;
 };
 

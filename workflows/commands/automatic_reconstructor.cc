@@ -164,7 +164,7 @@ ShapeOrigin OriginOf(const Options& options, const AdjustmentResult& adjustment)
           !adjustment.cameras.empty()};
 }
 
-// Logs what speaks against the shape. The input refers to `summary`.
+// Logs everything that contradicts the shape. The input refers to `summary`.
 ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
                         const ReconstructionSummary& summary) {
   const ShapeExportReport& shape = summary.shape;
@@ -190,7 +190,7 @@ ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, con
   for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
     input.found_cameras.push_back(camera);
   }
-  input.warnings = LoggedWarnings();  // before the next line logs what key numbers say, too
+  input.warnings = LoggedWarnings();  // before the next line also logs the key numbers
   LogContradictions(shape);
   input.options = TypedOptions(options.arguments);
   input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
@@ -198,7 +198,7 @@ ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, con
   return input;
 }
 
-// For the next clip of the camera. Of several cameras, the one with most images.
+// Writes the camera for its next clip. Of several cameras, the one with most images.
 void WriteFoundCamera(const AdjustmentResult& adjustment, const Model& model,
                       const WorkspacePaths& paths) {
   std::map<CameraId, int> num_images;
@@ -216,7 +216,8 @@ void WriteFoundCamera(const AdjustmentResult& adjustment, const Model& model,
                    paths.Camera().string());
 }
 
-// Makes the final files from the seed. sparse/ and shape/ replace the old ones when both are whole.
+// Makes the final files from the seed. sparse/ and shape/ replace the old ones when both are
+// complete.
 void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
                      ReconstructionSummary* summary, StageClock* clock) {
   AtomicFolder sparse(paths.Sparse());

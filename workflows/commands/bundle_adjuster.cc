@@ -64,7 +64,7 @@ Layout LoadAdjustmentLayout(const Options& options) {
 }
 
 // Takes the image points of the model from the database, because an earlier adjustment may have
-// taken a rolling shutter out of them.
+// removed a rolling shutter from them.
 void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOptions& paths,
                       Model* model) {
   std::map<ImageId, const FrameDetections*> detections;
@@ -84,7 +84,8 @@ void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOption
   }
 }
 
-// A camera that was found instead of calibrated is refined, so that the sigmas contain it.
+// A camera that was estimated instead of calibrated is refined, so that the sigmas include its
+// uncertainty.
 CornerErrors LoadCorners(const Options& options, const Layout& layout,
                          AdjustmentOptions* adjustment, Model* model) {
   if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) return {};

@@ -42,7 +42,7 @@ CommandSyntax Declare(Options* options) {
                          &paths->output_path, "calibration.html")}},
        {"Calibration",
         {{"num_views", &options->calibration.calibration.max_num_views, "count",
-          "largest number of pictures used; those that add most are chosen", FromTo(5, 500)},
+          "largest number of pictures used; the most informative ones are chosen", FromTo(5, 500)},
          Common(ChoiceOption("camera_model", &options->camera_model,
                              {{WantedModel::kAuto, "auto"},
                               {WantedModel::kPinhole, "SIMPLE_PINHOLE"},

@@ -130,9 +130,7 @@ void WriteProposal(const LayoutProposal& proposal, const Options& options) {
   }
   std::string comment = "Proposed by velamap clip_checker.\n";
   if (!options.check.layout) {
-    comment +=
-        "marker_length: NOT KNOWN, 0.1 m is put in its place; measure a black square and correct "
-        "it.\n";
+    comment += "marker_length: NOT KNOWN, set to 0.1 m; measure a black square and correct it.\n";
   }
   for (const std::string& note : proposal.notes) comment += note + "\n";
   WriteFileAtomically(path, [&](std::ostream& out) { out << LayoutText(layout, comment); });

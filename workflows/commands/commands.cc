@@ -84,7 +84,7 @@ void RunCommandLine(const Arguments& arguments) {
   if (!ParseOptions(command.syntax, rest, AllOptionNames())) {
     return PrintHelp(command.syntax, AskedHelp(rest).value(), std::cout);
   }
-  OutputDate();  // a date that is none is an error before the work, not after it
+  OutputDate();  // reports an invalid SOURCE_DATE_EPOCH before the work, not after it
   command.run(rest);
 }
 

@@ -21,7 +21,7 @@ struct Options : CommandOptions {
 
 CommandSyntax Declare(Options* options) {
   return {"database_merger",
-          "makes one database of the parts of a long video, each of which is an import of its own",
+          "merges the databases of the separately imported parts of a long video into one",
           "--database_paths part1.db,part2.db,part3.db --layout_path layout.yml \\\n"
           "    --output_path database.db",
           {{"Input and output",

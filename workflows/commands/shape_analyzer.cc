@@ -60,7 +60,8 @@ void Validate(Options* options) {
   }
 }
 
-// Warns unless the shape is similar to the corners of the model: else they are of different runs.
+// Warns unless the shape is similar to the corners of the model: otherwise they are from different
+// runs.
 void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathOptions& paths) {
   constexpr double kTolerance_m = 1e-6;
   const auto max_distance_m = [&] {

@@ -158,7 +158,7 @@ void RefuseUnusedOptions(const Options& options) {
   const std::string what = "the --reference_path " + reference;
   if (!IsMeshPath(reference)) {
     RefuseWithoutEffect(options.typed, {"reference_unit", "chord_deviation", "edge_tolerance"},
-                        what + " is a shape in m and no surface");
+                        what + " is a shape in m, not a surface");
   } else {
     RefuseWithoutEffect(options.typed, {"reference_uncertainty_path"},
                         what + " is a surface, which has no uncertainty");
@@ -188,7 +188,7 @@ void Validate(Options* options) {
   }
   const AlignmentOptions& alignment = options->comparison.alignment;
   if (!alignment.marker_ids.empty() && alignment.method != AlignmentMethod::kMarkers) {
-    throw InputError("--align_markers: goes with --align markers only");
+    throw InputError("--align_markers: needs --align markers");
   }
   options->comparison.with_deflections = !options->comparison_path.empty();
   CheckSeries(*options);

@@ -72,7 +72,7 @@ Verdict Judge(const ShapeExportReport& report, const Layout& layout) {
   WarnOfOtherMarkers(report.metrics);
   WarnOfMissingSections(report.sail.sections);
   ReportInput input = MakeReportInput(report, layout);
-  input.warnings = LoggedWarnings();  // before the next line logs what key numbers say, too
+  input.warnings = LoggedWarnings();  // before the next line also logs the key numbers
   LogContradictions(report);
   return MakeVerdict(input);
 }

@@ -48,7 +48,7 @@ class Clip:
 
 
 def read_records(path: Path) -> list[tuple[int, list[str]]]:
-    """The records with their line numbers, whatever a spreadsheet has made of the file."""
+    """The records with their line numbers. The file may be UTF-8 or UTF-16, with , ; or tabs."""
     if os.path.exists(path) and not os.path.isfile(path):
         fail(f"{path}: is a folder, a pipe or a device; give a table of clips (CSV)")
     try:
@@ -98,7 +98,7 @@ def check_name(name: str) -> None:
     if not name:
         raise RowError("the name is empty; give each row a name")
     if name.startswith(".") or "/" in name or not name.isprintable():
-        raise RowError(f"name {name!r}: becomes a folder, so that it must not begin with . nor "
+        raise RowError(f"name {name!r}: becomes a folder, so it must not begin with . or "
                        "hold / or a control character; rename it")
     if len(key_of(name)) > MAX_NAME_BYTES:
         raise RowError(f"name {name[:20]}...: is too long for a folder; shorten it")
@@ -143,7 +143,7 @@ def read_options(cell: str, folder: Path, known: set[str]) -> list[tuple[str, st
         word = words.pop(0)
         name, equals, value = word[2:].partition("=")
         if not word.startswith("--") or not name:
-            raise RowError(f"options: {word} is no option; write --name value")
+            raise RowError(f"options: {word} is not an option; write --name value")
         if name in OWN_OPTIONS:
             raise RowError(f"options: the workflow gives --{name} itself; leave it out")
         if name not in known:

@@ -4,7 +4,7 @@
 usage: make_jobs.py TABLE OUTPUT CORES    (VELAMAP: the program; RETRY_FAILED=1)
 
 A job file is written only if its content changes, so that its time says whether the job has to be
-computed anew: it holds the command and, for each file that the command reads, size and time.
+computed again: it holds the command and, for each file that the command reads, size and time.
 """
 
 import functools

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what the workflow adds to its jobs, and what a second worker brings. For a quiet machine.
+# Measures what the workflow adds to its jobs, and what a second worker gains. Needs an idle machine.
 #
 # usage: workflows/dataset/measure.sh overhead|workers
 #
@@ -21,7 +21,7 @@ export REAL_VELAMAP
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
 
-# write_table CLIPS: rows that differ in their names alone.
+# write_table CLIPS: rows that differ only in their names.
 write_table() {
   echo "name,clip,camera,layout,options"
   for ((i = 1; i <= $1; ++i)); do

@@ -5,7 +5,7 @@
 # usage: workflows/dataset/run.sh TABLE OUTPUT [--cores N] [--retry_failed] [SNAKEMAKE_OPTION...]
 #
 #   --cores N        jobs run side by side on N cores; the default is all
-#   --retry_failed   compute the clips anew whose jobs have failed
+#   --retry_failed   compute the clips whose jobs have failed again
 #   --profile slurm  on a cluster: workflows/dataset/profiles/slurm
 #
 # Exit code: 0 if every clip has its result, 1 if not (dataset.csv says which and why), 2 for bad input.
@@ -60,7 +60,7 @@ export VELAMAP RETRY_FAILED="$retry_failed" PYTHONDONTWRITEBYTECODE=1
 
 # A job has cores / clips threads, one at least; on a cluster, where many run, one.
 [[ $on_cluster -eq 0 ]] || cores=1
-# One run at a time; the lock ends with this process, however that ends.
+# One run at a time; the lock ends with this process, even if it is killed.
 lock() {
   exec 9>>"$output/.velamap_lock"
   flock --nonblock 9 || fail "$output: another run works there; wait for it"
@@ -69,7 +69,7 @@ lock() {
 python3 "$here/make_jobs.py" "$table" "$output" "$cores"
 lock
 
-# Jobs count against the memory of this machine, too; a cluster counts itself.
+# Jobs also count against the memory of this machine; a cluster does its own accounting.
 if [[ $on_cluster -eq 0 ]]; then
   memory_mb="$(awk '/^MemAvailable:/ { print int($2 / 1024) }' /proc/meminfo)"
   options=(--cores "$cores" --resources "mem_mb=$memory_mb" "${options[@]}")

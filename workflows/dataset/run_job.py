@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs one job in the folder OUTPUT and writes its result, whatever the program's exit code is.
+"""Runs one job in the folder OUTPUT and writes its result, whether or not the program fails.
 
 usage: run_job.py JOB RESULT THREADS IS_LAST    (VELAMAP: the program)
 

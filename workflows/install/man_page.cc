@@ -11,7 +11,8 @@
 namespace velamap {
 namespace {
 
-// Text as roff shows it unchanged: hyphens stay what a shell understands, and no line is a request.
+// Escapes text so that roff shows it unchanged: hyphens can be pasted into a shell, and no line is
+// a request.
 std::string Roff(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

@@ -48,7 +48,7 @@ void WriteBashValues(const std::map<std::string, ShownOption>& options, std::ost
              fmt::join(paths, " | "));
 }
 
-// In single quotes of _arguments, which gives colons and brackets a meaning.
+// Escapes text in single quotes for _arguments, where colons and brackets have a meaning.
 std::string ZshText(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

@@ -1,5 +1,4 @@
-// The options of a command as text, from which help, man pages and the completion of shells are
-// made.
+// The options of a command as text, for help, manual pages and shell completion.
 
 #pragma once
 

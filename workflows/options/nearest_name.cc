@@ -8,7 +8,7 @@
 namespace velamap {
 namespace {
 
-constexpr int kMaxOfWord = 2;  // letters that a whole word counts as
+constexpr int kMaxOfWord = 2;  // the most that a whole word costs, in letters
 
 // Smallest cost of turning the sequence `a` into `b` by insertions, deletions, substitutions and
 // exchanges of neighbours, which cost as much as an insertion.
@@ -37,7 +37,7 @@ int EditDistance(const Sequence& a, const Sequence& b, const Insertion& insertio
   return distances[a.size()][b.size()];
 }
 
-// What it costs to write these words, or to strike them out.
+// The cost of inserting or deleting these words.
 int Cost(const std::string& word) { return std::min(static_cast<int>(word.size()), kMaxOfWord); }
 
 int Cost(const std::vector<std::string>& words) {

@@ -1,4 +1,4 @@
-// What a mistyped name was probably meant to be.
+// Guesses which name a mistyped one was meant to be.
 
 #pragma once
 

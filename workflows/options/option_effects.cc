@@ -41,7 +41,7 @@ void RefuseVideoOptions(const CommandOptions& options) {
       options.typed,
       {"Video.", "frame_output_path", "ArucoDetection.full_search_interval",
        "MarkerAdjustment.rolling_shutter", "MarkerAdjustment.estimate_rolling_shutter"},
-      fmt::format("the pictures in --image_path {} are photographs and no video", image_path));
+      fmt::format("the pictures in --image_path {} are photographs, not a video", image_path));
 }
 
 void RefuseOptionsOfOtherBackend(const TypedNames& typed, AdjustmentBackend backend) {

@@ -1,5 +1,5 @@
-// Options that would change nothing: a wish that cannot be granted is refused. Only options that
-// were typed are wishes; a project file serves several commands, and a preset many cases.
+// Refuses options that would have no effect. Only options that were typed on the command line
+// count, because a project file serves several commands, and a preset many cases.
 
 #pragma once
 
@@ -22,7 +22,7 @@ void RefuseWithoutEffect(const TypedNames& typed, const std::vector<std::string>
 // Options of videos, where --image_path is a folder of photographs.
 void RefuseVideoOptions(const CommandOptions& options);
 
-// Options of the way of adjustment and of the method of registration that were not chosen.
+// Options of the adjustment backend and of the registration method that were not chosen.
 void RefuseOptionsOfOtherBackend(const TypedNames& typed, AdjustmentBackend backend);
 void RefuseOptionsOfOtherMethod(const TypedNames& typed, RegistrationMethod method);
 

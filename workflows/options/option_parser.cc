@@ -253,12 +253,11 @@ void AddPreset(const CommandSyntax& syntax, const OptionsByName& options, GivenV
 }  // namespace
 
 OptionGroup ProjectGroup(std::string* project_path) {
-  return {
-      "Project file",
-      {Common(PathOption(kProjectPath, PathUse::kReadsFile, project_path,
-                         "ini file with the same options, of this and other commands; the command "
-                         "line wins over it, and only what is typed there is refused where it "
-                         "changes nothing"))}};
+  return {"Project file",
+          {Common(PathOption(
+              kProjectPath, PathUse::kReadsFile, project_path,
+              "ini file with the same options, of this and other commands; the command "
+              "line takes precedence, and options without effect are refused only there"))}};
 }
 
 std::set<std::string> OptionNames(const CommandSyntax& syntax) {

@@ -2,7 +2,7 @@
 //
 // Names are in COLMAP's style, --database_path or --Video.frame_step. The file that --project_path
 // names holds the same names, as COLMAP's ini files do: keys without a section first, then
-// [Section] and key=value. The command line wins over the file.
+// [Section] and key=value. The command line takes precedence over the file.
 
 #pragma once
 
@@ -15,8 +15,8 @@
 
 namespace velamap {
 
-// The options that were typed on the command line, by their first names without dashes: explicit
-// wishes, where those of a project file may be meant for another command.
+// The options that were typed on the command line, by their first names without dashes. Unlike
+// those of a project file, they cannot be meant for another command.
 using TypedNames = std::set<std::string>;
 
 struct CommandSyntax {
@@ -31,7 +31,7 @@ struct CommandSyntax {
 // --project_path, which every command has beside its own options.
 OptionGroup ProjectGroup(std::string* project_path);
 
-// All names that the command's options go by.
+// All names of the command's options, including short and old ones.
 std::set<std::string> OptionNames(const CommandSyntax& syntax);
 
 // Sets the options that `arguments`, which follow the command's name, and their project file give.

@@ -49,7 +49,7 @@ void AddPictures(const std::string& used_by, const fs::path& path, UsedPaths* pa
   }
 }
 
-// With a folder goes the model beside it, whose uncertainty the comparisons read.
+// Comparisons also read the uncertainty of the model beside a folder of a shape.
 void AddShape(const std::string& used_by, const fs::path& path, UsedPaths* paths) {
   if (!IsFolder(path)) return paths->inputs.push_back({used_by, path});
   paths->inputs.push_back({used_by, path / "shape.csv"});
@@ -77,7 +77,7 @@ void AddUse(PathUse use, const std::string& used_by, const std::string& path, bo
     case PathUse::kWritesFolder:
       return paths->outputs.push_back({used_by, path, true});
     case PathUse::kAddsToFolder:
-      return;  // its writer looks at each file
+      return;  // its writer checks each file
     case PathUse::kWritesWorkspace:
       for (const UsedPath& output : WorkspaceOutputs(path, used_by)) {
         paths->outputs.push_back(output);
@@ -133,7 +133,7 @@ void CompletePaths(const std::vector<OptionGroup>& groups) {
       const auto* target = std::get_if<std::string*>(&option.target);
       if (target == nullptr) continue;
       std::string* path = *target;
-      // To a log is added.
+      // Logs are appended to, not replaced.
       const bool is_default_name =
           path->empty() && fs::path(option.name_beside).extension() != ".log";
       if (path->empty() && option.beside != nullptr && !option.beside->empty()) {

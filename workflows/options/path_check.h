@@ -1,4 +1,4 @@
-// What a command reads and writes, by the uses of its options' paths.
+// Checks the paths that a command reads and writes, by the uses of its options.
 
 #pragma once
 

@@ -8,7 +8,7 @@ Option PresetOption(Preset* preset) {
   return Common(ChoiceOption("preset", &preset->name,
                              {{PresetName::kNone, "none"}, {PresetName::kThesis, "thesis"}},
                              "thesis: chapter 3 of the thesis, step by step, instead of velamap's "
-                             "defaults; options that are given beside it win"));
+                             "defaults; options that are given beside it take precedence"));
 }
 
 const std::map<std::string, std::string>& PresetValues(PresetName name) {

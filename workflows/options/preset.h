@@ -1,4 +1,4 @@
-// Values of many options in one word, --preset. An option that is given beside it wins.
+// --preset sets many options at once. An option that is given beside it takes precedence.
 
 #pragma once
 

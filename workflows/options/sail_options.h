@@ -1,4 +1,4 @@
-// Options of what is made of the shape: its frame, sections and surface.
+// Options of the frame, the sections and the surface of the shape.
 
 #pragma once
 

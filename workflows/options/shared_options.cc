@@ -113,7 +113,7 @@ OptionGroup DescribeOptions(MarkerOptions* options, bool with_dictionary) {
   if (with_dictionary) {
     group.options.push_back(
         Common({"dictionary", &options->dictionary, "name|path",
-                "OpenCV dictionary name such as DICT_4X4_50, or dictionary file; goes with "
+                "OpenCV dictionary name such as DICT_4X4_50, or dictionary file; used with "
                 "--marker_length"}));
     group.options.back().path_use = PathUse::kReadsFile;
   }

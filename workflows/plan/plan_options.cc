@@ -23,16 +23,16 @@ OptionGroup DescribeOptions(ShootPlanOptions* options) {
        Common(ChoiceOption(
            "lens", &options->lens, {{LensMode::kLinear, "linear"}, {LensMode::kWide, "wide"}},
            "with --field_of_view: linear keeps straight lines straight; wide bends them, "
-           "as an action camera's")),
+           "as an action camera does")),
        Common({"width", &options->width_px, "px", "width of the picture, with --field_of_view",
                FromTo(320, 20000)}),
        Common({"height", &options->height_px, "px", "height of the picture, with --field_of_view",
                FromTo(240, 20000)}),
        Common({"Plan.distance", &options->distance_m, "m",
-               "distance of the camera from the middle of the markers; left out: as near as the "
-               "picture holds them",
+               "distance of the camera from the middle of the markers; left out: as close as "
+               "they fit into the picture",
                FromTo(0.01, 10000)}),
-       {"Plan.arc", &options->arc_deg, "deg", "angle by which the camera goes around the markers",
+       {"Plan.arc", &options->arc_deg, "deg", "angle by which the camera moves around the markers",
         FromTo(0, 160)},
        {"Plan.height", &options->height_m, "m",
         "height of the camera over the lowest marker; left out: 1, or the middle of the markers if "
@@ -48,7 +48,7 @@ OptionGroup DescribeOptions(ShootPlanOptions* options) {
         "rotation of the camera, by hand and waves, while the shutter is open", FromTo(0, 1000)},
        {"Plan.corner_sigma", &options->corner_sigma_px, "px",
         "1 sigma of a corner's coordinate on a marker of 20 px", FromTo(0.001, 5)},
-       {"Plan.camber", &options->camber, "fraction", "depth of the planned sail, part of its chord",
+       {"Plan.camber", &options->camber, "fraction", "depth of the planned sail over its chord",
         FromTo(0, 0.4)},
        {"Plan.twist", &options->twist_deg, "deg", "twist of the planned sail, from foot to head",
         FromTo(-60, 60)}}};

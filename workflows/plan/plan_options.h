@@ -1,4 +1,4 @@
-// The wishes for a plan of a shoot.
+// The options of a plan of a shoot.
 
 #pragma once
 
@@ -24,7 +24,7 @@ struct ShootPlanOptions {
   int width_px = 1920, height_px = 1080;
 
   // The camera's path: on an arc around the middle of the markers, which it looks at.
-  std::optional<double> distance_m;  // nothing: as near as the picture holds the markers
+  std::optional<double> distance_m;  // nothing: as close as they fit into the picture
   double arc_deg = 90.0;             // from the first view to the last
   // Height of the camera over the lowest marker; nothing: 1 m, or the middle of the markers if that
   // is lower.
@@ -40,7 +40,7 @@ struct ShootPlanOptions {
   double corner_sigma_px = 0.075;
 
   // The shape of a sail for which none is given.
-  double camber = 0.1;  // depth, part of the chord
+  double camber = 0.1;  // depth / chord
   double twist_deg = 10.0;
 
   std::uint32_t seed = 0;

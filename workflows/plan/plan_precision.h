@@ -1,5 +1,5 @@
-// The precision that a plan of views gives: their observations are drawn, and the program's own
-// marker-aware adjustment and covariance judge them as they would judge a clip.
+// The precision that a plan of views gives: their observations are simulated, and velamap's
+// marker-aware adjustment and covariance treat them like those of a clip.
 
 #pragma once
 

@@ -117,7 +117,8 @@ ViewSummary Summarize(const PlannedSurface& surface,
 double NarrowPxForHalf(int num_cells) { return kPxPerCellForHalf * num_cells; }
 
 double CornerSigma(double corner_sigma_px, double side_px) {
-  // Noise that the length of an edge averages, and what the encoder does to all sizes alike.
+  // Noise that averages out along an edge, and the error of the encoder, which does not depend on
+  // the size.
   const auto relative = [](double side) { return std::hypot(0.05, 0.6 / side); };
   return corner_sigma_px * relative(side_px) / relative(20.0);
 }

@@ -1,5 +1,5 @@
-// What a camera sees of the markers of a plan: pictures of them in pixels, and what importer and
-// corner fit make of pictures of that size.
+// The markers of a plan as a camera sees them: their size in pixels, how many the importer finds at
+// that size, and how precisely.
 
 #pragma once
 

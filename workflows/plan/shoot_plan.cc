@@ -81,7 +81,7 @@ void CheckGivenDistance(const PlannedSurface& surface, const Camera& camera,
       ChooseDistance(surface, camera, path)));
 }
 
-// Pixels a second, where the camera does not follow what it films.
+// Pixels per second, for a camera that does not follow what it films.
 double MotionPxPerS(const Camera& camera, double distance_m, double speed_m_s,
                     double turn_rate_deg_s) {
   return MeanFocalLength(camera) * (speed_m_s / distance_m + kRadPerDeg * turn_rate_deg_s);
@@ -190,8 +190,8 @@ Verdict JudgePlan(const ShootPlan& plan) {
         fmt::format("half of the markers are smaller than {:.0f} px: {}",
                     plan.along_path.median_side_px, closer));
   judge(plan.path.arc_deg, kGoodParallax_deg, kBadParallax_deg,
-        fmt::format("the camera goes around by {:.0f} degrees only, which leaves depth open: go "
-                    "around further",
+        fmt::format("the camera moves only {:.0f} degrees around the markers, which hardly "
+                    "determines depth: plan a larger arc",
                     plan.path.arc_deg));
   if (plan.shutters.front().exposure_s < kShortest_s) {
     reasons.Check("few cameras have such a short exposure: go slower, or hold the camera steadier");

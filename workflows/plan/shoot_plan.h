@@ -1,4 +1,4 @@
-// A plan of a shoot: where from, how fast, how many views, and what precision that gives.
+// A plan of a shoot: the path, speed and number of views, and the precision that they give.
 
 #pragma once
 

@@ -94,7 +94,7 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
           std::move(summary.uncertainty), std::move(summary.cameras)};
 }
 
-// Throws DataError for points that determine no shape: all in one place.
+// Throws DataError if all points are in one place and determine no shape.
 void CheckExtent(const Model& model) {
   constexpr double kLeastExtent = 1e-9;  // of the points' distance from the origin
   Eigen::AlignedBox3d box;

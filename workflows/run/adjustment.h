@@ -15,8 +15,8 @@ namespace velamap {
 
 enum class AdjustmentBackend {
   kColmap,   // COLMAP's own program
-  kMarkers,  // ours, which knows the size of the markers
-  kBoth,     // COLMAP's, then ours
+  kMarkers,  // velamap's, which knows the size of the markers
+  kBoth,     // COLMAP's, then velamap's
 };
 
 struct AdjustmentOptions {

@@ -13,7 +13,8 @@
 namespace velamap {
 namespace {
 
-// EXIF is a claim: cropped pictures keep it, and so do pictures that a program wrote.
+// The focal length in EXIF may be wrong: cropped pictures and pictures that a program wrote keep
+// it.
 void CompareWithMetadata(const Camera& guess, const Camera& found) {
   constexpr double kFarOff = 0.1;
   const Camera without = UnknownCamera(guess.width_px, guess.height_px);

@@ -1,5 +1,5 @@
-// The cameras of a reconstruction: found where there is no calibration, doubted where the images
-// contradict them. Each function logs what it finds.
+// The cameras of a reconstruction: estimated where there is no calibration, checked where there is
+// one. Each function logs what it finds.
 
 #pragma once
 

@@ -19,12 +19,12 @@ void SetLogLevel(LogLevel level);
 // The messages of level warning since SetUpLogging(), in order, at every log level.
 std::vector<std::string> LoggedWarnings();
 
-// Appends all later messages to this file, too, without the folders of files that they name
+// Also appends all later messages to this file, without the folders of files that they name
 // (importer/text/shown_text.h). Throws InputError if it cannot be written.
 void AddLogFile(const std::string& path);
 
-// The text with a ? for each control character but tab and line feed, which could change what a
-// terminal shows: names of files may hold any.
+// The text with a ? for each control character except tab and line feed. File names may hold any of
+// them, and they could change what a terminal shows.
 std::string Printable(std::string text);
 
 // Passes text on as Printable() gives it.

@@ -26,7 +26,7 @@ std::vector<LeftOutImage> FindLeftOut(const SeedResult& seed) {
   std::map<std::string, std::string> reasons;
   for (const RegisteredFrame& frame : seed.registration.frames) {
     reasons[frame.image_name] =
-        frame.reason.empty() ? "fewer than two of its markers stay" : frame.reason;
+        frame.reason.empty() ? "fewer than two of its markers remain" : frame.reason;
   }
   std::vector<LeftOutImage> left_out;
   for (const std::string& name : seed.image_names) {
@@ -59,7 +59,7 @@ void LogPriorShapeAgreement(const PriorShapeAgreement& agreement) {
         "those of the dictionary and the layout?");
     return;
   }
-  spdlog::info("{} of the {} markers found that the prior shape holds are where it has them",
+  spdlog::info("{} of the {} markers of the prior shape that were found are where it has them",
                agreement.num_agreeing, agreement.num_known);
   if (2 * agreement.num_agreeing < agreement.num_known) {
     spdlog::warn(
@@ -116,7 +116,7 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
                report.num_images_added, report.num_images_present, report.num_markers);
   if (report.num_frames_damaged > 0) {
     spdlog::warn(
-        "{}: the file is damaged: {} frames, which show the damage or build on it, are left out; "
+        "{}: the file is damaged: {} frames, which show the damage or depend on it, are left out; "
         "copy it from the camera again, or record again",
         options.image_path, report.num_frames_damaged);
   }

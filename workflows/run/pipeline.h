@@ -36,7 +36,7 @@ struct SeedResult {
 // for an unordered one.
 VideoOptions NarrowToReach(const VideoOptions& video, const RegistrationOptions& registration);
 
-// ImportMarkers() with a progress bar; logs what was found and what is odd.
+// ImportMarkers() with a progress bar; logs what was found and warns of anything unusual.
 ImportReport ImportImages(const MarkerImporterOptions& options);
 
 // Throws InputError, naming both dictionaries, if the layout's is not that of the import.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kQuietSeconds = 1.0;
 
-// The bar is the last line of the terminal, of which there is one.
+// The state of the bar, which is the last line of the terminal. The process has one terminal.
 std::mutex terminal_mutex;
 bool line_shown = false;
 

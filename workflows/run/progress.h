@@ -18,8 +18,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // `total` 0: unknown. `message` says what was done last. With nothing done the clock starts anew,
-  // because what came before does not tell how long the rest takes.
+  // `total` 0: unknown. `message` says what was done last. With nothing done, the clock restarts,
+  // because the time before says nothing about the time that is left.
   void Update(int done, int total, const std::string& message);
 
  private:

@@ -18,7 +18,7 @@
 namespace velamap {
 namespace {
 
-// Images that were left out for a reason that their user wants to know.
+// Images that were left out for a reason that the user should know.
 std::vector<LeftOutImage> NeededImages(const ReconstructionSummary& summary) {
   std::vector<LeftOutImage> images = summary.left_out;
   images.erase(std::remove_if(images.begin(), images.end(),
@@ -61,7 +61,7 @@ void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
     fmt::print(out, ", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
   }
   fmt::print(
-      out, "; the sides of the markers differ from their printed length by {:.2g} mm in the mean\n",
+      out, "; the sides of the markers differ from their printed length by {:.2g} mm on average\n",
       shape.metrics.side_error_mm.mean);
 }
 

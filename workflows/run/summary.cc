@@ -218,7 +218,7 @@ void WarnOfOtherMarkers(const ShapeMetrics& metrics) {
 
 void WarnOfMissingSections(const SectionReport& sections) {
   for (const MissingSection& missing : sections.missing) {
-    // What the layout alone decides is said, but is no reason to check this clip.
+    // Limits of the layout are reported, but are no reason to check this clip.
     spdlog::log(missing.is_by_layout ? spdlog::level::info : spdlog::level::warn,
                 "no section {} of {}: {}", missing.name, missing.part, missing.reason);
   }

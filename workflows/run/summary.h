@@ -1,4 +1,4 @@
-// What commands print of a result, as `key: value` lines.
+// Prints results of commands as `key: value` lines.
 
 #pragma once
 
@@ -50,7 +50,7 @@ ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layou
 // Prints what shape_exporter says of a shape: markers, their errors, scale, size, sections.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);
 
-// Prints it where it was estimated.
+// Prints the rolling shutter if it was estimated.
 void PrintRollingShutter(const AdjustmentUncertainty& uncertainty, std::ostream& out);
 
 }  // namespace velamap

@@ -34,7 +34,8 @@ std::string ForeignEntry(const WorkspacePaths& paths, const std::string& image_p
   const auto foreign = std::find_if(entries.begin(), entries.end(), [&](const fs::path& entry) {
     return entry.filename() != kLockName && !IsInside(image_path, entry);
   });
-  // Asked last: another run may just be making the workspace, and the log is its first file.
+  // Checked last: another run may be creating the workspace right now, and the log is its first
+  // file.
   if (foreign == entries.end() || Exists(paths.Log()) || IsOurDatabase(paths.Database())) return "";
   return foreign->filename().string();
 }
@@ -103,7 +104,7 @@ Workspace::Workspace(const std::string& path, const std::string& image_path) {
 std::vector<UsedPath> WorkspaceOutputs(const std::string& path, const std::string& used_by) {
   const WorkspacePaths paths{AbsoluteFolder(path)};
   std::vector<UsedPath> outputs;
-  // To the logs and the database is added.
+  // The logs and the database are added to, not replaced.
   for (const fs::path& file : {paths.Database(), paths.Log(), paths.ColmapLog()}) {
     outputs.push_back({used_by, file});
   }

@@ -43,8 +43,8 @@ std::vector<UsedPath> WorkspaceOutputs(const std::string& path, const std::strin
 class Workspace {
  public:
   // Opens an earlier workspace or makes a new one. Throws InputError if the path is a file, if the
-  // folder holds something else than a workspace of velamap and the input, if another velamap works
-  // there, or if it cannot be written.
+  // folder holds anything but a workspace of velamap and the input, if another velamap works there,
+  // or if it cannot be written.
   Workspace(const std::string& path, const std::string& image_path);
   ~Workspace();
   Workspace(const Workspace&) = delete;

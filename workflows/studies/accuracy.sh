@@ -41,8 +41,8 @@ link_real() {
   echo "$3" >"$folder/images.txt"
 }
 
-# The cube's geometry is exact only within a face, so that each face gets a reference of its own; the
-# clip's own reference is face0.
+# The cube's geometry is exact only within a face, so each face gets its own reference; the clip's own
+# reference is face0.
 link_cube() {
   local folder="$clips/cube" face
   mkdir -p "$folder/truth"

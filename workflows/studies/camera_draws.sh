@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Measures the error of the metric result, and what its stated sigma is worth, over random cameras,
+# Measures the error of the metric result, and how well its stated sigma predicts it, over random cameras,
 # prints and scenes: each draw renders a short clip, runs the whole job with its defaults and compares
 # the shape with the truth.
 # usage: workflows/studies/camera_draws.sh [--quick] [--num_draws N] [--seed S] [WORK_FOLDER]
 #        (default: 200 draws, 6 for --quick, seed 1, workspace/studies)
-# Writes camera_draws.csv, one row a draw with its conditions, what the corners that were found are off
-# (clip_corners) and what the shape is off, and camera_draws_summary.csv, one row a
-# class. Rows of the same draws that camera_draws.csv holds are kept, so that a study that was stopped
-# goes on; remove the file to measure another velamap. Clips are removed after their draw.
+# Writes camera_draws.csv, one row per draw with its conditions, the errors of the corners
+# (clip_corners) and the errors of the shape, and camera_draws_summary.csv, one row per
+# class. Rows that camera_draws.csv already holds are kept, so an interrupted study continues;
+# remove the file to measure another velamap. Clips are removed after their draw.
 # KEEP="12 31": draws that are run again and whose clips and results stay in runs/camera_draws.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -31,7 +31,7 @@ results=(exit_code side_px side_bias_px side_bias_percent corner_error_px corner
 # log_value RUN KEY: prints what stands after `KEY: ` in a summary, up to the first space or comma.
 log_value() { awk -v key="$2:" '$1 == key { sub(",.*", "", $2); print $2; exit }' "$runs/$1/log.txt"; }
 
-# formation RUN: prints what the importer found out about camera and print, six figures.
+# formation RUN: prints the importer's estimate of camera and print, six figures.
 formation() {
   awk '/camera and print, from/ {
       for (i = 1; i < NF; i++) {
@@ -52,7 +52,7 @@ run_draw() {
   mkdir -p "$run"
   "$render_clip" "${@:2}" --num_threads 1 --output_path "$clip" >"$run/render.txt" 2>&1 ||
     fail "render_clip failed: $(tail -n 1 "$run/render.txt")"
-  # The print is exact: no tolerance is to hide what the edges do.
+  # The print is exact, and no tolerance must hide errors of the edges.
   "$velamap" automatic_reconstructor --image_path "$clip/clip.mp4" --num_threads 1 \
     --camera_path "$clip/camera.yml" --layout_path "$clip/layout.yml" \
     --workspace_path "$run/workspace" --MarkerAdjustment.common_print_tolerance 0 \

@@ -6,7 +6,7 @@
 #   clips/NAME    rendered clip with its truth, database.db with its detections, arguments.txt
 #   runs/STUDY    every reconstruction of a study: models, shape, analysis.csv, log.txt
 #   STUDY*.csv, STUDY*.png   the tables and plots
-# Clips are used again, by other studies too, as long as their arguments are the same; they are imported
+# Clips are reused, also by other studies, as long as their arguments are the same; they are imported
 # again when the program is newer than their detections.
 set -euo pipefail
 export LC_ALL=C

@@ -33,7 +33,7 @@ function draw_scene(class) {
   }
   set("margin_sides", "%.3f", log_between(0.05, class ~ /sail/ ? 0.15 : 0.3))
 }
-# A clip of some seven seconds in few frames.
+# A clip of about seven seconds in few frames.
 function draw_clip(num_frames) {
   set("num_frames", "%d", num_frames)
   set("fps", "%.2f", num_frames / 6.7)

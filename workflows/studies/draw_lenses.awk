@@ -5,7 +5,7 @@
 
 function normal() { return sqrt(-2 * log(uniform())) * cos(6.283185307 * uniform()) }
 
-# Distortions by what they do at the picture's corner, as a part of its distance from the axis.
+# Distortions by their effect at the corner of the picture, as a fraction of its distance from the axis.
 function draw_brown(focal, width,    corner, at_corner, k2) {
   corner = 0.5737 / focal
   at_corner = focal < 0.8 ? between(-0.12, 0.05) : between(-0.08, 0.04)

@@ -214,7 +214,7 @@ block_thesis_sail() {
 |---|---|---|---|---|
 | area error, n 20, s 10, m 5, mean / max | about 250 / 1000 mm² | $(value parameters.csv area_error_mm2_mean 2 "${base[@]}") / $(value parameters.csv area_error_mm2_max d "${base[@]}") mm² | scale $(value parameters.csv scale_error_percent +2 "${base[@]}") %, RMS $(value parameters.csv distance_mm_rms 2 "${base[@]}") mm, shape $(value parameters.csv distance_after_scaling_mm_rms 2 "${base[@]}") mm | \`parameters.sh\` |
 | area error against the number of frames | falls to 41 frames, then level | $(by n area_error_mm2_mean 2) mm² for $(by n value d) frames | RMS $(by n distance_mm_rms 2) mm, shape $(by n distance_after_scaling_mm_rms 2) mm | \`parameters.sh\` |
-| reprojection error against the number of frames | rises slightly, max about 2 px | $(by n central_reprojection_error_px_mean 2) px in the mean | | \`parameters.sh\` |
+| reprojection error against the number of frames | rises slightly, max about 2 px | $(by n central_reprojection_error_px_mean 2) px on average | | \`parameters.sh\` |
 | ratio against the number of frames | 56.9 % (11) to 40.1 % (101 frames) | $(by n reconstruction_ratio 3%) % | | \`parameters.sh\` |
 | area error against s | poor for small s | $(by s area_error_mm2_mean 2) mm² for s $(by s value d) | RMS $(by s distance_mm_rms 2) mm | \`parameters.sh\` |
 | ratio against s | falls | $(by s reconstruction_ratio 3%) % | | \`parameters.sh\` |

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Measures what a rolling shutter does to the shape and what its estimate makes of it, over random
-# clips: scene, time from the first row to the last (every third is taken at once), shake and flapping.
+# Measures the error of the shape under a rolling shutter, uncorrected and corrected, over random clips:
+# scene, time from the first row to the last (zero in every third clip), shake and flapping.
 # usage: workflows/studies/rolling_shutter.sh [--quick] [WORK_FOLDER]
 #        (default: 12 clips, 2 for --quick, workspace/studies)
-# Writes rolling_shutter.csv, one row a clip: its conditions, the time that was found with its sigma, and
+# Writes rolling_shutter.csv, one row per clip: its conditions, the time that was found with its sigma, and
 # the RMS distance from the truth after a similarity without and with the estimate.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh

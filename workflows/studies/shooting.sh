@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Measures what shoot_planner takes for granted, and compares its plans with the clips of an action
-# camera that are rendered along them.
+# Measures what shoot_planner assumes, and compares its plans with clips of an action camera that are
+# rendered along them.
 # usage: workflows/studies/shooting.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
 # Writes shooting.csv. Series distance: share of the markers found, and the corners' errors, by size;
 # motion: by the path of a marker while the shutter is open; plan: sigmas planned and found, and the
-# true error, of clips that go 100 degrees around a sail.
+# true error, of clips that move 100 degrees around a sail.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"

@@ -1,5 +1,5 @@
 # Prints a CSV of the draws of camera_draws.csv by class and tone curve: for each, for all curves of a
-# class and for all draws, how far the scale is off and what its stated sigmas are worth.
+# class and for all draws, how far the scale is off and how well its stated sigmas predict this.
 # usage: awk -f summarize_draws.awk camera_draws.csv
 BEGIN { FS = OFS = "," }
 NR == 1 {

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Measures how fair and how true the surface through the markers is: on random sails with random noise,
-# and on rendered clips of a sail.
+# Measures the smoothness and the error of the surface through the markers, on random sails with random
+# noise and on rendered clips of a sail.
 # usage: workflows/studies/surface.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
 # Writes surface.csv: error of the surface over the error of a marker, and the error of its curvature
 # along the chord, at places between the outer markers. A row `random` is for markers of one noise on
 # num_draws sails; the ratio at a place is of root mean squares over the sails. A row with the name of
 # a clip is for one shape, against the root mean square error of its markers along the normal.
-# Curvatures count at least one marker inside of luff and leech and one line inside of foot and head.
+# Curvatures are taken at least one marker inside luff and leech and one line inside foot and head.
 # surface_curvature.csv: the curvature along the chords of the clips, found and true.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh

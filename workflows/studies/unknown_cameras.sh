@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Measures what a clip costs whose camera nobody calibrated: each draw renders a short clip through a
-# random lens and runs the whole job with the true calibration and without any.
+# Measures how much accuracy is lost without a calibration: each draw renders a short clip through a
+# random lens and runs the whole job with the true calibration and without one.
 # usage: workflows/studies/unknown_cameras.sh [--quick] [--num_draws N] [--seed S] [WORK_FOLDER]
 #        (default: 24 draws, 4 for --quick, seed 1, workspace/studies)
-# Writes unknown_cameras.csv, one row a draw: the error of the focal length and its sigma, and the errors
+# Writes unknown_cameras.csv, one row per draw: the error of the focal length and its sigma, and the errors
 # of both shapes against the truth.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh

@@ -13,7 +13,7 @@ function setChartDefaults() {
   Chart.defaults.plugins.legend.display = false;
 }
 
-// Draws all charts, or draws them anew in the colours and for the width of the page as it is now.
+// Draws all charts, or redraws them in the current colours and for the current width of the page.
 function drawCharts(data) {
   for (const chart of charts.splice(0)) {
     chart.observer?.disconnect();
@@ -164,7 +164,7 @@ function fitEqualScales(chart) {
 // Omits ticks at the ends of an axis that are no round numbers.
 const ROUND_TICKS = {ticks: {includeBounds: false}};
 
-// The curves are wide and flat, so that the height of the chart follows from its width.
+// The curves are wide and flat, so the height of the chart follows from its width.
 function fitHeight(chart, points) {
   const box = chart.canvas.parentElement;
   const length = key => {

@@ -2,7 +2,7 @@
 
 // Colours for all kinds of colour vision: Okabe and Ito's palette for parts, viridis for numbers, and
 // from blue over white to red for numbers with a sign. Those of the page are CSS variables, because a
-// dark page has others.
+// dark page has different ones.
 
 const PART_COLOURS = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#f0e442',
                       '#6b6b6b'];

@@ -122,7 +122,7 @@ function fillShapes(data) {
   const side = data.is_design ? 'the side to which the faces of the design look'
                               : 'the side to which the markers of the reference face';
   byId('sides').textContent = `Distances are along the normal of ${data.reference}; positive ones are on ${side}${
-    data.positive_side && `, which is ${data.positive_side}`}. The size is compared and never fitted.`;
+    data.positive_side && `, which is ${data.positive_side}`}. The sizes are compared, never fitted.`;
 }
 
 function differenceText(value) {
@@ -142,7 +142,7 @@ function fillNumbers(data) {
     ...data.shapes.flatMap((shape, i) => [
       ...(isSeries ? [] : [{name: shape.name, value: row => row.values[i]?.value,
                             text: row => fixed(row.values[i]?.value, 2)}]),
-      {name: isSeries ? `${shape.name} less ${data.reference}` : 'Difference', value: row => row.values[i]?.difference,
+      {name: isSeries ? `${shape.name} minus ${data.reference}` : 'Difference', value: row => row.values[i]?.difference,
        text: row => differenceText(row.values[i])},
     ]),
   ], data.numbers);

@@ -8,7 +8,7 @@ function hasWebGL() {
   return Boolean(canvas.getContext('webgl2') || canvas.getContext('webgl'));
 }
 
-// Lets `all` colourings be chosen, which are those of colours.js or like them.
+// Offers `all` colourings for choice; they have the form of those in colours.js.
 function connectColours(view, all) {
   const select = byId('colour');
   select.append(...all.map(({key, name}) => element('option', {value: key, textContent: name})));

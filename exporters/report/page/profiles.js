@@ -1,6 +1,6 @@
 'use strict';
 
-// Profiles of sections over each other, as SVG: all drawings to one scale, the same along and across.
+// Overlaid profiles of sections, as SVG: all drawings to one scale, the same along and across.
 
 function curveStroke(i) {
   return i === 0 ? {class: 'reference'} : {stroke: PART_COLOURS[(i - 1) % PART_COLOURS.length]};

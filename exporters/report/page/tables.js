@@ -1,7 +1,7 @@
 'use strict';
 
-// Tables that sort by a click on a head. A column is {name, value, text?}: `value` for sorting, `text`
-// for display.
+// Tables that are sorted by a click on a heading. A column is {name, value, text?}: `value` for
+// sorting, `text` for display.
 
 function fillTable(id, columns, rows) {
   const body = element('tbody', {});

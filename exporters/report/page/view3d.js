@@ -138,7 +138,7 @@ class View3D {
     this.render();
   }
 
-  // Shows the cameras, too.
+  // Shows the cameras as well.
   showAll() {
     const cameras = this.images.filter(image => image.centre)
         .map(image => new THREE.Vector3(...image.centre));

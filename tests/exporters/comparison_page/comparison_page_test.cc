@@ -128,8 +128,8 @@ TEST(ComparisonPage, ASeriesHasAColumnForEachShape) {
   const Json data = example.Data();
   EXPECT_EQ(data["title"], "3 shapes against trim1");
   EXPECT_THAT(data["verdict"]["text"].get<std::string>(),
-              HasSubstr("From trim1 differ: trim2 by "));
-  EXPECT_THAT(data["verdict"]["text"].get<std::string>(), HasSubstr("trim4 not at all."));
+              HasSubstr("Differences from trim1: trim2 "));
+  EXPECT_THAT(data["verdict"]["text"].get<std::string>(), HasSubstr("trim4 none."));
   EXPECT_EQ(data["shapes"].size(), 3u);
   EXPECT_EQ(data["surfaces"].size(), 3u);
   for (const Json& row : data["numbers"]) EXPECT_EQ(row["values"].size(), 3u);

@@ -104,7 +104,7 @@ TEST_F(ReportKeyNumbers, AKnownPointThatFailsIsRed) {
   fit.growth->sigma = 0.003;
   EXPECT_EQ(status(), ReportStatus::kCheck);
   EXPECT_THAT(FindIn(input, KeyNumberKind::kKnownPoints)->value,
-              HasSubstr("ask for +1.000 +- 0.300 % in size"));
+              HasSubstr("a change of +1.000 +- 0.300 % in size"));
   fit.growth.reset();
   fit.points[1].state = PointState::kLeftOut;
   EXPECT_EQ(status(), ReportStatus::kCheck);

@@ -104,9 +104,9 @@ TEST_F(ComparisonBrowser, FillsThePageWithoutErrors) {
   std::string dom = Open("comparison.html", {"--dump-dom"}).out;
   EXPECT_THAT(dom, HasSubstr("data-ready-ms=")) << "the page's script did not reach its end";
   dom.resize(dom.find("<script"));  // what is seen, not what it is made from
-  EXPECT_THAT(dom, HasSubstr("From trim1 differ: trim2 by "));
-  EXPECT_THAT(dom, HasSubstr("trim3 not at all"));
-  EXPECT_THAT(dom, HasSubstr("trim2 less trim1"));
+  EXPECT_THAT(dom, HasSubstr("Differences from trim1: trim2 "));
+  EXPECT_THAT(dom, HasSubstr("trim3 none"));
+  EXPECT_THAT(dom, HasSubstr("trim2 minus trim1"));
   EXPECT_THAT(dom, HasSubstr("<h3>h5</h3>"));
   EXPECT_THAT(dom, HasSubstr("<polyline"));
   EXPECT_THAT(dom, HasSubstr("Markers compared"));
