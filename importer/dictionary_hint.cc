@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -15,6 +17,7 @@ constexpr int kMaxNumSamples = 12;
 constexpr int kMinNumMarkers = 2;
 constexpr int kConvincingNumMarkers = 20;
 constexpr std::size_t kMaxNumHints = 3;
+constexpr double kMaxChance = 0.01;
 
 // The largest dictionaries. The smaller ones of a family are the first markers of the largest.
 constexpr std::array<const char*, 9> kFamilies = {
@@ -22,20 +25,37 @@ constexpr std::array<const char*, 9> kFamilies = {
     "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5",
     "DICT_APRILTAG_25h9", "DICT_APRILTAG_36h10", "DICT_APRILTAG_36h11"};
 
-std::string SmallestOfFamily(const std::string& family, int max_id) {
+// The size of the smallest dictionary of the family that has the id; 0 if the family has only one.
+int SizeWithId(const std::string& family, int max_id) {
   const std::string largest = "_1000";
-  const std::size_t end = family.size() - largest.size();
-  if (family.compare(end, largest.size(), largest) != 0) return family;
+  if (family.compare(family.size() - largest.size(), largest.size(), largest) != 0) return 0;
   for (const int size : {50, 100, 250}) {
-    if (max_id < size) return family.substr(0, end) + "_" + std::to_string(size);
+    if (max_id < size) return size;
   }
-  return family;
+  return 1000;
+}
+
+std::string SmallestOfFamily(const std::string& family, int max_id) {
+  const int size = SizeWithId(family, max_id);
+  return size == 0 ? family : family.substr(0, family.rfind('_') + 1) + std::to_string(size);
 }
 
 struct Found {
+  std::set<int> ids;
   int num_markers = 0;
-  int max_id = 0;
+
+  int MaxId() const { return ids.empty() ? -1 : *ids.rbegin(); }
 };
+
+// Every sixteenth pattern of 4x4 bits, in one of its rotations, is a code of DICT_4X4_1000, so
+// pictures of anything contain some. Chance spreads their ids over the whole dictionary and seldom
+// repeats one. Other families have too few codes for their bits to be hit by chance.
+bool MayBeChance(const std::string& family, const Found& found) {
+  if (family != "DICT_4X4_1000") return false;
+  const double share = SizeWithId(family, found.MaxId()) / 1000.0;
+  const bool are_first_ids = std::pow(share, static_cast<double>(found.ids.size())) < kMaxChance;
+  return !are_first_ids && found.num_markers < 2 * static_cast<int>(found.ids.size());
+}
 
 }  // namespace
 
@@ -57,17 +77,18 @@ std::vector<DictionaryHint> SuggestDictionaries(const std::vector<cv::Mat>& gray
         Found& found = found_by_choice[{family, inverted}];
         for (const MarkerDetection& marker : DetectMarkers(gray, dictionary, border_bits, strict)) {
           ++found.num_markers;
-          found.max_id = std::max(found.max_id, marker.marker_id);
+          found.ids.insert(marker.marker_id);
         }
-        convinced |= found.num_markers >= kConvincingNumMarkers;
+        convinced |= found.num_markers >= kConvincingNumMarkers && !MayBeChance(family, found);
       }
     }
   }
   std::vector<DictionaryHint> hints;
   for (const auto& [choice, found] : found_by_choice) {
-    if (found.num_markers < kMinNumMarkers) continue;
-    hints.push_back({SmallestOfFamily(choice.first, found.max_id), choice.second, found.num_markers,
-                     num_images});
+    const std::string& family = choice.first;
+    if (found.num_markers < kMinNumMarkers || MayBeChance(family, found)) continue;
+    hints.push_back(
+        {SmallestOfFamily(family, found.MaxId()), choice.second, found.num_markers, num_images});
   }
   std::stable_sort(hints.begin(), hints.end(),
                    [](const DictionaryHint& a, const DictionaryHint& b) {

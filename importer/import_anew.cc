@@ -149,10 +149,10 @@ void ImportAnew::Replace() {
   MoveFile(staged_.database_path, database);
   has_replaced_ = true;
   SyncFileSystem(database.parent_path());
-  SettleReplacement(options_.database_path);
+  CompleteReplacement(options_.database_path);
 }
 
-void SettleReplacement(const std::string& database_path) {
+void CompleteReplacement(const std::string& database_path) {
   const fs::path stage = StageOf(database_path);
   if (!IsFolder(stage) || IsLink(stage)) return;
   if (Exists(stage / kReplacementRecord) && !Exists(stage / kStagedDatabase)) MoveFrames(stage);

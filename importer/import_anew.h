@@ -14,7 +14,7 @@ namespace velamap {
 // The new import is written to a hidden folder beside the database. It takes effect when its
 // database is renamed over the earlier one; its frames follow. If a run is killed before the
 // rename, the earlier import stays; if it is killed afterwards, the next import completes the
-// replacement: SettleReplacement(). The lock of the database has to be held.
+// replacement: CompleteReplacement(). The lock of the database has to be held.
 class ImportAnew {
  public:
   // Throws InputError if the database is not one of velamap's, or if a picture of the user stands
@@ -46,6 +46,6 @@ class ImportAnew {
 
 // Cleans up what a killed run has left beside the database: completes a replacement that had begun,
 // or removes the unfinished import. The lock of the database has to be held.
-void SettleReplacement(const std::string& database_path);
+void CompleteReplacement(const std::string& database_path);
 
 }  // namespace velamap

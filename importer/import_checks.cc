@@ -128,8 +128,8 @@ void CheckSources(const MarkerImporterOptions& options, const std::vector<std::s
   if (options.is_only_source) CheckFrames(options, known_names);
 }
 
-void NoteSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
-                 ColmapDatabase* database) {
+void RecordSources(const MarkerImporterOptions& options,
+                   const std::vector<std::string>& known_names, ColmapDatabase* database) {
   if (known_names.empty() || !database->ReadSources().empty()) return;
   spdlog::warn(
       "{}: made by an earlier velamap, which did not record its source; assuming it is from {}",

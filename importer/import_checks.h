@@ -28,8 +28,8 @@ void CheckSources(const MarkerImporterOptions& options, const std::vector<std::s
                   const ColmapDatabase& database);
 
 // Records the source files of a database that an earlier velamap has made, with a warning.
-void NoteSources(const MarkerImporterOptions& options, const std::vector<std::string>& known_names,
-                 ColmapDatabase* database);
+void RecordSources(const MarkerImporterOptions& options,
+                   const std::vector<std::string>& known_names, ColmapDatabase* database);
 
 // Throws InputError if a frame of the video could replace a picture that velamap did not write.
 // Removes what an interrupted run has left unfinished.

@@ -88,8 +88,8 @@ void CheckPart(const MarkerImporterOptions& options, const ColmapDatabase& datab
   }
 }
 
-void NotePart(const MarkerImporterOptions& options, const std::string& detector, bool is_finished,
-              ColmapDatabase* database) {
+void RecordPart(const MarkerImporterOptions& options, const std::string& detector, bool is_finished,
+                ColmapDatabase* database) {
   if (!options.part) return;
   ColmapDatabase::Transaction transaction(database);
   database->WritePart({*options.part, options.video, detector, is_finished});

@@ -40,7 +40,7 @@ std::optional<VideoOptions> FramesToSearch(const MarkerImporterOptions& options)
 void CheckPart(const MarkerImporterOptions& options, const ColmapDatabase& database);
 
 // Records which part a database holds, if options.part is set.
-void NotePart(const MarkerImporterOptions& options, const std::string& detector, bool is_finished,
-              ColmapDatabase* database);
+void RecordPart(const MarkerImporterOptions& options, const std::string& detector, bool is_finished,
+                ColmapDatabase* database);
 
 }  // namespace velamap

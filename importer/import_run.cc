@@ -41,7 +41,7 @@ ImportRun::ImportRun(const MarkerImporterOptions& options, const FrameDetector& 
       writer_(
           DescribeDetector(detector),
           source->IsVideo() ? std::make_optional(IdentifySource(options.image_path)) : std::nullopt,
-          [this] { SecureBatch(); }, database),
+          [this] { CommitTrackingWithBatch(); }, database),
       turns_(tracking.tracks),
       held_markers_(HoldsMarkers(*database)),
       expects_markers_(!held_markers_ && !options.part),
@@ -79,7 +79,7 @@ FrameResult ImportRun::Process(int frame_idx, Frame* frame) {
 
 void ImportRun::Consume(const FrameResult& result) {
   const StageTimer timer(ImportStage::kDatabase);
-  NoteTracking(result);
+  RecordTracking(result);
   report_.times += result.times;
   reading_s_ += result.reading_s;
   const FrameDetections& detections = result.detections;
@@ -111,7 +111,7 @@ void ImportRun::Consume(const FrameResult& result) {
 ImportReport ImportRun::Finish(double cpu_s, int num_threads) {
   const StageTimer timer(ImportStage::kDatabase);
   report_.times += TakeStageTimes();
-  SettleTimes(cpu_s, num_threads);
+  FinalizeTimes(cpu_s, num_threads);
   report_.ids_not_in_layout.assign(ids_not_in_layout_.begin(), ids_not_in_layout_.end());
   if (report_.num_frames_read == 0 && !report_.skipped.empty() && !held_markers_) {
     throw InputError(fmt::format("{}: none of {} images can be read; the first: {}: {}",
@@ -128,7 +128,7 @@ ImportReport ImportRun::Finish(double cpu_s, int num_threads) {
   }
   if (few_found_) CheckMarkersFound(options_, detector_.dictionary.name, sample_, report_);
   writer_.Commit();
-  SecureTracking();
+  CommitTracking();
   return report_;
 }
 
@@ -178,7 +178,7 @@ void ImportRun::WriteImage(const Frame& frame, const FrameDetections& detections
   WriteFrameImage(frame, std::filesystem::path(options_.frame_output_path) / frame.image_name);
 }
 
-void ImportRun::NoteTracking(const FrameResult& result) {
+void ImportRun::RecordTracking(const FrameResult& result) {
   ++tracking_.num_frames;
   tracking_.num_damaged += result.is_damaged ? 1 : 0;
   if (const auto number = NumberOfVideoFrame(result.detections.image_name)) {
@@ -187,7 +187,7 @@ void ImportRun::NoteTracking(const FrameResult& result) {
   if (result.tracks) tracking_.tracks = *result.tracks;
 }
 
-void ImportRun::SecureBatch() const {
+void ImportRun::CommitTrackingWithBatch() const {
   if (source_->IsVideo()) database_->WriteTracking(tracking_);
   const StageTimer timer(ImportStage::kImages);
   if (writes_images_ && Exists(options_.frame_output_path)) {
@@ -195,14 +195,14 @@ void ImportRun::SecureBatch() const {
   }
 }
 
-void ImportRun::SecureTracking() const {
+void ImportRun::CommitTracking() const {
   if (!source_->IsVideo() || tracking_.num_frames == num_searched_) return;
   ColmapDatabase::Transaction transaction(database_);
   database_->WriteTracking(tracking_);
   transaction.Commit();
 }
 
-void ImportRun::SettleTimes(double cpu_s, int num_threads) {
+void ImportRun::FinalizeTimes(double cpu_s, int num_threads) {
   ImportTimes& times = report_.times;
   BusyTime& decode = times[ImportStage::kDecode];
   decode.cpu_s = std::max(0.0, cpu_s - (times.CpuSeconds() - decode.cpu_s));

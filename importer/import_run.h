@@ -45,14 +45,14 @@ class ImportRun {
   bool IsFirstOfGroup(int frame_idx) const;
   bool Load(Frame* frame, std::string* reason) const;
   void WriteImage(const Frame& frame, const FrameDetections& detections) const;
-  void NoteTracking(const FrameResult& result);
+  void RecordTracking(const FrameResult& result);
   // A later run does not write a frame again that is in the database, so its file has to be on
   // disk first. The tracks after the batch are stored in the same transaction.
-  void SecureBatch() const;
+  void CommitTrackingWithBatch() const;
   // Covers frames without markers at the end, which are in no batch.
-  void SecureTracking() const;
+  void CommitTracking() const;
   // Turns sums over threads into the times that ImportReport::times describes.
-  void SettleTimes(double cpu_s, int num_threads);
+  void FinalizeTimes(double cpu_s, int num_threads);
   // Called on the working threads, because results that wait for earlier frames hold no pixels.
   void AddToSample(int frame_idx, const cv::Mat& gray);
   void ClearSample();

@@ -68,7 +68,7 @@ ImportReport ImportFrames(const MarkerImporterOptions& options, const FrameDetec
 void CompleteDatabase(const MarkerImporterOptions& options, const FrameDetector& detector,
                       ColmapDatabase* database, ImportReport* report) {
   const StageTimer timer(ImportStage::kDatabase);
-  NotePart(options, DescribeDetector(detector), true, database);
+  RecordPart(options, DescribeDetector(detector), true, database);
   if (options.part) return;
   const int num_turned = ResolveDoubtfulRotations(detector, database);
   report->num_markers += num_turned;
@@ -103,13 +103,13 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
   CheckSources(options, known_names, database);
   CheckPart(options, database);
   CheckExisting(options, DescribeDetector(detector), database);
-  NoteSources(options, known_names, &database);
+  RecordSources(options, known_names, &database);
   CheckFrameFolder(options, known_names);
   if (detector.options.corner_refinement == CornerRefinement::kEdge &&
       detector.options.estimate_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }
-  NotePart(options, DescribeDetector(detector), false, &database);
+  RecordPart(options, DescribeDetector(detector), false, &database);
   ImportReport report;
   if (frames) {
     MarkerImporterOptions searched = options;
@@ -136,7 +136,7 @@ ImportReport ImportMarkers(const MarkerImporterOptions& options, const ProgressC
                          : MakeFrameDetector(options.layout, detection, options.prior_shape);
   const std::optional<VideoOptions> frames = FramesToSearch(options);
   const FileLock lock(LockOfDatabase(options.database_path), options.database_path);
-  SettleReplacement(options.database_path);
+  CompleteReplacement(options.database_path);
   if (!options.import_anew || !Exists(options.database_path)) {
     return ImportInto(options, detector, frames, progress);
   }

@@ -86,7 +86,8 @@ void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layou
                      const CornerErrors& corner_errors, const Model& seed, const Model& adjusted,
                      std::vector<std::string>* warnings) {
   const SteadinessVerdict verdict = JudgeSteadiness(adjusted);
-  if (!verdict.wandering.empty()) warnings->push_back(verdict.wandering);
+  if (!verdict.principal_point_warning.empty())
+    warnings->push_back(verdict.principal_point_warning);
   const auto step = ConfirmFocalStep(options, layout, corner_errors, &seed, verdict.step);
   if (step) throw DataError("the camera cannot be calibrated: " + DescribeStep(*step));
 }

@@ -100,7 +100,7 @@ std::string Part(std::string_view name, const CameraCalibration& calibration,
   if (name == "VERDICT") return VerdictHtml(JudgeCalibration(calibration));
   if (name == "PARAMETERS") return ParameterTable(calibration.camera);
   if (name == "MORE") {
-    const std::vector<std::string> advice = WhatToShoot(calibration);
+    const std::vector<std::string> advice = AdvisedViews(calibration);
     return advice.empty() ? "<p>Nothing is missing.</p>" : Items(advice);
   }
   if (name == "COVERAGE") return DrawCoverage(calibration);

@@ -178,7 +178,7 @@ class Judge {
 
 Verdict JudgeCalibration(const CameraCalibration& calibration) { return Judge(calibration).Take(); }
 
-std::vector<std::string> WhatToShoot(const CameraCalibration& calibration) {
+std::vector<std::string> AdvisedViews(const CameraCalibration& calibration) {
   std::vector<std::string> advice;
   const std::vector<std::string> parts = EmptyParts(calibration);
   if (!parts.empty()) {

@@ -15,7 +15,7 @@ namespace velamap {
 Verdict JudgeCalibration(const CameraCalibration& calibration);
 
 // Views that would make the calibration better, one sentence each; empty where nothing is missing.
-std::vector<std::string> WhatToShoot(const CameraCalibration& calibration);
+std::vector<std::string> AdvisedViews(const CameraCalibration& calibration);
 
 // The fraction of the picture's cells in which corners were seen.
 double CoveredShare(const CameraCalibration& calibration);

@@ -65,7 +65,7 @@ class DatumConsensus {
     DatumHypothesis hypothesis;
     hypothesis.agreement.pose = AdjustPose(points_, model.sample, model.pose);
     hypothesis.agreement.sigmas_off =
-        SigmasOff(points_, model.sample, hypothesis.agreement.pose.pose);
+        SigmasAgainst(points_, model.sample, hypothesis.agreement.pose.pose);
     for (const std::size_t i : candidates_) {
       const double sigmas = hypothesis.agreement.sigmas_off[i];
       hypothesis.cost += std::min(sigmas * sigmas, kMaxDatumSigmas * kMaxDatumSigmas);
@@ -92,7 +92,7 @@ DatumAgreement Settle(const DatumPoints& points, const PointSet& candidates, Poi
   std::vector<double> sigmas;
   while (set.size() >= DatumConsensus::kSampleSize) {
     pose = AdjustPose(points, set, pose.pose);
-    sigmas = SigmasOff(points, set, pose.pose);
+    sigmas = SigmasAgainst(points, set, pose.pose);
     const auto worst = std::max_element(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
       return sigmas[a] < sigmas[b];
     });
@@ -129,7 +129,7 @@ bool IsSupported(const DatumPoints& points, const PointSet& candidates,
 std::optional<DatumAgreement> FindAgreement(const DatumPoints& points, const PointSet& candidates) {
   DatumAgreement agreement;
   agreement.pose = AdjustPose(points, candidates, FindPoses(points, candidates).front().pose);
-  agreement.sigmas_off = SigmasOff(points, candidates, agreement.pose.pose);
+  agreement.sigmas_off = SigmasAgainst(points, candidates, agreement.pose.pose);
   agreement.used = candidates;
   const bool all_agree = std::all_of(candidates.begin(), candidates.end(), [&](std::size_t i) {
     return agreement.sigmas_off[i] <= kMaxDatumSigmas;

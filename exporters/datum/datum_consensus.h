@@ -9,7 +9,7 @@
 
 namespace velamap {
 
-// A point that is this many sigmas (SigmasOff()) from where the others put it contradicts them.
+// A point that is this many sigmas (SigmasAgainst()) from where the others put it contradicts them.
 constexpr double kMaxDatumSigmas = 4.0;
 
 struct DatumAgreement {

@@ -37,7 +37,7 @@ std::vector<std::string> DirectionNames(const Eigen::Matrix3Xd& directions) {
   return names;
 }
 
-// The sum of squares of a point, of `num_coordinates` degrees of freedom, as in SigmasOff().
+// The sum of squares of a point, of `num_coordinates` degrees of freedom, as in SigmasAgainst().
 double InSigmas(double squared, int num_coordinates) {
   // Roots of the 99.73 % quantiles of chi-squared.
   constexpr double kThreeSigmas[] = {3.0, 3.4393, 3.7625};
@@ -99,7 +99,8 @@ std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen
 
 }  // namespace
 
-std::vector<double> SigmasOff(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
+std::vector<double> SigmasAgainst(const DatumPoints& points, const PointSet& set,
+                                  const Rigid3& pose) {
   const PointSet all = AllOf(points);
   const DatumEquations equations = Linearize(points, all, pose);
   const Eigen::MatrixXd covariance = ResidualCovariance(points, all, pose.rotation);
@@ -160,8 +161,8 @@ std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Ri
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
-std::optional<AskedGrowth> GrowthAskedFor(const DatumPoints& points, const PointSet& set,
-                                          const Rigid3& pose) {
+std::optional<ScaleChange> EstimateScaleChange(const DatumPoints& points, const PointSet& set,
+                                               const Rigid3& pose) {
   constexpr double kMaxSigma = 0.5;
   const DatumEquations equations = Linearize(points, set, pose);
   const SetSystem system =
@@ -174,7 +175,7 @@ std::optional<AskedGrowth> GrowthAskedFor(const DatumPoints& points, const Point
   };
   const double weight = by_scale.dot(without_pose(by_scale));
   if (!(weight * kMaxSigma * kMaxSigma > 1)) return std::nullopt;
-  return AskedGrowth{-by_scale.dot(without_pose(system.residuals)) / weight,
+  return ScaleChange{-by_scale.dot(without_pose(system.residuals)) / weight,
                      1.0 / std::sqrt(weight)};
 }
 

@@ -81,7 +81,7 @@ std::optional<DatumAgreement> Agree(const DatumPoints& points, const PointSet& d
   const std::optional<DatumAgreement> grown = FindAgreement(Grown(points, *growth), datum);
   if (!grown || (agreement && grown->used.size() <= agreement->used.size())) return agreement;
   DatumAgreement rigid{grown->used, AdjustPose(points, grown->used, grown->pose.pose), {}};
-  rigid.sigmas_off = SigmasOff(points, rigid.used, rigid.pose.pose);
+  rigid.sigmas_off = SigmasAgainst(points, rigid.used, rigid.pose.pose);
   return rigid;
 }
 
@@ -172,7 +172,7 @@ void ComparePoints(const PresentPoints& present, const DatumAgreement& agreement
 
 }  // namespace
 
-bool KnownPointFit::DoubtsScale() const {
+bool KnownPointFit::ContradictsScale() const {
   return growth && std::abs(growth->value) > kMaxScaleSigmas * growth->sigma;
 }
 
@@ -202,7 +202,7 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   fit.known_from_shape = {pose.rotation,
                           pose.translation - pose.rotation * points.center_in_shape_m};
   ComparePoints(present, *agreement, &fit);
-  fit.growth = GrowthAskedFor(points, agreement->used, pose);
+  fit.growth = EstimateScaleChange(points, agreement->used, pose);
   if (fit.growth && covariance == nullptr) {
     fit.growth->sigma = std::hypot(fit.growth->sigma, scale_sigma);
   }

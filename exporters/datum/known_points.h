@@ -29,7 +29,7 @@ struct ComparedPoint {
   PointState state = PointState::kNotInShape;
   // Shape minus known coordinates, m; 0 along axes that are not known.
   Eigen::Vector3d difference_m = Eigen::Vector3d::Zero();
-  double sigmas_off = 0.0;  // see SigmasOff()
+  double sigmas_off = 0.0;  // see SigmasAgainst()
 };
 
 struct KnownPointFit {
@@ -40,10 +40,10 @@ struct KnownPointFit {
   // Root of the sum of squared normalized residuals per redundant coordinate: about 1 if the sigmas
   // are right. Nothing without a redundant coordinate.
   std::optional<double> residual_in_sigmas;
-  std::optional<AskedGrowth> growth;  // nothing where the points do not determine it
+  std::optional<ScaleChange> growth;  // nothing where the points do not determine it
 
   // Whether the points contradict the size of the shape by more than three sigmas.
-  bool DoubtsScale() const;
+  bool ContradictsScale() const;
 };
 
 // Fits the shape to the largest set of points that agree with each other. `covariance`, of the

@@ -75,7 +75,7 @@ std::pair<bool, double> Badness(const ComparedPoint& point) {
   return {point.state == PointState::kFailed, point.sigmas_off};
 }
 
-std::string GrowthText(const AskedGrowth& growth) {
+std::string GrowthText(const ScaleChange& growth) {
   return fmt::format("{:+.3f} +- {:.3f} %", 100.0 * growth.value, 100.0 * growth.sigma);
 }
 
@@ -124,7 +124,7 @@ std::string KnownPointsText(const KnownPointFit& fit) {
       fit.points.begin(), fit.points.end(),
       [](const ComparedPoint& a, const ComparedPoint& b) { return Badness(a) < Badness(b); });
   text += ", worst " + ShortText(*worst);
-  if (fit.DoubtsScale()) {
+  if (fit.ContradictsScale()) {
     text += "; the points require a change of " + GrowthText(*fit.growth) + " in size";
   }
   return text;
@@ -149,7 +149,7 @@ std::vector<std::string> KnownPointWarnings(const KnownPointFit& fit) {
           NameOf(point), kMmPerM * point.difference_m.norm(), point.sigmas_off));
     }
   }
-  if (fit.DoubtsScale()) {
+  if (fit.ContradictsScale()) {
     warnings.push_back(fmt::format(
         "the known points require a change of {} in the size of the shape; check marker_length, or "
         "measure a distance (distances, use: scale)",

@@ -87,7 +87,7 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
            FitPart(shape, part, layout, own ? &*own : nullptr, mesh, num_threads)});
       return freeform.surfaces.back().surface.notes;
     };
-    AttemptSurface(name, fit, &freeform.notes, &freeform.surface_error);
+    TryFitSurface(name, fit, &freeform.notes, &freeform.surface_error);
   }
   return freeform;
 }

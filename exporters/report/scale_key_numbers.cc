@@ -139,7 +139,7 @@ std::optional<KeyNumber> KnownPointsNumber(const KnownPointFit& fit) {
     number.status = ReportStatus::kBad;
   } else if (!fit.known_from_shape) {
     number.advice = "the result is in another frame: give more points, or film those given";
-  } else if (fit.DoubtsScale()) {
+  } else if (fit.ContradictsScale()) {
     number.advice = "check marker_length, or measure a distance (distances, use: scale)";
   } else if (CountPoints(fit, PointState::kLeftOut) > 0) {
     number.advice = "check coordinates, ids and corners of the points left out";

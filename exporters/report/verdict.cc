@@ -55,7 +55,7 @@ void PrintVerdict(const Verdict& verdict, std::ostream& out) {
 nlohmann::ordered_json VerdictJson(const Verdict& verdict) {
   auto reasons = nlohmann::ordered_json::array();
   for (const VerdictReason& reason : verdict.reasons) {
-    reasons.push_back({{"level", StatusName(reason.level)}, {"text", WithoutFolders(reason.text)}});
+    reasons.push_back({{"level", StatusName(reason.level)}, {"text", StripFolders(reason.text)}});
   }
   return {{"level", StatusName(verdict.level)}, {"reasons", std::move(reasons)}};
 }

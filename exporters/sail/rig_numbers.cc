@@ -38,8 +38,8 @@ std::vector<int> FirstMarkers(const PartContext& context) {
   return ids;
 }
 
-// Markers of the luff as indices into the CenterSet, from foot to head; empty if they determine no
-// curve.
+// Markers of the luff as indices into the MarkerCenters, from foot to head; empty if they determine
+// no curve.
 std::vector<int> LuffIndices(const PartContext& context) {
   const std::vector<int> first = FirstMarkers(context);
   std::set<int> ids(first.begin(), first.end());
@@ -67,7 +67,7 @@ std::vector<int> LuffIndices(const PartContext& context) {
   return indices;
 }
 
-LineCurve FitLuff(const CenterSet& centers, const std::vector<int>& indices) {
+LineCurve FitLuff(const MarkerCenters& centers, const std::vector<int>& indices) {
   LineCurve luff;
   luff.indices = indices;
   const CurveData data = centers.Data(indices);
@@ -92,12 +92,12 @@ Eigen::VectorXd LuffNumbers(const SpaceCurve& luff, const Eigen::Vector3d& aft, 
 
 void SetLuffNumbers(const PartContext& context, const std::optional<MarkerPair>& centerline,
                     RigNumbers* rig) {
-  const CenterSet& centers = context.centers;
+  const MarkerCenters& centers = context.centers;
   const std::vector<int> indices = LuffIndices(context);
   if (indices.empty()) return;
   const LineCurve luff = FitLuff(centers, indices);
   const LineCurve& lowest = context.curves.lines.front();
-  const NumbersFunction numbers = [&](const CenterSet& moved, int) -> Eigen::VectorXd {
+  const NumbersFunction numbers = [&](const MarkerCenters& moved, int) -> Eigen::VectorXd {
     const SpaceCurve foot = centerline ? SpaceCurve{} : lowest.Refit(moved);
     const Eigen::Vector3d aft =
         centerline ? Eigen::Vector3d(moved.x_m.col(centerline->last_idx) -

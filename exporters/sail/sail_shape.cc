@@ -140,7 +140,7 @@ SailShape ComputeSail(const MarkerShape& shape, const ShapeFrame& frame, const L
       sail.surfaces.push_back(MakeSailSurface(shape, layout, part, options));
       return sail.surfaces.back().fit.notes;
     };
-    AttemptSurface(part.name, fit, &sail.surface_notes, &sail.surface_error);
+    TryFitSurface(part.name, fit, &sail.surface_notes, &sail.surface_error);
   }
   return sail;
 }

@@ -24,8 +24,8 @@ constexpr double kMinHint = 0.5;  // cosine of 60 degrees
 constexpr const char* kBoomPart = "boom";
 constexpr const char* kCenterlinePart = "centerline";
 
-CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
-                         const PointCovariance* covariance) {
+MarkerCenters CollectCenters(const MarkerShape& shape, const Layout& layout,
+                             const PointCovariance* covariance) {
   std::set<int> ids;
   for (const LayoutPart& part : layout.parts) {
     if (part.horizontal.empty()) continue;
@@ -38,7 +38,7 @@ CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
   for (const char* part : {kBoomPart, kCenterlinePart}) {
     for (const int id : MarkersOfPart(layout, part)) ids.insert(id);
   }
-  CenterSet centers;
+  MarkerCenters centers;
   for (const int id : ids) {
     if (FindWholeMarker(shape, id) != nullptr) centers.marker_ids.push_back(id);
   }
@@ -71,8 +71,8 @@ CenterSet CollectCenters(const MarkerShape& shape, const Layout& layout,
 }
 
 // The two markers of the part that are farthest apart, the forward one first.
-std::optional<MarkerPair> FindPair(const char* part, const Layout& layout, const CenterSet& centers,
-                                   const Eigen::Vector3d& aft) {
+std::optional<MarkerPair> FindPair(const char* part, const Layout& layout,
+                                   const MarkerCenters& centers, const Eigen::Vector3d& aft) {
   std::vector<int> indices;
   for (const int id : MarkersOfPart(layout, part)) {
     if (const auto index = centers.IndexOf(id)) indices.push_back(*index);
@@ -127,8 +127,8 @@ void AddMarkers(const PartContext& context, const LineCurve& line, Section* sect
 }
 
 // A number of a section minus the reference's.
-Estimate Difference(SectionNumber number, const CenterSet& centers, const NumbersWithGradient& own,
-                    const NumbersWithGradient& reference) {
+Estimate Difference(SectionNumber number, const MarkerCenters& centers,
+                    const NumbersWithGradient& own, const NumbersWithGradient& reference) {
   return {own.numbers[number] - reference.numbers[number],
           SigmaOfGradient(centers, own.gradient.row(number) - reference.gradient.row(number))};
 }
@@ -252,7 +252,7 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
     return report;
   }
   const Eigen::Vector3d& up = *section_up.direction;
-  const CenterSet centers = CollectCenters(shape, layout, covariance);
+  const MarkerCenters centers = CollectCenters(shape, layout, covariance);
   const bool wants_boom = !MarkersOfPart(layout, kBoomPart).empty();
   report.twist_reference = "lowest section";
   for (const LayoutPart& part : layout.parts) {

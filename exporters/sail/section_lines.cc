@@ -14,7 +14,7 @@ namespace velamap {
 namespace {
 
 // The reason why no curve can be fitted to the markers; empty if one can.
-std::string WhyNoCurve(const CenterSet& centers, const std::vector<int>& indices,
+std::string WhyNoCurve(const MarkerCenters& centers, const std::vector<int>& indices,
                        const Eigen::Vector3d& up) {
   constexpr double kMinSine = 0.1;  // about 6 degrees
   const Eigen::Matrix3Xd x = centers.Points(indices);
@@ -91,7 +91,7 @@ Eigen::ArrayXd SpanParameters(const std::vector<Eigen::Matrix3Xd>& samples) {
 }
 
 // Fits the lines whose markers all have a sigma, or the other lines.
-void SmoothTogether(bool with_sigma, const CenterSet& centers, std::vector<LineCurve>* lines) {
+void SmoothTogether(bool with_sigma, const MarkerCenters& centers, std::vector<LineCurve>* lines) {
   std::vector<LineCurve*> alike;
   std::vector<CurveData> data;
   for (LineCurve& line : *lines) {
@@ -123,17 +123,17 @@ double MiddleHeight(const LineCurve& line, const Eigen::Vector3d& up) {
   return up.dot(EvaluateCurve(line.fit.curve, 0.0) + EvaluateCurve(line.fit.curve, 1.0)) / 2;
 }
 
-std::optional<int> CenterSet::IndexOf(int marker_id) const {
+std::optional<int> MarkerCenters::IndexOf(int marker_id) const {
   const auto it = std::lower_bound(marker_ids.begin(), marker_ids.end(), marker_id);
   if (it == marker_ids.end() || *it != marker_id) return std::nullopt;
   return static_cast<int>(it - marker_ids.begin());
 }
 
-Eigen::Matrix3Xd CenterSet::Points(const std::vector<int>& indices) const {
+Eigen::Matrix3Xd MarkerCenters::Points(const std::vector<int>& indices) const {
   return x_m(Eigen::all, indices);
 }
 
-CurveData CenterSet::Data(const std::vector<int>& indices) const {
+CurveData MarkerCenters::Data(const std::vector<int>& indices) const {
   CurveData data{Points(indices), {}};
   std::vector<int> rows;
   for (const int index : indices) {
@@ -144,12 +144,12 @@ CurveData CenterSet::Data(const std::vector<int>& indices) const {
   return data;
 }
 
-SpaceCurve LineCurve::Refit(const CenterSet& centers) const {
+SpaceCurve LineCurve::Refit(const MarkerCenters& centers) const {
   return FitCurveOnly(centers.Data(indices), smoothing);
 }
 
-PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const Eigen::Vector3d& up,
-                        int min_markers) {
+PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
+                        const Eigen::Vector3d& up, int min_markers) {
   PartCurves curves;
   for (const MarkerLine& line : part.horizontal) {
     LineCurve curve;

@@ -16,7 +16,7 @@
 namespace velamap {
 
 // Marker centres and their noise, shared by all sections.
-struct CenterSet {
+struct MarkerCenters {
   std::vector<int> marker_ids;    // ascending
   Eigen::Matrix3Xd x_m;           // by index
   Eigen::MatrixXd covariance_m2;  // 3n x 3n; zero rows for markers without a sigma
@@ -31,12 +31,12 @@ struct CenterSet {
 struct LineCurve {
   std::string name;
   int place_in_layout = 0;   // among the part's horizontal lines
-  std::vector<int> indices;  // into the CenterSet, from luff to leech
+  std::vector<int> indices;  // into the MarkerCenters, from luff to leech
   double smoothing = 0.0;
   CurveFit fit;
 
   // Fits the same line with moved markers.
-  SpaceCurve Refit(const CenterSet& centers) const;
+  SpaceCurve Refit(const MarkerCenters& centers) const;
 };
 
 struct MissingLine {
@@ -53,8 +53,8 @@ struct PartCurves {
 
 // Fits the lines of the part. Leaves out lines with too few markers, with markers in the same place
 // or out of order along the chord, lines that run opposite to the others, and lines that cross.
-PartCurves FitPartLines(const LayoutPart& part, const CenterSet& centers, const Eigen::Vector3d& up,
-                        int min_markers);
+PartCurves FitPartLines(const LayoutPart& part, const MarkerCenters& centers,
+                        const Eigen::Vector3d& up, int min_markers);
 
 // Leaves out crossing lines, the one with the most crossings first, until none cross. Of a pair
 // that crosses no other line, nothing says which one is wrong, and both are left out.

@@ -60,7 +60,7 @@ double FarthestParameter(const SpaceCurve& curve, const Eigen::Vector3d& directi
   return t;
 }
 
-Eigen::MatrixXd Differentiate(const CenterSet& centers, const std::vector<int>& indices,
+Eigen::MatrixXd Differentiate(const MarkerCenters& centers, const std::vector<int>& indices,
                               Eigen::Index num_numbers, const NumbersFunction& function) {
   Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(num_numbers, centers.x_m.size());
   const auto has_sigma = [&](int index) {
@@ -70,7 +70,7 @@ Eigen::MatrixXd Differentiate(const CenterSet& centers, const std::vector<int>& 
     gradient.setConstant(std::numeric_limits<double>::quiet_NaN());
     return gradient;
   }
-  CenterSet moved = centers;
+  MarkerCenters moved = centers;
   for (const int index : indices) {
     for (int axis = 0; axis < 3; ++axis) {
       double& coordinate = moved.x_m(axis, index);
@@ -131,7 +131,7 @@ double MeanDepth(const SpaceCurve& curve, const SectionAxes& axes) {
 NumbersWithGradient NumbersOfLine(const PartContext& context, const LineCurve& line) {
   return {ComputeNumbers(line.fit.curve, context.axes),
           Differentiate(context.centers, line.indices, kNumSectionNumbers,
-                        [&](const CenterSet& moved, int) {
+                        [&](const MarkerCenters& moved, int) {
                           return ComputeNumbers(line.Refit(moved), context.axes);
                         })};
 }
@@ -148,7 +148,7 @@ NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& c
   const std::vector<Eigen::Matrix3Xd> samples = SampleLines(lines);
   std::set<int> indices;
   for (const LineCurve& line : lines) indices.insert(line.indices.begin(), line.indices.end());
-  const auto numbers = [&](const CenterSet& moved, int index) -> SectionNumbers {
+  const auto numbers = [&](const MarkerCenters& moved, int index) -> SectionNumbers {
     std::vector<Eigen::Matrix3Xd> moved_samples = samples;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const std::vector<int>& on_line = lines[i].indices;
@@ -169,7 +169,7 @@ NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& c
 }
 
 NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& pair) {
-  const auto azimuth = [&](const CenterSet& centers, int) -> SectionNumbers {
+  const auto azimuth = [&](const MarkerCenters& centers, int) -> SectionNumbers {
     SectionNumbers numbers = SectionNumbers::Zero();
     numbers[kAzimuth] =
         context.axes.leeward *
@@ -182,7 +182,7 @@ NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& 
       Differentiate(context.centers, {pair.first_idx, pair.last_idx}, kNumSectionNumbers, azimuth)};
 }
 
-std::optional<double> SigmaOfGradient(const CenterSet& centers,
+std::optional<double> SigmaOfGradient(const MarkerCenters& centers,
                                       const Eigen::RowVectorXd& gradient) {
   for (std::size_t i = 0; i < centers.has_sigma.size(); ++i) {
     const auto by_marker = gradient.segment<3>(static_cast<Eigen::Index>(3 * i));

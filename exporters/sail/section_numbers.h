@@ -54,12 +54,13 @@ double FarthestParameter(const SpaceCurve& curve, const Eigen::Vector3d& directi
 // Common to all sections of one part.
 struct PartContext {
   const LayoutPart& part;
-  const CenterSet& centers;
+  const MarkerCenters& centers;
   SectionAxes axes;
   PartCurves curves;
 };
 
-// Two markers of the boom or of the centre line as indices into the CenterSet, from forward aft.
+// Two markers of the boom or of the centre line as indices into the MarkerCenters, from forward
+// aft.
 struct MarkerPair {
   int first_idx = 0, last_idx = 0;
 };
@@ -79,14 +80,15 @@ NumbersWithGradient NumbersOfCut(const PartContext& context, const SpaceCurve& c
 NumbersWithGradient NumbersOfPair(const PartContext& context, const MarkerPair& pair);
 
 // Numbers as a function of the centres, of which only the one with this index has moved.
-using NumbersFunction = std::function<Eigen::VectorXd(const CenterSet& centers, int index)>;
+using NumbersFunction = std::function<Eigen::VectorXd(const MarkerCenters& centers, int index)>;
 
 // Their derivatives, with respect to the listed markers by central differences; zero for others.
-Eigen::MatrixXd Differentiate(const CenterSet& centers, const std::vector<int>& indices,
+Eigen::MatrixXd Differentiate(const MarkerCenters& centers, const std::vector<int>& indices,
                               Eigen::Index num_numbers, const NumbersFunction& function);
 
 // Sigma of a number with this gradient; nothing if it depends on a marker without a sigma.
-std::optional<double> SigmaOfGradient(const CenterSet& centers, const Eigen::RowVectorXd& gradient);
+std::optional<double> SigmaOfGradient(const MarkerCenters& centers,
+                                      const Eigen::RowVectorXd& gradient);
 
 // Points of the lines as CutAtHeight takes them.
 std::vector<Eigen::Matrix3Xd> SampleLines(const std::vector<LineCurve>& lines);

@@ -175,7 +175,7 @@ std::string NameOf(FrameKind kind, const FrameChoice& choice) {
              : FrameKeyword(kind);
 }
 
-[[noreturn]] void ThrowNotGranted(const FrameChoice& choice, const std::string& reason) {
+[[noreturn]] void ThrowFrameNotPossible(const FrameChoice& choice, const std::string& reason) {
   throw InputError(
       fmt::format("--frame: {} is not possible: {}; leave the option out, or give "
                   "another frame",
@@ -207,23 +207,24 @@ std::string FrameText(const ShapeFrame& frame) {
 void CheckFrameChoice(const std::optional<FrameChoice>& choice, const Layout& layout) {
   if (!choice) return;
   if (choice->kind == FrameKind::kKnownPoints) {
-    if (layout.known_points.empty()) ThrowNotGranted(*choice, "the layout has no known_points");
+    if (layout.known_points.empty())
+      ThrowFrameNotPossible(*choice, "the layout has no known_points");
     const std::string lack = WhatDatumLacks(layout.known_points);
     if (!lack.empty()) {
-      ThrowNotGranted(*choice, "the layout's known_points do not suffice: " + lack);
+      ThrowFrameNotPossible(*choice, "the layout's known_points do not suffice: " + lack);
     }
   }
   if (choice->kind == FrameKind::kReferencePart && !layout.reference_part) {
-    ThrowNotGranted(*choice, "the layout names no reference_part");
+    ThrowFrameNotPossible(*choice, "the layout names no reference_part");
   }
   if (choice->kind == FrameKind::kLines && FirstPartWithLines(layout) == nullptr) {
-    ThrowNotGranted(*choice, "the layout has no horizontal lines");
+    ThrowFrameNotPossible(*choice, "the layout has no horizontal lines");
   }
   if (choice->kind != FrameKind::kMarkers || !layout.HasMarkers()) return;
   for (const int id : {choice->origin_id, choice->axis_id, choice->plane_id}) {
     const std::vector<int> known = MarkerIds(layout);
     if (!std::binary_search(known.begin(), known.end(), id)) {
-      ThrowNotGranted(*choice, fmt::format("the layout names no marker {}", id));
+      ThrowFrameNotPossible(*choice, fmt::format("the layout names no marker {}", id));
     }
   }
 }
@@ -239,7 +240,7 @@ ShapeFrame ChooseFrame(const MarkerShape& shape, const Layout& layout,
   for (const FrameKind kind : order) {
     FrameAttempt attempt = Try(kind, wanted, shape, layout, known_points);
     if (!attempt.frame) {
-      if (choice) ThrowNotGranted(wanted, attempt.reason);
+      if (choice) ThrowFrameNotPossible(wanted, attempt.reason);
       reasons.push_back(fmt::format("not by {}: {}", NameOf(kind, wanted), attempt.reason));
       continue;
     }

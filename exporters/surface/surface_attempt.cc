@@ -6,8 +6,8 @@
 
 namespace velamap {
 
-void AttemptSurface(const std::string& part, const std::function<std::vector<std::string>()>& fit,
-                    std::vector<std::string>* notes, std::exception_ptr* first_error) {
+void TryFitSurface(const std::string& part, const std::function<std::vector<std::string>()>& fit,
+                   std::vector<std::string>* notes, std::exception_ptr* first_error) {
   try {
     for (const std::string& note : fit()) notes->push_back(fmt::format("{}: {}", part, note));
   } catch (const std::exception& error) {

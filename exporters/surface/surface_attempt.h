@@ -11,7 +11,7 @@ namespace velamap {
 
 // Adds the notes that `fit` returns to `notes`, or that `part` has no surface and why. Keeps the
 // first error that is not of the data, DataError, in `first_error`.
-void AttemptSurface(const std::string& part, const std::function<std::vector<std::string>()>& fit,
-                    std::vector<std::string>* notes, std::exception_ptr* first_error);
+void TryFitSurface(const std::string& part, const std::function<std::vector<std::string>()>& fit,
+                   std::vector<std::string>* notes, std::exception_ptr* first_error);
 
 }  // namespace velamap

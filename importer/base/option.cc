@@ -77,7 +77,7 @@ std::string OptionName(const OptionGroup& group, const void* member) {
   return "--" + option->name;
 }
 
-void WarnOfOldName(const std::string& given, const std::string& name) {
+void WarnAboutOldName(const std::string& given, const std::string& name) {
   spdlog::warn("{}: an old name; write {}", given, name);
 }
 

@@ -118,7 +118,7 @@ std::string OptionName(Member Options::*member) {
 }
 
 // Logs that `given` is an old name, still understood, of `name`.
-void WarnOfOldName(const std::string& given, const std::string& name);
+void WarnAboutOldName(const std::string& given, const std::string& name);
 
 // Index of the name that is `text`. Throws InputError that begins with `option` and lists the
 // names.
@@ -152,7 +152,7 @@ Option ChoiceOption(const std::string& name, Value* value, const Choices<Value>&
   const auto set = [=](const std::string& text, const std::string& option) {
     for (const auto& [choice, old_name] : old_names) {
       if (text != old_name) continue;
-      WarnOfOldName(option + " " + text, ChoiceName(choices, choice));
+      WarnAboutOldName(option + " " + text, ChoiceName(choices, choice));
       *value = choice;
       return;
     }

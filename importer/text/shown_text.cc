@@ -41,7 +41,7 @@ void ShowFolders(bool show) {
   shows_folders = show;
 }
 
-void MentionPath(const std::filesystem::path& path) {
+void RegisterPrivatePath(const std::filesystem::path& path) {
   const std::lock_guard<std::mutex> lock(mutex);
   for (const std::filesystem::path& form : {AbsoluteFolder(path), CanonicalPath(path)}) {
     const std::filesystem::path folder = form.parent_path();
@@ -49,7 +49,7 @@ void MentionPath(const std::filesystem::path& path) {
   }
 }
 
-std::string WithoutFolders(const std::string& text) {
+std::string StripFolders(const std::string& text) {
   const std::lock_guard<std::mutex> lock(mutex);
   if (shows_folders) return text;
   std::string shown = text;

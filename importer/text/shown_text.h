@@ -8,15 +8,15 @@
 
 namespace velamap {
 
-// Sets whether WithoutFolders() leaves the folders in; at the start of the program it does not.
+// Sets whether StripFolders() leaves the folders in; at the start of the program it does not.
 void ShowFolders(bool show);
 
-// Registers a file or folder that texts may mention, so that WithoutFolders() recognises the
+// Registers a file or folder that texts may mention, so that StripFolders() recognises the
 // folders above it even where their names hold spaces.
-void MentionPath(const std::filesystem::path& path);
+void RegisterPrivatePath(const std::filesystem::path& path);
 
 // The text with every absolute path reduced to its file name. Paths are words that begin with a
 // slash, and those whose folders are the folders of a mentioned path.
-std::string WithoutFolders(const std::string& text);
+std::string StripFolders(const std::string& text);
 
 }  // namespace velamap

@@ -85,7 +85,7 @@ void MarkerAdjuster::PrepareSeed() {
   }
 }
 
-void MarkerAdjuster::AdjustLoosely() {
+void MarkerAdjuster::AdjustWithLooseSizes() {
   // In the first round the sides are almost free: in a rough seed, wrong sides would hold the
   // corners back.
   constexpr double kVeryLooseTolerance = 0.3;
@@ -115,7 +115,7 @@ void MarkerAdjuster::RejectContradictingSizes() {
                             verdict.warnings.end());
 }
 
-void MarkerAdjuster::AdjustTightly() {
+void MarkerAdjuster::AdjustWithSizes() {
   constexpr int kMaxNumRounds = 10;
   constexpr double kMaxChange = 0.03;
   for (int round = 0; round < kMaxNumRounds; ++round) {
@@ -147,7 +147,7 @@ std::optional<MarkerAdjuster> MarkerAdjuster::WithBetterCalibration(MarkerAdjust
 std::vector<CameraModelScore> MarkerAdjuster::CrossValidateCameraModel(
     std::optional<CameraModel> wanted) {
   solution_ = WithMostFlexibleModel(solution_);
-  AdjustTightly();
+  AdjustWithSizes();
   CrossValidation result = CrossValidateCameraModels(solution_, wanted);
   solution_ = std::move(result.best);
   return std::move(result.scores);
@@ -170,9 +170,9 @@ void MarkerAdjuster::WidenCameraSigmas() {
 void MarkerAdjuster::ChooseCameraModel() { solution_ = WithBestCameraModel(solution_); }
 
 void MarkerAdjuster::AdjustToCorners() {
-  AdjustLoosely();
+  AdjustWithLooseSizes();
   RejectContradictingSizes();
-  AdjustTightly();
+  AdjustWithSizes();
 }
 
 MarkerAdjuster MarkerAdjuster::AdjustedFrom(MarkerAdjuster* begin) {

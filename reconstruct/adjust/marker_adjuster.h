@@ -27,7 +27,7 @@ class MarkerAdjuster {
 
   // Minimizes with hardly any weight on the markers' sizes, so that the images decide, and
   // calibrates the corners' sigmas by the residuals.
-  void AdjustLoosely();
+  void AdjustWithLooseSizes();
 
   // Drops the size of markers that contradict the others, raises the print tolerance where the
   // sizes scatter more than it explains, and lets each part have a scale of its own where parts
@@ -36,7 +36,7 @@ class MarkerAdjuster {
 
   // Minimizes with the sizes. Removes corners beyond outlier_sigmas and restores those that have
   // come to fit, until nothing changes.
-  void AdjustTightly();
+  void AdjustWithSizes();
 
   // The three steps above.
   void AdjustToCorners();

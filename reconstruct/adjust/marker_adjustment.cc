@@ -20,7 +20,7 @@ MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options
   MarkerAdjuster given = MarkerAdjuster::AdjustedFrom(&begin);
   std::optional<MarkerAdjuster> better = given.WithBetterCalibration(begin);
   MarkerAdjuster& adjuster = better ? *better : given;
-  if (adjuster.AddScaleBars()) adjuster.AdjustTightly();
+  if (adjuster.AddScaleBars()) adjuster.AdjustWithSizes();
   adjuster.Finish();
   *model = adjuster.TakeModel();
   UntieTurnedCameras(turned, model);

@@ -46,7 +46,7 @@ struct SteadinessVerdict {
   std::optional<FocalStep> step;  // the one that divides the images best; nothing for few images
   // One line for a warning if the principal point wanders from image to image by at least 0.4 % of
   // the larger side and 4 sigmas; else empty.
-  std::string wandering;
+  std::string principal_point_warning;
 };
 
 // Takes the images in the natural order of their names.

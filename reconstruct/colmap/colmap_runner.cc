@@ -83,7 +83,7 @@ class Log {
     stream_.open(path, std::ios::app | std::ios::binary);
     if (!stream_) throw InputError(fmt::format("{}: the log cannot be written", path));
   }
-  ~Log() { stream_ << WithoutFolders(unfinished_); }
+  ~Log() { stream_ << StripFolders(unfinished_); }
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 
@@ -91,7 +91,7 @@ class Log {
     const std::size_t end = text.rfind('\n') + 1;
     unfinished_.append(text, 0, end);
     if (end > 0) {
-      stream_ << WithoutFolders(unfinished_) << std::flush;
+      stream_ << StripFolders(unfinished_) << std::flush;
       unfinished_.clear();
     }
     unfinished_.append(text, end);

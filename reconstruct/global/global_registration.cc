@@ -204,11 +204,7 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
                                     const RegistrationOptions& options) {
   options.Check();
   GlobalRegistration global{options, CanonicalOrder(images), {}, false, -1, {}, {}, {}, {}, {}, {}};
-  if (global.images.size() < 2) {
-    throw DataError("a shape needs at least two images with markers, the database has " +
-                    std::to_string(global.images.size()) +
-                    "; take pictures from several positions");
-  }
+  CheckEnoughImages(global.images.size(), 2);
   global.is_video = UseTimeOrder(global.images, options.frame_order);
   if (!options.central_frame.empty()) {
     global.central_image_idx = FindCentralFrame(global.images, options);

@@ -36,11 +36,9 @@ std::string ReasonLeftOut(const GlobalRegistration& global, int frame_idx) {
                         global.problem.Observation(idx).marker_idx)]
                     .empty();
       });
-  if (num_shared < global.options.min_num_inliers) {
-    return fmt::format("shares {} of its {} markers with the registered images, {} are needed",
-                       num_shared, observation_idxs.size(), global.options.min_num_inliers);
-  }
-  return fmt::format("its {} shared markers do not agree on a position of the camera", num_shared);
+  return ReasonNotRegistered(static_cast<int>(num_shared),
+                             static_cast<int>(observation_idxs.size()),
+                             global.options.min_num_inliers);
 }
 
 void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
@@ -66,7 +64,7 @@ void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFr
     if (!global.solution.fits[static_cast<std::size_t>(idx)]) {
       frame->outlier_ids.push_back(marker_id);
       frame->outlier_reasons.push_back(
-          WhyOutlier(global.problem, global.solution, global.noise, observation));
+          OutlierReason(global.problem, global.solution, global.noise, observation));
       continue;
     }
     frame->marker_ids.push_back(marker_id);

@@ -163,8 +163,8 @@ bool IsSuspicious(const MapNoise& noise) {
   return noise.sigma_px > kNegligiblePx && noise.sigma_px > kRatio * noise.alone_sigma_px;
 }
 
-std::string WhyOutlier(const MapProblem& problem, const MapSolution& solution,
-                       const MapNoise& noise, const MapObservation& observation) {
+std::string OutlierReason(const MapProblem& problem, const MapSolution& solution,
+                          const MapNoise& noise, const MapObservation& observation) {
   const double tolerance_px =
       std::max(FinalTolerance(observation, noise), GrowthTolerance(observation));
   const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];

@@ -36,8 +36,8 @@ bool IsSuspicious(const MapNoise& noise);
 
 // The reason why an observation does not fit the place of its marker: it shows another marker, its
 // corners are numbered from a wrong one, a single corner is off, or another cause.
-std::string WhyOutlier(const MapProblem& problem, const MapSolution& solution,
-                       const MapNoise& noise, const MapObservation& observation);
+std::string OutlierReason(const MapProblem& problem, const MapSolution& solution,
+                          const MapNoise& noise, const MapObservation& observation);
 
 // The evidence for a placed marker: where it is, how well that is known from the observations that
 // fit, and how many of the registered frames that should show it do. Lengths in units of the map.

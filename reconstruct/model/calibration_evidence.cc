@@ -4,14 +4,15 @@
 
 namespace velamap {
 
-double SigmasOff(const CalibrationEvidence& evidence) {
+double SigmasAgainst(const CalibrationEvidence& evidence) {
   if (evidence.num_changes == 0) return 0.0;
   const double degrees = evidence.num_changes, spread = 2.0 / (9.0 * degrees);
   return (std::cbrt(evidence.chi_squared / degrees) - (1.0 - spread)) / std::sqrt(spread);
 }
 
 bool IsContradicted(const CalibrationEvidence& evidence) {
-  return SigmasOff(evidence) > kMaxCalibrationSigmas && evidence.systematic_px > kMaxSystematic_px;
+  return SigmasAgainst(evidence) > kMaxCalibrationSigmas &&
+         evidence.systematic_px > kMaxSystematic_px;
 }
 
 }  // namespace velamap

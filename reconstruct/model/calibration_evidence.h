@@ -28,7 +28,7 @@ struct CalibrationEvidence {
 
 // The chi-squared as a value of the standard normal distribution (Wilson and Hilferty, 1931): by
 // how many sigmas the residuals contradict the calibration. 0 if nothing was tested.
-double SigmasOff(const CalibrationEvidence& evidence);
+double SigmasAgainst(const CalibrationEvidence& evidence);
 
 // Whether the residuals contradict the calibration: beyond chance, and by more than the lens
 // residue that the sigma of every corner contains

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,5 +55,12 @@ struct Registration {
 
   int NumRegistered() const;
 };
+
+// Throws DataError if fewer than `needed` images have markers.
+void CheckEnoughImages(std::size_t num_images, std::size_t needed);
+
+// Why a frame with `num_markers` markers, of which the registered images share `num_shared`, could
+// not be registered; `needed` shared markers would allow it.
+std::string ReasonNotRegistered(int num_shared, int num_markers, int needed);
 
 }  // namespace velamap

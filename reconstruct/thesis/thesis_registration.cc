@@ -109,14 +109,11 @@ std::string ReasonLeftOut(const RegistrationState& state, const FrameShape& fram
   for (const FrameMarker& marker : frame.markers) {
     num_shared += static_cast<int>(state.shape.count(marker.marker_id));
   }
-  if (num_shared < state.options.min_num_inliers) {
-    return "shares " + std::to_string(num_shared) + " of its " +
-           std::to_string(frame.markers.size()) + " markers with the registered images, " +
-           std::to_string(state.options.min_num_inliers) + " are needed";
+  const int needed = state.options.min_num_inliers;
+  if (num_shared >= needed && time_order) {
+    return "not selected by the search around the central frame";
   }
-  if (time_order) return "not selected by the search around the central frame";
-  return "its " + std::to_string(num_shared) +
-         " shared markers do not agree on a position of the camera";
+  return ReasonNotRegistered(num_shared, static_cast<int>(frame.markers.size()), needed);
 }
 
 // Moves the shape frame back to the central image's camera, from which averaging has shifted it.
@@ -163,10 +160,7 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
   const std::vector<const DatabaseImage*>& ordered = posed.images;
   const bool time_order = UseTimeOrder(ordered, options.frame_order);
   const int min_num_registered = time_order && options.thesis.num_frames == 0 ? 1 : 2;
-  if (static_cast<int>(state.frames.size()) < min_num_registered) {
-    throw DataError("a shape needs at least two images with markers, the database has " +
-                    std::to_string(state.frames.size()) + "; take pictures from several positions");
-  }
+  CheckEnoughImages(state.frames.size(), static_cast<std::size_t>(min_num_registered));
 
   Registration registration;
   const CentralFrame central =

@@ -80,7 +80,7 @@ TEST(CheckPart, ADatabaseHoldsOnePart) {
   options.database_path = dir / "database.db";
   options.part = VideoPart{2, 3};
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWriteCreate);
-  NotePart(options, "detector", true, &database);
+  RecordPart(options, "detector", true, &database);
   EXPECT_NO_THROW(CheckPart(options, database));
   const auto expect = [&](const std::optional<VideoPart>& part, const VideoOptions& video,
                           const std::string& word) {

@@ -144,12 +144,12 @@ std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& a
 
 // Removes the user's folders from the texts of the report, because reports are passed on to others.
 void LeaveFoldersOut(ReportInput* input) {
-  for (std::string& warning : input->warnings) warning = WithoutFolders(warning);
+  for (std::string& warning : input->warnings) warning = StripFolders(warning);
   for (auto* pairs : {&input->options, &input->versions}) {
-    for (auto& [name, value] : *pairs) value = WithoutFolders(value);
+    for (auto& [name, value] : *pairs) value = StripFolders(value);
   }
   for (auto* left_out : {&input->images_left_out, &input->markers_left_out}) {
-    for (ReportLeftOut& one : *left_out) one.reason = WithoutFolders(one.reason);
+    for (ReportLeftOut& one : *left_out) one.reason = StripFolders(one.reason);
   }
 }
 

@@ -51,9 +51,10 @@ void Validate(Options* options) {
   LogPreset(options->preset);
   RefuseOptionsOfOtherBackend(options->typed, options->adjustment.backend);
   if (!options->adjustment.UsesMarkers()) {
-    RefuseWithoutEffect(options->typed, {"database_path"},
-                        "--backend colmap adjusts without the corners' sigmas (--backend both or "
-                        "markers would use it)");
+    RefuseOptionsWithoutEffect(
+        options->typed, {"database_path"},
+        "--backend colmap adjusts without the corners' sigmas (--backend both or "
+        "markers would use it)");
   }
   options->adjustment.Complete(options->general.num_threads);
 }

@@ -95,7 +95,7 @@ void Validate(Options* options) {
   calibration.calibration.num_threads = options->general.num_threads;
   calibration.layout = LoadGivenLayout(options->markers, true);
   if (options->typed.count("Board.chessboard") == 0 && options->chessboard.empty()) {
-    RefuseWithoutEffect(options->typed, {"Board."}, "--Board.chessboard is missing");
+    RefuseOptionsWithoutEffect(options->typed, {"Board."}, "--Board.chessboard is missing");
     return;
   }
   calibration.chessboard = ParseChessboard(options->chessboard, "--Board.chessboard");
@@ -119,7 +119,7 @@ void Print(const CameraCalibration& calibration, std::ostream& out) {
     fmt::print(out, "unseen_error_px: {:.4f} {}\n", score.unseen_error_px,
                CameraModelName(score.model));
   }
-  for (const std::string& advice : WhatToShoot(calibration)) {
+  for (const std::string& advice : AdvisedViews(calibration)) {
     fmt::print(out, "shoot_more: {}\n", advice);
   }
   fmt::print(out, "board: {}\n", DescribeBoard(calibration.board));

@@ -13,7 +13,7 @@
 namespace velamap {
 namespace {
 
-bool IsHelp(const std::string& name) { return name == "help" || AskedHelp({name}).has_value(); }
+bool IsHelp(const std::string& name) { return name == "help" || RequestedHelp({name}).has_value(); }
 
 Command FindCommand(const std::string& name) {
   std::vector<std::string> names = {"help"};
@@ -77,12 +77,12 @@ void RunCommandLine(const Arguments& arguments) {
   const Arguments rest(arguments.begin() + (arguments.empty() ? 0 : 1), arguments.end());
   if (IsHelp(name)) {
     if (rest.empty() || IsHelp(rest.front())) return PrintOverview();
-    return PrintHelp(FindCommand(rest.front()).syntax, AskedHelp(rest).value_or(HelpLength::kShort),
-                     std::cout);
+    return PrintHelp(FindCommand(rest.front()).syntax,
+                     RequestedHelp(rest).value_or(HelpLength::kShort), std::cout);
   }
   const Command command = FindCommand(name == "--version" ? "version" : name);
   if (!ParseOptions(command.syntax, rest, AllOptionNames())) {
-    return PrintHelp(command.syntax, AskedHelp(rest).value(), std::cout);
+    return PrintHelp(command.syntax, RequestedHelp(rest).value(), std::cout);
   }
   OutputDate();  // reports an invalid SOURCE_DATE_EPOCH before the work, not after it
   command.run(rest);

@@ -157,27 +157,29 @@ void RefuseUnusedOptions(const Options& options) {
   const std::string& reference = options.paths.reference_path;
   const std::string what = "the --reference_path " + reference;
   if (!IsMeshPath(reference)) {
-    RefuseWithoutEffect(options.typed, {"reference_unit", "chord_deviation", "edge_tolerance"},
-                        what + " is a shape in m, not a surface");
+    RefuseOptionsWithoutEffect(options.typed,
+                               {"reference_unit", "chord_deviation", "edge_tolerance"},
+                               what + " is a shape in m, not a surface");
   } else {
-    RefuseWithoutEffect(options.typed, {"reference_uncertainty_path"},
-                        what + " is a surface, which has no uncertainty");
+    RefuseOptionsWithoutEffect(options.typed, {"reference_uncertainty_path"},
+                               what + " is a surface, which has no uncertainty");
     if (HasOwnUnit(reference)) {
-      RefuseWithoutEffect(options.typed, {"reference_unit"}, what + " names its unit itself");
+      RefuseOptionsWithoutEffect(options.typed, {"reference_unit"},
+                                 what + " names its unit itself");
     } else {
-      RefuseWithoutEffect(options.typed, {"chord_deviation"},
-                          what + " consists of triangles already");
+      RefuseOptionsWithoutEffect(options.typed, {"chord_deviation"},
+                                 what + " consists of triangles already");
     }
   }
   if (options.comparison_path.empty() || options.layout_path.empty()) {
-    RefuseWithoutEffect(options.typed, {"Surface."},
-                        "a grid is written with --comparison_path and --layout_path only");
+    RefuseOptionsWithoutEffect(options.typed, {"Surface."},
+                               "a grid is written with --comparison_path and --layout_path only");
   }
   if (options.comparison_path.empty() && options.paths.output_path.empty() &&
       options.surface_path.empty()) {
-    RefuseWithoutEffect(options.typed, {"color_limit"},
-                        "no picture is written (--comparison_path, --output_path or "
-                        "--surface_path)");
+    RefuseOptionsWithoutEffect(options.typed, {"color_limit"},
+                               "no picture is written (--comparison_path, --output_path or "
+                               "--surface_path)");
   }
 }
 

@@ -56,7 +56,7 @@ void Validate(Options* options) {
         "--shape_path: missing; give --shape_path, --output_path or both to say what to write");
   }
   if (options->paths.shape_path.empty()) {
-    RefuseWithoutEffect(
+    RefuseOptionsWithoutEffect(
         options->typed,
         {"ascii_ply", "metashape", "unit", "Surface.grid_sections", "Surface.grid_points"},
         "without --shape_path no files of the shape are written");

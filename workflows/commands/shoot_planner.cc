@@ -62,18 +62,18 @@ CommandSyntax Declare(Options* options) {
 
 void RefuseUnusedOptions(const Options& options) {
   if (!options.paths.camera_path.empty()) {
-    RefuseWithoutEffect(options.typed, {"lens", "width", "height"},
-                        "the calibration of --camera_path says what the camera is");
+    RefuseOptionsWithoutEffect(options.typed, {"lens", "width", "height"},
+                               "the calibration of --camera_path says what the camera is");
   }
   if (!options.paths.shape_path.empty()) {
-    RefuseWithoutEffect(
+    RefuseOptionsWithoutEffect(
         options.typed,
         {"Plan.surface", "Sail.", "Grid.", "hull_markers", "Plan.camber", "Plan.twist"},
         "the markers are where --shape_path has them");
   } else if (options.arrangement == Arrangement::kSail) {
-    RefuseWithoutEffect(options.typed, {"Grid."}, "--Plan.surface is sail");
+    RefuseOptionsWithoutEffect(options.typed, {"Grid."}, "--Plan.surface is sail");
   } else {
-    RefuseWithoutEffect(options.typed, {"Sail."}, "--Plan.surface is grid");
+    RefuseOptionsWithoutEffect(options.typed, {"Sail."}, "--Plan.surface is grid");
   }
 }
 

@@ -57,7 +57,7 @@ std::size_t NumOptions(const std::vector<ShownGroup>& groups) {
 
 }  // namespace
 
-std::optional<HelpLength> AskedHelp(const std::vector<std::string>& arguments) {
+std::optional<HelpLength> RequestedHelp(const std::vector<std::string>& arguments) {
   std::optional<HelpLength> length;
   for (const std::string& argument : arguments) {
     if (argument == "--help_all") return HelpLength::kAll;

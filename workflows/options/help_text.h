@@ -20,7 +20,7 @@ enum class HelpLength {
 };
 
 // What the arguments ask for; nothing if they ask for no help.
-std::optional<HelpLength> AskedHelp(const std::vector<std::string>& arguments);
+std::optional<HelpLength> RequestedHelp(const std::vector<std::string>& arguments);
 
 struct ShownOption {
   std::string name;  // without dashes

@@ -8,7 +8,7 @@
 namespace velamap {
 namespace {
 
-constexpr int kMaxOfWord = 2;  // the most that a whole word costs, in letters
+constexpr int kMaxWordCost = 2;  // the most that a whole word costs, in letters
 
 // Smallest cost of turning the sequence `a` into `b` by insertions, deletions, substitutions and
 // exchanges of neighbours, which cost as much as an insertion.
@@ -38,7 +38,7 @@ int EditDistance(const Sequence& a, const Sequence& b, const Insertion& insertio
 }
 
 // The cost of inserting or deleting these words.
-int Cost(const std::string& word) { return std::min(static_cast<int>(word.size()), kMaxOfWord); }
+int Cost(const std::string& word) { return std::min(static_cast<int>(word.size()), kMaxWordCost); }
 
 int Cost(const std::vector<std::string>& words) {
   return std::accumulate(words.begin(), words.end(), 0,

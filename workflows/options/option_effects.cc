@@ -10,7 +10,7 @@
 namespace velamap {
 namespace {
 
-bool StandsFor(const std::string& name_or_section, const std::string& name) {
+bool MatchesNameOrSection(const std::string& name_or_section, const std::string& name) {
   return name_or_section.back() == '.' ? name.rfind(name_or_section, 0) == 0
                                        : name == name_or_section;
 }
@@ -23,11 +23,12 @@ std::vector<std::string> NamesIn(const OptionGroup& group) {
 
 }  // namespace
 
-void RefuseWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
-                         const std::string& reason) {
+void RefuseOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
+                                const std::string& reason) {
   for (const std::string& name : names) {
-    const auto found = std::find_if(typed.begin(), typed.end(),
-                                    [&](const std::string& one) { return StandsFor(name, one); });
+    const auto found = std::find_if(typed.begin(), typed.end(), [&](const std::string& one) {
+      return MatchesNameOrSection(name, one);
+    });
     if (found == typed.end()) continue;
     throw InputError(
         fmt::format("--{}: it would change nothing, because {}; leave it out", *found, reason));
@@ -37,7 +38,7 @@ void RefuseWithoutEffect(const TypedNames& typed, const std::vector<std::string>
 void RefuseVideoOptions(const CommandOptions& options) {
   const std::string& image_path = options.paths.image_path;
   if (!IsFolder(image_path)) return;
-  RefuseWithoutEffect(
+  RefuseOptionsWithoutEffect(
       options.typed,
       {"Video.", "frame_output_path", "ArucoDetection.full_search_interval",
        "MarkerAdjustment.rolling_shutter", "MarkerAdjustment.estimate_rolling_shutter"},
@@ -46,12 +47,13 @@ void RefuseVideoOptions(const CommandOptions& options) {
 
 void RefuseOptionsOfOtherBackend(const TypedNames& typed, AdjustmentBackend backend) {
   if (backend == AdjustmentBackend::kColmap) {
-    RefuseWithoutEffect(typed, {"MarkerAdjustment."},
-                        "--backend colmap adjusts without knowing markers (--backend both or "
-                        "markers would use it)");
+    RefuseOptionsWithoutEffect(
+        typed, {"MarkerAdjustment."},
+        "--backend colmap adjusts without knowing markers (--backend both or "
+        "markers would use it)");
   }
   if (backend == AdjustmentBackend::kMarkers) {
-    RefuseWithoutEffect(
+    RefuseOptionsWithoutEffect(
         typed,
         {"BundleAdjustment.function_tolerance", "BundleAdjustment.remove_outliers",
          "BundleAdjustment.max_num_rounds", "BundleAdjustment.outlier_ratio",
@@ -60,19 +62,20 @@ void RefuseOptionsOfOtherBackend(const TypedNames& typed, AdjustmentBackend back
         "--backend markers adjusts without COLMAP (--backend both or colmap would use it)");
   }
   if (backend != AdjustmentBackend::kColmap) {
-    RefuseWithoutEffect(typed, {"scale_by"},
-                        "the adjustment with markers gives metres (--backend colmap would use it)");
+    RefuseOptionsWithoutEffect(
+        typed, {"scale_by"},
+        "the adjustment with markers gives metres (--backend colmap would use it)");
   }
 }
 
 void RefuseOptionsOfOtherMethod(const TypedNames& typed, RegistrationMethod method) {
   RegistrationOptions options;
   if (method == RegistrationMethod::kGlobal) {
-    RefuseWithoutEffect(typed, NamesIn(DescribeOptions(&options.thesis)),
-                        "--Registration.method is global (thesis would use it)");
+    RefuseOptionsWithoutEffect(typed, NamesIn(DescribeOptions(&options.thesis)),
+                               "--Registration.method is global (thesis would use it)");
   } else {
-    RefuseWithoutEffect(typed, NamesIn(DescribeOptions(&options.global)),
-                        "--Registration.method is thesis (global would use it)");
+    RefuseOptionsWithoutEffect(typed, NamesIn(DescribeOptions(&options.global)),
+                               "--Registration.method is thesis (global would use it)");
   }
 }
 
@@ -90,7 +93,7 @@ void RefuseSailOptions(const TypedNames& typed, const Layout& layout) {
   const bool has_lines = std::any_of(layout.parts.begin(), layout.parts.end(),
                                      [](const auto& part) { return !part.horizontal.empty(); });
   if (has_lines) return;
-  RefuseWithoutEffect(
+  RefuseOptionsWithoutEffect(
       typed,
       {"Section.", "Surface.luff_extension", "Surface.leech_extension", "Surface.foot_extension",
        "Surface.head_extension", "Surface.edges_path", "Surface.grid_sections",

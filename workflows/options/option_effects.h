@@ -16,8 +16,8 @@ namespace velamap {
 
 // Throws InputError for the first of `names` that was typed. A name that ends with a dot stands for
 // all options of that section. `reason` says why the option changes nothing.
-void RefuseWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
-                         const std::string& reason);
+void RefuseOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
+                                const std::string& reason);
 
 // Options of videos, where --image_path is a folder of photographs.
 void RefuseVideoOptions(const CommandOptions& options);

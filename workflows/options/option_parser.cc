@@ -125,7 +125,7 @@ void AddGiven(const Option& option, const std::string& name, const GivenValue& g
   }
   const std::vector<std::string>& old_names = option.old_names;
   if (std::find(old_names.begin(), old_names.end(), name) != old_names.end()) {
-    WarnOfOldName(given.given_as, option.name);
+    WarnAboutOldName(given.given_as, option.name);
   }
 }
 
@@ -268,7 +268,7 @@ std::set<std::string> OptionNames(const CommandSyntax& syntax) {
 
 bool ParseOptions(const CommandSyntax& syntax, const std::vector<std::string>& arguments,
                   const std::set<std::string>& known_names) {
-  if (AskedHelp(arguments)) return false;
+  if (RequestedHelp(arguments)) return false;
   std::string project_path;
   std::vector<OptionGroup> groups = syntax.groups;
   groups.push_back(ProjectGroup(&project_path));

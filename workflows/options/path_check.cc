@@ -120,7 +120,7 @@ std::vector<std::string> PathsFromText(const std::string& text, const std::strin
           fmt::format("{}: '{}' does not exist; give paths separated by commas, such as {}", option,
                       path, example));
     }
-    MentionPath(path);
+    RegisterPrivatePath(path);
     paths.push_back(path);
   }
   return paths;
@@ -140,7 +140,7 @@ void CompletePaths(const std::vector<OptionGroup>& groups) {
         *path = (AbsoluteFolder(*option.beside).parent_path() / option.name_beside).string();
       }
       if (path->empty() || option.path_use == PathUse::kNone) continue;
-      MentionPath(*path);
+      RegisterPrivatePath(*path);
       AddUse(option.path_use, "--" + option.name, *path, is_default_name, &paths);
     }
   }

@@ -72,7 +72,7 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
   spdlog::info(
       "calibration: {} changes would explain {:.3f} px of the residuals ({:.1f} sigmas; focal "
       "length {:+.2f} +- {:.2f} %) and move the shape by {:.2f} mm ({:.1f} of its sigmas)",
-      calibration.num_changes, calibration.systematic_px, SigmasOff(calibration),
+      calibration.num_changes, calibration.systematic_px, SigmasAgainst(calibration),
       100.0 * calibration.focal_change, 100.0 * calibration.focal_sigma,
       1e3 * calibration.shape_change_m, calibration.shape_change_in_sigmas);
   spdlog::debug("calibration: focal length explains {:.2f}, distortion {:.2f}",

@@ -84,7 +84,7 @@ class FolderlessText : public spdlog::custom_flag_formatter {
   void format(const spdlog::details::log_msg& message, const std::tm&,
               spdlog::memory_buf_t& out) override {
     const std::string text =
-        WithoutFolders(Printable({message.payload.data(), message.payload.size()}));
+        StripFolders(Printable({message.payload.data(), message.payload.size()}));
     out.append(text.data(), text.data() + text.size());
   }
   std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {

@@ -71,7 +71,7 @@ TEST(CalibrationPage, HoldsNoScriptAndNothingFromOutside) {
 TEST(CalibrationVerdict, AGoodCalibrationLeavesNothingToDo) {
   const Verdict verdict = JudgeCalibration(GoodCalibration());
   EXPECT_EQ(verdict.level, ReportStatus::kGood) << verdict.reasons.front().text;
-  EXPECT_THAT(WhatToShoot(GoodCalibration()), IsEmpty());
+  EXPECT_THAT(AdvisedViews(GoodCalibration()), IsEmpty());
 }
 
 TEST(CalibrationVerdict, AFisheyeTakenForAPinholeIsBad) {
@@ -122,7 +122,7 @@ TEST(CalibrationVerdict, EmptyPartsOfThePictureAreNamed) {
                                  [](const auto& x_px) { return x_px.x() > 300; }),
                   corners.end());
   }
-  EXPECT_THAT(WhatToShoot(calibration).front(),
+  EXPECT_THAT(AdvisedViews(calibration).front(),
               AllOf(HasSubstr("top right"), HasSubstr("bottom right"), Not(HasSubstr("left"))));
   EXPECT_THAT(JudgeCalibration(calibration).reasons.front().text,
               HasSubstr("move it into every corner"));

@@ -157,7 +157,7 @@ TEST_F(KnownPoints, TheSizeThatTheyAskForIsReportedWithItsSigma) {
     for (ShapeMarker& marker : shape_.markers) {
       for (auto& x : marker.x_in_shape_m) *x *= 1.002;
     }
-    const AskedGrowth growth = Fit().growth.value();
+    const ScaleChange growth = Fit().growth.value();
     in_sigmas.push_back((growth.value + 0.002) / growth.sigma);
   }
   const Statistics statistics = ComputeStatistics(in_sigmas);
@@ -176,7 +176,7 @@ TEST_F(KnownPoints, AWrongSizeIsBlamedOnTheShapeAndNotOnThePoints) {
     EXPECT_THAT(StatesOf(fit), Each(PointState::kUsed)) << fit.reason;
     ASSERT_TRUE(fit.growth);
     EXPECT_NEAR(fit.growth->value, -0.03, 0.01);
-    EXPECT_TRUE(fit.DoubtsScale());
+    EXPECT_TRUE(fit.ContradictsScale());
   }
 }
 

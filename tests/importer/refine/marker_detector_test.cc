@@ -122,6 +122,16 @@ TEST(SuggestDictionaries, NamesTheSmallestDictionaryAndThePolarity) {
   EXPECT_TRUE(SuggestDictionaries({cv::Mat(200, 200, CV_8UC1, cv::Scalar(9))}, 1, {}).empty());
 }
 
+TEST(SuggestDictionaries, CodesOfFewBitsAreNoEvidenceOnTheirOwn) {
+  const Dictionary dictionary = LoadDictionary("DICT_4X4_1000");
+  const cv::Mat gray = Gray(DrawMarkers(
+      dictionary.aruco, {480, 200}, {{317, 40, 50, 84}, {940, 180, 50, 84}, {611, 320, 50, 84}}));
+  EXPECT_TRUE(SuggestDictionaries({gray}, 1, {}).empty());
+  const std::vector<DictionaryHint> hints = SuggestDictionaries({gray, gray}, 1, {});
+  ASSERT_EQ(hints.size(), 1u);
+  EXPECT_EQ(hints[0].dictionary, "DICT_4X4_1000");
+}
+
 TEST(ImageSample, SpreadsOverAStreamOfAnyLength) {
   for (const int num_images : {1, 12, 13, 57, 1000}) {
     ImageSample sample;

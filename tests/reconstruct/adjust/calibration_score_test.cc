@@ -92,7 +92,7 @@ TEST(CalibrationScore, WrongCalibrationsAreContradictedAndNamed) {
                               other = Evidence(scene, OfAnotherCamera(scene.camera));
     for (const CalibrationEvidence* wrong : {&long_focal, &no_distortion, &other}) {
       EXPECT_TRUE(IsContradicted(*wrong)) << seed;
-      EXPECT_GT(SigmasOff(*wrong), 2 * SigmasOff(right)) << seed;
+      EXPECT_GT(SigmasAgainst(*wrong), 2 * SigmasAgainst(right)) << seed;
       EXPECT_GT(wrong->shape_change_m, 3 * right.shape_change_m) << seed;
     }
     EXPECT_NEAR(long_focal.focal_change, 1 / 1.1 - 1, 0.02) << seed;
@@ -120,12 +120,12 @@ TEST(CalibrationScore, ARefinedFocalLengthLeavesNothingToExplain) {
 
 TEST(CalibrationEvidence, SigmasAreThoseOfTheChiSquaredDistribution) {
   CalibrationEvidence evidence;
-  EXPECT_EQ(SigmasOff(evidence), 0.0);
+  EXPECT_EQ(SigmasAgainst(evidence), 0.0);
   evidence.num_changes = 8;
   evidence.chi_squared = 15.507;  // 95 %
-  EXPECT_NEAR(SigmasOff(evidence), 1.645, 0.03);
+  EXPECT_NEAR(SigmasAgainst(evidence), 1.645, 0.03);
   evidence.chi_squared = 26.124;  // 99.9 %
-  EXPECT_NEAR(SigmasOff(evidence), 3.090, 0.03);
+  EXPECT_NEAR(SigmasAgainst(evidence), 3.090, 0.03);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(CameraSteadiness, OneCameraIsSteady) {
   const Model model = SceneWith([](int, Camera*) {});
   const SteadinessVerdict verdict = JudgeSteadiness(model);
   EXPECT_FALSE(verdict.step && verdict.step->IsSuspicious());
-  EXPECT_THAT(verdict.wandering, IsEmpty());
+  EXPECT_THAT(verdict.principal_point_warning, IsEmpty());
   double sum = 0.0;
   const auto values = IntrinsicsOfImages(model);
   ASSERT_EQ(values.size(), 20u);
@@ -68,7 +68,7 @@ TEST(CameraSteadiness, AStabilisedClipIsRecognised) {
     camera->params[2] += 40 * std::sin(1.7 * frame_idx);
     camera->params[3] += 30 * std::cos(2.3 * frame_idx);
   }));
-  EXPECT_THAT(verdict.wandering, HasSubstr("stabilised"));
+  EXPECT_THAT(verdict.principal_point_warning, HasSubstr("stabilised"));
 }
 
 }  // namespace

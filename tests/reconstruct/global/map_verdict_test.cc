@@ -170,8 +170,8 @@ class WhyOutlierTest : public testing::Test {
     const SceneMap map(std::move(scene));
     MapSolution solution = map.TrueSolution();
     MarkFits(map.problem, 1.0, &solution);
-    return WhyOutlier(map.problem, solution, EstimateNoise(map.problem, solution),
-                      map.problem.Observation(map.ObservationIdx(6, 8)));
+    return OutlierReason(map.problem, solution, EstimateNoise(map.problem, solution),
+                         map.problem.Observation(map.ObservationIdx(6, 8)));
   }
 };
 

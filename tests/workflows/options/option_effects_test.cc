@@ -13,14 +13,14 @@ namespace {
 
 TEST(OptionEffectsTest, RefusesNamesAndSections) {
   const TypedNames typed = {"Video.first_frame", "unit"};
-  EXPECT_NO_THROW(RefuseWithoutEffect(typed, {"Videos.", "Video", "uni", "units"}, "so"));
-  EXPECT_NO_THROW(RefuseWithoutEffect({}, {"Video.", "unit"}, "so"));
+  EXPECT_NO_THROW(RefuseOptionsWithoutEffect(typed, {"Videos.", "Video", "uni", "units"}, "so"));
+  EXPECT_NO_THROW(RefuseOptionsWithoutEffect({}, {"Video.", "unit"}, "so"));
   ExpectThrows<InputError>(
       [&] {
-        RefuseWithoutEffect(typed, {"x", "unit"}, "it is so");
+        RefuseOptionsWithoutEffect(typed, {"x", "unit"}, "it is so");
       },
       {"--unit: it would change nothing, because it is so; leave it out"});
-  ExpectThrows<InputError>([&] { RefuseWithoutEffect(typed, {"Video."}, "so"); },
+  ExpectThrows<InputError>([&] { RefuseOptionsWithoutEffect(typed, {"Video."}, "so"); },
                            {"--Video.first_frame: "});
 }
 

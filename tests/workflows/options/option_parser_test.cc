@@ -284,10 +284,10 @@ TEST(OptionParserTest, ShortHelpShowsWhatIsRequiredOrCommonAndCountsTheRest) {
 }
 
 TEST(OptionParserTest, HelpIsAskedForInTwoLengths) {
-  EXPECT_EQ(AskedHelp({"--path", "p"}), std::nullopt);
-  EXPECT_EQ(AskedHelp({"--path", "p", "-h"}), HelpLength::kShort);
-  EXPECT_EQ(AskedHelp({"--help"}), HelpLength::kShort);
-  EXPECT_EQ(AskedHelp({"--help", "--help_all"}), HelpLength::kAll);
+  EXPECT_EQ(RequestedHelp({"--path", "p"}), std::nullopt);
+  EXPECT_EQ(RequestedHelp({"--path", "p", "-h"}), HelpLength::kShort);
+  EXPECT_EQ(RequestedHelp({"--help"}), HelpLength::kShort);
+  EXPECT_EQ(RequestedHelp({"--help", "--help_all"}), HelpLength::kAll);
 }
 
 TEST(NearestNameTest, SuggestsOnlyWhatIsNear) {
