@@ -26,6 +26,7 @@ struct MarkerSize {
   std::string part;
   int num_sides = 0;
   double ratio = 0.0;
+  double unevenness = 0.0;      // longest minus shortest side, divided by the printed length
   double block_variance = 0.0;  // part of the ratio's variance that other markers do not share
   // The part that markers share: the factor of the covariance times the ratio's gradient, with the
   // inset last.
@@ -47,12 +48,16 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCov
     size.num_sides = static_cast<int>(sides.size());
     const double weight = 1.0 / (size.num_sides * marker.length_m);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.NumCoordinates());
+    std::vector<double> lengths_m;
     for (const auto& [a, b] : sides) {
       const Eigen::Vector3d side = CornerPosition(marker, b) - CornerPosition(marker, a);
+      lengths_m.push_back(side.norm());
       size.ratio += weight * side.norm();
       gradient.segment<3>(3 * a) -= weight * side.normalized();
       gradient.segment<3>(3 * b) += weight * side.normalized();
     }
+    const auto [shortest, longest] = std::minmax_element(lengths_m.begin(), lengths_m.end());
+    size.unevenness = (*longest - *shortest) / marker.length_m;
     const auto found = inset_sigmas.find(marker.marker_id);
     const double inset_sigma = found == inset_sigmas.end() ? 0.0 : found->second;
     size.block_variance =
@@ -247,6 +252,13 @@ void JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
       DisagreementText(parts, static_cast<std::size_t>(worst - differences.begin()), *worst);
 }
 
+// A wrong print changes all sides alike; a covered or badly fitted corner changes two of them.
+std::string WhatToCheck(const MarkerSize& size, double deviation) {
+  if (size.unevenness < std::abs(deviation)) return "check its marker_length and its print";
+  return fmt::format("its sides differ by {:.2f} %, so look for what covers or bends it",
+                     100 * size.unevenness);
+}
+
 }  // namespace
 
 double MedianScale(const MarkerState& state) {
@@ -288,10 +300,11 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
     verdict.contradicting.insert(sizes[i].marker_id);
     verdict.warnings.push_back(fmt::format(
         "marker {} is {:.2f} % {} than the layout says, compared with the other markers{} "
-        "({:.0f} sigmas): its size is not used; check its marker_length and its print",
+        "({:.0f} sigmas): its size is not used; {}",
         sizes[i].marker_id, 100 * std::abs(deviations.values[i]),
         deviations.values[i] > 0 ? "larger" : "smaller",
-        verdict.part_scale_sigma > 0 ? " of its part" : "", std::abs(normalized[i])));
+        verdict.part_scale_sigma > 0 ? " of its part" : "", std::abs(normalized[i]),
+        WhatToCheck(sizes[i], deviations.values[i])));
   }
   return verdict;
 }

@@ -76,6 +76,12 @@ void ResizeMarker(int marker_id, double factor, SyntheticScene* scene) {
   ProjectAnew(scene);
 }
 
+void PullCorner(int marker_id, int corner, double share, SyntheticScene* scene) {
+  auto& points = scene->x_in_world.at(marker_id);
+  points[corner] += share * (points[0] - points[corner]);
+  ProjectAnew(scene);
+}
+
 void AddInset(const std::function<double(const MarkerDetection&)>& inset_px,
               SyntheticScene* scene) {
   for (FrameDetections& frame : scene->frames) {

@@ -24,6 +24,9 @@ SyntheticScene WithPrintErrors(const SyntheticScene& scene, double tolerance, do
 // Scales the world of one marker about its centre; detections are projected anew.
 void ResizeMarker(int marker_id, double factor, SyntheticScene* scene);
 
+// Moves one corner of a marker towards its centre, by this share of the distance.
+void PullCorner(int marker_id, int corner, double share, SyntheticScene* scene);
+
 // Moves the corners of each detection inwards, by `inset_px` of it from both sides.
 void AddInset(const std::function<double(const MarkerDetection&)>& inset_px, SyntheticScene* scene);
 

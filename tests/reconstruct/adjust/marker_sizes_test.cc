@@ -106,9 +106,15 @@ TEST_F(PartSizes, ATrulyBadMarkerOfThemIsStillNamed) {
   const auto warnings = Adjust().warnings;
   EXPECT_THAT(warnings, SizeIs(3));
   EXPECT_THAT(warnings, Contains(AllOf(HasSubstr("marker 26 is"), HasSubstr("larger"),
-                                       HasSubstr("of its part"))));
+                                       HasSubstr("of its part"), HasSubstr("and its print"))));
   EXPECT_THAT(warnings, Contains(AllOf(HasSubstr("marker 3 is"), HasSubstr("smaller"))));
   EXPECT_THAT(warnings, Contains(HasSubstr("sail and hull disagree")));
+}
+
+TEST_F(PartSizes, AMarkerWithOneCornerOffIsNoBadPrint) {
+  PullCorner(7, 2, 0.06, &scene_);
+  EXPECT_THAT(Adjust().warnings,
+              ElementsAre(AllOf(HasSubstr("marker 7 is"), HasSubstr("covers or bends it"))));
 }
 
 // Two markers cannot tell whether they are bad prints or another part.
