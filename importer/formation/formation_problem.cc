@@ -87,7 +87,7 @@ FormationPriors PriorsFor(const std::vector<FormationSample>& samples) {
   FormationPriors priors;
   priors.mean << std::log(1.6), 0.0, 0.1, 0.0, 0.0, 0.0;
   priors.sigma << 0.6, 0.05, 0.5, 0.3, ink_sigma, 0.2;
-  // S below zero: phones lift shadows and hold back lights, which lowers the contrast of the middle.
+  // S is below zero where a camera lifts shadows and holds back lights, as phones do.
   priors.min << std::log(0.8), -0.13, -0.3, std::log(0.5), -max_ink, -kMaxEdgeShift;
   priors.max << std::log(3.2), 0.13, 2.0, std::log(2.5), max_ink, kMaxEdgeShift;
   return priors;
