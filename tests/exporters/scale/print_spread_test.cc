@@ -92,7 +92,7 @@ TEST(PrintSpread, OneDistanceDoesNotTellThemApart) {
   for (SpreadSample& sample : samples) sample.side_px = 3000 * sample.length_m;
   const PrintSpread spread = EstimateSpread(samples);
   EXPECT_FALSE(spread.print_um || spread.image_px || spread.scale_error);
-  EXPECT_THAT(spread.note, StartsWith("not determined: the larger markers are larger in the"));
+  EXPECT_THAT(spread.note, StartsWith("not determined: the larger markers are also larger in the"));
   // 12 um are 0.036 px at 3 px a mm.
   EXPECT_THAT(spread.note, HasSubstr(" px in the image explain the sides equally well"));
 }
