@@ -17,7 +17,7 @@ constexpr int kMaxNumSamples = 12;
 constexpr int kMinNumMarkers = 2;
 constexpr int kConvincingNumMarkers = 20;
 constexpr std::size_t kMaxNumHints = 3;
-constexpr double kMaxChance = 0.01;
+constexpr double kMaxChance = 0.01;  // that the ids of false markers are all among the first
 
 // The largest dictionaries. The smaller ones of a family are the first markers of the largest.
 constexpr std::array<const char*, 9> kFamilies = {

@@ -1,26 +1,14 @@
 #include "exporters/comparison_page/comparison_page.h"
 
-#include <stdexcept>
-#include <string_view>
-
 #include <fmt/format.h>
 
 #include "exporters/comparison_page/comparison_words.h"
 #include "exporters/report/html_page.h"
 #include "exporters/report/report_assets.h"
 #include "importer/base/atomic_output.h"
-#include "importer/text/markup.h"
 
 namespace velamap {
 namespace {
-
-std::string_view Asset(std::string_view name) {
-  if (name == "VIEW") return kReportView;
-  if (name == "STYLE") return kReportStyle;
-  if (name == "SCRIPT") return kComparisonScript;
-  if (name == "THREE") return kReportThree;
-  throw std::logic_error("the comparison's page names an unknown part: " + std::string(name));
-}
 
 std::string VtsName(const std::string& shape_name, bool is_series, std::size_t field_idx) {
   std::string name = is_series ? "deflection_" + shape_name : "deflection";
@@ -31,15 +19,8 @@ std::string VtsName(const std::string& shape_name, bool is_series, std::size_t f
 }  // namespace
 
 void WriteComparisonPage(const ComparisonPageInput& input, std::ostream& out) {
-  WriteHtmlPage(
-      kComparisonPage,
-      [&](std::string_view name) -> std::string {
-        if (name == "TITLE") return EscapeForMarkup(ComparisonTitle(input));
-        if (name == "DATA") return ComparisonJson(input);
-        if (name == "LICENCES") return EscapeForMarkup(kReportLicences);
-        return std::string(Asset(name));
-      },
-      out);
+  WriteScriptPage(kComparisonPage, kComparisonScript, ComparisonTitle(input), ComparisonJson(input),
+                  out);
 }
 
 void WriteComparisonFiles(const ComparisonPageInput& input, const std::filesystem::path& folder) {

@@ -173,7 +173,7 @@ void ComparePoints(const PresentPoints& present, const DatumAgreement& agreement
 }  // namespace
 
 bool KnownPointFit::ContradictsScale() const {
-  return growth && std::abs(growth->value) > kMaxScaleSigmas * growth->sigma;
+  return scale_change && std::abs(scale_change->value) > kMaxScaleSigmas * scale_change->sigma;
 }
 
 KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
@@ -202,9 +202,9 @@ KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
   fit.known_from_shape = {pose.rotation,
                           pose.translation - pose.rotation * points.center_in_shape_m};
   ComparePoints(present, *agreement, &fit);
-  fit.growth = EstimateScaleChange(points, agreement->used, pose);
-  if (fit.growth && covariance == nullptr) {
-    fit.growth->sigma = std::hypot(fit.growth->sigma, scale_sigma);
+  fit.scale_change = EstimateScaleChange(points, agreement->used, pose);
+  if (fit.scale_change && covariance == nullptr) {
+    fit.scale_change->sigma = std::hypot(fit.scale_change->sigma, scale_sigma);
   }
   const auto redundancy = Linearize(points, agreement->used, pose).residuals_m.size() - 6;
   if (redundancy > 0) {

@@ -40,7 +40,7 @@ struct KnownPointFit {
   // Root of the sum of squared normalized residuals per redundant coordinate: about 1 if the sigmas
   // are right. Nothing without a redundant coordinate.
   std::optional<double> residual_in_sigmas;
-  std::optional<ScaleChange> growth;  // nothing where the points do not determine it
+  std::optional<ScaleChange> scale_change;  // nothing where the points do not determine it
 
   // Whether the points contradict the size of the shape by more than three sigmas.
   bool ContradictsScale() const;

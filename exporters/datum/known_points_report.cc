@@ -75,8 +75,8 @@ std::pair<bool, double> Badness(const ComparedPoint& point) {
   return {point.state == PointState::kFailed, point.sigmas_off};
 }
 
-std::string GrowthText(const ScaleChange& growth) {
-  return fmt::format("{:+.3f} +- {:.3f} %", 100.0 * growth.value, 100.0 * growth.sigma);
+std::string ScaleChangeText(const ScaleChange& change) {
+  return fmt::format("{:+.3f} +- {:.3f} %", 100.0 * change.value, 100.0 * change.sigma);
 }
 
 }  // namespace
@@ -88,9 +88,9 @@ void AddMetrics(const KnownPointFit& fit, MetricsReport* report) {
   if (fit.residual_in_sigmas) {
     metrics.push_back({"known_point_residual_in_sigmas", *fit.residual_in_sigmas});
   }
-  if (fit.growth) {
-    metrics.push_back({"known_point_growth_percent", 100.0 * fit.growth->value});
-    metrics.push_back({"known_point_growth_sigma_percent", 100.0 * fit.growth->sigma});
+  if (fit.scale_change) {
+    metrics.push_back({"known_point_growth_percent", 100.0 * fit.scale_change->value});
+    metrics.push_back({"known_point_growth_sigma_percent", 100.0 * fit.scale_change->sigma});
   }
   metrics.push_back(
       {"check_point_error_mm", Distances(fit, {PointState::kPassed, PointState::kFailed})});
@@ -125,7 +125,7 @@ std::string KnownPointsText(const KnownPointFit& fit) {
       [](const ComparedPoint& a, const ComparedPoint& b) { return Badness(a) < Badness(b); });
   text += ", worst " + ShortText(*worst);
   if (fit.ContradictsScale()) {
-    text += "; the points require a change of " + GrowthText(*fit.growth) + " in size";
+    text += "; the points require a change of " + ScaleChangeText(*fit.scale_change) + " in size";
   }
   return text;
 }
@@ -153,7 +153,7 @@ std::vector<std::string> KnownPointWarnings(const KnownPointFit& fit) {
     warnings.push_back(fmt::format(
         "the known points require a change of {} in the size of the shape; check marker_length, or "
         "measure a distance (distances, use: scale)",
-        GrowthText(*fit.growth)));
+        ScaleChangeText(*fit.scale_change)));
   }
   return warnings;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -48,16 +49,16 @@ std::vector<MarkerSize> MeasureMarkers(const MarkerState& state, const MarkerCov
     size.num_sides = static_cast<int>(sides.size());
     const double weight = 1.0 / (size.num_sides * marker.length_m);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(marker.NumCoordinates());
-    std::vector<double> lengths_m;
+    double shortest_m = std::numeric_limits<double>::infinity(), longest_m = 0.0;
     for (const auto& [a, b] : sides) {
       const Eigen::Vector3d side = CornerPosition(marker, b) - CornerPosition(marker, a);
-      lengths_m.push_back(side.norm());
+      shortest_m = std::min(shortest_m, side.norm());
+      longest_m = std::max(longest_m, side.norm());
       size.ratio += weight * side.norm();
       gradient.segment<3>(3 * a) -= weight * side.normalized();
       gradient.segment<3>(3 * b) += weight * side.normalized();
     }
-    const auto [shortest, longest] = std::minmax_element(lengths_m.begin(), lengths_m.end());
-    size.unevenness = (*longest - *shortest) / marker.length_m;
+    size.unevenness = (longest_m - shortest_m) / marker.length_m;
     const auto found = inset_sigmas.find(marker.marker_id);
     const double inset_sigma = found == inset_sigmas.end() ? 0.0 : found->second;
     size.block_variance =

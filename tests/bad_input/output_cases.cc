@@ -56,7 +56,7 @@ std::vector<BadInput> OutputsThatAreInputs() {
        kAnalyze + kShape +
            " --input_path @/workspace/sparse/0 --csv_path "
            "@/workspace/sparse/0/points3D.bin",
-       2, "is also the"},
+       2, "is also the --shape_path; give another"},
       {"CsvOverTheProjectFile", "shape_analyzer --project_path @/p.ini --csv_path @/p.ini", 2,
        "is also the --project_path",
        [](const fs::path& dir) {
@@ -68,16 +68,16 @@ std::vector<BadInput> OutputsThatAreInputs() {
       {"ComparisonOverTheReference",
        "shape_comparer --shape_path " + kShape + " --reference_path " + kShape +
            "/shape.csv --output_path " + kShape + "/shape.csv",
-       2, "is also the"},
+       2, "is also the --shape_path; give another"},
       {"ComparisonOverTheUncertainty",
        "shape_comparer --shape_path " + kShape + " --reference_path " + kShape +
            " --csv_path @/workspace/sparse/0/uncertainty.bin",
-       2, "is also the"},
+       2, "is also the --shape_path; give another"},
       {"LogOverTheDatabase",
        "bundle_adjuster --input_path " + kSeed +
            " --output_path @/out --database_path @/workspace/database.db --log_path "
            "@/workspace/database.db",
-       2, "is also the"},
+       2, "is also the --database_path; give another"},
       {"ModelOverItself", "bundle_adjuster --input_path " + kSeed + " --output_path " + kSeed, 2,
        "is also the --input_path"},
       {"ModelOverTheFolderThatHoldsIt",

@@ -157,8 +157,8 @@ TEST_F(KnownPoints, TheSizeThatTheyAskForIsReportedWithItsSigma) {
     for (ShapeMarker& marker : shape_.markers) {
       for (auto& x : marker.x_in_shape_m) *x *= 1.002;
     }
-    const ScaleChange growth = Fit().growth.value();
-    in_sigmas.push_back((growth.value + 0.002) / growth.sigma);
+    const ScaleChange change = Fit().scale_change.value();
+    in_sigmas.push_back((change.value + 0.002) / change.sigma);
   }
   const Statistics statistics = ComputeStatistics(in_sigmas);
   EXPECT_NEAR(statistics.mean, 0.0, 0.4);
@@ -174,8 +174,8 @@ TEST_F(KnownPoints, AWrongSizeIsBlamedOnTheShapeAndNotOnThePoints) {
     }
     const KnownPointFit fit = Fit();
     EXPECT_THAT(StatesOf(fit), Each(PointState::kUsed)) << fit.reason;
-    ASSERT_TRUE(fit.growth);
-    EXPECT_NEAR(fit.growth->value, -0.03, 0.01);
+    ASSERT_TRUE(fit.scale_change);
+    EXPECT_NEAR(fit.scale_change->value, -0.03, 0.01);
     EXPECT_TRUE(fit.ContradictsScale());
   }
 }

@@ -99,13 +99,13 @@ TEST_F(ReportKeyNumbers, AKnownPointThatFailsIsRed) {
   EXPECT_EQ(status(), ReportStatus::kNone);  // no redundancy
   fit.residual_in_sigmas = 1.1;
   EXPECT_EQ(status(), ReportStatus::kGood);
-  fit.growth = ScaleChange{0.01, 0.004};
+  fit.scale_change = ScaleChange{0.01, 0.004};
   EXPECT_EQ(status(), ReportStatus::kGood);
-  fit.growth->sigma = 0.003;
+  fit.scale_change->sigma = 0.003;
   EXPECT_EQ(status(), ReportStatus::kCheck);
   EXPECT_THAT(FindIn(input, KeyNumberKind::kKnownPoints)->value,
               HasSubstr("a change of +1.000 +- 0.300 % in size"));
-  fit.growth.reset();
+  fit.scale_change.reset();
   fit.points[1].state = PointState::kLeftOut;
   EXPECT_EQ(status(), ReportStatus::kCheck);
   fit.points[1].state = PointState::kFailed;
