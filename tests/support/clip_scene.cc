@@ -198,7 +198,9 @@ ClipScene MakeWallsScene(const ClipOptions& options) {
 }
 
 void CheckOptions(const ClipOptions& options) {
-  CheckOptionRange("dictionary_bits", options.dictionary_bits, 3, 4);
+  CheckOptionRange("dictionary_bits", options.dictionary_bits, 3, 5);
+  CheckOptionRange("border_bits", options.border_bits, 1, 3);
+  CheckOptionRange("marker_length", options.marker_length_m, 0, 1);
   CheckOptionRange("width", options.width_px, 320, 7680);
   if (options.width_px % 32 != 0) {
     throw InputError(

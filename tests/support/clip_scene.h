@@ -28,7 +28,9 @@ enum class ClipKind {
 
 struct ClipOptions {
   ClipKind kind = ClipKind::kSail;
-  int dictionary_bits = 4;       // 4: DICT_4X4_250; 3: the 3x3 bits of the thesis
+  int dictionary_bits = 4;       // 4, 5: DICT_4X4_250, DICT_5X5_250; 3: the 3x3 bits of the thesis
+  int border_bits = 1;           // width of the black border, cells
+  double marker_length_m = 0.0;  // 0: each scene's own
   int width_px = 1920;           // 16:9; the lens scales with it
   bool wide_angle = true;        // an action camera's lens instead of a webcam's
   std::optional<Camera> camera;  // instead of both, 16:9; scaled to the width

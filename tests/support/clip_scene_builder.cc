@@ -110,9 +110,13 @@ ClipSceneBuilder::ClipSceneBuilder(const ClipOptions& options, double marker_len
   scene_.camera = options.camera ? ScaleToImageSize(*options.camera, options.width_px,
                                                     options.width_px * 9 / 16, "--lens")
                                  : MakeClipCamera(options.wide_angle, options.width_px);
+  const int bits = options.dictionary_bits;
   scene_.dictionary =
-      options.dictionary_bits == 3 ? MakeNineBitDictionary() : LoadDictionary("DICT_4X4_250");
-  scene_.layout = MakeLayout(scene_.dictionary.name, marker_length_m);
+      bits == 3 ? MakeNineBitDictionary() : LoadDictionary(fmt::format("DICT_{0}X{0}_250", bits));
+  scene_.layout =
+      MakeLayout(scene_.dictionary.name,
+                 options.marker_length_m > 0 ? options.marker_length_m : marker_length_m);
+  scene_.layout.border_bits = options.border_bits;
 }
 
 void ClipSceneBuilder::AddSheet(const Ground& ground, int num_columns, int num_rows) {

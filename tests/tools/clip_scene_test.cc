@@ -172,6 +172,21 @@ TEST(ClipSceneTest, FilesReadBack) {
   EXPECT_EQ(truth.markers[7].x_in_shape_m[3], scene.markers[7].corners[2].x_before_m);
 }
 
+TEST(ClipSceneTest, MarkersHaveTheSizeBitsAndBorderThatWereAskedFor) {
+  ClipOptions options;
+  options.dictionary_bits = 5;
+  options.border_bits = 2;
+  options.marker_length_m = 0.06;
+  const ClipScene scene = MakeClipScene(options);
+  EXPECT_EQ(scene.layout.dictionary, "DICT_5X5_250");
+  EXPECT_EQ(scene.layout.border_bits, 2);
+  for (const ClipMarker& marker : scene.markers) {
+    EXPECT_EQ(marker.cells.rows, 9);
+    const double side_m = (marker.corners[1].x_before_m - marker.corners[0].x_before_m).norm();
+    EXPECT_NEAR(side_m, 0.06, 2e-5) << marker.marker_id;  // along a chord of the cloth
+  }
+}
+
 TEST(ClipSceneTest, OptionsOutOfRangeAreNamed) {
   ClipOptions options;
   options.width_px = 1000;

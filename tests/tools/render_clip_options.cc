@@ -71,7 +71,10 @@ po::options_description Describe(RenderClipOptions* options) {
       "folder for the clip, made if it is missing");
   add("scene", Value(&options->scene), "sail, board or walls");
   add("dictionary_bits", Value(&clip->dictionary_bits),
-      "4: DICT_4X4_250; 3: the thesis's 3x3 bits");
+      "4, 5: DICT_4X4_250, DICT_5X5_250; 3: the thesis's 3x3 bits");
+  add("border_bits", Value(&clip->border_bits), "width of the black border, cells, 1 to 3");
+  add("marker_length", Value(&clip->marker_length_m),
+      "side of a marker, m; 0: the scene's own, sail and walls 0.1, board 0.04");
   add("width", Value(&options->width_px), "of a frame, px, 16:9; 0: 1920, board 1280");
   add("num_frames", Value(&clip->num_frames), "");
   add("fps", Value(&clip->fps), "frames a second");
@@ -82,7 +85,8 @@ po::options_description Describe(RenderClipOptions* options) {
   add("drift_deg", Value(&clip->drift_deg),
       "by which the camera goes around to either side; 0: sail 18, walls 22");
   add("motion", Value(&options->motion), "board: a ... h of the thesis's Figure 4.3");
-  add("sail_scale", Value(&clip->sail_scale), "size of the sail; markers stay 100 mm, fewer fit");
+  add("sail_scale", Value(&clip->sail_scale),
+      "size of the sail; markers keep theirs, so fewer fit");
   add("sail_motion_m", Value(&clip->sail_motion_m),
       "amplitude of slow flapping about the mean shape");
   add("shake_deg", Value(&clip->shake_deg), "amplitude of the camera's fast turns, 0 to 5");

@@ -33,7 +33,7 @@ fail() {
 
 # The command that writes each result into the work folder.
 declare -A command_of
-for study in accuracy board_motions parameters repeatability rigid_objects rolling_shutter sample_project shooting surface; do
+for study in accuracy board_motions marker_design parameters repeatability rigid_objects rolling_shutter sample_project shooting surface; do
   command_of[$study.csv]="workflows/studies/$study.sh"
 done
 command_of[sample_project.txt]=workflows/studies/sample_project.sh
@@ -60,8 +60,8 @@ stored() {
 # settings: the variables that change what a command measures, as they would stand before it.
 settings() {
   local name
-  for name in CLIPS WAYS NUM_FRAMES SKIPS NEIGHBORHOODS CENTRAL_FRAMES BACKEND START WIDTHS MBIT LONG \
-    REPEATS; do
+  for name in CLIPS WAYS NUM_FRAMES SKIPS NEIGHBORHOODS SIGMAS BETAS INLIER_DISTANCES CENTRAL_FRAMES \
+    BACKEND START WIDTHS MBIT LONG REPEATS; do
     if [[ -n "${!name:-}" ]]; then printf '%s="%s" ' "$name" "${!name}"; fi
   done
 }
