@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "exporters/datum/known_points_report.h"
-#include "exporters/formats/metashape_markers.h"
+#include "exporters/exchange/metashape_markers.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"

@@ -27,7 +27,7 @@ struct ShapeExporterOptions {
   std::string model_output_path;  // folder of the metric model, binary and text; empty for none
   std::string shape_output_path;  // folder of shape.csv, shape.ply, ...; empty for none
   bool ascii_ply = false;
-  bool metashape = false;                         // also the files of formats/metashape_markers.h
+  bool metashape = false;                         // also the files of exchange/metashape_markers.h
   std::optional<FrameChoice> frame;               // without it, ChooseFrame() decides
   ScaleMethod scale_by = ScaleMethod::kAgreeing;  // of a model without uncertainty
   SailOptions sail;
