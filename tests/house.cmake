@@ -76,7 +76,7 @@ house_folder(exporters/formats PUBLIC
   cad_library cad_writer diverging_color length_unit mesh_triangles mesh_writer metrics_report
   ply_writer shape_csv shape_ply surface_grid surface_spline)
 house_folder(exporters/exchange PUBLIC
-  metashape_markers)
+  alicevision_scene metashape_markers)
 house_folder(exporters/datum PUBLIC
   known_points known_points_report)
 house_folder(exporters/design PUBLIC
