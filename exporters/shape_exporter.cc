@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "exporters/datum/known_points_report.h"
-#include "exporters/formats/metashape_markers.h"
+#include "exporters/exchange/alicevision_scene.h"
+#include "exporters/exchange/metashape_markers.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
@@ -84,6 +85,10 @@ void WriteShapeFiles(const ShapeExportReport& report, const ShapeExporterOptions
               [&](std::ostream& out) { WriteMetashapeMarkers(report.metric_model, out); });
     WriteFile(folder / "metashape_reference.csv",
               [&](std::ostream& out) { WriteMetashapeReference(report.shape, out); });
+  }
+  if (options.alicevision) {
+    WriteFile(folder / "alicevision.sfm",
+              [&](std::ostream& out) { WriteAliceVisionScene(report.metric_model, out); });
   }
   WriteSailFiles(report.sail, report.shape, report.frame, options.files, folder);
   WriteFreeformFiles(report.freeform, report.frame, options.files.unit, folder);

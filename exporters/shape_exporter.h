@@ -27,7 +27,8 @@ struct ShapeExporterOptions {
   std::string model_output_path;  // folder of the metric model, binary and text; empty for none
   std::string shape_output_path;  // folder of shape.csv, shape.ply, ...; empty for none
   bool ascii_ply = false;
-  bool metashape = false;                         // also the files of formats/metashape_markers.h
+  bool metashape = false;                         // also the files of exchange/metashape_markers.h
+  bool alicevision = false;                       // also the file of exchange/alicevision_scene.h
   std::optional<FrameChoice> frame;               // without it, ChooseFrame() decides
   ScaleMethod scale_by = ScaleMethod::kAgreeing;  // of a model without uncertainty
   SailOptions sail;
@@ -79,8 +80,8 @@ ShapeExportReport ComputeShape(const Model& model, const Layout& layout,
 // the chosen frame. Each folder is written to a temporary sibling and renamed when complete. An
 // existing folder is replaced if velamap wrote every file in it (importer/base/replacement.h).
 // `verdict` is for shape.json and may be null: it needs the warnings of the log, which the caller
-// has. Throws InputError for unwritable output, a folder with other files, or one folder inside the
-// other.
+// has. Throws InputError for unwritable output, a folder with other files, one folder inside the
+// other, or a model that a format asked for cannot hold.
 void WriteShape(const ShapeExportReport& report, const ShapeExporterOptions& options,
                 const Verdict* verdict);
 

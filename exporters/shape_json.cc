@@ -22,6 +22,7 @@ const std::map<std::string, const char*> kContentOf = {
     {"shape.csv", "markers with sigmas: centres (corner 0) and corners 1 to 4, m"},
     {"shape.ply", "the points of shape.csv with colours, m"},
     {"markers.ply", "a square for each whole marker, m"},
+    {"alicevision.sfm", "images, cameras, poses and corners for AliceVision and Meshroom, m, px"},
     {"metashape_markers.xml", "where the pictures show the corners, for Metashape, px"},
     {"metashape_reference.csv", "the corners' coordinates for Metashape, m"},
     {"scale.csv", "the scale from each marker alone"},

@@ -74,7 +74,9 @@ house_folder(exporters/shape PUBLIC
   sail_lines shape_frame shape_metrics shape_sigma shape_transform)
 house_folder(exporters/formats PUBLIC
   cad_library cad_writer diverging_color length_unit mesh_triangles mesh_writer metrics_report
-  metashape_markers ply_writer shape_csv shape_ply surface_grid surface_spline)
+  ply_writer shape_csv shape_ply surface_grid surface_spline)
+house_folder(exporters/exchange PUBLIC
+  alicevision_scene metashape_markers)
 house_folder(exporters/datum PUBLIC
   known_points known_points_report)
 house_folder(exporters/design PUBLIC

@@ -149,6 +149,10 @@ std::vector<BadInput> Exports() {
        "shape_exporter --marker_length 0.1 --input_path @/workspace/sparse/0 --output_path @/new "
        "--metashape 1",
        2, "--metashape: it would change nothing"},
+      {"ASceneForAliceVisionOfNothing",
+       "shape_exporter --marker_length 0.1 --input_path @/workspace/sparse/0 --output_path @/new "
+       "--alicevision 1",
+       2, "--alicevision: it would change nothing"},
       {"HeightsThatAreNone", call + "--Section.heights 1,b", 2, "--Section.heights: '1,b'"},
       {"AnEdgeOfOnePoint", call + "--Surface.edges_path @/bad.csv", 2, "one point",
        Write("bad.csv", "edge,x,y,z\nluff,0,0,0\n")},

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "exporters/exchange/alicevision_scene.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/formats/shape_ply.h"
 #include "exporters/scale/metric_shape.h"
@@ -156,9 +157,26 @@ TEST(ShapeExporter, FilesHoldWhatTheReportSays) {
   }
 }
 
+TEST(ShapeExporter, OtherProgramsGetTheShapeInItsFrameIfAsked) {
+  const TempDir dir;
+  ShapeExporterOptions options = OptionsIn(dir);
+  ExportShape(ExampleModel(), ExampleLayout(), options);
+  const std::set<std::string> unasked = FilesIn(dir / "shape");
+  options.metashape = options.alicevision = true;
+  const ShapeExportReport report = ExportShape(ExampleModel(), ExampleLayout(), options);
+  std::set<std::string> expected = {"metashape_markers.xml", "metashape_reference.csv",
+                                    "alicevision.sfm"};
+  expected.insert(unasked.begin(), unasked.end());
+  EXPECT_EQ(FilesIn(dir / "shape"), expected);
+  EXPECT_EQ(unasked.size() + 3, expected.size());
+  const auto scene = [&](std::ostream& out) { WriteAliceVisionScene(report.metric_model, out); };
+  EXPECT_EQ(ReadBytes(dir / "shape" / "alicevision.sfm"), Written(scene));
+}
+
 TEST(ShapeExporter, ShapeJsonListsAllFilesBesideIt) {
   const TempDir dir;
   ShapeExporterOptions options = OptionsIn(dir);
+  options.metashape = options.alicevision = true;
   options.sail.sections.heights_m = {0.1};
   ExportShape(ExampleModel(), ExampleLayout(), options);
   const auto root = nlohmann::json::parse(ReadBytes(dir / "shape" / "shape.json"));

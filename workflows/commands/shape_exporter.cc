@@ -39,6 +39,8 @@ CommandSyntax Declare(Options* options) {
          {"ascii_ply", &options->exporter.ascii_ply, "0|1", "PLY as text instead of binary"},
          {"metashape", &options->exporter.metashape, "0|1",
           "also write the corners as markers and as reference coordinates for Agisoft Metashape"},
+         {"alicevision", &options->exporter.alicevision, "0|1",
+          "also write images, cameras, poses and corners for AliceVision and Meshroom"},
          PresetOption(&options->preset)}},
        DescribeOptions(&options->markers, false)}};
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
@@ -56,10 +58,10 @@ void Validate(Options* options) {
         "--shape_path: missing; give --shape_path, --output_path or both to say what to write");
   }
   if (options->paths.shape_path.empty()) {
-    RefuseOptionsWithoutEffect(
-        options->typed,
-        {"ascii_ply", "metashape", "unit", "Surface.grid_sections", "Surface.grid_points"},
-        "without --shape_path no files of the shape are written");
+    RefuseOptionsWithoutEffect(options->typed,
+                               {"ascii_ply", "metashape", "alicevision", "unit",
+                                "Surface.grid_sections", "Surface.grid_points"},
+                               "without --shape_path no files of the shape are written");
   }
   CompleteSailOptions(options->surface, &options->exporter);
   options->exporter.model_output_path = options->paths.output_path;

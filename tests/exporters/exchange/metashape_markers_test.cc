@@ -1,4 +1,4 @@
-#include "exporters/formats/metashape_markers.h"
+#include "exporters/exchange/metashape_markers.h"
 
 #include <map>
 #include <sstream>
