@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void ThrowCannotWrite(const fs::path& path, const std::string& why) {
-  throw InputError(fmt::format("{}: cannot be written: {}", path.string(), why));
+  throw InputError(fmt::format("{}: cannot be written: {}", FinalPath(path).string(), why));
 }
 
 [[noreturn]] void ThrowCannotRead(const fs::path& path, int error) {
@@ -66,13 +66,6 @@ bool WriteAll(int file, const char* data, std::size_t size) {
     size -= static_cast<std::size_t>(written);
   }
   return true;
-}
-
-// Returns the path that a file in a temporary folder will have when the folder has been renamed.
-fs::path FinalPath(const fs::path& path) {
-  fs::path final_path;
-  for (const fs::path& component : path) final_path /= FinalName(component.string());
-  return final_path;
 }
 
 // Calls fsync() or syncfs(), which may be the first to notice a full disk.
@@ -195,7 +188,7 @@ void WriteFileAtomicallyUnsynced(const fs::path& path,
 }
 
 void WriteFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  WriteStream(path, FinalPath(path), write);
+  WriteStream(path, path, write);
   Sync(path, fsync);
 }
 

@@ -16,13 +16,14 @@
 
 #include "importer/base/error.h"
 #include "importer/base/file_lock.h"
+#include "importer/base/replacement.h"
 
 namespace velamap {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string Shown(const fs::path& path) { return path.empty() ? "''" : path.string(); }
+std::string Shown(const fs::path& path) { return path.empty() ? "''" : FinalPath(path).string(); }
 
 void CheckRead(const std::error_code& error, const fs::path& path) {
   if (!error) return;

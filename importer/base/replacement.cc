@@ -175,7 +175,7 @@ void CheckReplaceableFolder(const fs::path& path) {
   const std::map<std::string, std::string> hash_of_name = ReadFolderRecord(path);
   for (const fs::path& entry : FolderEntries(path)) {
     const std::string name = entry.filename().string();
-    if (name == kFolderRecord || FinalName(name) != name) continue;
+    if (name == kFolderRecord || ParseUnfinished(name)) continue;
     if (IsFolder(entry) && !IsLink(entry)) {
       CheckReplaceableFolder(entry);
       continue;
@@ -277,9 +277,13 @@ fs::path TemporarySibling(const fs::path& path) {
                               kTemporaryMark, ThisMachine(), getpid(), counter++);
 }
 
-std::string FinalName(const std::string& name) {
-  const std::optional<UnfinishedName> unfinished = ParseUnfinished(name);
-  return unfinished ? unfinished->final_name : name;
+fs::path FinalPath(const fs::path& path) {
+  fs::path final_path;
+  for (const fs::path& component : path) {
+    const std::optional<UnfinishedName> unfinished = ParseUnfinished(component.string());
+    final_path /= unfinished ? unfinished->final_name : component;
+  }
+  return final_path;
 }
 
 void RemoveUnfinished(const fs::path& folder) {

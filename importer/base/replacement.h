@@ -71,8 +71,9 @@ void CheckNotProtected(const std::filesystem::path& path);
 // folder.
 std::filesystem::path TemporarySibling(const std::filesystem::path& path);
 
-// The name that unfinished output will have, and other names as they are.
-std::string FinalName(const std::string& name);
+// The path that unfinished output will have when it and the folders that hold it have been renamed.
+// Any other path stays as it is. Messages name this one.
+std::filesystem::path FinalPath(const std::filesystem::path& path);
 
 // Removes what killed runs of this machine have left unfinished in the folder: the name of such a
 // file tells the process, which is no more. Nothing happens if the folder is missing.

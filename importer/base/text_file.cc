@@ -2,8 +2,10 @@
 
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
@@ -46,6 +48,18 @@ std::string ReadTextFile(const std::string& path, const std::string& what) {
     throw InputError(fmt::format("{}: the {} is empty", path, what));
   }
   return text;
+}
+
+void CheckUtf8(const std::string& text, const std::string& path) {
+  std::istringstream stream(text);
+  int number = 1;
+  for (std::string line; std::getline(stream, line); ++number) {
+    try {
+      nlohmann::json(line).dump();
+    } catch (const nlohmann::json::type_error&) {
+      throw InputError(fmt::format("{}:{}: not UTF-8; save the file as UTF-8", path, number));
+    }
+  }
 }
 
 }  // namespace velamap

@@ -18,4 +18,8 @@ void CheckInputFile(const std::string& path, const std::string& what, std::uintm
 // missing, a folder, unreadable, empty, larger than kMaxTextFileSize, or has two such marks.
 std::string ReadTextFile(const std::string& path, const std::string& what);
 
+// Throws InputError that names the first line of the text that is not UTF-8. For files whose names
+// go into pages, tables and CAD files, which are UTF-8.
+void CheckUtf8(const std::string& text, const std::string& path);
+
 }  // namespace velamap

@@ -169,17 +169,18 @@ std::string Rewritten(const std::string& text, const std::string& path) {
 cv::FileStorage OpenStorage(const std::string& text, const std::string& path,
                             const std::string& kind) {
   const std::string rewritten = Rewritten(text, path);
-  std::string reason;
   try {
     cv::FileStorage storage(rewritten, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     if (storage.isOpened()) {
       storage["any_key"];  // throws where OpenCV takes for text what the checks took for a map
       return storage;
     }
-  } catch (const cv::Exception& exception) {
-    reason = fmt::format(" ({})", exception.err);
+  } catch (const cv::Exception&) {  // its words name lines of the rewritten text
   }
-  throw InputError(fmt::format("{}: not a readable {}{}", path, kind, reason));
+  throw InputError(
+      fmt::format("{}: not a readable {}; expected keys with values, as OpenCV writes them in "
+                  "YAML, XML or JSON",
+                  path, kind));
 }
 
 }  // namespace velamap

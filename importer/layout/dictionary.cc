@@ -142,6 +142,7 @@ int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
 
 Dictionary ReadDictionaryFile(const std::string& path) {
   const std::string text = ReadTextFile(path, "dictionary file");
+  CheckUtf8(text, path);
   const cv::FileStorage storage = OpenStorage(text, path, "cv::aruco dictionary file");
   const int num_markers = RequireInt(storage, path, "nmarkers", 1, kMaxMarkerId + 1);
   const int marker_size = RequireInt(storage, path, "markersize", 3, 20);

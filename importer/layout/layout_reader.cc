@@ -192,6 +192,7 @@ void CheckSingleDocument(const std::string& path, const std::string& text) {
 
 Layout ReadLayout(const std::string& path) {
   const std::string text = ReadTextFile(path, "layout file (--layout_path)");
+  CheckUtf8(text, path);
   CheckSingleDocument(path, text);
   YAML::Node root;
   try {

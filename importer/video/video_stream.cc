@@ -6,6 +6,7 @@
 #include <cstring>
 #include <iterator>
 #include <new>
+#include <string_view>
 
 extern "C" {
 #include <libavutil/display.h>
@@ -30,9 +31,17 @@ constexpr int kMaxNumFailures = 4096;
                   path));
 }
 
-// FFmpeg shows any text as a film of letters ("tty"), and follows lists of other files, whose
-// changes nobody would notice.
-void CheckHoldsPictures(const std::string& path, const std::string& format) {
+// FFmpeg takes a photograph for a video of one frame ("jpeg_pipe"), shows any text as a film of
+// letters ("tty"), and follows lists of other files, whose changes nobody would notice.
+void CheckHoldsVideo(const std::string& path, const std::string& format) {
+  constexpr std::string_view kPicture = "_pipe";
+  if (format.size() > kPicture.size() &&
+      format.compare(format.size() - kPicture.size(), kPicture.size(), kPicture) == 0) {
+    throw InputError(
+        fmt::format("{}: is a picture (FFmpeg's format {}), not a video; give the folder that "
+                    "holds it, and the picture the extension of its format, such as .jpg",
+                    path, format));
+  }
   static constexpr const char* kOthers[] = {"tty", "concat", "hls", "dash", "imf", "sdp"};
   if (std::none_of(std::begin(kOthers), std::end(kOthers),
                    [&](const char* other) { return format == other; })) {
@@ -76,7 +85,7 @@ FormatPtr OpenFormat(const std::string& path) {
     ThrowUnreadable(path);
   }
   FormatPtr format(opened);
-  CheckHoldsPictures(path, opened->iformat->name);
+  CheckHoldsVideo(path, opened->iformat->name);
   if (avformat_find_stream_info(opened, nullptr) < 0) ThrowUnreadable(path);
   return format;
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/text_file.h"
@@ -134,6 +135,28 @@ void CheckShapes(const PointCovariance& points, const UncertaintyReader& reader)
   }
 }
 
+void WriteContent(const AdjustmentUncertainty& uncertainty, const Model* model, std::ostream* out) {
+  Write(kMagic, sizeof(kMagic), out);
+  Write(kVersion, out);
+  for (const double value : {uncertainty.relative_scale_sigma, uncertainty.variance_factor,
+                             uncertainty.apparent_inset_px, uncertainty.apparent_inset_sigma_px,
+                             uncertainty.correlation_factor, uncertainty.share_above_4_sigma,
+                             uncertainty.rolling_shutter_s, uncertainty.rolling_shutter_sigma_s}) {
+    Write(value, out);
+  }
+  const CalibrationEvidence& calibration = uncertainty.calibration;
+  Write(static_cast<std::uint64_t>(calibration.num_changes), out);
+  for (const auto member : kEvidenceMembers) Write(calibration.*member, out);
+  const PointCovariance& points = uncertainty.points;
+  WriteCount(points.point3D_ids.size(), out);
+  Write(points.point3D_ids.data(), points.point3D_ids.size(), out);
+  WriteCount(points.blocks.size(), out);
+  for (const Eigen::MatrixXd& block : points.blocks) WriteMatrix(block, out);
+  WriteMatrix(points.factor, out);
+  WriteMatrix(points.signs, out);
+  Write(model == nullptr ? std::uint64_t{0} : HashOfPoints(*model), out);
+}
+
 }  // namespace
 
 std::uint64_t HashOfPoints(const Model& model) {
@@ -148,29 +171,7 @@ std::uint64_t HashOfPoints(const Model& model) {
 
 void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder,
                       const Model* model) {
-  const std::filesystem::path path = FilePath(folder);
-  std::ofstream out(path, std::ios::binary);
-  Write(kMagic, sizeof(kMagic), &out);
-  Write(kVersion, &out);
-  for (const double value : {uncertainty.relative_scale_sigma, uncertainty.variance_factor,
-                             uncertainty.apparent_inset_px, uncertainty.apparent_inset_sigma_px,
-                             uncertainty.correlation_factor, uncertainty.share_above_4_sigma,
-                             uncertainty.rolling_shutter_s, uncertainty.rolling_shutter_sigma_s}) {
-    Write(value, &out);
-  }
-  const CalibrationEvidence& calibration = uncertainty.calibration;
-  Write(static_cast<std::uint64_t>(calibration.num_changes), &out);
-  for (const auto member : kEvidenceMembers) Write(calibration.*member, &out);
-  const PointCovariance& points = uncertainty.points;
-  WriteCount(points.point3D_ids.size(), &out);
-  Write(points.point3D_ids.data(), points.point3D_ids.size(), &out);
-  WriteCount(points.blocks.size(), &out);
-  for (const Eigen::MatrixXd& block : points.blocks) WriteMatrix(block, &out);
-  WriteMatrix(points.factor, &out);
-  WriteMatrix(points.signs, &out);
-  Write(model == nullptr ? std::uint64_t{0} : HashOfPoints(*model), &out);
-  out.close();
-  if (!out) throw InputError(path.string() + ": cannot be written");
+  WriteFile(FilePath(folder), [&](std::ostream& out) { WriteContent(uncertainty, model, &out); });
 }
 
 bool HasUncertainty(const std::string& folder) { return IsRegularFile(FilePath(folder)); }

@@ -79,6 +79,10 @@ std::vector<BadInput> Walls() {
   for (const auto& [name, call] : calls) {
     cases.push_back(
         {name + "OfAByteOrderMarkAlone", call, 2, "is empty", Write("bad.yml", "\xef\xbb\xbf")});
+    if (name == "Dictionary" || name == "Layout") {
+      cases.push_back({name + "InLatin1", call, 2, "bad.yml:2: not UTF-8; save the file as UTF-8",
+                       Write("bad.yml", "# names of parts\n# Gro\xdfsegel: 1\n")});
+    }
     cases.push_back({name + "OfTwoByteOrderMarks", call, 2, "two byte order marks",
                      Write("bad.yml", "\xef\xbb\xbf\xef\xbb\xbf")});
     cases.push_back(

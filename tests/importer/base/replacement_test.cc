@@ -147,8 +147,8 @@ TEST(UnfinishedOutput, OfAKilledProcessIsRemovedAndNoOther) {
   RemoveUnfinished(dir.path());
   EXPECT_EQ(FolderEntries(dir.path()).size(), 5u);
   EXPECT_TRUE(fs::exists(own));
-  EXPECT_EQ(FinalName(own.filename()), "own");
-  EXPECT_EQ(FinalName(".notes.velamap-tmp-2024-05"), ".notes.velamap-tmp-2024-05");
+  EXPECT_EQ(FinalPath(own / "a.csv"), dir / "own/a.csv");
+  EXPECT_EQ(FinalPath(".notes.velamap-tmp-2024-05"), ".notes.velamap-tmp-2024-05");
 }
 
 TEST(UnfinishedOutput, IsRemovedWhereTheNextOneIsWritten) {

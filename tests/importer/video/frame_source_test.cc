@@ -100,6 +100,10 @@ TEST(OpenFrameSource, NamesWhatIsWrong) {
                            {dir / "text.mp4", "not a readable video"});
   cv::imwrite(dir / "a.png", NoiseImage(8, 6));
   ExpectThrows<InputError>([&] { OpenFrameSource(dir / "a.png", {}); }, {"a single image"});
+  std::ofstream(dir / "a.mp4") << std::ifstream(dir / "a.png").rdbuf()
+                               << "what follows the picture";
+  ExpectThrows<InputError>([&] { OpenFrameSource(dir / "a.mp4", {}); },
+                           {dir / "a.mp4", "a picture"});
 }
 
 TEST(VideoFile, FramesAreNumberedTimedAndComplete) {
