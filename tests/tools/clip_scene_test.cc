@@ -183,7 +183,7 @@ TEST(ClipSceneTest, MarkersHaveTheSizeBitsAndBorderThatWereAskedFor) {
   for (const ClipMarker& marker : scene.markers) {
     EXPECT_EQ(marker.cells.rows, 9);
     const double side_m = (marker.corners[1].x_before_m - marker.corners[0].x_before_m).norm();
-    EXPECT_NEAR(side_m, 0.06, 2e-5) << marker.marker_id;  // along a chord of the cloth
+    EXPECT_NEAR(side_m, 0.06, 6e-5) << marker.marker_id;  // the cloth is bent, this is a chord
   }
 }
 

@@ -219,6 +219,12 @@ block_thesis_sail() {
 | area error against s | poor for small s | $(by s area_error_mm2_mean 2) mm² for s $(by s value d) | RMS $(by s distance_mm_rms 2) mm | \`parameters.sh\` |
 | ratio against s | falls | $(by s reconstruction_ratio 3%) % | | \`parameters.sh\` |
 | area error against m | 5 chosen | $(by m area_error_mm2_mean 2) mm² for m $(by m value d), ratio $(by m reconstruction_ratio 3%) % | RMS $(by m distance_mm_rms 2) mm | \`parameters.sh\` |
+| ratio against sigma of the mean | no influence | $(by sigma reconstruction_ratio 3%) % for sigma $(by sigma value) m | | \`parameters.sh\` |
+| area error against sigma | not disturbed from 0.6 m on | $(by sigma area_error_mm2_mean 2) mm² | RMS $(by sigma distance_mm_rms 2) mm | \`parameters.sh\` |
+| ratio against beta | falls; 30 % chosen | $(by beta reconstruction_ratio 3%) % for beta $(by beta value) | | \`parameters.sh\` |
+| area error against beta | larger for small beta | $(by beta area_error_mm2_mean 2) mm² | RMS $(by beta distance_mm_rms 2) mm | \`parameters.sh\` |
+| ratio against the threshold of RANSAC | fewer markers below 0.1 m | $(by ransac reconstruction_ratio 3%) % for $(by ransac value) m | | \`parameters.sh\` |
+| area error against the threshold of RANSAC | larger above 0.1 m | $(by ransac area_error_mm2_mean 2) mm² | RMS $(by ransac distance_mm_rms 2) mm | \`parameters.sh\` |
 | areas of the markers | most near the printed one | $(table central_frames_histogram.csv 'cell("area_mm2") > 9900 && cell("area_mm2") < 10100 { sum += cell("share_of_all_percent") } END { printf "%s", num(sum, 2) }') % within 1 % of the printed area | | \`central_frames.sh\` |
 | ratio by central frame | about 70 %, less when farther | $(table central_frames.csv '{ note("x", cell("reconstruction_ratio")) } END { printf "%s", span(least["x"], most["x"], "3%") }') % | | \`central_frames.sh\` |
 | rigid sail, near | | $(condition near) | $(condition_truth near) | \`conditions.sh\` |
@@ -334,6 +340,32 @@ block_surface_curvature() {
       print "|---|" rule
       print "| truth, 1/m |" truth
       for (i = 1; i <= num_clips; i++) print "| " names[i] ", 1/m |" found[names[i]]
+    }'
+}
+
+# --- marker_design.sh ---
+
+# The thesis's words on each series (section 4.1), beside what was found at each distance.
+block_marker_design() {
+  table marker_design.csv '
+    FNR > 1 {
+      design = cell("series") " " cell("value")
+      if (!(design in found)) order[++num_designs] = design
+      if (!(cell("distance_m") in seen)) { seen[cell("distance_m")]; distances[++num_distances] = cell("distance_m") }
+      found[design] = found[design] sprintf(" %s %%, %s px |", num(cell("found_percent"), "d"), num(cell("side_px"), 2))
+    }
+    END {
+      thesis["bits"] = "fewer bits are read from farther"
+      thesis["border"] = "a border of one cell is best"
+      thesis["length"] = "sides above 8 cm are read up to 7 m"
+      unit["bits"] = "%s bits"; unit["border"] = "border of %s"; unit["length"] = "side of %s cm"
+      head = "| marker | thesis |"; rule = "|---|---|"
+      for (i = 1; i <= num_distances; i++) { head = head " " distances[i] " m |"; rule = rule "---|" }
+      print head; print rule
+      for (i = 1; i <= num_designs; i++) {
+        split(order[i], word, " ")
+        printf "| " unit[word[1]] " | %s |%s\n", word[2], thesis[word[1]], found[order[i]]
+      }
     }'
 }
 

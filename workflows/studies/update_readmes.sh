@@ -61,7 +61,7 @@ stored() {
 settings() {
   local name
   for name in CLIPS WAYS NUM_FRAMES SKIPS NEIGHBORHOODS SIGMAS BETAS INLIER_DISTANCES CENTRAL_FRAMES \
-    BACKEND START WIDTHS MBIT LONG REPEATS; do
+    DISTANCES BACKEND START WIDTHS MBIT LONG REPEATS; do
     if [[ -n "${!name:-}" ]]; then printf '%s="%s" ' "$name" "${!name}"; fi
   done
 }
