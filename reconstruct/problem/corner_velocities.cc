@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 
 namespace velamap {
 namespace {
@@ -25,17 +25,21 @@ const MarkerDetection* FindMarker(const FrameDetections& frame, int marker_id) {
 using FrameWindow = std::array<const FrameDetections*, 5>;
 constexpr int kMiddle = 2;
 
-// Weights of values at `times_s` whose sum is the slope at 0 of the polynomial through them.
+// Weights of values at `times_s`, one of which is 0, whose sum is the slope there of the polynomial
+// through them: the derivatives of Lagrange's polynomials.
 Eigen::VectorXd SlopeWeights(const std::vector<double>& times_s) {
-  const auto size = static_cast<Eigen::Index>(times_s.size());
-  const double unit_s = times_s.back() - times_s.front();
-  Eigen::MatrixXd powers(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    for (Eigen::Index k = 0; k < size; ++k) {
-      powers(k, i) = std::pow(times_s[static_cast<std::size_t>(i)] / unit_s, k);
+  const std::size_t size = times_s.size();
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size));
+  for (std::size_t i = 0; i < size; ++i) {
+    double& weight = weights[static_cast<Eigen::Index>(i)];
+    if (times_s[i] != 0) weight = 1 / times_s[i];
+    for (std::size_t k = 0; k < size; ++k) {
+      if (k == i || times_s[k] == 0) continue;
+      if (times_s[i] == 0) weight -= 1 / times_s[k];
+      if (times_s[i] != 0) weight *= times_s[k] / (times_s[k] - times_s[i]);
     }
   }
-  return powers.colPivHouseholderQr().solve(Eigen::VectorXd::Unit(size, 1)) / unit_s;
+  return weights;
 }
 
 // The weights of `reach` frames before the middle one to `reach` after it.
@@ -76,6 +80,7 @@ struct AffineField {
 std::optional<AffineField> FitField(const FrameDetections& frame,
                                     const std::vector<std::optional<Eigen::Vector2d>>& velocities) {
   constexpr int kMinNumMarkers = 3;
+  constexpr double kMinFlatness = 1e-12;  // squared width of the markers by their squared length
   const auto num_known = std::count_if(velocities.begin(), velocities.end(),
                                        [](const auto& velocity) { return velocity.has_value(); });
   if (num_known < kMinNumMarkers) return std::nullopt;
@@ -91,8 +96,15 @@ std::optional<AffineField> FitField(const FrameDetections& frame,
   field.value_px_s = values.colwise().mean();
   places.rowwise() -= field.center_px.transpose();
   values.rowwise() -= field.value_px_s.transpose();
-  const Eigen::Matrix2d by_place = places.completeOrthogonalDecomposition().solve(values);
-  field.gradient_1_s = by_place.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(places.transpose() * places);
+  const Eigen::Matrix2d sums = values.transpose() * places;
+  for (int i = 0; i < 2; ++i) {
+    const bool is_across_a_line = axes.eigenvalues()[i] <= kMinFlatness * axes.eigenvalues()[1];
+    const Eigen::Vector2d axis = axes.eigenvectors().col(i);
+    if (!is_across_a_line)
+      field.gradient_1_s += sums * axis * axis.transpose() / axes.eigenvalues()[i];
+  }
   return field;
 }
 
