@@ -4,8 +4,8 @@
 #include <array>
 #include <ostream>
 
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
+#include "importer/text/csv.h"
 #include "reconstruct/model/gauge.h"
 #include "reconstruct/model/reprojection.h"
 

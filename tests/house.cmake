@@ -3,12 +3,12 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue csv error file_lock files ids natural_order numbers option
-  parallel replacement stage_timer statistics text_file)
+  atomic_output bounded_queue error file_lock files ids natural_order numbers option parallel
+  replacement stage_timer statistics)
 house_folder(importer/process PUBLIC
   child_process)
 house_folder(importer/text PUBLIC
-  id_ranges markup output_date shown_text)
+  csv id_ranges markup output_date shown_text text_file)
 house_folder(importer/lanes PUBLIC
   float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
@@ -56,6 +56,8 @@ house_folder(reconstruct/evidence PUBLIC
   layout_evidence marker_rows unnamed_markers)
 house_folder(reconstruct/thesis PUBLIC
   frame_selection posed_images thesis_registration)
+house_folder(reconstruct/map PUBLIC
+  map_adjustment map_growth map_intersection map_problem map_start map_verdict)
 house_folder(reconstruct/global PUBLIC
   global_registration)
 house_folder(reconstruct/colmap PUBLIC
@@ -102,8 +104,10 @@ house_folder(exporters PUBLIC
 house_folder(workflows/run PUBLIC
   adjustment camera_checks central_frame_sweep logging pipeline progress run_summary stage_times summary
   version versions workspace)
+house_folder(workflows/proposal PUBLIC
+  clip_map layout_correction layout_proposal print_faults)
 house_folder(workflows/check PUBLIC
-  clip_check clip_frames clip_limits clip_verdict dictionary_search layout_proposal)
+  clip_check clip_frames clip_limits clip_verdict dictionary_search)
 house_folder(workflows/plan PUBLIC
   plan_drawing plan_writer)
 house_folder(workflows/calibrate PUBLIC

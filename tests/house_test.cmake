@@ -4,7 +4,7 @@
 
 cmake_policy(VERSION 3.22)
 set(ROOMS importer reconstruct exporters workflows)
-set(MAX_FILES_IN_FOLDER 26)
+set(MAX_FILES_IN_FOLDER 25)
 set(failures "")
 set(num_files 0)
 

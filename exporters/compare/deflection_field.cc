@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "exporters/surface/surface.h"
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/base/ids.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "exporters/formats/little_endian.h"
 #include "exporters/formats/ply_writer.h"
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

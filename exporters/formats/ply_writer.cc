@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "exporters/formats/little_endian.h"
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 
 namespace velamap::internal {
 namespace {

@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
-#include "importer/base/text_file.h"
+#include "importer/text/csv.h"
+#include "importer/text/text_file.h"
 
 namespace velamap {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 #include "importer/text/markup.h"
 
 namespace velamap {

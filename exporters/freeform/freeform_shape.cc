@@ -9,8 +9,8 @@
 #include "exporters/shape/shape_sigma.h"
 #include "exporters/surface/surface_attempt.h"
 #include "importer/base/atomic_output.h"
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

@@ -14,8 +14,8 @@
 
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
-#include "importer/base/csv.h"
 #include "importer/geometry/units.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

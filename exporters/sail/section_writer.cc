@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "importer/base/csv.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

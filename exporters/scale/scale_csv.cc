@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 

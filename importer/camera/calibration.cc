@@ -9,9 +9,9 @@
 #include <opencv2/core.hpp>
 
 #include "importer/base/error.h"
-#include "importer/base/text_file.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/camera/storage_reader.h"
+#include "importer/text/text_file.h"
 
 namespace velamap {
 namespace {

@@ -12,8 +12,8 @@
 #include <opencv2/core.hpp>
 #include <pugixml.hpp>
 
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

@@ -3,8 +3,8 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 

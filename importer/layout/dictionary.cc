@@ -14,8 +14,8 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/ids.h"
-#include "importer/base/text_file.h"
 #include "importer/camera/storage_reader.h"
+#include "importer/text/text_file.h"
 
 namespace velamap {
 namespace {

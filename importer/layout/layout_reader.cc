@@ -16,11 +16,11 @@
 #include "importer/base/files.h"
 #include "importer/base/ids.h"
 #include "importer/base/numbers.h"
-#include "importer/base/text_file.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/layout_items.h"
 #include "importer/layout/yaml_item.h"
 #include "importer/text/id_ranges.h"
+#include "importer/text/text_file.h"
 
 namespace velamap {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "reconstruct/global/map_growth.h"
-#include "reconstruct/global/map_problem.h"
-#include "reconstruct/global/map_verdict.h"
+#include "reconstruct/map/map_growth.h"
+#include "reconstruct/map/map_problem.h"
+#include "reconstruct/map/map_verdict.h"
 #include "reconstruct/registration/registration.h"
 #include "reconstruct/registration/registration_options.h"
 

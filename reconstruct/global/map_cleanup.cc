@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "reconstruct/evidence/layout_evidence.h"
-#include "reconstruct/global/map_intersection.h"
-#include "reconstruct/global/map_verdict.h"
 #include "reconstruct/global/view_selection.h"
+#include "reconstruct/map/map_intersection.h"
+#include "reconstruct/map/map_verdict.h"
 
 namespace velamap {
 namespace {

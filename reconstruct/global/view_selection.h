@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "reconstruct/global/map_problem.h"
+#include "reconstruct/map/map_problem.h"
 
 namespace velamap {
 

@@ -13,7 +13,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
-#include "importer/base/text_file.h"
+#include "importer/text/text_file.h"
 
 namespace velamap {
 namespace {

@@ -11,7 +11,7 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/replacement.h"
-#include "importer/base/text_file.h"
+#include "importer/text/text_file.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 
 namespace velamap {

@@ -13,17 +13,17 @@ velamap_test(NAME reconstruct_global_test LABEL unit
     global/false_detections_test.cc
     global/frame_cleanup_test.cc
     global/global_registration_test.cc
-    global/map_adjustment_test.cc
+    map/map_adjustment_test.cc
     global/map_cleanup_test.cc
-    global/map_growth_test.cc
-    global/map_intersection_test.cc
-    global/map_refinement_jacobian_test.cc
-    global/map_refinement_test.cc
-    global/map_resection_test.cc
-    global/map_start_test.cc
-    global/map_verdict_test.cc
+    map/map_growth_test.cc
+    map/map_intersection_test.cc
+    map/map_refinement_jacobian_test.cc
+    map/map_refinement_test.cc
+    map/map_resection_test.cc
+    map/map_start_test.cc
+    map/map_verdict_test.cc
     registration/dictionary_doubt_test.cc
-    global/marker_rivals_test.cc
-    global/scene_map.cc
+    map/marker_rivals_test.cc
+    map/scene_map.cc
   LIBRARIES Ceres::ceres
 )

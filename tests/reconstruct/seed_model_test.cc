@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/register_frames.h"
 #include "tests/reconstruct/registration_fixture.h"

@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 
 #include "exporters/formats/shape_csv.h"
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
 #include "importer/camera/calibration.h"
 #include "importer/geometry/quad.h"
 #include "importer/geometry/rigid3.h"
+#include "importer/text/csv.h"
 
 namespace velamap {
 namespace {

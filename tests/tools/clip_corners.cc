@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <boost/program_options.hpp>
 
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
+#include "importer/text/csv.h"
 #include "tests/support/corner_comparison.h"
 #include "tests/support/tool_options.h"
 

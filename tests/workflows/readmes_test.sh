@@ -60,7 +60,7 @@ sed 's/^clip,way/clip,method/' "$copy/accuracy.csv" >"$copy/workflows/studies/re
 run --check
 expect 1 "accuracy.csv has no such rows or columns" "a result without a column"
 
-# Files in code spans: `importer/base/csv.h` from the root or the README's folder, `csv.h` below it.
+# Files in code spans: `importer/text/csv.h` from the root or the README's folder, `csv.h` below it.
 cd "$repository"
 while IFS=: read -r readme path; do
   folder="$(dirname "$readme")"

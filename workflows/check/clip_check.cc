@@ -14,13 +14,13 @@
 #include "importer/marker_importer.h"
 #include "importer/track/frame_detector.h"
 #include "workflows/check/clip_frames.h"
-#include "workflows/check/clip_map.h"
 #include "workflows/check/clip_precision.h"
 #include "workflows/check/dictionary_search.h"
-#include "workflows/check/layout_correction.h"
 #include "workflows/check/marked_frame.h"
 #include "workflows/check/marker_light.h"
-#include "workflows/check/print_faults.h"
+#include "workflows/proposal/clip_map.h"
+#include "workflows/proposal/layout_correction.h"
+#include "workflows/proposal/print_faults.h"
 #include "workflows/run/progress.h"
 
 namespace velamap {

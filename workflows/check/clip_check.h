@@ -12,7 +12,7 @@
 #include "importer/layout/layout.h"
 #include "importer/video/video_options.h"
 #include "workflows/check/clip_facts.h"
-#include "workflows/check/layout_proposal.h"
+#include "workflows/proposal/layout_proposal.h"
 
 namespace velamap {
 

@@ -12,10 +12,10 @@
 #include "importer/text/id_ranges.h"
 #include "workflows/check/clip_check.h"
 #include "workflows/check/clip_verdict.h"
-#include "workflows/check/layout_proposal.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
+#include "workflows/proposal/layout_proposal.h"
 
 namespace velamap {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
-#include "importer/base/text_file.h"
+#include "importer/text/text_file.h"
 #include "workflows/options/help_text.h"
 #include "workflows/options/nearest_name.h"
 #include "workflows/options/path_check.h"

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include "importer/base/csv.h"
 #include "importer/base/statistics.h"
+#include "importer/text/csv.h"
 #include "workflows/plan/plan_options.h"
 
 namespace velamap {

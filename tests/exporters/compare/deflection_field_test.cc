@@ -10,7 +10,7 @@
 
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/compare/shape_comparison.h"
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/example_covariance.h"
 

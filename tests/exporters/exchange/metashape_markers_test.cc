@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <pugixml.hpp>
 
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
+#include "importer/text/csv.h"
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/example_model.h"
 

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/example_model.h"
 

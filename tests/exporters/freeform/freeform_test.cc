@@ -12,9 +12,9 @@
 
 #include "exporters/freeform/freeform_shape.h"
 #include "exporters/freeform/marker_front.h"
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
+#include "importer/text/csv.h"
 #include "tests/exporters/formats/ply_reader.h"
 #include "tests/exporters/freeform/random_markers.h"
 #include "tests/support/error_matchers.h"

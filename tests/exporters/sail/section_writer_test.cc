@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exporters/sail/section_drawing.h"
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 #include "tests/exporters/comma_locale.h"
 #include "tests/exporters/sail/sail_shapes.h"
 

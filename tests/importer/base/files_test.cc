@@ -13,7 +13,7 @@
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/replacement.h"
-#include "importer/base/text_file.h"
+#include "importer/text/text_file.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 

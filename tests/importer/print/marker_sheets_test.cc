@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
-#include "importer/base/text_file.h"
 #include "importer/print/print_plan.h"
+#include "importer/text/text_file.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 

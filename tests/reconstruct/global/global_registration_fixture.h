@@ -8,7 +8,7 @@
 
 #include "importer/geometry/alignment.h"
 #include "reconstruct/register_frames.h"
-#include "tests/reconstruct/global/scene_map.h"
+#include "tests/reconstruct/map/scene_map.h"
 
 namespace velamap {
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/global/map_cleanup.h"
-#include "tests/reconstruct/global/scene_map.h"
+#include "tests/reconstruct/map/scene_map.h"
 
 namespace velamap {
 

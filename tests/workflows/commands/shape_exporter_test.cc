@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exporters/formats/shape_csv.h"
-#include "importer/base/csv.h"
+#include "importer/text/csv.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/true_model.h"

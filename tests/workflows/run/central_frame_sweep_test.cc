@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "exporters/formats/shape_csv.h"
-#include "importer/base/csv.h"
 #include "importer/base/error.h"
 #include "importer/database/colmap_database.h"
+#include "importer/text/csv.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/support/error_matchers.h"
 #include "tests/support/export_shape.h"

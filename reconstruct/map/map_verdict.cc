@@ -1,0 +1,240 @@
+#include "reconstruct/map/map_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
+
+#include "importer/base/statistics.h"
+#include "importer/geometry/quad.h"
+#include "reconstruct/map/map_refinement.h"
+
+namespace velamap {
+namespace {
+
+// The nominal sigma is a guess; the noise of corners is at least this fraction of it.
+constexpr double kMinFactor = 0.3;
+
+// Converts a median RMS error of four corners to 1 sigma of a coordinate.
+double SigmaFromMedian(double median_rms, double median_of_chi_square) {
+  return median_rms * std::sqrt(kNumCorners / median_of_chi_square);
+}
+
+std::string Px(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), value < 10 ? "%.1f px" : "%.0f px", value);
+  return text.data();
+}
+
+// Distances of the corners from their projections, px.
+std::array<double, kNumCorners> CornerErrorsPx(const MapProblem& problem,
+                                               const MapSolution& solution,
+                                               const MapObservation& observation) {
+  const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+  const auto corners = CornersInShape(
+      problem.Marker(observation.marker_idx),
+      solution.shape_from_marker[static_cast<std::size_t>(observation.marker_idx)].front());
+  std::array<double, kNumCorners> errors_px{};
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    errors_px[i] =
+        (observation.px_from_ray[i] * ((pose * corners[i]).hnormalized() - observation.rays[i]))
+            .norm();
+  }
+  return errors_px;
+}
+
+// A marker as a frame should show it: the width across its shorter direction, px. Nothing if it is
+// turned away, or not completely in the image with the margin of half its width that detection
+// needs.
+std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_shape,
+                                 const std::array<Eigen::Vector3d, kNumCorners>& corners) {
+  const Eigen::Vector3d normal = (corners[0] - corners[1]).cross(corners[2] - corners[1]);
+  const Eigen::Vector3d center_in_shape =
+      (corners[0] + corners[1] + corners[2] + corners[3]) / kNumCorners;
+  if ((cam_from_shape * center_in_shape).dot(cam_from_shape.rotation * normal) >= 0) {
+    return std::nullopt;
+  }
+  QuadCorners quad;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    const auto image_px = ImageFromCam(*frame.camera, cam_from_shape * corners[i]);
+    if (!image_px) return std::nullopt;
+    quad[i] = *image_px;
+  }
+  const double diagonal_px = std::max((quad[2] - quad[0]).norm(), (quad[3] - quad[1]).norm());
+  const double width_px = QuadArea(quad) / diagonal_px;
+  const Eigen::Array2d size_px(frame.camera->width_px, frame.camera->height_px);
+  for (const Eigen::Vector2d& corner : quad) {
+    if ((corner.array() < 0.5 * width_px).any() ||
+        (corner.array() > size_px - 0.5 * width_px).any()) {
+      return std::nullopt;
+    }
+  }
+  return width_px;
+}
+
+// 1 sigma of the centre in its least certain direction, for fixed frames. Where these look from one
+// side, the distance follows from the marker's size in the image. The error of its print is the
+// same fraction in all frames: one unknown with a prior, which is eliminated. However many frames
+// look from one side, the distance is no more certain than the print.
+double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
+                   int marker_idx) {
+  const MapMarker& marker = problem.Marker(marker_idx);
+  const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
+  const double factor = std::max(noise.factor, kMinFactor);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d with_side = Eigen::Vector3d::Zero();
+  double of_side = 1 / (kScaleSigma * kScaleSigma);
+  for (const int idx : marker.observation_idxs) {
+    if (!solution.fits[static_cast<std::size_t>(idx)]) continue;
+    const MapObservation& observation = problem.Observation(idx);
+    const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+    const Eigen::Vector3d x = pose * place.translation;
+    const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+    Eigen::Matrix<double, 2, 3> ray_from_x;
+    ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
+    const double sigma_px = factor * observation.sigma_px;
+    const Eigen::Matrix<double, 2, 3> jacobian =
+        observation.px_from_ray[0] * ray_from_x * rotation / sigma_px;
+    // log(size in the image) = log(side) - log(distance).
+    const Eigen::Vector3d log_distance_by_x = rotation.transpose() * x / x.squaredNorm();
+    const double size_weight = std::pow(observation.side_px / sigma_px, 2);
+    information += jacobian.transpose() * jacobian +
+                   size_weight * log_distance_by_x * log_distance_by_x.transpose();
+    with_side += size_weight * log_distance_by_x;
+    of_side += size_weight;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
+      information - with_side * with_side.transpose() / of_side);
+  return 1 / std::sqrt(solver.eigenvalues()[0]);
+}
+
+}  // namespace
+
+MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution) {
+  MapNoise noise;
+  noise.factor_of_frame.assign(problem.frames.size(), 0.0);
+  std::vector<double> relative, errors_px, alone_px;
+  std::vector<std::vector<double>> relative_of_frame(problem.frames.size());
+  for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
+    if (!solution.fits[idx]) continue;
+    const MapObservation& observation = problem.observations[idx];
+    const double error_px = ReprojectionError(problem, solution, observation);
+    relative.push_back(error_px / observation.sigma_px);
+    errors_px.push_back(error_px);
+    alone_px.push_back(observation.alone_error_px);
+    relative_of_frame[static_cast<std::size_t>(observation.frame_idx)].push_back(relative.back());
+  }
+  if (relative.empty()) return noise;
+  // A marker at a known place has 8 degrees of freedom, and 2 after a fit of its pose.
+  noise.factor = SigmaFromMedian(Median(std::move(relative)), kChiSquaredMedian8);
+  noise.sigma_px = SigmaFromMedian(Median(std::move(errors_px)), kChiSquaredMedian8);
+  noise.alone_sigma_px = SigmaFromMedian(Median(std::move(alone_px)), kChiSquaredMedian2);
+  for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
+    if (relative_of_frame[idx].empty()) continue;
+    noise.factor_of_frame[idx] =
+        SigmaFromMedian(Median(std::move(relative_of_frame[idx])), kChiSquaredMedian8);
+  }
+  return noise;
+}
+
+double FinalTolerance(const MapObservation& observation, const MapNoise& noise) {
+  // The RMS distance of four corners is 1.4 sigma of a coordinate; 5 sigma is 3.5 times that, which
+  // no good observation reaches.
+  constexpr double kSigmas = 5.0;
+  const double factor = std::max(
+      {noise.factor, noise.factor_of_frame[static_cast<std::size_t>(observation.frame_idx)],
+       kMinFactor});
+  return kSigmas * factor * observation.sigma_px;
+}
+
+void MarkFinalFits(const MapProblem& problem, const MapNoise& noise, MapSolution* solution) {
+  for (std::size_t idx = 0; idx < problem.observations.size(); ++idx) {
+    const MapObservation& observation = problem.observations[idx];
+    solution->fits[idx] =
+        ReprojectionError(problem, *solution, observation) <= FinalTolerance(observation, noise);
+  }
+}
+
+bool IsSuspicious(const MapNoise& noise) {
+  // The errors of a right shape are within twice the noise of the corners, lens and cloth included.
+  constexpr double kRatio = 4.0, kNegligiblePx = 0.25;
+  return noise.sigma_px > kNegligiblePx && noise.sigma_px > kRatio * noise.alone_sigma_px;
+}
+
+std::string OutlierReason(const MapProblem& problem, const MapSolution& solution,
+                          const MapNoise& noise, const MapObservation& observation) {
+  const double tolerance_px =
+      std::max(FinalTolerance(observation, noise), GrowthTolerance(observation));
+  const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
+  const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
+  for (std::size_t other_idx = 0; other_idx < problem.markers.size(); ++other_idx) {
+    if (other_idx == marker_idx || solution.shape_from_marker[other_idx].empty()) continue;
+    MapObservation as_other = observation;
+    as_other.marker_idx = static_cast<int>(other_idx);
+    if (ReprojectionError(problem, as_other, pose, solution.shape_from_marker[other_idx].front()) <=
+        tolerance_px) {
+      return "wrong id: marker " + std::to_string(problem.markers[other_idx].marker_id) +
+             " stands there";
+    }
+  }
+  MapObservation turned = observation;
+  for (int quarters = 1; quarters < kNumCorners; ++quarters) {
+    std::rotate(turned.rays.begin(), turned.rays.begin() + 1, turned.rays.end());
+    std::rotate(turned.px_from_ray.begin(), turned.px_from_ray.begin() + 1,
+                turned.px_from_ray.end());
+    if (ReprojectionError(problem, turned, pose, solution.shape_from_marker[marker_idx].front()) <=
+        tolerance_px) {
+      return "corners numbered from the wrong one, turned by " + std::to_string(90 * quarters) +
+             " degrees";
+    }
+  }
+  const auto errors_px = CornerErrorsPx(problem, solution, observation);
+  const double corner_tolerance_px = FinalTolerance(observation, noise);
+  std::string corners;
+  int num_off = 0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    if (errors_px[i] <= corner_tolerance_px) continue;
+    ++num_off;
+    corners += (corners.empty() ? "corner " : ", ") + std::to_string(i + 1) + " off by " +
+               Px(errors_px[i]);
+  }
+  if (num_off > 0 && num_off < kNumCorners) return corners;
+  return Px(ReprojectionError(problem, solution, observation)) + " from its place";
+}
+
+PlacedMarker SupportOf(const MapProblem& problem, const MapSolution& solution,
+                       const MapNoise& noise, int marker_idx) {
+  const MapMarker& marker = problem.Marker(marker_idx);
+  const Sim3& place = solution.shape_from_marker[static_cast<std::size_t>(marker_idx)].front();
+  const auto corners = CornersInShape(marker, place);
+  PlacedMarker placed;
+  placed.marker_id = marker.marker_id;
+  placed.center_in_shape_m = place.translation;
+  placed.sigma_m = CenterSigma(problem, solution, noise, marker_idx);
+  std::vector<char> sees(problem.frames.size(), 0);
+  for (const int idx : marker.observation_idxs) {
+    if (!solution.fits[static_cast<std::size_t>(idx)]) continue;
+    sees[static_cast<std::size_t>(problem.Observation(idx).frame_idx)] = 1;
+    ++placed.num_seen;
+  }
+  std::vector<std::optional<double>> width_px_of(problem.frames.size());
+  std::vector<double> seen_widths_px;
+  for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
+    const auto& pose = solution.cam_from_shape[idx];
+    if (!pose) continue;
+    width_px_of[idx] = ShownWidth(problem.frames[idx], *pose, corners);
+    if (sees[idx] && width_px_of[idx]) seen_widths_px.push_back(*width_px_of[idx]);
+  }
+  if (seen_widths_px.empty()) return placed;
+  const double usual_px = Median(std::move(seen_widths_px));
+  for (std::size_t idx = 0; idx < problem.frames.size(); ++idx) {
+    if (!width_px_of[idx] || *width_px_of[idx] < usual_px) continue;
+    ++placed.num_should_see;
+    placed.num_seen_of_these += sees[idx];
+  }
+  return placed;
+}
+
+}  // namespace velamap

@@ -1,0 +1,47 @@
+// Verdict on a finished map: its precision, and its outliers with reasons.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reconstruct/evidence/layout_evidence.h"
+#include "reconstruct/map/map_problem.h"
+
+namespace velamap {
+
+struct MapNoise {
+  // Robust standard deviation of a coordinate of a corner in units of its sigma_px: in the map, and
+  // in single frames (0: not registered).
+  double factor = 1.0;
+  std::vector<double> factor_of_frame;  // by frame_idx
+  // The same in px, for the map and for markers that are posed alone. The latter is the noise of
+  // the corners and does not depend on the shape; the noise of the map is larger if the shape is
+  // wrong or the surface moved.
+  double sigma_px = 0.0;
+  double alone_sigma_px = 0.0;
+};
+
+// Estimates the noise from the observations that fit.
+MapNoise EstimateNoise(const MapProblem& problem, const MapSolution& solution);
+
+// Largest error of an inlier of the finished map, px.
+double FinalTolerance(const MapObservation& observation, const MapNoise& noise);
+
+void MarkFinalFits(const MapProblem& problem, const MapNoise& noise, MapSolution* solution);
+
+// Whether the errors are larger than the noise of the corners explains, which indicates a wrong
+// shape.
+bool IsSuspicious(const MapNoise& noise);
+
+// The reason why an observation does not fit the place of its marker: it shows another marker, its
+// corners are numbered from a wrong one, a single corner is off, or another cause.
+std::string OutlierReason(const MapProblem& problem, const MapSolution& solution,
+                          const MapNoise& noise, const MapObservation& observation);
+
+// The evidence for a placed marker: where it is, how well that is known from the observations that
+// fit, and how many of the registered frames that should show it do. Lengths in units of the map.
+PlacedMarker SupportOf(const MapProblem& problem, const MapSolution& solution,
+                       const MapNoise& noise, int marker_idx);
+
+}  // namespace velamap

@@ -1,0 +1,41 @@
+// A layout from the markers of a clip in space.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "importer/layout/layout.h"
+#include "reconstruct/evidence/marker_rows.h"
+#include "workflows/proposal/clip_map.h"
+
+namespace velamap {
+
+struct LayoutProposal {
+  Layout layout;
+  // What was measured and what is not sure, one line each; they go before the file.
+  std::vector<std::string> notes;
+  // Where the given layout is wrong, one line each.
+  std::vector<std::string> contradictions;
+};
+
+// Markers that stand together on one body.
+struct StandingGroup {
+  RowGroup rows;
+  std::size_t body_idx = 0;
+};
+
+// Most markers first.
+std::vector<StandingGroup> FindStandingGroups(const ClipMap& map);
+
+// Parts, lines and lengths where `known`, of which only the dictionary and the lengths count, has
+// no parts. A group of two rows and more becomes a part with lines, any other one a rigid part.
+LayoutProposal ProposeLayout(const ClipMap& map, const Layout& known);
+
+// Notes the ids that `layout` does not name and that have no place, by reason.
+void NoteLeftOut(const ClipMap& map, const Layout& layout, std::vector<std::string>* notes);
+
+// Corrects the lengths of the markers that contradict `layout`.
+void CorrectLengths(const ClipMap& map, LayoutProposal* proposal);
+
+}  // namespace velamap
