@@ -65,6 +65,8 @@ house_folder(reconstruct/colmap PUBLIC
 house_folder(reconstruct/problem PUBLIC
   corner_errors corner_residuals corner_velocities error_correlation marker_adjustment_options
   marker_problem marker_state marker_uncertainty normal_equations prior_cost_functions scale_bar)
+house_folder(reconstruct/sizes PUBLIC
+  marker_sizes)
 house_folder(reconstruct/adjust PUBLIC
   camera_adjustment camera_cross_validation marker_adjustment)
 house_folder(reconstruct/calibration PUBLIC

@@ -281,7 +281,7 @@ fs::path FinalPath(const fs::path& path) {
   fs::path final_path;
   for (const fs::path& component : path) {
     const std::optional<UnfinishedName> unfinished = ParseUnfinished(component.string());
-    final_path /= unfinished ? unfinished->final_name : component;
+    final_path /= unfinished ? fs::path(unfinished->final_name) : component;
   }
   return final_path;
 }

@@ -16,7 +16,6 @@
 #include "reconstruct/adjust/camera_model_choice.h"
 #include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/adjust/found_cameras.h"
-#include "reconstruct/adjust/marker_sizes.h"
 #include "reconstruct/adjust/rolling_shutter_choice.h"
 #include "reconstruct/adjust/scale_bar_verdict.h"
 #include "reconstruct/colmap/bundle_adjustment_options.h"
@@ -28,6 +27,7 @@
 #include "reconstruct/problem/corner_residuals.h"
 #include "reconstruct/problem/corner_velocities.h"
 #include "reconstruct/problem/marker_uncertainty.h"
+#include "reconstruct/sizes/marker_sizes.h"
 
 namespace velamap {
 namespace {

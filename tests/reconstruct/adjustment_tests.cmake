@@ -11,7 +11,7 @@ velamap_test(NAME reconstruct_adjustment_test LABEL unit
     adjust/rolling_shutter_test.cc
     problem/corner_velocities_test.cc
     problem/marker_cost_functions_test.cc
-    adjust/marker_sizes_test.cc
+    sizes/marker_sizes_test.cc
     problem/marker_uncertainty_test.cc
     adjust/scale_bar_verdict_test.cc
     scene_model.cc

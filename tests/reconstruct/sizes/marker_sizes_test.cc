@@ -1,4 +1,4 @@
-#include "reconstruct/adjust/marker_sizes.h"
+#include "reconstruct/sizes/marker_sizes.h"
 
 #include <cmath>
 #include <map>

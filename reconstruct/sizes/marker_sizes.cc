@@ -1,0 +1,77 @@
+#include "reconstruct/sizes/marker_sizes.h"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "importer/base/error.h"
+#include "importer/base/statistics.h"
+#include "reconstruct/problem/marker_adjustment_options.h"
+#include "reconstruct/problem/prior_cost_functions.h"
+#include "reconstruct/sizes/part_sizes.h"
+
+namespace velamap {
+namespace {
+
+// A wrong print changes all sides alike; a covered or badly fitted corner changes two of them.
+std::string WhatToCheck(const MarkerSize& size, double deviation) {
+  if (size.unevenness < std::abs(deviation)) return "check its marker_length and its print";
+  return fmt::format("its sides differ by {:.2f} %, so look for what covers or bends it",
+                     100 * size.unevenness);
+}
+
+}  // namespace
+
+double MedianScale(const MarkerState& state) {
+  std::vector<double> scales;
+  for (const MarkerBlock& marker : state.markers) {
+    for (const auto& [a, b] : MarkerPriorError::Sides(marker.corners)) {
+      const double side = (CornerPosition(marker, b) - CornerPosition(marker, a)).norm();
+      if (side > 0) scales.push_back(marker.length_m / side);
+    }
+  }
+  if (scales.empty()) {
+    throw DataError("no marker of the model has two neighbouring corners, so the scale is unknown");
+  }
+  return Median(std::move(scales));
+}
+
+MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
+                                   const std::map<int, double>& inset_sigmas,
+                                   double print_tolerance, double print_scale_sigma) {
+  const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance, inset_sigmas);
+  MarkerSizeVerdict verdict;
+  verdict.print_tolerance = print_tolerance;
+  if (sizes.size() < 3) return verdict;  // with two markers, either may be the wrong one
+  PartsVerdict parts = JudgeParts(sizes, print_tolerance, print_scale_sigma);
+  verdict.part_scale_sigma = parts.scale_sigma;
+  verdict.part_disagreement = std::move(parts.disagreement);
+  const Deviations deviations = verdict.part_scale_sigma > 0
+                                    ? FindDeviationsInParts(sizes, verdict.part_scale_sigma)
+                                    : FindDeviations(sizes);
+  verdict.print_tolerance = FitTolerance(deviations, sizes, print_tolerance);
+  if (verdict.print_tolerance > print_tolerance) {
+    verdict.warnings.push_back(fmt::format(
+        "the sides of the markers scatter by {:.2f} % more than the images explain, beyond the "
+        "{:.2f} % of {}; the larger is used",
+        100 * verdict.print_tolerance, 100 * print_tolerance,
+        OptionName(&MarkerAdjustmentOptions::print_tolerance)));
+  }
+  const std::vector<double> normalized = Normalize(deviations, sizes, verdict.print_tolerance);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (std::abs(normalized[i]) <= kMaxSizeSigmas) continue;
+    verdict.contradicting.insert(sizes[i].marker_id);
+    verdict.warnings.push_back(fmt::format(
+        "marker {} is {:.2f} % {} than the layout says, compared with the other markers{} "
+        "({:.0f} sigmas): its size is not used; {}",
+        sizes[i].marker_id, 100 * std::abs(deviations.values[i]),
+        deviations.values[i] > 0 ? "larger" : "smaller",
+        verdict.part_scale_sigma > 0 ? " of its part" : "", std::abs(normalized[i]),
+        WhatToCheck(sizes[i], deviations.values[i])));
+  }
+  return verdict;
+}
+
+}  // namespace velamap

@@ -1,0 +1,23 @@
+// Whether the parts of the layout agree on the size of their markers.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reconstruct/sizes/size_deviations.h"
+
+namespace velamap {
+
+struct PartsVerdict {
+  // 1 sigma of the parts' scales around their mean, as a fraction; 0 if the parts agree.
+  double scale_sigma = 0.0;
+  std::string disagreement;  // "sail and hull disagree by ..."; empty: parts agree
+};
+
+// The parts disagree if one differs from the mean of the others by more than chance, and by enough
+// to matter compared with `print_scale_sigma`, 1 sigma of the scale of the print, as a fraction.
+PartsVerdict JudgeParts(const std::vector<MarkerSize>& sizes, double print_tolerance,
+                        double print_scale_sigma);
+
+}  // namespace velamap
