@@ -23,17 +23,6 @@ MarkerShape CommonMarkers(const MarkerShape& shape, const MarkerShape& other) {
   return common;
 }
 
-// Turns the normals to the side that most of the markers face.
-void FaceLikeMarkers(const MarkerShape& shape, const FittedSurface& fit, SurfaceGrid* grid) {
-  double agreement = 0.0;
-  for (const SurfaceResidual& marker : fit.residuals) {
-    agreement += EvaluateNormal(fit.surface, marker.u, marker.v)
-                     .dot(MarkerNormal(*FindWholeMarker(shape, marker.marker_id)));
-  }
-  if (agreement >= 0) return;
-  for (Eigen::Vector3d& normal : grid->normals) normal = -normal;
-}
-
 std::optional<double> CombinedSigma(const std::optional<double>& a,
                                     const std::optional<double>& b) {
   if (!a || !b) return std::nullopt;
@@ -47,7 +36,9 @@ DeflectionField FieldBetween(const MarkerShape& shape, const MarkerShape& refere
   const FittedSurface of_reference =
       FitSurface(CollectSurfaceInput(CommonMarkers(reference, shape), part));
   DeflectionField field{part.name, MakeGrid(of_reference.surface, options), {}};
-  FaceLikeMarkers(reference, of_reference, &field.reference);
+  if (!FacesLikeMarkers(of_reference, reference)) {
+    for (Eigen::Vector3d& normal : field.reference.normals) normal = -normal;
+  }
   for (std::size_t i = 0; i < field.reference.vertices_m.size(); ++i) {
     const double u = field.reference.surface_parameters[i].x(),
                  v = field.reference.surface_parameters[i].y();

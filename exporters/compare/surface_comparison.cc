@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "exporters/shape/sail_lines.h"
 #include "exporters/surface/surface.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
@@ -13,23 +12,20 @@
 namespace velamap {
 namespace {
 
+TriangleMesh MeshOf(const FittedSurface& fit, const Layout& layout) {
+  return MeshSurface(fit.surface, DefaultMeshOptions(fit.surface, layout.marker_length_m));
+}
+
 TriangleMesh MeshOf(const MarkerShape& shape, const LayoutPart& part, const Layout& layout) {
-  const SplineSurface surface = FitSurface(CollectSurfaceInput(shape, part)).surface;
-  return MeshSurface(surface, DefaultMeshOptions(surface, layout.marker_length_m));
+  return MeshOf(FitSurface(CollectSurfaceInput(shape, part)), layout);
 }
 
 // The surface of the reference, turned so that its triangles face as most of the markers do.
 TriangleMesh FacingMesh(const MarkerShape& reference, const LayoutPart& part,
                         const Layout& layout) {
-  TriangleMesh mesh = MeshOf(reference, part, layout);
-  const MeshDistance surface(mesh);
-  double agreement = 0.0;
-  for (const int marker_id : MarkersOfPart(layout, part.name)) {
-    const ShapeMarker* marker = FindWholeMarker(reference, marker_id);
-    if (marker == nullptr) continue;
-    agreement += surface.Project(*marker->x_in_shape_m[0]).normal.dot(MarkerNormal(*marker));
-  }
-  if (agreement >= 0) return mesh;
+  const FittedSurface fit = FitSurface(CollectSurfaceInput(reference, part));
+  TriangleMesh mesh = MeshOf(fit, layout);
+  if (FacesLikeMarkers(fit, reference)) return mesh;
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
 }

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <Eigen/Geometry>
 
 #include "exporters/freeform/marker_front.h"
+#include "exporters/freeform/mesh_integrals.h"
 #include "exporters/freeform/mesh_refinement.h"
 #include "exporters/freeform/surface_field.h"
 #include "exporters/shape/shape_sigma.h"
@@ -73,38 +73,6 @@ std::vector<FreeformMarker> LargestPiece(const std::vector<FreeformMarker>& mark
              by_piece.begin(), by_piece.end(),
              [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); })
       ->second;
-}
-
-double AreaOf(const TriangleMesh& mesh) {
-  double area_m2 = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const auto& x = mesh.vertices_m;
-    area_m2 += (x[b] - x[a]).cross(x[c] - x[a]).norm() / 2;
-  }
-  return area_m2;
-}
-
-// By the divergence theorem; positive even if the markers are on the inside.
-double VolumeOf(const TriangleMesh& mesh) {
-  const auto& x = mesh.vertices_m;
-  const Eigen::Vector3d origin = x.front();
-  double volume_m3 = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    volume_m3 += (x[a] - origin).dot((x[b] - origin).cross(x[c] - origin)) / 6;
-  }
-  return std::abs(volume_m3);
-}
-
-double RmsSigma(const TriangleMesh& mesh) {
-  double sum = 0.0, area = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const auto& x = mesh.vertices_m;
-    const auto& sigma = mesh.sigmas_m;
-    const double weight = (x[b] - x[a]).cross(x[c] - x[a]).norm();
-    sum += weight * (sigma[a] * sigma[a] + sigma[b] * sigma[b] + sigma[c] * sigma[c]) / 3;
-    area += weight;
-  }
-  return std::sqrt(sum / area);
 }
 
 EdgeMeasure ByLength(double length_m) {
@@ -179,8 +147,7 @@ TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marke
     if (options) RefuseMesh(*options, least_edge_m);
     throw DataError(
         "the surface folds between the markers; check them, and make each face of a body with "
-        "edges "
-        "a part of its own");
+        "edges a part of its own");
   }
   return mesh;
 }

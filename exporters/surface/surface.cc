@@ -193,6 +193,15 @@ std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v) {
   return SigmaAt(fit.surface, fit.pole_covariance_m2, u, v);
 }
 
+bool FacesLikeMarkers(const FittedSurface& fit, const MarkerShape& shape) {
+  double agreement = 0.0;
+  for (const SurfaceResidual& marker : fit.residuals) {
+    agreement += EvaluateNormal(fit.surface, marker.u, marker.v)
+                     .dot(MarkerNormal(*FindWholeMarker(shape, marker.marker_id)));
+  }
+  return agreement >= 0;
+}
+
 FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& options) {
   options.Check();
   SortedInput sorted = SortInput(input);

@@ -86,6 +86,10 @@ struct FittedSurface {
 // Sigma of the surface at a place along its normal, m; nothing if the markers are interpolated.
 std::optional<double> SigmaAt(const FittedSurface& fit, double u, double v);
 
+// Whether the surface's normals point to the side that most of the markers face. `shape` holds the
+// markers of the fit.
+bool FacesLikeMarkers(const FittedSurface& fit, const MarkerShape& shape);
+
 // Throws InputError for bad options and for an extension beyond its limit. Throws DataError where
 // the markers do not determine a surface: fewer than two lines with three whole markers, two
 // markers in one place, lines that cross or run in opposite directions, or a surface that

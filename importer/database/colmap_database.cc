@@ -243,9 +243,7 @@ std::map<std::string, ImageId> ColmapDatabase::ReadImageIdsByName() const {
       const std::string name = query.getColumn(0).getString();
       CheckImageName(name, path_ + ": table images");
       if (ids.emplace(name, query.getColumn(1).getUInt()).second) continue;
-      throw InputError(fmt::format(
-          "{}: table images: two images are named {}; delete the database and import again", path_,
-          name));
+      ThrowDoubleImageName(path_, name);
     }
     return ids;
   });

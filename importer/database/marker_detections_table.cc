@@ -15,6 +15,7 @@
 #include "importer/database/camera_table.h"
 #include "importer/database/colmap_schema.h"
 #include "importer/database/sqlite_blob.h"
+#include "importer/database/sqlite_errors.h"
 
 namespace velamap {
 namespace {
@@ -202,9 +203,7 @@ std::vector<DatabaseImage> ReadImagesWithDetections(const std::string& path,
       image.detections.image_name = query.getColumn(2).getString();
       CheckImageName(image.detections.image_name, path + ": table images");
       if (!image_names.insert(image.detections.image_name).second) {
-        throw InputError(fmt::format(
-            "{}: table images: two images are named {}; delete the database and import again", path,
-            image.detections.image_name));
+        ThrowDoubleImageName(path, image.detections.image_name);
       }
       if (cameras.count(image.camera_id) == 0) {
         throw InputError(fmt::format(
