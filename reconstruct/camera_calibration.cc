@@ -86,8 +86,7 @@ void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layou
                      const CornerErrors& corner_errors, const Model& seed, const Model& adjusted,
                      std::vector<std::string>* warnings) {
   const SteadinessVerdict verdict = JudgeSteadiness(adjusted);
-  if (!verdict.principal_point_warning.empty())
-    warnings->push_back(verdict.principal_point_warning);
+  if (verdict.wander) warnings->push_back(DescribeWander(*verdict.wander));
   const auto step = ConfirmFocalStep(options, layout, corner_errors, &seed, verdict.step);
   if (step) throw DataError("the camera cannot be calibrated: " + DescribeStep(*step));
 }

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "reconstruct/camera/camera_steadiness.h"
 
 namespace velamap {
 namespace {
@@ -63,6 +66,29 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
                   "or {:g} sigmas",
                   kMaxSystematic_px, kGoodShapeChange_sigmas),
       StatusOf(evidence), CalibrationAdvice(evidence)};
+}
+
+std::optional<KeyNumber> SteadinessNumber(const Model& model) {
+  const SteadinessVerdict verdict = JudgeSteadiness(model);
+  const auto number = [](std::string value, std::string advice, bool spoils_shape) {
+    return KeyNumber{KeyNumberKind::kSteadiness, std::move(value),
+                     "change of the camera from picture to picture, which the sigmas of the shape "
+                     "do not include; bad from a wandering principal point of 1 % of the focal "
+                     "length or a step of 3 % on",
+                     spoils_shape ? ReportStatus::kBad : ReportStatus::kCheck, std::move(advice)};
+  };
+  if (verdict.wander) {
+    const PrincipalPointWander& wander = *verdict.wander;
+    return number(fmt::format("principal point \u00b1{:.1f} % of the focal length",
+                              100 * wander.spread_px / wander.focal_px),
+                  DescribeWander(wander), wander.SpoilsShape());
+  }
+  if (verdict.step && verdict.step->IsCertain()) {
+    const FocalStep& step = *verdict.step;
+    return number(fmt::format("focal length {:+.1f} %", 100 * (step.after_px / step.before_px - 1)),
+                  DescribeStep(step), step.SpoilsShape());
+  }
+  return std::nullopt;
 }
 
 std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncertainty) {

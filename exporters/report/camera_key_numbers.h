@@ -20,6 +20,9 @@ ReportStatus StatusOf(const CalibrationEvidence& evidence);
 // adjustment, which tests it; `uncertainty` may be null.
 std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertainty);
 
+// Whether one unchanged lens took all images. None where nothing speaks against it.
+std::optional<KeyNumber> SteadinessNumber(const Model& model);
+
 // None where the adjustment did not estimate it; `uncertainty` may be null.
 std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncertainty);
 

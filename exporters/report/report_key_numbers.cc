@@ -127,6 +127,7 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
   if (const auto calibration = CalibrationNumber(input.uncertainty)) {
     numbers.push_back(*calibration);
   }
+  if (const auto steadiness = SteadinessNumber(input.metric_model)) numbers.push_back(*steadiness);
   if (const auto shutter = RollingShutterNumber(input.uncertainty)) numbers.push_back(*shutter);
   if (const auto camera = FoundCameraNumber(input.found_cameras)) numbers.push_back(*camera);
   numbers.push_back(ScaleNumber(input.scale, input.audit, input.uncertainty));
@@ -151,6 +152,8 @@ std::string KeyNumberName(KeyNumberKind kind) {
       return "Known points";
     case KeyNumberKind::kCalibration:
       return "Calibration";
+    case KeyNumberKind::kSteadiness:
+      return "Camera steadiness";
     case KeyNumberKind::kCamera:
       return "Camera";
     case KeyNumberKind::kRollingShutter:

@@ -23,6 +23,7 @@ enum class KeyNumberKind {
   kMeasuredDistances,
   kKnownPoints,
   kCalibration,
+  kSteadiness,
   kCamera,
   kRollingShutter,
   kScale,

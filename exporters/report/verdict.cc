@@ -35,6 +35,7 @@ Verdict MakeVerdict(const std::vector<KeyNumber>& numbers,
                                            number.advice.empty() ? "" : "; ", number.advice));
   }
   std::set<std::string> said;  // the log repeats a warning for each step that meets it
+  for (const KeyNumber& number : doubtful) said.insert(number.advice);
   for (const std::string& warning : warnings) {
     if (said.insert(warning).second) reasons.Check(warning);
   }

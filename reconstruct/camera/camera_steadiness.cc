@@ -147,12 +147,14 @@ std::optional<FocalStep> FindStep(const Model& model, const std::vector<ImageInt
   return largest;
 }
 
-std::string Wandering(const Model& model, const std::vector<ImageIntrinsics>& values) {
+std::optional<PrincipalPointWander> FindWander(const Model& model,
+                                               const std::vector<ImageIntrinsics>& values) {
   constexpr double kMinSpread = 4e-3, kMinRatio = 4.0;
   constexpr std::size_t kMinImages = 8;
-  if (values.size() < kMinImages) return {};
+  if (values.size() < kMinImages) return std::nullopt;
   const Camera& camera = model.cameras.at(model.FindImage(values.front().image_id)->camera_id);
   const double least_px = kMinSpread * std::max(camera.width_px, camera.height_px);
+  std::optional<PrincipalPointWander> wander;
   for (const int axis : {0, 1}) {
     std::vector<double> offsets, sigmas;
     for (const ImageIntrinsics& value : values) {
@@ -161,12 +163,10 @@ std::string Wandering(const Model& model, const std::vector<ImageIntrinsics>& va
     }
     const double spread_px = RobustSigma(offsets);
     if (spread_px < least_px || spread_px < kMinRatio * Median(std::move(sigmas))) continue;
-    return fmt::format(
-        "the principal point wanders by {:.0f} px from picture to picture, as in a stabilised "
-        "clip: switch stabilisation off and film again",
-        spread_px);
+    if (wander && wander->spread_px > spread_px) continue;
+    wander = PrincipalPointWander{spread_px, MeanFocalLength(camera)};
   }
-  return {};
+  return wander;
 }
 
 }  // namespace
@@ -193,7 +193,7 @@ SteadinessVerdict JudgeSteadiness(const Model& model) {
   std::sort(values.begin(), values.end(), [&](const ImageIntrinsics& a, const ImageIntrinsics& b) {
     return NaturalLess(names.at(a.image_id), names.at(b.image_id));
   });
-  return {FindStep(model, values), Wandering(model, values)};
+  return {FindStep(model, values), FindWander(model, values)};
 }
 
 bool FocalStep::IsCertain() const {
@@ -206,11 +206,28 @@ bool FocalStep::IsSuspicious() const {
   return sigmas >= kMinSigmas && std::abs(std::log(after_px / before_px)) >= kMinChange;
 }
 
+bool FocalStep::SpoilsShape() const {
+  constexpr double kMinChange = 0.03;
+  return IsCertain() && std::abs(std::log(after_px / before_px)) >= kMinChange;
+}
+
+bool PrincipalPointWander::SpoilsShape() const {
+  constexpr double kMinShare = 0.01;
+  return spread_px >= kMinShare * focal_px;
+}
+
 std::string DescribeStep(const FocalStep& step) {
   return fmt::format(
       "the focal length changes from {:.0f} to {:.0f} px about {}: the lens was zoomed, or the "
       "pictures come from two cameras; use the pictures of one setting only",
       step.before_px, step.after_px, step.first_image_after);
+}
+
+std::string DescribeWander(const PrincipalPointWander& wander) {
+  return fmt::format(
+      "the principal point wanders by {:.0f} px from picture to picture, as in a stabilised clip: "
+      "switch stabilisation off and film again",
+      wander.spread_px);
 }
 
 }  // namespace velamap

@@ -40,19 +40,32 @@ struct FocalStep {
   // with two cameras has to confirm it.
   bool IsCertain() const;
   bool IsSuspicious() const;
+  // Certain, and 3 % or more: the shape errs by more than its sigmas, which take one camera for
+  // granted.
+  bool SpoilsShape() const;
+};
+
+// A principal point that wanders from image to image.
+struct PrincipalPointWander {
+  double spread_px = 0.0;  // robust sigma along the axis that wanders more
+  double focal_px = 0.0;
+
+  // 1 % of the focal length or more: the shape errs by more than its sigmas, which take one camera
+  // for granted.
+  bool SpoilsShape() const;
 };
 
 struct SteadinessVerdict {
   std::optional<FocalStep> step;  // the one that divides the images best; nothing for few images
-  // One line for a warning if the principal point wanders from image to image by at least 0.4 % of
-  // the larger side and 4 sigmas; else empty.
-  std::string principal_point_warning;
+  // Nothing unless the principal point wanders by at least 0.4 % of the larger side and 4 sigmas.
+  std::optional<PrincipalPointWander> wander;
 };
 
 // Takes the images in the natural order of their names.
 SteadinessVerdict JudgeSteadiness(const Model& model);
 
-// The step as a warning.
+// What was found as a warning with a remedy.
 std::string DescribeStep(const FocalStep& step);
+std::string DescribeWander(const PrincipalPointWander& wander);
 
 }  // namespace velamap

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "importer/base/statistics.h"
+#include "reconstruct/camera/camera_steadiness.h"
 
 namespace velamap {
 
@@ -23,6 +24,7 @@ struct ClipPrecision {
   double marker_sigma_mm = 0.0;  // median over the markers' centres, with the scale
   double scale_sigma = 0.0;      // fraction
   double parallax_deg = 0.0;     // largest angle between two views of the middle of the markers
+  SteadinessVerdict steadiness;  // of the camera
   std::vector<std::string> warnings;
   std::vector<std::string> markers_left_out;  // id and reason of those that contradict the layout
 };

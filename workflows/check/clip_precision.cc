@@ -14,6 +14,7 @@
 #include "importer/database/colmap_database.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/register_frames.h"
 #include "reconstruct/seed_model.h"
 
@@ -62,6 +63,7 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.marker_sigma_mm = Median(sigmas_mm);
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
   precision.parallax_deg = kDegPerRad * Parallax(model);
+  precision.steadiness = JudgeSteadiness(model);
   precision.warnings = summary.warnings;
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (!marker.is_false) continue;

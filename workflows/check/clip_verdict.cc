@@ -139,6 +139,18 @@ class Judge {
       reasons_.Check("contradicts the layout: " + marker);
     }
     for (const std::string& warning : precision.warnings) reasons_.Check(warning);
+    JudgeSteadiness(precision.steadiness);
+  }
+
+  void JudgeSteadiness(const SteadinessVerdict& steadiness) {
+    const auto level = [](bool spoils_shape) {
+      return spoils_shape ? ReportStatus::kBad : ReportStatus::kCheck;
+    };
+    if (const auto& wander = steadiness.wander) {
+      reasons_.Add(level(wander->SpoilsShape()), DescribeWander(*wander));
+    } else if (const auto& step = steadiness.step; step && step->IsCertain()) {
+      reasons_.Add(level(step->SpoilsShape()), DescribeStep(*step));
+    }
   }
 
   void JudgeLayout() {

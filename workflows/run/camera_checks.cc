@@ -74,7 +74,7 @@ void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
 void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
                      const CornerErrors& corner_errors, const Model* seed, const Model& model) {
   const SteadinessVerdict verdict = JudgeSteadiness(model);
-  if (!verdict.principal_point_warning.empty()) spdlog::warn(verdict.principal_point_warning);
+  if (verdict.wander) spdlog::warn(DescribeWander(*verdict.wander));
   const auto step = ConfirmFocalStep(options, layout, corner_errors, seed, verdict.step);
   if (!step) return;
   if (seed != nullptr && options.find_camera) {

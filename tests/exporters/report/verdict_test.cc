@@ -88,6 +88,15 @@ TEST(Verdict, NamesTheCalibrationAndOffersTheRefinementThatExplainsIt) {
   EXPECT_THAT(first_reason(Doubtful(0.3, 0.3)), HasSubstr("refine_focal_length"));
 }
 
+TEST(Verdict, AWarningThatACardRepeatsIsOneReason) {
+  KeyNumber number = Number(KeyNumberKind::kSteadiness, ReportStatus::kBad);
+  number.advice = "switch stabilisation off";
+  const Verdict verdict = MakeVerdict({number}, {"switch stabilisation off", "another warning"});
+  EXPECT_EQ(verdict.level, ReportStatus::kBad);
+  ASSERT_EQ(verdict.reasons.size(), 2u);
+  EXPECT_EQ(verdict.reasons.back().text, "another warning");
+}
+
 TEST(Verdict, AScaleThatRestsOnADoubtfulCalibrationIsNotGreen) {
   const ReportExample example = MakeReportExample(2, 4);
   ReportInput input = example.Input();

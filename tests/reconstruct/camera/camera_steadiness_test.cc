@@ -11,7 +11,6 @@ namespace velamap {
 namespace {
 
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 // The images are taken with another camera each, and the model has the first one for all.
 Model SceneWith(const std::function<void(int frame_idx, Camera* camera)>& change) {
@@ -39,7 +38,7 @@ TEST(CameraSteadiness, OneCameraIsSteady) {
   const Model model = SceneWith([](int, Camera*) {});
   const SteadinessVerdict verdict = JudgeSteadiness(model);
   EXPECT_FALSE(verdict.step && verdict.step->IsSuspicious());
-  EXPECT_THAT(verdict.principal_point_warning, IsEmpty());
+  EXPECT_FALSE(verdict.wander);
   double sum = 0.0;
   const auto values = IntrinsicsOfImages(model);
   ASSERT_EQ(values.size(), 20u);
@@ -58,6 +57,7 @@ TEST(CameraSteadiness, AZoomIsFoundWhereItBegins) {
   }));
   ASSERT_TRUE(verdict.step);
   EXPECT_TRUE(verdict.step->IsCertain());
+  EXPECT_TRUE(verdict.step->SpoilsShape());
   EXPECT_NEAR(verdict.step->after_px / verdict.step->before_px, 1.06, 0.01);
   EXPECT_THAT(DescribeStep(*verdict.step),
               HasSubstr("about frame_000012.jpg: the lens was zoomed"));
@@ -68,7 +68,17 @@ TEST(CameraSteadiness, AStabilisedClipIsRecognised) {
     camera->params[2] += 40 * std::sin(1.7 * frame_idx);
     camera->params[3] += 30 * std::cos(2.3 * frame_idx);
   }));
-  EXPECT_THAT(verdict.principal_point_warning, HasSubstr("stabilised"));
+  ASSERT_TRUE(verdict.wander);
+  EXPECT_TRUE(verdict.wander->SpoilsShape());
+  EXPECT_NEAR(verdict.wander->spread_px, 28, 8);  // 40 px / sqrt(2)
+  EXPECT_THAT(DescribeWander(*verdict.wander), HasSubstr("stabilised"));
+}
+
+TEST(CameraSteadiness, AStabiliserThatHardlyMovesDoesNotSpoilTheShape) {
+  const auto verdict = JudgeSteadiness(SceneWith([](int frame_idx, Camera* camera) {
+    camera->params[2] += 0.008 * camera->params[0] * std::sin(1.7 * frame_idx);
+  }));
+  EXPECT_FALSE(verdict.wander && verdict.wander->SpoilsShape());
 }
 
 }  // namespace

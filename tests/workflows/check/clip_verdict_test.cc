@@ -24,7 +24,7 @@ ClipFacts GoodClip() {
   facts.white = 210;
   facts.blur_px = 0.8;
   facts.motion_px = 1.0;
-  facts.precision = ClipPrecision{40, 20, 0.5, 1e-3, 40, {}, {}};
+  facts.precision = ClipPrecision{40, 20, 0.5, 1e-3, 40, {}, {}, {}};
   return facts;
 }
 
@@ -51,6 +51,22 @@ TEST(ClipVerdict, EachFaultIsNamedByItself) {
        [](ClipFacts* facts) {
          facts->num_markers_found = 30;
          facts->num_markers_of_second = 20;
+       }},
+      {"the principal point wanders by 20 px", ReportStatus::kBad,
+       [](ClipFacts* facts) {
+         facts->precision->steadiness.wander = PrincipalPointWander{20, 960};
+       }},
+      {"the principal point wanders by 9 px", ReportStatus::kCheck,
+       [](ClipFacts* facts) {
+         facts->precision->steadiness.wander = PrincipalPointWander{9, 960};
+       }},
+      {"the focal length changes from 960 to 1010 px about b.jpg", ReportStatus::kBad,
+       [](ClipFacts* facts) {
+         facts->precision->steadiness.step = FocalStep{"b.jpg", 1, 960, 1010, 30};
+       }},
+      {"the focal length changes from 960 to 982 px about b.jpg", ReportStatus::kCheck,
+       [](ClipFacts* facts) {
+         facts->precision->steadiness.step = FocalStep{"b.jpg", 1, 960, 982, 30};
        }},
       {"never seen: 21-23 25", ReportStatus::kCheck,
        [](ClipFacts* facts) {
