@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include "exporters/report/camera_key_numbers.h"
 #include "exporters/report/scale_key_numbers.h"
@@ -86,20 +85,13 @@ KeyNumber AreaNumber(const ShapeMetrics& metrics) {
 }
 
 KeyNumber SizeNumber(const MarkerShape& shape) {
-  Eigen::AlignedBox3d box;
-  for (const ShapeMarker& marker : shape.markers) {
-    for (const auto& x : marker.x_in_shape_m) {
-      if (x) box.extend(*x);
-    }
-  }
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();
-  if (!box.isEmpty()) size = box.sizes();
+  const Eigen::Vector3d size = BoundingBox(shape);
   const bool is_small = size.maxCoeff() < 1;
   const Eigen::Vector3d shown = is_small ? kMmPerM * size : size;
   return {KeyNumberKind::kSize,
           fmt::format("{:.4g} \u00d7 {:.4g} \u00d7 {:.4g} {}", shown.x(), shown.y(), shown.z(),
                       is_small ? "mm" : "m"),
-          "bounding box of all corners along x, y and z of the shape's frame", ReportStatus::kNone};
+          "sides of the smallest box around all corners, in any direction", ReportStatus::kNone};
 }
 
 std::optional<KeyNumber> PrecisionNumber(const MarkerShape& shape) {

@@ -1,9 +1,13 @@
 #include "exporters/shape/marker_shape.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/Geometry>
+
+#include "importer/geometry/principal_axes.h"
 
 namespace velamap {
 namespace {
@@ -15,6 +19,27 @@ Eigen::Vector3d DiagonalProduct(const ShapeMarker& marker) {
   VELAMAP_CHECK(marker.IsWhole());
   const auto& x = marker.x_in_shape_m;
   return (*x[2] - *x[4]).cross(*x[1] - *x[3]);
+}
+
+std::vector<Eigen::Vector3d> AllCorners(const MarkerShape& shape) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ShapeMarker& marker : shape.markers) {
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      if (marker.x_in_shape_m[corner]) points.push_back(*marker.x_in_shape_m[corner]);
+    }
+  }
+  return points;
+}
+
+// Columns are axes of unit length.
+Eigen::Matrix3d MarkerAxes(const ShapeMarker& marker) {
+  const Eigen::Vector3d normal = MarkerNormal(marker);
+  const Eigen::Vector3d side = *marker.x_in_shape_m[2] - *marker.x_in_shape_m[1];
+  Eigen::Matrix3d axes;
+  axes.col(2) = normal;
+  axes.col(0) = (side - side.dot(normal) * normal).normalized();
+  axes.col(1) = normal.cross(axes.col(0));
+  return axes;
 }
 
 }  // namespace
@@ -49,6 +74,29 @@ std::array<double, kNumCorners> MarkerSides(const ShapeMarker& marker) {
 
 double MeanSide(const std::array<double, kNumCorners>& sides) {
   return std::accumulate(sides.begin(), sides.end(), 0.0) / kNumCorners;
+}
+
+Eigen::Vector3d BoundingBox(const MarkerShape& shape) {
+  const std::vector<Eigen::Vector3d> points = AllCorners(shape);
+  if (points.empty()) return Eigen::Vector3d::Zero();
+  std::vector<Eigen::Matrix3d> candidates = {ComputePrincipalAxes(points).directions};
+  for (const ShapeMarker& marker : shape.markers) {
+    if (marker.IsWhole()) candidates.push_back(MarkerAxes(marker));
+  }
+  Eigen::Vector3d best;
+  double least_surface = std::numeric_limits<double>::infinity();
+  for (const Eigen::Matrix3d& axes : candidates) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& point : points) box.extend(axes.transpose() * point);
+    const Eigen::Vector3d sides = box.sizes();
+    const double surface = sides.x() * sides.y() + sides.y() * sides.z() + sides.z() * sides.x();
+    if (surface < least_surface) {
+      least_surface = surface;
+      best = sides;
+    }
+  }
+  std::sort(best.data(), best.data() + 3, std::greater<double>());
+  return best;
 }
 
 }  // namespace velamap

@@ -46,4 +46,9 @@ double MarkerArea(const ShapeMarker& marker);
 std::array<double, kNumCorners> MarkerSides(const ShapeMarker& marker);
 double MeanSide(const std::array<double, kNumCorners>& sides);
 
+// Sides of a box around all corners, longest first, m. Boxes along the shape's principal axes and
+// along the sides of each marker are tried, and the one with the smallest surface is taken. It fits
+// a curved sheet as well as a cube and does not depend on the frame.
+Eigen::Vector3d BoundingBox(const MarkerShape& shape);
+
 }  // namespace velamap

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 #include <limits>
 #include <ostream>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <spdlog/spdlog.h>
-#include <Eigen/Geometry>
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
-#include "importer/geometry/principal_axes.h"
 #include "importer/geometry/units.h"
 #include "importer/text/id_ranges.h"
 
@@ -54,27 +51,6 @@ std::string FirstNames(const std::vector<std::string>& names) {
     text += (i > 0 ? ", " : "") + names[i];
   }
   return names.size() > kMaxNames ? text + ", ..." : text;
-}
-
-std::vector<Eigen::Vector3d> AllCorners(const MarkerShape& shape) {
-  std::vector<Eigen::Vector3d> points;
-  for (const ShapeMarker& marker : shape.markers) {
-    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
-      if (marker.x_in_shape_m[corner]) points.push_back(*marker.x_in_shape_m[corner]);
-    }
-  }
-  return points;
-}
-
-// Columns are axes of unit length.
-Eigen::Matrix3d MarkerAxes(const ShapeMarker& marker) {
-  const Eigen::Vector3d normal = MarkerNormal(marker);
-  const Eigen::Vector3d side = *marker.x_in_shape_m[2] - *marker.x_in_shape_m[1];
-  Eigen::Matrix3d axes;
-  axes.col(2) = normal;
-  axes.col(0) = (side - side.dot(normal) * normal).normalized();
-  axes.col(1) = normal.cross(axes.col(0));
-  return axes;
 }
 
 std::string RangeText(const std::vector<Section>& sections, double (*value)(const Section&)) {
@@ -154,29 +130,6 @@ std::string ErrorText(const Statistics& statistics) {
   return fmt::format("mean {:.3f}, std {:.3f}, median {:.3f}, min {:.3f}, max {:.3f}",
                      statistics.mean, statistics.standard_deviation, statistics.median,
                      statistics.min, statistics.max);
-}
-
-Eigen::Vector3d BoundingBox(const MarkerShape& shape) {
-  const std::vector<Eigen::Vector3d> points = AllCorners(shape);
-  if (points.empty()) return Eigen::Vector3d::Zero();
-  std::vector<Eigen::Matrix3d> candidates = {ComputePrincipalAxes(points).directions};
-  for (const ShapeMarker& marker : shape.markers) {
-    if (marker.IsWhole()) candidates.push_back(MarkerAxes(marker));
-  }
-  Eigen::Vector3d best;
-  double least_surface = std::numeric_limits<double>::infinity();
-  for (const Eigen::Matrix3d& axes : candidates) {
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& point : points) box.extend(axes.transpose() * point);
-    const Eigen::Vector3d sides = box.sizes();
-    const double surface = sides.x() * sides.y() + sides.y() * sides.z() + sides.z() * sides.x();
-    if (surface < least_surface) {
-      least_surface = surface;
-      best = sides;
-    }
-  }
-  std::sort(best.data(), best.data() + 3, std::greater<double>());
-  return best;
 }
 
 std::string RigText(const RigNumbers& rig) {

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "exporters/report/report_data.h"
 #include "exporters/shape_exporter.h"
 #include "workflows/run/pipeline.h"
@@ -23,11 +21,6 @@ std::string MarkersLeftOutText(const std::vector<DroppedMarker>& markers);
 
 // `mean 0.120, std 0.050, median 0.100, min 0.010, max 0.600`.
 std::string ErrorText(const Statistics& statistics);
-
-// Sides of a box around all corners, longest first, m. Boxes along the shape's principal axes and
-// along the sides of each marker are tried, and the one with the smallest surface is taken. It fits
-// a curved sheet as well as a cube and does not depend on the frame.
-Eigen::Vector3d BoundingBox(const MarkerShape& shape);
 
 // Bend and sag of the luff and the sheeting angle in words; empty if none is known.
 std::string RigText(const RigNumbers& rig);
