@@ -24,7 +24,7 @@ seen() {
   for distance in "${distances[@]}"; do
     name="design_$3_$4_$5_$distance"
     make_clip "$name" --scene sail --camera action --tone_curve srgb --sail_scale 0.45 --crf 21 \
-      --margin_sides 0.1 --num_frames 10 --fps 2 --drift_deg 10 --width "$width" \
+      --margin_sides 0.09 --num_frames 10 --fps 2 --drift_deg 10 --width "$width" \
       --dictionary_bits "$3" --border_bits "$4" --marker_length "$5" --distance "$distance"
     found="$runs/$name.txt"
     "$clip_corners" --clip_path "$clips/$name" --database_path "$clips/$name/database.db" \
