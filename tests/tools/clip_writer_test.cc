@@ -71,7 +71,10 @@ INSTANTIATE_TEST_SUITE_P(AllVideos, ClipWriterTest,
                          ::testing::Values(VideoCase{ClipCodec::kH264, false, "h264", "unknown"},
                                            VideoCase{ClipCodec::kH264, true, "h264", "pc"},
                                            VideoCase{ClipCodec::kH265, false, "hevc", "tv"},
-                                           VideoCase{ClipCodec::kH265, true, "hevc", "pc"}));
+                                           VideoCase{ClipCodec::kH265, true, "hevc", "pc"}),
+                         [](const auto& info) {
+                           return std::string(info.param.codec_name) + "_" + info.param.range_name;
+                         });
 
 }  // namespace
 }  // namespace velamap

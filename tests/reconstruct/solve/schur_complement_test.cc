@@ -6,8 +6,8 @@
 #include <ceres/solver.h>
 #include <gtest/gtest.h>
 
-#include "reconstruct/adjust/marker_sizes.h"
 #include "reconstruct/problem/marker_problem.h"
+#include "reconstruct/sizes/marker_sizes.h"
 #include "tests/reconstruct/scene_model.h"
 #include "tests/reconstruct/sheet_model.h"
 
