@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "reconstruct/camera/camera_steadiness.h"
-
 namespace velamap {
 namespace {
 
@@ -68,8 +66,7 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
       StatusOf(evidence), CalibrationAdvice(evidence)};
 }
 
-std::optional<KeyNumber> SteadinessNumber(const Model& model) {
-  const SteadinessVerdict verdict = JudgeSteadiness(model);
+std::optional<KeyNumber> SteadinessNumber(const SteadinessVerdict& steadiness) {
   const auto number = [](std::string value, std::string advice, bool spoils_shape) {
     return KeyNumber{KeyNumberKind::kSteadiness, std::move(value),
                      "change of the camera from picture to picture, which the sigmas of the shape "
@@ -77,14 +74,14 @@ std::optional<KeyNumber> SteadinessNumber(const Model& model) {
                      "length or a step of 3 % on",
                      spoils_shape ? ReportStatus::kBad : ReportStatus::kCheck, std::move(advice)};
   };
-  if (verdict.wander) {
-    const PrincipalPointWander& wander = *verdict.wander;
+  if (steadiness.wander) {
+    const PrincipalPointWander& wander = *steadiness.wander;
     return number(fmt::format("principal point \u00b1{:.1f} % of the focal length",
                               100 * wander.spread_px / wander.focal_px),
                   DescribeWander(wander), wander.SpoilsShape());
   }
-  if (verdict.step && verdict.step->IsCertain()) {
-    const FocalStep& step = *verdict.step;
+  if (steadiness.step) {
+    const FocalStep& step = *steadiness.step;
     return number(fmt::format("focal length {:+.1f} %", 100 * (step.after_px / step.before_px - 1)),
                   DescribeStep(step), step.SpoilsShape());
   }

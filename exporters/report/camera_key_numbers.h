@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exporters/report/report_key_numbers.h"
+#include "reconstruct/camera/camera_steadiness.h"
 
 namespace velamap {
 
@@ -20,8 +21,8 @@ ReportStatus StatusOf(const CalibrationEvidence& evidence);
 // adjustment, which tests it; `uncertainty` may be null.
 std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertainty);
 
-// Whether one unchanged lens took all images. None where nothing speaks against it.
-std::optional<KeyNumber> SteadinessNumber(const Model& model);
+// None for one unchanged camera.
+std::optional<KeyNumber> SteadinessNumber(const SteadinessVerdict& steadiness);
 
 // None where the adjustment did not estimate it; `uncertainty` may be null.
 std::optional<KeyNumber> RollingShutterNumber(const AdjustmentUncertainty* uncertainty);

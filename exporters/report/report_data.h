@@ -41,6 +41,7 @@
 #include "exporters/shape/shape_metrics.h"
 #include "importer/camera/calibration_writer.h"
 #include "importer/layout/layout.h"
+#include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model.h"
 
@@ -112,6 +113,7 @@ struct ReportInput {
   const ScaleAudit* audit = nullptr;                   // may be null
   const KnownPointFit* known_points = nullptr;         // may be null
   std::vector<EstimatedCamera> found_cameras = {};     // from the images; empty if calibrated
+  SteadinessVerdict steadiness = {};                   // only steps that are real
   std::vector<std::string> warnings = {};              // of the log
   int num_ids_found = 0;  // different marker ids in the images, in the shape or not; 0: unknown
   std::vector<ReportLeftOut> images_left_out = {};

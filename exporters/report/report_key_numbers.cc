@@ -119,7 +119,7 @@ std::vector<KeyNumber> MakeKeyNumbers(const ReportInput& input) {
   if (const auto calibration = CalibrationNumber(input.uncertainty)) {
     numbers.push_back(*calibration);
   }
-  if (const auto steadiness = SteadinessNumber(input.metric_model)) numbers.push_back(*steadiness);
+  if (const auto steadiness = SteadinessNumber(input.steadiness)) numbers.push_back(*steadiness);
   if (const auto shutter = RollingShutterNumber(input.uncertainty)) numbers.push_back(*shutter);
   if (const auto camera = FoundCameraNumber(input.found_cameras)) numbers.push_back(*camera);
   numbers.push_back(ScaleNumber(input.scale, input.audit, input.uncertainty));

@@ -196,6 +196,11 @@ SteadinessVerdict JudgeSteadiness(const Model& model) {
   return {FindStep(model, values), FindWander(model, values)};
 }
 
+SteadinessVerdict WithoutDoubtfulStep(SteadinessVerdict verdict) {
+  if (verdict.step && !verdict.step->IsCertain()) verdict.step.reset();
+  return verdict;
+}
+
 bool FocalStep::IsCertain() const {
   constexpr double kMinChange = 0.02, kMinSigmas = 8.0;
   return sigmas >= kMinSigmas && std::abs(std::log(after_px / before_px)) >= kMinChange;
@@ -208,7 +213,7 @@ bool FocalStep::IsSuspicious() const {
 
 bool FocalStep::SpoilsShape() const {
   constexpr double kMinChange = 0.03;
-  return IsCertain() && std::abs(std::log(after_px / before_px)) >= kMinChange;
+  return std::abs(std::log(after_px / before_px)) >= kMinChange;
 }
 
 bool PrincipalPointWander::SpoilsShape() const {

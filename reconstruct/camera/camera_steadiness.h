@@ -40,8 +40,8 @@ struct FocalStep {
   // with two cameras has to confirm it.
   bool IsCertain() const;
   bool IsSuspicious() const;
-  // Certain, and 3 % or more: the shape errs by more than its sigmas, which take one camera for
-  // granted.
+  // 3 % or more: if the step is real, the shape errs by more than its sigmas, which take one camera
+  // for granted.
   bool SpoilsShape() const;
 };
 
@@ -63,6 +63,9 @@ struct SteadinessVerdict {
 
 // Takes the images in the natural order of their names.
 SteadinessVerdict JudgeSteadiness(const Model& model);
+
+// The verdict without a step that is not certain.
+SteadinessVerdict WithoutDoubtfulStep(SteadinessVerdict verdict);
 
 // What was found as a warning with a remedy.
 std::string DescribeStep(const FocalStep& step);

@@ -63,7 +63,7 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.marker_sigma_mm = Median(sigmas_mm);
   precision.scale_sigma = summary.uncertainty.relative_scale_sigma;
   precision.parallax_deg = kDegPerRad * Parallax(model);
-  precision.steadiness = JudgeSteadiness(model);
+  precision.steadiness = WithoutDoubtfulStep(JudgeSteadiness(model));
   precision.warnings = summary.warnings;
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (!marker.is_false) continue;

@@ -148,7 +148,7 @@ class Judge {
     };
     if (const auto& wander = steadiness.wander) {
       reasons_.Add(level(wander->SpoilsShape()), DescribeWander(*wander));
-    } else if (const auto& step = steadiness.step; step && step->IsCertain()) {
+    } else if (const auto& step = steadiness.step) {
       reasons_.Add(level(step->SpoilsShape()), DescribeStep(*step));
     }
   }

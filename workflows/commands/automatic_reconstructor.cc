@@ -170,7 +170,8 @@ ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, con
   const ShapeExportReport& shape = summary.shape;
   WarnOfOtherMarkers(shape.metrics);
   WarnOfMissingSections(shape.sail.sections);
-  ReportInput input = MakeReportInput(shape, options.importer.layout);
+  ReportInput input =
+      MakeReportInput(shape, options.importer.layout, summary.adjustment.steadiness);
   input.title = Source(options).filename().string();
   input.version = kVersion;
   input.created = fmt::format("{:%Y-%m-%d %H:%M} UTC", OutputDate());

@@ -4,6 +4,7 @@
 
 #include "exporters/report/verdict.h"
 #include "importer/base/error.h"
+#include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
@@ -73,7 +74,8 @@ void Validate(Options* options) {
 Verdict Judge(const ShapeExportReport& report, const Layout& layout) {
   WarnOfOtherMarkers(report.metrics);
   WarnOfMissingSections(report.sail.sections);
-  ReportInput input = MakeReportInput(report, layout);
+  ReportInput input =
+      MakeReportInput(report, layout, WithoutDoubtfulStep(JudgeSteadiness(report.metric_model)));
   input.warnings = LoggedWarnings();  // before the next line also logs the key numbers
   LogContradictions(report);
   return MakeVerdict(input);

@@ -157,7 +157,8 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
     if (options.UsesColmap()) result.error_before_px = before_px;
     result.num_removed += num_removed;
   }
-  CheckSteadiness(options.markers, layout, corner_errors, seed ? &*seed : nullptr, *model);
+  result.steadiness =
+      CheckSteadiness(options.markers, layout, corner_errors, seed ? &*seed : nullptr, *model);
   if (result.error_after_px.mean > kSuspiciousErrorPx) {
     spdlog::warn(
         "a mean reprojection error of {:.2f} px is more than the noise of corners explains: does "

@@ -8,6 +8,7 @@
 
 #include "importer/camera/calibration_writer.h"
 #include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/model/model.h"
 
@@ -37,6 +38,7 @@ struct AdjustmentResult {
   int num_removed = 0;                               // observations
   std::optional<AdjustmentUncertainty> uncertainty;  // of the marker-aware adjustment
   std::map<CameraId, EstimatedCamera> cameras;       // found from the pictures; else none
+  SteadinessVerdict steadiness;                      // of CheckSteadiness()
 };
 
 // Throws ExternalToolError if COLMAP's program cannot be started. Called first, so that nobody

@@ -7,7 +7,6 @@
 
 #include "importer/base/error.h"
 #include "reconstruct/adjust/camera_adjustment.h"
-#include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/camera_search.h"
 
 namespace velamap {
@@ -71,16 +70,18 @@ void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
       "so that the camera is found");
 }
 
-void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
-                     const CornerErrors& corner_errors, const Model* seed, const Model& model) {
-  const SteadinessVerdict verdict = JudgeSteadiness(model);
+SteadinessVerdict CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
+                                  const CornerErrors& corner_errors, const Model* seed,
+                                  const Model& model) {
+  SteadinessVerdict verdict = JudgeSteadiness(model);
   if (verdict.wander) spdlog::warn(DescribeWander(*verdict.wander));
-  const auto step = ConfirmFocalStep(options, layout, corner_errors, seed, verdict.step);
-  if (!step) return;
+  verdict.step = ConfirmFocalStep(options, layout, corner_errors, seed, verdict.step);
+  if (!verdict.step) return verdict;
   if (seed != nullptr && options.find_camera) {
-    throw DataError("the camera cannot be found: " + DescribeStep(*step));
+    throw DataError("the camera cannot be found: " + DescribeStep(*verdict.step));
   }
-  spdlog::warn(DescribeStep(*step));
+  spdlog::warn(DescribeStep(*verdict.step));
+  return verdict;
 }
 
 }  // namespace velamap

@@ -10,6 +10,7 @@
 #include "importer/database/colmap_database.h"
 #include "importer/layout/layout.h"
 #include "reconstruct/adjust/marker_adjustment.h"
+#include "reconstruct/camera/camera_steadiness.h"
 #include "reconstruct/model/model.h"
 #include "reconstruct/register_frames.h"
 
@@ -33,8 +34,10 @@ void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
 
 // Warns where the images were not taken by one steady camera; throws DataError where that camera
 // was to be found (`options.find_camera`) and its focal length changes. `seed` is the model before
-// its marker-aware adjustment, null without one.
-void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
-                     const CornerErrors& corner_errors, const Model* seed, const Model& model);
+// its marker-aware adjustment, null without one. Of a step of the focal length, the verdict has
+// only one that is real.
+SteadinessVerdict CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
+                                  const CornerErrors& corner_errors, const Model* seed,
+                                  const Model& model);
 
 }  // namespace velamap

@@ -171,13 +171,13 @@ class Sweep {
     row->num_images = static_cast<int>(model.images.size());
     if (options_.models_path.empty()) return;
     result.uncertainty = report.uncertainty;  // in the frame of the metric model
-    Write(*row, report, result, Judge(report, num_warnings));
+    Write(*row, report, result, Judge(report, result.steadiness, num_warnings));
   }
 
-  // Judges by the warnings that all central frames share and, from `first_own` on, by those of this
-  // one.
-  Verdict Judge(const ShapeExportReport& report, std::size_t first_own) const {
-    ReportInput input = MakeReportInput(report, layout_);
+  // By the warnings that all central frames share and, from `first_own` on, by its own.
+  Verdict Judge(const ShapeExportReport& report, const SteadinessVerdict& steadiness,
+                std::size_t first_own) const {
+    ReportInput input = MakeReportInput(report, layout_, steadiness);
     input.warnings = LoggedWarnings();
     const auto begin = input.warnings.begin();
     input.warnings.erase(begin + static_cast<std::ptrdiff_t>(num_shared_warnings_),

@@ -38,7 +38,8 @@ void WarnOfOtherMarkers(const ShapeMetrics& metrics);
 void WarnOfMissingSections(const SectionReport& sections);
 
 // What the report shows of an exported shape; refers to both. Without log, title and origin.
-ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout);
+ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout,
+                            const SteadinessVerdict& steadiness);
 
 // Prints what shape_exporter says of a shape: markers, their errors, scale, size, sections.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);

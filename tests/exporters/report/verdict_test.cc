@@ -97,6 +97,23 @@ TEST(Verdict, AWarningThatACardRepeatsIsOneReason) {
   EXPECT_EQ(verdict.reasons.back().text, "another warning");
 }
 
+TEST(Verdict, AStabilisedOrZoomedClipIsBadWhereItSpoilsTheShape) {
+  const ReportExample example = MakeReportExample(2, 4);
+  const auto verdict = [&](const SteadinessVerdict& steadiness) {
+    ReportInput input = example.Input();
+    input.steadiness = steadiness;
+    return MakeVerdict(input);
+  };
+  const FocalStep small{"b.jpg", 1, 960, 980, 20}, large{"b.jpg", 1, 960, 1000, 20};
+  EXPECT_EQ(verdict({}).level, ReportStatus::kGood);
+  EXPECT_EQ(verdict({small, {}}).level, ReportStatus::kCheck);
+  EXPECT_EQ(verdict({large, {}}).level, ReportStatus::kBad);
+  EXPECT_EQ(verdict({{}, PrincipalPointWander{8, 960}}).level, ReportStatus::kCheck);
+  const Verdict spoilt = verdict({large, PrincipalPointWander{20, 960}});
+  EXPECT_EQ(spoilt.level, ReportStatus::kBad);
+  EXPECT_THAT(spoilt.reasons.front().text, StartsWith("Camera steadiness: principal point"));
+}
+
 TEST(Verdict, AScaleThatRestsOnADoubtfulCalibrationIsNotGreen) {
   const ReportExample example = MakeReportExample(2, 4);
   ReportInput input = example.Input();
