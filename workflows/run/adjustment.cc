@@ -49,6 +49,7 @@ AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
           summary.error_after_px,
           static_cast<int>(summary.removed.size()),
           std::nullopt,
+          {},
           {}};
 }
 
@@ -90,8 +91,12 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
   for (const auto& [camera_id, camera] : summary.cameras) {
     spdlog::info("camera found: {}", DescribeCamera(camera));
   }
-  return {summary.error_before_px, summary.error_after_px, static_cast<int>(summary.removed.size()),
-          std::move(summary.uncertainty), std::move(summary.cameras)};
+  return {summary.error_before_px,
+          summary.error_after_px,
+          static_cast<int>(summary.removed.size()),
+          std::move(summary.uncertainty),
+          std::move(summary.cameras),
+          {}};
 }
 
 // Throws DataError if all points are in one place and determine no shape.

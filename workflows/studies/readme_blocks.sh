@@ -193,7 +193,7 @@ block_repeatability() {
 
 # --- the studies of thesis chapter 4 ---
 
-# by PARAMETER COLUMN FORMAT: the values of parameters.sh as one of n, s, m varies.
+# by PARAMETER COLUMN FORMAT: the values of parameters.sh as one parameter varies.
 by() { value parameters.csv "$2" "$3" parameter="$1"; }
 
 # under CONDITION COLUMN FORMAT, and the four figures that most rows show.
@@ -219,11 +219,11 @@ block_thesis_sail() {
 | area error against s | poor for small s | $(by s area_error_mm2_mean 2) mm² for s $(by s value d) | RMS $(by s distance_mm_rms 2) mm | \`parameters.sh\` |
 | ratio against s | falls | $(by s reconstruction_ratio 3%) % | | \`parameters.sh\` |
 | area error against m | 5 chosen | $(by m area_error_mm2_mean 2) mm² for m $(by m value d), ratio $(by m reconstruction_ratio 3%) % | RMS $(by m distance_mm_rms 2) mm | \`parameters.sh\` |
-| ratio against sigma of the mean | no influence | $(by sigma reconstruction_ratio 3%) % for sigma $(by sigma value) m | | \`parameters.sh\` |
+| ratio against sigma of the mean | no influence | $(by sigma reconstruction_ratio 3%) % for sigma $(by sigma value as_is) m | | \`parameters.sh\` |
 | area error against sigma | not disturbed from 0.6 m on | $(by sigma area_error_mm2_mean 2) mm² | RMS $(by sigma distance_mm_rms 2) mm | \`parameters.sh\` |
-| ratio against beta | falls; 30 % chosen | $(by beta reconstruction_ratio 3%) % for beta $(by beta value) | | \`parameters.sh\` |
+| ratio against beta | falls; 30 % chosen | $(by beta reconstruction_ratio 3%) % for beta $(by beta value as_is) | | \`parameters.sh\` |
 | area error against beta | larger for small beta | $(by beta area_error_mm2_mean 2) mm² | RMS $(by beta distance_mm_rms 2) mm | \`parameters.sh\` |
-| ratio against the threshold of RANSAC | fewer markers below 0.1 m | $(by ransac reconstruction_ratio 3%) % for $(by ransac value) m | | \`parameters.sh\` |
+| ratio against the threshold of RANSAC | fewer markers below 0.1 m | $(by ransac reconstruction_ratio 3%) % for $(by ransac value as_is) m | | \`parameters.sh\` |
 | area error against the threshold of RANSAC | larger above 0.1 m | $(by ransac area_error_mm2_mean 2) mm² | RMS $(by ransac distance_mm_rms 2) mm | \`parameters.sh\` |
 | areas of the markers | most near the printed one | $(table central_frames_histogram.csv 'cell("area_mm2") > 9900 && cell("area_mm2") < 10100 { sum += cell("share_of_all_percent") } END { printf "%s", num(sum, 2) }') % within 1 % of the printed area | | \`central_frames.sh\` |
 | ratio by central frame | about 70 %, less when farther | $(table central_frames.csv '{ note("x", cell("reconstruction_ratio")) } END { printf "%s", span(least["x"], most["x"], "3%") }') % | | \`central_frames.sh\` |

@@ -22,11 +22,12 @@ made_by() { sed -n '1s/^# \(.*\)/`\1`/p' "$(stored "$1")" 2>/dev/null || true; }
 
 # What the awk programs below share. num(x, format): x with as many significant digits as the format
 # says, but no more than four decimals; "+2" shows the sign, "3%" gives percent of a fraction, "d" an
-# integer; an unknown value is a dash. span(low, high, format): "0.1 to 0.3".
+# integer, "as_is" what the table holds; an unknown value is a dash. span(low, high, format): "0.1 to 0.3".
 # shellcheck disable=SC2016
 awk_library='
   function num(x, format,    digits, magnitude, exponent, decimals) {
     if (x == "") return "-"
+    if (format == "as_is") return x
     if (format == "d") return sprintf("%.0f", x)
     if (format ~ /%$/) x *= 100
     digits = format; gsub(/[+%]/, "", digits)
