@@ -20,7 +20,7 @@
 namespace velamap {
 namespace {
 
-// Throws DataError unless all pictures can come from one camera, turned or not.
+// Throws DataError unless one camera, rotated or not, can have taken all pictures.
 void CheckOneCamera(const std::map<CameraId, Camera>& guesses) {
   for (const auto& [camera_id, camera] : guesses) {
     const Camera& first = guesses.begin()->second;
@@ -35,7 +35,7 @@ void CheckOneCamera(const std::map<CameraId, Camera>& guesses) {
   }
 }
 
-// Throws DataError where the board stands still in all pictures.
+// Throws DataError if the board is in the same place in all pictures.
 void CheckMovement(const std::vector<DatabaseImage>& images, const Camera& guess) {
   constexpr double kLeastMovement = 0.03;  // of the larger side
   std::map<CornerId, Eigen::AlignedBox2d> places_px;
@@ -69,8 +69,8 @@ std::vector<DatabaseImage> ChosenImages(const std::vector<DatabaseImage>& images
   return chosen;
 }
 
-// Paper may stretch by some tenths of a per cent, and cardboard bends: the squares are hardly
-// believed, and the scale that they give is of no use to a camera.
+// Paper can stretch by some tenths of a percent, and cardboard bends, so the prior of square and
+// flat markers is weak. The scale that the markers give does not affect a camera.
 MarkerAdjustmentOptions BoardOptions(int num_threads) {
   constexpr double kSquareSigma = 0.01, kFlatness = 0.02;  // of a side
   MarkerAdjustmentOptions options;
@@ -81,7 +81,8 @@ MarkerAdjustmentOptions BoardOptions(int num_threads) {
   return options;
 }
 
-// Throws DataError for a step of the focal length; `seed` is the model before its adjustment.
+// Throws DataError if the focal length changes between two pictures. `seed` is the model before its
+// adjustment.
 void CheckSteadiness(const MarkerAdjustmentOptions& options, const Layout& layout,
                      const CornerErrors& corner_errors, const Model& seed, const Model& adjusted,
                      std::vector<std::string>* warnings) {
@@ -104,7 +105,7 @@ void CollectResiduals(const Model& model, CameraCalibration* calibration) {
     if (found == errors_px.end()) continue;
     view.is_used = true;
     view.error_px = Rms(found->second);
-    // Where the adjustment has them: pictures that were turned are upright there.
+    // Takes the corners from the adjusted model, in which rotated pictures are upright.
     view.view.corners_in_image_px.clear();
     for (const SeenPoint& point : SeenPointsOf(model, *model.FindImage(view.view.image_id))) {
       view.view.corners_in_image_px.push_back(point.x_in_image_px);
@@ -153,7 +154,8 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   }
   const std::vector<DatabaseImage> used = ChosenImages(images, chosen);
   spdlog::info("{} of {} pictures with markers are chosen", used.size(), images.size());
-  // The velocities of corners need the frames between.
+  // Takes all images and not only the selected ones, because the velocity of a corner follows from
+  // the neighbouring frames.
   const CornerErrors corner_errors = CornerErrorsOf(images, formation);
   RegistrationOptions registration_options;
   registration_options.num_threads = options.num_threads;

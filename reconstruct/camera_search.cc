@@ -24,7 +24,7 @@ namespace {
 using Cameras = std::map<CameraId, Camera>;
 
 constexpr double kMinFocal = 0.25, kMaxFocal = 8.0;  // times the larger side
-// From this sigma of its logarithm on, the markers say too little about the focal length.
+// The markers hardly constrain the focal length if its logarithm has a sigma above this.
 constexpr double kVagueLogSigma = 0.1;
 
 int LargerSide(const Camera& camera) { return std::max(camera.width_px, camera.height_px); }
@@ -47,7 +47,7 @@ std::vector<SquareView> ViewsOf(CameraId camera_id, const std::vector<DatabaseIm
   return views;
 }
 
-// The focal length and lens to start with, for all cameras alike.
+// An initial guess of all cameras.
 struct Start {
   std::string name;
   Cameras cameras;
@@ -65,8 +65,8 @@ Cameras Scaled(const Cameras& cameras, double factor) {
   return scaled;
 }
 
-// For each camera the upright camera of which it is the turned one, by their guesses; its own id
-// where there is none.
+// Maps each camera to the camera of the upright images if its guess is that camera rotated, else to
+// itself.
 std::map<CameraId, CameraId> UprightCameras(const Cameras& guesses) {
   std::map<CameraId, CameraId> upright;
   for (const auto& [camera_id, camera] : guesses) {
@@ -83,11 +83,13 @@ std::map<CameraId, CameraId> UprightCameras(const Cameras& guesses) {
 
 struct Lens {
   Cameras cameras;
+  // 1 sigma of the logarithm of the focal length that all cameras give together.
   double log_sigma = std::numeric_limits<double>::infinity();
-  double cost = 0.0;
+  double cost = 0.0;  // sum of FocalEvidence::cost
 };
 
-// Cameras with weak evidence share the evidence of the others, relative to the larger side.
+// A camera whose markers hardly constrain its focal length gets the weighted mean of all cameras,
+// as a fraction of the larger side.
 Lens LensOf(CameraModel model, const std::vector<DatabaseImage>& images, const Cameras& guesses,
             const RegistrationOptions& registration, const MarkerAdjustmentOptions& adjustment) {
   const std::map<CameraId, CameraId> upright = UprightCameras(guesses);
@@ -157,7 +159,8 @@ std::vector<Start> Starts(const std::vector<DatabaseImage>& images, const Camera
   return starts;
 }
 
-// Largest distance of image positions of the same ray along the border, px.
+// The largest distance, px, between the images of a ray in both cameras. The rays pass through the
+// border of the image of `a`.
 double Distance(const Camera& a, const Camera& b) {
   constexpr int kNumSteps = 8;
   double largest_px = 0.0;
@@ -178,7 +181,7 @@ double Distance(const Camera& a, const Camera& b) {
 struct Outcome {
   Cameras cameras;
   double explained = 0.0;
-  double share = 0.0;  // of all corners that the registered images show
+  double share = 0.0;  // `explained` as a fraction of the corners in the registered images
 };
 
 class CameraSearch {
@@ -200,8 +203,8 @@ class CameraSearch {
   // Throws DataError.
   Outcome Run(const Start& start) const {
     constexpr int kMaxNumRounds = 4;
-    constexpr double kSame = 1e-3,
-                     kSameExplained = 5e-3;  // of the larger side; of what is explained
+    constexpr double kSame = 1e-3;           // as a fraction of the larger side
+    constexpr double kSameExplained = 5e-3;  // as a fraction of what is explained
     Outcome outcome = RunOnce(start.cameras);
     for (int round = 1; round < kMaxNumRounds; ++round) {
       Outcome next;
@@ -230,7 +233,7 @@ class CameraSearch {
     const Model seed = MakeSeedModel(registration, images_, cameras);
     CameraAdjustment adjustment = AdjustCameras(adjustment_, layout_, corner_errors_, seed);
     Outcome outcome;
-    outcome.cameras = cameras;  // also of images that were not registered
+    outcome.cameras = cameras;  // keeps cameras none of whose images were registered
     for (const auto& [camera_id, camera] : adjustment.cameras) {
       outcome.cameras[camera_id] = camera;
       spdlog::debug("camera {}: {} with focal length {:.1f} px", camera_id,
@@ -258,7 +261,7 @@ std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
                                        const RegistrationOptions& registration,
                                        const MarkerAdjustmentOptions& adjustment) {
   constexpr double kNearlyAll = 0.8;
-  if (images.size() < 2) return guesses;  // the registration says what is missing
+  if (images.size() < 2) return guesses;  // the registration will report what is missing
   const CameraSearch search(images, layout, corner_errors, registration, adjustment);
   std::optional<Outcome> best;
   std::string first_failure;

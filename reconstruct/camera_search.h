@@ -1,14 +1,17 @@
-// Finds the camera of images that come without a calibration.
+// Estimates the cameras of images that have no calibration.
 //
-// 1. Starts. The focal length is estimated from the squares of single markers, for a rectilinear
-//    lens and for a fisheye (camera/focal_evidence.h). Other starts are the focal length in the
-//    database (from EXIF, or a guess) and, if the estimate is uncertain, longer and shorter ones.
-// 2. Each start is registered and adjusted with all cameras free. The adjustment also chooses the
-//    camera model (adjust/camera_adjustment.h). Both are repeated with the better camera until it
-//    no longer changes.
-// 3. The start that explains most corners wins. A start that explains nearly all ends the search.
+// 1. Initial guesses. The focal length is estimated from the squares of single markers, once for a
+//    rectilinear lens and once for a fisheye (camera/focal_evidence.h). Further guesses are the
+//    camera in the database (from EXIF, or a default) and, if the estimate is uncertain, a longer
+//    and a shorter focal length.
+// 2. From each guess, the images are registered and adjusted with all cameras free. The adjustment
+//    also selects the camera model (adjust/camera_adjustment.h). Both steps are repeated with the
+//    new cameras until neither these nor the number of explained corners changes much, at most four
+//    times.
+// 3. The result that explains the most corners wins. The search stops early at a result that
+//    explains 80 % of the corners.
 //
-// Corners do not depend on the camera, so nothing has to be imported again.
+// Marker detection does not depend on the camera, so the images need not be imported again.
 
 #pragma once
 
@@ -24,9 +27,10 @@
 
 namespace velamap {
 
-// The cameras by id, those of turned pictures as turned cameras. `guesses` are the cameras of the
-// database. Always registers by the global method, regardless of `registration`, and at most 40
-// frames of a video. Throws DataError if no start leads to a model.
+// Returns the cameras by id; images that are stored rotated have a rotated camera of their own.
+// `guesses` are the cameras of the database and are returned unchanged for fewer than two images.
+// Registers with the global method whatever `registration` says, and at most 40 frames of a video.
+// Throws DataError if no initial guess leads to a model.
 std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
                                        const std::map<CameraId, Camera>& guesses,
                                        const Layout& layout, const CornerErrors& corner_errors,

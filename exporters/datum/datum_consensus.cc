@@ -19,7 +19,7 @@ int NumCoordinates(const DatumPoints& points, const PointSet& set) {
   return count;
 }
 
-// Whether the set fixes a pose; the pose is near it.
+// Whether the set determines a pose. `pose` is an approximation of it.
 bool Determines(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
   return NumCoordinates(points, set) >= kNumPoseParameters &&
          OpenMotions(points, set, pose).empty();
@@ -30,7 +30,7 @@ struct DatumHypothesis {
   DatumAgreement agreement;
 };
 
-// See ransac.h.
+// The estimator for Ransac() in ransac.h.
 class DatumConsensus {
  public:
   struct Model {
@@ -38,7 +38,7 @@ class DatumConsensus {
     Rigid3 pose;
   };
   using Hypothesis = DatumHypothesis;
-  static constexpr int kSampleSize = 3;  // points with all coordinates; more of others
+  static constexpr int kSampleSize = 3;  // a sample has more points if coordinates are missing
 
   DatumConsensus(const DatumPoints& points, const PointSet& candidates)
       : points_(points), candidates_(candidates) {}
@@ -84,8 +84,8 @@ class DatumConsensus {
   const PointSet& candidates_;
 };
 
-// Leaves out the point that contradicts the others most, one by one, then takes in those that agree
-// with the rest. A point that was left out does not come back.
+// Repeatedly removes the point that contradicts the others most, then adds the candidates that
+// agree with the rest. A removed point is not added again, so this ends.
 DatumAgreement Settle(const DatumPoints& points, const PointSet& candidates, PointSet set,
                       DatumPose pose) {
   std::set<std::size_t> left_out;
@@ -117,7 +117,8 @@ bool IsSupported(const DatumPoints& points, const PointSet& candidates,
                  const DatumAgreement& agreement) {
   const PointSet& used = agreement.used;
   const int redundancy = NumCoordinates(points, used) - kNumPoseParameters;
-  // Without redundancy no point is checked by others, but they may still fit nowhere.
+  // Without redundancy the points cannot check each other, but a pose that fits them all need not
+  // exist, for example if their distances are wrong.
   const bool fits = redundancy > 0 || (used == candidates && agreement.pose.squared_sigmas <=
                                                                  kMaxDatumSigmas * kMaxDatumSigmas);
   return fits && 2 * used.size() > candidates.size() &&

@@ -1,4 +1,4 @@
-// The points of a datum that agree with each other and with the shape.
+// Finds the points of a datum that agree with each other and with the shape.
 
 #pragma once
 
@@ -9,18 +9,19 @@
 
 namespace velamap {
 
-// A point that is this many sigmas (SigmasAgainst()) from where the others put it contradicts them.
+// A point that is more sigmas (SigmasAgainst()) away from where the others put it contradicts them.
 constexpr double kMaxDatumSigmas = 4.0;
 
 struct DatumAgreement {
   PointSet used;
-  DatumPose pose;                  // adjusted to them
-  std::vector<double> sigmas_off;  // of all points
+  DatumPose pose;                  // adjusted to the used points
+  std::vector<double> sigmas_off;  // SigmasAgainst() of all points
 };
 
-// The largest subset of `candidates` whose points agree and which determines the pose, if it has
-// more than half of them. A subset that leaves candidates out needs more than six coordinates,
-// because a pose fits any six, and no point would be checked by the others.
+// Searches (RANSAC) for the largest subset of `candidates` whose points agree and determine the
+// pose. Returns nothing if it has no more than half of the candidates. A subset that leaves
+// candidates out needs more than six coordinates, because a pose fits any six and the points would
+// not check each other.
 std::optional<DatumAgreement> FindAgreement(const DatumPoints& points, const PointSet& candidates);
 
 }  // namespace velamap

@@ -1,6 +1,6 @@
-// Points of the shape whose coordinates are known in another frame, and the equations that they
-// give for the transformation into it: residual = known_from_shape * x - known coordinate, one for
-// each coordinate that is given.
+// Points of the shape with known coordinates in another frame, and the linearized equations for the
+// pose known_from_shape. Each given coordinate gives one residual, the coordinate of
+// known_from_shape * x minus the known one.
 
 #pragma once
 
@@ -16,37 +16,39 @@
 namespace velamap {
 
 struct DatumPoint {
-  Eigen::Vector3d x_m;  // along the axes of the shape frame, from DatumPoints::center_in_shape_m
-  std::array<std::optional<double>, 3> known_m;
-  double sigma_m = 0.0;  // of each known coordinate
+  Eigen::Vector3d x_m;  // in the shape frame, relative to DatumPoints::center_in_shape_m
+  std::array<std::optional<double>, 3> known_m;  // in the known frame
+  double sigma_m = 0.0;                          // of each known coordinate
 };
 
 struct DatumPoints {
   std::vector<DatumPoint> points;
   Eigen::Vector3d center_in_shape_m = Eigen::Vector3d::Zero();  // mean of the points
-  double radius_m = 1.0;                                        // rms distance from the centre
-  // 3n x 3n, of the positions in the shape; 0 where it is not known.
+  double radius_m = 1.0;                                        // RMS distance from the centre
+  // 3n x 3n, of the positions in the shape frame; 0 for points without a covariance.
   Eigen::MatrixXd covariance_m2;
 };
 
-// Ascending indices of points.
+// Ascending indices into DatumPoints::points.
 using PointSet = std::vector<std::size_t>;
 PointSet AllOf(const DatumPoints& points);
 
-// Equations of a set of points at a pose, point by point and along x, y, z.
+// The equations of a set of points at a pose, in the order of the points and of x, y, z.
 struct DatumEquations {
-  std::vector<Eigen::Index> begins;  // of the rows of each point of the set, and the end of all
+  std::vector<Eigen::Index> begins;  // first row of each point of the set, then the number of rows
   Eigen::VectorXd residuals_m;
-  // By a turn about the centre (a rotation vector applied on the left, times the radius) and a
-  // shift, both in m.
+  // Derivatives with respect to a step of the pose, m: a rotation vector that is applied on the
+  // left, times the radius, then a translation.
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_pose;
-  Eigen::VectorXd by_scale_m;  // by a relative change of the size of the shape
+  // Derivatives with respect to a relative change of the size of the shape.
+  Eigen::VectorXd by_scale_m;
 };
 
-// The pose takes x_m of the points to the known frame.
+// `pose` transforms DatumPoint::x_m to the known frame.
 DatumEquations Linearize(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
 
-// Covariance of the residuals, from the known coordinates and from the shape.
+// The covariance of the residuals, m^2, due to the errors of the known coordinates and of the
+// shape.
 Eigen::MatrixXd ResidualCovariance(const DatumPoints& points, const PointSet& set,
                                    const Eigen::Quaterniond& known_from_shape);
 

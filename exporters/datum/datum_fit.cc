@@ -16,10 +16,11 @@ namespace {
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 using ByPose = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-// Largest sigma of a motion that counts as determined, as a fraction of the radius: 3 degrees.
+// The largest sigma of a motion that counts as determined, as a fraction of the radius; 3 degrees.
 constexpr double kMaxOpen = 0.05;
 
-// The directions in the span of the columns, which are orthonormal: the axes where these span it.
+// Names the directions in the span of the columns, which are orthonormal. The names are axes if
+// these span the same space.
 std::vector<std::string> DirectionNames(const Eigen::Matrix3Xd& directions) {
   constexpr double kAlmostOne = 0.998;  // 3.6 degrees
   std::vector<std::string> names;
@@ -37,9 +38,10 @@ std::vector<std::string> DirectionNames(const Eigen::Matrix3Xd& directions) {
   return names;
 }
 
-// The sum of squares of a point, of `num_coordinates` degrees of freedom, as in SigmasAgainst().
+// Converts a chi-squared value of `num_coordinates` degrees of freedom to the number of sigmas that
+// SigmasAgainst() returns.
 double InSigmas(double squared, int num_coordinates) {
-  // Roots of the 99.73 % quantiles of chi-squared.
+  // Square roots of the 99.73 % quantiles of chi-squared for 1, 2 and 3 degrees of freedom.
   constexpr double kThreeSigmas[] = {3.0, 3.4393, 3.7625};
   if (num_coordinates == 0) return 0.0;
   return 3.0 * std::sqrt(std::max(0.0, squared)) / kThreeSigmas[num_coordinates - 1];
@@ -59,17 +61,17 @@ SetSystem MakeSystem(const DatumPoints& points, const DatumEquations& equations,
   system.by_pose = system.whitener * equations.by_pose;
   system.residuals = system.whitener * equations.residuals_m;
   PoseMatrix normal = system.by_pose.transpose() * system.by_pose;
-  // A weak prior keeps the matrix regular where the equations leave a motion open: a sigma of 1000
-  // times the radius, but never below the rounding errors of the matrix.
+  // A weak prior keeps the matrix regular if the equations leave a motion undetermined. Its sigma
+  // is 1000 times the radius, or less if the prior would otherwise be lost in rounding errors.
   normal.diagonal().array() += std::pow(1e3 * points.radius_m, -2) + 1e-12 * normal.trace();
   system.pose_covariance = normal.llt().solve(PoseMatrix::Identity());
   return system;
 }
 
-// How far each point of the set is from where the others put it, in sigmas: its residuals after the
-// adjustment, divided by their expected size for a point without a gross error.
+// SigmasAgainst() for the points of the set: the residuals of each point after the adjustment,
+// normalized by their covariance (Baarda's test).
 std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen::Index>& begins) {
-  constexpr double kMinRedundancy = 1e-6;  // less is rounding
+  constexpr double kMinRedundancy = 1e-6;  // smaller values are rounding errors
   const Eigen::VectorXd adjusted =
       system.residuals -
       system.by_pose * (system.pose_covariance * (system.by_pose.transpose() * system.residuals));
@@ -113,7 +115,8 @@ std::vector<double> SigmasAgainst(const DatumPoints& points, const PointSet& set
   const DatumEquations of_set = Linearize(points, set, pose);
   const SetSystem system = MakeSystem(points, of_set, covariance(rows, rows));
   const std::vector<double> sigmas_of_set = SigmasOfSet(system, of_set.begins);
-  // Derivative of the adjusted pose with respect to the residuals of the set, apart from the sign.
+  // The derivative of the adjusted pose with respect to the residuals of the set, with the opposite
+  // sign.
   const Eigen::MatrixXd pose_by_residuals =
       system.pose_covariance * system.by_pose.transpose() * system.whitener;
   std::vector<double> sigmas(points.points.size(), 0.0);
@@ -145,7 +148,7 @@ std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Ri
   const auto num_open = (motions.eigenvalues().array() > limit_m2).count();
   if (num_open == 0) return "";
   const Eigen::MatrixXd open = motions.eigenvectors().rightCols(num_open);
-  // Splits them into those with a turn and pure shifts.
+  // Separates pure shifts from motions with a turn.
   constexpr double kMinTurn = 0.1;
   const Eigen::JacobiSVD<Eigen::MatrixXd> turns(open.topRows(3),
                                                 Eigen::ComputeThinU | Eigen::ComputeFullV);
@@ -168,7 +171,7 @@ std::optional<ScaleChange> EstimateScaleChange(const DatumPoints& points, const 
   const SetSystem system =
       MakeSystem(points, equations, ResidualCovariance(points, set, pose.rotation));
   const Eigen::VectorXd by_scale = system.whitener * equations.by_scale_m;
-  // What the pose cannot absorb.
+  // The part of the whitened values that a change of the pose cannot compensate.
   const auto without_pose = [&system](const Eigen::VectorXd& values) -> Eigen::VectorXd {
     return values -
            system.by_pose * (system.pose_covariance * (system.by_pose.transpose() * values));

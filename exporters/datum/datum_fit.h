@@ -1,5 +1,5 @@
-// What an adjusted pose says about each point, the six degrees of freedom and the size of the
-// shape, from the joint covariance of all coordinates.
+// Statistics of an adjusted pose, from the joint covariance of all coordinates: outliers,
+// undetermined degrees of freedom, and the size of the shape.
 
 #pragma once
 
@@ -11,25 +11,26 @@
 
 namespace velamap {
 
-// How far each point, in the set or not, is from where the others of the set put it. A right point
-// is beyond 3 with a probability of 0.27 %, however many of its coordinates are known: for one
-// coordinate, it is the difference over its sigma. 0 for a point about which the others say
-// nothing. `pose` is the adjusted pose of the set (Baarda, A testing procedure for use in geodetic
-// networks, 1968).
+// For every point, whether in the set or not, how many sigmas it is away from where the other
+// points of the set put it (Baarda, A testing procedure for use in geodetic networks, 1968). For a
+// point with one coordinate, this is the difference divided by its sigma. For more coordinates it
+// is scaled so that a correct point still exceeds 3 with a probability of 0.27 %. It is 0 for a
+// point that the others do not constrain. `pose` is the adjusted pose of the set.
 std::vector<double> SigmasAgainst(const DatumPoints& points, const PointSet& set,
                                   const Rigid3& pose);
 
-// The motions that the set leaves undetermined (1 sigma above 3 degrees as seen from the centre of
-// the points), such as "a turn about z". Empty if there are none.
+// Describes the motions that the set leaves undetermined, such as "a turn about z"; empty if there
+// are none. A motion is undetermined if its sigma moves points at the RMS distance from the centre
+// by more than about 3 degrees as seen from there.
 std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Rigid3& pose);
 
-// The growth of the shape, as a fraction of its size, that would fit the set best.
+// The relative change of the size of the shape that would fit the set best.
 struct ScaleChange {
   double value = 0.0;
   double sigma = 0.0;
 };
 
-// Nothing where the set does not determine it.
+// Returns nothing if the set does not determine the size (a sigma of 0.5 or more).
 std::optional<ScaleChange> EstimateScaleChange(const DatumPoints& points, const PointSet& set,
                                                const Rigid3& pose);
 

@@ -16,8 +16,8 @@
 namespace velamap {
 namespace {
 
-// Whitener() for independent points whose sigma does not depend on the direction, so that it holds
-// for every pose.
+// The same as Whitener(), but for independent points with isotropic errors, so that it does not
+// depend on the pose.
 Eigen::MatrixXd PlainWhitener(const DatumPoints& points, const PointSet& set) {
   std::vector<double> weights;
   for (const std::size_t i : set) {
@@ -33,7 +33,8 @@ Eigen::MatrixXd PlainWhitener(const DatumPoints& points, const PointSet& set) {
       .asDiagonal();
 }
 
-// See least_squares.h. Steps are those of DatumEquations::by_pose, m.
+// The problem for MinimizeSquares() in least_squares.h. Steps are those of DatumEquations::by_pose,
+// m.
 struct DatumProblem : LeastSquaresProblem<6> {
   using Parameters = Rigid3;
 
@@ -51,7 +52,7 @@ struct DatumProblem : LeastSquaresProblem<6> {
     const Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian = whitener * linear.by_pose;
     const Eigen::VectorXd residuals = whitener * linear.residuals_m;
     equations->Add(jacobian, residuals);
-    // For motions that no coordinate determines.
+    // Keeps the Hessian regular if the coordinates leave a motion undetermined.
     equations->AddToDiagonal(kRegularization * equations->hessian().trace());
   }
 
@@ -71,7 +72,7 @@ DatumPose Minimize(const DatumProblem& problem, Rigid3 pose) {
   return {pose, 2 * equations.cost()};
 }
 
-// The closed form, for three or more points with all coordinates that span a plane.
+// The closed form. It needs three or more points with all coordinates that are not on one line.
 std::optional<Rigid3> ClosedForm(const DatumPoints& points, const PointSet& set) {
   std::vector<Eigen::Vector3d> x_m, known_m;
   std::vector<double> weights;
@@ -86,7 +87,8 @@ std::optional<Rigid3> ClosedForm(const DatumPoints& points, const PointSet& set)
   return EstimateRigid3(x_m, known_m, weights);
 }
 
-// The mean shift along each axis that the coordinates require after the rotation.
+// The pose with the given rotation and the translation that makes the mean residual along each axis
+// zero.
 Rigid3 Shifted(const DatumPoints& points, const PointSet& set, const Eigen::Quaterniond& rotation) {
   Rigid3 pose{rotation, Eigen::Vector3d::Zero()};
   for (int axis = 0; axis < 3; ++axis) {

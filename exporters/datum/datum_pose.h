@@ -1,4 +1,4 @@
-// Poses of a shape by known coordinates, by least squares.
+// Least-squares poses of a shape from known coordinates.
 
 #pragma once
 
@@ -8,21 +8,22 @@
 
 namespace velamap {
 
-// The inverse of the Cholesky factor of a covariance, which whitens residuals. Ignores correlations
-// if rounding has made the matrix indefinite.
+// The inverse of the Cholesky factor of a covariance, by which residuals are multiplied to whiten
+// them. If rounding has made the matrix indefinite, correlations are ignored.
 Eigen::MatrixXd Whitener(const Eigen::MatrixXd& covariance);
 
 struct DatumPose {
   Rigid3 pose;
-  double squared_sigmas = 0.0;  // sum of squared residuals over their variances
+  double squared_sigmas = 0.0;  // sum of the squared whitened residuals
 };
 
-// The poses to which the search converges, the best first. More than one can fit where few
-// coordinates are given: two points and a level allow a turn to either side. The errors of the
-// points count as independent.
+// The distinct local minima that a search from many rotations finds, the best first. If few
+// coordinates are given, several can fit: two points and a levelled third one allow two poses.
+// Errors of the points are treated as independent. If three or more points that are not on one line
+// have all coordinates, the closed form replaces the search and gives the only pose.
 std::vector<DatumPose> FindPoses(const DatumPoints& points, const PointSet& set);
 
-// The least-squares pose for the joint covariance; `pose` is the start.
+// The least-squares pose with the joint covariance of all coordinates, starting from `pose`.
 DatumPose AdjustPose(const DatumPoints& points, const PointSet& set, Rigid3 pose);
 
 }  // namespace velamap

@@ -15,12 +15,12 @@ namespace velamap {
 namespace {
 
 constexpr double kMaxScaleSigmas = 3.0;
-// Errors of the camera and of the print change the size by no more than this (reconstruct/adjust);
-// a wrong unit or marker_length changes it by more.
+// Errors of the camera and of the print change the size by at most this (reconstruct/adjust). A
+// larger change comes from a wrong unit or marker_length.
 constexpr double kMaxGrowth = 0.07;
 
-// The median, over all pairs of points with three known coordinates, of their known distance
-// divided by their distance in the shape.
+// The median, over all pairs of points with three known coordinates, of the known distance divided
+// by the distance in the shape.
 std::optional<double> MedianGrowth(const DatumPoints& points, const PointSet& set) {
   std::vector<double> ratios;
   const auto position = [](const DatumPoint& point) -> std::optional<Eigen::Vector3d> {
@@ -56,7 +56,7 @@ DatumPoints Mirrored(DatumPoints points) {
   return points;
 }
 
-// Whether another pose fits about as well.
+// Whether a different pose fits about as well.
 bool IsAmbiguous(const DatumPoints& points, const DatumAgreement& agreement) {
   constexpr double kOtherAngle = 0.02;  // rad
   const double limit = agreement.pose.squared_sigmas + kMaxDatumSigmas * kMaxDatumSigmas;
@@ -71,8 +71,9 @@ bool IsAmbiguous(const DatumPoints& points, const DatumAgreement& agreement) {
   return false;
 }
 
-// The points that agree. Right points disagree if the size of the shape is wrong: if more of them
-// agree after the shape is scaled, those are used, and the growth is reported.
+// Finds the points that agree. Correct points disagree if the size of the shape is wrong, so if
+// more points agree with the scaled shape, these are used for a rigid pose; the difference in size
+// is then reported as `scale_change`.
 std::optional<DatumAgreement> Agree(const DatumPoints& points, const PointSet& datum) {
   std::optional<DatumAgreement> agreement = FindAgreement(points, datum);
   if (agreement && agreement->used.size() == datum.size()) return agreement;
@@ -85,8 +86,8 @@ std::optional<DatumAgreement> Agree(const DatumPoints& points, const PointSet& d
   return rigid;
 }
 
-// Whether more points agree with one axis reversed. That some agree says nothing: a few mirrored
-// points near a plane fit any shape.
+// Whether more points agree if one axis is reversed. It is not enough that some agree, because a
+// few points near a plane fit their mirror image.
 bool AreMirrored(const DatumPoints& points, const PointSet& datum,
                  const std::optional<DatumAgreement>& agreement) {
   const std::size_t num_agreeing = agreement ? agreement->used.size() : 0;
@@ -95,8 +96,8 @@ bool AreMirrored(const DatumPoints& points, const PointSet& datum,
   return mirrored && mirrored->used.size() > num_agreeing;
 }
 
-// The probable cause of a difference in size between the points and the shape; empty if there is
-// none.
+// The probable cause of a gross difference in size between the points and the shape; empty if there
+// is no such difference.
 std::string WrongSize(const DatumPoints& points, const PointSet& datum) {
   const std::optional<double> growth = MedianGrowth(points, datum);
   constexpr double kMillimetres = 1e3;
@@ -110,7 +111,7 @@ std::string WrongSize(const DatumPoints& points, const PointSet& datum) {
       *growth);
 }
 
-// Sets the reason why the points do not agree, with the probable cause.
+// Sets the reason why the points give no frame, with the probable cause.
 void Refuse(const DatumPoints& points, const PointSet& datum, bool are_mirrored,
             KnownPointFit* fit) {
   std::string cause = WrongSize(points, datum);
@@ -131,7 +132,7 @@ void Refuse(const DatumPoints& points, const PointSet& datum, bool are_mirrored,
   fit->reason = "the known points and the shape contradict each other; " + cause;
 }
 
-// Why the points that are in the shape cannot fix a frame, wherever they are; empty if they may.
+// WhatDatumLacks() for the points that are in the shape, with the points that are missing there.
 std::string Lack(const std::vector<ComparedPoint>& points, const PresentPoints& present) {
   std::vector<KnownPoint> found;
   std::vector<std::string> missing;
@@ -147,7 +148,7 @@ std::string Lack(const std::vector<ComparedPoint>& points, const PresentPoints& 
                      lack, fmt::join(missing, " "));
 }
 
-// Compares every point in the shape with its coordinates in the frame of the agreement.
+// Compares every known point that is in the shape with its coordinates, in the known frame.
 void ComparePoints(const PresentPoints& present, const DatumAgreement& agreement,
                    KnownPointFit* fit) {
   const Rigid3& pose = agreement.pose.pose;

@@ -1,5 +1,5 @@
-// The frame of the layout's known points: the shape is moved to their coordinates, rigidly and
-// without scale, by weighted least squares; checks are compared with the result.
+// Moves the shape into the frame of the layout's known points, by weighted least squares with a
+// rigid transformation, and compares the check points with the result.
 
 #pragma once
 
@@ -17,43 +17,43 @@ namespace velamap {
 
 enum class PointState {
   kNotInShape,   // not reconstructed
-  kNotCompared,  // there is no frame of the known points
+  kNotCompared,  // the known points give no frame
   kUsed,         // part of the datum
-  kLeftOut,      // contradicts the others
+  kLeftOut,      // left out of the datum because it contradicts the others
   kPassed,       // a check within kMaxCheckSigmas
-  kFailed,
+  kFailed,       // a check beyond kMaxCheckSigmas
 };
 
 struct ComparedPoint {
   KnownPoint known;
   PointState state = PointState::kNotInShape;
-  // Shape minus known coordinates, m; 0 along axes that are not known.
+  // Shape minus known coordinates in the known frame, m; 0 along axes without a known coordinate.
   Eigen::Vector3d difference_m = Eigen::Vector3d::Zero();
   double sigmas_off = 0.0;  // see SigmasAgainst()
 };
 
 struct KnownPointFit {
   std::vector<ComparedPoint> points;       // in the order of the layout
-  std::optional<Rigid3> known_from_shape;  // nothing where the points do not determine it
-  std::string reason;            // why there is none; empty for a layout without known points
+  std::optional<Rigid3> known_from_shape;  // not set if the points do not determine it
+  std::string reason;            // why it is not set; empty for a layout without known points
   bool is_contradicted = false;  // whether the reason is that points and shape disagree
-  // Root of the sum of squared normalized residuals per redundant coordinate: about 1 if the sigmas
-  // are right. Nothing without a redundant coordinate.
+  // The square root of the sum of squared whitened residuals divided by the redundancy. It is about
+  // 1 if the sigmas are right. Not set without redundancy.
   std::optional<double> residual_in_sigmas;
-  std::optional<ScaleChange> scale_change;  // nothing where the points do not determine it
+  std::optional<ScaleChange> scale_change;  // not set if the points do not determine it
 
   // Whether the points contradict the size of the shape by more than three sigmas.
   bool ContradictsScale() const;
 };
 
 // Fits the shape to the largest set of points that agree with each other. `covariance`, of the
-// corners of the shape (may be null), enters the weights and the sigmas of differences beside the
-// points' own sigmas. Without it, or for points that it lacks, the shape counts as exact except for
-// `scale_sigma`, the sigma of its scale as a ratio.
+// corners of the shape (may be null), is added to the covariance of the known coordinates. Points
+// that it lacks count as exact in the shape. If it is null, the shape is exact except for its
+// scale, whose relative sigma `scale_sigma` enters the sigma of `scale_change`.
 KnownPointFit FitKnownPoints(const MarkerShape& shape, const Layout& layout,
                              const PointCovariance* covariance = nullptr, double scale_sigma = 0.0);
 
-// The frame that the fit gives, for ChooseFrame(). Its name lists the points that were used.
+// The frame of the fit for ChooseFrame(). Its name lists the points that were used.
 FrameAttempt FrameOfKnownPoints(const KnownPointFit& fit);
 
 }  // namespace velamap

@@ -19,7 +19,7 @@ bool IsCompared(const ComparedPoint& point) {
   return point.state != PointState::kNotInShape && point.state != PointState::kNotCompared;
 }
 
-// Statistics of the distances of the points in this state.
+// Statistics of the distances, mm, of the points in one of these states.
 Statistics Distances(const KnownPointFit& fit, const std::vector<PointState>& states) {
   std::vector<double> distances_mm;
   for (const ComparedPoint& point : fit.points) {
@@ -64,13 +64,13 @@ Metrics RowOf(const ComparedPoint& point) {
   return row;
 }
 
-// `45.3 12.1 mm (5.2 sigmas)`.
+// Such as "45.3 12.1 mm (5.2 sigmas)".
 std::string ShortText(const ComparedPoint& point) {
   return fmt::format("{} {:.3g} mm ({:.1f} sigmas)", NameOf(point),
                      kMmPerM * point.difference_m.norm(), point.sigmas_off);
 }
 
-// Checks that fail are worse than points of the datum, however far these are off.
+// Orders points by how bad they are. A failed check is worse than any other point.
 std::pair<bool, double> Badness(const ComparedPoint& point) {
   return {point.state == PointState::kFailed, point.sigmas_off};
 }

@@ -1,4 +1,4 @@
-// Reports of the known points. exporters/formats/README.md lists the keys.
+// Reports on the known points. exporters/formats/README.md lists the keys.
 
 #pragma once
 
@@ -11,17 +11,18 @@
 namespace velamap {
 
 // Adds known_point_residual_mm, known_point_residual_in_sigmas, known_point_growth_percent and its
-// sigma, check_point_error_mm, num_failed_check_points, known_points_note and table known_points;
-// nothing for a layout without known points.
+// sigma, check_point_error_mm, num_failed_check_points, known_points_note and the table
+// known_points. Adds nothing for a layout without known points.
 void AddMetrics(const KnownPointFit& fit, MetricsReport* report);
 
 int CountPoints(const KnownPointFit& fit, PointState state);
 
-// One line: how many are used and how well they fit, the checks, the one that is farthest off.
+// One line with the number of points used and their RMS distance, the number of passed checks, and
+// the worst point; or why there is no frame.
 std::string KnownPointsText(const KnownPointFit& fit);
 
-// A warning for each check that fails, each point that contradicts the others, a size that the
-// points contradict, and points that give no frame.
+// Warnings of each check that fails, of each point that contradicts the others, of a wrong size of
+// the shape, and of points that give no frame.
 std::vector<std::string> KnownPointWarnings(const KnownPointFit& fit);
 
 }  // namespace velamap

@@ -17,7 +17,8 @@ std::optional<Eigen::Vector3d> PointInShape(const MarkerShape& shape, const Know
                            : marker->x_in_shape_m[static_cast<std::size_t>(known.corner)];
 }
 
-// The covariance of the points in the shape, with zeros for those that `covariance` lacks.
+// The covariance of the points in the shape frame, m^2, with zeros for points that `covariance`
+// lacks.
 Eigen::MatrixXd CovarianceOfPoints(const std::vector<KnownPoint>& known,
                                    const PointCovariance* covariance) {
   std::vector<PointGradient> gradients;
@@ -61,7 +62,7 @@ PresentPoints CollectPresent(const MarkerShape& shape, const std::vector<KnownPo
     point.x_m -= points.center_in_shape_m;
     squared_m2 += point.x_m.squaredNorm() / count;
   }
-  constexpr double kMinRadius_m = 1e-4;  // of points in one place, which determine nothing
+  constexpr double kMinRadius_m = 1e-4;  // keeps divisions by the radius finite
   points.radius_m = std::max(kMinRadius_m, std::sqrt(squared_m2));
   points.covariance_m2 = CovarianceOfPoints(found, covariance);
   return present;

@@ -1,4 +1,4 @@
-// The known points of the layout that are in the shape.
+// Collects the known points of the layout that are in the shape.
 
 #pragma once
 
@@ -12,12 +12,12 @@
 namespace velamap {
 
 struct PresentPoints {
-  std::vector<std::size_t> idxs;  // ascending, into the known points
-  DatumPoints points;             // in the same order
-  PointSet datum;                 // indices into `points` of those that are no checks
+  std::vector<std::size_t> idxs;  // ascending indices into the known points of the layout
+  DatumPoints points;             // in the order of `idxs`
+  PointSet datum;                 // indices into `points` of those that are not checks
 };
 
-// `covariance` may be null; points that it lacks count as exact.
+// `covariance` may be null. Points that it lacks count as exact.
 PresentPoints CollectPresent(const MarkerShape& shape, const std::vector<KnownPoint>& known,
                              const PointCovariance* covariance);
 

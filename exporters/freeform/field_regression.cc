@@ -8,10 +8,10 @@
 namespace velamap {
 namespace {
 
-// The prior of the polynomial: in normalized coordinates its coefficients are of the order of 1.
+// The prior of the polynomial's coefficients. In normalized coordinates they are of the order of 1.
 constexpr double kDriftSigma = 10.0;
-// A subset of the rows determines the amplitude well enough. The time of one evaluation of the
-// likelihood grows with the third power of their number.
+// The likelihood uses a subset of the rows, which determines the amplitude well enough, because the
+// time of one evaluation grows with the third power of their number.
 constexpr Eigen::Index kMaxLikelihoodRows = 600;
 
 double RowCovariance(const FieldRows& rows, Eigen::Index i, Eigen::Index j) {
@@ -53,7 +53,7 @@ double LogDeterminant(const Eigen::LLT<Eigen::MatrixXd>& factor) {
   return 2 * factor.matrixLLT().diagonal().array().log().sum();
 }
 
-// Rasmussen and Williams, section 2.7, with a polynomial of finite prior sigma.
+// Rasmussen and Williams, section 2.7, with a finite prior covariance of the polynomial.
 FieldSolution SolveWithMatrices(const Eigen::MatrixXd& unit_covariance,
                                 const Eigen::MatrixXd& drift, const Eigen::VectorXd& targets,
                                 const Eigen::VectorXd& sigmas, double amplitude) {
@@ -78,7 +78,7 @@ FieldSolution SolveWithMatrices(const Eigen::MatrixXd& unit_covariance,
   return solution;
 }
 
-// The argument between the two with the largest value of a function that has one maximum.
+// Golden-section search for the maximum of a function that has only one between `low` and `high`.
 template <typename Function>
 double Maximize(double low, double high, const Function& function) {
   constexpr double kGolden = 0.6180339887498949;
@@ -105,7 +105,7 @@ FieldSolution SolveField(const FieldRows& rows, const Eigen::VectorXd& sigmas, d
 
 FieldParameters MaximizeLikelihood(const FieldRows& all, const Eigen::VectorXd& all_sigmas,
                                    bool sigmas_are_known) {
-  // Every k-th row, so that at most kMaxLikelihoodRows remain; points and normals alike.
+  // Takes every k-th row, of points and normals alike, so that at most kMaxLikelihoodRows remain.
   const Eigen::Index step = (all.Size() + kMaxLikelihoodRows - 1) / kMaxLikelihoodRows;
   const auto chosen = Eigen::seq(0, all.Size() - 1, step);
   const FieldRows rows = {all.places(chosen, Eigen::all), all.directions(chosen, Eigen::all),

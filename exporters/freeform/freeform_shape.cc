@@ -95,7 +95,7 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
 void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame, LengthUnit unit,
                         const std::filesystem::path& folder) {
   for (const PartSurface& part : freeform.surfaces) {
-    const std::string title = fmt::format("{} (frame: {})", part.part, frame.name);
+    const std::string title = fmt::format("{} (frame: {})", ShownName(part.part), frame.name);
     const auto write = [&](const std::string& extension, const auto& writer) {
       WriteFile(folder / (part.file_stem + extension), writer);
     };

@@ -1,4 +1,4 @@
-// A surface through each part of a shape that has no lines, with its files.
+// Fits a surface through each part of a shape that has no lines, and writes its files.
 
 #pragma once
 
@@ -19,35 +19,36 @@
 namespace velamap {
 
 struct PartSurface {
-  std::string part;       // empty for the markers of a layout without parts
+  std::string part;       // empty for a layout without parts
   std::string file_stem;  // freeform, freeform_2, ...
   FreeformSurface surface;
 };
 
 struct FreeformShape {
-  std::vector<PartSurface> surfaces;  // by part in the layout's order
-  // One line per part of enough markers without a surface, with the reason, and one per group of
-  // markers that a surface leaves out or misses.
+  std::vector<PartSurface> surfaces;  // in the order of the layout's parts
+  // One line for each part that has enough markers but no surface, with the reason, and one for
+  // each group of markers that a surface leaves out or does not fit.
   std::vector<std::string> notes;
   std::exception_ptr surface_error;  // as in SailShape
 };
 
-// What messages call the part: its name, or "all markers" where a layout without parts has none.
+// The name of the part for messages. For a layout without parts it is "all markers".
 std::string ShownName(const std::string& part);
 
 // "0.3139 m2", or "0.3139 m2, closed, 0.0214 m3".
 std::string SizeText(const FreeformSurface& surface);
 
-// Takes the parts without horizontal and vertical lines that name at least kMinFreeformMarkers
-// markers; all markers for a layout without parts. `shape` and `covariance` (may be null) are in
-// one frame. `mesh` is SailOptions::mesh. `num_threads` 0: one per core; never changes the result.
+// Fits the parts that have neither horizontal nor vertical lines and name at least
+// kMinFreeformMarkers markers. A layout without parts counts as one part with all markers. `shape`
+// and `covariance` (may be null) are in the same frame. `mesh` is SailOptions::mesh. The result
+// does not depend on `num_threads` (0: one per core).
 FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
                               const PointCovariance* covariance,
                               const std::optional<MeshOptions>& mesh, int num_threads = 0);
 
-// Writes .ply .obj .stl of each surface under its stem, and freeform_residuals.csv with the corners
-// of all of them. `unit` is the unit of OBJ and STL. `folder` has to exist. Throws InputError if it
-// is not writable.
+// Writes each surface as PLY, OBJ and STL, named by its stem, and freeform_residuals.csv with the
+// corners of all surfaces. `unit` is the unit of OBJ and STL. `folder` must exist. Throws
+// InputError if a file cannot be written.
 void WriteFreeformFiles(const FreeformShape& freeform, const ShapeFrame& frame, LengthUnit unit,
                         const std::filesystem::path& folder);
 

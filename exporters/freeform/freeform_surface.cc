@@ -20,8 +20,8 @@
 namespace velamap {
 namespace {
 
-// Equilateral triangles of side L cover an area with kTrianglesPerArea * area / L^2 triangles
-// (4 / sqrt(3)). No mesh with edges up to L has fewer.
+// kTrianglesPerArea * area / L^2 equilateral triangles of side L cover an area (the exact factor is
+// 4 / sqrt(3)). No mesh with edges of at most L has fewer triangles.
 constexpr double kTrianglesPerArea = 2.3;
 
 SurfaceField MakeField(const std::vector<FreeformMarker>& markers) {
@@ -46,7 +46,7 @@ SurfacePoint PointNear(const SurfaceField& field, const Eigen::Vector3d& x_in_sh
   return {*x, field.Evaluate(*x).gradient.normalized()};
 }
 
-// The corners moved to the surface, with the normals there.
+// The corners projected onto the surface, with the normals of the surface there.
 std::vector<FrontMarker> MoveToSurface(const std::vector<FreeformMarker>& markers,
                                        const SurfaceField& field) {
   std::vector<FrontMarker> moved(markers.size());
@@ -62,7 +62,6 @@ std::vector<FrontMarker> MoveToSurface(const std::vector<FreeformMarker>& marker
   return moved;
 }
 
-// The markers of the largest piece.
 std::vector<FreeformMarker> LargestPiece(const std::vector<FreeformMarker>& markers,
                                          const std::vector<int>& pieces) {
   std::map<int, std::vector<FreeformMarker>> by_piece;
@@ -81,8 +80,9 @@ EdgeMeasure ByLength(double length_m) {
   };
 }
 
-// The normals at the ends of an arc of length l turn by w, and its sagitta is l w / 8. The middle
-// of a triangle is up to 4/3 times as far from the surface as those of its sides.
+// An arc of length l whose normals turn by w has a sagitta of l w / 8. The middle of a triangle is
+// up to 4/3 times as far from the surface as the middles of its sides. The square root makes the
+// measure proportional to the length of the edge.
 EdgeMeasure ByDeviation(double deviation_m) {
   return [deviation_m](const TriangleMesh& mesh, int a, int b) {
     const Eigen::Vector3d edge = mesh.vertices_m[b] - mesh.vertices_m[a];
@@ -106,8 +106,9 @@ EdgeMeasure ByDeviation(double deviation_m) {
       kMaxFreeformTriangles));
 }
 
-// Divides the triangles until the sigma, which has its maxima between the markers, is nearly linear
-// on each of them, and further if asked to.
+// First divides the triangles until the sigma, which is largest between the markers, is nearly
+// linear on each triangle, and evaluates it. Then divides them further to the wanted edges,
+// interpolating the sigma.
 TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marker_length_m,
                     const std::optional<MeshOptions>& options, int num_threads) {
   constexpr double kSigmaTriangles = 2000, kEnoughTriangles = 1e5;
@@ -122,7 +123,7 @@ TriangleMesh Refine(TriangleMesh coarse, const SurfaceField& field, double marke
                                  near_surface, kMaxFreeformTriangles, num_threads);
   mesh.sigmas_m = field.Sigmas(mesh.vertices_m, num_threads);
   EdgeMeasure measure = ByLength(std::max(marker_length_m / 2, length_for(kEnoughTriangles)));
-  // Most triangles are smaller than the largest that the edge length allows.
+  // The factor of 2 is a margin: most triangles are smaller than the edge length allows.
   const double least_edge_m = 2 * length_for(kMaxFreeformTriangles);
   if (options && options->edge_length_mm) {
     const double edge_m = kMPerMm * *options->edge_length_mm;
@@ -171,7 +172,7 @@ std::vector<FreeformResidual> Residuals(const std::vector<FreeformMarker>& marke
   return residuals;
 }
 
-// One note on the markers with a corner that is far off.
+// Adds a note that lists the markers with a corner far off the surface.
 void NoteOutliers(const std::vector<FreeformMarker>& markers, FreeformSurface* surface) {
   constexpr double kMaxSigmas = 4.0;
   std::set<int> ids;
@@ -194,8 +195,8 @@ void CheckCount(std::size_t num_markers) {
                               kMaxFreeformMarkers));
 }
 
-// The markers of the largest piece, and a note on the others. Throws DataError if that piece has
-// fewer than half of the markers or fewer than kMinFreeformMarkers.
+// Returns the markers of the largest connected piece and adds a note on the others. Throws
+// DataError if the piece has fewer than half of the markers or fewer than kMinFreeformMarkers.
 std::vector<FreeformMarker> ConnectedMarkers(const std::vector<FreeformMarker>& markers,
                                              const std::vector<int>& pieces,
                                              std::vector<std::string>* notes) {

@@ -1,10 +1,11 @@
-// A surface through markers that are on no known lines: of inflatables, tanks, wings, hulls, the
-// faces of a cube. It ends at the outer corners of the markers, or closes.
+// Fits a surface through markers that are on no known lines, for example on inflatables, tanks,
+// wings, hulls or the faces of a cube. The surface is closed or ends at the outer corners of the
+// markers.
 //
-// All four corners of each marker lie on the surface with their sigmas, and its outward normal says
-// which side is out: SurfaceField smooths them. JoinMarkers() finds the triangles, and RefineMesh()
-// divides them on the smooth surface. Edges sharper than the spacing of the markers are rounded, so
-// each face of a body with edges should be a part of its own.
+// SurfaceField smooths the four corners of each marker, weighted by their sigmas; the normals of
+// the markers tell which side is outside. JoinMarkers() joins the corners by triangles, and
+// RefineMesh() divides these on the smooth surface. Edges of the body are rounded if the markers
+// are not close to them, so each face of a body with edges should be a part of its own.
 
 #pragma once
 
@@ -23,44 +24,47 @@
 
 namespace velamap {
 
-// Four corners in their order, and their sigmas along the normal of the marker. Errors that all
-// markers share, such as the error of the scale, do not bend the surface and are left out.
+// The four corners and their sigmas along the normal of the marker. The sigmas leave out errors
+// that all markers share, such as the error of the scale, because these do not bend the surface.
 struct FreeformMarker {
   int marker_id = 0;
   std::array<Eigen::Vector3d, kNumCorners> corners_in_shape_m;
   std::array<std::optional<double>, kNumCorners> sigmas_m;
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // outward
 };
 
-// The marker must be whole. `own_covariance` may be null (WithoutSharedErrors() in shape_sigma.h).
+// The marker must have all four corners. `own_covariance` is the covariance without shared errors
+// (WithoutSharedErrors() in shape_sigma.h) or null.
 FreeformMarker MakeFreeformMarker(const ShapeMarker& marker, const PointCovariance* own_covariance);
 
 struct FreeformResidual {
   int marker_id = 0;
   int corner = 0;                // 1..4
-  double distance_m = 0.0;       // of the corner from the surface, along its outward normal
-  double sigma_m = 0.0;          // of the corner, as the fit weighted it
-  double surface_sigma_m = 0.0;  // of the surface there
+  double distance_m = 0.0;       // of the corner from the surface; positive outside
+  double sigma_m = 0.0;          // of the corner, as used in the fit
+  double surface_sigma_m = 0.0;  // of the surface at this corner
 };
 
 struct FreeformSurface {
   TriangleMesh mesh;  // with normals and sigmas
   double area_m2 = 0.0;
-  std::optional<double> volume_m3;          // if the surface closes
+  std::optional<double> volume_m3;          // if the surface is closed
   std::vector<FreeformResidual> residuals;  // by marker id and corner
   Statistics distance_m;                    // of the residuals
   double rms_sigma_m = 0.0;                 // of the surface, over its area
-  std::vector<std::string> notes;           // markers left out or off
+  std::vector<std::string> notes;           // on markers that are left out or do not fit
 };
 
 constexpr std::size_t kMinFreeformMarkers = 4, kMaxFreeformMarkers = 1000;
 constexpr std::size_t kMaxFreeformTriangles = 1'000'000;
 
-// Edges of half of `marker_length_m`, or longer ones to stay below 100 000 triangles, unless `mesh`
-// says otherwise. Markers that stand apart from most others are left out. Throws DataError for too
-// few or too many markers, for markers that are in groups far from each other or look in different
-// directions, and for markers that contradict one another; InputError for more than
-// kMaxFreeformTriangles. `num_threads` 0: one per core; never changes the result.
+// Unless `mesh` asks for something else, the edges of the mesh are at most half of
+// `marker_length_m` long, or longer if equilateral triangles of that side would number more than
+// 100 000. Markers that are not connected to most of the others are left out. Throws DataError for
+// too few or too many markers, if fewer than half of them are connected because they are in distant
+// groups or face different directions, and if they contradict one another. Throws InputError if
+// `mesh` asks for more than kMaxFreeformTriangles. The result does not depend on `num_threads` (0:
+// one per core).
 FreeformSurface FitFreeformSurface(const std::vector<FreeformMarker>& markers,
                                    double marker_length_m, const std::optional<MeshOptions>& mesh,
                                    int num_threads = 0);

@@ -17,15 +17,15 @@ namespace {
 
 using Edge = std::pair<int, int>;
 
-// Cosines of the largest angles between the normals at the ends of an edge, and between a triangle
-// and the surface at its corners.
+// The cosine of the largest angle between the normals at the ends of an edge, and of the largest
+// angle between the normal of a triangle and the normals at its corners.
 constexpr double kMinNormalCosine = 0.25, kMinTriangleCosine = 0.4;
-// The largest circle over the spacing of the markers. A marker that is missing in a square grid
-// leaves a hole with a circle of 1.
+// The largest radius of a circumscribed circle divided by the spacing of the markers. A missing
+// marker in a square grid leaves a hole with a ratio of 1.
 constexpr double kMaxRadiusPerSpacing = 1.5;
-constexpr double kTouching = 1e-9;  // of the length of an edge, or of its square for areas
+constexpr double kTouching = 1e-9;  // fraction of the length of an edge, or for areas of its square
 
-// Most markers have at least four others within this distance.
+// The distance within which nine tenths of the markers have at least four others, m.
 double Spacing(const std::vector<FrontMarker>& markers) {
   constexpr std::size_t kNumNeighbors = 4;
   constexpr double kMost = 0.9;
@@ -38,7 +38,7 @@ double Spacing(const std::vector<FrontMarker>& markers) {
   for (const Eigen::Vector3d& center : centers) {
     std::vector<double> distances_m;
     for (const Eigen::Vector3d& other : centers) distances_m.push_back((other - center).norm());
-    std::sort(distances_m.begin(), distances_m.end());  // the first one is that to itself
+    std::sort(distances_m.begin(), distances_m.end());  // starts with the marker itself
     spacings_m.push_back(distances_m[std::min(kNumNeighbors, distances_m.size() - 1)]);
   }
   std::sort(spacings_m.begin(), spacings_m.end());
@@ -64,7 +64,7 @@ class Front {
       Insert({first, first + 3, first + 2});
       Insert({first, first + 2, first + 1});
     }
-    // Only now, after all markers are added, because an edge may be joined to any of them.
+    // Edges are queued after all markers are inserted, because any marker may be the best to join.
     const std::vector<std::array<int, 3>> squares = triangles_;
     for (const auto& triangle : squares) QueueOpenSides(triangle);
   }
@@ -89,7 +89,7 @@ class Front {
  private:
   struct Candidate {
     double radius_m = 0.0;  // of the circle through the three corners
-    Edge edge;              // the side of the new triangle at the front
+    Edge edge;              // the side of the new triangle that is on the front
     int vertex = -1;
     bool operator>(const Candidate& other) const {
       return std::tie(radius_m, edge, vertex) > std::tie(other.radius_m, other.edge, other.vertex);
@@ -105,7 +105,7 @@ class Front {
   };
 
   bool IsUsed(const Edge& edge) const { return used_.count(edge) > 0; }
-  // Whether the triangle on the other side is there, and the one on this side is not.
+  // Whether there is a triangle on the other side of the edge but none on this side.
   bool IsOpen(const Edge& edge) const { return !IsUsed(edge) && IsUsed({edge.second, edge.first}); }
 
   void Add(const std::array<int, 3>& triangle) {
@@ -147,7 +147,7 @@ class Front {
            kMinTriangleCosine;
   }
 
-  // Whether the side from `a` to `b` crosses a side of a triangle that is there.
+  // Whether the side from `a` to `b` would cross a side of an existing triangle.
   bool Crosses(int a, int b, const std::vector<int>& nearby, const Plane& plane) const {
     const Eigen::Vector2d from = plane(x_[a]), along = plane(x_[b]) - from;
     for (const int c : nearby) {
@@ -180,7 +180,8 @@ class Front {
     });
   }
 
-  // The corners near an edge on the same side of a thin body.
+  // The corners near the middle of an edge with a similar normal, which leaves out those on the
+  // other side of a thin body.
   std::vector<int> Nearby(const Eigen::Vector3d& middle, const Eigen::Vector3d& normal) const {
     std::vector<int> nearby;
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -201,8 +202,8 @@ class Front {
            !Crosses(vertex, a, nearby, plane);
   }
 
-  // The triangle with the smallest circumscribed circle on the open side of the edge. Its third
-  // corner sees the edge under the largest angle.
+  // The triangle with the smallest circumscribed circle on the open side of the edge: from its
+  // third corner, the edge subtends the largest angle.
   std::optional<Candidate> BestFor(const Edge& edge) const {
     const auto [a, b] = edge;
     const Eigen::Vector3d normal = (normals_[a] + normals_[b]).normalized();
@@ -229,7 +230,7 @@ class Front {
   std::vector<Eigen::Vector3d> x_, normals_;
   double max_radius_m_ = 0.0;
   std::vector<std::array<int, 3>> triangles_;
-  std::set<Edge> used_;                   // from corner to corner, along the triangles
+  std::set<Edge> used_;                   // directed sides of the triangles
   std::vector<std::set<int>> neighbors_;  // of each corner
   std::vector<int> num_open_;             // open edges at each corner
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;

@@ -1,4 +1,4 @@
-// Area, volume and mean sigma of a mesh of triangles.
+// Area, volume and RMS sigma of a triangle mesh.
 
 #pragma once
 
@@ -8,10 +8,11 @@ namespace velamap {
 
 double AreaOf(const TriangleMesh& mesh);  // m^2
 
-// Of a closed mesh, m^3; positive even if its triangles face inwards.
+// The volume of a closed mesh, m^3. It is positive even if the triangles face inwards.
 double VolumeOf(const TriangleMesh& mesh);
 
-// The root mean square over the area of the vertices' sigmas, m.
+// The root mean square of the sigmas of the vertices, weighted by area, m. The mesh must have
+// sigmas.
 double RmsSigma(const TriangleMesh& mesh);
 
 }  // namespace velamap

@@ -12,21 +12,22 @@
 namespace velamap {
 namespace {
 
-// Halving only the longest edges at a time keeps the triangles from getting slender.
+// A round halves only edges whose measure exceeds this fraction of the largest one, so that
+// triangles do not become slender.
 constexpr double kLongest = 0.7;
 
 using Edge = std::pair<int, int>;
-using Middles = std::map<Edge, int>;  // the vertex that halves an edge; by ascending vertices
+using Middles = std::map<Edge, int>;  // the vertex that halves each edge; see Sorted()
 
 Edge Sorted(int a, int b) { return std::minmax(a, b); }
 
 struct LongEdges {
   Middles middles;
-  double longest = 0.0;  // measure
+  double longest = 0.0;  // the largest measure of an edge
 };
 
 LongEdges FindLongEdges(const TriangleMesh& mesh, const EdgeMeasure& measure) {
-  std::vector<std::pair<double, Edge>> too_long;  // most edges twice
+  std::vector<std::pair<double, Edge>> too_long;  // inner edges occur twice
   LongEdges found;
   for (const auto& [a, b, c] : mesh.triangles) {
     for (const Edge& edge : {Sorted(a, b), Sorted(b, c), Sorted(c, a)}) {
@@ -63,7 +64,7 @@ void AddMiddles(const NearSurface& near_surface, int num_threads, Middles* middl
   });
 }
 
-// The triangles that a triangle with some halved sides becomes.
+// Divides a triangle, some of whose sides may be halved.
 std::vector<std::array<int, 3>> Divide(std::array<int, 3> t, const Middles& middles,
                                        const std::vector<Eigen::Vector3d>& x) {
   const auto middle = [&middles](int a, int b) {
@@ -76,13 +77,13 @@ std::vector<std::array<int, 3>> Divide(std::array<int, 3> t, const Middles& midd
   if (num_halved == 3) {
     return {{t[0], m[0], m[2]}, {m[0], t[1], m[1]}, {m[2], m[1], t[2]}, {m[0], m[1], m[2]}};
   }
-  // Turned so that side 0 is the one that differs from the other two.
+  // Rotates the triangle so that side 0 is the one that differs from the other two.
   while ((m[0] >= 0) != (num_halved == 1)) {
     std::rotate(t.begin(), t.begin() + 1, t.end());
     std::rotate(m.begin(), m.begin() + 1, m.end());
   }
   if (num_halved == 1) return {{t[0], m[0], t[2]}, {m[0], t[1], t[2]}};
-  // Sides 1 and 2 are halved: the shorter diagonal of the quadrilateral that is left.
+  // Sides 1 and 2 are halved. The shorter diagonal divides the remaining quadrilateral.
   const std::array<int, 3> tip = {m[2], m[1], t[2]};
   if ((x[t[0]] - x[m[1]]).norm() < (x[t[1]] - x[m[2]]).norm()) {
     return {tip, {t[0], t[1], m[1]}, {t[0], m[1], m[2]}};
@@ -95,7 +96,7 @@ std::vector<std::array<int, 3>> Divide(std::array<int, 3> t, const Middles& midd
 TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
                         const NearSurface& near_surface, std::size_t max_triangles,
                         int num_threads) {
-  // A round takes the longest edges down to kLongest, or two do where a triangle lies badly.
+  // One or two rounds usually reduce the largest measure to the fraction kLongest.
   constexpr int kMaxRoundsWithoutProgress = 12;
   constexpr double kProgress = 0.95;
   double shortest_so_far = std::numeric_limits<double>::infinity();
@@ -120,11 +121,11 @@ TriangleMesh RefineMesh(TriangleMesh mesh, const EdgeMeasure& measure,
 }
 
 double EstimateNumTriangles(const TriangleMesh& mesh, const EdgeMeasure& measure) {
-  const double unit_area = std::sqrt(3.0) / 4;  // of a triangle whose sides measure 1
+  const double unit_area = std::sqrt(3.0) / 4;  // of a triangle whose sides have a measure of 1
   double sum = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
     const double ab = measure(mesh, a, b), bc = measure(mesh, b, c), ca = measure(mesh, c, a);
-    const double half = (ab + bc + ca) / 2;  // Heron's formula; measures may not make a triangle
+    const double half = (ab + bc + ca) / 2;  // Heron's formula; measures need not form a triangle
     const double area = std::sqrt(std::max(0.0, half * (half - ab) * (half - bc) * (half - ca)));
     sum += std::max({1.0, ab, bc, ca, area / unit_area});
   }

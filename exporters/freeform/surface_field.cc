@@ -10,9 +10,9 @@
 namespace velamap {
 namespace {
 
-// The slope along a normal need not be 1: the function is not an exact distance.
+// The function is not an exact distance, so its slope along a normal need not be exactly 1.
 constexpr double kSlopeSigma = 0.1;
-constexpr double kMinSigma = 1e-5;
+constexpr double kMinSigma = 1e-5;  // in normalized coordinates
 
 }  // namespace
 
@@ -29,7 +29,7 @@ SurfaceField::SurfaceField(const std::vector<FieldPoint>& points,
   }
   if (!(scale_m_ > 0)) throw DataError("all corners are in one place");
   const bool has_sigmas = !known_sigmas_m.empty();
-  constexpr double kGuess = 1e-3;  // where the search for an unknown sigma begins
+  constexpr double kGuess = 1e-3;  // initial value of an unknown sigma
   const double default_sigma_m = has_sigmas ? Median(known_sigmas_m) : kGuess * scale_m_;
   const auto num_points = static_cast<Eigen::Index>(points.size());
   const Eigen::Index num_rows = num_points + static_cast<Eigen::Index>(normals.size());
@@ -78,7 +78,7 @@ FieldValue SurfaceField::Evaluate(const Eigen::Vector3d& x_in_shape_m) const {
 
 std::vector<double> SurfaceField::Sigmas(const std::vector<Eigen::Vector3d>& points_in_shape_m,
                                          int num_threads) const {
-  constexpr std::size_t kPerBlock = 64;  // solved together, which is faster than one by one
+  constexpr std::size_t kPerBlock = 64;  // right-hand sides solved together, which is faster
   const double variance = amplitude_ * amplitude_;
   std::vector<double> sigmas_m(points_in_shape_m.size());
   ParallelFor((sigmas_m.size() + kPerBlock - 1) / kPerBlock, num_threads, [&](std::size_t block) {

@@ -1,4 +1,4 @@
-// The rotations of a marker's code, and distances in bits.
+// The rotations of a marker's code, and Hamming distances between codes.
 
 #pragma once
 
@@ -10,17 +10,19 @@
 
 namespace velamap {
 
-// A code and the same turned by one, two and three quarters.
+// A code, and the same code rotated clockwise by one, two and three quarter turns.
 using Rotations = std::array<MarkerCode, 4>;
 
 inline int Distance(MarkerCode a, MarkerCode b) { return __builtin_popcountll(a ^ b); }
 
+// The smallest distance over all relative rotations.
 inline int Distance(const Rotations& a, const Rotations& b) {
   return std::min(std::min(Distance(a[0], b[0]), Distance(a[1], b[0])),
                   std::min(Distance(a[2], b[0]), Distance(a[3], b[0])));
 }
 
-// To its own rotations: a quarter turn forwards differs by as much as one backwards.
+// The smallest distance of a code from its own rotations. Three quarter turns give the same
+// distance as one.
 inline int DistanceToItself(const Rotations& code) {
   return std::min(Distance(code[0], code[1]), Distance(code[0], code[2]));
 }
@@ -41,7 +43,7 @@ class CodeSpace {
     return rotations;
   }
 
-  // One code for each set of rotations, the least of them, ascending.
+  // One code of each set of rotations, the smallest, in ascending order.
   std::vector<Rotations> All() const {
     std::vector<Rotations> codes;
     for (MarkerCode code = 0; code <= Mask(); ++code) {

@@ -11,7 +11,8 @@
 #include "importer/base/ids.h"
 #include "importer/layout/code_rotations.h"
 
-// Counting bits takes one instruction on most processors, but not on the oldest that Debian knows.
+// Most processors count bits with one instruction, but not the oldest that Debian supports, so both
+// versions are compiled.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__)
 #define VELAMAP_CLONE_FOR_POPCNT __attribute__((target_clones("popcnt", "default"), flatten))
@@ -23,20 +24,20 @@ namespace velamap {
 namespace {
 
 constexpr int kMinBits = 3, kMaxBits = 8;
-constexpr int kMaxEnumeratedBits = 4;  // per side; larger codes are drawn
+constexpr int kMaxEnumeratedBits = 4;  // per side; larger codes are drawn at random
 constexpr int kThesisNumCodes = 130;
-// Bounds of the work, and with it of the time: comparisons of codes.
+// The number of comparisons of codes, which bounds the time.
 constexpr double kMaxGreedyWork = 1e8, kMaxAnnealingWork = 3e8;
 constexpr int kMaxAnnealingSteps = 500000;
 constexpr std::size_t kMinDrawsPerCode = 20;
 constexpr double kFirstTemperature = 1.0, kLastTemperature = 0.15;  // squared missing bits
 
-// Zero for a code that is far enough; grows with the square of the missing bits.
+// The squared number of bits that are missing to the wanted distance.
 inline int Shortage(int distance, int wanted) {
   return distance < wanted ? (wanted - distance) * (wanted - distance) : 0;
 }
 
-// The standard's distributions differ between libraries; these do not.
+// The distributions of <random> differ between standard libraries; these do not.
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
@@ -60,7 +61,8 @@ bool IsFarFromAll(const Rotations& code, const std::vector<Rotations>& others, i
                      [&](const Rotations& other) { return Distance(other, code) >= distance; });
 }
 
-// Takes candidates that are far enough from those before them, until there are `num_codes`.
+// Takes candidates that are far enough from those already taken, until there are `num_codes`. The
+// candidates are `all` codes in random order, or random codes if `all` is empty.
 VELAMAP_CLONE_FOR_POPCNT bool ChooseGreedily(const CodeSpace& space, std::size_t num_codes,
                                              int distance, const std::vector<Rotations>& all,
                                              Random* random, std::vector<Rotations>* codes) {
@@ -81,7 +83,7 @@ VELAMAP_CLONE_FOR_POPCNT bool ChooseGreedily(const CodeSpace& space, std::size_t
   return codes->size() == num_codes;
 }
 
-// A set of codes, and by how much each of them and the whole set fall short of a wanted distance.
+// A set of codes, and the shortage of each of them at a wanted distance.
 class Annealing {
  public:
   Annealing(const CodeSpace& space, int distance, std::vector<Rotations> codes)
@@ -91,8 +93,9 @@ class Annealing {
 
   const std::vector<Rotations>& codes() const { return codes_; }
 
-  // Changes one or two bits of a code that is too close to others, again and again; keeps what
-  // lessens the shortage and, less and less often, what does not. Returns whether none is left.
+  // Repeatedly changes one or two bits of a code that is too close to others. Keeps changes that do
+  // not increase the shortage, and others with a probability that falls over the steps. Returns
+  // whether no shortage is left.
   bool Run(int num_steps, Random* random) {
     for (int step = 0; step < num_steps; ++step) {
       const std::size_t idx = FindShort(random);
@@ -116,7 +119,7 @@ class Annealing {
         static_cast<int>(random->Below(static_cast<std::size_t>(space_.NumBits()))));
   }
 
-  // What would be missing to the wanted distances of `code` in the place of code `idx`.
+  // The shortage of `code` if it replaced code `idx`.
   int Missing(std::size_t idx, const Rotations& code) const {
     int missing = 2 * Shortage(DistanceToItself(code), distance_);
     for (std::size_t i = 0; i < codes_.size(); ++i) {
@@ -135,8 +138,8 @@ class Annealing {
     missing_[idx] = Missing(idx, code);
   }
 
-  // A code that is too close to others, the next from a random place on; the number of codes if
-  // there is none.
+  // The index of a code that is too close to others, the first one from a random place on. Returns
+  // the number of codes if there is none.
   std::size_t FindShort(Random* random) const {
     const std::size_t start = random->Below(codes_.size());
     for (std::size_t i = 0; i < codes_.size(); ++i) {
@@ -175,8 +178,8 @@ CodeSet MakeCodeSet(int bits_per_side, const std::vector<Rotations>& codes) {
   return set;
 }
 
-// All codes: first those without symmetry, then those that look the same after half a turn, then
-// those that do after a quarter.
+// All codes: those without symmetry, then those that look the same after half a turn, then those
+// that look the same after a quarter turn.
 std::vector<Rotations> AllBySymmetry(const CodeSpace& space) {
   std::vector<Rotations> codes = space.All();
   std::stable_sort(codes.begin(), codes.end(), [](const Rotations& a, const Rotations& b) {
@@ -188,7 +191,8 @@ std::vector<Rotations> AllBySymmetry(const CodeSpace& space) {
   return codes;
 }
 
-// For more codes than there are without symmetry: takes symmetric ones as well.
+// Returns all codes without symmetry and the first symmetric ones, for more codes than there are
+// without symmetry.
 CodeSet TakeSymmetricCodesToo(const CodeSearchOptions& options) {
   const int bits = options.bits_per_side;
   std::vector<Rotations> codes;
@@ -239,7 +243,7 @@ std::int64_t NumAsymmetricCodes(int bits_per_side) {
   // A code that looks the same after a quarter turn also does so after half a turn.
   const double num_all = std::pow(2.0, num_bits);
   const double num_half_turn = std::pow(2.0, (num_bits + 1) / 2);
-  // Of 8x8 bits there are more than a double counts exactly, but fewer than an int64 holds.
+  // The number for 8x8 bits is not exact in a double, but fits into an int64.
   return static_cast<std::int64_t>((num_all - num_half_turn) / 4);
 }
 
@@ -255,7 +259,7 @@ CodeSet FindCodes(const CodeSearchOptions& options, std::uint32_t seed) {
       options.bits_per_side <= kMaxEnumeratedBits ? space.All() : std::vector<Rotations>();
   Random random(seed);
   std::vector<Rotations> codes;
-  // No two codes differ by much more than half their bits in each rotation.
+  // No set of codes has a minimum distance much above half the number of bits.
   int distance = space.NumBits() / 2 + 4;
   while (!ChooseGreedily(space, num_codes, distance, all, &random, &codes)) {
     VELAMAP_CHECK(--distance >= 1);

@@ -84,8 +84,8 @@ int RequireInt(const cv::FileStorage& storage, const std::string& path, const st
   const std::optional<int> value = ReadInt(storage, path, key, min, max);
   if (!value) {
     Fail(path, key,
-         "missing; a cv::aruco dictionary file has nmarkers, markersize, maxCorrectionBits and "
-         "marker_0, marker_1 ...");
+         "missing; a cv::aruco dictionary file has nmarkers, markersize and marker_0, marker_1 "
+         "...");
   }
   return *value;
 }
@@ -120,8 +120,8 @@ cv::Mat Turned(const cv::Mat& bits, int quarter_turns) {
   return turned;
 }
 
-// Returns the smallest number of bits in which two markers differ, over all rotations. Throws
-// InputError if two markers are equal.
+// The smallest number of bits in which two markers differ, over all rotations. Throws InputError if
+// two markers are the same.
 int MinDistance(const std::vector<cv::Mat>& bits, const std::string& path) {
   int min_distance = static_cast<int>(bits.front().total()) + 1;
   for (std::size_t i = 0; i < bits.size(); ++i) {

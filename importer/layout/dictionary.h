@@ -1,5 +1,5 @@
-// Marker dictionaries: OpenCV's predefined ones with the AprilTag families, the thesis's, files,
-// and custom ones.
+// Marker dictionaries: the predefined ones of OpenCV including the AprilTag families, the thesis's
+// dictionary, dictionary files, and custom dictionaries.
 
 #pragma once
 
@@ -13,32 +13,36 @@
 namespace velamap {
 
 struct Dictionary {
-  std::string name;  // predefined name, or the file's name
+  std::string name;  // predefined name, file name without folder, or name of a custom dictionary
   cv::Ptr<cv::aruco::Dictionary> aruco;
 };
 
-// Takes a predefined name (DICT_4X4_50 ... DICT_ARUCO_ORIGINAL, DICT_APRILTAG_16h5 ... 36h11, also
-// without DICT_ and in lower case; THESIS_3X3_130, see ThesisCodes()) or the path of a cv::aruco
-// dictionary file with nmarkers, markersize, maxCorrectionBits and marker_0 ... as strings of 0 and
-// 1 (3x3 bits and more). Throws InputError that lists the names if the text is neither a known name
-// nor a readable file, or names the key of the file that is missing or has wrong bits.
+// Takes a predefined name or the path of a dictionary file. Names are DICT_4X4_50 to
+// DICT_ARUCO_ORIGINAL and DICT_APRILTAG_16h5 to 36h11, also without DICT_ and in lower case, and
+// THESIS_3X3_130 (ThesisCodes()). A file is in the format of cv::aruco, from 3x3 bits on: nmarkers,
+// markersize, maxCorrectionBits (0 if missing), and marker_0, marker_1 ... as strings of 0 and 1.
+// If maxCorrectionBits is too large for the distance of the codes, it is lowered with a warning.
+// Throws InputError that lists the names if the argument is neither a known name nor a readable
+// file, and InputError that names the key if a key is missing or invalid or if two markers are the
+// same.
 Dictionary LoadDictionary(const std::string& name_or_path);
 
 std::vector<std::string> PredefinedDictionaryNames();
 
-// Whether the name is one of OpenCV's, which other programs also know.
+// Whether the name is one of OpenCV's, which other programs know as well.
 bool IsOpenCvName(const std::string& name);
 
 int NumMarkers(const Dictionary& dictionary);
 
-// Corrects as many wrong bits as the distance of the codes allows.
+// The dictionary corrects as many wrong bits as the minimum distance of the codes allows.
 Dictionary MakeDictionary(const std::string& name, const CodeSet& codes);
 
-// The text of a dictionary file, which LoadDictionary() and cv::aruco read.
+// The text of a dictionary file that LoadDictionary() and cv::aruco can read.
 std::string DictionaryText(const Dictionary& dictionary);
 
-// Draws the marker and its border with one pixel per cell, 8 bit, zero for black. Row 0 runs from
-// corner 0 to 1 and column 0 from corner 0 to 3.
+// Draws the marker and its black border with one pixel per cell (CV_8UC1, zero is black). Row 0 is
+// the side between the first and the second corner, column 0 the side between the first and the
+// fourth.
 cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits);
 
 }  // namespace velamap

@@ -22,7 +22,7 @@ constexpr std::array<std::pair<const char*, FrameKind>, 4> kKeywords = {
      {"lines", FrameKind::kLines},
      {"camera", FrameKind::kCamera}}};
 
-// Empty unless the text is a list of marker ids.
+// Returns an empty list if the text is not a list of marker ids.
 std::vector<int> ParseIds(const std::string& text) {
   const std::optional<std::vector<int>> ids = ParseNumberList<int>(text);
   const auto is_marker_id = [](int id) { return id >= 0 && id <= kMaxMarkerId; };

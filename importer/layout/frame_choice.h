@@ -1,5 +1,5 @@
-// The choice of the frame of the metric result. exporters/shape/shape_frame.h says how each frame
-// is computed from markers.
+// The choice of the coordinate frame of the metric result. exporters/shape/shape_frame.h defines
+// how each frame is computed from the markers.
 
 #pragma once
 
@@ -8,8 +8,8 @@
 namespace velamap {
 
 enum class FrameKind {
-  kMarkers,        // three named markers: origin, axis, plane
-  kKnownPoints,    // the frame of the layout's known points
+  kMarkers,        // three markers that give origin, axis and plane
+  kKnownPoints,    // the frame in which the layout's known points were measured
   kReferencePart,  // the layout's reference part, such as the hull
   kLines,          // the lowest horizontal line and a vertical line of the sail
   kCamera,         // the model's own frame, in which velamap puts the central camera
@@ -17,13 +17,13 @@ enum class FrameKind {
 
 struct FrameChoice {
   FrameKind kind = FrameKind::kCamera;
-  // For kMarkers only: the marker at the origin, the marker to which x points, and a marker in the
-  // half plane of x and z with z > 0. All by their centres.
+  // For kMarkers only: the ids of the marker at the origin, of a marker on the positive x axis, and
+  // of a marker in the plane of x and z with z > 0. The centres of the markers count.
   int origin_id = -1, axis_id = -1, plane_id = -1;
 };
 
-// Parses "known_points", "reference_part", "lines", "camera", or the ids of origin, axis and plane
-// such as "12,15,40". Throws InputError; `what` names the option.
+// Parses "known_points", "reference_part", "lines", "camera", or the ids of origin, axis and plane,
+// such as "12,15,40". Throws InputError that begins with `what`, the name of the option.
 FrameChoice ParseFrameChoice(const std::string& text, const std::string& what);
 
 // Throws std::logic_error for kMarkers, which has no keyword.

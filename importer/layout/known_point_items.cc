@@ -12,9 +12,10 @@
 namespace velamap {
 namespace {
 
-// Beyond the coordinates of national grids, in m.
+// Larger than any coordinate of a national grid.
 constexpr double kMaxCoordinate_m = 1e8;
-// No point of a marker is measured worse; a sigma in mm usually is beyond it.
+// No point of a marker is measured less accurately than the maximum, which a sigma that was given
+// in mm by mistake usually exceeds.
 constexpr double kMinSigma_m = 1e-6, kMaxSigma_m = 1.0;
 
 double ReadCoordinate(const YamlItem& item) {

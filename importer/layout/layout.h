@@ -1,7 +1,7 @@
-// The prior knowledge of the markers: dictionary, sizes, and their places on the object.
+// The layout holds the prior knowledge of the markers: dictionary, sizes and places on the object.
 //
-// The adjacency graph of thesis section 3.1 follows from the lines: neighbours on a line are
-// adjacent, and so are all markers of a rigid part.
+// It gives the adjacency graph of thesis section 3.1: neighbours on a line are adjacent, and so are
+// all markers of a rigid part.
 
 #pragma once
 
@@ -21,12 +21,12 @@ struct MarkerLine {
   std::vector<int> marker_ids;
 };
 
-// Where an edge of the cloth is; unknown if both are empty.
+// Where an edge of the cloth is; unknown if both members are empty.
 struct ClothEdge {
-  // Distances along the surface from the centres of the outer markers to the edge, m: one for all
-  // horizontal lines, or for luff and leech one for each line.
+  // Distances along the surface from the centres of the outer markers to the edge, m: one distance,
+  // or for luff and leech also one for each horizontal line.
   std::vector<double> offsets_m;
-  std::string line;  // of luff or leech: the vertical line of markers on the edge
+  std::string line;  // for luff or leech: the vertical line of markers that lies on the edge
 
   bool IsKnown() const { return !offsets_m.empty() || !line.empty(); }
 };
@@ -40,53 +40,55 @@ struct LayoutPart {
   bool rigid = false;
   std::vector<MarkerLine> horizontal;
   std::vector<MarkerLine> vertical;
-  std::vector<int> marker_ids;  // on the part, on no line
+  std::vector<int> marker_ids;  // on the part but on no line
   ClothEdges edges{};
 };
 
-// A length measured by hand between two marker points (corner 0: the centre).
+// A straight distance measured by hand between two marker points. Corner 0 is the centre.
 struct KnownDistance {
   int marker_id1 = 0, corner1 = 0;
   int marker_id2 = 0, corner2 = 0;
   double length_m = 0.0;
   double sigma_m = 0.0;       // of the measurement
-  bool is_scale_bar = false;  // takes part in the adjustment; otherwise it is a check of the result
+  bool is_scale_bar = false;  // used in the adjustment; otherwise only compared with the result
 };
 
 struct Layout {
   // An OpenCV predefined name (DICT_4X4_50) or the path of a dictionary file.
   std::string dictionary;
   double marker_length_m = 0.0;               // outer edge of the black square
-  std::map<int, double> marker_lengths_m;     // exceptions
+  std::map<int, double> marker_lengths_m;     // exceptions, by marker id
   int border_bits = 1;                        // width of the black border, cells
   std::vector<LayoutPart> parts;              // empty: all ids belong to one part
   std::optional<std::string> reference_part;  // motion is measured relative to it
   std::vector<KnownDistance> distances;
   std::vector<KnownPoint> known_points;
-  std::optional<FrameChoice> frame;  // of the result; nothing: the best available
+  std::optional<FrameChoice> frame;  // of the result; if not set, the best available
 
-  // Whether the layout lists its markers; without a list every id is accepted.
+  // Whether the layout lists its markers. If not, every id is accepted.
   bool HasMarkers() const { return !parts.empty(); }
 };
 
-// Reads a layout file (YAML; README.md of this folder lists the keys). The path of a dictionary
+// Reads a layout file (YAML; the README.md of this folder lists the keys). The path of a dictionary
 // file is relative to the layout file. Throws InputError that names file, line and key for unknown
-// keys, a marker twice on one line or in two parts or with two lengths, a length that is not
-// between 0.1 mm and 10 m, a negative id, an edge that its lines do not allow, a distance of a
-// marker that no part names, of a point from itself, or without a sigma, and a known point that is
-// given twice, of a marker that no part names, or without a coordinate or a sigma. Warns of a
-// length of a marker that no part names.
+// keys and invalid values: for example a marker that is twice on a line, in two parts or has two
+// lengths; a marker length outside of 0.1 mm to 10 m; an edge that does not fit the lines; a
+// distance or known point that is incomplete or of a marker that no part names; a known point that
+// is given twice; and a frame for which the layout lacks the markers, part, lines or points. Warns
+// of marker lengths that are not used because no part names the marker.
 Layout ReadLayout(const std::string& path);
 
-// The layout from --dictionary and --marker_length: no lines, and every id is accepted.
+// The layout for --dictionary and --marker_length, which has no parts and accepts every id. Throws
+// InputError for a length out of range.
 Layout MakeLayout(const std::string& dictionary, double marker_length_m);
 
-// The length of the black square's outer edge, m.
+// The allowed range of the outer edge of the black square.
 constexpr double kMinMarkerLength_m = 1e-4, kMaxMarkerLength_m = 10.0;
 
-// Throws InputError for a length beyond these; `what` names the key or option.
+// Throws InputError for a length out of this range. `what` is the name of the key or option.
 void CheckMarkerLength(double length_m, const std::string& what);
 
+// The length of the marker's side, m.
 double MarkerLength(const Layout& layout, int marker_id);
 
 // The ids that the layout names, ascending, each once.
@@ -98,7 +100,8 @@ std::string PartOfMarker(const Layout& layout, int marker_id);
 using AdjacencyGraph = std::map<int, std::vector<int>>;
 AdjacencyGraph BuildAdjacencyGraph(const Layout& layout);
 
-// The number of edges from `marker_id` to every marker that can be reached from it.
+// The smallest number of edges from `marker_id` to each marker that can be reached from it. Empty
+// if `marker_id` is not in the graph.
 std::map<int, int> TopologicalDistances(const AdjacencyGraph& graph, int marker_id);
 
 }  // namespace velamap

@@ -48,7 +48,7 @@ KnownDistance ReadDistance(const YamlItem& item) {
 }
 
 double ReadOffset(const YamlItem& item) {
-  constexpr double kMaxOffset_m = 200.0;  // the longest luff of a printed sail
+  constexpr double kMaxOffset_m = 200.0;  // the longest luff that a placement allows
   const double offset_m = ReadMetres(item);
   if (!(offset_m >= 0 && offset_m <= kMaxOffset_m)) {
     item.Fail(fmt::format("{} m is out of range; give 0 to {} m", offset_m, kMaxOffset_m));
@@ -56,13 +56,13 @@ double ReadOffset(const YamlItem& item) {
   return offset_m;
 }
 
-// The foot or the head.
+// Reads the edge at the foot or the head.
 ClothEdge ReadEndEdge(const YamlItem& item) {
   if (!item.node.IsScalar()) item.Fail("one distance in m is expected, such as 0.12");
   return {{ReadOffset(item)}, ""};
 }
 
-// The luff or the leech.
+// Reads the edge at the luff or the leech.
 ClothEdge ReadSideEdge(const YamlItem& item, const LayoutPart& part) {
   ClothEdge edge;
   if (item.node.IsScalar()) {

@@ -1,4 +1,4 @@
-// Reads a layout of importer/layout/layout.h from YAML.
+// Implements ReadLayout() of layout.h.
 
 #include <algorithm>
 #include <cctype>
@@ -46,13 +46,13 @@ std::vector<int> ReadMarkerIds(const YamlItem& list) {
     for (const int id : *range) {
       ids.push_back(id);
       if (seen.insert(id).second) continue;
-      item.Fail(fmt::format("marker {} is named twice on this line", id));
+      item.Fail(fmt::format("marker {} is named twice in this list", id));
     }
   });
   return ids;
 }
 
-// The part that named each id first.
+// The first part that named each id.
 using PartOfId = std::map<int, std::string>;
 
 void ClaimMarkers(const YamlItem& item, const std::string& part, const std::vector<int>& ids,
@@ -134,7 +134,7 @@ std::map<int, double> ReadMarkerLengths(const YamlItem& item) {
   return lengths_m;
 }
 
-// Other markers are left out, so their lengths do not matter.
+// Markers that no part names are ignored, so their lengths have no effect.
 void WarnOfUnusedLengths(const YamlItem& item, const Layout& layout) {
   if (!layout.HasMarkers()) return;
   const std::vector<int> ids = MarkerIds(layout);
@@ -161,12 +161,12 @@ std::string ReadDictionaryName(const YamlItem& item) {
   const std::string name = ReadString(item);
   const std::filesystem::path file = std::filesystem::path(item.path).parent_path() / name;
   const bool is_file = IsRegularFile(file);
-  // A missing file is reported with the folder in which it was expected.
+  // If the file is missing, the error should name the folder in which it was expected.
   const bool looks_like_file = name.find_first_of("./") != std::string::npos;
   return is_file || looks_like_file ? file.string() : name;
 }
 
-// A second document would be ignored: yaml-cpp reads only the first one.
+// yaml-cpp reads only the first document and would silently ignore others.
 void CheckSingleDocument(const std::string& path, const std::string& text) {
   std::istringstream lines(text);
   bool has_content = false, has_ended = false;

@@ -9,7 +9,7 @@
 namespace velamap {
 namespace {
 
-// The fewest digits that read back to the same number.
+// Writes the fewest digits that give the same number when they are read.
 std::string Number(double value) { return fmt::format("{}", value); }
 
 void EmitIds(const std::vector<int>& ids, YAML::Emitter* out) {

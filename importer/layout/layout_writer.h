@@ -8,8 +8,8 @@
 
 namespace velamap {
 
-// YAML. `comment` goes before it, each of its lines behind "# ". The path of a dictionary file
-// stands as it is in the layout.
+// The YAML text, after the lines of `comment`, each with a leading "# ". The path of a dictionary
+// file is written as it is in the layout.
 std::string LayoutText(const Layout& layout, const std::string& comment);
 
 }  // namespace velamap

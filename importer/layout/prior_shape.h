@@ -1,4 +1,4 @@
-// The prior shape: where an earlier reconstruction of the surface has its markers.
+// The prior shape: the positions of the markers in an earlier reconstruction of the surface.
 
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace velamap {
 
-// Corners 1..4 by marker id, in the shape frame, m. The scale may be arbitrary.
+// Corners 1..4 by marker id, in the frame of that reconstruction. The scale may be arbitrary.
 using PriorShape = std::map<int, std::array<Eigen::Vector3d, kNumCorners>>;
 
-// How well the detections of frames agree with a prior shape. Frames with too few of its markers to
-// decide do not count.
+// How well the detections in frames agree with a prior shape. Frames with too few of its markers
+// for a decision do not count.
 struct PriorShapeAgreement {
-  int num_known = 0;     // detected markers that the prior shape holds
-  int num_agreeing = 0;  // known markers that one camera pose of the frame explains
+  int num_known = 0;     // detections of markers that the prior shape holds
+  int num_agreeing = 0;  // those of them that the camera pose of their frame explains
 
   PriorShapeAgreement& operator+=(const PriorShapeAgreement& other) {
     num_known += other.num_known;

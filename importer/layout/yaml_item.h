@@ -1,4 +1,4 @@
-// Strict reading of YAML: every error names file, line and key.
+// Strict reading of YAML. All functions throw InputError that names file, line and key.
 
 #pragma once
 
@@ -14,36 +14,37 @@ namespace velamap {
 [[noreturn]] void FailYaml(const std::string& path, const YAML::Mark& mark,
                            const std::string& message);
 
-// A node with its file and its full key, which errors name.
+// A node with the path of its file and its full key, for error messages.
 struct YamlItem {
   const std::string& path;
   YAML::Node node;
   std::string key;
 
-  // Throws InputError.
   [[noreturn]] void Fail(const std::string& message) const;
-  // The text of a scalar; empty for anything else.
+  // The text of a scalar, or an empty string for other nodes.
   std::string Text() const { return node.IsScalar() ? node.Scalar() : ""; }
 };
 
-// Calls handle(name, value) for every key of a map. A repeated key is an error.
+// Calls handle(name, value) for every key of a map. A key that is repeated or has no value is an
+// error.
 void ForEachKey(const YamlItem& map,
                 const std::function<void(const std::string&, const YamlItem&)>& handle);
 
 using KeyHandlers = std::map<std::string, std::function<void(const YamlItem&)>>;
 
-// Calls the handler of every key in the map. A key without a handler is an error that lists the
-// known keys.
+// Calls the handler of every key in the map. A key without a handler is an error, whose message
+// lists the known keys.
 void ReadMap(const YamlItem& map, const KeyHandlers& handlers);
 
-// The same for a map that has to have the keys `required`; the error for one that is missing shows
-// an example of such a map.
+// The same for a map that must have the keys `required`. The error message for a missing key shows
+// `example`.
 void ReadMap(const YamlItem& map, const KeyHandlers& handlers,
              const std::vector<std::string>& required, const std::string& example);
 
 void ForEachElement(const YamlItem& list, const std::function<void(const YamlItem&)>& handle);
 
-// Returns a name that is fit for files and tables. Throws InputError for one that is not.
+// Returns `name`. Throws InputError if it is empty or has control characters, which would break the
+// lines of tables and files.
 std::string CheckedName(const std::string& name, const YamlItem& item);
 std::string ReadString(const YamlItem& item);
 bool ReadBool(const YamlItem& item);

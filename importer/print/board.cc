@@ -10,16 +10,18 @@
 namespace velamap {
 namespace {
 
-constexpr double kSquareOfMarker = 10.0 / 7.0;  // side of a chessboard's square
-constexpr double kLabel_mm = 8.0;               // words below the board
+constexpr double kSquareOfMarker = 10.0 / 7.0;  // side of a chessboard square / side of a marker
+constexpr double kLabel_mm = 8.0;               // height of the label below the board
 constexpr double kArrow_mm = 6.0;
 
-// The board's width or height; a grid ends with its last marker, a chessboard with its last square.
+// Width or height of the board. A grid ends with its last marker, a chessboard with its last
+// square.
 double Extent(BoardKind kind, int count, double spacing_mm, double length_mm) {
   return kind == BoardKind::kCharuco ? count * spacing_mm : (count - 1) * spacing_mm + length_mm;
 }
 
-// Includes the white margin that the outer markers of a grid need beyond the page's border.
+// The size of the board with the part of the outer markers' white margin that the border of the
+// page does not provide. The outer squares of a chessboard provide the margin themselves.
 Eigen::Vector2d SizeWithMargin(const Board& board, int num_cells) {
   const bool is_charuco = board.kind == BoardKind::kCharuco;
   const double white_mm =
@@ -34,7 +36,7 @@ double DefaultSpacing(BoardKind kind, double length_mm, int num_cells) {
                                      : length_mm + DefaultMargin(length_mm, num_cells);
 }
 
-// Free area for the board itself, whose outer white margin lies in the page's border.
+// The free area above the label.
 Eigen::Vector2d Room(const PageFrame& frame) {
   return frame.FreeSize() - Eigen::Vector2d(0, kLabel_mm);
 }
@@ -52,7 +54,8 @@ bool Fits(const Board& board, int num_cells) {
   return left.minCoeff() > -1e-6;
 }
 
-// The largest whole millimetres of spacing that the paper has room for, unless it is given.
+// Sets the spacing, unless it is given, to the largest whole number of millimetres that fits, and
+// the length from the spacing.
 void ChooseSize(const std::optional<double>& spacing_m, int num_cells, Board* board) {
   const double length_per_spacing = 1 / DefaultSpacing(board->kind, 1.0, num_cells);
   board->spacing_mm = spacing_m ? 1000 * *spacing_m : std::floor(Room(board->frame).maxCoeff());

@@ -16,8 +16,8 @@ namespace velamap {
 using Color = std::array<double, 3>;  // red, green, blue, 0 to 1
 constexpr Color kBlack = {0, 0, 0};
 
-// Closed outlines that are filled as one area. Outer outlines run clockwise and holes the other way
-// round (nonzero winding), so that no edge lies inside the area.
+// Closed outlines that are filled as one area by the nonzero winding rule: outer outlines run
+// clockwise as seen on the page, and holes counterclockwise. No edge lies inside the area.
 struct FilledArea {
   std::vector<std::vector<Eigen::Vector2d>> outlines_mm;
   Color color = kBlack;
@@ -37,17 +37,17 @@ constexpr double kAnyWidth = std::numeric_limits<double>::infinity();
 
 struct Text {
   std::string text;             // UTF-8
-  Eigen::Vector2d position_mm;  // of the baseline's start, middle or end
-  double size_mm = 3.0;         // of the type; digits are 0.73 times as high
+  Eigen::Vector2d position_mm;  // start, middle or end of the baseline
+  double size_mm = 3.0;         // font size; digits are 0.73 times as high
   TextAnchor anchor = TextAnchor::kStart;
   bool is_bold = false;
   Color color = kBlack;
-  // The type is made smaller if the text would be wider.
+  // The font size is reduced if the text would be wider.
   double max_width_mm = kAnyWidth;
-  bool has_halo = false;  // white around the letters, where they lie on lines
+  bool has_halo = false;  // a white outline, which keeps letters legible on top of lines
 };
 
-// Strokes lie below areas, and areas below texts.
+// Areas cover strokes, and texts cover both.
 struct Drawing {
   double width_mm = 0.0;
   double height_mm = 0.0;
@@ -56,7 +56,7 @@ struct Drawing {
   std::vector<Text> texts;
 };
 
-// An upright rectangle as an outline.
+// The outline of an axis-aligned rectangle, clockwise as seen on the page.
 inline std::vector<Eigen::Vector2d> RectangleOutline(const Eigen::Vector2d& min_mm,
                                                      const Eigen::Vector2d& max_mm) {
   return {min_mm, {max_mm.x(), min_mm.y()}, max_mm, {min_mm.x(), max_mm.y()}};

@@ -13,7 +13,7 @@ namespace velamap {
 namespace {
 
 constexpr double kPointsPerMm = 72.0 / 25.4;
-constexpr double kHaloOfSize = 0.4;
+constexpr double kHaloOfSize = 0.4;  // width of the halo's stroke / font size
 constexpr char kFontFamily[] = "sans-serif";
 
 struct SurfaceDeleter {
@@ -30,7 +30,8 @@ cairo_status_t Append(void* closure, const unsigned char* data, unsigned int len
   return CAIRO_STATUS_SUCCESS;
 }
 
-// Nothing here reads files, so any other failure is a bug in velamap.
+// Text from the layout or dictionary is the only input that can be invalid. Any other failure is a
+// bug in velamap.
 void CheckStatus(cairo_status_t status) {
   if (status == CAIRO_STATUS_INVALID_STRING) {
     throw InputError(
@@ -105,7 +106,7 @@ void Draw(cairo_t* context, const Drawing& drawing) {
   for (const Text& text : drawing.texts) DrawText(context, text);
 }
 
-// Widths of text are those of the outlines, not those of a screen's pixels.
+// Without this, cairo rounds the widths of text to the pixels of a screen.
 void UseExactText(cairo_t* context) {
   cairo_font_options_t* const options = cairo_font_options_create();
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
@@ -128,7 +129,7 @@ std::string PdfBytes(const std::vector<Drawing>& pages, const std::string& title
   Surface surface(cairo_pdf_surface_create_for_stream(Append, &bytes, 1, 1));
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATOR, "velamap");
-  // cairo puts the time of the call there otherwise.
+  // By default, cairo writes the current time.
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
   Context context(cairo_create(surface.get()));
   UseExactText(context.get());

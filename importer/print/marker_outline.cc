@@ -12,7 +12,7 @@ using GridPoint = std::pair<int, int>;  // x, y
 enum Direction { kRight, kDown, kLeft, kUp };
 constexpr int kStepX[] = {1, 0, -1, 0}, kStepY[] = {0, 1, 0, -1};
 
-// Directions of the sides that start at a point; dark cells lie on their right.
+// Directions of the cell sides that start at a point. The dark cell is on their right.
 using Sides = std::map<GridPoint, std::vector<Direction>>;
 
 Sides FindSides(const cv::Mat& cells) {
@@ -33,8 +33,8 @@ Sides FindSides(const cv::Mat& cells) {
   return sides;
 }
 
-// Takes the side that continues a side that arrived in direction `from`. Where two cells touch
-// at a corner, two sides start; the one to the right stays with the cell that it came along.
+// Removes and returns the side that continues one with the direction `from`. Where two cells touch
+// only at a corner, two sides start. The right turn then stays with the same cell.
 Direction TakeNext(const GridPoint& point, Direction from, Sides* sides) {
   const auto it = sides->find(point);
   VELAMAP_CHECK(it != sides->end() && !it->second.empty());
@@ -49,7 +49,7 @@ Direction TakeNext(const GridPoint& point, Direction from, Sides* sides) {
   return next;
 }
 
-// Walks once around, and takes the sides away.
+// Follows one outline and removes its sides.
 std::vector<Eigen::Vector2d> TakeOutline(Sides* sides) {
   const GridPoint start = sides->begin()->first;
   const Direction first = sides->begin()->second.front();
@@ -58,7 +58,7 @@ std::vector<Eigen::Vector2d> TakeOutline(Sides* sides) {
   Direction direction = TakeNext(start, static_cast<Direction>((first + 3) % 4), sides);
   while (true) {
     corners.emplace_back(point.first, point.second);
-    // Straight on as long as sides follow each other.
+    // Sides in the same direction form one edge.
     Direction next = direction;
     do {
       point = {point.first + kStepX[direction], point.second + kStepY[direction]};

@@ -9,10 +9,10 @@
 
 namespace velamap {
 
-// Outlines of the dark cells (zero in `cells`, CV_8UC1), in cells from the top left corner; outer
-// ones clockwise as seen, holes the other way round. Cells that touch at a corner only have
-// outlines of their own there. No edge lies between two dark cells, so that no printer or viewer
-// shows a hairline between them.
+// Outlines of the dark cells (zero in `cells`, CV_8UC1), in units of cells from the top left
+// corner. Outer outlines run clockwise as seen on the page, and holes counterclockwise. Cells that
+// touch only at a corner have separate outlines there. No edge lies between two dark cells, because
+// printers and viewers would show a hairline there.
 std::vector<std::vector<Eigen::Vector2d>> OutlineDarkCells(const cv::Mat& cells);
 
 }  // namespace velamap

@@ -18,7 +18,7 @@
 namespace velamap {
 namespace {
 
-// Contents by path relative to the folder, such as markers/marker_0012.svg.
+// Contents of the files by path relative to the folder, such as markers/marker_0012.svg.
 using OutputFiles = std::map<std::string, std::string>;
 
 int NumCells(const PrintedLook& look) {
@@ -83,7 +83,7 @@ std::string LayoutComment(const PrintOptions& options, const PrintPlan& plan) {
   return comment;
 }
 
-// Dictionary and layout; a layout that was given is there already.
+// Adds layout and dictionary. If a layout is printed, the user already has both.
 void AddLayout(const PrintOptions& options, const PrintPlan& plan, OutputFiles* files) {
   if (options.layout) return;
   (*files)["layout.yml"] = LayoutText(plan.layout, LayoutComment(options, plan));

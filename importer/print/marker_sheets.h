@@ -1,5 +1,5 @@
-// Markers to print: sheets as PDF in true scale, single markers, the dictionary, a layout to start
-// from, and drawings of where each marker goes.
+// Makes the files of a print: sheets of markers as PDF in true scale, single markers, the
+// dictionary, a layout to start from, and drawings that show where each marker goes.
 
 #pragma once
 
@@ -14,26 +14,26 @@ namespace velamap {
 struct PrintReport {
   std::string dictionary;
   int num_codes = 0;
-  std::optional<CodeSet> codes;  // of a dictionary that was made
+  std::optional<CodeSet> codes;  // if a custom dictionary was made
   int num_markers = 0;
-  int num_sheets = 0;              // in true scale
-  int num_drawings = 0;            // pages before them that say where the markers go
-  double margin_mm = 0.0;          // of the first sticker; zero for a board
-  std::vector<std::string> files;  // relative to the folder
+  int num_sheets = 0;              // pages in true scale
+  int num_drawings = 0;            // pages before these that show where the markers go
+  double margin_mm = 0.0;          // of the first sticker; 0 for a board
+  std::vector<std::string> files;  // paths relative to the folder
 };
 
 // Makes the folder `output_path`:
 //
-//   sheets.pdf       where the markers go, then the sheets
-//   layout.yml       to start from; not where a layout is printed
-//   dictionary.yml   where the dictionary is none of OpenCV's; not where a layout is printed
+//   sheets.pdf       drawings of where the markers go, then the sheets
+//   layout.yml       a layout to start from; not if a layout is printed
+//   dictionary.yml   a dictionary that is not one of OpenCV's; not if a layout is printed
 //   placement.svg    where the markers go (grid, sail, hull)
 //   board.svg        the board (board, charuco)
 //   markers/         marker_0012.svg and .png, on request
 //
-// An earlier folder is replaced if nobody has changed it since. The same options give the same
-// bytes, with the same fonts and cairo. Throws InputError as MakePrintPlan() does, if a marker or
-// board does not fit on the paper, and if the folder holds anything else or cannot be written.
+// Replaces an earlier folder unless it was changed since. The same options give the same bytes,
+// with the same fonts and version of cairo. Throws InputError as MakePrintPlan() does, if a marker
+// or a board does not fit on the paper, and if the folder holds other files or cannot be written.
 PrintReport PrintMarkers(const PrintOptions& options, const std::string& output_path);
 
 }  // namespace velamap

@@ -12,17 +12,20 @@
 namespace velamap {
 namespace {
 
-constexpr double kGap_mm = 5.0;            // between stickers, and to the sail's edges
-constexpr int kMarkersOfTopLine = 4;       // the least that give a section of the sail
-constexpr double kMinHeightOfFoot = 1e-3;  // a triangle flatter than that is an error in a length
+constexpr double kGap_mm = 5.0;       // between stickers, and to the sail's edges
+constexpr int kMarkersOfTopLine = 4;  // the fewest markers that give a section of the sail
+// The smallest squared distance of the clew from the luff, as a fraction of the squared foot. In a
+// flatter triangle, a length must be wrong.
+constexpr double kMinHeightOfFoot = 1e-3;
 
 // The sail's triangle and the room that stickers need in it.
 struct Sail {
   Eigen::Vector2d tack = Eigen::Vector2d::Zero(), clew, head;
   double luff_mm = 0.0, foot_mm = 0.0, leech_mm = 0.0;
-  double from_luff_mm = 0.0, from_leech_mm = 0.0;  // along a line, of the first and last centre
-  double pitch_mm = 0.0;                           // least distance of neighbours on a line
-  double min_height = 0.0;                         // part of the luff of the lowest line
+  // Distances of the first centre from the luff and of the last from the leech, along the line.
+  double from_luff_mm = 0.0, from_leech_mm = 0.0;
+  double pitch_mm = 0.0;    // smallest distance between neighbours on a line
+  double min_height = 0.0;  // of the lowest line, as a fraction of the luff
 
   double RoomAt(double height) const {
     return (1 - height) * foot_mm - from_luff_mm - from_leech_mm;
@@ -52,7 +55,7 @@ Sail MakeSail(const SailPlacementOptions& options, double sticker_mm) {
   }
   sail.clew = {std::sqrt(squared), clew_up};
   sail.head = {0, luff};
-  // Stickers lie along the line; their corners keep clear of the edges.
+  // The circle around a sticker keeps clear of the edges of the sail.
   const double clear_mm = sticker_mm / std::sqrt(2.0) + kGap_mm;
   const Eigen::Vector2d along = (sail.clew - sail.tack) / foot;
   sail.from_luff_mm = clear_mm / std::abs(Cross(along, (sail.head - sail.tack) / luff));
@@ -62,7 +65,7 @@ Sail MakeSail(const SailPlacementOptions& options, double sticker_mm) {
   return sail;
 }
 
-// How many markers a line holds at a height, at most `wanted`.
+// The number of markers that a line at this height has room for, at most `wanted`.
 int NumMarkersAt(const Sail& sail, double height, int wanted) {
   const double room = sail.RoomAt(height);
   constexpr double kRounding_mm = 1e-6;
@@ -71,7 +74,7 @@ int NumMarkersAt(const Sail& sail, double height, int wanted) {
                   1 + static_cast<int>(std::floor(std::max(0.0, room) / sail.pitch_mm + 1e-9)));
 }
 
-// Where the horizontal lines are, as fractions of the luff.
+// The heights of the horizontal lines, as fractions of the luff.
 struct LineHeights {
   double first = 0.0, step = 0.0;
 };
@@ -107,7 +110,8 @@ PlacedLine MakeLine(const Sail& sail, const std::string& name, double height, in
 
 double RoundedMetres(double length_mm) { return std::round(length_mm) / 1000; }
 
-// Where the edges of the sail are from the outer markers, along the lines and along the luff.
+// The distances from the outer markers to the edges of the sail: to luff and leech along the lines,
+// to foot and head along the luff.
 ClothEdges EdgesOf(const Sail& sail, const std::vector<PlacedLine>& lines, double sticker_mm) {
   ClothEdges edges;
   for (const PlacedLine& line : lines) {
@@ -128,8 +132,8 @@ ClothEdges EdgesOf(const Sail& sail, const std::vector<PlacedLine>& lines, doubl
   return edges;
 }
 
-// Vertical lines of at least two markers: column `column` of the lines from `begin` to `end`,
-// counted from the leech if negative.
+// Adds the vertical line of the markers with the index `column` on the lines from `begin` to `end`,
+// if these are at least two. A negative index counts from the leech.
 void AddColumn(const std::vector<PlacedLine>& lines, std::size_t begin, std::size_t end, int column,
                std::vector<MarkerLine>* vertical) {
   if (end - begin < 2) return;

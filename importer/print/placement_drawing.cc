@@ -17,9 +17,9 @@ constexpr Color kSail = {0.10, 0.30, 0.55}, kHorizontal = {0.55, 0.70, 0.88},
                 kVertical = {0.80, 0.62, 0.45}, kVerticalName = {0.62, 0.38, 0.15};
 constexpr double kBorder_mm = 12.0;
 constexpr double kTitle_mm = 5.0, kWords_mm = 3.2, kRow_mm = 5.0;
-constexpr double kCell_mm = 21.0;  // of the table: "123: 12.345"
+constexpr double kCell_mm = 21.0;  // width of a table cell such as "123: 12.345"
 
-// A page that is filled with lines of text from the top down.
+// Fills a page with lines of text from the top down.
 struct PageWriter {
   Drawing page;
   double y_mm = kBorder_mm;
@@ -69,7 +69,7 @@ PictureMap FitInto(const Eigen::AlignedBox2d& free_mm, const Placement& placemen
   return map;
 }
 
-// The least distance between neighbouring markers, mm: it limits the size of the type.
+// The smallest distance between neighbouring markers, mm, which limits the font size.
 double LeastDistance(const Placement& placement) {
   double least = 1e30;
   const MarkerPlace* first_below = nullptr;
@@ -179,7 +179,7 @@ std::vector<std::string> Instructions(const Placement& placement) {
       "the places, not the markers; lines still begin at the luff."};
 }
 
-// The ids of a rigid part, and where they go.
+// Writes the ids of a rigid part and where its markers may go.
 void WriteRigidPart(const LayoutPart& part, PageWriter* pen) {
   pen->y_mm += 2.0;
   pen->Write(fmt::format("{}: markers {}", part.name, fmt::join(part.marker_ids, " ")), kWords_mm,
@@ -271,7 +271,7 @@ std::vector<Drawing> DrawTable(const Placement& placement, const Paper& paper) {
     rows.push_back({{fmt::format("{}    {}", line.name, fmt::join(line.marker_ids, " "))}});
   }
   for (const TableRow& row : rows) {
-    // A heading does not end a page.
+    // A heading must not be the last line of a page.
     if (pen.y_mm + (row.is_heading ? 3 : 1) * kRow_mm > pen.Bottom()) {
       pages.push_back(pen.page);
       pen = start_page();

@@ -1,5 +1,5 @@
-// Draws where each marker goes: a picture with ids, names of lines and distances, and the same as a
-// table to work from.
+// Draws where each marker goes: a picture with marker ids, line names and distances, and a table of
+// the same to work from.
 
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace velamap {
 
-// The markers to stick on, and their places.
+// The markers to stick on and their places.
 struct PlacementPlan {
   std::vector<Placement> placements;    // none or one
-  std::vector<LayoutPart> rigid_parts;  // free places on something rigid, such as the hull
+  std::vector<LayoutPart> rigid_parts;  // parts such as the hull, on which the places are free
 };
 
-// Pages that are not in true scale: the picture first, the table behind it.
+// The pages with the picture and then the table. They are not in true scale.
 std::vector<Drawing> DrawPlacement(const PlacementPlan& plan, const Paper& paper);
 
 }  // namespace velamap

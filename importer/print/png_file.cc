@@ -18,7 +18,7 @@ void Append(png_structp png, png_bytep data, png_size_t size) {
 
 void Flush(png_structp) {}
 
-// libpng jumps back to its caller after an error unless told otherwise.
+// libpng's default error handler uses longjmp(), for which nothing here calls setjmp().
 [[noreturn]] void Fail(png_structp, png_const_charp message) {
   throw std::logic_error(std::string("libpng: ") + message);
 }

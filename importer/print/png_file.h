@@ -1,4 +1,4 @@
-// PNG files, and markers as PNG pictures that know their own size.
+// Encodes PNG files, and draws markers as PNG pictures with their printed size.
 
 #pragma once
 
@@ -9,12 +9,13 @@
 
 namespace velamap {
 
-// The bytes of a file with `image` (8 bit, grey or BGR). `px_per_mm` is stored as its resolution.
+// The bytes of a PNG file with `image` (8 bit, grey or BGR). `px_per_mm` is stored as its
+// resolution (pHYs).
 std::string EncodePng(const cv::Mat& image, std::optional<double> px_per_mm = std::nullopt);
 
-// The bytes of a PNG of the cells (zero is dark, CV_8UC1) with `margin_mm` of white around them, a
-// whole number of pixels per cell and at least `dpi`. Its resolution (pHYs) makes the cells
-// together `length_mm` wide where programs keep to it.
+// The bytes of a PNG file of the cells (CV_8UC1, zero is black) with a white margin of `margin_mm`.
+// A cell is a whole number of pixels wide, the smallest that gives at least `dpi`. Programs that
+// respect the stored resolution print the cells `length_mm` wide.
 std::string MarkerPng(const cv::Mat& cells, double length_mm, double margin_mm, double dpi);
 
 }  // namespace velamap

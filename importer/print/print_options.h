@@ -16,25 +16,26 @@
 namespace velamap {
 
 enum class Arrangement {
-  kMarkers,  // stickers, wherever they go
+  kMarkers,  // stickers without planned places
   kGrid,     // stickers in rows and columns on a surface
-  kSail,     // stickers on lines of a sail
-  kHull,     // stickers on something rigid, without lines
-  kBoard,    // a page of markers in rows and columns, for calibration
-  kCharuco,  // a page with a chessboard that has markers in its white squares
+  kSail,     // stickers on the lines of a sail
+  kHull,     // stickers on a rigid object, without lines
+  kBoard,    // one page with markers in rows and columns, for calibration
+  kCharuco,  // one page with a chessboard that has markers in its white squares, for calibration
 };
 
 struct PrintOptions {
   Arrangement arrangement = Arrangement::kMarkers;
-  // Prints the markers of this layout, whose dictionary file is found, instead of an arrangement.
+  // If set, the markers of this layout are printed instead of an arrangement. A dictionary file is
+  // named by a path that can be opened, as ReadLayout() returns it.
   std::optional<Layout> layout;
-  std::string layout_path;                // where it was read
-  std::string dictionary;                 // name or file; empty: DICT_4X4_250
+  std::string layout_path;                // the file from which it was read
+  std::string dictionary;                 // name or file; empty: kDefaultDictionary
   std::optional<double> marker_length_m;  // outer edge of the black square
   int border_bits = 1;
-  int num_markers = 0;  // kMarkers
+  int num_markers = 0;  // for kMarkers
   int first_id = 0;
-  std::vector<int> ids;  // prints only these; empty: all
+  std::vector<int> ids;  // only these are printed; empty: all
   GridPlacementOptions grid;
   SailPlacementOptions sail;
   PrintSheetOptions sheet;
@@ -44,10 +45,10 @@ struct PrintOptions {
   void Check() const;  // throws InputError that names the option
 };
 
-// The options that belong to no other group.
+// The options that are in no other group.
 OptionGroup DescribeOptions(PrintOptions* options);
 
-// Whether it is one page with all markers.
+// Whether the arrangement is a calibration board, one page with all markers.
 bool IsBoard(Arrangement arrangement);
 
 constexpr char kDefaultDictionary[] = "DICT_4X4_250";

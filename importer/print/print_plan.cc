@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kDefaultHullMarkers = 8;
 
-// A custom dictionary is made once the number of codes is known.
+// A custom dictionary is not yet loaded here: the number of its codes depends on the planned
+// markers.
 PrintedLook LoadLook(const PrintOptions& options) {
   PrintedLook look;
   look.border_bits = options.layout ? options.layout->border_bits : options.border_bits;
@@ -41,7 +42,7 @@ double RequireLength(const PrintOptions& options) {
   return 1000 * *options.marker_length_m;
 }
 
-// "sail h3, 2 of 8", "hull", or "" for a marker without a part.
+// Such as "sail h3, 2 of 8" or "hull"; empty for a marker without a part.
 std::string PlaceText(const Layout& layout, int marker_id) {
   for (const LayoutPart& part : layout.parts) {
     for (const MarkerLine& line : part.horizontal) {
@@ -62,7 +63,7 @@ void AddMarkers(const std::vector<int>& ids, PrintPlan* plan) {
   }
 }
 
-// Adds a rigid part as the reference part; its ids follow those of the plan.
+// Adds a rigid part, which becomes the reference part. Its ids follow those of the other parts.
 void AddHull(int num_markers, int first_id, PrintPlan* plan) {
   if (num_markers == 0) return;
   const std::vector<int> ids = MarkerIds(plan->layout);
@@ -74,7 +75,7 @@ void AddHull(int num_markers, int first_id, PrintPlan* plan) {
 
 void PlanPlaces(const PrintOptions& options, int num_cells, PrintPlan* plan) {
   const double length_mm = RequireLength(options);
-  // The words below the margin make a sticker higher than wide.
+  // The label below the margin makes a sticker higher than wide.
   const double sticker_mm = MakeSticker({0, length_mm, ""}, num_cells, options.sheet).Height();
   plan->layout = MakeLayout("", *options.marker_length_m);
   const bool is_hull = options.arrangement == Arrangement::kHull;
@@ -94,7 +95,7 @@ void PlanPlaces(const PrintOptions& options, int num_cells, PrintPlan* plan) {
   AddMarkers(MarkerIds(plan->layout), plan);
 }
 
-// Every id is accepted: the layout names no parts.
+// The layout has no parts, so it accepts every id.
 void PlanLooseMarkers(const PrintOptions& options, PrintPlan* plan) {
   plan->layout = MakeLayout("", RequireLength(options) / 1000);
   if (options.num_markers == 0 && options.ids.empty()) {
@@ -145,7 +146,7 @@ void MakeCustomDictionary(const PrintOptions& options, int max_id, PrintPlan* pl
   plan->look.dictionary = MakeDictionary(name, *plan->codes);
 }
 
-// Ids that the dictionary has no code for.
+// Throws InputError for ids that the dictionary has no code for.
 void CheckIds(int max_id, const PrintPlan& plan) {
   const int num_codes = NumMarkers(plan.look.dictionary);
   if (max_id < num_codes) return;

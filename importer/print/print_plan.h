@@ -1,4 +1,4 @@
-// Plan of a print before anything is drawn: markers, dictionary, places and layout.
+// Plans a print before anything is drawn: markers, dictionary, places and layout.
 
 #pragma once
 
@@ -17,17 +17,19 @@ namespace velamap {
 
 struct PrintPlan {
   PrintedLook look;
-  std::optional<CodeSet> codes;        // of a dictionary that was made
-  std::vector<PrintedMarker> markers;  // one sticker each; empty for a board
+  std::optional<CodeSet> codes;        // if a custom dictionary is made
+  std::vector<PrintedMarker> markers;  // one per sticker; empty for a board
   PlacementPlan places;
   std::optional<Board> board;
-  Layout layout;  // names the dictionary's file dictionary.yml where it is none of OpenCV's
+  Layout layout;  // its dictionary is an OpenCV name or kDictionaryFile
 };
 
-// Throws InputError, naming the option, for options that contradict each other, more ids than
-// codes, an id that is not there, and where the planners do.
+// Throws InputError, naming the option, for missing or contradictory options, for ids beyond the
+// codes of the dictionary, for an id in `options.ids` that is not to be printed, and as
+// LoadDictionary(), FindCodes(), PlanBoard(), PlaceOnSail() and PlaceOnGrid() do.
 PrintPlan MakePrintPlan(const PrintOptions& options);
 
+// The file name of a dictionary that is not one of OpenCV's.
 constexpr char kDictionaryFile[] = "dictionary.yml";
 
 }  // namespace velamap

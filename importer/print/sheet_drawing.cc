@@ -12,8 +12,8 @@ namespace {
 constexpr Color kPaleInk = {0.35, 0.35, 0.35};
 constexpr double kHairline_mm = 0.15;
 constexpr double kCutMark_mm = 2.5;
-constexpr double kUprightScale_mm = 14.0;  // room for a scale beside the markers
-constexpr double kSheetWords_mm = 3.0;     // size of type
+constexpr double kUprightScale_mm = 14.0;  // width that a scale beside the markers needs
+constexpr double kSheetWords_mm = 3.0;     // font size
 
 void AddCutMarks(const Eigen::Vector2d& min_mm, const Eigen::Vector2d& max_mm, Drawing* drawing) {
   for (const double x : {min_mm.x(), max_mm.x()}) {
@@ -26,7 +26,7 @@ void AddCutMarks(const Eigen::Vector2d& min_mm, const Eigen::Vector2d& max_mm, D
   }
 }
 
-// Arrow and id on the left, dictionary, size and place in small type on the right.
+// Draws arrow and id on the left, and dictionary, size and place in a small font on the right.
 void AddLabel(const Sticker& sticker, const PrintedLook& look, Drawing* drawing) {
   const double height = sticker.label_mm;
   const double left = sticker.min_mm.x() + 0.3 * height;
@@ -61,9 +61,8 @@ void AddLabel(const Sticker& sticker, const PrintedLook& look, Drawing* drawing)
                             room});
 }
 
-// A line of the given length with ticks every 10 mm and every 1 mm in its first 10 mm, and numbers;
-// to the right from its start, or upwards. Printers may stretch the paper's two directions
-// differently.
+// Draws a numbered scale from `start_mm` to the right or upwards, with ticks every millimetre up to
+// 10 mm and every 10 mm from there on.
 void AddScale(const Eigen::Vector2d& start_mm, int length_mm, bool is_upright, Drawing* drawing) {
   const auto at = [&](double along, double beside) -> Eigen::Vector2d {
     return start_mm +

@@ -12,35 +12,37 @@
 
 namespace velamap {
 
+// What the appearance of a marker depends on besides its id.
 struct PrintedLook {
   Dictionary dictionary;
   int border_bits = 1;
 };
 
-// What all sheets of a print have in common.
+// The text at the top of a sheet.
 struct SheetWords {
   std::string title;     // such as "DICT_4X4_50, black squares of 100 mm"
   int sheet_number = 0;  // from 1
   int num_sheets = 0;
 };
 
-// The dark cells of a marker whose black square begins at `min_mm`.
+// The dark cells of a marker. `min_mm` is the top left corner of its black square.
 FilledArea MarkerArea(const PrintedLook& look, int marker_id, double length_mm,
                       const Eigen::Vector2d& min_mm);
 
-// Words at the top of a page, and the scale with what to do with it at the bottom. A second scale
-// stands upright at the left edge of the free area where `free_left_mm` of it are enough.
+// Draws the text at the top of a page, and at the bottom a scale with the instruction to measure
+// it. If the `free_left_mm` to the left of the markers are wide enough, a second, vertical scale is
+// added there, because printers may stretch the two directions of the paper differently.
 Drawing DrawPageFrame(const PageFrame& frame, const SheetWords& words, double free_left_mm);
 
 Drawing DrawSheet(const Sheet& sheet, const PrintedLook& look, const SheetWords& words);
 
-// The marker with its margin and nothing else.
+// The marker with its white margin only.
 Drawing DrawSingleMarker(const PrintedMarker& marker, const PrintedLook& look, double margin_mm);
 
 // "100 mm", "2.4 mm"
 std::string LengthText(double length_mm);
 
-// An arrow that points up, its foot in the middle of the lower side of a box.
+// An arrow that points up from `foot_mm`.
 FilledArea UpArrow(const Eigen::Vector2d& foot_mm, double height_mm);
 
 }  // namespace velamap

@@ -11,10 +11,10 @@
 namespace velamap {
 namespace {
 
-constexpr double kPrinterBorder_mm = 8.0;  // that printers leave white
-constexpr double kHeader_mm = 7.0;         // line of words at the top
-constexpr double kFooter_mm = 18.0;        // scale and words at the bottom
-constexpr double kGutter_mm = 6.0;         // between stickers; holds the cut marks
+constexpr double kPrinterBorder_mm = 8.0;  // printers cannot print closer to the edge of the paper
+constexpr double kHeader_mm = 7.0;         // line of text at the top
+constexpr double kFooter_mm = 18.0;        // scale and text at the bottom
+constexpr double kGutter_mm = 6.0;         // between stickers, for the cut marks
 constexpr double kLabelOfLength = 0.08;
 constexpr double kMinLabel_mm = 4.0, kMaxLabel_mm = 8.0;
 
@@ -27,7 +27,7 @@ struct Grid {
 };
 
 int NumThatFit(double room_mm, double size_mm) {
-  // A thousandth of a millimetre is for rounding.
+  // The thousandth of a millimetre allows for rounding.
   return static_cast<int>(std::floor((room_mm + kGutter_mm + 1e-3) / (size_mm + kGutter_mm)));
 }
 
@@ -59,7 +59,7 @@ Grid ChooseGrid(const Sticker& sticker, const PrintSheetOptions& options) {
   return grid;
 }
 
-// Puts `count` stickers from `first` on, row by row, into the middle of the free area.
+// Places `count` stickers, starting with `first`, row by row in the middle of the free area.
 Sheet FillSheet(const Grid& grid, const std::vector<Sticker>& stickers, std::size_t first,
                 std::size_t count) {
   Sheet sheet{grid.frame, {}};

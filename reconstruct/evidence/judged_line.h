@@ -1,5 +1,5 @@
-// The lines of a layout, with those markers on them that no evidence has contradicted so far.
-// Private to this folder.
+// The lines of a layout, restricted to the markers that no evidence contradicts so far. Private to
+// this folder.
 
 #pragma once
 
@@ -15,11 +15,11 @@
 
 namespace velamap {
 
-using MarkersById = std::map<int, const PlacedMarker*>;  // not contradicted so far
+using MarkersById = std::map<int, const PlacedMarker*>;
 
 struct Evidence {
-  MarkersById markers;
-  std::map<int, std::string> reasons;  // why a marker is contradicted, by marker id
+  MarkersById markers;                 // those that are not contradicted so far
+  std::map<int, std::string> reasons;  // why the other markers are contradicted, by marker id
 
   void Drop(int marker_id, std::string reason) {
     reasons.emplace(marker_id, std::move(reason));
@@ -27,20 +27,22 @@ struct Evidence {
   }
 };
 
-// One line, with the markers on it that are still believed.
+// `markers` and `points` are parallel and in the order of the line.
 struct JudgedLine {
   const MarkerLine* line = nullptr;
   std::vector<const PlacedMarker*> markers;
   std::vector<LinePoint> points;
 };
 
-// The lines of the part that hold two markers or more.
+// The horizontal and vertical lines of the part on which at least two of `markers` lie.
 std::vector<JudgedLine> LinesOf(const LayoutPart& part, const MarkersById& markers);
 
-// The step that the long lines of a part have in common; nothing without a long line.
+// The median step, m, of the lines with at least kMinPointsForStep points, or nothing if there are
+// none.
 std::optional<double> StepOfPart(const std::vector<JudgedLine>& lines);
 
-// A short line takes the step of its part unless its own step is certainly longer.
+// The step of a line, m. A line that is too short for an estimate of its own takes the step of its
+// part, unless its markers are all farther apart.
 double StepOfLine(const JudgedLine& line, const std::optional<double>& step_of_part_m);
 
 }  // namespace velamap

@@ -30,11 +30,11 @@ double SeenRatio(const PlacedMarker& marker) {
              : 1.0;
 }
 
-// How often the neighbours of a marker are seen: medians over the next two on each side, on all
-// lines; without a line, over all markers.
+// How often the neighbours of a marker are seen: the medians over the next two markers on each side
+// on all of its lines, or over all markers if it is on no line.
 struct UsuallySeen {
-  double ratio = 0.0;  // of the images that should show them
-  double num_images = 0.0;
+  double ratio = 0.0;       // images that show a marker / images that should
+  double num_images = 0.0;  // images that show a marker
 };
 
 UsuallySeen NeighborsSeen(const std::vector<JudgedLine>& lines, const MarkersById& markers,
@@ -60,8 +60,8 @@ UsuallySeen NeighborsSeen(const std::vector<JudgedLine>& lines, const MarkersByI
   return {Median(std::move(ratios)), Median(std::move(nums_seen))};
 }
 
-// Fewer than ten images decide nothing. A marker that few images can show may be missed without
-// being false, unless many times as many images see its neighbours.
+// The ratio is not used if fewer than ten images should show the marker. A marker that few images
+// show can still be a true one, unless more than five times as many show its neighbours.
 Trust TrustOf(const PlacedMarker& marker, const UsuallySeen& neighbors) {
   constexpr double kSeldom = 0.2, kOftenMissed = 0.5, kMinImages = 10;
   const bool is_known = marker.num_should_see >= kMinImages;
@@ -73,7 +73,7 @@ Trust TrustOf(const PlacedMarker& marker, const UsuallySeen& neighbors) {
   return part_of_usual < kOftenMissed ? Trust::kOftenMissed : Trust::kWellSeen;
 }
 
-// Names the nearest markers that belong on the line.
+// The reason for contradicting a stray marker. It names the nearest markers that are not stray.
 std::string WhyStray(const JudgedLine& line, const std::vector<std::size_t>& stray_idxs,
                      std::size_t idx, double step_m) {
   const auto is_stray = [&](std::size_t i) {
@@ -98,13 +98,13 @@ std::string WhyStray(const JudgedLine& line, const std::vector<std::size_t>& str
          SeenText(*line.markers[idx]);
 }
 
-// What the lines say about a marker. A single line that confirms it is enough.
+// What the lines say about a marker. It is contradicted only if all of its lines contradict it.
 struct Judgement {
   int num_lines = 0, num_against = 0;
-  std::string reason;  // given by the first line that contradicts it
+  std::string reason;  // from the first line that contradicts it
 };
 
-// Returns the markers that lines can judge.
+// Holds the markers on lines with at least kMinPointsOnLine markers, by id.
 std::map<int, Judgement> JudgeByLines(const LayoutPart& part, const MarkersById& markers) {
   std::vector<JudgedLine> lines = LinesOf(part, markers);
   std::map<int, Judgement> judgements;
@@ -138,7 +138,8 @@ bool DropStrayMarkers(const LayoutPart& part, Evidence* evidence) {
   return changed;
 }
 
-// Drops markers that no line can judge and that lie far from the well-seen markers of their part.
+// Drops seldom seen markers that no line can judge and that are far from the others of their part.
+// An empty `ids_of_part` stands for all markers.
 void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgement>& judged,
                     Evidence* evidence) {
   constexpr std::size_t kMinForExtent = 4;

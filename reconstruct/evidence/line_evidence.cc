@@ -11,18 +11,17 @@ namespace velamap {
 namespace {
 
 constexpr double kNumSigmas = 3.0;
-// A gap in the line costs at most this many steps for each place that it spans, however wide it is:
-// the line may be torn there. This is more than the price of one end and less than the price of
-// both.
+// A gap in the line costs at most this many steps per place that it spans, because the cloth may be
+// torn there. The limit is between the price of one marker at an end and the price of two.
 constexpr double kTornSteps = 12.0;
 
 // The price of leaving a marker out, in steps. A true marker between two others causes a detour of
-// at most one step for each place (see the header). A true marker at an end is one step away from
-// the next one; only the even spacing of the line can contradict it there, so its price is higher.
-// If hardly any of its images shows the marker, the price is lower, but never so low that a line
-// that turns back by less than 120 degrees loses a marker.
+// at most one step per place (see the header). At an end there is no detour: only the distance to
+// the next marker, which is about one step, can contradict a marker, so its price is higher.
+// Markers that few of their images show have a lower price, which is still high enough to keep a
+// marker where the line bends by less than 120 degrees.
 struct Price {
-  double between, at_end;
+  double between, at_end;  // `between` is per place from the kept marker before to the one behind
 };
 
 Price PriceOf(Trust trust) {
@@ -49,8 +48,8 @@ double LinkCost(const LinePoint& a, const LinePoint& b, double step_m) {
   return std::min(Distance(a, b), kTornSteps * step_m * Gap(a, b));
 }
 
-// The price of leaving out points[idx] between a and b. The uncertainty of the point lengthens both
-// parts of the detour.
+// The price of leaving out points[idx] between a and b, m. The uncertainty of the point can
+// lengthen both parts of the detour.
 double CostBetween(const std::vector<LinePoint>& points, std::size_t a, std::size_t b,
                    std::size_t idx, double step_m) {
   const LinePoint& point = points[idx];
@@ -58,8 +57,8 @@ double CostBetween(const std::vector<LinePoint>& points, std::size_t a, std::siz
          2 * kNumSigmas * point.sigma_m;
 }
 
-// The price of leaving out points[idx] at an end of the line; `inner_idx` is next to it. If places
-// between them are missing, only one of the steps may be unusually long.
+// The price of leaving out points[idx] at an end of the line, m. `inner_idx` is its neighbour. Each
+// missing place between the two adds one step, so that only one of the steps may be unusually long.
 double CostAtEnd(const std::vector<LinePoint>& points, std::size_t idx, std::size_t inner_idx,
                  double step_m) {
   const LinePoint& point = points[idx];
@@ -67,10 +66,10 @@ double CostAtEnd(const std::vector<LinePoint>& points, std::size_t idx, std::siz
   return (PriceOf(point.trust).at_end + num_usual_steps) * step_m + kNumSigmas * point.sigma_m;
 }
 
-// Indices of the points on the cheapest way, ascending.
+// Ascending indices of the points on the cheapest path, by dynamic programming.
 std::vector<std::size_t> CheapestWay(const std::vector<LinePoint>& points, double step_m) {
   const std::size_t num = points.size();
-  std::vector<double> cost(num, 0.0);  // of the cheapest way to each point
+  std::vector<double> cost(num, 0.0);  // of the cheapest path that ends at each point
   std::vector<std::size_t> previous(num, num);
   for (std::size_t j = 0; j < num; ++j) {
     for (std::size_t d = 0; d < j; ++d) cost[j] += CostAtEnd(points, d, d + 1, step_m);
@@ -110,8 +109,8 @@ double UsualStep(const std::vector<double>& steps_m) {
   return Median(steps_m) + kNumSigmas * RobustSigma(steps_m);
 }
 
-// Distances between neighbours and between next but one neighbours, ascending. Where some points
-// are false markers, the small distances are between true ones.
+// Distances per place between neighbours and next-but-one neighbours, ascending. If some of the
+// points are false markers, the small distances are those between true ones.
 std::vector<double> NearSteps(const std::vector<LinePoint>& points) {
   std::vector<double> steps_m;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -129,7 +128,8 @@ double EstimateStep(const std::vector<LinePoint>& points) {
   std::vector<std::size_t> all(points.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   if (points.size() < kMinPointsForStep) return UsualStep(StepsAlong(points, all));
-  // The lower quartile excludes points that cannot be on the line at all; the rest gives the step.
+  // With the lower quartile as a first step, the path leaves out gross outliers. The remaining
+  // points give the step.
   const std::vector<double> near_steps_m = NearSteps(points);
   const std::vector<double> kept_m =
       StepsAlong(points, CheapestWay(points, near_steps_m[near_steps_m.size() / 4]));
@@ -144,16 +144,16 @@ bool AreWithinSteps(const LinePoint& a, const LinePoint& b, double step_m,
 }
 
 std::vector<std::size_t> FindStrayPoints(const std::vector<LinePoint>& points, double step_m) {
-  // Two false markers are hardly ever near each other, so a pair of points may be spaced less
-  // evenly.
+  // Two false markers are hardly ever near each other, so neighbouring points that are both left
+  // out confirm each other at a larger distance.
   constexpr double kUnevenInPiece = 3.0;
   if (points.size() < kMinPointsOnLine || !(step_m > 0)) return {};
   const std::vector<std::size_t> way = CheapestWay(points, step_m);
   const auto is_on_way = [&way](std::size_t idx) {
     return std::binary_search(way.begin(), way.end(), idx);
   };
-  // Whether the kept points before and behind the point confirm it, or confirm a point beside it
-  // that is left out as well.
+  // Whether the nearest kept point on either side confirms the point, or a neighbour that is left
+  // out as well does.
   const auto is_confirmed = [&](std::size_t idx) {
     const LinePoint& point = points[idx];
     const auto after = std::lower_bound(way.begin(), way.end(), idx);

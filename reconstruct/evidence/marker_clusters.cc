@@ -6,7 +6,8 @@
 namespace velamap {
 namespace {
 
-// Markers of a cluster are at most this many times as far apart as the nearest ones there.
+// Two markers are linked if their distance is at most this many times the smaller of the distances
+// to their nearest neighbours.
 constexpr double kMaxTimesNearest = 2.5;
 
 }  // namespace

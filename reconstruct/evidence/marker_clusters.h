@@ -1,5 +1,4 @@
-// Groups of markers that stand near each other, for those that no row takes. Private to this
-// folder.
+// Clusters of nearby markers, for the markers that are on no row. Private to this folder.
 
 #pragma once
 
@@ -9,8 +8,8 @@
 
 namespace velamap {
 
-// Clusters of the markers of `rest` by single linkage: each is in one cluster, in the order of
-// `rest`.
+// Clusters the markers with the indices `rest` by single linkage. Each of them is in one cluster,
+// and the markers of a cluster are in the order of `rest`.
 std::vector<MarkerChain> FindClusters(const std::vector<StandingMarker>& markers,
                                       const MarkerChain& rest);
 

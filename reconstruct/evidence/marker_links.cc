@@ -16,14 +16,16 @@
 namespace velamap {
 namespace {
 
-// The least cosine between the normals of two markers on one surface.
+// The smallest cosine between the normals of two neighbours.
 constexpr double kSameFace = 0.5;
-// Neighbours are at most this many times as far apart as the nearest ones there.
+// Two markers are linked if their distance is at most this many times the larger of the distances
+// to their nearest neighbours.
 constexpr double kMaxLink = 1.75;
 // The largest ratio between two consecutive steps of a row.
 constexpr double kMaxStepRatio = 2.0;
 constexpr double kMaxBend = 35.0 * kRadPerDeg, kMaxBendAtGap = 25.0 * kRadPerDeg;
-// The largest gap in a row, in steps: two missing markers make three, and steps are uneven.
+// The largest gap in a row, in steps. Two missing markers leave a gap of three steps, and the steps
+// are uneven.
 constexpr double kMaxGap = 3.6;
 
 bool FaceTheSameWay(const StandingMarker& a, const StandingMarker& b) {
@@ -44,7 +46,7 @@ class Linker {
   std::vector<MarkerChain> Chains() {
     for (std::size_t i = 0; i < markers_.size(); ++i) Pair(i);
     std::vector<MarkerChain> chains;
-    // From free ends first, so that only rings remain for the second pass.
+    // The first pass starts at free ends, so that only rings remain for the second.
     for (const bool from_free_end : {true, false}) {
       for (std::size_t link = 0; link < links_.size(); ++link) {
         for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
@@ -103,7 +105,7 @@ class Linker {
     return markers_[to].center_m - markers_[from].center_m;
   }
 
-  // Joins the links at a marker that continue each other.
+  // Pairs the links at a marker that continue each other, the straightest pair first.
   void Pair(std::size_t marker) {
     struct Candidate {
       double bend;
@@ -131,7 +133,7 @@ class Linker {
     }
   }
 
-  // From the marker at one end of a link along it and on.
+  // Follows a link from its marker at `end`, and then the links that continue it.
   MarkerChain Walk(std::size_t link, std::size_t end) {
     MarkerChain chain{links_[link][end]};
     std::set<std::size_t> seen{chain.front()};
@@ -152,8 +154,8 @@ class Linker {
   std::vector<bool> used_;                          // by link
 };
 
-// Where the next marker of a row is missing, one of a neighbouring row can seem to follow. It
-// stands beside the straight line through the last two markers, `a` and `b`, by most of a step.
+// Where the next marker of a row is missing, a marker of the neighbouring row can seem to continue
+// it. Such a marker is off the straight line through the last two, `a` and `b`, by most of a step.
 bool IsBeside(const StandingMarker& a, const StandingMarker& b, const StandingMarker& next) {
   constexpr double kMaxSidestep = 0.6;  // of a step
   const Eigen::Vector3d step = b.center_m - a.center_m;
@@ -179,7 +181,8 @@ bool ShareMarkers(const MarkerChain& a, const MarkerChain& b) {
   });
 }
 
-// The bend where `b` continues the end of `a`; nothing where it does not.
+// The largest angle, rad, by which the row bends if `b` continues the end of `a`, or nothing if `b`
+// does not continue it.
 std::optional<double> BendAtGap(const std::vector<StandingMarker>& markers, const MarkerChain& a,
                                 const MarkerChain& b) {
   if (!FaceTheSameWay(markers[a.back()], markers[b.front()])) return std::nullopt;
@@ -198,7 +201,8 @@ std::optional<double> BendAtGap(const std::vector<StandingMarker>& markers, cons
   return bend;
 }
 
-// Joins the two chains that continue each other best; false where none do.
+// Joins the two chains that continue each other with the smallest bend. Returns false if there are
+// none.
 bool BridgeOneGap(const std::vector<StandingMarker>& markers, std::vector<MarkerChain>* chains) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t best_a = 0, best_b = 0;
@@ -264,7 +268,7 @@ std::vector<MarkerChain> FindChains(const std::vector<StandingMarker>& markers) 
   for (const MarkerChain& chain : chains) {
     if (chain.size() >= 3) on_rows.insert(chain.begin(), chain.end());
   }
-  // A single marker may be the end of a row, behind a gap.
+  // A single marker can be the end of a row, beyond a gap.
   for (std::size_t i = 0; i < markers.size(); ++i) {
     if (on_rows.count(i) == 0) chains.push_back({i});
   }

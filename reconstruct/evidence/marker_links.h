@@ -1,5 +1,5 @@
-// Neighbours of markers on a surface, and the chains of neighbours that go on in one direction. The
-// first two steps of marker_rows.h. Private to this folder.
+// Links between neighbouring markers on a surface, and chains of links that continue in one
+// direction: the first two steps of marker_rows.h. Private to this folder.
 
 #pragma once
 
@@ -14,12 +14,13 @@ namespace velamap {
 
 struct StandingMarker {
   int marker_id = 0;
-  Eigen::Vector3d center_m, right, up, normal;  // the last three have unit length
+  Eigen::Vector3d center_m;
+  Eigen::Vector3d right, up, normal;  // unit vectors; of the upright marker as a viewer sees it
 };
 
 std::vector<StandingMarker> StandingMarkers(const ShapePoints& shape);
 
-// Indices of markers, in order; at least one.
+// Indices of consecutive markers, at least one.
 using MarkerChain = std::vector<std::size_t>;
 
 double Distance(const StandingMarker& a, const StandingMarker& b);
@@ -27,8 +28,8 @@ double Distance(const StandingMarker& a, const StandingMarker& b);
 // The median distance between neighbours of the chain, which has at least two markers.
 double StepOf(const std::vector<StandingMarker>& markers, const MarkerChain& chain);
 
-// Each chain has at least two markers. A marker may be on several chains, a pair of neighbours is
-// on one only.
+// Each chain has at least two markers. A marker may be on several chains, but a pair of neighbours
+// is on only one.
 std::vector<MarkerChain> FindChains(const std::vector<StandingMarker>& markers);
 
 }  // namespace velamap

@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::size_t kMinOnRow = 3;
 constexpr double kParallel = 0.8;  // cosine
-// Parallel rows are alike if their steps differ by no more than this factor, and together if they
-// are no more than this many steps apart.
+// Parallel rows belong together if their steps differ by at most the first factor and if they are
+// at most the second number of steps apart.
 constexpr double kLikeSteps = 1.6, kMaxStepsBetweenRows = 12.0;
-// A marker on no row belongs to a group within this many steps.
+// A marker on no row belongs to a group that has a marker within this many steps.
 constexpr double kMaxStepsFromGroup = 2.0;
 
-// Disjoint sets of indices.
+// Disjoint sets of indices (union-find).
 class Sets {
  public:
   explicit Sets(std::size_t num) : parent_(num) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -69,7 +69,7 @@ class RowFinder {
   }
 
  private:
-  // Whether neighbours on rows agree on what is up.
+  // Whether most neighbours on rows agree on what is right and therefore on what is up.
   bool KnowsUp() const {
     constexpr double kAgree = 0.7, kShare = 0.9;
     int num = 0, num_agreeing = 0;
@@ -100,8 +100,9 @@ class RowFinder {
     }
   }
 
-  // Keeps a horizontal row of two markers if these are on no longer horizontal row, and if such a
-  // row nearby is parallel to it with about the same step: lines are short near the head of a sail.
+  // Keeps a horizontal row of two markers if neither is on a longer horizontal row and if a longer
+  // row nearby is parallel to it and has about the same step. Near the head of a sail, lines are
+  // short.
   void KeepShortRows(std::vector<Row> short_rows) {
     std::set<std::size_t> on_horizontal;
     for (const Row& row : rows_) {
@@ -186,7 +187,7 @@ class RowFinder {
     return groups;
   }
 
-  // Takes the markers of `rest` that are near the rows.
+  // Moves the markers near the rows from `rest` into the group.
   RowGroup MakeGroup(std::size_t group, MarkerChain* rest) {
     RowGroup result;
     result.knows_up = knows_up_;
@@ -211,7 +212,7 @@ class RowFinder {
     return result;
   }
 
-  // What is right and up in the middle of the rows.
+  // The mean directions of right and up over the rows.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> Axes(const std::vector<Row*>& rows) const {
     Eigen::Vector3d right = Eigen::Vector3d::Zero(), up = right, normal = right;
     const Row* longest = rows.front();

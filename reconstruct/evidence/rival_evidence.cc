@@ -14,7 +14,7 @@
 namespace velamap {
 namespace {
 
-// Two markers that claim one place. Fewer images see the second one.
+// Two markers that claim the same place. At least as many images show the first as the second.
 using RivalPair = std::pair<const PlacedMarker*, const PlacedMarker*>;
 
 std::vector<RivalPair> RivalPairs(const MarkersById& markers) {
@@ -41,18 +41,20 @@ std::string MisreadText(const PlacedMarker& marker, const PlacedMarker& rival) {
       rival.marker_id, marker.num_seen, rival.marker_id, rival.num_seen);
 }
 
-// The votes on a marker by the next two undisputed markers on each side, over all of its lines.
+// The votes on a marker by the next two undisputed markers on each side, on all of its lines.
 struct LineVotes {
   int num_asked = 0;
   int num_for = 0;
-  // Places between the marker and the nearest vote for it. Near votes are less likely by chance.
+  // Number of places from the marker to the nearest marker that votes for it. A near marker is less
+  // likely to agree by chance.
   double smallest_gap = std::numeric_limits<double>::infinity();
 
   bool HasMajority() const { return 2 * num_for > num_asked; }
 };
 
-// Whether two markers of a line may be where they are: no farther apart than the cloth allows, and
-// not so near that the line would be folded. A line that is misread in part looks folded.
+// Whether the distance between two markers of a line is plausible: no longer than the cloth between
+// them, and not so short that the line would be folded, as it seems to be if some of its ids are
+// misread.
 bool FitOnLine(const LinePoint& a, const LinePoint& b, double step_m) {
   constexpr double kFolded = 0.5;
   const bool a_is_first = a.place_on_line < b.place_on_line;
@@ -98,9 +100,10 @@ LineVotes VotesFor(const std::vector<std::vector<JudgedLine>>& lines_of_part,
   return votes;
 }
 
-// Whether the layout supports one marker, and not the other one, in the place that both claim: most
-// votes are for this one, or the votes for the other one come from more than twice as far. A marker
-// that is on no line is not contradicted by one.
+// Whether the lines support a marker rather than its rival in the place that both claim. They do if
+// only this marker has a majority of its votes or, where the majorities do not decide, if its
+// nearest vote is at most half as far away as that of the rival. A rival that is on no line cannot
+// be contradicted by one.
 bool BelongsRatherThan(const LineVotes& votes, const LineVotes& of_rival) {
   constexpr double kMuchNearer = 0.5;
   if (votes.num_for == 0 || of_rival.num_asked == 0) return false;
@@ -108,8 +111,9 @@ bool BelongsRatherThan(const LineVotes& votes, const LineVotes& of_rival) {
   return votes.smallest_gap <= kMuchNearer * of_rival.smallest_gap;
 }
 
-// Leaves out rivals that the layout does not confirm if it confirms the other one. Disputed markers
-// have no vote, because a whole line may be misread. Returns whether any rival is left out.
+// Drops each rival that the layout does not support if it supports the other one of the pair.
+// Disputed markers have no vote, because a whole line may be misread. Returns whether any marker
+// was dropped.
 bool DropRivalsByLayout(const Layout& layout, const std::vector<RivalPair>& pairs,
                         Evidence* evidence) {
   std::set<int> disputed_ids;
@@ -136,8 +140,8 @@ double RatioOfSeen(const RivalPair& pair) {
   return static_cast<double>(pair.second->num_seen) / pair.first->num_seen;
 }
 
-// Takes the pair whose numbers of images differ most and leaves out the marker that fewer images
-// see, or both if the numbers hardly differ.
+// Takes the pair whose numbers of images differ most and drops the marker that fewer images show,
+// or both markers if the numbers are similar.
 void DropRivalByNumber(const std::vector<RivalPair>& pairs, Evidence* evidence) {
   constexpr double kFew = 0.5;
   const RivalPair& pair = *std::min_element(

@@ -1,4 +1,4 @@
-// Decides which of two markers that claim one place is really there. Private to this folder.
+// Decides which of two markers that claim the same place is really there. Private to this folder.
 
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace velamap {
 
-// Drops misread ids until no two markers claim one place: first where the lines decide, then by the
-// numbers of images. See FindContradictions().
+// Drops misread ids until no two markers claim the same place. The lines of the layout decide
+// first, then the numbers of images that show each marker. See FindContradictions().
 void DecideBetweenRivals(const Layout& layout, Evidence* evidence);
 
 }  // namespace velamap

@@ -10,7 +10,7 @@
 namespace velamap {
 namespace {
 
-// The number of images that see a marker of the model.
+// The median over the markers of the model of the number of images that show them.
 double UsualNumImages(const Model& model) {
   std::map<int, std::size_t> num_images;
   for (const auto& [point3D_id, point] : model.points3D) {
@@ -22,7 +22,8 @@ double UsualNumImages(const Model& model) {
   return counts.empty() ? 0.0 : Median(std::move(counts));
 }
 
-// The middles of the model's markers in the image, seen there or not.
+// Where the centres of the model's markers project into the image, whether detected there or not,
+// px.
 std::vector<Eigen::Vector2d> MarkersInImage(const Model& model, const ModelImage& image) {
   std::map<int, std::vector<Eigen::Vector2d>> corners;
   for (const auto& [point3D_id, point] : model.points3D) {
@@ -59,7 +60,7 @@ bool StandsWhereAnotherDoes(const MarkerDetection& marker,
 }  // namespace
 
 std::vector<int> FindUnnamedMarkers(const std::vector<DatabaseImage>& images, const Model& model) {
-  constexpr double kLeastShare = 0.25;  // of the images that show a marker of the model
+  constexpr double kLeastShare = 0.25;  // of the usual number of images of a marker of the model
   constexpr std::size_t kLeastImages = 2;
   std::map<int, std::set<ImageId>> seen_in;
   for (const DatabaseImage& image : images) {

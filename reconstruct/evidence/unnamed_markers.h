@@ -1,4 +1,4 @@
-// Finds markers that are on the object and that the layout does not name.
+// Finds markers that are on the object but not in the layout.
 
 #pragma once
 
@@ -9,9 +9,10 @@
 
 namespace velamap {
 
-// Ids that no part of the layout names and that the images show about as often as the markers of
-// the model, in ascending order. A blurred marker can be misread as one with another legal code, so
-// that detections where a marker of the model stands do not count.
+// Returns, in ascending order, the ids that no part of the layout names and that are detected in at
+// least two images and at least a quarter as often as the markers of the model. A blurred marker
+// can be misread as another valid code, so detections in the place of a marker of the model do not
+// count.
 std::vector<int> FindUnnamedMarkers(const std::vector<DatabaseImage>& images, const Model& model);
 
 }  // namespace velamap

@@ -12,28 +12,29 @@
 namespace velamap {
 namespace {
 
-// Where the radial distortion is judged, relative to the image's farthest corner.
+// The ray at which the radial distortion is judged, as a fraction of the longest ray in the image.
 constexpr double kJudgedField = 0.7;
-constexpr double kClearly = 1.0 / 3.0;  // smaller
+constexpr double kClearly = 1.0 / 3.0;  // the ratio below which a sigma is clearly smaller
 
 int BeginOfDistortion(CameraModel model) { return static_cast<int>(NumFocalLengths(model)) + 2; }
 
-// 0 for a tangential parameter. `parameter` counts from the principal point.
+// The power of the ray length (for a fisheye, of the angle) by which a radial parameter scales; 0
+// for a tangential one. `parameter` is the index among the distortion parameters.
 int PowerOfRay(CameraModel model, int parameter) {
   if (model == CameraModel::kOpenCVFisheye) return 2 * (parameter + 1);
   constexpr int kPowers[] = {2, 4, 0, 0, 6, 2, 4, 6};  // k1 k2 p1 p2 k3 k4 k5 k6
   return kPowers[parameter];
 }
 
-// How far a parameter of 1 moves the image of a ray of this length, relative to its distance from
-// the optical axis.
+// How far a parameter value of 1 moves the image of a ray, as a fraction of its distance from the
+// optical axis. `ray_length` is the distance from the axis at depth 1.
 double RelativeMovement(CameraModel model, int parameter, double ray_length) {
   const int power = PowerOfRay(model, parameter);
   if (power == 0) return 3.0 * ray_length;
   return std::pow(model == CameraModel::kOpenCVFisheye ? std::atan(ray_length) : ray_length, power);
 }
 
-// The relative radial movement of a ray in the judged field by each free parameter.
+// The derivatives of the relative radial movement of the judged ray by the free parameters.
 Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(prior.free.size()));
   for (std::size_t i = 0; i < prior.free.size(); ++i) {
@@ -42,7 +43,7 @@ Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
     gradient[static_cast<Eigen::Index>(i)] =
         RelativeMovement(prior.model, distortion, kJudgedField * prior.max_ray_length);
   }
-  // The denominator of the rational model works the other way.
+  // Parameters in the denominator of the rational model move the ray inwards.
   if (prior.model == CameraModel::kFullOpenCV) {
     for (std::size_t i = 0; i < prior.free.size(); ++i) {
       if (prior.free[i] >= kBeginOfDenominator) gradient[static_cast<Eigen::Index>(i)] *= -1.0;
@@ -51,15 +52,15 @@ Eigen::VectorXd RadialGradient(const IntrinsicsPrior& prior) {
   return gradient;
 }
 
-// How far 1 sigma of the first distortion parameter moves a ray in the judged field, relative to
-// its distance from the optical axis.
+// How far 1 sigma of the first distortion parameter moves the judged ray, as a fraction of its
+// distance from the optical axis.
 double RadialSigma(const IntrinsicsPrior& prior) {
   const std::size_t k1 = NumFocalLengths(prior.model) + 2;
   if (prior.sigmas.size() <= k1) return 0.0;
   return prior.sigmas[k1] * RelativeMovement(prior.model, 0, kJudgedField * prior.max_ray_length);
 }
 
-// The change of the free parameters from the prior's mean.
+// The free parameters minus the prior's mean.
 Eigen::VectorXd Change(const IntrinsicsPrior& prior, const Camera& refined) {
   Eigen::VectorXd change(static_cast<Eigen::Index>(prior.free.size()));
   for (std::size_t i = 0; i < prior.free.size(); ++i) {
@@ -69,8 +70,7 @@ Eigen::VectorXd Change(const IntrinsicsPrior& prior, const Camera& refined) {
   return change;
 }
 
-// Whether the estimate is clearly more certain than the prior, or than its own difference from the
-// prior, whichever is larger.
+// Compares the sigma of the estimate with the larger of the prior's sigma and the change.
 bool IsClearlySmaller(double sigma, double prior_sigma, double change) {
   return sigma <= kClearly * std::max(prior_sigma, std::abs(change));
 }
@@ -120,7 +120,8 @@ IntrinsicsPrior UnknownCameraPrior(const Camera& camera) {
   central.params[static_cast<std::size_t>(num_focal)] = 0.5 * camera.width_px;
   central.params[static_cast<std::size_t>(num_focal) + 1] = 0.5 * camera.height_px;
   IntrinsicsPrior prior = MakeIntrinsicsPrior(central, {true, true, true}, kRadialSigma);
-  // Coefficients that a calibration does not name are free as well, except the denominator.
+  // MakeIntrinsicsPrior() holds the zero coefficients of FULL_OPENCV. Here all are free except the
+  // denominator.
   const std::size_t num_free =
       std::min(prior.sigmas.size(), static_cast<std::size_t>(kBeginOfDenominator));
   prior.free.resize(num_free);
@@ -160,7 +161,7 @@ FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const Intrinsics
                                     const Camera& refined, const Eigen::MatrixXd& covariance) {
   if (ChangesPixelShape(prior, refined)) return {};
   const Eigen::VectorXd change = Change(prior, refined);
-  // Looks at the free parameters in [begin, end) of the camera.
+  // For the free parameters with an index in [begin, end).
   const auto is_determined = [&](int begin, int end) {
     double largest_change = 0.0, largest_sigma = 0.0;
     for (std::size_t i = 0; i < prior.free.size(); ++i) {

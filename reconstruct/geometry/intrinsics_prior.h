@@ -1,5 +1,5 @@
-// What a calibration file says about the parameters of its camera, and how far an adjustment may
-// move them.
+// The prior that a calibration file gives for the parameters of its camera, and how far an
+// adjustment may depart from it.
 
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace velamap {
 
-// Groups of parameters that an adjustment frees.
+// The groups of parameters that an adjustment estimates.
 struct FreeIntrinsics {
   bool focal_length = false;
   bool principal_point = false;
@@ -25,63 +25,66 @@ struct FreeIntrinsics {
   }
 };
 
-// Normal prior of the parameters, in COLMAP's order.
+// Independent normal priors of the camera parameters, in COLMAP's order.
 struct IntrinsicsPrior {
   CameraModel model = CameraModel::kPinhole;
   double max_ray_length = 0.0;  // MaxRayLength
   std::vector<double> mean;
-  std::vector<double> sigmas;  // of free and held parameters
-  std::vector<int> free;       // indices of the parameters that may change, ascending
-  std::vector<int> held;       // all others, ascending
+  std::vector<double> sigmas;  // of all parameters
+  std::vector<int> free;       // ascending indices of the parameters that are estimated
+  std::vector<int> held;       // ascending indices of the others, which stay constant
 };
 
-// The prior around `calibration`. A distortion parameter is free only where the calibration names
-// it: a FULL_OPENCV camera that was read from five coefficients has no k4 k5 k6, and those that are
-// zero in it stay zero. Without this, numerator and denominator cancel each other and run away.
+// The prior with `calibration` as its mean. Distortion parameters of a FULL_OPENCV camera that are
+// zero stay zero, because its calibration does not give them: one that was read from five
+// coefficients has no k4, k5 and k6. If these were free, numerator and denominator would cancel
+// each other and diverge.
 //
-// `sigma` is a fraction: of the focal length for the focal length and the principal point; each
-// distortion parameter moves the image's farthest corner by that fraction of its distance from the
-// optical axis.
+// `sigma` is a fraction. The sigma of the focal length and of the principal point is this fraction
+// of the focal length. 1 sigma of a distortion parameter moves the image's farthest corner by this
+// fraction of its distance from the optical axis.
 IntrinsicsPrior MakeIntrinsicsPrior(const Camera& calibration, const FreeIntrinsics& free,
                                     double sigma);
 
-// The prior of a camera that nobody calibrated: any focal length (a normal prior around the one of
-// `camera`, whose sigma is that focal length itself), the principal point in the centre with a
-// sigma of 2 % of the larger side, and no distortion. 1 sigma of each radial parameter moves the
-// image's farthest corner by 30 %, 1 sigma of each tangential one by 1 %. All parameters are free
-// except the denominator of FULL_OPENCV, which would run away with the numerator. Depends only on
-// the model, the size and the focal length of `camera`.
+// The prior of a camera without a calibration. The focal length of `camera` is the mean and also
+// the sigma, so that nearly any focal length is possible. The principal point is in the centre with
+// a sigma of 2 % of the larger side. The mean distortion is zero; 1 sigma of a radial parameter
+// moves the image's farthest corner by 30 %, and 1 sigma of a tangential one by 1 %. All parameters
+// are free except the denominator of FULL_OPENCV, which would diverge together with the numerator.
+// Only the model, the size and the focal length of `camera` matter.
 IntrinsicsPrior UnknownCameraPrior(const Camera& camera);
 
-// 1 sigma of the relative difference of the two focal lengths of a camera that nobody calibrated:
-// sensors have square pixels.
+// 1 sigma of the relative difference between the two focal lengths of a camera without a
+// calibration. It is small because sensors have square pixels.
 constexpr double kPixelShapeSigma = 1e-3;
 
-// Whether the calibration has distortion parameters that its file does not name.
+// Whether the calibration has distortion parameters that its file does not give.
 bool HasUnnamedDistortion(const Camera& calibration);
 
-// Gives a pinhole camera the parameters of radial distortion, all zero: PINHOLE becomes OPENCV,
-// SIMPLE_PINHOLE becomes SIMPLE_RADIAL. Other cameras stay as they are.
+// Adds distortion parameters of zero to a pinhole camera: PINHOLE becomes OPENCV, and
+// SIMPLE_PINHOLE becomes SIMPLE_RADIAL. Returns other cameras unchanged.
 Camera WithDistortionParams(const Camera& camera);
 
 // The groups of `free` that the images determine clearly better than the calibration does.
-// `refined` is the estimate of the prior's free parameters and `covariance` its covariance. The
-// test looks at every focal length, both coordinates of the principal point, and the radial
-// distortion at 0.7 of the way to the image's farthest corner: the sigma must be at most a third of
-// the prior's (for the distortion, of one parameter's), or of the group's change where this is
-// larger and contradicts the prior.
+// `refined` is the estimate, and `covariance` is the covariance of its free parameters, in the
+// order of `prior.free`. A group passes if the sigma of the estimate is at most a third of the
+// prior's sigma, or of the change from the prior's mean if that is larger. The group of the focal
+// length and that of the principal point are judged by their least certain parameter. The
+// distortion is judged by how far it moves a ray radially, at 0.7 of the way to the image's
+// farthest corner; the prior's sigma is then the one that its first parameter causes there.
 //
-// None where the ratio of the focal lengths changes by more than a third of the prior's sigma: the
-// pixels of a sensor keep their shape, but a rolling shutter squeezes rows.
+// No group passes if the ratio of the focal lengths changes by more than a third of the prior's
+// sigma: the pixels of a sensor keep their shape, so such a change is an effect of a rolling
+// shutter, which compresses or stretches the image along its columns.
 FreeIntrinsics DeterminedIntrinsics(const FreeIntrinsics& free, const IntrinsicsPrior& prior,
                                     const Camera& refined, const Eigen::MatrixXd& covariance);
 
-// Whether the focal lengths and the principal point are within 1 sigma of the prior, and the radial
-// distortion at 0.7 of the way to the image's farthest corner has changed by no more than 1 sigma
-// of its first parameter would change it.
+// Whether the focal lengths and the principal point are within 1 sigma of the prior's mean, and the
+// distortion moves a ray at 0.7 of the way to the image's farthest corner by no more than 1 sigma
+// of its first parameter would.
 bool IsWithin(const IntrinsicsPrior& prior, const Camera& camera);
 
-// What has changed, for a message: "focal length 901.3 -> 875.1 px, ...".
+// Describes the change in a message: "focal length 901.3 -> 875.1 px, ...".
 std::string DescribeRefinement(const Camera& calibration, const Camera& refined);
 
 }  // namespace velamap

@@ -15,7 +15,8 @@
 namespace velamap {
 namespace {
 
-// A wrong print changes all sides alike; a covered or badly fitted corner changes two of them.
+// A marker that is printed at a wrong size has four equal sides. A corner that is covered or badly
+// fitted changes only two sides.
 std::string WhatToCheck(const MarkerSize& size, double deviation) {
   if (size.unevenness < std::abs(deviation)) return "check its marker_length and its print";
   return fmt::format("its sides differ by {:.2f} %, so look for what covers or bends it",
@@ -44,7 +45,7 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
   const std::vector<MarkerSize> sizes = MeasureMarkers(state, covariance, inset_sigmas);
   MarkerSizeVerdict verdict;
   verdict.print_tolerance = print_tolerance;
-  if (sizes.size() < 3) return verdict;  // with two markers, either may be the wrong one
+  if (sizes.size() < 3) return verdict;  // of two markers, either may be the wrong one
   PartsVerdict parts = JudgeParts(sizes, print_tolerance, print_scale_sigma);
   verdict.part_scale_sigma = parts.scale_sigma;
   verdict.part_disagreement = std::move(parts.disagreement);

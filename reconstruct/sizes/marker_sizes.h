@@ -1,5 +1,5 @@
-// The sizes of the reconstructed markers: the initial scale, and markers and parts whose size
-// contradicts the others.
+// The sizes of the reconstructed markers. They give the initial scale, and they show which markers
+// and parts contradict the others.
 
 #pragma once
 
@@ -14,30 +14,33 @@
 
 namespace velamap {
 
-// Metres per unit of the state: the median, over all sides, of printed / reconstructed length.
-// Throws DataError if no side has both corners.
+// Metres per unit of the state: the median over all marker sides of the printed length divided by
+// the reconstructed one. Throws DataError if no side has both of its corners.
 double MedianScale(const MarkerState& state);
 
 struct MarkerSizeVerdict {
   std::set<int> contradicting;   // marker ids
-  double print_tolerance = 0.0;  // the given one, or a larger one where the markers scatter more
+  double print_tolerance = 0.0;  // the given one, or a larger one if the markers scatter more
   // 1 sigma of the parts' scales around their mean, as a fraction; 0 if the parts agree.
   double part_scale_sigma = 0.0;
-  std::string part_disagreement;  // "sail and hull disagree by ..."; empty: parts agree
+  std::string part_disagreement;  // "sail and hull disagree by ..."; empty if the parts agree
   std::vector<std::string> warnings;
 };
 
-// Compares the mean side of each marker with the median of all markers. `covariance` belongs to a
-// solution in which the sizes had hardly any weight. `inset_sigmas` gives, by marker id, 1 sigma of
-// the marker's size that the inset of its corners causes in all images alike, as a fraction;
-// markers that it lacks have none. A marker contradicts the others if it deviates by more than four
-// sigmas of image noise, inset and print tolerance together. If ten or more markers scatter 1.3
-// times as far as these sigmas explain, the print tolerance is raised.
+// Compares the mean side of each marker with the median of all markers. `covariance` must come from
+// a solution in which the printed sizes had hardly any weight. `inset_sigmas` holds, by marker id,
+// the sigma of the marker's size that is due to the inset of its corners, which is the same in all
+// images; it is a fraction, and 0 for markers that the map lacks. `print_tolerance` is 1 sigma of a
+// printed side, as a fraction. A marker contradicts the others if it deviates by more than four
+// sigmas of image noise, inset and print tolerance together. The print tolerance is raised if there
+// are ten or more markers and they scatter more than 1.3 times as far as these sigmas explain. With
+// fewer than three markers nothing is judged.
 //
-// Parts disagree if the mean of one (of three markers or more) differs from the mean of the others
-// by more than four sigmas and by more than `print_scale_sigma`, 1 sigma of the scale of the print.
-// Their markers are then no bad prints, and each is compared with its own part. Smaller differences
-// would change the scale's sigma by less than an eighth.
+// Parts disagree if the mean of one part (of three markers or more) differs from the mean of the
+// others by more than four sigmas and by more than `print_scale_sigma`, 1 sigma of the scale of the
+// print as a fraction. The parts were then printed at different scales, which is no fault of their
+// markers, so each marker is compared with its own part. Differences below `print_scale_sigma` are
+// ignored because they would change the sigma of the scale by less than an eighth.
 MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovariance& covariance,
                                    const std::map<int, double>& inset_sigmas,
                                    double print_tolerance, double print_scale_sigma);

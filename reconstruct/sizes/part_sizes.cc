@@ -11,13 +11,13 @@
 namespace velamap {
 namespace {
 
-// The mean ratio of a part's markers without those that contradict it.
+// The mean size of a part, without the markers that contradict the others of the part.
 struct PartSize {
   std::string part;
   std::size_t num_markers = 0;
-  double ratio = 0.0;
-  double own_variance = 0.0;  // part of the variance that other parts do not share
-  Eigen::VectorXd by_factor;
+  double ratio = 0.0;         // mean of MarkerSize::ratio
+  double own_variance = 0.0;  // of the ratio, without the errors that other parts share
+  Eigen::VectorXd by_factor;  // mean of MarkerSize::by_factor
 };
 
 // The part with the most markers comes first.
@@ -31,7 +31,7 @@ std::vector<PartSize> MeasureParts(const std::vector<MarkerSize>& sizes, double 
     MarkerIdxs idxs;
     std::copy_if(all.begin(), all.end(), std::back_inserter(idxs),
                  [&](std::size_t i) { return std::abs(normalized[i]) <= kMaxSizeSigmas; });
-    if (idxs.empty()) continue;  // two groups of equal size: no marker is near the median
+    if (idxs.empty()) continue;  // no marker is near the median of two equally large groups
     PartSize size{part, idxs.size(), 0.0, 0.0, MeanByFactor(sizes, idxs)};
     const double count = static_cast<double>(idxs.size());
     for (const std::size_t i : idxs) {
@@ -47,7 +47,7 @@ std::vector<PartSize> MeasureParts(const std::vector<MarkerSize>& sizes, double 
   return parts;
 }
 
-// A part against the mean of the others, as a fraction.
+// The difference of a part from the mean of the others, as a fraction.
 struct PartDifference {
   double value = 0.0;
   double sigma = 0.0;
@@ -85,15 +85,16 @@ PartsVerdict JudgeParts(const std::vector<MarkerSize>& sizes, double print_toler
   if (parts.size() < 2) return {};
   const double count = static_cast<double>(parts.size());
   std::vector<PartDifference> differences;
-  double scatter = 0.0, noise = 0.0;  // of the parts' scales, squared
+  double scatter = 0.0, noise = 0.0;  // variances of the parts' scales: measured, and expected
   for (std::size_t i = 0; i < parts.size(); ++i) {
     differences.push_back(CompareWithOthers(parts, i));
-    // A part differs from the mean of all by less than from the mean of the others.
+    // The mean of all parts includes this one, so the difference from it is smaller.
     const double from_mean = differences[i].value * (count - 1) / count;
     scatter += from_mean * from_mean / (count - 1);
     noise += std::pow(differences[i].sigma, 2) * (count - 1) / (count * count);
   }
-  // Two parts differ from each other equally: the first stands for both.
+  // Of two parts, each differs from the other by the same amount, so the one with more markers is
+  // reported.
   const auto worst = std::max_element(
       differences.begin(), parts.size() > 2 ? differences.end() : differences.begin() + 1,
       [](const PartDifference& a, const PartDifference& b) { return a.Sigmas() < b.Sigmas(); });

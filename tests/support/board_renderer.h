@@ -1,4 +1,5 @@
-// Pictures of flat calibration boards with exact truth, as marker_renderer.h has of markers.
+// Renders pictures of flat calibration boards with exact truth. marker_renderer.h does so for
+// markers.
 
 #pragma once
 
@@ -14,23 +15,24 @@
 
 namespace velamap {
 
-// The board frame has its origin in the middle of the print, x along its rows and y up, its face
-// towards +z.
+// Board frame, m: the origin is the middle of the print, x is along its rows, y up, and the printed
+// side faces +z.
 struct PrintedBoard {
   cv::Mat cells;        // 8 bit, 0 for black and 255 for white, with the white margin
   double cell_m = 0.0;  // side of a cell
 };
 
-// The square above and left of the first inner corner is black. One square of margin.
+// A chessboard whose top left square is black, with a margin of one square.
 PrintedBoard PrintChessboard(const Chessboard& board, double square_m);
-// The inner corner in the board frame, m; columns from the left, rows from the top.
+// The position of an inner corner in the board frame, m. Columns count from the left, rows from the
+// top.
 Eigen::Vector3d ChessboardCorner(const Chessboard& board, double square_m, int column, int row);
 
-// Markers of `dictionary` from id 0, row by row, with a cell of white around them, in the white
-// squares of a chessboard (ChArUco) of num_columns x num_rows squares.
+// A ChArUco board of num_columns x num_rows squares. The markers of `dictionary` from id 0 on are
+// in its white squares, row by row, with one white cell around each.
 PrintedBoard PrintCharuco(int num_columns, int num_rows, const Dictionary& dictionary,
                           double marker_m);
-// The same markers on white, half a marker apart.
+// A grid of num_columns x num_rows markers on white, from id 0 on, half a marker apart.
 PrintedBoard PrintMarkerGrid(int num_columns, int num_rows, const Dictionary& dictionary,
                              double marker_m);
 
@@ -45,7 +47,8 @@ struct BoardRenderOptions {
 cv::Mat RenderBoard(const Camera& camera, const Rigid3& cam_from_board, const PrintedBoard& board,
                     const BoardRenderOptions& options);
 
-// A board in all parts of the picture, tilted to all sides and wholly inside.
+// Random cam_from_board poses with the board anywhere in the picture, tilted to all sides, and
+// wholly visible.
 std::vector<Rigid3> DrawBoardPoses(const Camera& camera, const PrintedBoard& board, int num_poses,
                                    std::uint32_t seed);
 

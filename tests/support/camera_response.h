@@ -1,8 +1,7 @@
-// From light to grey values, as a camera does it after its lens: tone curve, then sharpening.
+// Converts light to grey values as a camera does: tone curve, then sharpening.
 //
-// Light and grey values run from 0 to 255; light is linear, and 255 is what saturates the sensor.
-// The curves are those of cameras, on purpose not of the family that
-// importer/pattern/image_formation.h fits.
+// Light and grey values range from 0 to 255. Light is linear, and 255 saturates the sensor. The
+// tone curves are deliberately not of the family that importer/pattern/image_formation.h fits.
 
 #pragma once
 
@@ -11,7 +10,7 @@
 namespace velamap {
 
 enum class ToneCurveKind {
-  kLinear,  // grey values are light, as a machine-vision camera has it
+  kLinear,  // grey values equal light, as in a machine-vision camera
   kSrgb,    // IEC 61966-2-1: a line below 0.3 % of light, a power 2.4 with an offset above
   kGamma,   // light^(1 / gamma)
   kSCurve,  // sRGB, then a filmic contrast with a toe and a longer shoulder
@@ -19,19 +18,18 @@ enum class ToneCurveKind {
 
 struct CameraResponse {
   ToneCurveKind tone_curve = ToneCurveKind::kLinear;
-  double gamma = 2.2;  // of kGamma
-  double s_curve =
-      0.0;  // of kSCurve: by how much it moves the encoded values at most, part of white
+  double gamma = 2.2;                 // of kGamma
+  double s_curve = 0.0;               // of kSCurve: its largest effect on an encoded value / white
   double sharpening = 0.0;            // amount of the unsharp mask on the grey values
   double sharpening_radius_px = 1.0;  // sigma of its Gaussian
 
   void Check() const;  // throws InputError
 };
 
-// Grey value of a light. Light beyond 0 to 255 is cut off where the curve is not linear.
+// The grey value of a light. Unless the curve is linear, light is clamped to 0 to 255.
 double EncodeLight(const CameraResponse& response, double light);
 
-// Tone curve and sharpening of a picture (CV_32FC3), channel by channel.
+// Applies tone curve and sharpening to a picture (CV_32FC3), channel by channel.
 void ApplyResponse(const CameraResponse& response, cv::Mat* image);
 
 }  // namespace velamap

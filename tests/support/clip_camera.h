@@ -1,4 +1,4 @@
-// Lenses and camera paths of rendered clips.
+// The lenses and camera paths of rendered clips.
 
 #pragma once
 
@@ -10,13 +10,13 @@ namespace velamap {
 // OPENCV with distortion.
 Camera MakeClipCamera(bool wide_angle, int width_px);
 
-// The camera goes around the vertical through `middle_m` as from a second boat: it drifts from one
-// side to the other in the course of the clip, sways, rises and falls, turns, and shakes as a hand
-// or an engine does.
+// A camera on a second boat that circles the vertical through `middle_m`. In the course of the clip
+// it drifts from one side to the other; meanwhile it sways, heaves, turns, and shakes as if held by
+// hand or near an engine.
 CameraPath MakeOrbit(const ClipOptions& options, const Eigen::Vector3d& middle_m,
                      double camera_height_m, double drift_deg);
 
-// The board of the thesis's section 4.1 is turned in front of a camera at rest.
+// A camera at rest in front of which the board of the thesis's section 4.1 is moved.
 CameraPath MakeBoardMotion(const ClipOptions& options);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// The files that stand beside a rendered clip: what velamap is told, and the truth.
+// Writes the files beside a rendered clip: the inputs of velamap and the truth.
 
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace velamap {
 
-// camera.yml (OpenCV FileStorage), layout.yml with its dictionary file if any, truth.csv (the
-// mean shape; where the trim changes also truth_after.csv) and poses.csv (frame, cam_from_world).
+// Writes camera.yml (OpenCV FileStorage), layout.yml, its dictionary file if it has one, truth.csv
+// (the mean shape), truth_after.csv if the trim changes, and poses.csv (frame, cam_from_world).
 void WriteClipFiles(const ClipScene& scene, const std::filesystem::path& folder);
 
 void WriteLayout(const Layout& layout, std::ostream& out);

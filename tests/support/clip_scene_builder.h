@@ -1,4 +1,4 @@
-// Assembles a clip's scene: sheets, stickers on them, paint between the stickers.
+// Assembles the scene of a clip: sheets, stickers on the sheets, and paint between the stickers.
 
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace velamap {
 
-// A surface under both trims; equal ones where nothing changes.
+// A surface before and after the trim changes.
 struct Ground {
   Surface before, after;
   bool flaps = false;
@@ -25,12 +25,12 @@ class ClipSceneBuilder {
 
   void AddSheet(const Ground& ground, int num_columns, int num_rows);
 
-  // A sticker with its centre at `uv`, upright along growing v. Returns its id. Throws InputError
-  // where its margin reaches that of another.
+  // Adds a sticker with its centre at `uv`, whose upward direction is that of growing v. Returns
+  // its marker id. Throws InputError if its margin reaches that of another sticker.
   int AddMarker(const Ground& ground, const std::string& part, const Eigen::Vector2d& uv);
 
-  // Paints the quad unless a sticker is near or, with `alone`, other lone paint; corners from the
-  // top left, clockwise.
+  // Paints a quad, with the corners clockwise from the top left. Skips it if a sticker is near or,
+  // with `alone`, if other paint that was added with `alone` is near.
   void AddPaint(const Ground& ground, const std::array<Eigen::Vector2d, 4>& corners_uv,
                 double gray_change, bool alone);
 
@@ -43,7 +43,7 @@ class ClipSceneBuilder {
 
   ClipScene scene_;
   std::vector<Eigen::Vector3d> centers_m_;                      // of the stickers
-  std::vector<std::pair<Eigen::Vector3d, double>> lone_paint_;  // middle and reach, m
+  std::vector<std::pair<Eigen::Vector3d, double>> lone_paint_;  // centre and radius, m
 };
 
 }  // namespace velamap

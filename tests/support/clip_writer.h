@@ -1,5 +1,5 @@
-// Where the frames of a clip go: an H.264 or H.265 video, encoded by the ffmpeg program, or image
-// files.
+// Writes the frames of a clip to image files, or to an H.264 or H.265 video with the ffmpeg
+// program.
 
 #pragma once
 
@@ -20,18 +20,19 @@ struct ClipWriterOptions {
   double fps = 30.0;
   ClipCodec codec = ClipCodec::kH264;
   bool full_range = false;          // luma of the video from 0 to 255 instead of 16 to 235
-  int crf = 18;                     // constant quality of the video, 0 (H.264: lossless) to 51
-  std::string bitrate{};            // instead of crf, as ffmpeg takes it: 30M
+  int crf = 18;                     // constant rate factor, 0 (H.264: lossless) to 51
+  std::string bitrate{};            // instead of crf, in the notation of ffmpeg: 30M
   std::string preset = "veryfast";  // of x264 or x265
 
   void Check() const;  // throws InputError
 };
 
-// Writes frames (BGR, all of one size) in order. Throws ExternalToolError when ffmpeg fails,
-// InputError when an image cannot be written.
+// Writes frames (BGR, all of the same size) in order. Throws ExternalToolError if ffmpeg fails, and
+// InputError if an image cannot be written.
 class ClipWriter {
  public:
-  // Video: folder/clip.mp4; images: folder/images/frame_000000.png. The folder must exist.
+  // Writes the video folder/clip.mp4 or the images folder/images/frame_000000.png and so on.
+  // `folder` must exist.
   ClipWriter(const std::filesystem::path& folder, const ClipWriterOptions& options);
   ~ClipWriter();
   ClipWriter(const ClipWriter&) = delete;

@@ -1,4 +1,4 @@
-// The content of a database, to be compared with that of another one.
+// The content of a database as text, for comparison with another one.
 
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace velamap {
 
-// A line for each row of each table, sorted: the same content may lie in other places of the file.
-// Fails the test if SQLite finds the file damaged.
+// One line for each row of each table. The lines are sorted because the same content can be stored
+// in a different order. Fails the test if SQLite finds the file damaged.
 std::string DatabaseText(const std::string& path);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// Checks that bad input gives one clear line.
+// Checks that bad input gives an error message of one line.
 
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace velamap {
 
-// Expects that `action` throws Error with one line that holds all of `parts`.
+// Expects that `action` throws Error with a message of one line that contains all of `parts`.
 template <typename Error>
 void ExpectThrows(const std::function<void()>& action, std::initializer_list<std::string> parts) {
   try {

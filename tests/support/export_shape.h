@@ -1,4 +1,4 @@
-// A whole export, for tests that look at its files.
+// A complete export, for tests that check its files.
 
 #pragma once
 

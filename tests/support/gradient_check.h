@@ -1,4 +1,4 @@
-// Checks the derivatives of a problem of importer/geometry/least_squares.h by central differences
+// Checks the gradient of a problem of importer/geometry/least_squares.h against central differences
 // of its cost along each component of a step.
 
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace velamap {
 
-// `tolerance` is relative to the longest gradient.
+// `tolerance` is relative to the norm of the gradient.
 template <typename Problem>
 void ExpectGradientOfCost(const Problem& problem, const typename Problem::Parameters& parameters,
                           double tolerance) {

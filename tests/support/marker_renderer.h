@@ -1,6 +1,6 @@
-// Pictures of markers with exact truth: every pixel is the mean over its area of what the camera
-// sees there, then blurred and made noisy. COLMAP's image frame: the first pixel's centre lies at
-// (0.5, 0.5). Same options, same bytes.
+// Renders pictures of markers with exact truth. Every pixel is the mean over its area of what the
+// camera sees there; blur and noise are added afterwards. Image frame as in COLMAP: the centre of
+// the first pixel is at (0.5, 0.5). The same options give the same bytes.
 
 #pragma once
 
@@ -18,8 +18,8 @@
 
 namespace velamap {
 
-// A flat square marker; corners top-left, top-right, bottom-right, bottom-left of the upright
-// marker, in the cam frame, m. Only the first, second and fourth are used: the third follows.
+// A flat square marker with its top-left, top-right, bottom-right and bottom-left corner in the cam
+// frame, m. The third corner is not used because it follows from the others.
 struct PlacedMarkerInCam {
   int marker_id = 0;
   std::array<Eigen::Vector3d, kNumCorners> corners_in_cam;
@@ -31,23 +31,23 @@ struct RenderOptions {
   double background = 120.0;
   double background_texture = 0.0;    // standard deviation of smooth random patches, grey levels
   double quiet_zone_cells = 1.0;      // white ring around the black square
-  double surround_cells = 0.0;        // black ring around that, as on a chequered board
+  double surround_cells = 0.0;        // black ring around the white one, as on a chequered board
   double light_gradient = 0.0;        // relative change of the light across the picture's diagonal
-  double blur_sigma_px = 0.7;         // of the lens; a pixel's own area comes on top
-  ImageFormationParameters camera{};  // tone curve and sharpening; without the spread of the ink
+  double blur_sigma_px = 0.7;         // of the lens, in addition to the area of a pixel
+  ImageFormationParameters camera{};  // tone curve and sharpening; the ink spread is not used
   double noise_sigma = 0.0;           // grey levels
-  int supersampling = 8;              // samples along each side of a pixel
+  int supersampling = 8;              // number of samples along each side of a pixel
   bool color = false;                 // BGR with three equal channels instead of grey
   std::uint32_t seed = 1;             // of texture and noise
 };
 
-// An 8-bit picture of the camera's size. Markers that turn their back or reach behind the camera
-// are not drawn; near ones hide far ones.
+// An 8-bit picture of the camera's size. Markers that face away from the camera or extend behind it
+// are not drawn. Near markers hide far ones.
 cv::Mat RenderMarkers(const Camera& camera, const std::vector<PlacedMarkerInCam>& markers,
                       const Dictionary& dictionary, int border_bits, const RenderOptions& options);
 
-// The markers of a scene as its frame `frame_idx` sees them, with the dictionary and border of the
-// scene's layout.
+// The markers of a scene in its frame `frame_idx`, with the dictionary and border of the scene's
+// layout.
 cv::Mat RenderFrame(const SyntheticScene& scene, int frame_idx, const RenderOptions& options);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// Sails with exact truth and noisy markers, and how near a fitted surface comes to them.
+// Random sails with exact truth and noisy markers, and the errors of surfaces fitted to these.
 
 #pragma once
 
@@ -14,40 +14,42 @@
 
 namespace velamap {
 
-// A sail of random size, camber, draft, twist, mast bend and roach, upright, bulging to -y.
+// An upright sail of random size, camber, draft, twist, mast bend and roach. It bulges towards -y.
 Surface DrawSail(std::mt19937* random);
 
-// Lines of markers at heights `vs` of a sail. Line k reaches from first_us[k] to last_us[k].
+// Lines of markers at the heights `vs` of a sail. Line k extends from first_us[k] to last_us[k].
 struct SailLines {
   std::vector<double> vs, first_us, last_us;
 };
 
-// Seven lines that begin and end 50 to 120 mm from the edges of the cloth.
+// Seven lines whose ends are 50 to 120 mm from the edges of the cloth.
 SailLines DrawLines(const Surface& sail, std::mt19937* random);
 
-// Sigma of a marker at a fraction of its line: three times as large at the ends, which fewer
-// pictures show.
+// The sigma of a marker at a fraction of its line, m. It is three times as large at the ends, which
+// fewer pictures show.
 double MarkerSigma(double sigma_m, double fraction);
 
-// Markers every 150 mm of the lines, and on a vertical line near the middle of the chords four
-// between each pair; each with noise of its sigma, which it states.
+// Markers every 150 mm along the lines, and four between each pair of lines on a vertical line near
+// the middle of the chords. Each has noise of MarkerSigma() and states this sigma.
 SurfaceInput DrawMarkers(const Surface& sail, const SailLines& lines, double sigma_m,
                          std::mt19937* random);
 
-// A place between the outer markers, by fractions of the lines and of their height.
+// The errors of a surface at a place between the outer markers.
 struct SurfaceError {
+  // The place, as fractions of the line and of the height of the lines.
   double along = 0.0, up = 0.0;
   double distance_m = 0.0;       // of the true place from the surface, along its normal
   double curvature = 0.0;        // of the true sail along its chord, 1/m
-  double found_curvature = 0.0;  // of the surface in the same direction, 1/m
-  bool is_inside = false;        // one marker from luff and leech, one line from foot and head
+  double found_curvature = 0.0;  // of the fitted surface in the same direction, 1/m
+  // Whether it is at least one marker away from luff and leech and one line from foot and head.
+  bool is_inside = false;
   Eigen::Vector3d x_in_sail_m = Eigen::Vector3d::Zero();
 };
 
 constexpr int kNumPlacesAlong = 13;
 constexpr int kNumPlacesPerGap = 2;  // between two lines
 
-// At the places of a grid, along the lines first.
+// The errors at the places of a grid, in the order of the heights and then along each line.
 std::vector<SurfaceError> MeasureSurface(const SplineSurface& surface, const Surface& sail,
                                          const SailLines& lines);
 

@@ -1,4 +1,4 @@
-// Sets the date in written files while it exists.
+// Sets the date that is written into files for the lifetime of an object.
 
 #pragma once
 

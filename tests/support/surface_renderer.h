@@ -1,8 +1,8 @@
-// Frames of a clip as a camera takes them: surfaces with their markers before sea and sky and
-// reflections, all as linear light; veiling glare, motion and lens blur and noise in that light;
-// then the camera's response (camera_response.h) and 8 bits. With a linear response and no glare
-// grey values are light. Same scene, options and frame, same bytes; frames may be drawn from
-// several threads.
+// Renders the frames of a clip as a camera takes them. Surfaces with their markers, sea, sky and
+// reflections are drawn in linear light, to which veiling glare, motion and lens blur and noise are
+// applied. The response of the camera (camera_response.h) and 8 bits come last; with a linear
+// response and no glare, grey values equal light. The same scene, options and frame give the same
+// bytes. Several threads may render frames.
 
 #pragma once
 
@@ -16,14 +16,14 @@
 namespace velamap {
 
 struct SurfaceRenderOptions {
-  double blur_px = 0.7;         // sigma of the lens's blur; a pixel's own area comes on top
-  double motion_blur_px = 0.0;  // path during the exposure; its direction changes by frame
-  double noise = 2.0;           // standard deviation, of light (0 to 255)
-  double shot_noise = 0.0;      // the same at full light; it grows with the root of light
-  int num_reflections = 0;      // bright patches on the scene's last sheet that wipe out markers
-  double glare = 0.0;           // light that the lens scatters over all pixels, part of full light
+  double blur_px = 0.7;         // sigma of the lens blur, in addition to the area of a pixel
+  double motion_blur_px = 0.0;  // motion during the exposure; its direction differs between frames
+  double noise = 2.0;           // standard deviation of the read noise, in light (0 to 255)
+  double shot_noise = 0.0;      // the same of the shot noise at full light
+  int num_reflections = 0;      // bright patches on the scene's last sheet that hide markers
+  double glare = 0.0;           // light scattered over all pixels, as a fraction of full light
   double ink_level = 38.0 / 255;     // reflectance of printed cells
-  double paper_level = 218.0 / 255;  // and of the paper
+  double paper_level = 218.0 / 255;  // reflectance of the paper
   CameraResponse response;
 
   void Check() const;  // throws InputError
@@ -32,8 +32,8 @@ struct SurfaceRenderOptions {
 // An 8-bit BGR picture of the camera's size.
 cv::Mat RenderClipFrame(const ClipScene& scene, const SurfaceRenderOptions& options, int frame_idx);
 
-// True corners in the picture, image frame, px; nothing for a marker that is not wholly in it or
-// turns its back.
+// The true corners in the image frame, px, or nothing if the marker is not wholly in the picture or
+// faces away from the camera.
 std::optional<std::array<Eigen::Vector2d, kNumCorners>> ProjectCorners(const ClipScene& scene,
                                                                        const ClipMarker& marker,
                                                                        int frame_idx);

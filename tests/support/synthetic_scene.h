@@ -1,5 +1,5 @@
-// A scene of markers on a known surface seen by known cameras, with exact truth. Noise has options
-// of its own, so that a scene without noise is exact.
+// Scenes of markers on a known surface with known cameras and exact truth. A scene has no noise
+// unless AddNoise() adds it.
 
 #pragma once
 
@@ -18,9 +18,9 @@
 namespace velamap {
 
 enum class SceneKind {
-  kSail,   // a curved, cambered sheet in lines, seen by a camera that sweeps past it as in a video
+  kSail,   // lines of markers on a cambered sheet; the camera sweeps past it as in a video
   kPlane,  // a flat board
-  kCube,   // markers on six faces, seen from all around: no image sees more than three faces
+  kCube,   // markers on six faces, of which an image shows at most three; seen from all around
 };
 
 struct SyntheticSceneOptions {
@@ -30,32 +30,33 @@ struct SyntheticSceneOptions {
   double marker_length_m = 0.1;
   double spacing_m = 0.25;  // between marker centres
   int num_frames = 21;
-  bool video = true;  // frames carry numbers and times
-  Camera camera;      // model with zero size: a default wide-angle OPENCV camera, 1920x1080
+  bool video = true;  // frames have numbers and times
+  Camera camera;      // if its size is zero, a default wide-angle OPENCV camera of 1920x1080
   std::uint32_t seed = 1;
 };
 
 struct SyntheticNoiseOptions {
   double corner_sigma_px = 0.0;
-  double missing_rate = 0.0;  // of the detections
-  double outlier_rate = 0.0;  // of the detections: moved by outlier_px as a whole
+  double missing_rate = 0.0;  // fraction of the detections that are removed
+  double outlier_rate = 0.0;  // fraction of the detections that are moved by outlier_px as a whole
   double outlier_px = 200.0;
   std::uint32_t seed = 1;
 };
 
 struct SyntheticScene {
-  Layout layout;  // with lines h1..hn for the sail, a part a face for the cube
+  Layout layout;  // with lines h1..hn for the sail, and a part for each face of the cube
   Camera camera;
-  // By marker id: centre, then corners 1..4; world frame, m. Squares are exact, flat and rigid.
+  // By marker id, the centre and corners 1..4 in the world frame, m. Markers are exact flat
+  // squares.
   std::map<int, std::array<Eigen::Vector3d, kNumCorners + 1>> x_in_world;
   std::vector<Rigid3> cam_from_world;   // by frame
   std::vector<FrameDetections> frames;  // image names frame_000000.jpg ...
 };
 
-// A marker is seen when it faces the camera within 75 degrees and lies inside the image.
+// A marker is seen if it faces the camera within 75 degrees and is inside the image.
 SyntheticScene MakeSyntheticScene(const SyntheticSceneOptions& options);
 
-// Perturbs the detections; the truth stays.
+// Perturbs the detections, but not the truth.
 void AddNoise(const SyntheticNoiseOptions& options, SyntheticScene* scene);
 
 }  // namespace velamap

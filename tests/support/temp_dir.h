@@ -1,4 +1,4 @@
-// A fresh folder that is removed with everything in it when it goes out of scope.
+// A new folder that is removed with its content when the object goes out of scope.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// Seed of a test's random numbers: a hash of the test's name, so that no other test, no filter and
-// no order of the tests changes what it draws.
+// A seed for the random numbers of a test. It is a hash of the test's name, so the numbers do not
+// depend on other tests, filters or the order of the tests.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// How many threads some work starts. Results do not depend on it, so that no other test would
-// notice an option num_threads that nobody reads.
+// Counts the threads that a piece of work uses. Results do not depend on num_threads, so no other
+// test would notice if the option were ignored.
 
 #pragma once
 
@@ -7,8 +7,9 @@
 
 namespace velamap {
 
-// The most threads that work at the same time, with the calling one. The sanitizers count threads
-// themselves, so that their builds cannot have this.
+// The largest number of threads that exist at the same time, including the calling one. A thread
+// exists until it is joined. Not available in builds with sanitizers, which intercept the creation
+// of threads themselves.
 int NumThreadsOf(const std::function<void()>& work);
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// Options of the tools that render clips and look at them.
+// Options of the tools that render and evaluate clips.
 
 #pragma once
 
@@ -8,17 +8,17 @@
 
 namespace velamap {
 
-// Throws InputError that names the option and the range. Not a number is out of every range.
+// Throws InputError that names the option and the range if `value` is out of range or NaN.
 void CheckOptionRange(const char* option, double value, double min, double max);
 
-// Reads the command line into `values` and into the variables that the description names. Returns
-// false after --help, whose text it prints. Throws InputError for a bad option.
+// Reads the command line into `values` and into the variables to which `description` is bound. For
+// --help, prints the help text and returns false. Throws InputError for an invalid option.
 bool ReadToolOptions(const boost::program_options::options_description& description,
                      const std::string& tool, int argc, char** argv,
                      boost::program_options::variables_map* values);
 
-// Runs the tool and returns its exit code: 0, 2 for bad input, 3 if another program failed. Prints
-// what went wrong.
+// Runs the tool and returns its exit code: 0, 3 if another program failed, or 2 for any other
+// error. Prints the error.
 int RunTool(void (*run)(int argc, char** argv), int argc, char** argv);
 
 }  // namespace velamap

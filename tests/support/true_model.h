@@ -1,4 +1,4 @@
-// The model of a synthetic scene without an error.
+// The exact model of a synthetic scene.
 
 #pragma once
 
@@ -7,11 +7,11 @@
 
 namespace velamap {
 
-// A unit of models that cannot pass for the metre.
+// A unit of length of models that differs clearly from the metre.
 constexpr double kOtherUnit_m = 2.0;
 
-// True poses and points in units of `unit_m`, the detections of the frames as tracks. Image i + 1
-// is frame i; keypoints are in the order of the detections.
+// The true poses and points, in units of `unit_m`, with the detections of the frames as tracks.
+// Image i + 1 is frame i. Keypoints are in the order of the detections.
 Model TrueModel(const SyntheticScene& scene, double unit_m = 1.0);
 
 }  // namespace velamap

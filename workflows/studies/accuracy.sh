@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Measures the error of the metric result on rendered clips and on photographs of known objects, with
-# the thesis's method and with velamap's replacements for its steps, added one by one.
+# Measures the error of the metric result on rendered clips and on photographs of known objects. The
+# thesis's method comes first; then its steps are replaced by those of velamap, one after the other.
 # usage: workflows/studies/accuracy.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# CLIPS, WAYS: a subset, e.g. CLIPS="walls board" WAYS="global_both".
+# CLIPS and WAYS select a subset, e.g. CLIPS="walls board" WAYS="global_both".
 #
 #   way             corners  registration  adjustment
 #   thesis          subpix   thesis        colmap
@@ -32,7 +32,7 @@ keys=(num_markers reconstruction_ratio scale_error_percent distance_mm_rms
 csv="$work/accuracy.csv"
 echo "clip,way,$(IFS=,; echo "${keys[*]}"),scale_sigma_percent,outliers_percent,angle_deg" >"$csv"
 
-# link_real NAME FOLDER IMAGES: makes a clip of real pictures with known geometry.
+# link_real NAME FOLDER IMAGES: makes a clip of real pictures of an object with known geometry.
 link_real() {
   local folder="$clips/$1"
   mkdir -p "$folder"
@@ -41,8 +41,8 @@ link_real() {
   echo "$3" >"$folder/images.txt"
 }
 
-# The cube's geometry is exact only within a face, so each face gets its own reference; the clip's own
-# reference is face0.
+# The geometry of the cube is exact only within a face, so each face has its own reference. The
+# reference of the clip itself is face0.
 link_cube() {
   local folder="$clips/cube" face
   mkdir -p "$folder/truth"
@@ -86,7 +86,7 @@ folder_of() {
   esac
 }
 
-# detections CLIP CORNERS: prints the path of the clip's database, which is made unless it is current.
+# detections CLIP CORNERS: makes the database of a clip unless it is current, and prints its path.
 detections() {
   local folder database images more=()
   folder="$clips/$(folder_of "$1")"
@@ -103,7 +103,7 @@ detections() {
   echo "$database"
 }
 
-# study CLIP WAY
+# study CLIP WAY: reconstructs a clip in one way and writes its rows.
 study() {
   local corners=edge method=global backend=colmap exact_print=0 face run="$1_$2"
   case "$2" in
@@ -127,8 +127,8 @@ study() {
   fi
 }
 
-# adjustment_figures RUN: the scale's sigma and the share of outliers, both in percent, as the commands
-# print them first.
+# adjustment_figures RUN: prints the sigma of the scale and the share of outliers, both in percent,
+# from the first command that reports them.
 adjustment_figures() {
   awk '
     $1 == "scale_sigma:" && sigma == "" { sigma = $2 }
@@ -136,7 +136,7 @@ adjustment_figures() {
     END { printf "%s,%s", sigma, outliers }' "$runs/$1/log.txt"
 }
 
-# row CLIP WAY RUN [RUN_OF_THE_ADJUSTMENT]
+# row CLIP WAY RUN [RUN_OF_THE_ADJUSTMENT]: writes a row of the table.
 row() {
   local key
   {
@@ -148,7 +148,7 @@ row() {
   } >>"$csv"
 }
 
-# face_row WAY FACE: compares the cube's shape with the print of one face.
+# face_row WAY FACE: compares the cube with the reference of one face and writes the row.
 face_row() {
   local run="$runs/cube_$1" face_run="$runs/cube_$1_face$2"
   mkdir -p "$face_run"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs all studies, one after the other, into one work folder.
+# Runs all studies except camera_draws.sh and unknown_cameras.sh, which take longest, one after the
+# other into the same work folder.
 # usage: workflows/studies/all.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
 set -euo pipefail
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Measures the accuracy on a flat board of 12 markers of 40 mm in the eight motions a to h (thesis
-# section 4.1, Figures 4.4 to 4.7).
+# Measures the accuracy on a flat board with 12 markers of 40 mm, for the eight motions a to h
+# (thesis section 4.1, Figures 4.4 to 4.7).
 # usage: workflows/studies/board_motions.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# step "detection": poses of single markers in single frames, nothing adjusted; mean over every
-# fourth frame of the clip.
-# step "adjusted": one bundle-adjusted reconstruction of the clip.
+# Step "detection": poses of single markers in single frames without an adjustment, as the mean over
+# every fourth frame of the clip (every tenth with --quick).
+# Step "adjusted": one bundle-adjusted reconstruction of the clip.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -21,7 +21,7 @@ csv="$work/board_motions.csv"
 echo "motion,step,num_markers,distance_error_mm,plane_error_mm,normal_error_deg,tangent_error_deg,\
 scale_error_percent,rms_to_truth_mm" >"$csv"
 
-# mean_part_metric KEY RUN...: prints the mean of a metric of the part board.
+# mean_part_metric KEY RUN...: prints the mean over the runs of a metric of the part `board`.
 mean_part_metric() {
   local key="$1" run
   for run in "${@:2}"; do table_metric "$run" parts part board "$key"; done |

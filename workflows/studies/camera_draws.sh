@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Measures the error of the metric result, and how well its stated sigma predicts it, over random cameras,
-# prints and scenes: each draw renders a short clip, runs the whole job with its defaults and compares
-# the shape with the truth.
+# Measures the error of the metric result, and how well its stated sigma predicts this error, over
+# random cameras, prints and scenes. Each draw renders a short clip, runs automatic_reconstructor
+# with its defaults except for an exact print, and compares the shape with the truth.
 # usage: workflows/studies/camera_draws.sh [--quick] [--num_draws N] [--seed S] [WORK_FOLDER]
 #        (default: 200 draws, 6 for --quick, seed 1, workspace/studies)
 # Writes camera_draws.csv, one row per draw with its conditions, the errors of the corners
-# (clip_corners) and the errors of the shape, and camera_draws_summary.csv, one row per
-# class. Rows that camera_draws.csv already holds are kept, so an interrupted study continues;
-# remove the file to measure another velamap. Clips are removed after their draw.
-# KEEP="12 31": draws that are run again and whose clips and results stay in runs/camera_draws.
+# (clip_corners) and the errors of the shape, and camera_draws_summary.csv, one row per class. Rows
+# that camera_draws.csv already holds are kept, so that an interrupted study can continue; remove
+# the file to measure another version of velamap. Clips are removed after their draw.
+# KEEP="12 31" runs these draws again and keeps their clips and results in runs/camera_draws.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -28,10 +28,10 @@ results=(exit_code side_px side_bias_px side_bias_percent corner_error_px corner
   error_over_sigma distance_mm_rms distance_after_scaling_mm_rms verdict num_warnings
   found_gamma found_s_curve found_sharpening found_radius_px found_ink_percent found_residual seconds)
 
-# log_value RUN KEY: prints what stands after `KEY: ` in a summary, up to the first space or comma.
+# log_value RUN KEY: prints the text after `KEY: ` in a log, up to the first space or comma.
 log_value() { awk -v key="$2:" '$1 == key { sub(",.*", "", $2); print $2; exit }' "$runs/$1/log.txt"; }
 
-# formation RUN: prints the importer's estimate of camera and print, six figures.
+# formation RUN: prints the six values of the importer's estimate of camera and print.
 formation() {
   awk '/camera and print, from/ {
       for (i = 1; i < NF; i++) {
@@ -46,32 +46,32 @@ formation() {
     END { print gamma "," s_curve "," amount "," radius "," ink "," residual }' "$runs/$1/log.txt"
 }
 
-# run_draw NAME RENDER_CLIP_OPTION...: renders, reconstructs and analyses into runs/NAME.
+# run_draw NAME RENDER_CLIP_OPTION...: renders, reconstructs and analyzes a clip in runs/NAME.
 run_draw() {
   local run="$runs/$1" clip="$runs/$1/clip" code=0
   mkdir -p "$run"
   "$render_clip" "${@:2}" --num_threads 1 --output_path "$clip" >"$run/render.txt" 2>&1 ||
     fail "render_clip failed: $(tail -n 1 "$run/render.txt")"
-  # The print is exact, and no tolerance must hide errors of the edges.
+  # The print is exact. A tolerance would hide errors of the detected edges.
   "$velamap" automatic_reconstructor --image_path "$clip/clip.mp4" --num_threads 1 \
     --camera_path "$clip/camera.yml" --layout_path "$clip/layout.yml" \
     --workspace_path "$run/workspace" --MarkerAdjustment.common_print_tolerance 0 \
     >"$run/log.txt" 2>&1 || code=$?
   echo "$code" >"$run/exit_code.txt"
   "$clip_corners" --clip_path "$clip" --database_path "$run/workspace/database.db" \
-    >"$run/corners.txt" 2>&1 || true  # a clip without a marker is an outcome too
+    >"$run/corners.txt" 2>&1 || true  # a clip without detections is a valid outcome
   if [[ -f "$run/workspace/shape/shape.csv" ]]; then
     "$velamap" shape_analyzer --shape_path "$run/workspace/shape" --log_level error \
       --input_path "$run/workspace/sparse/0" --layout_path "$clip/layout.yml" \
       --reference_path "$clip/truth.csv" --csv_path "$run/analysis.csv" >"$run/analysis.txt" 2>&1 ||
-      true  # nothing to compare is an outcome too
+      true  # a shape without anything to compare is a valid outcome
   fi
 }
 
-# corner_value RUN KEY: prints a figure about the corners against their truth.
+# corner_value RUN KEY: prints a value of the comparison of the corners with the truth.
 corner_value() { awk -v key="$2:" '$1 == key { print $2 }' "$runs/$1/corners.txt"; }
 
-# result_row NAME SECONDS: prints the results of a draw.
+# result_row NAME SECONDS: prints the results of a draw as a row.
 result_row() {
   local error sigma key
   error="$(metric "$1" scale_error_percent)"

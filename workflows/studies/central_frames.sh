@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Measures the reconstruction ratio around many central frames (thesis Figure 4.24) and the histogram
-# of the markers' areas (Figure 4.23).
+# Measures the reconstruction ratio around many central frames (thesis Figure 4.24) and the
+# histogram of the markers' areas (Figure 4.23).
 # usage: workflows/studies/central_frames.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# One central_frame_sweeper runs them all; START=1 starts each adjustment from its neighbour's result.
-# Near the clip's ends the search finds frames on one side only, and so fewer: see num_images.
+# A single run of central_frame_sweeper makes all reconstructions. With START=1, each adjustment
+# starts from the result of its neighbour. BACKEND selects the adjustment (default: colmap).
+# Near the ends of the clip, frames exist on one side only, so that fewer are found (num_images).
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -32,7 +33,8 @@ histogram="$work/central_frames_histogram.csv"
 echo "central_frame,$(sail_header)" >"$csv"
 echo "central_frame,marker_id,area_mm2" >"$areas"
 
-# areas_of FRAME SHAPE_CSV: prints the area of every whole marker, half the cross product of its diagonals.
+# areas_of FRAME SHAPE_CSV: prints the area of every whole marker, which is half the norm of the
+# cross product of its diagonals.
 areas_of() {
   awk -F, -v frame="$1" '
     /^[0-9]/ && $2 >= 1 { p[$1, $2, "x"] = $3; p[$1, $2, "y"] = $4; p[$1, $2, "z"] = $5; ids[$1] }
@@ -50,8 +52,8 @@ areas_of() {
     }' "$2" | sort -t, -k2n
 }
 
-# analyze FRAME: compares a result with the truth. The row of a frame without a result stays empty; the
-# sweep's table says why.
+# analyze FRAME: compares a result with the truth. The row of a frame without a result stays empty;
+# the table of the sweep gives the reason.
 analyze() {
   local model
   model="$runs/models/frame_$(printf '%06d' "$1")"
@@ -81,7 +83,8 @@ best="$(awk -F, '
 [[ -n "$best" ]] || fail "no central frame gave a result"
 echo "== central_frames: best central frame: $best"
 
-# Bins of 20 mm^2, named by their middle, with the shares of the best reconstruction and of all.
+# Histogram of the areas in bins of 20 mm^2, for the best reconstruction and for all of them. A bin
+# is named by its middle.
 awk -F, -v best="$best" -v width=20 '
   NR == 1 { next }
   {

@@ -1,13 +1,13 @@
 # shellcheck shell=bash
-# What the studies share: options, programs, clips that are rendered and imported once, one
-# reconstruction for each set of parameters, and its metrics. The studies source this file.
+# Functions that the studies share. They parse options, find the programs, render and import clips,
+# reconstruct a clip for given parameters, and read the metrics. The studies source this file.
 #
 # A work folder holds
-#   clips/NAME    rendered clip with its truth, database.db with its detections, arguments.txt
+#   clips/NAME    a rendered clip with its truth, its detections (database.db) and arguments.txt
 #   runs/STUDY    every reconstruction of a study: models, shape, analysis.csv, log.txt
 #   STUDY*.csv, STUDY*.png   the tables and plots
-# Clips are reused, also by other studies, as long as their arguments are the same; they are imported
-# again when the program is newer than their detections.
+# Clips are reused, also by other studies, as long as their arguments are the same. They are
+# imported again if velamap is newer than their detections.
 set -euo pipefail
 export LC_ALL=C
 
@@ -16,8 +16,8 @@ fail() {
   exit 2
 }
 
-# find_program VARIABLE NAME PATH_IN_THE_BUILD: prints the path that $VARIABLE names, else that in the
-# release build, else that on the PATH.
+# find_program VARIABLE NAME PATH_IN_THE_BUILD: prints the path of a program, which is the value of
+# $VARIABLE if that is set, else the program in the release build, else the one on the PATH.
 find_program() {
   local repository program
   repository="$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -27,8 +27,8 @@ find_program() {
   realpath "$program"
 }
 
-# begin_study NAME "$@": reads the arguments that every study takes, [--quick] [WORK_FOLDER], and sets
-# study, quick, work, clips, runs, sail and the programs.
+# begin_study NAME "$@": parses the common arguments [--quick] [WORK_FOLDER]; sets study, quick,
+# work, clips, runs, sail, velamap and render_clip; and empties the folder of the study's runs.
 begin_study() {
   study="$1"
   shift
@@ -58,8 +58,8 @@ begin_study() {
   echo "== $study: into $work"
 }
 
-# read_draw_arguments "$@": of a study that draws its clips at random, sets num_draws (empty: the study's
-# own number) and seed, and leaves the other arguments in rest.
+# read_draw_arguments "$@": parses the arguments of a study of random clips. Sets num_draws (empty
+# if not given) and seed, and leaves the other arguments in rest.
 read_draw_arguments() {
   num_draws="" seed=1 rest=()
   while [[ $# -gt 0 ]]; do
@@ -75,18 +75,19 @@ read_draw_arguments() {
   done
 }
 
-# The sail of all studies: 122 markers of 100 mm as in section 4.3, at half the size for --quick.
+# The options of render_clip for the sail of the studies, which has 122 markers of 100 mm as in
+# section 4.3 of the thesis. With --quick, the sail has half the size.
 full_sail=(--scene sail --width 1920)
 quick_sail=(--scene sail --width 1280 --sail_scale 0.5 --distance 3)
 
-# Frames of the sail's clips. The near clip has to hold the longest search.
+# The numbers of frames of the sail's clips. The longest search must fit into the near clip.
 short_clip_frames() { if [[ $quick -eq 1 ]]; then echo 90; else echo 220; fi; }
 near_clip_frames() { if [[ $quick -eq 1 ]]; then echo 110; else echo 600; fi; }
 
-# is_current FILE: whether the file was made by this velamap.
+# is_current FILE: whether the file exists and is not older than velamap.
 is_current() { [[ -f "$1" && ! "$velamap" -nt "$1" ]]; }
 
-# make_clip NAME RENDER_CLIP_ARGUMENT...: renders and imports clips/NAME unless that is done.
+# make_clip NAME RENDER_CLIP_ARGUMENT...: renders and imports clips/NAME unless it is up to date.
 make_clip() {
   local folder="$clips/$1" arguments="${*:2}"
   if [[ ! -f "$folder/arguments.txt" || "$(cat "$folder/arguments.txt")" != "$arguments" ]]; then
@@ -102,7 +103,7 @@ make_clip() {
   if ! "$velamap" marker_importer --image_path "$folder/clip.mp4" \
     --camera_path "$folder/camera.yml" --layout_path "$folder/layout.yml" \
     --database_path "$folder/database.db" --log_level error >"$folder/import.part"; then
-    # A clip without a marker is a valid outcome of a study.
+    # A clip without detections is a valid outcome of a study.
     echo "== $study: clip $1 gives no detections" >&2
   fi
   mv "$folder/import.part" "$folder/import.txt"
@@ -110,11 +111,16 @@ make_clip() {
 
 make_near_clip() { make_clip near "${sail[@]}" --num_frames "$(near_clip_frames)"; }
 
-# reconstruct CLIP RUN FRAME_REGISTRATOR_OPTION...: reconstructs a clip into runs/STUDY/RUN. A study may
-# set TRUTH (a reference other than the clip's truth.csv), DATABASE (other detections), METHOD (other
-# than thesis), BACKEND (other than colmap), EXACT_PRINT=1 (the markers are as large as the layout says,
-# as a renderer draws them), ADJUST=0 (no adjustment). Where the data give no result, the log says why
-# and there is no analysis.csv; that is a valid outcome of a study.
+# reconstruct CLIP RUN FRAME_REGISTRATOR_OPTION...: reconstructs a clip in runs/STUDY/RUN. These
+# variables change the defaults:
+#   TRUTH          the reference (default: the clip's truth.csv)
+#   DATABASE       the detections (default: the clip's database.db)
+#   METHOD         the registration method (default: thesis)
+#   BACKEND        the backend of bundle_adjuster (default: colmap)
+#   EXACT_PRINT=1  no print tolerance, because rendered markers are as large as the layout says
+#   ADJUST=0       no adjustment
+# If the data give no result, the log has the reason and there is no analysis.csv. That is a valid
+# outcome of a study.
 reconstruct() {
   local clip="$clips/$1" run="$runs/$2"
   mkdir -p "$run"
@@ -125,7 +131,7 @@ reconstruct() {
   fi
 }
 
-# The && are needed because bash ignores `set -e` within the condition of an `if`.
+# The commands are joined by && because bash ignores `set -e` in the condition of an `if`.
 reconstruct_steps() {
   local clip="$1" run="$2" model="$2/adjusted" reference="${TRUTH:-$1/truth.csv}"
   local layout=(--layout_path "$clip/layout.yml" --log_level warn)
@@ -149,21 +155,21 @@ reconstruct_steps() {
       --reference_path "$reference" --part_planes 1 --csv_path "$run/analysis.csv" "${layout[@]}"
 }
 
-# search N S M [CENTRAL_FRAME]: prints the options of frame_registrator.
+# search N S M [CENTRAL_FRAME]: prints the options of frame_registrator for these parameters.
 search() {
   printf '%s\n' --Registration.num_frames "$1" --Registration.skip "$2" \
     --Registration.neighborhood "$3"
   if [[ $# -gt 3 ]]; then printf '%s\n' --Registration.central_frame "$4"; fi
 }
 
-# metric RUN KEY: prints one figure of a reconstruction, or nothing.
+# metric RUN KEY: prints a metric of a reconstruction, or nothing if there is none.
 metric() {
   local file="$runs/$1/analysis.csv"
   [[ -f "$file" ]] || return 0
   awk -F, -v key="$2" '$1 == "" && $3 == key { print $4 }' "$file"
 }
 
-# table_metric RUN TABLE NAME_KEY NAME KEY: prints one figure of the row whose NAME_KEY is NAME.
+# table_metric RUN TABLE NAME_KEY NAME KEY: prints KEY of the row whose NAME_KEY is NAME.
 table_metric() {
   local file="$runs/$1/analysis.csv"
   [[ -f "$file" ]] || return 0
@@ -173,14 +179,15 @@ table_metric() {
     $3 == key && row != "" && $2 == row { print $4 }' "$file"
 }
 
-# mean_metric KEY RUN...: prints the mean over the reconstructions that have it (section 4.3.3).
+# mean_metric KEY RUN...: prints the mean over the reconstructions that have the metric (section
+# 4.3.3 of the thesis).
 mean_metric() {
   local key="$1" run
   for run in "${@:2}"; do metric "$run" "$key"; done |
     awk '{ sum += $1; n++ } END { if (n) printf "%.6g", sum / n }'
 }
 
-# The figures in a row about the sail, and their names.
+# The metrics in a row about the sail, and the header of such a table.
 sail_keys=(image_marker_ratio_count num_markers reconstruction_ratio
   area_error_mm2_mean area_error_mm2_std area_error_mm2_median area_error_mm2_min
   area_error_mm2_max area_error_percent_mean
@@ -194,14 +201,15 @@ sail_header() {
   echo "${keys/image_marker_ratio_count/num_images}"
 }
 
-# sail_row RUN...: prints the means over the reconstructions, each after a comma.
+# sail_row RUN...: prints the mean of each metric over the reconstructions, each after a comma.
 sail_row() {
   local key
   for key in "${sail_keys[@]}"; do printf ',%s' "$(mean_metric "$key" "$@")"; done
   printf '\n'
 }
 
-# plot PICTURE [SIZE]: draws gnuplot's script on stdin as a PNG in the work folder, if there is gnuplot.
+# plot PICTURE [SIZE]: runs the gnuplot script on stdin and writes a PNG into the work folder.
+# Without gnuplot it only prints a note.
 plot() {
   local size="${2:-900,600}"
   if ! command -v gnuplot >/dev/null; then
@@ -218,7 +226,7 @@ plot() {
   echo "$work/$1"
 }
 
-# finish CSV...: prints what the study wrote.
+# finish CSV...: prints the tables of the study.
 finish() {
   local csv
   for csv in "$@"; do

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Compares hard conditions with the good near clip (thesis Figures 4.27 to 4.36): change of wind, weak
-# and strong reflection, bad angle, distance. Measures the motion of the sail against the hull between
-# two central frames half a second apart (Figure 4.26).
+# Compares difficult conditions with the near clip, whose conditions are good (thesis Figures 4.27
+# to 4.36): a change of wind, weak and strong reflections, a bad angle, a large distance. Also
+# measures the motion of the sail relative to the hull between two central frames half a second
+# apart (Figure 4.26).
 # usage: workflows/studies/conditions.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# The wind changes halfway, at the central frame; the shape is compared with the truth before and after.
-# The motion is measured with long and short searches on a flapping clip and on the near clip, whose
-# sail is rigid: motion there is measuring error.
+# The wind changes halfway, at the central frame, and the shape is compared with the truth before
+# and after the change. The motion is measured with long and short searches on a flapping clip and
+# on the near clip. The sail of the near clip is rigid, so motion there is a measurement error.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -30,7 +31,7 @@ make_clip flapping "${sail[@]}" --num_frames "$num_frames" --sail_motion_m 0.03
 
 csv="$work/conditions.csv"
 echo "condition,$(sail_header)" >"$csv"
-# condition NAME CLIP
+# condition NAME CLIP: reconstructs a clip and writes its row.
 condition() {
   reconstruct "$2" "$1" "${options[@]}"
   { printf '%s' "$1"; sail_row "$1"; } >>"$csv"
@@ -44,7 +45,7 @@ condition bad_angle bad_angle
 condition far far
 condition flapping flapping
 
-# motion NAME CLIP N S M: measures every marker's motion against the hull in half a second.
+# motion NAME CLIP N S M: measures the motion of every marker relative to the hull in half a second.
 motion_csv="$work/conditions_motion.csv"
 echo "clip,marker_id,of_hull,x_m,y_m,z_m,dx_mm,dy_mm,dz_mm,move_mm" >"$motion_csv"
 motion() {
@@ -63,7 +64,7 @@ motion flapping_short flapping "${short[@]}"
 motion rigid_long near "${long[@]}"
 motion rigid_short near "${short[@]}"
 
-# Means by marker line, which the layout counts from the foot of the sail to its top.
+# The mean motion of each line of markers, from the foot of the sail to its head, and of the hull.
 lines_csv="$work/conditions_motion_lines.csv"
 awk -F, '
   NR == FNR {

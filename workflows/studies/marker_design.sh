@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Measures which markers can be read from how far: with 9, 16 and 25 bits, with borders of one to three
-# cells, and with sides of 6 to 12 cm (thesis section 4.1), on clips of an action camera in 4K.
+# Measures from how far markers can be read, depending on their bits (9, 16 and 25), their border
+# (one to three cells) and their side (6 to 12 cm), on clips of an action camera in 4K (thesis
+# section 4.1).
 # usage: workflows/studies/marker_design.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# DISTANCES: other distances, m, e.g. "3 5 7".
-# Writes marker_design.csv: share of the markers found, and the corners' errors, of ten views nearly from
-# straight ahead that show every marker. The thesis's own marker has 9 bits, a border of one cell and a
-# side of 10 cm; each series changes one of the three.
+# DISTANCES gives other distances in m, e.g. "3 5 7".
+# Writes marker_design.csv with the share of the markers found and the errors of their corners, from
+# ten nearly frontal views that show every marker. The marker of the thesis has 9 bits, a border of
+# one cell and a side of 10 cm; each series varies one of the three.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -18,7 +19,7 @@ read -ra distances <<<"${DISTANCES-$distances}"
 csv="$work/marker_design.csv"
 echo "series,value,distance_m,side_px,found_percent,false,corner_error_px" >"$csv"
 
-# seen SERIES VALUE BITS BORDER LENGTH_M: a row for each distance.
+# seen SERIES VALUE BITS BORDER LENGTH_M: writes a row for each distance.
 seen() {
   local distance name found
   for distance in "${distances[@]}"; do
@@ -44,7 +45,7 @@ for length_cm in 6 8 10 12; do
   seen length "$length_cm" 3 1 "$(awk -v cm="$length_cm" 'BEGIN { print cm / 100 }')"
 done
 
-# panel SERIES TITLE UNIT VALUE...: a curve for each value.
+# panel SERIES TITLE UNIT VALUE...: prints gnuplot commands for a panel with a curve per value.
 panel() {
   local value curves=()
   for value in "${@:4}"; do

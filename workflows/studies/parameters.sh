@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Measures area error, reprojection error, reconstruction ratio and the error against the truth as
-# functions of |S| = 2 n + 1, skip s and neighborhood m (thesis Figures 4.17 to 4.22), and of the
-# parameters of section 4.3.2: sigma of the weighted mean, m; frequency threshold beta; distance up to
-# which RANSAC counts a marker as an inlier, m.
+# functions of the number of frames |S| = 2 n + 1, the skip s and the neighborhood m (thesis Figures
+# 4.17 to 4.22), and of the parameters of section 4.3.2: the sigma of the weighted mean (m), the
+# frequency threshold beta, and the distance up to which a marker is an inlier for RANSAC (m).
 # usage: workflows/studies/parameters.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# NUM_FRAMES, SKIPS, NEIGHBORHOODS, SIGMAS, BETAS, INLIER_DISTANCES, CENTRAL_FRAMES: other values, e.g.
-# "5 10 20".
-# Every figure is the mean over the reconstructions around CENTRAL_FRAMES, as in section 4.3.3.
+# NUM_FRAMES, SKIPS, NEIGHBORHOODS, SIGMAS, BETAS, INLIER_DISTANCES and CENTRAL_FRAMES give other
+# values, e.g. "5 10 20".
+# All results are means over the reconstructions around CENTRAL_FRAMES, as in section 4.3.3.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -35,8 +35,8 @@ make_near_clip
 csv="$work/parameters.csv"
 echo "parameter,value,n,s,m,$(sail_header)" >"$csv"
 
-# vary PARAMETER VALUE N S M [FRAME_REGISTRATOR_OPTION...]: writes a row, the mean over the central
-# frames.
+# vary PARAMETER VALUE N S M [FRAME_REGISTRATOR_OPTION...]: writes a row with the means over the
+# central frames.
 vary() {
   local names=() frame name options
   for frame in "${central_frames[@]}"; do
@@ -53,12 +53,12 @@ vary() {
 
 for n in "${num_frames[@]}"; do vary n $((2 * n + 1)) "$n" "${base[1]}" "${base[2]}"; done
 for s in "${skips[@]}"; do
-  # Neighborhoods of two steps must not overlap.
+  # The neighborhoods of consecutive steps must not overlap.
   m=$(((s - 1) / 2 < base[2] ? (s - 1) / 2 : base[2]))
   vary s "$s" "${base[0]}" "$s" "$m"
 done
 for m in "${neighborhoods[@]}"; do vary m "$m" "${base[0]}" "${base[1]}" "$m"; done
-# vary_option PARAMETER OPTION VALUE...
+# vary_option PARAMETER OPTION VALUE...: writes a row for each value of an option.
 vary_option() {
   local value
   for value in "${@:3}"; do vary "$1" "$value" "${base[@]}" "--Registration.$2" "$value"; done
@@ -67,7 +67,7 @@ vary_option sigma mean_sigma "${sigmas[@]}"
 vary_option beta frequency_threshold "${betas[@]}"
 vary_option ransac ransac_max_error "${inlier_distances[@]}"
 
-# chart PICTURE TITLE KEY...: plots a panel for every parameter that was varied.
+# chart PICTURE TITLE KEY...: plots the metrics, with one panel for each parameter that was varied.
 chart() {
   local picture="$1" title="$2" keys=("${@:3}") parameter key curves
   {

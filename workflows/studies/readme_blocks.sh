@@ -1,7 +1,7 @@
 # shellcheck shell=bash
-# The blocks of measured numbers that the studies make: block_NAME prints the text between
+# Makes the blocks of numbers that the studies measure. block_NAME prints the text between
 # <!-- numbers: NAME --> and <!-- end -->. Sourced by update_readmes.sh after readme_tables.sh.
-# shellcheck disable=SC2016  # awk programs stand in single quotes
+# shellcheck disable=SC2016  # awk programs are in single quotes
 
 # --- sample_project ---
 
@@ -12,10 +12,10 @@ block_sample_output() {
   echo '```'
 }
 
-# sample OBJECT KEY FORMAT: a metric of a whole object.
+# sample OBJECT KEY FORMAT: prints a metric of a whole object.
 sample() { value sample_project.csv value "$3" object="$1" table= key="$2"; }
 
-# sample_span TABLE KEY FORMAT: least and most of the cube's rows.
+# sample_span TABLE KEY FORMAT: prints the smallest and the largest value of the rows of the cube.
 sample_span() {
   table sample_project.csv '
     $1 == "cube" && $2 == "'"$1"'" && $4 == "'"$2"'" { note("x", $5) }
@@ -84,7 +84,7 @@ ROWS
 
 # --- accuracy.sh ---
 
-# One line per data set of accuracy.sh: the rows of the cube's faces count as one.
+# The tables have one line per clip of accuracy.sh; the faces of the cube share a line.
 accuracy_library='
   BEGIN {
     n = split("walls board sail_1080p sail_4k cube stylus board_video aprilgrid", clips, " ")
@@ -193,10 +193,11 @@ block_repeatability() {
 
 # --- the studies of thesis chapter 4 ---
 
-# by PARAMETER COLUMN FORMAT: the values of parameters.sh as one parameter varies.
+# by PARAMETER COLUMN FORMAT: prints a column of parameters.csv for the rows that vary PARAMETER.
 by() { value parameters.csv "$2" "$3" parameter="$1"; }
 
-# under CONDITION COLUMN FORMAT, and the four figures that most rows show.
+# under CONDITION COLUMN FORMAT: prints a value of conditions.csv. condition CONDITION and
+# condition_truth CONDITION print the values that most rows show.
 under() { value conditions.csv "$2" "$3" condition="$1"; }
 condition() {
   echo "ratio $(under "$1" reconstruction_ratio 3%) %, area error $(under "$1" area_error_mm2_mean 2) /" \
@@ -239,7 +240,7 @@ block_thesis_sail() {
 ROWS
 }
 
-# motion COLUMN: by line, those without a marker left out.
+# motion COLUMN: prints the motion of each line of markers. Lines without a marker are left out.
 motion() {
   table conditions_motion_lines.csv '
     cell("line") != "hull" && cell("'"$1"'") != "" {
@@ -322,7 +323,8 @@ block_surface() {
         num(cell("curvature_within_0_05_percent"), 3) }'
 }
 
-# The chord of the rendered sail whose curvature wobbled when each marker bent the surface.
+# Shows a chord of the rendered sail along which an earlier surface, which bent at every marker, had
+# an oscillating curvature.
 block_surface_curvature() {
   table surface_curvature.csv '
     FNR > 1 && cell("height_m") == "3.935" {
@@ -345,7 +347,7 @@ block_surface_curvature() {
 
 # --- marker_design.sh ---
 
-# The thesis's words on each series (section 4.1), beside what was found at each distance.
+# Shows the statement of the thesis on each series (section 4.1) beside the shares at each distance.
 block_marker_design() {
   table marker_design.csv '
     FNR > 1 {

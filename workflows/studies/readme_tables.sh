@@ -1,13 +1,13 @@
 # shellcheck shell=bash
-# How the blocks of the READMEs read the stored results. Sourced by update_readmes.sh, which sets
-# `temporary`, a folder, and `place`, the README and line of the block that is being made, and whose
-# stored() says where a result is kept.
+# Functions by which the blocks of the READMEs read the stored results. Sourced by
+# update_readmes.sh, which sets `temporary`, a folder, and `place`, the README and line of the
+# current block, and defines stored(), which prints the path of a result.
 
-# problem TEXT: blocks are made in subshells, from which only a file can tell of a problem.
+# problem TEXT: records a problem. It is written to a file because blocks are made in subshells.
 # shellcheck disable=SC2154
 problem() { echo "$*" >>"$temporary/problems"; }
 
-# data RESULT: its rows without the line that names the command.
+# data RESULT: prints the rows of a result without the line that names its command.
 # shellcheck disable=SC2154
 data() {
   if [[ ! -f "$(stored "$1")" ]]; then
@@ -17,12 +17,13 @@ data() {
   sed 1d "$(stored "$1")"
 }
 
-# made_by RESULT: the command that made it, as code.
+# made_by RESULT: prints the command that made a result, formatted as code.
 made_by() { sed -n '1s/^# \(.*\)/`\1`/p' "$(stored "$1")" 2>/dev/null || true; }
 
-# What the awk programs below share. num(x, format): x with as many significant digits as the format
-# says, but no more than four decimals; "+2" shows the sign, "3%" gives percent of a fraction, "d" an
-# integer, "as_is" what the table holds; an unknown value is a dash. span(low, high, format): "0.1 to 0.3".
+# Functions that the awk programs below share. num(x, format) prints x with the number of
+# significant digits in the format, but at most four decimals. "+2" also shows the sign, "3%" shows
+# a fraction as percent, "d" rounds to an integer, and "as_is" prints what the table holds. An unknown value is a dash. span(low, high,
+# format) prints a range such as "0.1 to 0.3".
 # shellcheck disable=SC2016
 awk_library='
   function num(x, format,    digits, magnitude, exponent, decimals) {
@@ -42,14 +43,15 @@ awk_library='
     a = num(low, format); b = num(high, format)
     return a == b ? a : a " to " b
   }
-  function note(n, x) {  # least and most of x by name n
+  function note(n, x) {  # updates the minimum and maximum of the values with the name n
     if (x == "") return
     if (!(n in least) || x + 0 < least[n]) least[n] = x + 0
     if (!(n in most) || x + 0 > most[n]) most[n] = x + 0
   }
   FNR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }'
 
-# table RESULT AWK_PROGRAM: runs the program over the rows; cell("name") is a cell of the row.
+# table RESULT AWK_PROGRAM: runs the program on the rows of a result. cell("name") is the value of a
+# column.
 table() {
   # shellcheck disable=SC2016
   data "$1" | awk -F, "$awk_library"' function cell(name) {
@@ -57,8 +59,8 @@ table() {
     '"$2" || problem "$place: $1 has no such rows or columns"
 }
 
-# value RESULT COLUMN FORMAT KEY=VALUE...: cells of the rows in which these columns hold these values,
-# with commas between them.
+# value RESULT COLUMN FORMAT KEY=VALUE...: prints a column of the rows in which the columns KEY have
+# the given values, with commas in between.
 value() {
   # shellcheck disable=SC2016
   table "$1" '

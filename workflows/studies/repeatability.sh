@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Checks the standard deviations where no truth is exact enough. The photographs of an object are dealt
-# into two halves, each half is reconstructed by itself, and the difference of the two shapes is compared
-# with what the two covariances predict. The alignment includes the scale, whose error is common to
-# both. A print that differs from its layout does not count here.
+# Checks the standard deviations on objects for which no truth is exact enough. The photographs of
+# an object are divided into two halves, each half is reconstructed by itself, and the difference of
+# the two shapes is compared with what their covariances predict. The shapes are aligned with a
+# scale, because the error of the scale is common to both. For the same reason, a print that differs
+# from its layout has no effect.
 # usage: workflows/studies/repeatability.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -13,7 +14,7 @@ repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 csv="$work/repeatability.csv"
 echo "object,num_points,difference_mm,predicted_mm,ratio,scale_difference_percent" >"$csv"
 
-# halve IMAGES: links every other image, by name, into halves/a and halves/b of the work folder.
+# halve IMAGES: links the images, in the order of their names, alternately into halves a and b.
 halve() {
   local image half=a
   rm -rf "$runs/halves"
@@ -24,8 +25,8 @@ halve() {
   done
 }
 
-# reconstruct_half NAME HALF: makes the shape from the database. The && are needed because bash ignores
-# `set -e` before a `||`.
+# reconstruct_half NAME HALF: makes the shape from the database. The commands are joined by &&
+# because bash ignores `set -e` before a `||`.
 reconstruct_half() {
   local run="$runs/$1_$2" inputs
   inputs=(--database_path "$runs/$1.$2.db" --layout_path "$clips/$1/layout.yml" --log_level warn)
@@ -38,7 +39,7 @@ reconstruct_half() {
       --shape_path "$run/shape" "${inputs[@]:2}"
 }
 
-# compare NAME HALF OTHER: compares shape and model of a half with the other half's shape.
+# compare NAME HALF OTHER: compares the shape and model of a half with the shape of the other half.
 compare() {
   "$velamap" shape_analyzer --shape_path "$runs/$1_$2/shape" --input_path "$runs/$1_$2/metric" \
     --reference_path "$runs/$1_$3/shape" --csv_path "$runs/$1_$2/halves.csv" --log_level error \

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Measures rigid objects of known dimensions (thesis section 4.2): the board behind glass from 3, 5 and
-# 7 m, and two walls at a right angle. The glass is seen through the wide lens of the sail's clips, and
-# at the two larger distances also through a narrower one of 68 degrees.
+# Measures the errors on rigid objects of known dimensions (thesis section 4.2): the board behind
+# glass from 3, 5 and 7 m, and two walls at a right angle. The glass is filmed with the wide lens of
+# the sail's clips, and at the two larger distances also with a narrower lens of 68 degrees.
 # usage: workflows/studies/rigid_objects.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -21,7 +21,7 @@ echo "object,step,num_markers,reconstruction_ratio,plane_error_mm_mean,plane_err
 distance_error_mm_mean,distance_error_mm_max,angle_deg,area_error_percent_mean,\
 reprojection_error_px_mean,scale_error_percent,rms_to_truth_mm,rms_after_scaling_mm" >"$csv"
 
-# parts_metric RUN KEY mean|max: prints the mean or the largest of a metric over the parts.
+# parts_metric RUN KEY mean|max: prints the mean or the maximum of a metric over the parts.
 parts_metric() {
   local file="$runs/$1/analysis.csv"
   [[ -f "$file" ]] || return 0
@@ -30,7 +30,7 @@ parts_metric() {
     END { if (n) printf "%.6g", how == "max" ? max : sum / n }' "$file"
 }
 
-# row OBJECT STEP RUN
+# row OBJECT STEP RUN: writes a row of the table.
 row() {
   local key
   {
@@ -50,13 +50,14 @@ row() {
   } >>"$csv"
 }
 
-# reconstruct_middle CLIP RUN: reconstructs around the middle frame or, if that fails, around the best.
+# reconstruct_middle CLIP RUN: reconstructs around the middle frame or, if that fails, around the
+# central frame that frame_registrator selects.
 reconstruct_middle() {
   reconstruct "$1" "$2" "${options[@]}" --Registration.central_frame $((num_frames / 2))
   if [[ ! -f "$runs/$2/analysis.csv" ]]; then reconstruct "$1" "$2" "${options[@]}"; fi
 }
 
-# study_object CLIP: writes the rows before and after the bundle adjustment.
+# study_object CLIP: writes the rows of the results before and after the bundle adjustment.
 study_object() {
   ADJUST=0 reconstruct_middle "$1" "$1_seed"
   row "$1" seed "$1_seed"
@@ -64,7 +65,7 @@ study_object() {
   row "$1" adjusted "$1_adjusted"
 }
 
-# study_glass NAME DISTANCE LENS
+# study_glass NAME DISTANCE LENS: studies a clip of the board behind glass.
 study_glass() {
   make_clip "$1" --scene board --lens "$3" --width "$width" --distance "$2" --motion d \
     --num_frames "$num_frames"

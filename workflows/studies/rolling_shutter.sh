@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Measures the error of the shape under a rolling shutter, uncorrected and corrected, over random clips:
-# scene, time from the first row to the last (zero in every third clip), shake and flapping.
+# Measures the error of the shape due to a rolling shutter, without and with its correction. The
+# clips have a random time from the first row to the last (zero in every third clip), shake and
+# flapping.
 # usage: workflows/studies/rolling_shutter.sh [--quick] [WORK_FOLDER]
 #        (default: 12 clips, 2 for --quick, workspace/studies)
-# Writes rolling_shutter.csv, one row per clip: its conditions, the time that was found with its sigma, and
-# the RMS distance from the truth after a similarity without and with the estimate.
+# Writes rolling_shutter.csv with one row per clip: its conditions, the estimated time and its
+# sigma, and the RMS distance from the truth after a similarity transformation, without and with the
+# correction.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -27,7 +29,8 @@ draw_clips() {  # NUM_CLIPS
     }'
 }
 
-# adjust CLIP RUN ESTIMATES: prints the distance after a similarity; the summary goes to RUN/adjust.txt.
+# adjust CLIP RUN 0|1: adjusts without (0) or with (1) an estimate of the rolling shutter. Prints
+# the RMS distance after a similarity, and writes the summary to RUN/adjust.txt.
 adjust() {
   local clip="$clips/$1" run="$runs/$2"
   mkdir -p "$run"

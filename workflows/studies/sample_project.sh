@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Reconstructs the objects of sample_project as their README says and compares the shapes with what is
-# known of them.
+# Reconstructs the objects of sample_project as their README describes and compares the shapes with
+# the known dimensions of the objects.
 # usage: workflows/studies/sample_project.sh [WORK_FOLDER]   (default: workspace/studies)
-# Writes sample_project.csv, and sample_project.txt: what workflows/sample.sh prints of the sail.
+# Writes sample_project.csv, and sample_project.txt with the output of workflows/sample.sh for the
+# sail.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -18,12 +19,12 @@ stylus="$repository/sample_project/stylus"
 "$velamap" automatic_reconstructor --image_path "$stylus/images" --camera_path "$stylus/camera.yml" \
   --layout_path "$stylus/layout.yml" --workspace_path "$runs/stylus" --log_level warn \
   >"$runs/stylus.txt" 2>"$runs/stylus.log" || fail "$runs/stylus.log says what went wrong"
-# part OF_SAMPLE: what the sample prints under a heading.
+# part HEADING: prints the output of the sample under a heading.
 part() { awk -v of="$1" '/^== sample: / { within = index($0, "== sample: " of) == 1; next } within' "$runs/sample.txt"; }
 for object in cube sail; do part "$object:" >"$runs/$object.txt"; done
 
-# analyze_object OBJECT SHAPE_ANALYZER_OPTION...: adds the shape's metrics to the table, those of single
-# markers and images left out.
+# analyze_object OBJECT SHAPE_ANALYZER_OPTION...: adds the metrics of a shape to the table, except
+# those of single markers and images.
 analyze_object() {
   "$velamap" shape_analyzer --shape_path "$runs/$1/shape" --input_path "$runs/$1/sparse/0" \
     --layout_path "$repository/sample_project/$1/layout.yml" \

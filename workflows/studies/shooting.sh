@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Measures what shoot_planner assumes, and compares its plans with clips of an action camera that are
-# rendered along them.
+# Measures the assumptions of shoot_planner, and compares its plans with clips of an action camera
+# that are rendered according to them.
 # usage: workflows/studies/shooting.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# Writes shooting.csv. Series distance: share of the markers found, and the corners' errors, by size;
-# motion: by the path of a marker while the shutter is open; plan: sigmas planned and found, and the
-# true error, of clips that move 100 degrees around a sail.
+# Writes shooting.csv. The series `distance` has the share of the markers found and the errors of
+# their corners by distance; `motion` has the same by the motion of a marker while the shutter is
+# open; `plan` has the planned and the resulting sigmas and the true errors of clips that move 100
+# degrees around a sail.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -21,10 +22,10 @@ fi
 csv="$work/shooting.csv"
 echo "series,width_px,distance_m,motion_px,side_px,found_percent,corner_error_px,planned_distance_sigma_mm,distance_sigma_mm,distance_mm,planned_shape_sigma_mm,shape_sigma_mm,shape_mm,planned_marker_sigma_mm,marker_sigma_mm" >"$csv"
 
-# value_in FILE KEY: the number after `KEY: `.
+# value_in FILE KEY: prints the number after `KEY: `.
 value_in() { sed -n "s/^$2: \([^ ]*\).*/\1/p" "$1"; }
 
-# seen SERIES WIDTH DISTANCE MOTION: ten views nearly from straight ahead, every marker in the picture.
+# seen SERIES WIDTH DISTANCE MOTION: writes a row for ten frontal views that show every marker.
 seen() {
   local name="shooting_$1_$2_$3_$4" frames=10
   make_clip "$name" "${action[@]}" --width "$2" --distance "$3" --motion_blur_px "$4" \
@@ -45,13 +46,13 @@ if [[ $quick -eq 0 ]]; then
   for motion in 0 3 6 9; do seen motion 3840 4 "$motion"; done
 fi
 
-# median_sigma_mm SHAPE_CSV: of the markers' centres, in space.
+# median_sigma_mm SHAPE_CSV: prints the median 3D sigma of the marker centres.
 median_sigma_mm() {
   awk -F, '$2 == 0 { print 1000 * sqrt($6 ^ 2 + $7 ^ 2 + $8 ^ 2) }' "$1" | sort -g |
     awk '{ sigma[NR] = $1 } END { print sigma[int((NR + 1) / 2)] }'
 }
 
-# planned DISTANCE: the plan, and the clip.
+# planned DISTANCE: compares a plan with its clip and writes the row.
 planned() {
   local name="shooting_plan_$1" clip
   clip="$clips/$name"

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Measures the smoothness and the error of the surface through the markers, on random sails with random
-# noise and on rendered clips of a sail.
+# Measures the smoothness and the error of the surface through the markers, on random sails with
+# random noise and on rendered clips of a sail.
 # usage: workflows/studies/surface.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# Writes surface.csv: error of the surface over the error of a marker, and the error of its curvature
-# along the chord, at places between the outer markers. A row `random` is for markers of one noise on
-# num_draws sails; the ratio at a place is of root mean squares over the sails. A row with the name of
-# a clip is for one shape, against the root mean square error of its markers along the normal.
-# Curvatures are taken at least one marker inside luff and leech and one line inside foot and head.
-# surface_curvature.csv: the curvature along the chords of the clips, found and true.
+# Writes surface.csv: the ratio of the error of the surface to the error of a marker, and the error
+# of its curvature along the chord, at places between the outer markers. A row `random` is for
+# num_draws sails with one noise of the markers; the ratio at a place is that of the RMS errors over
+# the sails. A row with the name of a clip is for a single shape, relative to the RMS error of its
+# markers along the normal. Curvatures are measured at least one marker away from luff and leech and
+# one line away from foot and head.
+# Writes surface_curvature.csv: the curvature along the chords of the clips, found and true.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -17,7 +18,7 @@ surface_accuracy="$(find_program SURFACE_ACCURACY surface_accuracy tests/tools/s
 csv="$work/surface.csv" curvature="$work/surface_curvature.csv"
 if [[ $quick -eq 1 ]]; then num_draws=3 names=(sail_quick); else num_draws=40 names=(sail_1080p sail_4k); fi
 
-# make_sail NAME: the clips of accuracy.sh, or a small one.
+# make_sail NAME: makes one of the sail's clips of accuracy.sh, or a small one.
 make_sail() {
   case "$1" in
     sail_1080p) make_clip "$1" --scene sail --width 1920 --num_frames 400 ;;

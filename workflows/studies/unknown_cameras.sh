@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Measures how much accuracy is lost without a calibration: each draw renders a short clip through a
-# random lens and runs the whole job with the true calibration and without one.
+# Measures how much accuracy is lost without a calibration. Each draw renders a short clip through a
+# random lens and runs automatic_reconstructor with the true calibration and without one.
 # usage: workflows/studies/unknown_cameras.sh [--quick] [--num_draws N] [--seed S] [WORK_FOLDER]
 #        (default: 24 draws, 4 for --quick, seed 1, workspace/studies)
-# Writes unknown_cameras.csv, one row per draw: the error of the focal length and its sigma, and the errors
-# of both shapes against the truth.
+# Writes unknown_cameras.csv with one row per draw: the error of the focal length and its sigma, and
+# the errors of both shapes against the truth.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -15,7 +15,7 @@ folder="$(dirname "${BASH_SOURCE[0]}")"
 if [[ -z "$num_draws" ]]; then num_draws=$((quick ? 4 : 24)); fi
 num_frames=$((quick ? 16 : 30))
 
-# write_lens FILE LENS WIDTH FOCAL CX CY D1 D2 D3 D4
+# write_lens FILE LENS WIDTH FOCAL CX CY D1 D2 D3 D4: writes a calibration file.
 write_lens() {
   {
     printf '%%YAML:1.0\n---\nimage_width: %d\nimage_height: %d\n' "$3" $(($3 * 9 / 16))
@@ -27,7 +27,7 @@ write_lens() {
   } >"$1"
 }
 
-# run_job RUN CLIP OPTION...: the whole job into runs/RUN, compared with the truth.
+# run_job RUN CLIP OPTION...: reconstructs a clip in runs/RUN and compares the shape with the truth.
 run_job() {
   local run="$runs/$1" clip="$2"
   mkdir -p "$run"
@@ -38,7 +38,8 @@ run_job() {
     --reference_path "$clip/truth.csv" --csv_path "$run/analysis.csv" >"$run/analysis.txt" 2>&1 || true
 }
 
-# found_focal RUN: prints model, focal length and sigma, or commas.
+# found_focal RUN: prints model, focal length and sigma with commas in between; only the commas if
+# no camera was found.
 found_focal() {
   awk '/^camera: found from the images, / { sub(",", "", $6); print $6 "," $9 "," $11; found = 1 }
     END { if (!found) print ",," }' "$runs/$1/log.txt"

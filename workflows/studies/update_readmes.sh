@@ -3,17 +3,19 @@
 #   <!-- numbers: NAME -->
 #   ...
 #   <!-- end -->
-# whose text the function block_NAME of a readme_blocks.sh, here or in tests/benchmarks, makes from the
-# stored results: the tables that the studies and benchmarks write, kept in workflows/studies/results
-# and tests/benchmarks/results with the command that made them in their first line.
+# The function block_NAME of a readme_blocks.sh, here or in tests/benchmarks, makes its text from
+# the stored results. These are the tables that the studies and benchmarks write. They are in
+# workflows/studies/results and tests/benchmarks/results; their first line names the command that
+# made them.
 # usage: workflows/studies/update_readmes.sh [MODE] [RESULT...] [WORK_FOLDER]
-#   (no mode)   runs the commands whose results are not stored, stores these, writes the READMEs
-#   --rerun     runs the commands of the named results (all, if none is named), stored or not
-#   --collect   stores results that earlier runs left in WORK_FOLDER, and runs nothing
-#   --write     writes the READMEs from what is stored
-#   --check     changes nothing; exit 1 and FILE:LINE for every block that is not up to date
-# RESULT is a file's name, such as accuracy.csv. WORK_FOLDER is workspace/studies unless given; it
-# keeps rendered clips for the next run. VELAMAP, RENDER_CLIP and BUILD name other programs.
+#   (no mode)   runs the commands whose results are not stored, stores them, and writes the READMEs
+#   --rerun     the same, but also runs the commands of stored results
+#   --collect   stores results that earlier runs left in WORK_FOLDER, and writes the READMEs
+#   --write     only writes the READMEs from the stored results
+#   --check     changes nothing; prints FILE:LINE of each block that is out of date and exits with 1
+# RESULT is the file name of a result, such as accuracy.csv; without it, all results are meant.
+# WORK_FOLDER (default: workspace/studies) keeps rendered clips for the next run. VELAMAP,
+# RENDER_CLIP and BUILD name other programs.
 set -euo pipefail
 export LC_ALL=C
 
@@ -31,7 +33,7 @@ fail() {
   exit 2
 }
 
-# The command that writes each result into the work folder.
+# The commands that write the results into the work folder.
 declare -A command_of
 for study in accuracy board_motions marker_design parameters repeatability rigid_objects rolling_shutter sample_project shooting surface; do
   command_of[$study.csv]="workflows/studies/$study.sh"
@@ -49,15 +51,15 @@ for part in detection adjustment main memory growth markers tracking sweep datas
 done
 command_of[corner_accuracy.csv]=tests/benchmarks/corner_accuracy.sh
 
-# Folders of results that cannot be made again, because they compare with code that was removed.
+# The folders of results that cannot be reproduced, because they compare with code that was removed.
 declare -A folder_of_past=([own_solver.csv]=tests/benchmarks)
 
-# stored RESULT: where it is kept, beside the command that makes it.
+# stored RESULT: prints the path of a stored result, which is beside the command that makes it.
 stored() {
   echo "$repository/${folder_of_past[$1]:-$(dirname "${command_of[$1]%% *}")}/results/$1"
 }
 
-# settings: the variables that change what a command measures, as they would stand before it.
+# settings: prints assignments of the variables that change what a command measures.
 settings() {
   local name
   for name in CLIPS WAYS NUM_FRAMES SKIPS NEIGHBORHOODS SIGMAS BETAS INLIER_DISTANCES CENTRAL_FRAMES \
@@ -66,7 +68,7 @@ settings() {
   done
 }
 
-# store RESULT: copies it from the work folder with its command, numbers to six digits.
+# store RESULT: stores a result from the work folder with its command. Numbers get six digits.
 store() {
   mkdir -p "$(dirname "$(stored "$1")")"
   {
@@ -83,7 +85,7 @@ store() {
   echo "== stored: $(stored "$1")"
 }
 
-# measure RESULT...: runs each command once, then stores what the results are made of.
+# measure RESULT...: runs each command of the results once and stores all results that it makes.
 measure() {
   local result command commands=()
   mapfile -t commands < <(for result in "$@"; do echo "${command_of[$result]}"; done | sort -u)
@@ -96,7 +98,7 @@ measure() {
   done
 }
 
-# fill README: prints it with its blocks filled, and notes where that differs from what stands there.
+# fill README: prints a README with its blocks filled, and records the blocks that have changed.
 fill() {
   local readme="$1" line number=0 name="" start=0 text
   while IFS= read -r line; do
@@ -125,7 +127,7 @@ fill() {
   if [[ -n "$name" ]]; then problem "${readme#"$repository/"}:$start: block $name has no <!-- end -->"; fi
 }
 
-# block NAME PLACE: prints the text of a block, which is made once however many READMEs hold it.
+# block NAME PLACE: prints the text of a block. The text is made once and kept for other READMEs.
 block() {
   if ! declare -F "block_$1" >/dev/null; then
     problem "$2: no readme_blocks.sh makes the block $1"
@@ -137,7 +139,7 @@ block() {
   cat "$temporary/$1.block"
 }
 
-# report_difference README START NAME TEXT: names the first line of the block that differs.
+# report_difference README START NAME TEXT: records the first line of a block that differs.
 report_difference() {
   local offset
   offset="$({ diff "$temporary/old" <(printf '%s\n' "$4") || true; } | sed -n '1s/[^0-9].*//p')"
