@@ -22,8 +22,8 @@ made_by() { sed -n '1s/^# \(.*\)/`\1`/p' "$(stored "$1")" 2>/dev/null || true; }
 
 # Functions that the awk programs below share. num(x, format) prints x with the number of
 # significant digits in the format, but at most four decimals. "+2" also shows the sign, "3%" shows
-# a fraction as percent, "d" rounds to an integer, and "as_is" prints what the table holds. An unknown value is a dash. span(low, high,
-# format) prints a range such as "0.1 to 0.3".
+# a fraction as percent, "d" rounds to an integer, and "as_is" prints what the table holds. An
+# unknown value is a dash. span(low, high, format) prints a range such as "0.1 to 0.3".
 # shellcheck disable=SC2016
 awk_library='
   function num(x, format,    digits, magnitude, exponent, decimals) {
