@@ -41,7 +41,10 @@ std::vector<Eigen::Vector2d> SpacedAlongLine(const Surface& surface, double v, d
 // mid-chord.
 void AddSailMarkers(const Ground& sail, double luff_m, ClipSceneBuilder* builder) {
   constexpr int kNumLines = 7;
-  constexpr double kSpacing_m = 0.1485, kVerticalSpacing_m = 0.156, kMargin_m = 0.11;
+  // For markers of up to 100 mm; larger ones need more room.
+  const double factor = std::max(1.0, builder->scene().layout.marker_length_m / 0.1);
+  const double spacing_m = 0.1485 * factor, vertical_spacing_m = 0.156 * factor;
+  const double margin_m = 0.11 * factor;
   LayoutPart part{"sail", false, {}, {{"v1", {}}}, {}};
   std::vector<Eigen::Vector2d> crossings;
   std::vector<int> crossing_ids;
@@ -50,7 +53,7 @@ void AddSailMarkers(const Ground& sail, double luff_m, ClipSceneBuilder* builder
     const double v = 0.05 + 0.135 * line_idx;
     Eigen::Vector2d crossing(10, v);
     int crossing_id = -1;
-    for (const Eigen::Vector2d& uv : SpacedAlongLine(sail.before, v, kSpacing_m, kMargin_m)) {
+    for (const Eigen::Vector2d& uv : SpacedAlongLine(sail.before, v, spacing_m, margin_m)) {
       line.marker_ids.push_back(builder->AddMarker(sail, "sail", uv));
       if (std::abs(uv.x() - 0.45) < std::abs(crossing.x() - 0.45)) {
         crossing = uv;
@@ -66,7 +69,7 @@ void AddSailMarkers(const Ground& sail, double luff_m, ClipSceneBuilder* builder
     vertical.push_back(crossing_ids[i]);
     if (i + 1 == crossings.size()) break;
     const double gap_m = luff_m * (crossings[i + 1].y() - crossings[i].y());
-    const int num_gaps = static_cast<int>(std::lround(gap_m / kVerticalSpacing_m));
+    const int num_gaps = static_cast<int>(std::lround(gap_m / vertical_spacing_m));
     for (int gap = 1; gap < num_gaps; ++gap) {
       const double t = static_cast<double>(gap) / num_gaps;
       vertical.push_back(
