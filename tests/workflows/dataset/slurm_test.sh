@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs a small data set on a real Slurm of one node, a job of which is cancelled in the middle: it is
-# tried again, and the table is that of a local run.
+# Runs a small data set on a real Slurm of one node, one clip of it in parts. A job is cancelled in the
+# middle: it is tried again, and the table is that of a local run.
 # usage: slurm_test.sh REPOSITORY   (VELAMAP: the program)
 set -euo pipefail
 
@@ -42,8 +42,13 @@ mkdir first second empty
 cp "$stylus"/images/*{71,77,79,83,88,92}.jpg first
 cp "$stylus"/images/*{98,01,14,16,18,20}.jpg second
 cp "$repository/sample_project/guide/far.jpg" empty
-for name in first second empty; do echo "$name,$name,camera.yml,layout.yml,--ArucoDetection.estimate_formation 0"; done |
-  sed '1i name,clip,camera,layout,options' >table.csv
+quick="--ArucoDetection.estimate_formation 0"
+{
+  echo "name,clip,camera,layout,parts,options"
+  for name in first second empty; do echo "$name,$name,camera.yml,layout.yml,,$quick"; done
+  sail="$repository/sample_project/sail"
+  echo "sail,$sail/clip.mp4,$sail/camera.yml,$sail/layout.yml,2,$quick --Video.last_frame 60 --Video.frame_step 3"
+} >table.csv
 
 code=0
 "$run" table.csv here --cores 2 >here.txt 2>&1 || code=$?
@@ -65,9 +70,10 @@ code=0
 VELAMAP="$folder/cancelled_once" "$run" table.csv there --profile slurm >there.txt 2>&1 || code=$?
 [[ $code -eq 1 ]] || fail "exit $code on Slurm: $(tail -n 30 there.txt)"
 [[ -d cancelled && ! -e survived ]] || fail "no job was cancelled: $(tail -n 30 there.txt)"
-# Three clips of two jobs each, and the one that was tried again.
+# Three clips of two jobs each, a video whose two halves are imported, merged and reconstructed, and the
+# job that was tried again.
 num_jobs="$(find there/jobs -name 'slurm-*.log' | wc -l)"
-[[ $num_jobs -eq 7 ]] || fail "Slurm has run $num_jobs jobs instead of 7"
+[[ $num_jobs -eq 11 ]] || fail "Slurm has run $num_jobs jobs instead of 11"
 
 # All but times and memory is equal.
 figures() {
@@ -77,6 +83,6 @@ for row in csv.DictReader(open(sys.argv[1], encoding="utf-8", newline="")):
     print({key: value for key, value in row.items() if "wall_s" not in key and key != "peak_memory_mb"})
 PYTHON
 }
-[[ "$(figures here | grep -c "'exit_code': '0'")" -eq 2 ]] || fail "local table: $(figures here)"
+[[ "$(figures here | grep -c "'exit_code': '0'")" -eq 3 ]] || fail "local table: $(figures here)"
 diff <(figures here) <(figures there) || fail "the tables differ"
 exit "$status"
