@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
 #include "importer/layout/known_point.h"
 
@@ -150,15 +149,16 @@ std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Ri
   const Eigen::MatrixXd open = motions.eigenvectors().rightCols(num_open);
   // Separates pure shifts from motions with a turn.
   constexpr double kMinTurn = 0.1;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> turns(open.topRows(3),
-                                                Eigen::ComputeThinU | Eigen::ComputeFullV);
-  const auto num_turns = (turns.singularValues().array() > kMinTurn).count();
+  const Eigen::MatrixXd turn = open.topRows(3);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> by_turn(turn.transpose() * turn);
+  const auto num_turns = (by_turn.eigenvalues().array() > kMinTurn * kMinTurn).count();
+  const Eigen::MatrixXd shifts = open * by_turn.eigenvectors().leftCols(num_open - num_turns);
+  const Eigen::MatrixXd turns = turn * by_turn.eigenvectors().rightCols(num_turns);
   std::vector<std::string> names;
-  const Eigen::MatrixXd shifts = open * turns.matrixV().rightCols(num_open - num_turns);
   for (const std::string& name : DirectionNames(shifts.bottomRows(3))) {
     names.push_back("a shift along " + name);
   }
-  for (const std::string& name : DirectionNames(turns.matrixU().leftCols(num_turns))) {
+  for (const std::string& name : DirectionNames(turns.colwise().normalized())) {
     names.push_back("a turn about " + name);
   }
   return fmt::format("{}", fmt::join(names, " and "));
