@@ -72,8 +72,8 @@ INSTANTIATE_TEST_SUITE_P(AllVideos, ClipWriterTest,
                                            VideoCase{ClipCodec::kH264, true, "h264", "pc"},
                                            VideoCase{ClipCodec::kH265, false, "hevc", "tv"},
                                            VideoCase{ClipCodec::kH265, true, "hevc", "pc"}),
-                         [](const auto& info) {
-                           return std::string(info.param.codec_name) + "_" + info.param.range_name;
+                         [](const auto& test) {
+                           return std::string(test.param.codec_name) + "_" + test.param.range_name;
                          });
 
 }  // namespace
