@@ -66,7 +66,7 @@ AliceVisionDistortion DistortionOf(CameraId camera_id, const Camera& camera) {
   throw InputError(
       fmt::format("camera {}: {} with k4, k5 or k6 has no equal in AliceVision; leave out "
                   "--alicevision, or reconstruct with another camera, such as one that "
-                  "camera_calibrator --camera_model OPENCV finds",
+                  "velamap camera_calibrator --camera_model OPENCV finds",
                   camera_id, CameraModelName(camera.model)));
 }
 

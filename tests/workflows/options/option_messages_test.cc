@@ -56,6 +56,7 @@ const std::map<std::string, Names> kCommandsOfPath = {
     {"exporters/", {"automatic_reconstructor", "shape_exporter"}},
     {"exporters/calibration/", {"camera_calibrator"}},
     {"exporters/compare/", {"shape_comparer"}},
+    {"exporters/exchange/", {"shape_exporter"}},
     {"exporters/design/mesh_reader.cc", {"shape_comparer"}},
     {"workflows/commands/compared_shapes.cc", {"shape_comparer"}},
     {"workflows/run/adjustment.cc", {"automatic_reconstructor", "central_frame_sweeper"}},
