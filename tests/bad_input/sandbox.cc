@@ -10,7 +10,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "importer/base/files.h"
-#include "tests/support/marker_renderer.h"
+#include "tests/support/render/marker_renderer.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace velamap {

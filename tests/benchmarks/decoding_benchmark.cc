@@ -6,8 +6,8 @@
 #include <opencv2/videoio.hpp>
 
 #include "importer/video/video_decoder.h"
-#include "tests/support/clip_writer.h"
-#include "tests/support/marker_renderer.h"
+#include "tests/support/clip/clip_writer.h"
+#include "tests/support/render/marker_renderer.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

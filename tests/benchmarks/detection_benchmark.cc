@@ -4,7 +4,7 @@
 
 #include "importer/refine/corner_refinement.h"
 #include "importer/refine/marker_detector.h"
-#include "tests/support/marker_renderer.h"
+#include "tests/support/render/marker_renderer.h"
 
 namespace velamap {
 namespace {

@@ -9,4 +9,4 @@ velamap_test(
     detect/interpolate_test.cc
     detect/marker_alignment_test.cc
     refine/marker_grid.cc
-    ../support/marker_renderer_test.cc)
+    ../support/render/marker_renderer_test.cc)

@@ -1,4 +1,4 @@
-#include "tests/support/camera_response.h"
+#include "tests/support/clip/camera_response.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
-#include "tests/support/picture_effects.h"
+#include "tests/support/render/picture_effects.h"
 
 namespace velamap {
 namespace {

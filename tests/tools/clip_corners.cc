@@ -10,7 +10,7 @@
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "importer/text/csv.h"
-#include "tests/support/corner_comparison.h"
+#include "tests/support/study/corner_comparison.h"
 #include "tests/support/tool_options.h"
 
 namespace velamap {

@@ -1,4 +1,4 @@
-#include "tests/support/clip_scene.h"
+#include "tests/support/clip/clip_scene.h"
 
 #include <algorithm>
 #include <set>
@@ -10,8 +10,8 @@
 #include "importer/base/statistics.h"
 #include "importer/camera/calibration.h"
 #include "importer/geometry/units.h"
-#include "tests/support/clip_files.h"
-#include "tests/support/nine_bit_dictionary.h"
+#include "tests/support/clip/clip_files.h"
+#include "tests/support/render/nine_bit_dictionary.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

@@ -1,6 +1,6 @@
 // Videos of both codecs and ranges hold the grey values that were written.
 
-#include "tests/support/clip_writer.h"
+#include "tests/support/clip/clip_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <boost/program_options.hpp>
 
-#include "tests/support/corner_study.h"
+#include "tests/support/study/corner_study.h"
 
 namespace velamap {
 namespace {

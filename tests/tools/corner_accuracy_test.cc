@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/corner_study.h"
+#include "tests/support/study/corner_study.h"
 
 namespace velamap {
 

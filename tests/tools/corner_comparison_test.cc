@@ -1,10 +1,10 @@
-#include "tests/support/corner_comparison.h"
+#include "tests/support/study/corner_comparison.h"
 
 #include <gtest/gtest.h>
 
 #include "importer/base/error.h"
-#include "tests/support/clip_files.h"
-#include "tests/support/surface_renderer.h"
+#include "tests/support/clip/clip_files.h"
+#include "tests/support/render/surface_renderer.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

@@ -1,4 +1,4 @@
-#include "tests/support/coverage_image.h"
+#include "tests/support/render/coverage_image.h"
 
 #include <cmath>
 

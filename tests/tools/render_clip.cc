@@ -12,7 +12,7 @@
 
 #include "importer/base/statistics.h"
 #include "importer/geometry/quad.h"
-#include "tests/support/clip_files.h"
+#include "tests/support/clip/clip_files.h"
 #include "tests/support/tool_options.h"
 #include "tests/tools/render_clip_options.h"
 

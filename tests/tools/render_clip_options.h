@@ -8,9 +8,9 @@
 
 #include <boost/program_options.hpp>
 
-#include "tests/support/clip_scene.h"
-#include "tests/support/clip_writer.h"
-#include "tests/support/surface_renderer.h"
+#include "tests/support/clip/clip_scene.h"
+#include "tests/support/clip/clip_writer.h"
+#include "tests/support/render/surface_renderer.h"
 
 namespace velamap {
 

@@ -19,7 +19,7 @@
 #include "importer/geometry/alignment.h"
 #include "importer/geometry/units.h"
 #include "importer/layout/layout.h"
-#include "tests/support/sail_study.h"
+#include "tests/support/study/sail_study.h"
 #include "tests/support/tool_options.h"
 
 namespace velamap {

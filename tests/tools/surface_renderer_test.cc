@@ -1,4 +1,4 @@
-#include "tests/support/surface_renderer.h"
+#include "tests/support/render/surface_renderer.h"
 
 #include <cmath>
 #include <map>

@@ -9,7 +9,7 @@
 #include "importer/detect/marker_search.h"
 #include "importer/refine/marker_detector.h"
 #include "importer/track/marker_tracking.h"
-#include "tests/support/surface_renderer.h"
+#include "tests/support/render/surface_renderer.h"
 
 namespace velamap {
 namespace {

@@ -12,7 +12,7 @@
 #include "importer/geometry/units.h"
 #include "tests/exporters/sail/example_surface.h"
 #include "tests/support/error_matchers.h"
-#include "tests/support/sail_study.h"
+#include "tests/support/study/sail_study.h"
 
 namespace velamap {
 namespace {

@@ -8,8 +8,8 @@
 #include "importer/base/statistics.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/geometry/units.h"
-#include "tests/support/board_renderer.h"
 #include "tests/support/error_matchers.h"
+#include "tests/support/render/board_renderer.h"
 
 namespace velamap {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "tests/importer/marker_builders.h"
-#include "tests/support/marker_renderer.h"
+#include "tests/support/render/marker_renderer.h"
 #include "tests/support/test_seed.h"
 
 namespace velamap {

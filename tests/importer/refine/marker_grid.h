@@ -10,7 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "importer/layout/dictionary.h"
-#include "tests/support/marker_renderer.h"
+#include "tests/support/render/marker_renderer.h"
 
 namespace velamap {
 

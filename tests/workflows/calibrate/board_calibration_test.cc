@@ -13,8 +13,8 @@
 #include "importer/camera/camera_projection.h"
 #include "importer/layout/dictionary.h"
 #include "importer/print/png_file.h"
-#include "tests/support/board_renderer.h"
 #include "tests/support/error_matchers.h"
+#include "tests/support/render/board_renderer.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {

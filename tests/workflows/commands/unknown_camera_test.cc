@@ -9,7 +9,7 @@
 #include "exporters/shape/shape_metrics.h"
 #include "importer/camera/calibration.h"
 #include "importer/database/colmap_database.h"
-#include "tests/support/marker_renderer.h"
+#include "tests/support/render/marker_renderer.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"

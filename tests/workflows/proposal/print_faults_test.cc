@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/layout/dictionary.h"
-#include "tests/support/marker_renderer.h"
+#include "tests/support/render/marker_renderer.h"
 
 namespace velamap {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/support/nine_bit_dictionary.h"
+#include "tests/support/render/nine_bit_dictionary.h"
 
 #include <algorithm>
 #include <vector>

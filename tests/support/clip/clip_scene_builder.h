@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/clip_scene.h"
-#include "tests/support/cloth.h"
+#include "tests/support/clip/clip_scene.h"
+#include "tests/support/clip/cloth.h"
 
 namespace velamap {
 

@@ -1,4 +1,4 @@
-#include "tests/support/corner_study.h"
+#include "tests/support/study/corner_study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 #include "importer/pattern/pattern_picture.h"
 #include "importer/refine/corner_refinement.h"
 #include "tests/importer/refine/marker_grid.h"
-#include "tests/support/clip_scene_builder.h"
-#include "tests/support/surface_renderer.h"
+#include "tests/support/clip/clip_scene_builder.h"
+#include "tests/support/render/surface_renderer.h"
 
 namespace velamap {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/support/clip_camera.h"
+#include "tests/support/clip/clip_camera.h"
 
 #include <cmath>
 #include <random>

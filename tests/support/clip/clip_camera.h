@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "tests/support/clip_scene.h"
+#include "tests/support/clip/clip_scene.h"
 
 namespace velamap {
 

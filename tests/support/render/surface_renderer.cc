@@ -1,4 +1,4 @@
-#include "tests/support/surface_renderer.h"
+#include "tests/support/render/surface_renderer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
-#include "tests/support/coverage_image.h"
-#include "tests/support/picture_effects.h"
+#include "tests/support/render/coverage_image.h"
+#include "tests/support/render/picture_effects.h"
 #include "tests/support/tool_options.h"
 
 namespace velamap {

@@ -1,4 +1,4 @@
-#include "tests/support/clip_writer.h"
+#include "tests/support/clip/clip_writer.h"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "tests/support/camera_response.h"
+#include "tests/support/clip/camera_response.h"
 
 #include <algorithm>
 #include <cmath>

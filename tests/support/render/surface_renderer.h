@@ -10,8 +10,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "tests/support/camera_response.h"
-#include "tests/support/clip_scene.h"
+#include "tests/support/clip/camera_response.h"
+#include "tests/support/clip/clip_scene.h"
 
 namespace velamap {
 

@@ -1,4 +1,4 @@
-#include "tests/support/sail_study.h"
+#include "tests/support/study/sail_study.h"
 
 #include <algorithm>
 #include <cmath>

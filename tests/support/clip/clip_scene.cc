@@ -1,4 +1,4 @@
-#include "tests/support/clip_scene.h"
+#include "tests/support/clip/clip_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
-#include "tests/support/clip_camera.h"
-#include "tests/support/clip_scene_builder.h"
+#include "tests/support/clip/clip_camera.h"
+#include "tests/support/clip/clip_scene_builder.h"
 #include "tests/support/tool_options.h"
 
 namespace velamap {

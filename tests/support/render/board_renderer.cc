@@ -1,4 +1,4 @@
-#include "tests/support/board_renderer.h"
+#include "tests/support/render/board_renderer.h"
 
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-#include "tests/support/cloth.h"
+#include "tests/support/clip/cloth.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tests/support/picture_effects.h"
+#include "tests/support/render/picture_effects.h"
 
 #include <algorithm>
 #include <cmath>

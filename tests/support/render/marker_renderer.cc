@@ -1,4 +1,4 @@
-#include "tests/support/marker_renderer.h"
+#include "tests/support/render/marker_renderer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tests/support/clip_files.h"
+#include "tests/support/clip/clip_files.h"
 
 #include <ostream>
 

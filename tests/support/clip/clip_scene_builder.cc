@@ -1,4 +1,4 @@
-#include "tests/support/clip_scene_builder.h"
+#include "tests/support/clip/clip_scene_builder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include "importer/base/error.h"
 #include "importer/camera/calibration.h"
-#include "tests/support/clip_camera.h"
-#include "tests/support/nine_bit_dictionary.h"
+#include "tests/support/clip/clip_camera.h"
+#include "tests/support/render/nine_bit_dictionary.h"
 
 namespace velamap {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <iosfwd>
 
-#include "tests/support/clip_scene.h"
+#include "tests/support/clip/clip_scene.h"
 
 namespace velamap {
 

@@ -10,7 +10,7 @@
 
 #include "exporters/formats/surface_spline.h"
 #include "exporters/surface/surface_input.h"
-#include "tests/support/cloth.h"
+#include "tests/support/clip/cloth.h"
 
 namespace velamap {
 

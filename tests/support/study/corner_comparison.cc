@@ -1,4 +1,4 @@
-#include "tests/support/corner_comparison.h"
+#include "tests/support/study/corner_comparison.h"
 
 #include <cmath>
 #include <fstream>
