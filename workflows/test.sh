@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs the packages, builds velamap with its tests and runs them.
 # usage: workflows/test.sh [CTEST_ARGUMENT...]   such as --label-regex unit
-# VELAMAP_PRESET: the build to test, default release; ci makes warnings errors, sanitize runs the unit
-# tests under the address and undefined-behaviour sanitizers.
+# VELAMAP_PRESET: the build to test, default release; ci makes warnings errors; sanitize and tsan run the
+# tests of the labels unit and cli under sanitizers, which takes hours.
 # VELAMAP_COLMAP: the COLMAP that the tests run; default the one on the PATH.
 set -euo pipefail
 
@@ -15,7 +15,7 @@ fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 workflows/setup.sh --with-tests
-workflows/build.sh "$preset"
+workflows/build.sh "$preset" all
 if [[ -n "$colmap" ]]; then
   programs="$(mktemp -d)"
   trap 'rm -rf "$programs"' EXIT

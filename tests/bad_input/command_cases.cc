@@ -170,6 +170,13 @@ std::vector<BadInput> Exports() {
       {"HelpWithAValue", analyzed + "--help=1", 2, "--help: unknown option; see velamap"}};
 }
 
+// Where memory is short, a sanitizer ends the reader of meshes before it can say so.
+#ifdef VELAMAP_SANITIZE
+constexpr const char* kTooMuchMemory = "bad.ply: its reader ended without a mesh";
+#else
+constexpr const char* kTooMuchMemory = "bad.ply: reading it takes more than 8192 MB of memory";
+#endif
+
 std::vector<BadInput> Comparisons() {
   const std::string call = "shape_comparer --shape_path @/workspace/shape --reference_path ";
   const std::string own = call + "@/workspace/shape ";
@@ -177,8 +184,8 @@ std::vector<BadInput> Comparisons() {
       "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
       "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
   return {
-      {"AMeshLargerThanAllMemory", call + "@/bad.ply", 2,
-       "bad.ply: reading it takes more than 8192 MB of memory", Write("bad.ply", ply + "0 0 0\n")},
+      {"AMeshLargerThanAllMemory", call + "@/bad.ply", 2, kTooMuchMemory,
+       Write("bad.ply", ply + "0 0 0\n")},
       {"AnObjOfOtherVertices", call + "@/bad.obj", 2, "bad.obj: cannot be read",
        Write("bad.obj", "v 0 0 0\nf 1 2 3\n")},
       {"AnStlCutOff", call + "@/bad.stl", 2, "bad.stl: cannot be read",
