@@ -37,7 +37,7 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct AutomaticReconstructorCommandOptions : CommandOptions {
   MarkerImporterOptions importer;
   RegistrationOptions registration;
   AdjustmentOptions adjustment;
@@ -48,7 +48,7 @@ struct Options : CommandOptions {
   SummaryFormat summary = SummaryFormat::kText;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(AutomaticReconstructorCommandOptions* options) {
   PathOptions* paths = &options->paths;
   CommandSyntax syntax = {
       "automatic_reconstructor",
@@ -84,7 +84,7 @@ CommandSyntax Declare(Options* options) {
 }
 
 // Checks everything that can be checked without touching the workspace.
-void Validate(Options* options) {
+void Validate(AutomaticReconstructorCommandOptions* options) {
   ShowFolders(options->full_paths);
   RefuseVideoOptions(*options);
   RefuseOptionsOfOtherBackend(options->typed, options->adjustment.backend);
@@ -154,18 +154,20 @@ void LeaveFoldersOut(ReportInput* input) {
 }
 
 // The video, or the folder of photographs without a trailing slash, whose name would be empty.
-std::filesystem::path Source(const Options& options) {
+std::filesystem::path Source(const AutomaticReconstructorCommandOptions& options) {
   return AbsoluteFolder(options.paths.image_path);
 }
 
-ShapeOrigin OriginOf(const Options& options, const AdjustmentResult& adjustment) {
+ShapeOrigin OriginOf(const AutomaticReconstructorCommandOptions& options,
+                     const AdjustmentResult& adjustment) {
   const std::filesystem::path source = Source(options);
   return {kVersion, (options.full_paths ? source : source.filename()).string(),
           !adjustment.cameras.empty()};
 }
 
 // Logs everything that contradicts the shape. The input refers to `summary`.
-ReportInput JudgedInput(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
+ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
+                        const WorkspacePaths& paths, const SeedResult& seed,
                         const ReconstructionSummary& summary) {
   const ShapeExportReport& shape = summary.shape;
   WarnOfOtherMarkers(shape.metrics);
@@ -219,7 +221,8 @@ void WriteFoundCamera(const AdjustmentResult& adjustment, const Model& model,
 
 // Makes the final files from the seed. sparse/ and shape/ replace the old ones when both are
 // complete.
-void AdjustAndExport(const Options& options, const WorkspacePaths& paths, const SeedResult& seed,
+void AdjustAndExport(const AutomaticReconstructorCommandOptions& options,
+                     const WorkspacePaths& paths, const SeedResult& seed,
                      ReconstructionSummary* summary, StageClock* clock) {
   AtomicFolder sparse(paths.Sparse());
   WriteModel(seed.model, (sparse.TemporaryPath() / "seed").string(), ModelFormat::kBinaryAndText);
@@ -255,7 +258,7 @@ void WriteTimes(const StageClock& clock, const WorkspacePaths& paths) {
                       [&clock](std::ostream& out) { WriteStageTimesJson(clock.Times(), out); });
 }
 
-void Run(const Options& options) {
+void Run(const AutomaticReconstructorCommandOptions& options) {
   Workspace workspace(options.paths.workspace_path, options.paths.image_path);
   const WorkspacePaths& paths = workspace.paths();
   AddLogFile(paths.Log().string());
@@ -286,7 +289,7 @@ void Run(const Options& options) {
 }  // namespace
 
 Command AutomaticReconstructor() {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<AutomaticReconstructorCommandOptions>();
   CommandSyntax syntax = Declare(options.get());
   syntax.typed = &options->typed;
   return {syntax, [options](const Arguments& arguments) {

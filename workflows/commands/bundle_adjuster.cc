@@ -21,11 +21,11 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct BundleAdjusterCommandOptions : CommandOptions {
   AdjustmentOptions adjustment;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(BundleAdjusterCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {"bundle_adjuster",
           "refines cameras and points of a model",
@@ -47,7 +47,7 @@ CommandSyntax Declare(Options* options) {
           &options->preset};
 }
 
-void Validate(Options* options) {
+void Validate(BundleAdjusterCommandOptions* options) {
   LogPreset(options->preset);
   RefuseOptionsOfOtherBackend(options->typed, options->adjustment.backend);
   if (!options->adjustment.UsesMarkers()) {
@@ -60,7 +60,7 @@ void Validate(Options* options) {
 }
 
 // COLMAP's adjustment needs no layout.
-Layout LoadAdjustmentLayout(const Options& options) {
+Layout LoadAdjustmentLayout(const BundleAdjusterCommandOptions& options) {
   return options.adjustment.UsesMarkers() ? LoadLayout(options.markers, false) : Layout{};
 }
 
@@ -87,7 +87,7 @@ void RestoreKeypoints(const std::vector<DatabaseImage>& images, const PathOption
 
 // A camera that was estimated instead of calibrated is refined, so that the sigmas include its
 // uncertainty.
-CornerErrors LoadCorners(const Options& options, const Layout& layout,
+CornerErrors LoadCorners(const BundleAdjusterCommandOptions& options, const Layout& layout,
                          AdjustmentOptions* adjustment, Model* model) {
   if (options.paths.database_path.empty() || !options.adjustment.UsesMarkers()) return {};
   const ColmapDatabase database(options.paths.database_path, ColmapDatabase::Mode::kReadOnly);
@@ -121,7 +121,7 @@ void Print(const AdjustmentResult& result, const std::string& model_path, std::o
   fmt::print(out, "model_path: {}\n", model_path);
 }
 
-void Run(const Options& options) {
+void Run(const BundleAdjusterCommandOptions& options) {
   StageClock clock;
   const Layout layout = LoadAdjustmentLayout(options);
   Model model = ReadModel(options.paths.input_path);
@@ -139,7 +139,7 @@ void Run(const Options& options) {
 }  // namespace
 
 Command BundleAdjuster() {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BundleAdjusterCommandOptions>();
   options->adjustment.backend = AdjustmentBackend::kColmap;  // needs no more than a model
   return MakeCommand(options, Declare, Validate, Run);
 }

@@ -19,14 +19,14 @@ namespace {
 
 enum class WantedModel { kAuto, kPinhole, kSimpleRadial, kRadial, kOpenCV, kFullOpenCV, kFisheye };
 
-struct Options : CommandOptions {
+struct CameraCalibratorCommandOptions : CommandOptions {
   std::string report_path;
   std::string chessboard;
   WantedModel camera_model = WantedModel::kAuto;
   BoardCalibrationOptions calibration;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(CameraCalibratorCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {
       "camera_calibrator",
@@ -85,7 +85,7 @@ std::optional<CameraModel> ModelOf(WantedModel wanted) {
   return std::nullopt;
 }
 
-void Validate(Options* options) {
+void Validate(CameraCalibratorCommandOptions* options) {
   BoardCalibrationOptions& calibration = options->calibration;
   RefuseVideoOptions(*options);
   calibration.detection.Check();
@@ -125,7 +125,7 @@ void Print(const CameraCalibration& calibration, std::ostream& out) {
   fmt::print(out, "board: {}\n", DescribeBoard(calibration.board));
 }
 
-void Run(const Options& options) {
+void Run(const CameraCalibratorCommandOptions& options) {
   const BoardCalibration result = CalibrateWithBoard(options.calibration);
   const CameraCalibration& calibration = result.calibration;
   WriteCalibration(calibration.camera,
@@ -144,7 +144,7 @@ void Run(const Options& options) {
 }  // namespace
 
 Command CameraCalibrator() {
-  return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run);
+  return MakeCommand(std::make_shared<CameraCalibratorCommandOptions>(), Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -17,7 +17,7 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct CentralFrameSweeperCommandOptions : CommandOptions {
   CentralFrameSweepOptions sweep;
 };
 
@@ -33,7 +33,7 @@ OptionGroup RegistrationGroup(RegistrationOptions* options) {
   return group;
 }
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(CentralFrameSweeperCommandOptions* options) {
   PathOptions* paths = &options->paths;
   CentralFrameSweepOptions* sweep = &options->sweep;
   return {"central_frame_sweeper",
@@ -66,7 +66,7 @@ CommandSyntax Declare(Options* options) {
           &options->preset};
 }
 
-void Validate(Options* options) {
+void Validate(CentralFrameSweeperCommandOptions* options) {
   LogPreset(options->preset);
   CentralFrameSweepOptions& sweep = options->sweep;
   RefuseOptionsOfOtherMethod(options->typed, sweep.registration.method);
@@ -90,7 +90,7 @@ void Print(const std::vector<SweepRow>& rows, const std::string& output_path, st
   fmt::print(out, "table_path: {}\n", output_path);
 }
 
-void Run(const Options& options) {
+void Run(const CentralFrameSweeperCommandOptions& options) {
   const Layout layout = LoadLayout(options.markers, false);
   StageClock clock;
   Progress progress("central frames");
@@ -111,7 +111,7 @@ void Run(const Options& options) {
 }  // namespace
 
 Command CentralFrameSweeper() {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CentralFrameSweeperCommandOptions>();
   options->sweep.registration.method = RegistrationMethod::kThesis;
   options->sweep.adjustment.backend = AdjustmentBackend::kMarkers;  // profits from a warm start
   return MakeCommand(options, Declare, Validate, Run);

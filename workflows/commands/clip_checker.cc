@@ -20,12 +20,12 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct ClipCheckerCommandOptions : CommandOptions {
   std::string proposed_layout_path;
   ClipCheckOptions check;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(ClipCheckerCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {
       "clip_checker",
@@ -51,7 +51,7 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->general)}};
 }
 
-void Validate(Options* options) {
+void Validate(ClipCheckerCommandOptions* options) {
   ClipCheckOptions& check = options->check;
   RefuseVideoOptions(*options);
   check.detection.Check();
@@ -120,7 +120,7 @@ void Print(const ClipFacts& facts, std::ostream& out) {
 }
 
 // The dictionary file of the layout is named relative to the new file.
-void WriteProposal(const LayoutProposal& proposal, const Options& options) {
+void WriteProposal(const LayoutProposal& proposal, const ClipCheckerCommandOptions& options) {
   const std::string& path = options.proposed_layout_path;
   Layout layout = proposal.layout;
   if (IsRegularFile(layout.dictionary)) {
@@ -137,7 +137,7 @@ void WriteProposal(const LayoutProposal& proposal, const Options& options) {
   fmt::print(std::cout, "proposed_layout_path: {}\n", path);
 }
 
-void Run(const Options& options) {
+void Run(const ClipCheckerCommandOptions& options) {
   const ClipCheck check = CheckClip(options.check);
   Print(check.facts, std::cout);
   if (check.proposal) WriteProposal(*check.proposal, options);
@@ -149,6 +149,8 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ClipChecker() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
+Command ClipChecker() {
+  return MakeCommand(std::make_shared<ClipCheckerCommandOptions>(), Declare, Validate, Run);
+}
 
 }  // namespace velamap

@@ -14,12 +14,12 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct DatabaseMergerCommandOptions : CommandOptions {
   std::string database_paths;
   DatabaseMergerOptions merger;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(DatabaseMergerCommandOptions* options) {
   return {"database_merger",
           "merges the databases of the separately imported parts of a long video into one",
           "--database_paths part1.db,part2.db,part3.db --layout_path layout.yml \\\n"
@@ -34,7 +34,7 @@ CommandSyntax Declare(Options* options) {
            DescribeOptions(&options->general)}};
 }
 
-void Validate(Options* options) {
+void Validate(DatabaseMergerCommandOptions* options) {
   options->merger.output_path = options->paths.output_path;
   options->merger.database_paths =
       PathsFromText(options->database_paths, "--database_paths", "part1.db,part2.db");
@@ -48,7 +48,7 @@ void Validate(Options* options) {
   options->merger.layout = LoadLayout(options->markers, true);
 }
 
-void Run(const Options& options) {
+void Run(const DatabaseMergerCommandOptions& options) {
   const MergeReport report = MergeDatabases(options.merger);
   fmt::print(std::cout, "parts: {}\n", options.merger.database_paths.size());
   fmt::print(std::cout, "images: {}\n", report.num_images);
@@ -60,7 +60,7 @@ void Run(const Options& options) {
 }  // namespace
 
 Command DatabaseMerger() {
-  return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run);
+  return MakeCommand(std::make_shared<DatabaseMergerCommandOptions>(), Declare, Validate, Run);
 }
 
 }  // namespace velamap

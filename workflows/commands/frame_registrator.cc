@@ -18,11 +18,11 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct FrameRegistratorCommandOptions : CommandOptions {
   RegistrationOptions registration;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(FrameRegistratorCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {"frame_registrator",
           "registers the images of a database and writes the seed model of the bundle adjustment",
@@ -44,7 +44,7 @@ CommandSyntax Declare(Options* options) {
           &options->preset};
 }
 
-void Validate(Options* options) {
+void Validate(FrameRegistratorCommandOptions* options) {
   LogPreset(options->preset);
   RefuseOptionsOfOtherMethod(options->typed, options->registration.method);
   CompleteRegistration(options->general, &options->registration);
@@ -63,7 +63,7 @@ void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) 
   fmt::print(out, "registration_path: {}\n", paths.registration_path);
 }
 
-void Run(const Options& options) {
+void Run(const FrameRegistratorCommandOptions& options) {
   StageClock clock;
   const SeedResult seed = RegisterDatabase(
       options.paths.database_path, LoadLayout(options.markers, false), options.registration);
@@ -79,7 +79,7 @@ void Run(const Options& options) {
 }  // namespace
 
 Command FrameRegistrator() {
-  return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run);
+  return MakeCommand(std::make_shared<FrameRegistratorCommandOptions>(), Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -13,14 +13,14 @@
 namespace velamap {
 namespace {
 
-struct Options {
+struct MarkerGeneratorCommandOptions {
   std::string output_path;
   GeneralOptions general;
   PrintOptions print;
   TypedNames typed;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(MarkerGeneratorCommandOptions* options) {
   return {"marker_generator",
           "makes sheets of markers to print, a layout to start from, or a calibration board",
           "--arrangement sail --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 --hull_markers 8 \\\n"
@@ -40,14 +40,15 @@ CommandSyntax Declare(Options* options) {
            DescribeOptions(&options->general)}};
 }
 
-void Validate(Options* options) {
+void Validate(MarkerGeneratorCommandOptions* options) {
   options->print.seed = static_cast<std::uint32_t>(options->general.random_seed);
   if (!options->print.layout_path.empty()) {
     options->print.layout = ReadLayout(options->print.layout_path);
   }
 }
 
-void Print(const PrintReport& report, const Options& options, std::ostream& out) {
+void Print(const PrintReport& report, const MarkerGeneratorCommandOptions& options,
+           std::ostream& out) {
   fmt::print(out, "dictionary: {} ({} codes)\n", report.dictionary, report.num_codes);
   if (report.codes) {
     fmt::print(out, "dictionary_distance: {} bits\n", report.codes->min_distance);
@@ -66,14 +67,14 @@ void Print(const PrintReport& report, const Options& options, std::ostream& out)
   out << "output_path: " << options.output_path << '\n';
 }
 
-void Run(const Options& options) {
+void Run(const MarkerGeneratorCommandOptions& options) {
   Print(PrintMarkers(options.print, options.output_path), options, std::cout);
 }
 
 }  // namespace
 
 Command MarkerGenerator() {
-  return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run);
+  return MakeCommand(std::make_shared<MarkerGeneratorCommandOptions>(), Declare, Validate, Run);
 }
 
 }  // namespace velamap

@@ -18,7 +18,7 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct MarkerImporterCommandOptions : CommandOptions {
   MarkerImporterOptions importer;
 };
 
@@ -45,7 +45,7 @@ Option PartOption(std::optional<VideoPart>* part) {
           "import the K-th of N parts of a video, for database_merger; left out: all frames"};
 }
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(MarkerImporterCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {"marker_importer",
           "finds the markers in images or a video and writes them into a COLMAP database",
@@ -68,7 +68,7 @@ CommandSyntax Declare(Options* options) {
           &options->preset};
 }
 
-void Validate(Options* options) {
+void Validate(MarkerImporterCommandOptions* options) {
   LogPreset(options->preset);
   RefuseVideoOptions(*options);
   MarkerImporterOptions& importer = options->importer;
@@ -98,7 +98,7 @@ void Print(const ImportReport& report, const PathOptions& paths, std::ostream& o
   fmt::print(out, "database_path: {}\n", paths.database_path);
 }
 
-void Run(const Options& options) {
+void Run(const MarkerImporterCommandOptions& options) {
   StageClock clock;
   const ImportReport report = ImportImages(options.importer);
   clock.EndImport(report.times, report.num_frames_read);
@@ -109,7 +109,7 @@ void Run(const Options& options) {
 }  // namespace
 
 Command MarkerImporter() {
-  return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run);
+  return MakeCommand(std::make_shared<MarkerImporterCommandOptions>(), Declare, Validate, Run);
 }
 
 }  // namespace velamap

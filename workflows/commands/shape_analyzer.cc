@@ -20,13 +20,13 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct ShapeAnalyzerCommandOptions : CommandOptions {
   bool part_planes = false;
   std::string csv_path;
   std::string json_path;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(ShapeAnalyzerCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {
       "shape_analyzer",
@@ -50,7 +50,7 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->general)}};
 }
 
-void Validate(Options* options) {
+void Validate(ShapeAnalyzerCommandOptions* options) {
   const PathOptions& paths = options->paths;
   if (!HasMarkerOptions(options->markers) && paths.reference_path.empty() &&
       paths.input_path.empty() && !options->part_planes) {
@@ -99,7 +99,7 @@ ModelOfShape LoadModel(const MarkerShape& shape, const PathOptions& paths) {
   return result;
 }
 
-MetricsReport Analyze(const Options& options) {
+MetricsReport Analyze(const ShapeAnalyzerCommandOptions& options) {
   const MarkerShape shape = ReadShapeCsv(ShapeFile(options.paths.shape_path));
   const std::optional<Layout> layout = LoadGivenLayout(options.markers, false);
   const ModelOfShape source = LoadModel(shape, options.paths);
@@ -131,7 +131,7 @@ MetricsReport Analyze(const Options& options) {
   return report;
 }
 
-void Run(const Options& options) {
+void Run(const ShapeAnalyzerCommandOptions& options) {
   const MetricsReport report = Analyze(options);
   if (!options.csv_path.empty()) {
     WriteFileAtomically(options.csv_path,
@@ -146,6 +146,8 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ShapeAnalyzer() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
+Command ShapeAnalyzer() {
+  return MakeCommand(std::make_shared<ShapeAnalyzerCommandOptions>(), Declare, Validate, Run);
+}
 
 }  // namespace velamap

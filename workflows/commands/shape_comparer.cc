@@ -23,7 +23,7 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct ShapeComparerCommandOptions : CommandOptions {
   ComparisonOptions comparison;
   MeshReadOptions mesh;
   std::vector<std::string> series_paths;
@@ -43,7 +43,7 @@ struct Options : CommandOptions {
   }
 };
 
-OptionGroup InputGroup(Options* options) {
+OptionGroup InputGroup(ShapeComparerCommandOptions* options) {
   MeshReadOptions* mesh = &options->mesh;
   const auto set_unit = [mesh](const std::string& text, const std::string& option) {
     mesh->m_per_unit = MPerUnitFromName(text, option);
@@ -99,7 +99,7 @@ OptionGroup AlignmentGroup(AlignmentOptions* alignment) {
                     "best fit onto a surface: from several starts, or from where the shape is")}};
 }
 
-OptionGroup OutputGroup(Options* options) {
+OptionGroup OutputGroup(ShapeComparerCommandOptions* options) {
   return {
       "Output",
       {Common(PathOption("comparison_path", PathUse::kWritesFolder, &options->comparison_path,
@@ -118,7 +118,7 @@ OptionGroup OutputGroup(Options* options) {
        PathOption("json_path", PathUse::kWritesFile, &options->json_path, "the same as JSON")}};
 }
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(ShapeComparerCommandOptions* options) {
   return {"shape_comparer",
           "compares shapes with another one or with the surface of a design",
           "--shape_path trim2/shape --series_paths trim3/shape,trim4/shape --reference_path "
@@ -129,7 +129,7 @@ CommandSyntax Declare(Options* options) {
 }
 
 // ParseOptions() checks only options that hold a single path.
-void CheckSeries(const Options& options) {
+void CheckSeries(const ShapeComparerCommandOptions& options) {
   if (options.series_paths.empty()) return;
   for (const auto& [option, path] : {std::pair{"--output_path", options.paths.output_path},
                                      std::pair{"--surface_path", options.surface_path},
@@ -153,7 +153,7 @@ void CheckSeries(const Options& options) {
   CheckOutputs(inputs, outputs);
 }
 
-void RefuseUnusedOptions(const Options& options) {
+void RefuseUnusedOptions(const ShapeComparerCommandOptions& options) {
   const std::string& reference = options.paths.reference_path;
   const std::string what = "the --reference_path " + reference;
   if (!IsMeshPath(reference)) {
@@ -183,7 +183,7 @@ void RefuseUnusedOptions(const Options& options) {
   }
 }
 
-void Validate(Options* options) {
+void Validate(ShapeComparerCommandOptions* options) {
   RefuseUnusedOptions(*options);
   if (!options->surface_path.empty() && options->layout_path.empty()) {
     throw InputError("--surface_path: needs --layout_path, whose lines the surface goes through");
@@ -196,7 +196,7 @@ void Validate(Options* options) {
   CheckSeries(*options);
 }
 
-std::vector<Comparison> CompareAll(const Options& options, const Layout& layout,
+std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, const Layout& layout,
                                    std::optional<UncertainShape>* reference) {
   const std::vector<std::string> paths = options.ShapePaths(), names = NamesOfShapes(paths);
   const std::string& reference_path = options.paths.reference_path;
@@ -229,7 +229,7 @@ std::vector<Comparison> CompareAll(const Options& options, const Layout& layout,
   return series;
 }
 
-void WriteComparisonFolder(const Options& options, const Layout& layout,
+void WriteComparisonFolder(const ShapeComparerCommandOptions& options, const Layout& layout,
                            const std::optional<UncertainShape>& reference,
                            const std::vector<Comparison>& series) {
   ComparisonPageInput input{series, reference ? &reference->shape : nullptr, layout};
@@ -242,7 +242,8 @@ void WriteComparisonFolder(const Options& options, const Layout& layout,
   folder.Commit();
 }
 
-void Write(const Options& options, const Comparison& first, const MetricsReport& report) {
+void Write(const ShapeComparerCommandOptions& options, const Comparison& first,
+           const MetricsReport& report) {
   const auto write = [](const std::string& path, const auto& writer) {
     if (!path.empty()) WriteFileAtomically(path, writer);
   };
@@ -256,7 +257,7 @@ void Write(const Options& options, const Comparison& first, const MetricsReport&
         [&](std::ostream& out) { WriteComparisonSurfacePly(first.surfaces, limit_m, out); });
 }
 
-void Run(const Options& options) {
+void Run(const ShapeComparerCommandOptions& options) {
   Layout layout;
   if (!options.layout_path.empty()) layout = ReadLayout(options.layout_path);
   std::optional<UncertainShape> reference;
@@ -271,6 +272,8 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ShapeComparer() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
+Command ShapeComparer() {
+  return MakeCommand(std::make_shared<ShapeComparerCommandOptions>(), Declare, Validate, Run);
+}
 
 }  // namespace velamap

@@ -18,12 +18,12 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct ShapeExporterCommandOptions : CommandOptions {
   ShapeExporterOptions exporter;
   SurfaceFileOptions surface;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(ShapeExporterCommandOptions* options) {
   PathOptions* paths = &options->paths;
   CommandSyntax syntax = {
       "shape_exporter",
@@ -52,7 +52,7 @@ CommandSyntax Declare(Options* options) {
   return syntax;
 }
 
-void Validate(Options* options) {
+void Validate(ShapeExporterCommandOptions* options) {
   LogPreset(options->preset);
   if (options->paths.output_path.empty() && options->paths.shape_path.empty()) {
     throw InputError(
@@ -89,7 +89,7 @@ void Print(const ShapeExportReport& report, const Verdict& verdict, const PathOp
   if (!paths.output_path.empty()) out << "model_path: " << paths.output_path << '\n';
 }
 
-void Run(const Options& options) {
+void Run(const ShapeExporterCommandOptions& options) {
   StageClock clock;
   const Layout layout = LoadLayout(options.markers, false);
   RefuseSailOptions(options.typed, layout);
@@ -108,6 +108,8 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ShapeExporter() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
+Command ShapeExporter() {
+  return MakeCommand(std::make_shared<ShapeExporterCommandOptions>(), Declare, Validate, Run);
+}
 
 }  // namespace velamap

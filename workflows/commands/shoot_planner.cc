@@ -24,7 +24,7 @@
 namespace velamap {
 namespace {
 
-struct Options : CommandOptions {
+struct ShootPlannerCommandOptions : CommandOptions {
   Arrangement arrangement = Arrangement::kSail;
   SailPlacementOptions sail;
   GridPlacementOptions grid;
@@ -32,7 +32,7 @@ struct Options : CommandOptions {
   Layout layout;
 };
 
-CommandSyntax Declare(Options* options) {
+CommandSyntax Declare(ShootPlannerCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {
       "shoot_planner",
@@ -60,7 +60,7 @@ CommandSyntax Declare(Options* options) {
        DescribeOptions(&options->general)}};
 }
 
-void RefuseUnusedOptions(const Options& options) {
+void RefuseUnusedOptions(const ShootPlannerCommandOptions& options) {
   if (!options.paths.camera_path.empty()) {
     RefuseOptionsWithoutEffect(options.typed, {"lens", "width", "height"},
                                "the calibration of --camera_path says what the camera is");
@@ -77,13 +77,13 @@ void RefuseUnusedOptions(const Options& options) {
   }
 }
 
-void CheckCamera(const Options& options) {
+void CheckCamera(const ShootPlannerCommandOptions& options) {
   if (options.paths.camera_path.empty() || !options.plan.field_of_view_deg) return;
   throw InputError(
       "--field_of_view: the calibration says it already; leave out this option or --camera_path");
 }
 
-void Validate(Options* options) {
+void Validate(ShootPlannerCommandOptions* options) {
   options->plan.seed = static_cast<std::uint32_t>(options->general.random_seed);
   options->plan.num_threads = options->general.num_threads;
   options->plan.Check();
@@ -98,7 +98,7 @@ void Validate(Options* options) {
 }
 
 // Places the markers of the options as marker_generator does, or those of the layout's lines.
-PlannedSurface PlaceMarkers(const Options& options) {
+PlannedSurface PlaceMarkers(const ShootPlannerCommandOptions& options) {
   Layout layout = options.layout;
   const double length_mm = kMmPerM * layout.marker_length_m;
   const int num_cells =
@@ -123,7 +123,7 @@ PlannedSurface PlaceMarkers(const Options& options) {
   return SurfaceOfPlacement(placement, layout, options.plan.camber, options.plan.twist_deg);
 }
 
-PlannedSurface MakeSurface(const Options& options) {
+PlannedSurface MakeSurface(const ShootPlannerCommandOptions& options) {
   if (options.paths.shape_path.empty()) return PlaceMarkers(options);
   const std::string file = ShapeFile(options.paths.shape_path);
   return SurfaceOfShape(ReadShapeCsv(file), options.layout, file);
@@ -135,7 +135,7 @@ void WritePlan(const ShootPlan& plan, const std::filesystem::path& folder) {
   WriteFile(folder / "plan.svg", [&](std::ostream& out) { out << SvgText(DrawPlan(plan)); });
 }
 
-void Run(const Options& options) {
+void Run(const ShootPlannerCommandOptions& options) {
   const std::string& output_path = options.paths.output_path;
   std::optional<AtomicFolder> folder;
   if (!output_path.empty()) folder.emplace(output_path);
@@ -152,6 +152,8 @@ void Run(const Options& options) {
 
 }  // namespace
 
-Command ShootPlanner() { return MakeCommand(std::make_shared<Options>(), Declare, Validate, Run); }
+Command ShootPlanner() {
+  return MakeCommand(std::make_shared<ShootPlannerCommandOptions>(), Declare, Validate, Run);
+}
 
 }  // namespace velamap
