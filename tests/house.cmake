@@ -94,7 +94,7 @@ house_folder(exporters/sail PUBLIC
 house_folder(exporters/freeform PUBLIC
   freeform_shape)
 house_folder(exporters/compare PUBLIC
-  comparison comparison_ply comparison_sigma shape_comparison)
+  comparison comparison_ply comparison_sigma mesh_distance section_comparison shape_comparison)
 house_folder(exporters/report PUBLIC
   html_page report_assets report_data report_sail report_writer verdict)
 house_folder(exporters/comparison_page PUBLIC
@@ -104,7 +104,7 @@ house_folder(exporters/calibration PUBLIC
 house_folder(exporters PUBLIC
   shape_exporter shape_report)
 house_folder(workflows/run PUBLIC
-  adjustment camera_checks central_frame_sweep logging pipeline progress run_summary stage_times summary
+  adjustment camera_checks central_frame_sweep logging pipeline progress report_input run_summary stage_times summary
   version versions workspace)
 house_folder(workflows/proposal PUBLIC
   clip_map layout_correction layout_proposal print_faults)

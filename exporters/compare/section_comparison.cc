@@ -85,26 +85,6 @@ void AddNotes(const SectionReport& report, const char* whose, std::vector<std::s
   for (const std::string& note : report.notes) notes->push_back(fmt::format("{}: {}", whose, note));
 }
 
-// The shape with its whole markers moved to their feet on the surface, without sigmas.
-MarkerShape OnSurface(const MeshDistance& surface, const ShapeDeviation& deviation) {
-  MarkerShape moved;
-  for (const MarkerDeviation& compared : deviation.markers) {
-    if (!compared.is_over_surface) continue;
-    ShapeMarker marker = *FindWholeMarker(deviation.aligned_shape, compared.marker_id);
-    marker.sigma_m = {};
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
-      Eigen::Vector3d& x = *marker.x_in_shape_m[corner];
-      const MeshFoot foot = surface.Project(x);
-      x -= foot.distance_m * foot.normal;
-      sum += x;
-    }
-    marker.x_in_shape_m[0] = sum / kNumCorners;
-    moved.markers.push_back(marker);
-  }
-  return moved;
-}
-
 SectionComparison Compare(const UncertainShape& shape, const UncertainShape& reference,
                           bool is_exact, const Alignment& alignment, const Layout& layout,
                           const SectionOptions& options) {
@@ -144,6 +124,25 @@ const Section* FindSection(const SectionReport& report, const std::string& part,
   return it == report.sections.end() ? nullptr : &*it;
 }
 
+MarkerShape MarkersOnSurface(const MeshDistance& surface, const ShapeDeviation& deviation) {
+  MarkerShape moved;
+  for (const MarkerDeviation& compared : deviation.markers) {
+    if (!compared.is_over_surface) continue;
+    ShapeMarker marker = *FindWholeMarker(deviation.aligned_shape, compared.marker_id);
+    marker.sigma_m = {};
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+      Eigen::Vector3d& x = *marker.x_in_shape_m[corner];
+      const MeshFoot foot = surface.Project(x);
+      x -= foot.distance_m * foot.normal;
+      sum += x;
+    }
+    marker.x_in_shape_m[0] = sum / kNumCorners;
+    moved.markers.push_back(marker);
+  }
+  return moved;
+}
+
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
                                   const Alignment& alignment, const Layout& layout,
                                   const SectionOptions& options) {
@@ -153,8 +152,8 @@ SectionComparison CompareSections(const UncertainShape& shape, const UncertainSh
 SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
                                   const ShapeDeviation& deviation, const Layout& layout,
                                   const SectionOptions& options) {
-  return Compare(shape, {OnSurface(reference, deviation), {}}, true, deviation.alignment, layout,
-                 options);
+  return Compare(shape, {MarkersOnSurface(reference, deviation), {}}, true, deviation.alignment,
+                 layout, options);
 }
 
 }  // namespace velamap

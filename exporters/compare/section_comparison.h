@@ -49,6 +49,10 @@ SectionComparison CompareSections(const UncertainShape& shape, const UncertainSh
                                   const Alignment& alignment, const Layout& layout,
                                   const SectionOptions& options = {});
 
+// The whole markers over the surface, moved to their feet on it, without sigmas: where the same
+// markers would be on a sail of exactly this shape. In the frame of the surface.
+MarkerShape MarkersOnSurface(const MeshDistance& surface, const ShapeDeviation& deviation);
+
 // Cuts the design through the feet of the markers on its surface, as if the same markers stuck to a
 // sail of exactly this shape. `deviation` comes from CompareWithMesh(); markers that are not over
 // the surface are missing.

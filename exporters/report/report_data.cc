@@ -145,6 +145,12 @@ void AddFigure(const std::string& name, const std::string& sigma_name,
   if (figure->sigma) (*json)[sigma_name] = *figure->sigma;
 }
 
+Json ProfileJson(const std::vector<Eigen::Vector2d>& profile_m) {
+  Json json = Json::array();
+  for (const Eigen::Vector2d& x : profile_m) json.push_back({x.x(), x.y()});
+  return json;
+}
+
 Json JsonOf(const ReportSection& section) {
   Json json = {{"name", section.name}, {"height_m", section.height_m}};
   AddFigure("chord_m", "chord_sigma_m", section.chord_m, &json);
@@ -155,8 +161,8 @@ Json JsonOf(const ReportSection& section) {
   AddFigure("twist_deg", "twist_sigma_deg", section.twist_deg, &json);
   AddFigure("leech_twist_deg", "leech_twist_sigma_deg", section.leech_twist_deg, &json);
   AddFigure("girth_m", "girth_sigma_m", section.girth_m, &json);
-  json["profile"] = Json::array();
-  for (const Eigen::Vector2d& x : section.profile_m) json["profile"].push_back({x.x(), x.y()});
+  json["profile"] = ProfileJson(section.profile_m);
+  if (!section.design_m.empty()) json["design"] = ProfileJson(section.design_m);
   if (!section.profile_in_shape_m.empty()) {
     json["profile_in_shape"] = Json::array();
     for (const Eigen::Vector3d& x : section.profile_in_shape_m) {
@@ -242,6 +248,11 @@ std::string ReportJson(const ReportInput& input) {
   json["versions"] = PairsJson(input.versions);
   json["picture"] = PictureJson(input, errors);
   AddList("sections", input.sections, &json);
+  if (input.design) {
+    json["design"] = {{"name", input.design->name},
+                      {"num_markers", input.design->num_markers},
+                      {"distance_mm", input.design->distance_mm}};
+  }
   AddList("rigs", input.rigs, &json);
   AddList("surfaces", input.surfaces, &json);
   // File names need not be UTF-8; invalid bytes are replaced.

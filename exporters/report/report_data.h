@@ -18,7 +18,8 @@
 //                            not_detected
 //   sections                 name, height_m, chord_m, camber_percent, draft_percent, entry_deg,
 //                            exit_deg, twist_deg, leech_twist_deg, girth_m with their sigmas,
-//                            profile, profile_in_shape
+//                            profile, profile_in_shape, design
+//   design                   name, num_markers, distance_mm
 //   rigs                     part, luff_bend_m, luff_sag_m, sheeting_angle_deg with their sigmas
 //   surfaces                 part, is_sail, area_m2, volume_m3, distance_mm, sigma_mm, vertices,
 //                            triangles
@@ -72,6 +73,14 @@ struct ReportSection {
       twist_deg, leech_twist_deg, girth_m;
   std::vector<Eigen::Vector2d> profile_m;           // in the section's plane, x along the chord
   std::vector<Eigen::Vector3d> profile_in_shape_m;  // the same curve in 3D; can be empty
+  std::vector<Eigen::Vector2d> design_m;            // the design's, in the same plane; can be empty
+};
+
+// The design beside whose sections the measured ones are drawn.
+struct ReportDesign {
+  std::string name;
+  int num_markers = 0;       // over the surface of the design
+  double distance_mm = 0.0;  // of these from it after the best fit, rms
 };
 
 struct ReportRig {
@@ -123,6 +132,7 @@ struct ReportInput {
   std::vector<std::pair<std::string, std::string>> options = {};
   std::vector<std::pair<std::string, std::string>> versions = {};
   std::vector<ReportSection> sections = {};
+  std::optional<ReportDesign> design = {};
   std::vector<ReportRig> rigs = {};
   std::vector<ReportSurface> surfaces = {};
   std::optional<ReportClip> clip = {};  // of a video

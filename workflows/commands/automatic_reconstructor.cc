@@ -21,12 +21,14 @@
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/seed_model.h"
 #include "workflows/commands/commands.h"
+#include "workflows/commands/report_design.h"
 #include "workflows/options/option_effects.h"
 #include "workflows/options/sail_options.h"
 #include "workflows/options/shared_options.h"
 #include "workflows/run/adjustment.h"
 #include "workflows/run/logging.h"
 #include "workflows/run/pipeline.h"
+#include "workflows/run/report_input.h"
 #include "workflows/run/run_summary.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
@@ -43,6 +45,7 @@ struct AutomaticReconstructorCommandOptions : CommandOptions {
   AdjustmentOptions adjustment;
   ShapeExporterOptions exporter;
   SurfaceFileOptions surface;
+  DesignOptions design;
   Arguments arguments;  // as they were typed, for the report
   bool full_paths = false;
   SummaryFormat summary = SummaryFormat::kText;
@@ -71,6 +74,7 @@ CommandSyntax Declare(AutomaticReconstructorCommandOptions* options) {
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
     syntax.groups.push_back(group);
   }
+  syntax.groups.push_back({"Report", DescribeOptions(&options->design)});
   syntax.preset = &options->preset;
   syntax.groups.push_back(DescribeOptions(&options->general));
   syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
@@ -106,6 +110,9 @@ void Validate(AutomaticReconstructorCommandOptions* options) {
   options->exporter.num_threads = options->general.num_threads;
   CompleteImporter(*options, &options->importer);
   RefuseSailOptions(options->typed, options->importer.layout);
+  if (options->design.path.empty()) {
+    RefuseOptionsWithoutEffect(options->typed, {"design_unit"}, "there is no --design_path");
+  }
   CheckFrameChoice(options->exporter.frame, options->importer.layout);
   options->importer.allowed_frames = options->importer.video;
   options->importer.video = NarrowToReach(options->importer.video, options->registration);
@@ -125,34 +132,6 @@ ImportReport Import(MarkerImporterOptions options, Workspace* workspace,
   return report;
 }
 
-// The options as they were typed, `--name value` or `--name=value`, as pairs.
-std::vector<std::pair<std::string, std::string>> TypedOptions(const Arguments& arguments) {
-  std::vector<std::pair<std::string, std::string>> options;
-  for (const std::string& argument : arguments) {
-    const bool is_name = argument.rfind("--", 0) == 0;
-    const std::size_t equals = is_name ? argument.find('=') : std::string::npos;
-    if (!is_name) {
-      if (!options.empty()) options.back().second = argument;
-    } else if (equals == std::string::npos) {
-      options.emplace_back(argument.substr(2), "");
-    } else {
-      options.emplace_back(argument.substr(2, equals - 2), argument.substr(equals + 1));
-    }
-  }
-  return options;
-}
-
-// Removes the user's folders from the texts of the report, because reports are passed on to others.
-void LeaveFoldersOut(ReportInput* input) {
-  for (std::string& warning : input->warnings) warning = StripFolders(warning);
-  for (auto* pairs : {&input->options, &input->versions}) {
-    for (auto& [name, value] : *pairs) value = StripFolders(value);
-  }
-  for (auto* left_out : {&input->images_left_out, &input->markers_left_out}) {
-    for (ReportLeftOut& one : *left_out) one.reason = StripFolders(one.reason);
-  }
-}
-
 // The video, or the folder of photographs without a trailing slash, whose name would be empty.
 std::filesystem::path Source(const AutomaticReconstructorCommandOptions& options) {
   return AbsoluteFolder(options.paths.image_path);
@@ -165,10 +144,10 @@ ShapeOrigin OriginOf(const AutomaticReconstructorCommandOptions& options,
           !adjustment.cameras.empty()};
 }
 
-// Logs everything that contradicts the shape. The input refers to `summary`.
+// Logs everything that contradicts the shape. The input refers to `summary`; `design` may be null.
 ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
                         const WorkspacePaths& paths, const SeedResult& seed,
-                        const ReconstructionSummary& summary) {
+                        const MeshDistance* design, const ReconstructionSummary& summary) {
   const ShapeExportReport& shape = summary.shape;
   WarnOfOtherMarkers(shape.metrics);
   WarnOfMissingSections(shape.sail.sections);
@@ -192,6 +171,10 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   input.num_ids_found = seed.num_ids_found;
   for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
     input.found_cameras.push_back(camera);
+  }
+  if (design != nullptr) {
+    AddDesign(options.design, *design, shape, options.importer.layout,
+              options.exporter.sail.sections, &input);
   }
   input.warnings = LoggedWarnings();  // before the next line also logs the key numbers
   LogContradictions(shape);
@@ -223,7 +206,8 @@ void WriteFoundCamera(const AdjustmentResult& adjustment, const Model& model,
 // complete.
 void AdjustAndExport(const AutomaticReconstructorCommandOptions& options,
                      const WorkspacePaths& paths, const SeedResult& seed,
-                     ReconstructionSummary* summary, StageClock* clock) {
+                     const MeshDistance* design, ReconstructionSummary* summary,
+                     StageClock* clock) {
   AtomicFolder sparse(paths.Sparse());
   WriteModel(seed.model, (sparse.TemporaryPath() / "seed").string(), ModelFormat::kBinaryAndText);
   Model model = seed.model;
@@ -238,7 +222,7 @@ void AdjustAndExport(const AutomaticReconstructorCommandOptions& options,
   exporter.origin = OriginOf(options, summary->adjustment);
   summary->shape =
       ComputeShape(model, options.importer.layout, exporter, uncertainty ? &*uncertainty : nullptr);
-  const ReportInput input = JudgedInput(options, paths, seed, *summary);
+  const ReportInput input = JudgedInput(options, paths, seed, design, *summary);
   summary->verdict = MakeVerdict(input);
   WriteShape(summary->shape, exporter, &summary->verdict);
   sparse.Commit();
@@ -259,6 +243,7 @@ void WriteTimes(const StageClock& clock, const WorkspacePaths& paths) {
 }
 
 void Run(const AutomaticReconstructorCommandOptions& options) {
+  const std::unique_ptr<MeshDistance> design = ReadDesign(options.design);
   Workspace workspace(options.paths.workspace_path, options.paths.image_path);
   const WorkspacePaths& paths = workspace.paths();
   AddLogFile(paths.Log().string());
@@ -276,7 +261,7 @@ void Run(const AutomaticReconstructorCommandOptions& options) {
   summary.num_images_total = static_cast<int>(seed.image_names.size() + summary.left_out.size());
   summary.dropped_markers = seed.registration.dropped_markers;
   summary.left_out.insert(summary.left_out.end(), seed.left_out.begin(), seed.left_out.end());
-  AdjustAndExport(options, paths, seed, &summary, &clock);
+  AdjustAndExport(options, paths, seed, design.get(), &summary, &clock);
   WriteTimes(clock, paths);
   if (options.summary == SummaryFormat::kJson) {
     WriteMetricsJson(SummaryMetrics(summary, paths), std::cout);

@@ -69,8 +69,8 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
   return result;
 }
 
-void CheckUnit(const std::string& path, const MeshReadOptions& options, const MarkerShape& shape,
-               const MeshDistance& mesh) {
+void CheckUnit(const std::string& path, const MeshReadOptions& options,
+               const std::string& unit_option, const MarkerShape& shape, const MeshDistance& mesh) {
   const std::optional<double> factor = UnitHint(shape, mesh);
   if (!factor) return;
   const std::string what = fmt::format("{}: is {:.3g} m across, which does not match the shape",
@@ -80,9 +80,8 @@ void CheckUnit(const std::string& path, const MeshReadOptions& options, const Ma
     return;
   }
   throw InputError(
-      fmt::format("{}; if its unit is {}, give --reference_unit {}; if it is right as "
-                  "it is, --reference_unit {}",
-                  what, *factor > 1 ? "m" : "mm", *factor > 1 ? "m" : "mm",
+      fmt::format("{}; if its unit is {}, give --{} {}; if it is right as it is, --{} {}", what,
+                  *factor > 1 ? "m" : "mm", unit_option, *factor > 1 ? "m" : "mm", unit_option,
                   DefaultMPerUnit(path) == 1.0 ? "m" : "mm"));
 }
 

@@ -1,4 +1,4 @@
-// What shape_comparer compares: shapes with their uncertainty, and the checks of a design.
+// What is compared: shapes with their uncertainty, and the checks of a design.
 
 #pragma once
 
@@ -16,10 +16,10 @@ namespace velamap {
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option);
 
-// Throws InputError if the unit of the design in `path` cannot be right and was not given; warns if
-// it was.
-void CheckUnit(const std::string& path, const MeshReadOptions& options, const MarkerShape& shape,
-               const MeshDistance& mesh);
+// Throws InputError if the unit of the design in `path` cannot be right and was not given by
+// `unit_option`; warns if it was.
+void CheckUnit(const std::string& path, const MeshReadOptions& options,
+               const std::string& unit_option, const MarkerShape& shape, const MeshDistance& mesh);
 
 // Warns of triangles that face opposite sides.
 void CheckFaces(const std::string& path, const MeshDistance& mesh);

@@ -208,7 +208,7 @@ std::vector<Comparison> CompareAll(const ShapeComparerCommandOptions& options, c
   if (IsMeshPath(reference_path)) {
     mesh.emplace(ReadMesh(reference_path, options.mesh));
     for (const UncertainShape& shape : shapes) {
-      CheckUnit(reference_path, options.mesh, shape.shape, *mesh);
+      CheckUnit(reference_path, options.mesh, "reference_unit", shape.shape, *mesh);
     }
     CheckFaces(reference_path, *mesh);
   } else {

@@ -11,6 +11,7 @@
 #include "workflows/options/option_effects.h"
 #include "workflows/options/sail_options.h"
 #include "workflows/options/shared_options.h"
+#include "workflows/run/report_input.h"
 #include "workflows/run/stage_times.h"
 #include "workflows/run/summary.h"
 #include "workflows/run/version.h"

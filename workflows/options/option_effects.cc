@@ -95,9 +95,9 @@ void RefuseSailOptions(const TypedNames& typed, const Layout& layout) {
   if (has_lines) return;
   RefuseOptionsWithoutEffect(
       typed,
-      {"Section.", "Surface.luff_extension", "Surface.leech_extension", "Surface.foot_extension",
-       "Surface.head_extension", "Surface.edges_path", "Surface.grid_sections",
-       "Surface.grid_points"},
+      {"design_path", "Section.", "Surface.luff_extension", "Surface.leech_extension",
+       "Surface.foot_extension", "Surface.head_extension", "Surface.edges_path",
+       "Surface.grid_sections", "Surface.grid_points"},
       "no part of the layout has horizontal lines, which sections and the surface of a sail need");
 }
 

@@ -25,6 +25,7 @@
 #include "reconstruct/seed_model.h"
 #include "reconstruct/thesis/thesis_registration.h"
 #include "workflows/run/logging.h"
+#include "workflows/run/report_input.h"
 #include "workflows/run/summary.h"
 #include "workflows/run/version.h"
 

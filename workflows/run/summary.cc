@@ -177,17 +177,6 @@ void WarnOfMissingSections(const SectionReport& sections) {
   }
 }
 
-ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout,
-                            const SteadinessVerdict& steadiness) {
-  ReportInput input{report.metric_model,  layout,      report.shape, report.metrics,
-                    report.model_metrics, report.scale};
-  input.uncertainty = report.uncertainty ? &*report.uncertainty : nullptr;
-  input.audit = &report.audit;
-  input.steadiness = steadiness;
-  input.known_points = &report.known_points;
-  return input;
-}
-
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   const ShapeMetrics& metrics = report.metrics;
   const Eigen::Vector3d box_m = BoundingBox(report.shape);

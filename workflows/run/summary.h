@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "exporters/report/report_data.h"
 #include "exporters/shape_exporter.h"
 #include "workflows/run/pipeline.h"
 
@@ -36,10 +35,6 @@ void WarnOfOtherMarkers(const ShapeMetrics& metrics);
 
 // Warns of lines and heights that have no section, with the reason.
 void WarnOfMissingSections(const SectionReport& sections);
-
-// What the report shows of an exported shape; refers to both. Without log, title and origin.
-ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout,
-                            const SteadinessVerdict& steadiness);
 
 // Prints what shape_exporter says of a shape: markers, their errors, scale, size, sections.
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out);

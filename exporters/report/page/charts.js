@@ -165,14 +165,14 @@ function fitEqualScales(chart) {
 const ROUND_TICKS = {ticks: {includeBounds: false}};
 
 // The curves are wide and flat, so the height of the chart follows from its width.
-function fitHeight(chart, points) {
+function fitHeight(chart, points, numLegends) {
   const box = chart.canvas.parentElement;
   const length = key => {
     const values = points.flat().map(point => point[key]);
     return Math.max(...values) - Math.min(...values);
   };
   const {width, height} = chart.chartArea;
-  const least = chart.options.plugins.legend.position === 'right' ? 18 * points.length - 30 : 50;
+  const least = chart.options.plugins.legend.position === 'right' ? 18 * numLegends - 30 : 50;
   const wanted = Math.min(420, Math.max(50, least, 1.15 * width * length('y') / length('x')));
   box.style.height = `${Math.round(box.offsetHeight - height + wanted)}px`;
 }
@@ -183,7 +183,7 @@ const sectionName = section => `${section.name}, ${fixed(section.height_m, 2)} m
 
 // The chart as a drawing, both axes to one scale, in mm.
 function sectionSvg(sections) {
-  const all = sections.flatMap(section => section.profile);
+  const all = sections.flatMap(section => [...section.profile, ...section.design ?? []]);
   const [low, high] = [0, 1].map(i => [Math.min, Math.max].map(f => 1e3 * f(...all.map(x => x[i]))))
       .reduce((ends, [min, max]) => [[...ends[0], min], [...ends[1], max]], [[], []]);
   const size = Math.max(high[0] - low[0], high[1] - low[1]) / 40;
@@ -193,8 +193,10 @@ function sectionSvg(sections) {
     'font-family': 'sans-serif', 'font-size': size, fill: 'none', 'stroke-width': size / 10});
   sections.forEach((section, i) => {
     const stroke = PART_COLOURS[i % PART_COLOURS.length];
-    const d = section.profile.map(([x, y], k) => `${k ? 'L' : 'M'}${fixed(1e3 * x, 2)} ${fixed(-1e3 * y, 2)}`);
-    svg.append(svgElement('path', {d: d.join(''), stroke}),
+    const path = (curve, more) => svgElement('path', {stroke, ...more, d: curve.map(
+        ([x, y], k) => `${k ? 'L' : 'M'}${fixed(1e3 * x, 2)} ${fixed(-1e3 * y, 2)}`).join('')});
+    if (section.design) svg.append(path(section.design, {'stroke-dasharray': size / 2}));
+    svg.append(path(section.profile),
         svgElement('text', {x: low[0], y: -low[1] + (i + 2) * 1.5 * size, fill: stroke},
             `${sectionName(section)}: camber ${fixed(section.camber_percent, 2)} %, twist ${
               fixed(section.twist_deg, 1)}°`));
@@ -202,25 +204,33 @@ function sectionSvg(sections) {
   return svg;
 }
 
+// The curve of a section in the chart; `more` are settings of its line.
+function sectionCurve(section, i, curve, more) {
+  const colour = PART_COLOURS[i % PART_COLOURS.length];
+  return {
+    label: sectionName(section), data: curve.map(([x, y]) => ({x: x * 1e3, y: y * 1e3})), showLine: true,
+    pointRadius: 0, borderWidth: 2, borderColor: colour, backgroundColor: colour, ...more};
+}
+
 function sectionChart(sections) {
-  const points = sections.map(section => section.profile.map(([x, y]) => ({x: x * 1e3, y: y * 1e3})));
+  const measured = sections.map((section, i) => sectionCurve(section, i, section.profile));
+  const designs = sections.flatMap((section, i) => section.design ?
+      [sectionCurve(section, i, section.design, {borderDash: [6, 4], borderWidth: 1.5, isDesign: true})] : []);
+  const points = [...measured, ...designs].map(set => set.data);
   const position = legendPlace(byId('chart_sections').parentElement);
   const chart = addChart('chart_sections', 'Profiles, both axes to one scale', {
     type: 'scatter',
     data: {
-      datasets: sections.map((section, i) => ({
-        label: sectionName(section), data: points[i], showLine: true, pointRadius: 0, borderWidth: 2,
-        borderColor: PART_COLOURS[i % PART_COLOURS.length],
-        backgroundColor: PART_COLOURS[i % PART_COLOURS.length],
-      })),
+      datasets: [...measured, ...designs],
     },
     options: {
       scales: {x: axis('along the chord, mm', ROUND_TICKS), y: axis('mm', ROUND_TICKS)},
-      plugins: {legend: {display: true, position, labels: {boxWidth: 18, boxHeight: 2}}},
+      plugins: {legend: {display: true, position, labels: {
+        boxWidth: 18, boxHeight: 2, filter: (item, data) => !data.datasets[item.datasetIndex].isDesign}}},
     },
   });
   const fit = () => {
-    fitHeight(chart, points);
+    fitHeight(chart, points, measured.length);
     chart.resize();
     fitEqualScales(chart);
   };

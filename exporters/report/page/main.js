@@ -44,7 +44,7 @@ function main() {
   fillVerdict(data.verdict);
   fillKeyNumbers(data.key_numbers);
   fillView(data);
-  if (data.sections) fillSections(data.sections);
+  if (data.sections) fillSections(data);
   fillRigs(data.rigs);
   fillSurfaces(data.surfaces);
   drawCharts(data);

@@ -181,8 +181,13 @@ function figure(name, key, sigmaKey, digits, factor) {
   };
 }
 
-function fillSections(sections) {
+function fillSections({sections, design}) {
   byId('sections').hidden = false;
+  if (design) {
+    byId('note_design').hidden = false;
+    byId('note_design').textContent = `Dashed: ${design.name}, placed so that the markers fit it best. ${
+        design.num_markers} markers lie ${significant(design.distance_mm, 3)} mm RMS from it.`;
+  }
   fillTable('table_sections', [
     text('Section', 'name'), number('Height, m', 'height_m', 3),
     figure('Chord, mm', 'chord_m', 'chord_sigma_m', 1, 1000),

@@ -218,13 +218,16 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   EXPECT_FALSE(Parsed().contains("sections"));
   EXPECT_FALSE(Parsed().contains("surfaces"));
   EXPECT_FALSE(Parsed().contains("rigs"));
+  EXPECT_FALSE(Parsed().contains("design"));
   ReportInput input = example_.Input();
   ReportSection section;
   section.name = "h1";
   section.height_m = 1.5;
   section.chord_m = ReportFigure{2.0, 0.001};
   section.profile_m = {{0, 0}, {1, 0.2}, {2, 0}};
+  section.design_m = {{0, 0.01}, {2, 0.01}};
   input.sections = {section};
+  input.design = ReportDesign{"design.step", 30, 12.5};
   ReportSurface surface;
   surface.part = "hull";
   surface.area_m2 = 0.5;
@@ -237,6 +240,8 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   const json data = json::parse(ReportJson(input));
   EXPECT_EQ(data.at("sections").at(0).at("chord_sigma_m"), 0.001);
   EXPECT_EQ(data.at("sections").at(0).at("profile").size(), 3u);
+  EXPECT_EQ(data.at("sections").at(0).at("design").size(), 2u);
+  EXPECT_EQ(data.at("design").at("distance_mm"), 12.5);
   EXPECT_FALSE(data.at("sections").at(0).contains("camber_percent"));
   EXPECT_EQ(data.at("surfaces").at(0).at("part"), "hull");
   EXPECT_EQ(data.at("surfaces").at(0).at("volume_m3"), 0.25);

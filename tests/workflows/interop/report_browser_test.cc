@@ -61,7 +61,9 @@ class ReportBrowser : public testing::Test {
     for (int i = 0; i < 13; ++i) {
       section.profile_in_shape_m.push_back(*example.shape.markers[39 + i].x_in_shape_m[0]);
     }
+    section.design_m = {{0, 0}, {1, 0.15}, {2.345, 0}};
     input.sections = {section};
+    input.design = ReportDesign{"design.step", 130, 31.25};
     input.surfaces = {SurfaceThrough(example.shape)};
     std::ofstream out(*dir_ / "report.html", std::ios::binary);
     WriteReport(input, out);
@@ -115,6 +117,7 @@ TEST_F(ReportBrowser, FillsThePageWithoutErrors) {
   EXPECT_THAT(dom, HasSubstr("too blurred for two markers"));
   EXPECT_THAT(dom, HasSubstr("line h3"));
   EXPECT_THAT(dom, HasSubstr("2345.0 ± 1.2"));
+  EXPECT_THAT(dom, HasSubstr("Dashed: design.step"));
   EXPECT_THAT(dom, HasSubstr("Registration.method"));
   EXPECT_THAT(dom, HasSubstr("data:image/jpeg;base64,"));
   EXPECT_THAT(dom, HasSubstr("save the chart"));

@@ -1,0 +1,90 @@
+#include "workflows/commands/report_design.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "exporters/compare/section_comparison.h"
+#include "exporters/compare/shape_comparison.h"
+#include "exporters/sail/section_writer.h"
+#include "exporters/shape/shape_transform.h"
+#include "importer/base/error.h"
+#include "importer/geometry/units.h"
+#include "workflows/commands/compared_shapes.h"
+
+namespace velamap {
+namespace {
+
+// The part whose design it is: the one with lines. Empty for all markers where several have lines.
+std::string PartOfDesign(const Layout& layout) {
+  std::string name;
+  for (const LayoutPart& part : layout.parts) {
+    if (part.horizontal.empty()) continue;
+    if (!name.empty()) return "";
+    name = part.name;
+  }
+  return name;
+}
+
+void FitDesign(const DesignOptions& options, const MeshDistance& design,
+               const ShapeExportReport& shape, const Layout& layout,
+               const SectionOptions& section_options, ReportInput* input) {
+  CheckUnit(options.path, options.mesh, "design_unit", shape.shape, design);
+  CheckFaces(options.path, design);
+  const ShapeDeviation deviation =
+      CompareWithMesh({shape.shape, {}}, design, layout, {}, PartOfDesign(layout));
+  MarkerShape of_design = MarkersOnSurface(design, deviation);
+  MoveShape(Inverse(deviation.alignment.reference_from_shape), nullptr, &of_design);
+  const SectionReport sections =
+      ComputeSections(of_design, shape.frame, layout, nullptr, section_options);
+  for (std::size_t i = 0; i < input->sections.size(); ++i) {
+    const Section& measured = shape.sail.sections.sections[i];
+    const Section* planned = FindSection(sections, measured.part, measured.name);
+    if (planned == nullptr) continue;
+    for (const ProfilePoint& point : SampleProfile(*planned, kNumProfilePoints)) {
+      const ProfilePoint placed = ProfilePointOf(measured, point.x_in_frame_m);
+      input->sections[i].design_m.emplace_back(placed.chordwise_m, placed.depth_m);
+    }
+  }
+  input->design = ReportDesign{std::filesystem::path(options.path).filename().string(),
+                               deviation.distance_m.count, kMmPerM * deviation.distance_m.rms};
+}
+
+}  // namespace
+
+std::vector<Option> DescribeOptions(DesignOptions* options) {
+  MeshReadOptions* mesh = &options->mesh;
+  const auto set_unit = [mesh](const std::string& text, const std::string& option) {
+    mesh->m_per_unit = MPerUnitFromName(text, option);
+  };
+  return {Common(PathOption("design_path", PathUse::kReadsFile, &options->path,
+                            "surface of the sail's design as .step, .iges, .ply, .stl or .obj: the "
+                            "report draws its sections beside the measured ones")),
+          {"design_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
+           "unit of a .ply, .stl or .obj; left out: as velamap wrote it, else m for .ply, mm for "
+           ".stl and .obj"}};
+}
+
+std::unique_ptr<MeshDistance> ReadDesign(const DesignOptions& options) {
+  if (options.path.empty()) return nullptr;
+  if (!IsMeshPath(options.path)) {
+    throw InputError(fmt::format(
+        "--design_path: {} is no surface; give a .step, .iges, .ply, .stl or .obj", options.path));
+  }
+  return std::make_unique<MeshDistance>(ReadMesh(options.path, options.mesh));
+}
+
+void AddDesign(const DesignOptions& options, const MeshDistance& design,
+               const ShapeExportReport& shape, const Layout& layout,
+               const SectionOptions& section_options, ReportInput* input) {
+  try {
+    FitDesign(options, design, shape, layout, section_options, input);
+  } catch (const InputError& error) {
+    spdlog::warn("the report does not show the design: {}", error.what());
+  } catch (const DataError& error) {
+    spdlog::warn("the report does not show the design: {}", error.what());
+  }
+}
+
+}  // namespace velamap

@@ -1,0 +1,35 @@
+// The design that the report of a reconstruction draws beside the measured sections.
+
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "exporters/compare/mesh_distance.h"
+#include "exporters/design/mesh_reader.h"
+#include "exporters/report/report_data.h"
+#include "exporters/shape_exporter.h"
+#include "importer/layout/layout.h"
+#include "workflows/options/option_parser.h"
+
+namespace velamap {
+
+struct DesignOptions {
+  std::string path;  // empty for none
+  MeshReadOptions mesh;
+};
+
+// --design_path and --design_unit.
+std::vector<Option> DescribeOptions(DesignOptions* options);
+
+// Null without a path. Throws InputError if the file is no surface, and the errors of ReadMesh().
+std::unique_ptr<MeshDistance> ReadDesign(const DesignOptions& options);
+
+// Fits the markers of the sail to `design`, read from `path`, and adds to each section of `input`,
+// which are those of `shape`, where the design lies in its plane. The shape does not depend on
+// this, so that a design that cannot be compared is a warning.
+void AddDesign(const DesignOptions& options, const MeshDistance& design,
+               const ShapeExportReport& shape, const Layout& layout,
+               const SectionOptions& section_options, ReportInput* input);
+
+}  // namespace velamap

@@ -1,0 +1,25 @@
+// What the report and the verdict of a reconstruction are made of.
+
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exporters/report/report_data.h"
+#include "exporters/shape_exporter.h"
+
+namespace velamap {
+
+// What the report shows of an exported shape; refers to both. Without log, title and origin.
+ReportInput MakeReportInput(const ShapeExportReport& report, const Layout& layout,
+                            const SteadinessVerdict& steadiness);
+
+// The options as they were typed, `--name value` or `--name=value`, as pairs.
+std::vector<std::pair<std::string, std::string>> TypedOptions(
+    const std::vector<std::string>& arguments);
+
+// Removes the user's folders from the texts of the report, because reports are passed on to others.
+void LeaveFoldersOut(ReportInput* input);
+
+}  // namespace velamap
