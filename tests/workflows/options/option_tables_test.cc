@@ -180,7 +180,7 @@ std::string GoodValue(const Option& option) {
   if (std::holds_alternative<bool*>(option.target)) return "1";
   if (std::holds_alternative<std::string*>(option.target)) return "text of " + option.name;
   if (option.name == "frame") return "lines";
-  if (option.name == "reference_unit") return "mm";
+  if (option.name == "reference_unit" || option.name == "design_unit") return "mm";
   if (option.name == "series_paths") return ".";  // has to exist
   if (option.name == "video_part") return "2/5";
   const std::string default_text = std::get<ParsedValue>(option.target).default_text;
