@@ -27,7 +27,7 @@ void SetFrameAndScale(int central_idx, GlobalRegistration* global) {
   }
 }
 
-std::string ReasonLeftOut(const GlobalRegistration& global, int frame_idx) {
+void LeaveOut(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
   const auto& observation_idxs = global.problem.Frame(frame_idx).observation_idxs;
   const auto num_shared =
       std::count_if(observation_idxs.begin(), observation_idxs.end(), [&global](int idx) {
@@ -36,15 +36,14 @@ std::string ReasonLeftOut(const GlobalRegistration& global, int frame_idx) {
                         global.problem.Observation(idx).marker_idx)]
                     .empty();
       });
-  return ReasonNotRegistered(static_cast<int>(num_shared),
-                             static_cast<int>(observation_idxs.size()),
-                             global.options.min_num_inliers);
+  LeaveOut(static_cast<int>(num_shared), static_cast<int>(observation_idxs.size()),
+           global.options.min_num_inliers, frame);
 }
 
 void DescribeFrame(const GlobalRegistration& global, int frame_idx, RegisteredFrame* frame) {
   const auto& pose = global.solution.cam_from_shape[static_cast<std::size_t>(frame_idx)];
   if (!pose) {
-    if (frame->reason.empty()) frame->reason = ReasonLeftOut(global, frame_idx);
+    if (frame->reason.empty()) LeaveOut(global, frame_idx, frame);
     return;
   }
   frame->cam_from_shape = *pose;

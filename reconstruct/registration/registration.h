@@ -28,6 +28,8 @@ struct RegisteredFrame {
   // alignment with the mean shape.
   double rms_error_m = 0.0;
   std::string reason;  // why it is not registered, else empty
+  // Markers of the shape that the frame shows although they agree on no position of its camera.
+  int num_contradicting = 0;
 };
 
 struct DroppedMarker {
@@ -59,8 +61,12 @@ struct Registration {
 // Throws DataError if fewer than `needed` images have markers.
 void CheckEnoughImages(std::size_t num_images, std::size_t needed);
 
-// Why a frame with `num_markers` markers, of which the registered images share `num_shared`, could
-// not be registered; `needed` shared markers would allow it.
-std::string ReasonNotRegistered(int num_shared, int num_markers, int needed);
+// Notes in `frame` why it could not be registered: the registered images share `num_shared` of its
+// `num_markers` markers, and `needed` would allow it.
+void LeaveOut(int num_shared, int num_markers, int needed, RegisteredFrame* frame);
+
+// What it means that many frames with many markers agree with the shape on no position of the
+// camera, and what to do; empty where there are few of them.
+std::string CameraDoubt(const Registration& registration);
 
 }  // namespace velamap

@@ -103,17 +103,18 @@ FrameSearchOptions FitSearch(const std::vector<FrameShape>& frames,
   return fitted;
 }
 
-std::string ReasonLeftOut(const RegistrationState& state, const FrameShape& frame,
-                          bool time_order) {
+void LeaveOut(const RegistrationState& state, const FrameShape& shape, bool time_order,
+              RegisteredFrame* frame) {
   int num_shared = 0;
-  for (const FrameMarker& marker : frame.markers) {
+  for (const FrameMarker& marker : shape.markers) {
     num_shared += static_cast<int>(state.shape.count(marker.marker_id));
   }
   const int needed = state.options.min_num_inliers;
   if (num_shared >= needed && time_order) {
-    return "not selected by the search around the central frame";
+    frame->reason = "not selected by the search around the central frame";
+  } else {
+    LeaveOut(num_shared, static_cast<int>(shape.markers.size()), needed, frame);
   }
-  return ReasonNotRegistered(num_shared, static_cast<int>(frame.markers.size()), needed);
 }
 
 // Moves the shape frame back to the central image's camera, from which averaging has shifted it.
@@ -180,7 +181,7 @@ Registration RegisterAroundCentralFrame(const PosedImages& posed, const Layout& 
   for (std::size_t idx = 0; idx < state.frames.size(); ++idx) {
     registration.frames.push_back(PlaceFrame(state, idx));
     if (!state.alignments[idx]) {
-      registration.frames.back().reason = ReasonLeftOut(state, state.frames[idx], time_order);
+      LeaveOut(state, state.frames[idx], time_order, &registration.frames.back());
     }
   }
   registration.shape = std::move(state.shape);

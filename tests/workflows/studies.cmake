@@ -17,5 +17,5 @@ if(BASH_PROGRAM)
     ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>;RENDER_CLIP=$<TARGET_FILE:render_clip>;CLIP_CORNERS=$<TARGET_FILE:clip_corners>")
   add_test(NAME studies.readmes
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/readmes_test.sh ${PROJECT_SOURCE_DIR})
-  set_tests_properties(studies.readmes PROPERTIES LABELS unit TIMEOUT 120)
+  set_tests_properties(studies.readmes PROPERTIES LABELS unit TIMEOUT 300)
 endif()

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -65,6 +66,9 @@ ClipPrecision MeasurePrecision(const std::string& database_path, const Layout& l
   precision.parallax_deg = kDegPerRad * Parallax(model);
   precision.steadiness = WithoutDoubtfulStep(JudgeSteadiness(model));
   precision.warnings = summary.warnings;
+  if (std::string doubt = CameraDoubt(registration); !doubt.empty()) {
+    precision.warnings.push_back(std::move(doubt));
+  }
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (!marker.is_false) continue;
     precision.markers_left_out.push_back(

@@ -70,11 +70,16 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
       std::sqrt(uncertainty.variance_factor), uncertainty.correlation_factor,
       100.0 * uncertainty.share_above_4_sigma);
   const CalibrationEvidence& calibration = uncertainty.calibration;
+  // A focal length that the adjustment has refined cannot change any further.
+  const std::string focal_change =
+      summary.cameras.empty()
+          ? fmt::format("; focal length {:+.2f} +- {:.2f} %", 100.0 * calibration.focal_change,
+                        100.0 * calibration.focal_sigma)
+          : "";
   spdlog::info(
-      "calibration: {} changes would explain {:.3f} px of the residuals ({:.1f} sigmas; focal "
-      "length {:+.2f} +- {:.2f} %) and move the shape by {:.2f} mm ({:.1f} of its sigmas)",
-      calibration.num_changes, calibration.systematic_px, SigmasAgainst(calibration),
-      100.0 * calibration.focal_change, 100.0 * calibration.focal_sigma,
+      "calibration: {} changes would explain {:.3f} px of the residuals ({:.1f} sigmas{}) and move "
+      "the shape by {:.2f} mm ({:.1f} of its sigmas)",
+      calibration.num_changes, calibration.systematic_px, SigmasAgainst(calibration), focal_change,
       1e3 * calibration.shape_change_m, calibration.shape_change_in_sigmas);
   spdlog::debug("calibration: focal length explains {:.2f}, distortion {:.2f}",
                 calibration.focal_share, calibration.distortion_share);

@@ -76,6 +76,7 @@ void LogSeed(const SeedResult& seed) {
   spdlog::info("{} of {} images registered, {} markers", seed.model.images.size(),
                seed.image_names.size(), registration.shape.size());
   if (!seed.left_out.empty()) spdlog::info("images left out: {}", LeftOutText(seed.left_out));
+  if (const std::string doubt = CameraDoubt(registration); !doubt.empty()) spdlog::warn(doubt);
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (marker.is_false) {
       spdlog::warn("marker {} left out: {}", marker.marker_id, marker.reason);

@@ -23,7 +23,7 @@ struct DesignExample {
     shape.shape = markers;
     shape.frame = ChooseFrame(shape.shape, layout, std::nullopt);
     shape.sail.sections = ComputeSections(markers, shape.frame, layout, nullptr, section_options);
-    options.path = "folder/design.step";
+    options.path = "folder/design.ply";
   }
 
   ReportInput With(const TriangleMesh& design) const {
@@ -53,9 +53,9 @@ TEST(ReportDesign, OfTheSameShapeCoversItsSections) {
   const DesignExample example(BoatShape());
   const ReportInput input = example.With(Moved(FarPose(), SailMesh()));
   ASSERT_TRUE(input.design);
-  EXPECT_EQ(input.design->name, "design.step");
+  EXPECT_EQ(input.design->name, "design.ply");
   EXPECT_EQ(input.design->num_markers, 30);  // of the sail: the hull is no part of its design
-  EXPECT_LT(input.design->distance_mm, 0.5);
+  EXPECT_LT(input.design->distance_mm, 1.0);
   ASSERT_EQ(input.sections.size(), 5u);
   for (const ReportSection& section : input.sections) {
     ASSERT_EQ(section.design_m.size(), section.profile_m.size()) << section.name;
