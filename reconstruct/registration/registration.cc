@@ -44,9 +44,8 @@ std::string CameraDoubt(const Registration& registration) {
   if (num_contradicting == 0 || 100 * num_contradicting < kMinShare_percent * num_frames) return "";
   return fmt::format(
       "{} of {} images show {} or more markers of the shape but fit no position of the camera: "
-      "they "
-      "are of another camera, lens mode or zoom, or the surface moved; give only images of one "
-      "camera and one state",
+      "they are of another camera, lens mode or zoom, or the surface moved; give only images of "
+      "one camera and one state",
       num_contradicting, num_frames, kManyMarkers);
 }
 

@@ -207,11 +207,36 @@ std::vector<BadInput> Comparisons() {
              "40,1,0,0,0,,,,2,\n40,2,1,0,0,,,,2,\n40,3,1,1,0,,,,2,\n40,4,0,1,0,,,,2,\n")}};
 }
 
+// A design for the report of the main job.
+std::vector<BadInput> Designs() {
+  const auto write = [](const std::string& design) {
+    return [design](const fs::path& dir) {
+      WriteTextFile(dir / design, "no surface");
+      WriteTextFile(dir / "lines.yml",
+                    "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n"
+                    "  sail: {horizontal: [{name: h1, markers: [0, 1, 2, 3]}]}\n");
+    };
+  };
+  const std::string call =
+      "automatic_reconstructor --image_path @/images --camera_path @/camera.yml --layout_path "
+      "@/lines.yml --backend markers --workspace_path @/new --design_path ";
+  return {{"ADesignThatIsNotThere", call + "@/no.step", 2, "no.step", write("bad.stl")},
+          {"ADesignOfALayoutWithoutLines", kRerun + " --design_path @/layout.yml", 2,
+           "--design_path: it would change nothing"},
+          {"AUnitWithoutADesign", kRerun + " --design_unit mm", 2,
+           "--design_unit: it would change nothing"},
+          {"ADesignThatIsATable", call + "@/bad.csv", 2, "bad.csv is no surface", write("bad.csv")},
+          {"ADesignThatIsNoMesh", call + "@/bad.stl", 2, "bad.stl: ", write("bad.stl")},
+          {"ADesignInFeet", call + "@/bad.stl --design_unit ft", 2, "--design_unit: 'ft'",
+           write("bad.stl")}};
+}
+
 }  // namespace
 
 std::vector<BadInput> CommandCases() {
   std::vector<BadInput> cases = Prints();
-  for (const auto& more : {Plans(), BoardsAndClips(), Layouts(), Exports(), Comparisons()}) {
+  for (const auto& more :
+       {Plans(), BoardsAndClips(), Layouts(), Exports(), Comparisons(), Designs()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;
