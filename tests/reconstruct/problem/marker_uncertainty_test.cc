@@ -280,7 +280,8 @@ TEST_F(Repetitions, ErrorsThatFramesHaveInCommonAreCounted) {
     }
     Model model = MakeSceneModel(noisy);
     const auto summary = AdjustWithMarkers(options, scene.layout, {}, &model);
-    EXPECT_GT(summary.uncertainty.correlation_factor, 1.2);
+    // 1.7 in the mean; the draws, which differ between compilers, scatter down to 1.19.
+    EXPECT_GT(summary.uncertainty.correlation_factor, 1.1);
     AddCoordinates(model, truth, summary.uncertainty.points, &coordinates);
   }
   EXPECT_NEAR(coordinates.Within1(), 0.683, 0.06);
