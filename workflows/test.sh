@@ -23,4 +23,5 @@ if [[ -n "$colmap" ]]; then
   export PATH="$programs:$PATH"
 fi
 echo "== test: build/$preset"
-ctest --preset "$preset" --parallel 2 "$@"
+# One more than cores, because browsers and other programs keep tests waiting.
+ctest --preset "$preset" --parallel "$((${VELAMAP_JOBS:-$(nproc)} + 1))" "$@"
