@@ -172,12 +172,12 @@ ReportInput JudgedInput(const AutomaticReconstructorCommandOptions& options,
   for (const auto& [camera_id, camera] : summary.adjustment.cameras) {
     input.found_cameras.push_back(camera);
   }
-  if (design != nullptr) {
+  input.warnings = LoggedWarnings();  // before the next line also logs the key numbers
+  LogContradictions(shape);
+  if (design != nullptr) {  // after the warnings: the verdict is on the shape alone
     AddDesign(options.design, *design, shape, options.importer.layout,
               options.exporter.sail.sections, &input);
   }
-  input.warnings = LoggedWarnings();  // before the next line also logs the key numbers
-  LogContradictions(shape);
   input.options = TypedOptions(options.arguments);
   input.versions = LibraryVersions(options.adjustment.colmap.colmap_path);
   LeaveFoldersOut(&input);
