@@ -227,6 +227,8 @@ std::vector<BadInput> Designs() {
            "--design_unit: it would change nothing"},
           {"ADesignThatIsATable", call + "@/bad.csv", 2, "bad.csv is no surface", write("bad.csv")},
           {"ADesignThatIsNoMesh", call + "@/bad.stl", 2, "bad.stl: ", write("bad.stl")},
+          {"AUnitOfADesignThatNamesItsOwn", call + "@/bad.step --design_unit mm", 2,
+           "names its unit itself", write("bad.step")},
           {"ADesignInFeet", call + "@/bad.stl --design_unit ft", 2, "--design_unit: 'ft'",
            write("bad.stl")}};
 }

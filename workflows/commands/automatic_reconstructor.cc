@@ -74,7 +74,7 @@ CommandSyntax Declare(AutomaticReconstructorCommandOptions* options) {
   for (const OptionGroup& group : SailGroups(&options->exporter, &options->surface)) {
     syntax.groups.push_back(group);
   }
-  syntax.groups.push_back({"Report", DescribeOptions(&options->design)});
+  syntax.groups.push_back(DescribeOptions(&options->design));
   syntax.preset = &options->preset;
   syntax.groups.push_back(DescribeOptions(&options->general));
   syntax.groups.back().options.push_back({"full_paths", &options->full_paths, "0|1",
@@ -110,9 +110,7 @@ void Validate(AutomaticReconstructorCommandOptions* options) {
   options->exporter.num_threads = options->general.num_threads;
   CompleteImporter(*options, &options->importer);
   RefuseSailOptions(options->typed, options->importer.layout);
-  if (options->design.path.empty()) {
-    RefuseOptionsWithoutEffect(options->typed, {"design_unit"}, "there is no --design_path");
-  }
+  CheckDesign(options->design, options->typed);
   CheckFrameChoice(options->exporter.frame, options->importer.layout);
   options->importer.allowed_frames = options->importer.video;
   options->importer.video = NarrowToReach(options->importer.video, options->registration);

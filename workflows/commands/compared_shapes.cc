@@ -69,6 +69,15 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
   return result;
 }
 
+Option MeshUnitOption(const std::string& name, MeshReadOptions* options) {
+  const auto set_unit = [options](const std::string& text, const std::string& option) {
+    options->m_per_unit = MPerUnitFromName(text, option);
+  };
+  return {name, ParsedValue{&options->m_per_unit, "", set_unit}, "m|mm",
+          "unit of a .ply, .stl or .obj; left out: as velamap wrote it, else m for .ply, mm for "
+          ".stl and .obj"};
+}
+
 void CheckUnit(const std::string& path, const MeshReadOptions& options,
                const std::string& unit_option, const MarkerShape& shape, const MeshDistance& mesh) {
   const std::optional<double> factor = UnitHint(shape, mesh);

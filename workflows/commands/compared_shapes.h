@@ -6,6 +6,7 @@
 
 #include "exporters/compare/shape_comparison.h"
 #include "exporters/design/mesh_reader.h"
+#include "workflows/options/option_parser.h"
 
 namespace velamap {
 
@@ -15,6 +16,9 @@ namespace velamap {
 // or do not belong to each other.
 UncertainShape ReadUncertainShape(const std::string& path, const std::string& uncertainty_path,
                                   const std::string& option);
+
+// The unit of a .ply, .stl or .obj, as the option `name`.
+Option MeshUnitOption(const std::string& name, MeshReadOptions* options);
 
 // Throws InputError if the unit of the design in `path` cannot be right and was not given by
 // `unit_option`; warns if it was.

@@ -12,6 +12,7 @@
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
 #include "workflows/commands/compared_shapes.h"
+#include "workflows/options/option_effects.h"
 
 namespace velamap {
 namespace {
@@ -53,25 +54,29 @@ void FitDesign(const DesignOptions& options, const MeshDistance& design,
 
 }  // namespace
 
-std::vector<Option> DescribeOptions(DesignOptions* options) {
-  MeshReadOptions* mesh = &options->mesh;
-  const auto set_unit = [mesh](const std::string& text, const std::string& option) {
-    mesh->m_per_unit = MPerUnitFromName(text, option);
-  };
-  return {Common(PathOption("design_path", PathUse::kReadsFile, &options->path,
-                            "surface of the sail's design as .step, .iges, .ply, .stl or .obj: the "
-                            "report draws its sections beside the measured ones")),
-          {"design_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
-           "unit of a .ply, .stl or .obj; left out: as velamap wrote it, else m for .ply, mm for "
-           ".stl and .obj"}};
+OptionGroup DescribeOptions(DesignOptions* options) {
+  return {
+      "Report",
+      {Common(PathOption("design_path", PathUse::kReadsFile, &options->path,
+                         "surface of the sail's design as .step, .iges, .ply, .stl or .obj: the "
+                         "report draws its sections beside the measured ones")),
+       MeshUnitOption("design_unit", &options->mesh)}};
+}
+
+void CheckDesign(const DesignOptions& options, const TypedNames& typed) {
+  if (options.path.empty()) {
+    RefuseOptionsWithoutEffect(typed, {"design_unit"}, "there is no --design_path");
+  } else if (!IsMeshPath(options.path)) {
+    throw InputError(fmt::format(
+        "--design_path: {} is no surface; give a .step, .iges, .ply, .stl or .obj", options.path));
+  } else if (HasOwnUnit(options.path)) {
+    RefuseOptionsWithoutEffect(typed, {"design_unit"},
+                               "the --design_path " + options.path + " names its unit itself");
+  }
 }
 
 std::unique_ptr<MeshDistance> ReadDesign(const DesignOptions& options) {
   if (options.path.empty()) return nullptr;
-  if (!IsMeshPath(options.path)) {
-    throw InputError(fmt::format(
-        "--design_path: {} is no surface; give a .step, .iges, .ply, .stl or .obj", options.path));
-  }
   return std::make_unique<MeshDistance>(ReadMesh(options.path, options.mesh));
 }
 

@@ -20,9 +20,12 @@ struct DesignOptions {
 };
 
 // --design_path and --design_unit.
-std::vector<Option> DescribeOptions(DesignOptions* options);
+OptionGroup DescribeOptions(DesignOptions* options);
 
-// Null without a path. Throws InputError if the file is no surface, and the errors of ReadMesh().
+// Throws InputError if the path is not that of a surface, and for a unit that would change nothing.
+void CheckDesign(const DesignOptions& options, const TypedNames& typed);
+
+// Null without a path. Throws the errors of ReadMesh().
 std::unique_ptr<MeshDistance> ReadDesign(const DesignOptions& options);
 
 // Fits the markers of the sail to `design`, read from `path`, and adds to each section of `input`,

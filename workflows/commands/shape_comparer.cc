@@ -45,9 +45,6 @@ struct ShapeComparerCommandOptions : CommandOptions {
 
 OptionGroup InputGroup(ShapeComparerCommandOptions* options) {
   MeshReadOptions* mesh = &options->mesh;
-  const auto set_unit = [mesh](const std::string& text, const std::string& option) {
-    mesh->m_per_unit = MPerUnitFromName(text, option);
-  };
   PathOptions* paths = &options->paths;
   std::vector<std::string>* series_paths = &options->series_paths;
   const auto set_series = [series_paths](const std::string& text, const std::string& option) {
@@ -62,9 +59,7 @@ OptionGroup InputGroup(ShapeComparerCommandOptions* options) {
        Common({"series_paths", ParsedValue{series_paths, "", set_series}, "shapes",
                "more shapes for the same comparison, such as the other trims of a series: "
                "trim2/shape,trim3/shape"}),
-       Common({"reference_unit", ParsedValue{&mesh->m_per_unit, "", set_unit}, "m|mm",
-               "unit of a .ply, .stl or .obj; left out: as velamap wrote it, else m for .ply, mm "
-               "for .stl and .obj"}),
+       Common(MeshUnitOption("reference_unit", mesh)),
        {"chord_deviation", &mesh->chord_deviation_mm, "mm",
         "how far triangles may be from the faces of a .step or .iges", FromTo(0.001, 1000)},
        Common(PathOption("layout_path", PathUse::kReadsLayout, &options->layout_path,

@@ -1,36 +1,24 @@
 #include "tests/support/render/nine_bit_dictionary.h"
 
-#include <algorithm>
 #include <vector>
+
+#include "importer/layout/code_rotations.h"
 
 namespace velamap {
 
 Dictionary MakeNineBitDictionary() {
-  constexpr int kSize = 3, kNumCodes = 1 << (kSize * kSize), kNumSymmetric = 2;
-  // Bit kSize * row + column of a code turned by a quarter.
-  const auto turned = [](int code) {
-    int result = 0;
-    for (int row = 0; row < kSize; ++row) {
-      for (int column = 0; column < kSize; ++column) {
-        const int bit = code >> (kSize * (kSize - 1 - column) + row) & 1;
-        result |= bit << (kSize * row + column);
-      }
-    }
-    return result;
-  };
-  std::vector<int> codes, symmetric_codes;
-  for (int code = 0; code < kNumCodes; ++code) {
-    const int quarter = turned(code), half = turned(quarter), three_quarters = turned(half);
-    if (code > std::min({quarter, half, three_quarters})) continue;  // a turned copy is listed
-    if (code != half) {
-      codes.push_back(code);
-    } else if (code != quarter && symmetric_codes.size() < kNumSymmetric) {
-      symmetric_codes.push_back(code);
+  constexpr int kSize = 3, kNumSymmetric = 2;
+  std::vector<MarkerCode> codes, symmetric_codes;
+  for (const Rotations& code : CodeSpace(kSize).All()) {
+    if (code[0] != code[2]) {
+      codes.push_back(code[0]);
+    } else if (code[0] != code[1] && symmetric_codes.size() < kNumSymmetric) {
+      symmetric_codes.push_back(code[0]);
     }
   }
   codes.insert(codes.end(), symmetric_codes.begin(), symmetric_codes.end());
   cv::Mat bytes;
-  for (const int code : codes) {
+  for (const MarkerCode code : codes) {
     cv::Mat bits(kSize, kSize, CV_8UC1);
     for (int i = 0; i < kSize * kSize; ++i) {
       bits.at<std::uint8_t>(i / kSize, i % kSize) = code >> i & 1;

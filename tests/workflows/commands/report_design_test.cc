@@ -7,7 +7,6 @@
 #include "importer/base/error.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/support/error_matchers.h"
-#include "tests/support/temp_dir.h"
 
 namespace velamap {
 namespace {
@@ -86,12 +85,10 @@ TEST(ReportDesign, InAnotherUnitIsLeftOut) {
 }
 
 TEST(ReportDesign, IsNoTable) {
-  const TempDir dir;
-  WriteTextFile(dir / "design.csv", "x,y,z\n");
   DesignOptions options;
   EXPECT_EQ(ReadDesign(options), nullptr);
-  options.path = (dir / "design.csv").string();
-  ExpectThrows<InputError>([&] { ReadDesign(options); }, {"--design_path", "design.csv"});
+  options.path = "design.csv";
+  ExpectThrows<InputError>([&] { CheckDesign(options, {}); }, {"--design_path", "design.csv"});
 }
 
 }  // namespace
