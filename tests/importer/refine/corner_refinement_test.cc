@@ -57,18 +57,8 @@ Quality MeasureRefineCorners(const MarkerGrid& grid) {
 
 Quality MeasureSubpix(const MarkerGrid& grid) {
   return Measure(grid, [](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
-    const int half_window =
-        std::clamp(static_cast<int>(std::lround(0.4 * MeanSide(start) / cells.rows)), 1, 5);
-    std::vector<cv::Point2f> points;
-    for (const auto& x : start) {
-      points.emplace_back(static_cast<float>(x.x()), static_cast<float>(x.y()));
-    }
-    cv::cornerSubPix(gray, points, {half_window, half_window}, {-1, -1},
-                     cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 0.01));
     RefinedCorners refined;
-    for (std::size_t i = 0; i < kNumCorners; ++i) {
-      refined.corners_px[i] = {points[i].x, points[i].y};
-    }
+    refined.corners_px = SubpixCorners(gray, start, cells.rows);
     return std::make_optional(refined);
   });
 }

@@ -1,7 +1,11 @@
 #include "tests/importer/refine/marker_grid.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/Geometry>
 #include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "importer/geometry/units.h"
 
@@ -71,6 +75,20 @@ double MeanSide(const QuadPx& quad) {
     perimeter += (quad[(i + 1) % kNumCorners] - quad[i]).norm();
   }
   return perimeter / kNumCorners;
+}
+
+QuadPx SubpixCorners(const cv::Mat& gray, const QuadPx& start, int num_cells) {
+  const int half_window =
+      std::clamp(static_cast<int>(std::lround(0.4 * MeanSide(start) / num_cells)), 1, 5);
+  std::vector<cv::Point2f> points;
+  for (const auto& x : start) {
+    points.emplace_back(static_cast<float>(x.x()), static_cast<float>(x.y()));
+  }
+  cv::cornerSubPix(gray, points, {half_window, half_window}, {-1, -1},
+                   cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 0.01));
+  QuadPx refined;
+  for (std::size_t i = 0; i < kNumCorners; ++i) refined[i] = {points[i].x, points[i].y};
+  return refined;
 }
 
 }  // namespace velamap

@@ -36,4 +36,8 @@ MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options);
 
 double MeanSide(const QuadPx& quad);
 
+// cv::cornerSubPix as its users would call it: with a window of less than half a cell, so that it
+// holds no other corner. `num_cells`: along a side, with the border.
+QuadPx SubpixCorners(const cv::Mat& gray, const QuadPx& start, int num_cells);
+
 }  // namespace velamap

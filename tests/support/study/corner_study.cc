@@ -116,20 +116,6 @@ MarkerGrid MakeBentGrid(const CornerCase& parameters, std::uint32_t seed) {
   return grid;
 }
 
-QuadPx Subpix(const cv::Mat& gray, const QuadPx& start, int num_cells) {
-  const int half_window =
-      std::clamp(static_cast<int>(std::lround(0.4 * MeanSide(start) / num_cells)), 1, 5);
-  std::vector<cv::Point2f> points;
-  for (const auto& x : start) {
-    points.emplace_back(static_cast<float>(x.x()), static_cast<float>(x.y()));
-  }
-  cv::cornerSubPix(gray, points, {half_window, half_window}, {-1, -1},
-                   cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 0.01));
-  QuadPx refined;
-  for (std::size_t i = 0; i < kNumCorners; ++i) refined[i] = {points[i].x, points[i].y};
-  return refined;
-}
-
 // Mean variance of a coordinate by the Cramer-Rao bound.
 double VarianceBound(const MarkerGrid& grid, std::size_t k, const CornerCase& parameters) {
   using P = PatternParameters;
@@ -222,7 +208,7 @@ CornerAccuracy MeasureCorners(const CornerCase& parameters) {
         parameters.bend_deg > 0 ? MakeBentGrid(parameters, seed) : MakeFlatGrid(parameters, seed);
     grid.image = Compressed(grid.image, parameters.jpeg_quality);
     for (std::size_t k = 0; k < grid.truth.size(); ++k) {
-      subpix.Add(Subpix(grid.image, grid.starts[k], grid.cells[k].rows), grid.truth[k]);
+      subpix.Add(SubpixCorners(grid.image, grid.starts[k], grid.cells[k].rows), grid.truth[k]);
       const auto refined = RefineCorners(grid.image, grid.starts[k], grid.cells[k]);
       if (!refined) {
         ++accuracy.num_failed;
