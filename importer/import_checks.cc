@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/base/option.h"
 #include "importer/base/replacement.h"
 #include "importer/database/source_table.h"
@@ -131,7 +131,7 @@ void CheckSources(const MarkerImporterOptions& options, const std::vector<std::s
 void RecordSources(const MarkerImporterOptions& options,
                    const std::vector<std::string>& known_names, ColmapDatabase* database) {
   if (known_names.empty() || !database->ReadSources().empty()) return;
-  spdlog::warn(
+  LogWarning(
       "{}: made by an earlier velamap, which did not record its source; assuming it is from {}",
       options.database_path, options.image_path);
   for (const std::string& name : known_names) {

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <Eigen/Geometry>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/camera/turned_camera.h"
 #include "reconstruct/adjust/camera_adjustment.h"
 #include "reconstruct/camera/camera_steadiness.h"
@@ -153,7 +153,7 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
     calibration.views.push_back({views[idx]});
   }
   const std::vector<DatabaseImage> used = ChosenImages(images, chosen);
-  spdlog::info("{} of {} pictures with markers are chosen", used.size(), images.size());
+  LogInfo("{} of {} pictures with markers are chosen", used.size(), images.size());
   // Takes all images and not only the selected ones, because the velocity of a corner follows from
   // the neighbouring frames.
   const CornerErrors corner_errors = CornerErrorsOf(images, formation);

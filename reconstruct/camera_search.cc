@@ -7,10 +7,10 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <Eigen/Geometry>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/camera/camera_projection.h"
 #include "importer/camera/turned_camera.h"
 #include "reconstruct/adjust/camera_adjustment.h"
@@ -143,7 +143,7 @@ std::vector<Start> Starts(const std::vector<DatabaseImage>& images, const Camera
       LensOf(CameraModel::kSimpleRadial, images, guesses, registration, adjustment);
   const Lens fisheye =
       LensOf(CameraModel::kOpenCVFisheye, images, guesses, registration, adjustment);
-  spdlog::info(
+  LogInfo(
       "single markers: focal length {:.0f} px +- {:.1f} % (rectilinear lens) or {:.0f} px +- "
       "{:.1f} % (fisheye)",
       MeanFocalLength(straight.cameras.begin()->second), 100.0 * straight.log_sigma,
@@ -211,7 +211,7 @@ class CameraSearch {
       try {
         next = RunOnce(outcome.cameras);
       } catch (const DataError& error) {
-        spdlog::debug("not again: {}", error.what());
+        LogDebug("not again: {}", error.what());
         break;
       }
       double change = 0.0;
@@ -236,8 +236,8 @@ class CameraSearch {
     outcome.cameras = cameras;  // keeps cameras none of whose images were registered
     for (const auto& [camera_id, camera] : adjustment.cameras) {
       outcome.cameras[camera_id] = camera;
-      spdlog::debug("camera {}: {} with focal length {:.1f} px", camera_id,
-                    CameraModelName(camera.model), MeanFocalLength(camera));
+      LogDebug("camera {}: {} with focal length {:.1f} px", camera_id,
+               CameraModelName(camera.model), MeanFocalLength(camera));
     }
     outcome.explained = adjustment.explained;
     std::size_t num_corners = 0;
@@ -268,11 +268,11 @@ std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
   for (const Start& start : Starts(images, guesses, registration, adjustment)) {
     try {
       Outcome outcome = search.Run(start);
-      spdlog::info("from {}: {:.0f} corners explained, {:.0f} % of those seen", start.name,
-                   outcome.explained, 100.0 * outcome.share);
+      LogInfo("from {}: {:.0f} corners explained, {:.0f} % of those seen", start.name,
+              outcome.explained, 100.0 * outcome.share);
       if (!best || outcome.explained > best->explained) best = std::move(outcome);
     } catch (const DataError& error) {
-      spdlog::info("from {}: {}", start.name, error.what());
+      LogInfo("from {}: {}", start.name, error.what());
       if (first_failure.empty()) first_failure = error.what();
     }
     if (best && best->share > kNearlyAll) break;

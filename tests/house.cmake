@@ -3,17 +3,17 @@
 # headers of a folder are its own. tests/house_test.cmake holds the code to this list.
 
 house_folder(importer/base PUBLIC
-  atomic_output bounded_queue error file_lock files ids natural_order numbers option parallel
+  atomic_output bounded_queue error file_lock files ids log natural_order numbers option parallel
   replacement stage_timer statistics)
 house_folder(importer/process PUBLIC
   child_process)
 house_folder(importer/text PUBLIC
-  csv id_ranges markup output_date shown_text text_file)
+  csv id_ranges markup output_date shown_text text_file write_formatted)
 house_folder(importer/lanes PUBLIC
   float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
   alignment consensus_pose directions least_squares opencv_pose p3p pose_refinement pose_step principal_axes quad
-  ransac rigid3 unit_square_map units)
+  ransac rigid3 symmetric_eigen unit_square_map units)
 house_folder(importer/camera PUBLIC
   calibration calibration_writer camera camera_jacobian camera_projection storage_reader
   turned_camera)

@@ -9,7 +9,7 @@ packages=(
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libturbojpeg0-dev libexif-dev
   libcairo2-dev libpng-dev fonts-dejavu-core
   libsqlite3-dev libsqlitecpp-dev libyaml-cpp-dev libpugixml-dev
-  libboost-program-options-dev libspdlog-dev libceres-dev nlohmann-json3-dev jq
+  libboost-program-options-dev libfmt-dev libspdlog-dev libceres-dev nlohmann-json3-dev jq
   libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
   libocct-data-exchange-dev libassimp-dev libjs-three libjs-chart.js
   libgtest-dev libgmock-dev libbenchmark-dev

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "exporters/shape/joint_covariance.h"
+#include "importer/geometry/symmetric_eigen.h"
 
 namespace velamap {
 namespace {
@@ -101,15 +101,15 @@ AlignmentSensitivity::AlignmentSensitivity(const Alignment& alignment) : alignme
     const Vector6d row = MotionGradient(equation.x_in_reference_m, equation.direction);
     normal += equation.weight * row * row.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(normal);
-  const double largest = solver.eigenvalues()[5];
+  const SymmetricEigen eigen = DecomposeSymmetric(normal);
+  const double largest = eigen.values[5];
   for (int i = 0; i < 6; ++i) {
-    const double value = solver.eigenvalues()[i];
+    const double value = eigen.values[i];
     if (value <= kMinEigenvalueRatio * largest) {
       ++num_free_directions_;
       continue;
     }
-    const Vector6d motion = solver.eigenvectors().col(i);
+    const Vector6d motion = eigen.vectors.col(i);
     inverse_normal_ += motion * motion.transpose() / value;
   }
 }

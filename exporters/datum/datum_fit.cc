@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include "importer/geometry/symmetric_eigen.h"
 #include "importer/layout/known_point.h"
 
 namespace velamap {
@@ -82,15 +82,14 @@ std::vector<double> SigmasOfSet(const SetSystem& system, const std::vector<Eigen
     const auto columns = system.whitener.middleCols(begin, size);
     const Eigen::MatrixXd weight = columns.transpose() * columns;
     const auto by_rows = by_pose.middleRows(begin, size);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> redundancy(
-        weight - by_rows * system.pose_covariance * by_rows.transpose());
-    const Eigen::VectorXd along =
-        redundancy.eigenvectors().transpose() * weighted.segment(begin, size);
+    const SymmetricEigen redundancy =
+        DecomposeSymmetric(weight - by_rows * system.pose_covariance * by_rows.transpose());
+    const Eigen::VectorXd along = redundancy.vectors.transpose() * weighted.segment(begin, size);
     double squared = 0.0;
     int num_checked = 0;
     for (Eigen::Index k = 0; k < size; ++k) {
-      if (redundancy.eigenvalues()[k] < kMinRedundancy * weight.trace()) continue;
-      squared += along[k] * along[k] / redundancy.eigenvalues()[k];
+      if (redundancy.values[k] < kMinRedundancy * weight.trace()) continue;
+      squared += along[k] * along[k] / redundancy.values[k];
       ++num_checked;
     }
     sigmas.push_back(InSigmas(squared, num_checked));
@@ -142,18 +141,18 @@ std::vector<double> SigmasAgainst(const DatumPoints& points, const PointSet& set
 std::string OpenMotions(const DatumPoints& points, const PointSet& set, const Rigid3& pose) {
   const SetSystem system = MakeSystem(points, Linearize(points, set, pose),
                                       ResidualCovariance(points, set, pose.rotation));
-  const Eigen::SelfAdjointEigenSolver<PoseMatrix> motions(system.pose_covariance);
+  const SymmetricEigen motions = DecomposeSymmetric(system.pose_covariance);
   const double limit_m2 = std::pow(kMaxOpen * points.radius_m, 2);
-  const auto num_open = (motions.eigenvalues().array() > limit_m2).count();
+  const auto num_open = (motions.values.array() > limit_m2).count();
   if (num_open == 0) return "";
-  const Eigen::MatrixXd open = motions.eigenvectors().rightCols(num_open);
+  const Eigen::MatrixXd open = motions.vectors.rightCols(num_open);
   // Separates pure shifts from motions with a turn.
   constexpr double kMinTurn = 0.1;
   const Eigen::MatrixXd turn = open.topRows(3);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> by_turn(turn.transpose() * turn);
-  const auto num_turns = (by_turn.eigenvalues().array() > kMinTurn * kMinTurn).count();
-  const Eigen::MatrixXd shifts = open * by_turn.eigenvectors().leftCols(num_open - num_turns);
-  const Eigen::MatrixXd turns = turn * by_turn.eigenvectors().rightCols(num_turns);
+  const SymmetricEigen by_turn = DecomposeSymmetric(turn.transpose() * turn);
+  const auto num_turns = (by_turn.values.array() > kMinTurn * kMinTurn).count();
+  const Eigen::MatrixXd shifts = open * by_turn.vectors.leftCols(num_open - num_turns);
+  const Eigen::MatrixXd turns = turn * by_turn.vectors.rightCols(num_turns);
   std::vector<std::string> names;
   for (const std::string& name : DirectionNames(shifts.bottomRows(3))) {
     names.push_back("a shift along " + name);

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "exporters/report/report_json.h"
 #include "exporters/shape/joint_covariance.h"
 #include "exporters/shape/shape_sigma.h"
+#include "importer/geometry/symmetric_eigen.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -51,9 +50,9 @@ std::optional<Eigen::Matrix3d> CenterEllipsoid(const ReportInput& input,
     covariance = marker.sigma_m[0]->cwiseAbs2().asDiagonal().toDenseMatrix();
   }
   if (!covariance) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(*covariance);
-  const Eigen::Vector3d sigmas = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
-  return eigen.eigenvectors() * sigmas.asDiagonal();
+  const SymmetricEigen eigen = DecomposeSymmetric(*covariance);
+  const Eigen::Vector3d sigmas = eigen.values.cwiseMax(0).cwiseSqrt();
+  return eigen.vectors * sigmas.asDiagonal();
 }
 
 void AddWholeMarker(const ReportInput& input, const ShapeMarker& marker, ReportJsonValue* json) {

@@ -14,9 +14,9 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 
 namespace velamap {
 namespace {
@@ -50,7 +50,7 @@ void WriteHolder(int file) {
   // First removes the record of a holder that was killed, so that no other run reports it.
   const bool written = ftruncate(file, 0) == 0 && pwrite(file, record.data(), record.size(), 0) ==
                                                       static_cast<ssize_t>(record.size());
-  if (!written) spdlog::debug("the lock's file cannot be written");  // the lock holds all the same
+  if (!written) LogDebug("the lock's file cannot be written");  // the lock holds all the same
 }
 
 // Whether the file is empty, as after a crash, or holds the record of a holder. Any other one of
@@ -107,7 +107,7 @@ FileLock::FileLock(const std::filesystem::path& path, const std::string& what) :
       const std::string holder = is_held ? WaitForHolder(file) : "";
       close(file);
       if (!is_held) {
-        spdlog::warn("{}: the file system has no locks; start one run at a time", path.string());
+        LogWarning("{}: the file system has no locks; start one run at a time", path.string());
         return;
       }
       throw InputError(

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 
 namespace velamap {
 namespace {
@@ -78,7 +78,7 @@ std::string OptionName(const OptionGroup& group, const void* member) {
 }
 
 void WarnAboutOldName(const std::string& given, const std::string& name) {
-  spdlog::warn("{}: an old name; write {}", given, name);
+  LogWarning("{}: an old name; write {}", given, name);
 }
 
 std::string JoinChoices(const std::vector<std::string>& names) {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <spdlog/spdlog.h>
-
+#include "importer/base/log.h"
 #include "importer/formation/edge_shift.h"
 
 namespace velamap {
@@ -40,7 +39,7 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
   const double share = ShareBeyondNoise(change, edges.sigma_blurs);
   FormationVector parameters = state.parameters;
   parameters[kEdgeShift] += share * change;
-  spdlog::debug(
+  LogDebug(
       "inner edges: shift {:+.4f} -> {:+.4f} +- {:.4f} blur sigmas, corners {:.3f} px outwards; "
       "half difference of the directions {:.4f}",
       state.parameters[kEdgeShift], balanced.state.parameters[kEdgeShift], edges.sigma_blurs,
@@ -69,7 +68,7 @@ BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads)
   const double sigma = edges.corners_sigma_px / slope_px;
   shift *= 0.5 * ShareBeyondNoise(shift, sigma);
   const double inset_px = MeanInset(state, probe) / kProbeBlurs;  // by one blur sigma
-  spdlog::debug(
+  LogDebug(
       "inner edges have corners {:+.4f} +- {:.4f} px further outside: outlines shifted by {:+.3f} "
       "+- {:.3f} blur sigmas, corners {:+.4f} px outwards",
       edges.corners_outwards_px, edges.corners_sigma_px, shift, sigma, inset_px * shift);

@@ -5,8 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "importer/base/log.h"
 #include "importer/base/statistics.h"
 #include "importer/formation/balanced_edges.h"
 #include "importer/formation/formation_problem.h"
@@ -99,8 +98,8 @@ bool LightWins(const FormationPriors& priors, int num_threads, State* by_gray, S
   }
   const FormationProblem problem(priors, std::move(noises), num_threads);
   const double cost_by_gray = problem.Cost(*by_gray), cost_by_light = problem.Cost(*by_light);
-  spdlog::debug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
-                cost_by_light);
+  LogDebug("cost of sharpened grey values {:.4g}, of sharpened light {:.4g}", cost_by_gray,
+           cost_by_light);
   return cost_by_light < kClearlyLess * cost_by_gray;
 }
 

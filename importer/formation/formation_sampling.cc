@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
 #include <opencv2/core.hpp>
 
+#include "importer/base/log.h"
 #include "importer/base/parallel.h"
 #include "importer/detect/marker_alignment.h"
 #include "importer/video/frame_source.h"
@@ -176,7 +176,7 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
             [&](const FormationSample& a, const FormationSample& b) { return key(a) < key(b); });
   FormationEstimate estimate;
   if (static_cast<int>(samples.size()) >= kMinSamples) {
-    spdlog::info("estimating how camera and print change the edges of {} markers", samples.size());
+    LogInfo("estimating how camera and print change the edges of {} markers", samples.size());
     estimate = EstimateFormation(samples, detector.options.inverted, num_threads);
   }
   if (estimate.num_samples < kMinSamples) {
@@ -185,7 +185,7 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
     return unknown;
   }
   const ImageFormationParameters& found = estimate.parameters;
-  spdlog::info(
+  LogInfo(
       "camera and print, from {} markers: gamma {:.2f}, S-curve {:+.3f}, sharpening {:.2f} over "
       "{:.1f} px{}, ink spread {:+.2f} % of the side, edges moved by {:+.2f} and outlines by "
       "{:+.2f} blur sigmas, quiet zone {:.2f} cells; residuals {:.1f} grey levels",

@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/ids.h"
+#include "importer/base/log.h"
 #include "importer/camera/storage_reader.h"
 #include "importer/text/text_file.h"
 
@@ -156,8 +156,8 @@ Dictionary ReadDictionaryFile(const std::string& path) {
   }
   const int unique_bits = (MinDistance(bits, path) - 1) / 2;
   if (correction_bits > unique_bits) {
-    spdlog::warn("{}: maxCorrectionBits {} would confuse markers; using {}", path, correction_bits,
-                 unique_bits);
+    LogWarning("{}: maxCorrectionBits {} would confuse markers; using {}", path, correction_bits,
+               unique_bits);
     correction_bits = unique_bits;
   }
   return {std::filesystem::path(path).filename().string(),

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/ids.h"
+#include "importer/base/log.h"
 #include "importer/base/numbers.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/layout_items.h"
@@ -144,8 +144,8 @@ void WarnOfUnusedLengths(const YamlItem& item, const Layout& layout) {
       return std::binary_search(ids.begin(), ids.end(), id);
     });
     if (names_one) return;
-    spdlog::warn("{}:{}: {}: no part names marker {}, so its length changes nothing", value.path,
-                 value.node.Mark().line + 1, value.key, name);
+    LogWarning("{}:{}: {}: no part names marker {}, so its length changes nothing", value.path,
+               value.node.Mark().line + 1, value.key, name);
   });
 }
 

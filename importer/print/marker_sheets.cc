@@ -5,10 +5,10 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/base/replacement.h"
 #include "importer/layout/layout_writer.h"
 #include "importer/print/drawing_writer.h"
@@ -44,7 +44,7 @@ void WarnOfNarrowMargin(const PrintSheetOptions& options, const PrintPlan& plan)
     default_mm = std::max(default_mm, DefaultMargin(marker.length_mm, NumCells(plan.look)));
   }
   if (*options.margin_mm >= default_mm) return;
-  spdlog::warn(
+  LogWarning(
       "{}: a white margin of {:.4g} mm is narrow: a dark background shifts the corners of markers "
       "that are small in the images; {:.4g} mm or more avoid that",
       OptionName(&PrintSheetOptions::margin_mm), *options.margin_mm, default_mm);

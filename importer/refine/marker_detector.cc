@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <spdlog/spdlog.h>
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/base/log.h"
 #include "importer/base/stage_timer.h"
 #include "importer/camera/camera.h"
 #include "importer/refine/corner_refinement.h"
@@ -77,8 +77,8 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
     detections.push_back(detection);
   }
   if (num_fallbacks > 0) {
-    spdlog::debug("{} of {} markers: no edge fit, corners from cv::cornerSubPix", num_fallbacks,
-                  detections.size());
+    LogDebug("{} of {} markers: no edge fit, corners from cv::cornerSubPix", num_fallbacks,
+             detections.size());
   }
   return detections;
 }

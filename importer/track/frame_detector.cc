@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/detect/corner_colors.h"
 #include "importer/detect/duplicates.h"
 #include "importer/detect/marker_search.h"
@@ -52,7 +52,7 @@ void WarnOfSymmetries(const FrameDetector& detector) {
     if (detector.part_of_id.empty() || detector.part_of_id.count(id) > 0) ids.push_back(id);
   }
   if (ids.empty()) return;
-  spdlog::warn(
+  LogWarning(
       "{}: markers {} look the same when turned: their corners are numbered by their neighbours",
       detector.dictionary.name, fmt::join(ids, " "));
 }

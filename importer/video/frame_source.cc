@@ -11,12 +11,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/base/natural_order.h"
 #include "importer/base/numbers.h"
 #include "importer/base/replacement.h"
@@ -37,11 +37,11 @@ void SilenceOpenCv() {
 }
 
 // Logs a message that was not logged before: a video is opened more than once in a run.
-void LogOnce(spdlog::level::level_enum level, const std::string& message) {
+void LogOnce(LogLevel level, const std::string& message) {
   static std::mutex mutex;
   static std::set<std::string> logged;
   const std::lock_guard<std::mutex> lock(mutex);
-  if (logged.insert(message).second) spdlog::log(level, message);
+  if (logged.insert(message).second) LogMessage(level, message);
 }
 
 // Returns names relative to the folder in natural order, and warns of files that are no images.
@@ -61,8 +61,8 @@ std::vector<std::string> ListImages(const fs::path& folder) {
   }
   for (const std::string& name : names) CheckImageName(name, folder.string());
   if (!others.empty()) {
-    spdlog::warn("{}: left out, because their names are not those of images: {}, such as {}",
-                 folder.string(), others.size(), others.front());
+    LogWarning("{}: left out, because their names are not those of images: {}, such as {}",
+               folder.string(), others.size(), others.front());
   }
   return names;
 }
@@ -83,7 +83,7 @@ class ImageFolder : public FrameSource {
     const fs::path path = folder_ / frame->image_name;
     frame->color = DecodeImageFile(path.string(), reason);
     if (frame->color.empty()) {
-      spdlog::warn("{}: skipped: {}", path.string(), *reason);
+      LogWarning("{}: skipped: {}", path.string(), *reason);
       return false;
     }
     frame->source = IdentifySource(path.string());
@@ -113,7 +113,7 @@ class VideoFile : public FrameSource {
         is_marked_interlaced_(decoder_.IsMarkedInterlaced()) {
     if (decoder_.NumQuarterTurns() != 0) {
       LogOnce(
-          spdlog::level::info,
+          LogLevel::kInfo,
           fmt::format("{}: its pictures are turned by {} degrees, as its metadata say; the "
                       "calibration has to come from pictures turned the same way (OpenCV 4.6 turns "
                       "some the other way)",
@@ -157,7 +157,7 @@ class VideoFile : public FrameSource {
     CheckFields(*frame);
     if (!frame->gray.empty()) return true;
     *reason = "its pixel format cannot be converted to grey";
-    spdlog::warn("{}: {} is skipped: {}", path_, frame->image_name, *reason);
+    LogWarning("{}: {} is skipped: {}", path_, frame->image_name, *reason);
     return false;
   }
 
@@ -173,7 +173,7 @@ class VideoFile : public FrameSource {
     const bool is_marked = is_marked_interlaced_ || frame.picture->IsMarkedInterlaced();
     if (!is_combed && is_marked) {
       LogOnce(
-          spdlog::level::info,
+          LogLevel::kInfo,
           path_ + ": stored as interlaced, but the two fields of a picture show the same moment");
     }
     if (!is_combed) return;
@@ -184,7 +184,7 @@ class VideoFile : public FrameSource {
           fmt::format("{}: the video is interlaced: {} weaves two fields of different moments; {}",
                       path_, frame.image_name, remedy));
     }
-    LogOnce(spdlog::level::warn,
+    LogOnce(LogLevel::kWarn,
             fmt::format("{}: pictures seem to weave two fields of different moments, though the "
                         "file does not say that it is interlaced; if they do, {}",
                         path_, remedy));
@@ -223,8 +223,8 @@ class VideoFile : public FrameSource {
     // A container that derives the count from its duration is off by a frame or so.
     const int tolerance = std::max(2, num_container_frames_ / 100);
     if (num_read_ < num_container_frames_ - tolerance) {
-      spdlog::warn("{}: the video breaks off after {} of {} frames; these are used", path_,
-                   num_read_, num_container_frames_);
+      LogWarning("{}: the video breaks off after {} of {} frames; these are used", path_, num_read_,
+                 num_container_frames_);
     }
   }
 

@@ -3,9 +3,9 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
@@ -40,8 +40,8 @@ IntrinsicsVerdict JudgeIntrinsics(MarkerSolution trial, const FreeIntrinsics& fr
   IntrinsicsVerdict verdict;
   verdict.improvement = before - SumOfSquares(trial);
   verdict.criterion = verdict.needed = InformationCriterion(NumFree(trial, free, sigma), trial);
-  spdlog::debug("free intrinsics: the sum of squares falls by {:.1f}, {:.1f} needed",
-                verdict.improvement, verdict.needed);
+  LogDebug("free intrinsics: the sum of squares falls by {:.1f}, {:.1f} needed",
+           verdict.improvement, verdict.needed);
   if (!verdict.IsSignificant()) return verdict;
   if (!(FreeIntrinsicsOf(trial.options) == free)) return verdict;  // the distortion folds over
   // The sigmas of the corners still contain the errors of the calibration.
@@ -64,7 +64,7 @@ IntrinsicsVerdict JudgeIntrinsics(MarkerSolution trial, const FreeIntrinsics& fr
                                               trial.model.cameras.at(camera_id), covariance);
   }
   const FreeIntrinsics& found = verdict.determined;
-  spdlog::debug(
+  LogDebug(
       "{:.1f} needed with correlated errors; determined: focal length {}, principal point {}, "
       "distortion {}",
       verdict.needed, found.focal_length, found.principal_point, found.distortion);
@@ -100,7 +100,7 @@ std::optional<RefinedIntrinsics> ChooseIntrinsics(const MarkerSolution& solution
     const FreeIntrinsics free = SignificantIntrinsics(solution, sigma);
     if (free.Any()) return RefinedIntrinsics{free, sigma};
   } catch (const DataError& error) {
-    spdlog::debug("the calibration cannot be tested: {}", error.what());
+    LogDebug("the calibration cannot be tested: {}", error.what());
   }
   return std::nullopt;
 }
@@ -113,7 +113,7 @@ void ReportRefinement(const FreeIntrinsics& free, double calibration_sigma,
         fmt::format("the images contradict the calibration, which is refined: {}",
                     DescribeRefinement(calibration, camera));
     if (IsWithin(MakeIntrinsicsPrior(calibration, free, calibration_sigma), camera)) {
-      spdlog::info(text);
+      LogInfo(text);
     } else {
       solution->warnings.push_back(
           fmt::format("{}; calibrate the camera again, or keep the given calibration by {} 0", text,

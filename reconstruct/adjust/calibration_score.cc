@@ -4,10 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/Eigenvalues>
-
 #include "importer/base/error.h"
 #include "importer/camera/camera_projection.h"
+#include "importer/geometry/symmetric_eigen.h"
 #include "reconstruct/geometry/covariance_update.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
@@ -87,13 +86,13 @@ ChangeFit FitChanges(const Eigen::MatrixXd& information, const Eigen::MatrixXd& 
   const Eigen::VectorXd scales = full_information.diagonal().cwiseSqrt().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled =
       scales.cwiseInverse().asDiagonal() * information * scales.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+  const SymmetricEigen eigen = DecomposeSymmetric(scaled);
   ChangeFit fit;
   fit.covariance = Eigen::MatrixXd::Zero(information.rows(), information.rows());
   for (Eigen::Index i = 0; i < scaled.rows(); ++i) {
-    if (!(solver.eigenvalues()[i] > kMinShareOfInformation)) continue;
-    const Eigen::VectorXd direction = solver.eigenvectors().col(i).cwiseQuotient(scales);
-    fit.covariance += direction * direction.transpose() / solver.eigenvalues()[i];
+    if (!(eigen.values[i] > kMinShareOfInformation)) continue;
+    const Eigen::VectorXd direction = eigen.vectors.col(i).cwiseQuotient(scales);
+    fit.covariance += direction * direction.transpose() / eigen.values[i];
     ++fit.rank;
   }
   fit.changes = -fit.covariance * gradient;

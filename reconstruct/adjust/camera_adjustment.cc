@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/base/natural_order.h"
 #include "reconstruct/adjust/marker_adjuster.h"
 #include "reconstruct/geometry/camera_conversion.h"
@@ -155,7 +155,7 @@ std::optional<FocalStep> MeasureFocalStep(const MarkerAdjustmentOptions& options
     if (change_px < kMinChange * step.before_px || step.sigmas < kMinSigmas) return std::nullopt;
     return step;
   } catch (const DataError& error) {
-    spdlog::debug("no two cameras: {}", error.what());
+    LogDebug("no two cameras: {}", error.what());
     return std::nullopt;
   }
 }

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/base/parallel.h"
 #include "importer/base/statistics.h"
 #include "importer/camera/camera_jacobian.h"
@@ -157,15 +157,15 @@ std::optional<Trial> TryModel(CameraModel model, const MarkerSolution& solution)
       FindErrorsOfUnseen(trial.solution, division, &trial.unseen);
     });
   } catch (const DataError& error) {
-    spdlog::debug("camera model {}: {}", CameraModelName(model), error.what());
+    LogDebug("camera model {}: {}", CameraModelName(model), error.what());
     return std::nullopt;
   }
   trial.score.unseen_error_px = RmsOf(trial.unseen);
   trial.score.seen_error_px = RmsOf(ErrorsOfSeen(trial.solution));
   trial.score.is_folded = HasFoldedCamera(trial.solution);
-  spdlog::info("camera model {}: {:.4f} px in pictures that it has not seen, {:.4f} px in all{}",
-               CameraModelName(model), trial.score.unseen_error_px, trial.score.seen_error_px,
-               trial.score.is_folded ? ", folds over inside the picture" : "");
+  LogInfo("camera model {}: {:.4f} px in pictures that it has not seen, {:.4f} px in all{}",
+          CameraModelName(model), trial.score.unseen_error_px, trial.score.seen_error_px,
+          trial.score.is_folded ? ", folds over inside the picture" : "");
   return trial;
 }
 
@@ -232,8 +232,8 @@ std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& s
       Minimize(1e-9, &fitted);
       cameras[group] = std::move(fitted.model.cameras);
     } catch (const DataError& error) {
-      spdlog::warn("the scatter of the camera is estimated without one group of pictures: {}",
-                   error.what());
+      LogWarning("the scatter of the camera is estimated without one group of pictures: {}",
+                 error.what());
     }
   });
   cameras.erase(std::remove_if(cameras.begin(), cameras.end(),

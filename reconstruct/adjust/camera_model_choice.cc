@@ -4,9 +4,8 @@
 #include <array>
 #include <vector>
 
-#include <spdlog/spdlog.h>
-
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/geometry/camera_conversion.h"
 
@@ -47,7 +46,7 @@ std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution trial)
     CalibrateRobustly(&trial);
     return trial;
   } catch (const DataError& error) {
-    spdlog::debug("camera model {}: {}", CameraModelName(model), error.what());
+    LogDebug("camera model {}: {}", CameraModelName(model), error.what());
     return std::nullopt;
   }
 }
@@ -83,9 +82,8 @@ MarkerSolution WithBestCameraModel(const MarkerSolution& solution) {
     const double num_params = static_cast<double>(NumCameraParams(model)) *
                               static_cast<double>(trials[i].model.cameras.size());
     criteria.push_back(sums[i] + per_parameter * num_params);
-    spdlog::debug(
-        "camera model {}: sum of squares {:.1f}, {:.0f} parameters at {:.1f} each: {:.1f}",
-        CameraModelName(model), sums[i], num_params, per_parameter, criteria[i]);
+    LogDebug("camera model {}: sum of squares {:.1f}, {:.0f} parameters at {:.1f} each: {:.1f}",
+             CameraModelName(model), sums[i], num_params, per_parameter, criteria[i]);
     if (criteria[i] < criteria[best]) best = i;
   }
   return trials[best];

@@ -5,8 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
-
+#include "importer/base/log.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
 namespace velamap {
@@ -23,7 +22,7 @@ double CalibrateRobustly(MarkerSolution* solution) {
       RobustVarianceFactor(EvaluateCorners(solution->model, *solution), solution->model);
   const double after = std::max(kMinCornerFactor, before * std::sqrt(variance));
   solution->weights.corner_factor = after;
-  spdlog::debug("corner sigmas times {:.4f}", after);
+  LogDebug("corner sigmas times {:.4f}", after);
   return std::abs(after / before - 1.0);
 }
 

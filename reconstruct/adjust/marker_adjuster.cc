@@ -8,9 +8,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "reconstruct/adjust/calibration_choice.h"
 #include "reconstruct/adjust/calibration_score.h"
 #include "reconstruct/adjust/camera_model_choice.h"
@@ -137,7 +137,7 @@ std::optional<MarkerAdjuster> MarkerAdjuster::WithBetterCalibration(MarkerAdjust
   try {
     begin.AdjustToCorners();
   } catch (const DataError& error) {
-    spdlog::debug("the calibration is not refined: {}", error.what());
+    LogDebug("the calibration is not refined: {}", error.what());
     return std::nullopt;
   }
   ReportRefinement(refined->free, solution_.options.intrinsics_sigma, &begin.solution_);

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "importer/base/log.h"
 #include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/problem/marker_uncertainty.h"
 
@@ -33,8 +33,7 @@ bool ShowsRollingShutter(const MarkerSolution& solution) {
                                            &state.rolling_shutter_s)(0, 0);
   const double sigma_s = std::sqrt(variance) * CorrelationFactor(trial, *linearization);
   const double sigmas = state.rolling_shutter_s / sigma_s;
-  spdlog::debug("rolling shutter {:.2f} +- {:.2f} ms", 1e3 * state.rolling_shutter_s,
-                1e3 * sigma_s);
+  LogDebug("rolling shutter {:.2f} +- {:.2f} ms", 1e3 * state.rolling_shutter_s, 1e3 * sigma_s);
   return sigmas * sigmas > InformationCriterion(1, trial) &&
          std::abs(state.rolling_shutter_s) > kFastest_s;
 }

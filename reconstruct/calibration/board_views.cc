@@ -5,9 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "importer/base/statistics.h"
+#include "importer/geometry/symmetric_eigen.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -39,10 +38,10 @@ BoardView Describe(const DatabaseImage& image, double unknown_sigma_px) {
     }
   }
   view.corner_sigma_px = Median(std::move(sigmas_px));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(shape);
-  const Eigen::Vector2d squares = axes.eigenvalues().cwiseMax(0.0);
+  const SymmetricEigen axes = DecomposeSymmetric(shape);
+  const Eigen::Vector2d squares = axes.values.cwiseMax(0.0);
   view.tilt_deg = kDegPerRad * std::acos(std::sqrt(squares[0] / std::max(squares[1], 1e-12)));
-  const Eigen::Vector2d direction = axes.eigenvectors().col(0);
+  const Eigen::Vector2d direction = axes.vectors.col(0);
   view.tilt_direction_deg =
       std::fmod(kDegPerRad * std::atan2(direction.y(), direction.x()) + 360.0, 180.0);
   return view;

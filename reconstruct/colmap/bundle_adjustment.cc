@@ -10,10 +10,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/colmap/observation_filter.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
@@ -50,8 +50,8 @@ std::vector<std::string> BundleAdjusterArguments(const BundleAdjustmentOptions& 
         return;
       }
     }
-    spdlog::warn("{} bundle_adjuster has no option for {}: its default is used",
-                 options.colmap_path, name);
+    LogWarning("{} bundle_adjuster has no option for {}: its default is used", options.colmap_path,
+               name);
   };
   add("refine_focal_length", options.refine_focal_length ? "1" : "0");
   add("refine_principal_point", options.refine_principal_point ? "1" : "0");
@@ -206,7 +206,7 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
     ++summary.num_rounds;
     if (!options.remove_outliers || summary.num_rounds == options.max_num_rounds) break;
     const int num_changes = ReviseObservations(options, &adjusted, &summary.removed);
-    spdlog::debug("round {}: {} observations removed or restored", summary.num_rounds, num_changes);
+    LogDebug("round {}: {} observations removed or restored", summary.num_rounds, num_changes);
     if (num_changes == 0) break;
   }
   UpdatePointErrors(&adjusted);

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/base/parallel.h"
 #include "reconstruct/global/global_registration_report.h"
 #include "reconstruct/global/global_registration_state.h"
@@ -90,10 +90,10 @@ MapSolution GrowBestMap(const GlobalRegistration& global) {
                   });
     }
     const double explained = ExplainedObservations(problem, solutions[i]);
-    spdlog::debug("start from {} and {}: {} frames, {:.1f} observations explained",
-                  problem.Frame(pairs[i].first).image->detections.image_name,
-                  problem.Frame(pairs[i].second).image->detections.image_name,
-                  solutions[i].NumRegistered(), explained);
+    LogDebug("start from {} and {}: {} frames, {:.1f} observations explained",
+             problem.Frame(pairs[i].first).image->detections.image_name,
+             problem.Frame(pairs[i].second).image->detections.image_name,
+             solutions[i].NumRegistered(), explained);
     num_same += std::abs(explained - most_explained) < kSame * most_explained;
     if (explained > most_explained) {
       most_explained = explained;
@@ -230,8 +230,8 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
         "more directions",
         global.noise.sigma_px, global.noise.alone_sigma_px));
   }
-  spdlog::debug("noise of the map {:.3f} px, of single markers {:.3f} px", global.noise.sigma_px,
-                global.noise.alone_sigma_px);
+  LogDebug("noise of the map {:.3f} px, of single markers {:.3f} px", global.noise.sigma_px,
+           global.noise.alone_sigma_px);
   int central_idx = ChooseCentralFrame(global);
   if (global.central_image_idx >= 0) {
     const auto named = std::find(global.image_idx_of_frame.begin(), global.image_idx_of_frame.end(),

@@ -5,10 +5,9 @@
 #include <cstdio>
 #include <optional>
 
-#include <Eigen/Eigenvalues>
-
 #include "importer/base/statistics.h"
 #include "importer/geometry/quad.h"
+#include "importer/geometry/symmetric_eigen.h"
 #include "reconstruct/map/map_refinement.h"
 
 namespace velamap {
@@ -105,9 +104,8 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
     with_side += size_weight * log_distance_by_x;
     of_side += size_weight;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
-      information - with_side * with_side.transpose() / of_side);
-  return 1 / std::sqrt(solver.eigenvalues()[0]);
+  const Eigen::Matrix3d of_center = information - with_side * with_side.transpose() / of_side;
+  return 1 / std::sqrt(DecomposeSymmetric(of_center).values[0]);
 }
 
 }  // namespace

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/text/text_file.h"
 
 namespace velamap {
@@ -230,7 +230,7 @@ std::optional<AdjustmentUncertainty> ReadUncertaintyOf(const Model& model,
         path));
   }
   if (!is_known) {
-    spdlog::warn("{}: does not say which model it belongs to; assuming the one beside it", path);
+    LogWarning("{}: does not say which model it belongs to; assuming the one beside it", path);
   }
   return uncertainty;
 }

@@ -5,12 +5,12 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/directions.h"
 #include "importer/geometry/principal_axes.h"
+#include "importer/geometry/symmetric_eigen.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/geometry/covariance_update.h"
 
@@ -34,9 +34,8 @@ struct Ellipsoid {
 Ellipsoid MedianEllipsoid(const PointCovariance& points) {
   std::vector<double> longest_m, shortest_m, elongations;
   for (const Point3DId point3D_id : points.point3D_ids) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
-        PointCovarianceOf(points, point3D_id), Eigen::EigenvaluesOnly);
-    const Eigen::Vector3d variances = solver.eigenvalues().cwiseMax(1e-30);
+    const Eigen::Vector3d variances =
+        DecomposeSymmetric(PointCovarianceOf(points, point3D_id)).values.cwiseMax(1e-30);
     shortest_m.push_back(std::sqrt(variances[0]));
     longest_m.push_back(std::sqrt(variances[2]));
     elongations.push_back(std::sqrt(variances[2] / variances[0]));

@@ -7,8 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include <spdlog/spdlog.h>
-
+#include "importer/base/log.h"
 #include "importer/base/natural_order.h"
 #include "importer/base/parallel.h"
 #include "reconstruct/geometry/covariance_update.h"
@@ -153,7 +152,7 @@ double CorrelationFactor(const MarkerState& state, const MarkerProblem& problem,
   const double found = adjustment.SquaredMovements(residuals)[0];
   const ExpectedMovement expected = SimulateIndependentErrors(adjustment, num_threads);
   const double factor = std::sqrt(found / expected.mean);
-  spdlog::debug(
+  LogDebug(
       "the residuals of groups of images move the shape {:.3f} +- {:.3f} times as far as "
       "independent errors",
       factor, 0.5 * expected.sigma / expected.mean);

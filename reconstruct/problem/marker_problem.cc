@@ -7,9 +7,9 @@
 
 #include <ceres/manifold.h>
 #include <ceres/product_manifold.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/camera/camera_projection.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/problem/prior_cost_functions.h"
@@ -279,8 +279,8 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
   kept.insert(kept.end(), problem->global_blocks.begin(), problem->global_blocks.end());
   const SchurSummary summary =
       MinimizeBySchurComplement(options, eliminated, kept, problem->ceres.get());
-  spdlog::debug("{} iterations, cost {:.6g} -> {:.6g}", summary.num_iterations,
-                summary.initial_cost, summary.final_cost);
+  LogDebug("{} iterations, cost {:.6g} -> {:.6g}", summary.num_iterations, summary.initial_cost,
+           summary.final_cost);
   if (!summary.is_usable) {
     throw DataError(
         "the bundle adjustment finds no step: a corner lies behind the camera that sees it, or a "

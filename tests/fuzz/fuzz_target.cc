@@ -9,11 +9,10 @@
 #include <filesystem>
 #include <string>
 
-#include <spdlog/spdlog.h>
-
 #include "exporters/design/mesh_reader.h"
 #include "importer/base/error.h"
 #include "tests/fuzz/readers.h"
+#include "workflows/run/logging.h"
 
 namespace {
 
@@ -33,7 +32,7 @@ const velamap::FuzzedReader& ReaderOfProgram(const std::string& program) {
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   velamap::ServeMeshReader(*argc, *argv);
   fuzzed_reader = &ReaderOfProgram((*argv)[0]);
-  spdlog::set_level(spdlog::level::off);
+  velamap::SetLogLevel(velamap::LogLevel::kError);
   return 0;
 }
 

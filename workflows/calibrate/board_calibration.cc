@@ -3,10 +3,10 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/database/colmap_database.h"
 #include "workflows/check/clip_frames.h"
 #include "workflows/check/dictionary_search.h"
@@ -18,7 +18,7 @@ namespace {
 // The markers that stand for the squares of a chessboard; nothing looks up their codes.
 Layout LayoutOfChessboard(const BoardCalibrationOptions& options) {
   if (options.chessboard->LooksTheSameTurned()) {
-    spdlog::warn(
+    LogWarning(
         "a {} looks the same when it is turned: hold it upright in all pictures, or take one with "
         "an odd and an even number of corners",
         ChessboardName(*options.chessboard));
@@ -42,7 +42,7 @@ Layout FindLayout(const BoardCalibrationOptions& options, ArucoDetectionOptions*
         "markers, larger and in better light, or name its dictionary file with --dictionary",
         options.image_path, clip.frames.size()));
   }
-  spdlog::info("markers of {}", DictionaryName(hints[0]));
+  LogInfo("markers of {}", DictionaryName(hints[0]));
   return UseDictionary(hints[0], detection);
 }
 

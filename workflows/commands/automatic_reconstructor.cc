@@ -7,13 +7,13 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include "exporters/report/report_sail.h"
 #include "exporters/report/report_writer.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/base/replacement.h"
 #include "importer/camera/calibration_writer.h"
 #include "importer/text/output_date.h"
@@ -245,8 +245,7 @@ void Run(const AutomaticReconstructorCommandOptions& options) {
   Workspace workspace(options.paths.workspace_path, options.paths.image_path);
   const WorkspacePaths& paths = workspace.paths();
   AddLogFile(paths.Log().string());
-  spdlog::info("velamap {} automatic_reconstructor {}", kVersion,
-               fmt::join(options.arguments, " "));
+  LogInfo("velamap {} automatic_reconstructor {}", kVersion, fmt::join(options.arguments, " "));
   LogPreset(options.preset);
 
   ReconstructionSummary summary;

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/atomic_output.h"
+#include "importer/base/log.h"
 #include "importer/database/colmap_database.h"
+#include "importer/text/write_formatted.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
@@ -97,28 +97,28 @@ CornerErrors LoadCorners(const BundleAdjusterCommandOptions& options, const Layo
   if (!database.HasCalibration() && !adjustment->markers.find_camera) {
     RefuseKnownCamera(options.typed, adjustment->markers,
                       options.paths.database_path + " was made without");
-    spdlog::info("{}: made without a calibration; the camera is refined",
-                 options.paths.database_path);
+    LogInfo("{}: made without a calibration; the camera is refined", options.paths.database_path);
     adjustment->markers.find_camera = true;
   }
   return CornerErrorsOf(images, database.ReadFormation());
 }
 
 void Print(const AdjustmentResult& result, const std::string& model_path, std::ostream& out) {
-  fmt::print(out, "reprojection_error_before_px: {}\n", ErrorText(result.error_before_px));
-  fmt::print(out, "reprojection_error_px: {}\n", ErrorText(result.error_after_px));
-  fmt::print(out, "outliers_removed: {} of {} observations\n", result.num_removed,
-             result.error_before_px.count);
+  WriteFormatted(out, "reprojection_error_before_px: {}\n", ErrorText(result.error_before_px));
+  WriteFormatted(out, "reprojection_error_px: {}\n", ErrorText(result.error_after_px));
+  WriteFormatted(out, "outliers_removed: {} of {} observations\n", result.num_removed,
+                 result.error_before_px.count);
   if (result.uncertainty) {
-    fmt::print(out, "scale_sigma: {:.4f} %\n", 100.0 * result.uncertainty->relative_scale_sigma);
-    fmt::print(out, "corners_above_4_sigma: {:.3f} %\n",
-               100.0 * result.uncertainty->share_above_4_sigma);
+    WriteFormatted(out, "scale_sigma: {:.4f} %\n",
+                   100.0 * result.uncertainty->relative_scale_sigma);
+    WriteFormatted(out, "corners_above_4_sigma: {:.3f} %\n",
+                   100.0 * result.uncertainty->share_above_4_sigma);
     PrintRollingShutter(*result.uncertainty, out);
   }
   for (const auto& [camera_id, camera] : result.cameras) {
-    fmt::print(out, "camera_found: {}\n", DescribeCamera(camera));
+    WriteFormatted(out, "camera_found: {}\n", DescribeCamera(camera));
   }
-  fmt::print(out, "model_path: {}\n", model_path);
+  WriteFormatted(out, "model_path: {}\n", model_path);
 }
 
 void Run(const BundleAdjusterCommandOptions& options) {

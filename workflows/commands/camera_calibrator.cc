@@ -3,12 +3,12 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "exporters/calibration/calibration_page.h"
 #include "exporters/calibration/calibration_verdict.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/text/write_formatted.h"
 #include "workflows/calibrate/board_calibration.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
@@ -108,21 +108,21 @@ void Validate(CameraCalibratorCommandOptions* options) {
 
 void Print(const CameraCalibration& calibration, std::ostream& out) {
   PrintVerdict(JudgeCalibration(calibration), out);
-  fmt::print(out, "camera: {}\n", DescribeCamera(calibration.camera));
-  fmt::print(out, "views: {} of {} pictures with markers\n", calibration.UsedViews().size(),
-             calibration.num_images);
-  fmt::print(out, "reprojection_error_px: rms {:.4f}, median {:.4f}, max {:.3f}\n",
-             calibration.error_px.rms, calibration.error_px.median, calibration.error_px.max);
-  fmt::print(out, "outliers_removed: {} of {} corners\n", calibration.num_outliers,
-             calibration.num_outliers + static_cast<int>(calibration.residuals.size()));
+  WriteFormatted(out, "camera: {}\n", DescribeCamera(calibration.camera));
+  WriteFormatted(out, "views: {} of {} pictures with markers\n", calibration.UsedViews().size(),
+                 calibration.num_images);
+  WriteFormatted(out, "reprojection_error_px: rms {:.4f}, median {:.4f}, max {:.3f}\n",
+                 calibration.error_px.rms, calibration.error_px.median, calibration.error_px.max);
+  WriteFormatted(out, "outliers_removed: {} of {} corners\n", calibration.num_outliers,
+                 calibration.num_outliers + static_cast<int>(calibration.residuals.size()));
   for (const CameraModelScore& score : calibration.scores) {
-    fmt::print(out, "unseen_error_px: {:.4f} {}\n", score.unseen_error_px,
-               CameraModelName(score.model));
+    WriteFormatted(out, "unseen_error_px: {:.4f} {}\n", score.unseen_error_px,
+                   CameraModelName(score.model));
   }
   for (const std::string& advice : AdvisedViews(calibration)) {
-    fmt::print(out, "shoot_more: {}\n", advice);
+    WriteFormatted(out, "shoot_more: {}\n", advice);
   }
-  fmt::print(out, "board: {}\n", DescribeBoard(calibration.board));
+  WriteFormatted(out, "board: {}\n", DescribeBoard(calibration.board));
 }
 
 void Run(const CameraCalibratorCommandOptions& options) {
@@ -137,8 +137,8 @@ void Run(const CameraCalibratorCommandOptions& options) {
   WriteSealedPage(options.report_path,
                   [&](std::ostream& out) { WriteCalibrationPage(calibration, result.board, out); });
   Print(calibration, std::cout);
-  fmt::print(std::cout, "camera_path: {}\nreport_path: {}\n", options.paths.output_path,
-             options.report_path);
+  WriteFormatted(std::cout, "camera_path: {}\nreport_path: {}\n", options.paths.output_path,
+                 options.report_path);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 #include <fmt/ranges.h>
 
 #include "importer/base/atomic_output.h"
@@ -10,6 +9,7 @@
 #include "importer/layout/layout_writer.h"
 #include "importer/print/png_file.h"
 #include "importer/text/id_ranges.h"
+#include "importer/text/write_formatted.h"
 #include "workflows/check/clip_check.h"
 #include "workflows/check/clip_verdict.h"
 #include "workflows/commands/commands.h"
@@ -74,47 +74,48 @@ std::string StretchesText(const std::vector<ClipStretch>& stretches) {
 
 void PrintLight(const ClipFacts& facts, std::ostream& out) {
   if (!facts.white) return;
-  fmt::print(out, "grey_levels: black {:.0f}, white {:.0f} of 255\n", *facts.black, *facts.white);
-  fmt::print(out, "blur_px: {:.2f} (1 sigma), motion {:.1f} during the exposure\n", *facts.blur_px,
-             *facts.motion_px);
+  WriteFormatted(out, "grey_levels: black {:.0f}, white {:.0f} of 255\n", *facts.black,
+                 *facts.white);
+  WriteFormatted(out, "blur_px: {:.2f} (1 sigma), motion {:.1f} during the exposure\n",
+                 *facts.blur_px, *facts.motion_px);
 }
 
 void PrintPrecision(const ClipPrecision& precision, std::ostream& out) {
-  fmt::print(out, "precision: {:.2g} mm (1 sigma, median marker) from {} images, {} markers\n",
-             precision.marker_sigma_mm, precision.num_images, precision.num_markers);
-  fmt::print(out, "scale_sigma: {:.3f} %\n", 100 * precision.scale_sigma);
-  fmt::print(out, "parallax_deg: {:.0f}\n", precision.parallax_deg);
+  WriteFormatted(out, "precision: {:.2g} mm (1 sigma, median marker) from {} images, {} markers\n",
+                 precision.marker_sigma_mm, precision.num_images, precision.num_markers);
+  WriteFormatted(out, "scale_sigma: {:.3f} %\n", 100 * precision.scale_sigma);
+  WriteFormatted(out, "parallax_deg: {:.0f}\n", precision.parallax_deg);
 }
 
 void Print(const ClipFacts& facts, std::ostream& out) {
   PrintVerdict(JudgeClip(facts), out);
-  fmt::print(out, "frames: {} of {} looked at, {} x {} px\n", facts.num_frames_read,
-             facts.num_frames, facts.width_px, facts.height_px);
+  WriteFormatted(out, "frames: {} of {} looked at, {} x {} px\n", facts.num_frames_read,
+                 facts.num_frames, facts.width_px, facts.height_px);
   if (facts.dictionary.empty()) return;
-  fmt::print(out, "dictionary: {}{}{}\n", facts.dictionary, facts.is_inverted ? ", inverted" : "",
-             facts.num_markers_found
-                 ? fmt::format(" (found: {} markers{})", *facts.num_markers_found,
-                               facts.num_markers_of_second
-                                   ? fmt::format("; {}: {}", facts.second_dictionary,
-                                                 *facts.num_markers_of_second)
-                                   : "")
-                 : "");
-  fmt::print(out, "markers_seen: {}\n", facts.num_frames_of_id.size());
+  WriteFormatted(
+      out, "dictionary: {}{}{}\n", facts.dictionary, facts.is_inverted ? ", inverted" : "",
+      facts.num_markers_found ? fmt::format(" (found: {} markers{})", *facts.num_markers_found,
+                                            facts.num_markers_of_second
+                                                ? fmt::format("; {}: {}", facts.second_dictionary,
+                                                              *facts.num_markers_of_second)
+                                                : "")
+                              : "");
+  WriteFormatted(out, "markers_seen: {}\n", facts.num_frames_of_id.size());
   if (!facts.has_layout) {
     std::vector<int> ids;
     for (const auto& [marker_id, num_frames] : facts.num_frames_of_id) ids.push_back(marker_id);
-    fmt::print(out, "ids: {}\n", IdRanges(ids));
+    WriteFormatted(out, "ids: {}\n", IdRanges(ids));
   } else {
-    fmt::print(out, "ids_never_seen: {}\n", IdRanges(facts.ids_never_seen));
-    fmt::print(out, "ids_not_in_layout: {}\n", IdRanges(facts.ids_not_in_layout));
+    WriteFormatted(out, "ids_never_seen: {}\n", IdRanges(facts.ids_never_seen));
+    WriteFormatted(out, "ids_not_in_layout: {}\n", IdRanges(facts.ids_not_in_layout));
   }
   if (facts.side_px.count > 0) {
-    fmt::print(out, "side_px: median {:.1f}, min {:.1f}, max {:.1f}\n", facts.side_px.median,
-               facts.side_px.min, facts.side_px.max);
+    WriteFormatted(out, "side_px: median {:.1f}, min {:.1f}, max {:.1f}\n", facts.side_px.median,
+                   facts.side_px.min, facts.side_px.max);
   }
   PrintLight(facts, out);
   if (facts.is_video) {
-    fmt::print(out, "good_parts_s: {}\n", StretchesText(facts.good_stretches));
+    WriteFormatted(out, "good_parts_s: {}\n", StretchesText(facts.good_stretches));
   }
   if (facts.precision) PrintPrecision(*facts.precision, out);
 }
@@ -134,7 +135,7 @@ void WriteProposal(const LayoutProposal& proposal, const ClipCheckerCommandOptio
   }
   for (const std::string& note : proposal.notes) comment += note + "\n";
   WriteFileAtomically(path, [&](std::ostream& out) { out << LayoutText(layout, comment); });
-  fmt::print(std::cout, "proposed_layout_path: {}\n", path);
+  WriteFormatted(std::cout, "proposed_layout_path: {}\n", path);
 }
 
 void Run(const ClipCheckerCommandOptions& options) {
@@ -144,7 +145,7 @@ void Run(const ClipCheckerCommandOptions& options) {
   const std::string& path = options.paths.output_path;
   if (path.empty()) return;
   WriteFileAtomically(path, [&](std::ostream& out) { out << EncodePng(check.marked_frame); });
-  fmt::print(std::cout, "frame_path: {} ({})\n", path, check.marked_frame_name);
+  WriteFormatted(std::cout, "frame_path: {} ({})\n", path, check.marked_frame_name);
 }
 
 }  // namespace

@@ -4,13 +4,13 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "exporters/compare/comparison_sigma.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/shape/shape_sigma.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 
 namespace velamap {
@@ -55,7 +55,7 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
   if (!folder.empty() && HasUncertainty(folder.string())) {
     const PointCovariance covariance = ReadUncertainty(folder.string()).points;
     if (BelongsTo(covariance, result.shape)) {
-      spdlog::info("{}: joint uncertainty from {}", path, folder.string());
+      LogInfo("{}: joint uncertainty from {}", path, folder.string());
       result.covariance = covariance;
       return result;
     }
@@ -85,7 +85,7 @@ void CheckUnit(const std::string& path, const MeshReadOptions& options,
   const std::string what = fmt::format("{}: is {:.3g} m across, which does not match the shape",
                                        path, mesh.Diagonal_m());
   if (HasOwnUnit(path) || options.m_per_unit) {
-    spdlog::warn("{}; is its unit right?", what);
+    LogWarning("{}; is its unit right?", what);
     return;
   }
   throw InputError(
@@ -96,7 +96,7 @@ void CheckUnit(const std::string& path, const MeshReadOptions& options,
 
 void CheckFaces(const std::string& path, const MeshDistance& mesh) {
   if (mesh.NumFlippedEdges() == 0) return;
-  spdlog::warn(
+  LogWarning(
       "{}: the triangles at {} edges face opposite sides, where the signs of distances are "
       "arbitrary",
       path, mesh.NumFlippedEdges());

@@ -1,10 +1,8 @@
 #include "importer/database_merger.h"
+#include "importer/text/write_formatted.h"
 
 #include <iostream>
 #include <memory>
-
-#include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "importer/base/replacement.h"
 #include "workflows/commands/commands.h"
@@ -50,11 +48,11 @@ void Validate(DatabaseMergerCommandOptions* options) {
 
 void Run(const DatabaseMergerCommandOptions& options) {
   const MergeReport report = MergeDatabases(options.merger);
-  fmt::print(std::cout, "parts: {}\n", options.merger.database_paths.size());
-  fmt::print(std::cout, "images: {}\n", report.num_images);
-  fmt::print(std::cout, "markers: {}\n", report.num_markers);
-  fmt::print(std::cout, "pairs_with_matches: {}\n", report.num_pairs);
-  fmt::print(std::cout, "database_path: {}\n", options.merger.output_path);
+  WriteFormatted(std::cout, "parts: {}\n", options.merger.database_paths.size());
+  WriteFormatted(std::cout, "images: {}\n", report.num_images);
+  WriteFormatted(std::cout, "markers: {}\n", report.num_markers);
+  WriteFormatted(std::cout, "pairs_with_matches: {}\n", report.num_pairs);
+  WriteFormatted(std::cout, "database_path: {}\n", options.merger.output_path);
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
 #include <iostream>
 #include <memory>
 
-#include <fmt/format.h>
-#include <fmt/ostream.h>
-
 #include "importer/base/atomic_output.h"
+#include "importer/text/write_formatted.h"
 #include "reconstruct/model/model_io.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/seed_model.h"
@@ -51,16 +49,17 @@ void Validate(FrameRegistratorCommandOptions* options) {
 }
 
 void Print(const SeedResult& seed, const PathOptions& paths, std::ostream& out) {
-  fmt::print(out, "images_registered: {} of {}\n", seed.model.images.size(),
-             seed.image_names.size());
-  fmt::print(out, "images_left_out: {}\n", LeftOutText(seed.left_out));
-  fmt::print(out, "markers_left_out: {}\n", MarkersLeftOutText(seed.registration.dropped_markers));
-  fmt::print(out, "central_image: {}\n", seed.registration.central_image_name);
-  fmt::print(out, "markers: {}\n", seed.registration.shape.size());
-  fmt::print(out, "reprojection_error_px: {}\n",
-             ErrorText(SummarizeReprojectionErrors(ComputeReprojectionErrors(seed.model))));
-  fmt::print(out, "model_path: {}\n", paths.output_path);
-  fmt::print(out, "registration_path: {}\n", paths.registration_path);
+  WriteFormatted(out, "images_registered: {} of {}\n", seed.model.images.size(),
+                 seed.image_names.size());
+  WriteFormatted(out, "images_left_out: {}\n", LeftOutText(seed.left_out));
+  WriteFormatted(out, "markers_left_out: {}\n",
+                 MarkersLeftOutText(seed.registration.dropped_markers));
+  WriteFormatted(out, "central_image: {}\n", seed.registration.central_image_name);
+  WriteFormatted(out, "markers: {}\n", seed.registration.shape.size());
+  WriteFormatted(out, "reprojection_error_px: {}\n",
+                 ErrorText(SummarizeReprojectionErrors(ComputeReprojectionErrors(seed.model))));
+  WriteFormatted(out, "model_path: {}\n", paths.output_path);
+  WriteFormatted(out, "registration_path: {}\n", paths.registration_path);
 }
 
 void Run(const FrameRegistratorCommandOptions& options) {

@@ -2,11 +2,9 @@
 #include <iostream>
 #include <memory>
 
-#include <fmt/format.h>
-#include <fmt/ostream.h>
-
 #include "importer/layout/layout.h"
 #include "importer/print/marker_sheets.h"
+#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/shared_options.h"
 
@@ -49,19 +47,20 @@ void Validate(MarkerGeneratorCommandOptions* options) {
 
 void Print(const PrintReport& report, const MarkerGeneratorCommandOptions& options,
            std::ostream& out) {
-  fmt::print(out, "dictionary: {} ({} codes)\n", report.dictionary, report.num_codes);
+  WriteFormatted(out, "dictionary: {} ({} codes)\n", report.dictionary, report.num_codes);
   if (report.codes) {
-    fmt::print(out, "dictionary_distance: {} bits\n", report.codes->min_distance);
-    fmt::print(out, "dictionary_symmetric_codes: {}\n", report.codes->num_symmetric);
+    WriteFormatted(out, "dictionary_distance: {} bits\n", report.codes->min_distance);
+    WriteFormatted(out, "dictionary_symmetric_codes: {}\n", report.codes->num_symmetric);
   }
-  fmt::print(out, "markers: {}\n", report.num_markers);
-  fmt::print(out, "paper: {}\n", options.print.sheet.paper.name);
-  fmt::print(out, "sheets: {}\n", report.num_sheets);
-  fmt::print(out, "pages_before_sheets: {}\n", report.num_drawings);
-  if (report.margin_mm > 0) fmt::print(out, "white_margin_mm: {:.4g}\n", report.margin_mm);
+  WriteFormatted(out, "markers: {}\n", report.num_markers);
+  WriteFormatted(out, "paper: {}\n", options.print.sheet.paper.name);
+  WriteFormatted(out, "sheets: {}\n", report.num_sheets);
+  WriteFormatted(out, "pages_before_sheets: {}\n", report.num_drawings);
+  if (report.margin_mm > 0) WriteFormatted(out, "white_margin_mm: {:.4g}\n", report.margin_mm);
   for (const std::string& file : report.files) {
     if (file.find('/') == std::string::npos) {
-      fmt::print(out, "file: {}\n", (std::filesystem::path(options.output_path) / file).string());
+      WriteFormatted(out, "file: {}\n",
+                     (std::filesystem::path(options.output_path) / file).string());
     }
   }
   out << "output_path: " << options.output_path << '\n';

@@ -4,11 +4,11 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 #include <fmt/ranges.h>
 
 #include "importer/base/error.h"
 #include "importer/base/numbers.h"
+#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
@@ -78,24 +78,24 @@ void Validate(MarkerImporterCommandOptions* options) {
 }
 
 void Print(const ImportReport& report, const PathOptions& paths, std::ostream& out) {
-  fmt::print(out, "images_added: {}\n", report.num_images_added);
-  fmt::print(out, "images_present: {}\n", report.num_images_present);
-  fmt::print(out, "images_without_markers: {}\n", report.num_images_without_markers);
-  fmt::print(out, "images_skipped: {}\n", report.skipped.size());
-  fmt::print(out, "frames_damaged: {}\n", report.num_frames_damaged);
-  fmt::print(out, "markers: {}\n", report.num_markers);
-  fmt::print(out, "markers_rejected: {}\n", report.num_rejected);
-  fmt::print(out, "markers_without_corner_fit: {}\n", report.num_fallbacks);
-  fmt::print(out, "ids_not_in_layout: {}\n",
-             report.ids_not_in_layout.empty()
-                 ? "none"
-                 : fmt::format("{}", fmt::join(report.ids_not_in_layout, " ")));
+  WriteFormatted(out, "images_added: {}\n", report.num_images_added);
+  WriteFormatted(out, "images_present: {}\n", report.num_images_present);
+  WriteFormatted(out, "images_without_markers: {}\n", report.num_images_without_markers);
+  WriteFormatted(out, "images_skipped: {}\n", report.skipped.size());
+  WriteFormatted(out, "frames_damaged: {}\n", report.num_frames_damaged);
+  WriteFormatted(out, "markers: {}\n", report.num_markers);
+  WriteFormatted(out, "markers_rejected: {}\n", report.num_rejected);
+  WriteFormatted(out, "markers_without_corner_fit: {}\n", report.num_fallbacks);
+  WriteFormatted(out, "ids_not_in_layout: {}\n",
+                 report.ids_not_in_layout.empty()
+                     ? "none"
+                     : fmt::format("{}", fmt::join(report.ids_not_in_layout, " ")));
   if (!paths.prior_shape_path.empty()) {
-    fmt::print(out, "markers_of_prior_shape: {}\n", report.prior_shape.num_known);
-    fmt::print(out, "markers_agreeing_with_prior_shape: {}\n", report.prior_shape.num_agreeing);
+    WriteFormatted(out, "markers_of_prior_shape: {}\n", report.prior_shape.num_known);
+    WriteFormatted(out, "markers_agreeing_with_prior_shape: {}\n", report.prior_shape.num_agreeing);
   }
-  fmt::print(out, "pairs_with_matches: {}\n", report.num_pairs);
-  fmt::print(out, "database_path: {}\n", paths.database_path);
+  WriteFormatted(out, "pairs_with_matches: {}\n", report.num_pairs);
+  WriteFormatted(out, "database_path: {}\n", paths.database_path);
 }
 
 void Run(const MarkerImporterCommandOptions& options) {

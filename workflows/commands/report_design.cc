@@ -3,13 +3,13 @@
 #include <filesystem>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "exporters/compare/section_comparison.h"
 #include "exporters/compare/shape_comparison.h"
 #include "exporters/sail/section_writer.h"
 #include "exporters/shape/shape_transform.h"
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/geometry/units.h"
 #include "workflows/commands/compared_shapes.h"
 #include "workflows/options/option_effects.h"
@@ -86,9 +86,9 @@ void AddDesign(const DesignOptions& options, const MeshDistance& design,
   try {
     FitDesign(options, design, shape, layout, section_options, input);
   } catch (const InputError& error) {
-    spdlog::warn("the report does not show the design: {}", error.what());
+    LogWarning("the report does not show the design: {}", error.what());
   } catch (const DataError& error) {
-    spdlog::warn("the report does not show the design: {}", error.what());
+    LogWarning("the report does not show the design: {}", error.what());
   }
 }
 

@@ -2,8 +2,6 @@
 #include <memory>
 #include <optional>
 
-#include <spdlog/spdlog.h>
-
 #include "exporters/datum/known_points_report.h"
 #include "exporters/formats/shape_csv.h"
 #include "exporters/scale/metric_shape.h"
@@ -11,6 +9,7 @@
 #include "exporters/shape_report.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/model/model_io.h"
 #include "workflows/commands/commands.h"
@@ -74,7 +73,7 @@ void CheckModelOfShape(const Model& model, const MarkerShape& shape, const PathO
     }
   }();
   if (max_distance_m <= kTolerance_m) return;
-  spdlog::warn(
+  LogWarning(
       "{} is not the shape of the model {}: corners differ by up to {:.6f} m, so the model's "
       "errors are not those of the shape",
       paths.shape_path, paths.input_path, max_distance_m);

@@ -3,9 +3,6 @@
 #include <memory>
 #include <optional>
 
-#include <fmt/format.h>
-#include <fmt/ostream.h>
-
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
@@ -15,6 +12,7 @@
 #include "importer/print/placement.h"
 #include "importer/print/print_options.h"
 #include "importer/print/sheet_plan.h"
+#include "importer/text/write_formatted.h"
 #include "workflows/commands/commands.h"
 #include "workflows/options/option_effects.h"
 #include "workflows/options/shared_options.h"
@@ -147,7 +145,7 @@ void Run(const ShootPlannerCommandOptions& options) {
     folder->Commit();
   }
   PrintPlan(plan, std::cout);
-  if (folder) fmt::print(std::cout, "\noutput_path: {}\n", output_path);
+  if (folder) WriteFormatted(std::cout, "\noutput_path: {}\n", output_path);
 }
 
 }  // namespace

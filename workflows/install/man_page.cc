@@ -2,9 +2,7 @@
 
 #include <ostream>
 
-#include <fmt/format.h>
-#include <fmt/ostream.h>
-
+#include "importer/text/write_formatted.h"
 #include "workflows/options/help_text.h"
 #include "workflows/run/version.h"
 
@@ -30,29 +28,30 @@ std::string Roff(const std::string& text) {
 }
 
 void BeginPage(const std::string& name, const std::string& description, std::ostream& out) {
-  fmt::print(out, ".TH {} 1 \"\" \"velamap {}\" \"User Commands\"\n", Roff(name), kVersion);
-  fmt::print(out, ".SH NAME\n{} \\- {}\n", Roff(name), Roff(description));
+  WriteFormatted(out, ".TH {} 1 \"\" \"velamap {}\" \"User Commands\"\n", Roff(name), kVersion);
+  WriteFormatted(out, ".SH NAME\n{} \\- {}\n", Roff(name), Roff(description));
 }
 
 void WriteExample(const std::string& text, std::ostream& out) {
-  fmt::print(out, ".SH EXAMPLE\n.nf\n{}\n.fi\n", Roff(text));
+  WriteFormatted(out, ".SH EXAMPLE\n.nf\n{}\n.fi\n", Roff(text));
 }
 
 void WriteOption(const ShownOption& option, std::ostream& out) {
-  fmt::print(out, ".TP\n\\fB\\-\\-{}\\fR \\fI{}\\fR", Roff(option.name), Roff(option.unit));
-  if (!option.default_text.empty()) fmt::print(out, " (={})", Roff(option.default_text));
-  fmt::print(out, "\n{}\n", Roff(option.description));
+  WriteFormatted(out, ".TP\n\\fB\\-\\-{}\\fR \\fI{}\\fR", Roff(option.name), Roff(option.unit));
+  if (!option.default_text.empty()) WriteFormatted(out, " (={})", Roff(option.default_text));
+  WriteFormatted(out, "\n{}\n", Roff(option.description));
 }
 
 }  // namespace
 
 void WriteManPage(const CommandSyntax& syntax, std::ostream& out) {
   BeginPage("velamap-" + syntax.name, syntax.description, out);
-  fmt::print(out, ".SH SYNOPSIS\n.B velamap {}\n[\\fIoption value\\fR ...]\n", Roff(syntax.name));
+  WriteFormatted(out, ".SH SYNOPSIS\n.B velamap {}\n[\\fIoption value\\fR ...]\n",
+                 Roff(syntax.name));
   out << ".SH OPTIONS\nWhere an option is left out, it has the value after the equals sign in "
          "parentheses.\n";
   for (const ShownGroup& group : ShownOptions(syntax, HelpLength::kAll)) {
-    fmt::print(out, ".SS {}\n", Roff(group.title));
+    WriteFormatted(out, ".SS {}\n", Roff(group.title));
     for (const ShownOption& option : group.options) WriteOption(option, out);
   }
   WriteExample("velamap " + syntax.name + " " + syntax.example, out);
@@ -67,10 +66,10 @@ void WriteProgramManPage(const std::vector<CommandGroup>& groups, std::ostream& 
          "value\", "
          "everything else to standard error.\n.SH COMMANDS\n";
   for (const CommandGroup& group : groups) {
-    fmt::print(out, ".SS {}\n", Roff(group.title));
+    WriteFormatted(out, ".SS {}\n", Roff(group.title));
     for (const Command& command : group.commands) {
-      fmt::print(out, ".TP\n.BR velamap\\-{} (1)\n{}\n", Roff(command.syntax.name),
-                 Roff(command.syntax.description));
+      WriteFormatted(out, ".TP\n.BR velamap\\-{} (1)\n{}\n", Roff(command.syntax.name),
+                     Roff(command.syntax.description));
     }
   }
   out << ".SH EXIT STATUS\n"

@@ -5,9 +5,9 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 #include <fmt/ranges.h>
 
+#include "importer/text/write_formatted.h"
 #include "workflows/options/help_text.h"
 
 namespace velamap {
@@ -37,15 +37,15 @@ void WriteBashValues(const std::map<std::string, ShownOption>& options, std::ost
     if (option.is_path) {
       paths.insert("--" + name);
     } else if (!option.choices.empty()) {
-      fmt::print(out, "    --{}) words=\"{}\" ;;\n", name, fmt::join(option.choices, " "));
+      WriteFormatted(out, "    --{}) words=\"{}\" ;;\n", name, fmt::join(option.choices, " "));
     }
   }
-  fmt::print(out,
-             "    {})\n"
-             "      compopt -o filenames\n"
-             "      mapfile -t COMPREPLY < <(compgen -f -- \"$current\")\n"
-             "      return ;;\n",
-             fmt::join(paths, " | "));
+  WriteFormatted(out,
+                 "    {})\n"
+                 "      compopt -o filenames\n"
+                 "      mapfile -t COMPREPLY < <(compgen -f -- \"$current\")\n"
+                 "      return ;;\n",
+                 fmt::join(paths, " | "));
 }
 
 // Escapes text in single quotes for _arguments, where colons and brackets have a meaning.
@@ -88,20 +88,20 @@ void WriteBashCompletion(const std::vector<Command>& commands, std::ostream& out
          "  if [[ -z \"$words\" && $COMP_CWORD -gt 1 ]]; then\n"
          "    case \"${COMP_WORDS[1]}\" in\n";
   for (const Command& command : commands) {
-    fmt::print(out, "      {})\n        words=\"--help --help_all", command.syntax.name);
-    for (const ShownOption& option : OptionsOf(command)) fmt::print(out, " --{}", option.name);
+    WriteFormatted(out, "      {})\n        words=\"--help --help_all", command.syntax.name);
+    for (const ShownOption& option : OptionsOf(command)) WriteFormatted(out, " --{}", option.name);
     out << "\" ;;\n";
   }
-  fmt::print(out,
-             "      help) words=\"{0}\" ;;\n"
-             "    esac\n"
-             "  elif [[ -z \"$words\" ]]; then\n"
-             "    words=\"{0}\"\n"
-             "  fi\n"
-             "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
-             "}}\n"
-             "complete -F _velamap velamap\n",
-             fmt::join(names, " "));
+  WriteFormatted(out,
+                 "      help) words=\"{0}\" ;;\n"
+                 "    esac\n"
+                 "  elif [[ -z \"$words\" ]]; then\n"
+                 "    words=\"{0}\"\n"
+                 "  fi\n"
+                 "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
+                 "}}\n"
+                 "complete -F _velamap velamap\n",
+                 fmt::join(names, " "));
 }
 
 void WriteZshCompletion(const std::vector<Command>& commands, std::ostream& out) {
@@ -110,7 +110,7 @@ void WriteZshCompletion(const std::vector<Command>& commands, std::ostream& out)
          "local -a commands=(\n"
          "  'help:this list, or the options of a command'\n";
   for (const Command& command : commands) {
-    fmt::print(out, "  '{}:{}'\n", command.syntax.name, ZshText(command.syntax.description));
+    WriteFormatted(out, "  '{}:{}'\n", command.syntax.name, ZshText(command.syntax.description));
   }
   out << ")\n"
          "if (( CURRENT == 2 )); then\n"
@@ -123,14 +123,14 @@ void WriteZshCompletion(const std::vector<Command>& commands, std::ostream& out)
          "case \"$command\" in\n"
          "  help) _describe 'command' commands ;;\n";
   for (const Command& command : commands) {
-    fmt::print(out,
-               "  {})\n"
-               "    _arguments '(- *)--help[the options that most people need]' \\\n"
-               "      '(- *)--help_all[all options]'",
-               command.syntax.name);
+    WriteFormatted(out,
+                   "  {})\n"
+                   "    _arguments '(- *)--help[the options that most people need]' \\\n"
+                   "      '(- *)--help_all[all options]'",
+                   command.syntax.name);
     for (const ShownOption& option : OptionsOf(command)) {
-      fmt::print(out, " \\\n      '--{}=[{}]:{}:{}'", option.name, ZshText(option.description),
-                 ZshText(option.unit), ZshValues(option));
+      WriteFormatted(out, " \\\n      '--{}=[{}]:{}:{}'", option.name, ZshText(option.description),
+                     ZshText(option.unit), ZshValues(option));
     }
     out << " ;;\n";
   }

@@ -3,8 +3,9 @@
 #include <ostream>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 #include <boost/program_options.hpp>
+
+#include "importer/text/write_formatted.h"
 
 namespace velamap {
 namespace {
@@ -90,7 +91,7 @@ void PrintHelp(const CommandSyntax& syntax, HelpLength length, std::ostream& out
   const std::size_t num_more =
       NumOptions(ShownOptions(syntax, HelpLength::kAll)) - NumOptions(groups);
   if (num_more > 0) {
-    fmt::print(out, "{} more options: velamap {} --help_all\n", num_more, syntax.name);
+    WriteFormatted(out, "{} more options: velamap {} --help_all\n", num_more, syntax.name);
   }
   out << "\nExample:\n  velamap " << syntax.name << ' ' << syntax.example << '\n';
 }

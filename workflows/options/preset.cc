@@ -1,6 +1,6 @@
 #include "workflows/options/preset.h"
 
-#include <spdlog/spdlog.h>
+#include "importer/base/log.h"
 
 namespace velamap {
 
@@ -36,7 +36,7 @@ const std::map<std::string, std::string>& PresetValues(PresetName name) {
 }
 
 void LogPreset(const Preset& preset) {
-  if (!preset.effect.empty()) spdlog::info("{}", preset.effect);
+  if (!preset.effect.empty()) LogInfo("{}", preset.effect);
 }
 
 }  // namespace velamap

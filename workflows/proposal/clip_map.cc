@@ -7,11 +7,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "exporters/scale/metric_shape.h"
 #include "exporters/scale/scale_audit.h"
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "importer/base/statistics.h"
 #include "importer/database/colmap_database.h"
 #include "importer/geometry/quad.h"
@@ -154,7 +154,7 @@ class Mapper {
         AddBody(Only(images_, rest));
       } catch (const DataError& error) {
         if (is_first) throw;
-        spdlog::debug("no other body: {}", error.what());
+        LogDebug("no other body: {}", error.what());
         break;
       }
       for (const auto& [marker_id, points] : map_.bodies.back()) rest.erase(marker_id);

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <Eigen/Geometry>
 
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "reconstruct/colmap/colmap_runner.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/model/model_io.h"
@@ -26,24 +26,24 @@ void AddDistortion(Model* model) {
     const Camera distorted = WithDistortionParams(camera);
     if (distorted == camera) continue;
     camera = distorted;
-    spdlog::info("camera {} has no distortion; it is refined from zero", camera_id);
+    LogInfo("camera {} has no distortion; it is refined from zero", camera_id);
   }
 }
 
 void WarnOfRemovedImages(const std::vector<ImageId>& removed_images) {
   if (removed_images.empty()) return;
-  spdlog::warn("{} images are left out because most of their observations are outliers",
-               removed_images.size());
+  LogWarning("{} images are left out because most of their observations are outliers",
+             removed_images.size());
 }
 
 AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
                                   const std::string& log_path, Model* model) {
-  spdlog::info("bundle adjustment of {} images and {} points by {}", model->images.size(),
-               model->points3D.size(), options.colmap_path);
+  LogInfo("bundle adjustment of {} images and {} points by {}", model->images.size(),
+          model->points3D.size(), options.colmap_path);
   const BundleAdjustmentSummary summary = AdjustWithColmap(options, log_path, model);
-  spdlog::info("{} rounds, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px",
-               summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
-               summary.error_after_px.mean);
+  LogInfo("{} rounds, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px",
+          summary.num_rounds, summary.removed.size(), summary.error_before_px.mean,
+          summary.error_after_px.mean);
   WarnOfRemovedImages(summary.removed_images);
   return {summary.error_before_px,
           summary.error_after_px,
@@ -55,16 +55,16 @@ AdjustmentResult RunColmapBackend(const BundleAdjustmentOptions& options,
 
 AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const Layout& layout,
                                    const CornerErrors& corner_errors, Model* model) {
-  spdlog::info("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
-               model->points3D.size());
+  LogInfo("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
+          model->points3D.size());
   MarkerAdjustmentSummary summary = AdjustWithMarkers(options, layout, corner_errors, model);
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
-  spdlog::info(
+  LogInfo(
       "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, scale "
       "sigma {:.3f} %",
       summary.num_iterations, summary.removed.size(), summary.error_before_px.mean,
       summary.error_after_px.mean, 100.0 * uncertainty.relative_scale_sigma);
-  spdlog::info(
+  LogInfo(
       "sigmas of the corners scaled by {:.2f} to fit the residuals and by {:.2f} for correlated "
       "errors; {:.2f} % of the residuals exceed 4 sigmas",
       std::sqrt(uncertainty.variance_factor), uncertainty.correlation_factor,
@@ -76,25 +76,25 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
           ? fmt::format("; focal length {:+.2f} +- {:.2f} %", 100.0 * calibration.focal_change,
                         100.0 * calibration.focal_sigma)
           : "";
-  spdlog::info(
+  LogInfo(
       "calibration: {} changes would explain {:.3f} px of the residuals ({:.1f} sigmas{}) and move "
       "the shape by {:.2f} mm ({:.1f} of its sigmas)",
       calibration.num_changes, calibration.systematic_px, SigmasAgainst(calibration), focal_change,
       1e3 * calibration.shape_change_m, calibration.shape_change_in_sigmas);
-  spdlog::debug("calibration: focal length explains {:.2f}, distortion {:.2f}",
-                calibration.focal_share, calibration.distortion_share);
+  LogDebug("calibration: focal length explains {:.2f}, distortion {:.2f}", calibration.focal_share,
+           calibration.distortion_share);
   if (uncertainty.apparent_inset_sigma_px > 0) {
-    spdlog::info("apparent inset of the corners {:.3f} +- {:.3f} px", uncertainty.apparent_inset_px,
-                 uncertainty.apparent_inset_sigma_px);
+    LogInfo("apparent inset of the corners {:.3f} +- {:.3f} px", uncertainty.apparent_inset_px,
+            uncertainty.apparent_inset_sigma_px);
   }
   if (uncertainty.rolling_shutter_sigma_s > 0) {
-    spdlog::info("rolling shutter: {:.2f} +- {:.2f} ms from the first row to the last",
-                 1e3 * uncertainty.rolling_shutter_s, 1e3 * uncertainty.rolling_shutter_sigma_s);
+    LogInfo("rolling shutter: {:.2f} +- {:.2f} ms from the first row to the last",
+            1e3 * uncertainty.rolling_shutter_s, 1e3 * uncertainty.rolling_shutter_sigma_s);
   }
-  for (const std::string& warning : summary.warnings) spdlog::warn(warning);
+  for (const std::string& warning : summary.warnings) LogWarning(warning);
   WarnOfRemovedImages(summary.removed_images);
   for (const auto& [camera_id, camera] : summary.cameras) {
-    spdlog::info("camera found: {}", DescribeCamera(camera));
+    LogInfo("camera found: {}", DescribeCamera(camera));
   }
   return {summary.error_before_px,
           summary.error_after_px,
@@ -170,7 +170,7 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
   result.steadiness =
       CheckSteadiness(options.markers, layout, corner_errors, seed ? &*seed : nullptr, *model);
   if (result.error_after_px.mean > kSuspiciousErrorPx) {
-    spdlog::warn(
+    LogWarning(
         "a mean reprojection error of {:.2f} px is more than the noise of corners explains: does "
         "the calibration belong to these images, and did the surface keep its shape? Do not trust "
         "the result",

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <spdlog/spdlog.h>
-
 #include "importer/base/error.h"
+#include "importer/base/log.h"
 #include "reconstruct/adjust/camera_adjustment.h"
 #include "reconstruct/camera_search.h"
 
@@ -19,13 +18,13 @@ void CompareWithMetadata(const Camera& guess, const Camera& found) {
   const Camera without = UnknownCamera(guess.width_px, guess.height_px);
   const double claimed_px = MeanFocalLength(guess), focal_px = MeanFocalLength(found);
   if (claimed_px == MeanFocalLength(without)) return;  // no claim
-  const auto level = std::abs(std::log(focal_px / claimed_px)) > kFarOff ? spdlog::level::warn
-                                                                         : spdlog::level::info;
-  spdlog::log(level, "the pictures show a focal length of {:.0f} px, and EXIF says {:.0f} px{}",
-              focal_px, claimed_px,
-              level == spdlog::level::warn
-                  ? ": the pictures were cropped, scaled or written by a program; EXIF is not used"
-                  : "");
+  const auto level =
+      std::abs(std::log(focal_px / claimed_px)) > kFarOff ? LogLevel::kWarn : LogLevel::kInfo;
+  LogMessage(level, "the pictures show a focal length of {:.0f} px, and EXIF says {:.0f} px{}",
+             focal_px, claimed_px,
+             level == LogLevel::kWarn
+                 ? ": the pictures were cropped, scaled or written by a program; EXIF is not used"
+                 : "");
 }
 
 bool HasFisheye(const std::map<CameraId, Camera>& cameras) {
@@ -42,7 +41,7 @@ std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& 
                                               const CornerErrors& corner_errors,
                                               const RegistrationOptions& registration,
                                               const MarkerAdjustmentOptions& adjustment) {
-  spdlog::info("no calibration: estimating the camera from the pictures");
+  LogInfo("no calibration: estimating the camera from the pictures");
   const std::map<CameraId, Camera> found =
       FindCameras(images, guesses, layout, corner_errors, registration, adjustment);
   for (const auto& [camera_id, camera] : found) {
@@ -61,10 +60,10 @@ void WarnOfFisheye(const MarkerAdjustmentOptions& options, const Layout& layout,
     const CameraAdjustment free = AdjustCameras(options, layout, corner_errors, seed);
     if (!HasFisheye(free.cameras)) return;
   } catch (const DataError& error) {
-    spdlog::debug("the lens is not tested: {}", error.what());
+    LogDebug("the lens is not tested: {}", error.what());
     return;
   }
-  spdlog::warn(
+  LogWarning(
       "the residuals are those of a fisheye lens, but the calibration is not a fisheye model: "
       "calibrate the camera as a fisheye (distortion_model: fisheye), or leave --camera_path out, "
       "so that the camera is found");
@@ -74,13 +73,13 @@ SteadinessVerdict CheckSteadiness(const MarkerAdjustmentOptions& options, const 
                                   const CornerErrors& corner_errors, const Model* seed,
                                   const Model& model) {
   SteadinessVerdict verdict = JudgeSteadiness(model);
-  if (verdict.wander) spdlog::warn(DescribeWander(*verdict.wander));
+  if (verdict.wander) LogWarning(DescribeWander(*verdict.wander));
   verdict.step = ConfirmFocalStep(options, layout, corner_errors, seed, verdict.step);
   if (!verdict.step) return verdict;
   if (seed != nullptr && options.find_camera) {
     throw DataError("the camera cannot be found: " + DescribeStep(*verdict.step));
   }
-  spdlog::warn(DescribeStep(*verdict.step));
+  LogWarning(DescribeStep(*verdict.step));
   return verdict;
 }
 

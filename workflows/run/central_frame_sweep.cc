@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "exporters/formats/shape_csv.h"
 #include "exporters/report/verdict.h"

@@ -103,15 +103,6 @@ std::shared_ptr<spdlog::sinks::sink> log_file;
 std::shared_ptr<WarningSink> warnings;
 spdlog::level::level_enum written_level = spdlog::level::info;  // of terminal and file
 
-// The logger always passes on warnings; terminal and file drop the levels that were not asked for.
-void SetLevel(spdlog::level::level_enum level) {
-  written_level = level;
-  spdlog::set_level(std::min(level, spdlog::level::warn));
-  for (const auto& sink : spdlog::default_logger()->sinks()) {
-    if (sink != warnings) sink->set_level(level);
-  }
-}
-
 }  // namespace
 
 std::string Printable(std::string text) {
@@ -139,15 +130,10 @@ void SetUpLogging() {
 }
 
 void SetLogLevel(LogLevel level) {
-  switch (level) {
-    case LogLevel::kError:
-      return SetLevel(spdlog::level::err);
-    case LogLevel::kWarn:
-      return SetLevel(spdlog::level::warn);
-    case LogLevel::kInfo:
-      return SetLevel(spdlog::level::info);
-    case LogLevel::kDebug:
-      return SetLevel(spdlog::level::debug);
+  written_level = static_cast<spdlog::level::level_enum>(level);
+  spdlog::set_level(std::min(written_level, spdlog::level::warn));
+  for (const auto& sink : spdlog::default_logger()->sinks()) {
+    if (sink != warnings) sink->set_level(written_level);
   }
 }
 

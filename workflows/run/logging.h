@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "importer/base/log.h"
+
 namespace velamap {
 
-// Sends spdlog's messages to stderr as `[hh:mm:ss] message`, with the level before warnings and
-// errors. A progress bar (progress.h) is removed first.
+// Sends the log (importer/base/log.h) to stderr as `[hh:mm:ss] message`, with the level before
+// warnings and errors. A progress bar (progress.h) is removed first.
 void SetUpLogging();
 
-enum class LogLevel { kError, kWarn, kInfo, kDebug };
-
+// The logger always passes on warnings; terminal and file drop the levels that were not asked for.
 void SetLogLevel(LogLevel level);
 
 // The messages of level warning since SetUpLogging(), in order, at every log level.

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
+#include "importer/base/log.h"
 #include "importer/base/numbers.h"
 #include "importer/track/frame_detector.h"
 #include "reconstruct/evidence/unnamed_markers.h"
@@ -54,15 +54,15 @@ std::optional<ReportClip> ClipOf(const std::vector<DatabaseImage>& images) {
 
 void LogPriorShapeAgreement(const PriorShapeAgreement& agreement) {
   if (agreement.num_known == 0) {
-    spdlog::warn(
+    LogWarning(
         "--prior_shape_path: not used, because no frame shows four of its markers; are its ids "
         "those of the dictionary and the layout?");
     return;
   }
-  spdlog::info("{} of the {} markers of the prior shape that were found are where it has them",
-               agreement.num_agreeing, agreement.num_known);
+  LogInfo("{} of the {} markers of the prior shape that were found are where it has them",
+          agreement.num_agreeing, agreement.num_known);
   if (2 * agreement.num_agreeing < agreement.num_known) {
-    spdlog::warn(
+    LogWarning(
         "--prior_shape_path: the prior shape does not fit these images and was of little use; is "
         "it of this surface, and does the calibration belong to these images?");
   }
@@ -70,18 +70,17 @@ void LogPriorShapeAgreement(const PriorShapeAgreement& agreement) {
 
 void LogSeed(const SeedResult& seed) {
   const Registration& registration = seed.registration;
-  spdlog::info("central image {}: {}", registration.central_image_name,
-               registration.central_reason);
-  for (const std::string& note : registration.notes) spdlog::info(note);
-  spdlog::info("{} of {} images registered, {} markers", seed.model.images.size(),
-               seed.image_names.size(), registration.shape.size());
-  if (!seed.left_out.empty()) spdlog::info("images left out: {}", LeftOutText(seed.left_out));
-  if (const std::string doubt = CameraDoubt(registration); !doubt.empty()) spdlog::warn(doubt);
+  LogInfo("central image {}: {}", registration.central_image_name, registration.central_reason);
+  for (const std::string& note : registration.notes) LogInfo(note);
+  LogInfo("{} of {} images registered, {} markers", seed.model.images.size(),
+          seed.image_names.size(), registration.shape.size());
+  if (!seed.left_out.empty()) LogInfo("images left out: {}", LeftOutText(seed.left_out));
+  if (const std::string doubt = CameraDoubt(registration); !doubt.empty()) LogWarning(doubt);
   for (const DroppedMarker& marker : registration.dropped_markers) {
     if (marker.is_false) {
-      spdlog::warn("marker {} left out: {}", marker.marker_id, marker.reason);
+      LogWarning("marker {} left out: {}", marker.marker_id, marker.reason);
     } else {
-      spdlog::debug("marker {} left out: {}", marker.marker_id, marker.reason);
+      LogDebug("marker {} left out: {}", marker.marker_id, marker.reason);
     }
   }
 }
@@ -113,24 +112,23 @@ ImportReport ImportImages(const MarkerImporterOptions& options) {
         progress.Update(done, total, message);
       });
   ClearProgressLine();
-  spdlog::info("{} images added, {} were in the database before, {} markers found",
-               report.num_images_added, report.num_images_present, report.num_markers);
+  LogInfo("{} images added, {} were in the database before, {} markers found",
+          report.num_images_added, report.num_images_present, report.num_markers);
   if (report.num_frames_damaged > 0) {
-    spdlog::warn(
+    LogWarning(
         "{}: the file is damaged: {} frames, which show the damage or depend on it, are left out; "
         "copy it from the camera again, or record again",
         options.image_path, report.num_frames_damaged);
   }
   if (report.num_fallbacks > 0) {
-    spdlog::info(
-        "the corners of {} markers come from cv::cornerSubPix: their edges were not fitted",
-        report.num_fallbacks);
+    LogInfo("the corners of {} markers come from cv::cornerSubPix: their edges were not fitted",
+            report.num_fallbacks);
   }
   if (!options.prior_shape.empty() && report.num_frames_read > 0)
     LogPriorShapeAgreement(report.prior_shape);
   if (!report.ids_not_in_layout.empty()) {
-    spdlog::info("ids that the layout does not name, or that were misread: {}",
-                 fmt::join(report.ids_not_in_layout, " "));
+    LogInfo("ids that the layout does not name, or that were misread: {}",
+            fmt::join(report.ids_not_in_layout, " "));
   }
   return report;
 }
@@ -156,7 +154,7 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   for (const auto& [name, image_id] : database.ReadImageIdsByName()) {
     seed.image_names.push_back(name);
   }
-  spdlog::info("registering {} images", images.size());
+  LogInfo("registering {} images", images.size());
   seed.registration = RegisterFrames(images, cameras, layout, options);
   seed.model = MakeSeedModel(seed.registration, images, cameras);
   seed.left_out = FindLeftOut(seed);
@@ -169,8 +167,8 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
   LogSeed(seed);
   const std::vector<int> unnamed = FindUnnamedMarkers(images, seed.model);
   if (!unnamed.empty()) {
-    spdlog::warn("markers left out because the layout does not name them: {}",
-                 fmt::join(unnamed, " "));
+    LogWarning("markers left out because the layout does not name them: {}",
+               fmt::join(unnamed, " "));
   }
   return seed;
 }

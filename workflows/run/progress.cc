@@ -8,8 +8,8 @@
 #include <cstdio>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include "importer/base/log.h"
 #include "workflows/run/logging.h"
 
 namespace velamap {
@@ -75,7 +75,7 @@ void Progress::Update(int done, int total, const std::string& message) {
   } else {
     const bool due = since_last_s >= 10.0 || (since_last_s >= 1.0 && percent >= last_percent_ + 10);
     if (!due) return;
-    spdlog::info(ProgressText(what_, done, total, elapsed_s));
+    LogInfo(ProgressText(what_, done, total, elapsed_s));
   }
   last_shown_ = now;
   last_percent_ = percent;

@@ -5,7 +5,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
@@ -13,6 +12,7 @@
 #include "exporters/shape_report.h"
 #include "importer/base/statistics.h"
 #include "importer/geometry/units.h"
+#include "importer/text/write_formatted.h"
 #include "workflows/run/summary.h"
 
 namespace velamap {
@@ -37,84 +37,86 @@ std::string ColmapCommand(const WorkspacePaths& paths) {
 
 void PrintMarkers(const ReconstructionSummary& summary, std::ostream& out) {
   const ShapeMetrics& metrics = summary.shape.metrics;
-  fmt::print(out, "markers: {}", metrics.NumWholeOfLayout());
-  if (metrics.num_layout_markers) fmt::print(out, " of {}", *metrics.num_layout_markers);
+  WriteFormatted(out, "markers: {}", metrics.NumWholeOfLayout());
+  if (metrics.num_layout_markers) WriteFormatted(out, " of {}", *metrics.num_layout_markers);
   if (summary.shape.uncertainty) {
     std::vector<double> sigmas_mm;
     for (const auto& [marker_id, sigma_m] : CenterSigmas(summary.shape.uncertainty->points)) {
       sigmas_mm.push_back(kMmPerM * sigma_m);
     }
     if (!sigmas_mm.empty()) {
-      fmt::print(out, ", known to {:.2g} mm (1 sigma, median)", Median(std::move(sigmas_mm)));
+      WriteFormatted(out, ", known to {:.2g} mm (1 sigma, median)", Median(std::move(sigmas_mm)));
     }
   }
   out << '\n';
   if (!summary.dropped_markers.empty()) {
-    fmt::print(out, "markers left out: {}\n", MarkersLeftOutText(summary.dropped_markers));
+    WriteFormatted(out, "markers left out: {}\n", MarkersLeftOutText(summary.dropped_markers));
   }
 }
 
 void PrintSize(const ShapeExportReport& shape, std::ostream& out) {
   const Eigen::Vector3d box_m = BoundingBox(shape.shape);
-  fmt::print(out, "size: {:.3f} x {:.3f} x {:.3f} m", box_m.x(), box_m.y(), box_m.z());
+  WriteFormatted(out, "size: {:.3f} x {:.3f} x {:.3f} m", box_m.x(), box_m.y(), box_m.z());
   if (shape.scale.relative_sigma) {
-    fmt::print(out, ", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
+    WriteFormatted(out, ", known to {:.2f} % (1 sigma)", 100.0 * *shape.scale.relative_sigma);
   }
-  fmt::print(
+  WriteFormatted(
       out, "; the sides of the markers differ from their printed length by {:.2g} mm on average\n",
       shape.metrics.side_error_mm.mean);
 }
 
 void PrintImages(const ReconstructionSummary& summary, std::ostream& out) {
-  fmt::print(out, "images: {} of {} used, {:.2g} px mean reprojection error\n", summary.num_images,
-             summary.num_images_total, summary.shape.model_metrics.error_px.mean);
+  WriteFormatted(out, "images: {} of {} used, {:.2g} px mean reprojection error\n",
+                 summary.num_images, summary.num_images_total,
+                 summary.shape.model_metrics.error_px.mean);
   const std::vector<LeftOutImage> left_out = NeededImages(summary);
-  if (!left_out.empty()) fmt::print(out, "images left out: {}\n", LeftOutText(left_out));
+  if (!left_out.empty()) WriteFormatted(out, "images left out: {}\n", LeftOutText(left_out));
 }
 
 void PrintSections(const SectionReport& report, std::ostream& out) {
   for (const Section& section : report.sections) {
-    fmt::print(out, "section {} {} at {:.2f} m: camber {:.1f} %", section.part, section.name,
-               section.height_m, 100.0 * section.camber.value);
+    WriteFormatted(out, "section {} {} at {:.2f} m: camber {:.1f} %", section.part, section.name,
+                   section.height_m, 100.0 * section.camber.value);
     if (section.draft_position)
-      fmt::print(out, " at {:.0f} %", 100.0 * section.draft_position->value);
-    fmt::print(out, ", twist {:.1f} deg\n", section.twist_deg.value);
+      WriteFormatted(out, " at {:.0f} %", 100.0 * section.draft_position->value);
+    WriteFormatted(out, ", twist {:.1f} deg\n", section.twist_deg.value);
   }
   for (const RigNumbers& rig : report.rigs) {
     const std::string text = RigText(rig);
-    if (!text.empty()) fmt::print(out, "rig: {}\n", text);
+    if (!text.empty()) WriteFormatted(out, "rig: {}\n", text);
   }
   for (const MissingSection& missing : report.missing) {
-    fmt::print(out, "section {} {} is missing: {}\n", missing.part, missing.name, missing.reason);
+    WriteFormatted(out, "section {} {} is missing: {}\n", missing.part, missing.name,
+                   missing.reason);
   }
-  for (const std::string& note : report.notes) fmt::print(out, "sections: {}\n", note);
+  for (const std::string& note : report.notes) WriteFormatted(out, "sections: {}\n", note);
 }
 
 void PrintSurfaces(const ShapeExportReport& shape, std::ostream& out) {
   for (const SailSurface& surface : shape.sail.surfaces) {
-    fmt::print(out, "surface: {}, {:.4g} m2, {:.2g} mm RMS from its markers\n", surface.part,
-               surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
+    WriteFormatted(out, "surface: {}, {:.4g} m2, {:.2g} mm RMS from its markers\n", surface.part,
+                   surface.area_m2, kMmPerM * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : shape.freeform.surfaces) {
-    fmt::print(out, "surface: {}, {}, {:.2g} mm RMS from the corners\n", ShownName(part.part),
-               SizeText(part.surface), kMmPerM * part.surface.distance_m.rms);
+    WriteFormatted(out, "surface: {}, {}, {:.2g} mm RMS from the corners\n", ShownName(part.part),
+                   SizeText(part.surface), kMmPerM * part.surface.distance_m.rms);
   }
   for (const auto* notes : {&shape.sail.surface_notes, &shape.freeform.notes}) {
-    for (const std::string& note : *notes) fmt::print(out, "surface: {}\n", note);
+    for (const std::string& note : *notes) WriteFormatted(out, "surface: {}\n", note);
   }
 }
 
 void PrintCamera(const AdjustmentResult& adjustment, const WorkspacePaths& paths,
                  std::ostream& out) {
   for (const auto& [camera_id, camera] : adjustment.cameras) {
-    fmt::print(out, "camera: found from the images, {}; {} serves the next clip\n",
-               DescribeCamera(camera), paths.Camera().string());
+    WriteFormatted(out, "camera: found from the images, {}; {} serves the next clip\n",
+                   DescribeCamera(camera), paths.Camera().string());
   }
   if (!adjustment.uncertainty || !(adjustment.uncertainty->rolling_shutter_sigma_s > 0)) return;
-  fmt::print(out,
-             "rolling shutter: {:.2f} +- {:.2f} ms from the first to the last row, corrected\n",
-             1e3 * adjustment.uncertainty->rolling_shutter_s,
-             1e3 * adjustment.uncertainty->rolling_shutter_sigma_s);
+  WriteFormatted(out,
+                 "rolling shutter: {:.2f} +- {:.2f} ms from the first to the last row, corrected\n",
+                 1e3 * adjustment.uncertainty->rolling_shutter_s,
+                 1e3 * adjustment.uncertainty->rolling_shutter_sigma_s);
 }
 
 // One row for each name, with why it was left out.
@@ -157,15 +159,15 @@ void PrintSummary(const ReconstructionSummary& summary, const WorkspacePaths& pa
   PrintMarkers(summary, out);
   PrintSize(summary.shape, out);
   if (!summary.shape.known_points.points.empty()) {
-    fmt::print(out, "known points: {}\n", KnownPointsText(summary.shape.known_points));
+    WriteFormatted(out, "known points: {}\n", KnownPointsText(summary.shape.known_points));
   }
   PrintImages(summary, out);
   PrintSections(summary.shape.sail.sections, out);
   PrintSurfaces(summary.shape, out);
   PrintCamera(summary.adjustment, paths, out);
-  fmt::print(out, "look at: {} (in a browser)\n", paths.Report().string());
-  fmt::print(out, "files: {} (CSV, PLY, CAD)\n", paths.Shape().string());
-  fmt::print(out, "in COLMAP: {}\n", ColmapCommand(paths));
+  WriteFormatted(out, "look at: {} (in a browser)\n", paths.Report().string());
+  WriteFormatted(out, "files: {} (CSV, PLY, CAD)\n", paths.Shape().string());
+  WriteFormatted(out, "in COLMAP: {}\n", ColmapCommand(paths));
 }
 
 MetricsReport SummaryMetrics(const ReconstructionSummary& summary, const WorkspacePaths& paths) {

@@ -6,8 +6,9 @@
 #include <ostream>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
+
+#include "importer/base/log.h"
 
 namespace velamap {
 namespace {
@@ -83,7 +84,7 @@ std::vector<std::string> StageTable(const std::vector<StageTime>& times) {
 }
 
 void LogStageTimes(const StageClock& clock) {
-  for (const std::string& line : StageTable(clock.Times())) spdlog::info("{}", line);
+  for (const std::string& line : StageTable(clock.Times())) LogInfo("{}", line);
 }
 
 void WriteStageTimesJson(const std::vector<StageTime>& times, std::ostream& out) {

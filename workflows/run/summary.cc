@@ -6,13 +6,13 @@
 #include <ostream>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
-#include <spdlog/spdlog.h>
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
+#include "importer/base/log.h"
 #include "importer/geometry/units.h"
 #include "importer/text/id_ranges.h"
+#include "importer/text/write_formatted.h"
 
 namespace velamap {
 namespace {
@@ -76,34 +76,34 @@ std::string LuffText(const Estimate& estimate_m, const char* positive, const cha
 
 // Prints the frame, the sections of a sail, and the surfaces.
 void PrintSail(const ShapeExportReport& report, std::ostream& out) {
-  fmt::print(out, "frame: {}\n", report.frame.name);
+  WriteFormatted(out, "frame: {}\n", report.frame.name);
   const std::vector<Section>& sections = report.sail.sections.sections;
   if (!sections.empty()) {
-    fmt::print(out, "sections: {}; camber {} %, twist {} deg\n", sections.size(),
-               RangeText(sections, [](const Section& s) { return 100.0 * s.camber.value; }),
-               RangeText(sections, [](const Section& s) { return s.twist_deg.value; }));
+    WriteFormatted(out, "sections: {}; camber {} %, twist {} deg\n", sections.size(),
+                   RangeText(sections, [](const Section& s) { return 100.0 * s.camber.value; }),
+                   RangeText(sections, [](const Section& s) { return s.twist_deg.value; }));
   }
   for (const RigNumbers& rig : report.sail.sections.rigs) {
     const std::string text = RigText(rig);
-    if (!text.empty()) fmt::print(out, "rig: {}\n", text);
+    if (!text.empty()) WriteFormatted(out, "rig: {}\n", text);
   }
   for (const std::string& note : report.sail.sections.notes) {
-    fmt::print(out, "section_note: {}\n", note);
+    WriteFormatted(out, "section_note: {}\n", note);
   }
   for (const MissingSection& missing : report.sail.sections.missing) {
-    fmt::print(out, "section_missing: {} {}: {}\n", missing.part, missing.name, missing.reason);
+    WriteFormatted(out, "section_missing: {} {}: {}\n", missing.part, missing.name, missing.reason);
   }
   for (const SailSurface& surface : report.sail.surfaces) {
-    fmt::print(out, "surface: {}; {:.4g} m2, markers {:.2f} mm RMS from it\n", surface.part,
-               surface.area_m2, 1e3 * surface.fit.distance_m.rms);
+    WriteFormatted(out, "surface: {}; {:.4g} m2, markers {:.2f} mm RMS from it\n", surface.part,
+                   surface.area_m2, 1e3 * surface.fit.distance_m.rms);
   }
   for (const PartSurface& part : report.freeform.surfaces) {
-    fmt::print(out, "surface: {}; {}, corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
-               ShownName(part.part), SizeText(part.surface), 1e3 * part.surface.distance_m.rms,
-               1e3 * part.surface.rms_sigma_m);
+    WriteFormatted(out, "surface: {}; {}, corners {:.2g} mm RMS from it, sigma {:.2g} mm\n",
+                   ShownName(part.part), SizeText(part.surface), 1e3 * part.surface.distance_m.rms,
+                   1e3 * part.surface.rms_sigma_m);
   }
   for (const auto* notes : {&report.sail.surface_notes, &report.freeform.notes}) {
-    for (const std::string& note : *notes) fmt::print(out, "surface_note: {}\n", note);
+    for (const std::string& note : *notes) WriteFormatted(out, "surface_note: {}\n", note);
   }
 }
 
@@ -157,13 +157,13 @@ std::string ShellQuote(const std::string& text) {
 }
 
 void LogContradictions(const ShapeExportReport& report) {
-  for (const std::string& warning : ScaleWarnings(report.audit)) spdlog::warn(warning);
-  for (const std::string& warning : KnownPointWarnings(report.known_points)) spdlog::warn(warning);
+  for (const std::string& warning : ScaleWarnings(report.audit)) LogWarning(warning);
+  for (const std::string& warning : KnownPointWarnings(report.known_points)) LogWarning(warning);
 }
 
 void WarnOfOtherMarkers(const ShapeMetrics& metrics) {
   if (metrics.other_marker_ids.empty()) return;
-  spdlog::warn(
+  LogWarning(
       "{} markers of the shape are not in the layout and are taken to have its marker_length: {}; "
       "is it the layout of this surface?",
       metrics.other_marker_ids.size(), IdRanges(metrics.other_marker_ids));
@@ -172,8 +172,8 @@ void WarnOfOtherMarkers(const ShapeMetrics& metrics) {
 void WarnOfMissingSections(const SectionReport& sections) {
   for (const MissingSection& missing : sections.missing) {
     // Limits of the layout are reported, but are no reason to check this clip.
-    spdlog::log(missing.is_by_layout ? spdlog::level::info : spdlog::level::warn,
-                "no section {} of {}: {}", missing.name, missing.part, missing.reason);
+    LogMessage(missing.is_by_layout ? LogLevel::kInfo : LogLevel::kWarn, "no section {} of {}: {}",
+               missing.name, missing.part, missing.reason);
   }
 }
 
@@ -187,33 +187,35 @@ void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {
   }
   out << '\n';
   if (metrics.reconstruction_ratio) {
-    fmt::print(out, "reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);
+    WriteFormatted(out, "reconstruction_ratio: {:.4g}\n", *metrics.reconstruction_ratio);
   }
   if (metrics.sail_reconstruction_ratio) {
-    fmt::print(out, "sail_reconstruction_ratio: {:.4g} of {} markers\n",
-               *metrics.sail_reconstruction_ratio, *metrics.num_sail_markers);
+    WriteFormatted(out, "sail_reconstruction_ratio: {:.4g} of {} markers\n",
+                   *metrics.sail_reconstruction_ratio, *metrics.num_sail_markers);
   }
   const ModelMetrics& model = report.model_metrics;
-  fmt::print(out, "reprojection_error_px: {}\n", ErrorText(model.error_px));
-  fmt::print(out, "central_image_name: {}\n", model.central_image_name);
-  fmt::print(out, "central_reprojection_error_px: {}\n", ErrorText(model.central_error_px));
-  fmt::print(out, "area_error_mm2: {}\n", ErrorText(metrics.area_error_mm2));
-  fmt::print(out, "area_error_percent: {}\n", ErrorText(metrics.area_error_percent));
-  fmt::print(out, "side_error_mm: {}\n", ErrorText(metrics.side_error_mm));
-  fmt::print(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
-  fmt::print(out, "scale_spread_over_markers: {:.3f} %\n", 100.0 * report.scale.relative_spread);
+  WriteFormatted(out, "reprojection_error_px: {}\n", ErrorText(model.error_px));
+  WriteFormatted(out, "central_image_name: {}\n", model.central_image_name);
+  WriteFormatted(out, "central_reprojection_error_px: {}\n", ErrorText(model.central_error_px));
+  WriteFormatted(out, "area_error_mm2: {}\n", ErrorText(metrics.area_error_mm2));
+  WriteFormatted(out, "area_error_percent: {}\n", ErrorText(metrics.area_error_percent));
+  WriteFormatted(out, "side_error_mm: {}\n", ErrorText(metrics.side_error_mm));
+  WriteFormatted(out, "scale_m_per_unit: {:.6g}\n", report.scale.m_per_unit);
+  WriteFormatted(out, "scale_spread_over_markers: {:.3f} %\n",
+                 100.0 * report.scale.relative_spread);
   PrintScaleAudit(report.scale, report.audit, out);
   if (!report.known_points.points.empty()) {
-    fmt::print(out, "known_points: {}\n", KnownPointsText(report.known_points));
+    WriteFormatted(out, "known_points: {}\n", KnownPointsText(report.known_points));
   }
   PrintSail(report, out);
-  fmt::print(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(), box_m.z());
+  WriteFormatted(out, "bounding_box_m: {:.4f} x {:.4f} x {:.4f}\n", box_m.x(), box_m.y(),
+                 box_m.z());
 }
 
 void PrintRollingShutter(const AdjustmentUncertainty& uncertainty, std::ostream& out) {
   if (!(uncertainty.rolling_shutter_sigma_s > 0)) return;
-  fmt::print(out, "rolling_shutter_ms: {:.2f} +- {:.2f}\n", 1e3 * uncertainty.rolling_shutter_s,
-             1e3 * uncertainty.rolling_shutter_sigma_s);
+  WriteFormatted(out, "rolling_shutter_ms: {:.2f} +- {:.2f}\n", 1e3 * uncertainty.rolling_shutter_s,
+                 1e3 * uncertainty.rolling_shutter_sigma_s);
 }
 
 }  // namespace velamap

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "importer/base/atomic_output.h"
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/base/replacement.h"
 #include "importer/database/colmap_database.h"
 #include "importer/video/written_frame.h"
@@ -145,13 +145,12 @@ void AddModelImages(const Model& model, const std::string& image_path,
     }
   }
   if (!different.empty()) {
-    spdlog::warn("{}: {} images are not the photographs of the same names, such as {}; they stay",
-                 images_path.string(), different.size(), different.front());
+    LogWarning("{}: {} images are not the photographs of the same names, such as {}; they stay",
+               images_path.string(), different.size(), different.front());
   }
   if (missing.empty()) return;
-  spdlog::warn(
-      "{}: {} images of the model are missing, such as {}; --import_anew 1 reads them again",
-      images_path.string(), missing.size(), missing.front());
+  LogWarning("{}: {} images of the model are missing, such as {}; --import_anew 1 reads them again",
+             images_path.string(), missing.size(), missing.front());
 }
 
 void RemoveOtherImages(const Model& model, const std::vector<std::string>& database_names,

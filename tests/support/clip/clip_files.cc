@@ -3,11 +3,11 @@
 #include <ostream>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "exporters/formats/shape_csv.h"
 #include "importer/base/atomic_output.h"
 #include "importer/camera/calibration_writer.h"
+#include "importer/text/write_formatted.h"
 
 namespace velamap {
 namespace {
@@ -20,35 +20,35 @@ void WriteCamera(const Camera& camera, std::ostream& out) {
     return;
   }
   const std::vector<double>& p = camera.params;
-  fmt::print(out,
-             "%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\n"
-             "camera_matrix: !!opencv-matrix\n  rows: 3\n  cols: 3\n  dt: d\n"
-             "  data: [{:.17g}, 0., {:.17g}, 0., {:.17g}, {:.17g}, 0., 0., 1.]\n"
-             "distortion_coefficients: !!opencv-matrix\n  rows: 1\n  cols: 4\n  dt: d\n"
-             "  data: [{:.17g}, {:.17g}, {:.17g}, {:.17g}]\n",
-             camera.width_px, camera.height_px, p[0], p[2] - 0.5, p[1], p[3] - 0.5, p[4], p[5],
-             p[6], p[7]);
+  WriteFormatted(out,
+                 "%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\n"
+                 "camera_matrix: !!opencv-matrix\n  rows: 3\n  cols: 3\n  dt: d\n"
+                 "  data: [{:.17g}, 0., {:.17g}, 0., {:.17g}, {:.17g}, 0., 0., 1.]\n"
+                 "distortion_coefficients: !!opencv-matrix\n  rows: 1\n  cols: 4\n  dt: d\n"
+                 "  data: [{:.17g}, {:.17g}, {:.17g}, {:.17g}]\n",
+                 camera.width_px, camera.height_px, p[0], p[2] - 0.5, p[1], p[3] - 0.5, p[4], p[5],
+                 p[6], p[7]);
 }
 
 void WriteDictionary(const Dictionary& dictionary, std::ostream& out) {
   const cv::aruco::Dictionary& aruco = *dictionary.aruco;
-  fmt::print(out, "%YAML:1.0\n---\nnmarkers: {}\nmarkersize: {}\nmaxCorrectionBits: {}\n",
-             aruco.bytesList.rows, aruco.markerSize, aruco.maxCorrectionBits);
+  WriteFormatted(out, "%YAML:1.0\n---\nnmarkers: {}\nmarkersize: {}\nmaxCorrectionBits: {}\n",
+                 aruco.bytesList.rows, aruco.markerSize, aruco.maxCorrectionBits);
   for (int id = 0; id < aruco.bytesList.rows; ++id) {
     const cv::Mat bits =
         cv::aruco::Dictionary::getBitsFromByteList(aruco.bytesList.row(id), aruco.markerSize);
     std::string text;
     for (const auto bit : cv::Mat_<std::uint8_t>(bits)) text += bit ? '1' : '0';
-    fmt::print(out, "marker_{}: \"{}\"\n", id, text);
+    WriteFormatted(out, "marker_{}: \"{}\"\n", id, text);
   }
 }
 
 void WriteLines(const char* key, const std::vector<MarkerLine>& lines, std::ostream& out) {
   if (lines.empty()) return;
-  fmt::print(out, "    {}:\n", key);
+  WriteFormatted(out, "    {}:\n", key);
   for (const MarkerLine& line : lines) {
-    fmt::print(out, "      - {{name: {}, markers: [{}]}}\n", line.name,
-               fmt::join(line.marker_ids, ", "));
+    WriteFormatted(out, "      - {{name: {}, markers: [{}]}}\n", line.name,
+                   fmt::join(line.marker_ids, ", "));
   }
 }
 
@@ -64,18 +64,18 @@ void WritePoses(const ClipScene& scene, std::ostream& out) {
 }  // namespace
 
 void WriteLayout(const Layout& layout, std::ostream& out) {
-  fmt::print(out, "dictionary: {}\nmarker_length: {}\nborder_bits: {}\nparts:\n", layout.dictionary,
-             layout.marker_length_m, layout.border_bits);
+  WriteFormatted(out, "dictionary: {}\nmarker_length: {}\nborder_bits: {}\nparts:\n",
+                 layout.dictionary, layout.marker_length_m, layout.border_bits);
   for (const LayoutPart& part : layout.parts) {
-    fmt::print(out, "  {}:\n", part.name);
+    WriteFormatted(out, "  {}:\n", part.name);
     WriteLines("horizontal", part.horizontal, out);
     WriteLines("vertical", part.vertical, out);
     if (!part.marker_ids.empty()) {
-      fmt::print(out, "    markers: [{}]\n", fmt::join(part.marker_ids, ", "));
+      WriteFormatted(out, "    markers: [{}]\n", fmt::join(part.marker_ids, ", "));
     }
     if (part.rigid) out << "    rigid: true\n";
   }
-  if (layout.reference_part) fmt::print(out, "reference_part: {}\n", *layout.reference_part);
+  if (layout.reference_part) WriteFormatted(out, "reference_part: {}\n", *layout.reference_part);
 }
 
 void WriteClipFiles(const ClipScene& scene, const std::filesystem::path& folder) {

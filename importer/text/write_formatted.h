@@ -1,0 +1,19 @@
+// Formatted text on a stream. fmt::print for streams would compile fmt's formatting once more in
+// every file; this formats inside the fmt library.
+
+#pragma once
+
+#include <ostream>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace velamap {
+
+// Writes a text in fmt's syntax.
+template <typename... Args>
+void WriteFormatted(std::ostream& out, fmt::format_string<Args...> format, Args&&... args) {
+  out << fmt::format(format, std::forward<Args>(args)...);
+}
+
+}  // namespace velamap
