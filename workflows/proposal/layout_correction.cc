@@ -9,6 +9,7 @@
 
 #include "importer/text/id_ranges.h"
 #include "workflows/proposal/line_comparison.h"
+#include "workflows/proposal/standing_groups.h"
 
 namespace velamap {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "importer/geometry/units.h"
 #include "importer/text/id_ranges.h"
+#include "workflows/proposal/standing_groups.h"
 
 namespace velamap {
 namespace {
@@ -94,16 +95,25 @@ LayoutPart PartWithLines(const std::string& name, const RowGroup& rows,
   return part;
 }
 
+LayoutPart FacePart(const std::string& name, const RowGroup& rows, const FacePlane& plane,
+                    std::vector<std::string>* notes) {
+  LayoutPart part;
+  part.name = name;
+  part.rigid = true;
+  part.marker_ids = MarkersOf(rows);
+  notes->push_back(
+      fmt::format("{}: its markers lie in one plane to {:.2g} mm RMS, and others of the same body "
+                  "in planes that are tilted against it; it is a rigid part without lines",
+                  name, kMmPerM * plane.rms_m));
+  return part;
+}
+
 LayoutPart RigidPart(const std::string& name, const RowGroup& rows, bool is_seen_to_move,
                      std::vector<std::string>* notes) {
   LayoutPart part;
   part.name = name;
   part.rigid = true;
-  std::set<int> ids(rows.others.begin(), rows.others.end());
-  for (const auto* all : {&rows.horizontal, &rows.vertical}) {
-    for (const std::vector<int>& row : *all) ids.insert(row.begin(), row.end());
-  }
-  part.marker_ids.assign(ids.begin(), ids.end());
+  part.marker_ids = MarkersOf(rows);
   if (LinesCross(rows)) {
     notes->push_back(fmt::format(
         "{}: NOT SURE of its lines: they cross others of the same direction, and none is written",
@@ -167,17 +177,6 @@ std::vector<OtherLength> FindOtherLengths(const ClipMap& map, const Layout& layo
 
 }  // namespace
 
-std::vector<StandingGroup> FindStandingGroups(const ClipMap& map) {
-  std::vector<StandingGroup> groups;
-  for (std::size_t i = 0; i < map.bodies.size(); ++i) {
-    for (RowGroup& rows : FindMarkerRows(map.bodies[i])) groups.push_back({std::move(rows), i});
-  }
-  std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
-    return a.rows.NumMarkers() > b.rows.NumMarkers();
-  });
-  return groups;
-}
-
 void NoteLeftOut(const ClipMap& map, const Layout& layout, std::vector<std::string>* notes) {
   std::map<std::string, std::vector<int>> ids_by_reason;
   for (const auto& [marker_id, reason] : map.left_out) {
@@ -219,12 +218,18 @@ LayoutProposal ProposeLayout(const ClipMap& map, const Layout& known) {
   CorrectLengths(map, &proposal);
   proposal.contradictions.clear();  // nobody has said how long each marker is
   std::vector<LayoutPart>& parts = proposal.layout.parts;
-  int num_with_lines = 0, num_rigid = 0;
-  for (const StandingGroup& group : FindStandingGroups(map)) {
+  int num_with_lines = 0, num_rigid = 0, num_faces = 0;
+  const std::vector<StandingGroup> groups = FindStandingGroups(map);
+  const std::map<std::size_t, FacePlane> faces = FindFaces(map, groups);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const StandingGroup& group = groups[i];
     const auto name = [](const std::string& word, int number) {
       return number == 1 ? word : fmt::format("{}{}", word, number);
     };
-    if (HasLines(group.rows)) {
+    if (const auto face = faces.find(i); face != faces.end()) {
+      parts.push_back(
+          FacePart(name("face", ++num_faces), group.rows, face->second, &proposal.notes));
+    } else if (HasLines(group.rows)) {
       parts.push_back(PartWithLines(name("sail", ++num_with_lines), group.rows, &proposal.notes));
     } else {
       parts.push_back(

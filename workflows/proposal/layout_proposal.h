@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "importer/layout/layout.h"
-#include "reconstruct/evidence/marker_rows.h"
 #include "workflows/proposal/clip_map.h"
 
 namespace velamap {
@@ -19,17 +18,9 @@ struct LayoutProposal {
   std::vector<std::string> contradictions;
 };
 
-// Markers that stand together on one body.
-struct StandingGroup {
-  RowGroup rows;
-  std::size_t body_idx = 0;
-};
-
-// Most markers first.
-std::vector<StandingGroup> FindStandingGroups(const ClipMap& map);
-
 // Parts, lines and lengths where `known`, of which only the dictionary and the lengths count, has
-// no parts. A group of two rows and more becomes a part with lines, any other one a rigid part.
+// no parts. A flat group that is tilted against another one of its body becomes a rigid face, a
+// group of two rows and more a part with lines, any other one a rigid part.
 LayoutProposal ProposeLayout(const ClipMap& map, const Layout& known);
 
 // Notes the ids that `layout` does not name and that have no place, by reason.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <random>
 
 #include <gmock/gmock.h>
 
@@ -110,6 +111,39 @@ TEST(LayoutProposal, DiagonalsOfAChessboardAreNoLines) {
   EXPECT_TRUE(proposal.layout.parts[0].vertical.empty());
   EXPECT_EQ(proposal.layout.parts[0].marker_ids.size(), 32u);
   EXPECT_THAT(proposal.notes, Contains(HasSubstr("NOT SURE of its lines")));
+}
+
+// Rows of markers on the faces of a box are no lines of a sail.
+TEST(LayoutProposal, FacesOfABoxAreRigidPartsWithoutLines) {
+  SyntheticSceneOptions options;
+  options.kind = SceneKind::kCube;
+  options.num_rows = 4;
+  options.num_columns = 4;
+  const SyntheticScene scene = MakeSyntheticScene(options);
+  ClipMap map;
+  map.bodies.emplace_back(scene.x_in_world.begin(), scene.x_in_world.end());
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise_m(0.0, 0.5e-3);
+  for (auto& [marker_id, points] : map.bodies[0]) {
+    for (Eigen::Vector3d& x : points) {
+      x += Eigen::Vector3d(noise_m(random), noise_m(random), noise_m(random));
+    }
+  }
+  const LayoutProposal proposal = ProposeLayout(map, MakeLayout("DICT_5X5_1000", 0.1));
+  ASSERT_EQ(proposal.layout.parts.size(), scene.layout.parts.size());
+  for (const LayoutPart& part : proposal.layout.parts) {
+    EXPECT_TRUE(part.rigid);
+    EXPECT_TRUE(part.horizontal.empty() && part.vertical.empty());
+    const auto is_part = [&](const LayoutPart& face) {
+      Layout of_face;
+      of_face.parts = {face};
+      return MarkerIds(of_face) == part.marker_ids;
+    };
+    const bool is_a_face =
+        std::any_of(scene.layout.parts.begin(), scene.layout.parts.end(), is_part);
+    EXPECT_TRUE(is_a_face) << part.name;
+  }
+  EXPECT_THAT(proposal.notes, Contains(AllOf(HasSubstr("face6"), HasSubstr("one plane"))));
 }
 
 TEST(LayoutCorrection, ALayoutThatIsRightStaysAsItIs) {

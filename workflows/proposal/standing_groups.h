@@ -1,0 +1,39 @@
+// Markers of a clip that stand together: lines of a sail, faces of a box, a rigid strip.
+
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "reconstruct/evidence/marker_rows.h"
+#include "workflows/proposal/clip_map.h"
+
+namespace velamap {
+
+// Markers that stand together on one body.
+struct StandingGroup {
+  RowGroup rows;
+  std::size_t body_idx = 0;
+};
+
+// Most markers first.
+std::vector<StandingGroup> FindStandingGroups(const ClipMap& map);
+
+// The ids of all markers of a group, ascending.
+std::vector<int> MarkersOf(const RowGroup& rows);
+
+struct FacePlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // in the frame of the body
+  double rms_m = 0.0;                                // of the markers' corners
+};
+
+// The groups, by index, that are faces of a solid such as a box or two walls: flat, and tilted by
+// at least 20 degrees against another flat group of the same body. A single flat group may be a
+// sail on the floor, so it is no face.
+std::map<std::size_t, FacePlane> FindFaces(const ClipMap& map,
+                                           const std::vector<StandingGroup>& groups);
+
+}  // namespace velamap
