@@ -32,8 +32,8 @@ void DescribeCamera(RenderClipOptions* options, po::options_description* descrip
   CameraResponse* response = &render->response;
   auto add = description->add_options();
   add("camera", Value(&options->camera),
-      "sets the defaults of all others. plain: grey values are light; action: a usual action "
-      "camera");
+      "sets the defaults of all others. action: a usual action camera; plain: grey values are "
+      "light");
   add("tone_curve", Value(&options->tone_curve),
       "from light to grey values: linear, srgb, gamma, s_curve (sRGB with more contrast)");
   add("gamma", Value(&response->gamma), "of --tone_curve gamma, 1 to 3");
@@ -142,7 +142,7 @@ RenderClipOptions ActionCamera() {
 
 // The defaults that --camera chooses, before all other options are read.
 RenderClipOptions Defaults(int argc, char** argv) {
-  std::string camera = "plain";
+  std::string camera = "action";
   po::options_description description;
   description.add_options()("camera", po::value(&camera));
   po::variables_map values;

@@ -75,18 +75,28 @@ TEST(RenderClipTest, BadOptionsAreNamed) {
   }
 }
 
-// --camera chooses defaults; what is given beside it counts.
+// A usual action camera is the default; --camera chooses defaults, and what is given beside it
+// counts.
 TEST(RenderClipTest, CameraChoosesDefaults) {
   TempDir dir;
-  const std::string folder = (dir / "clip").string();
-  const ProgramRun run =
-      RenderClip({"--glare", "0.07", "--camera", "action", "--output_path", folder, "--width",
-                  "640", "--num_frames", "1", "--format", "png"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const std::string options = ReadFileBytes(folder + "/scene.ini");
-  EXPECT_THAT(options, HasSubstr("\nglare=0.07\n"));
-  EXPECT_THAT(options, HasSubstr("\nsharpening=0.5\n"));
-  EXPECT_THAT(options, HasSubstr("\ntone_curve=s_curve\n"));
+  const auto options_of = [&](const std::string& name, std::vector<std::string> arguments) {
+    const std::string folder = (dir / name).string();
+    for (const char* argument : {"--width", "640", "--num_frames", "1", "--format", "png"}) {
+      arguments.push_back(argument);
+    }
+    arguments.insert(arguments.end(), {"--output_path", folder});
+    const ProgramRun run = RenderClip(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return ReadFileBytes(folder + "/scene.ini");
+  };
+  const std::string action = options_of("action", {"--glare", "0.07"});
+  EXPECT_THAT(action, HasSubstr("\nglare=0.07\n"));
+  EXPECT_THAT(action, HasSubstr("\nsharpening=0.5\n"));
+  EXPECT_THAT(action, HasSubstr("\ntone_curve=s_curve\n"));
+  const std::string plain = options_of("plain", {"--glare", "0.07", "--camera", "plain"});
+  EXPECT_THAT(plain, HasSubstr("\nglare=0.07\n"));
+  EXPECT_THAT(plain, HasSubstr("\nsharpening=0\n"));
+  EXPECT_THAT(plain, HasSubstr("\ntone_curve=linear\n"));
 }
 
 }  // namespace

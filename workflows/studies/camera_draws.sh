@@ -50,7 +50,7 @@ formation() {
 run_draw() {
   local run="$runs/$1" clip="$runs/$1/clip" code=0
   mkdir -p "$run"
-  "$render_clip" "${@:2}" --num_threads 1 --output_path "$clip" >"$run/render.txt" 2>&1 ||
+  "$render_clip" --camera plain "${@:2}" --num_threads 1 --output_path "$clip" >"$run/render.txt" 2>&1 ||
     fail "render_clip failed: $(tail -n 1 "$run/render.txt")"
   # The print is exact. A tolerance would hide errors of the detected edges.
   "$velamap" automatic_reconstructor --image_path "$clip/clip.mp4" --num_threads 1 \

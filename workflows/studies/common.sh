@@ -77,8 +77,8 @@ read_draw_arguments() {
 
 # The options of render_clip for the sail of the studies, which has 122 markers of 100 mm as in
 # section 4.3 of the thesis. With --quick, the sail has half the size.
-full_sail=(--scene sail --width 1920)
-quick_sail=(--scene sail --width 1280 --sail_scale 0.5 --distance 3)
+full_sail=(--camera plain --scene sail --width 1920)
+quick_sail=(--camera plain --scene sail --width 1280 --sail_scale 0.5 --distance 3)
 
 # The numbers of frames of the sail's clips. The longest search must fit into the near clip.
 short_clip_frames() { if [[ $quick -eq 1 ]]; then echo 90; else echo 220; fi; }

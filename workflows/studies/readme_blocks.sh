@@ -280,7 +280,7 @@ block_rigid_objects() {
 block_shooting_distance() {
   echo "| distance | side | markers found | error of a corner |"
   echo "|---|---|---|---|"
-  table shooting.csv 'FNR > 1 && cell("series") == "distance" {
+  table shooting.csv 'cell("series") == "distance" {
     printf "| %s m | %s px | %s %% | %s px |\n", cell("distance_m"), num(cell("side_px"), 3),
       num(cell("found_percent"), "d"), num(cell("corner_error_px"), 2) }'
 }
@@ -289,7 +289,7 @@ block_shooting_motion() {
   echo "| side | path while the shutter is open | markers found | error of a corner |"
   echo "|---|---|---|---|"
   table shooting.csv '
-    FNR > 1 && cell("series") == "motion" {
+    cell("series") == "motion" {
       if (cell("motion_px") == 0) side = cell("side_px")
       printf "| %s px | %s px, %s cells | %s %% | %s px |\n", num(side, 2), cell("motion_px"),
         num(6 * cell("motion_px") / side, 2), num(cell("found_percent"), "d"),
@@ -300,7 +300,7 @@ block_shooting_plan() {
   echo "| distance | side | sigma of a marker: planned, found | RMS to the truth: planned, found, true | after scaling: planned, found, true |"
   echo "|---|---|---|---|---|"
   table shooting.csv '
-    FNR > 1 && cell("series") == "plan" {
+    cell("series") == "plan" {
       printf "| %s m | %s px | %s, %s mm | %s, %s, %s mm | %s, %s, %s mm |\n", cell("distance_m"),
         num(cell("side_px"), 2), num(cell("planned_marker_sigma_mm"), 2), num(cell("marker_sigma_mm"), 2),
         num(cell("planned_distance_sigma_mm"), 2), num(cell("distance_sigma_mm"), 2),
@@ -314,7 +314,7 @@ block_surface() {
   echo "| markers | error of a marker | error of the surface / of a marker: RMS, largest place | places up to 1.2 | error of the curvature: median, 95 %, largest | within 0.05 1/m |"
   echo "|---|---|---|---|---|---|"
   table surface.csv '
-    FNR > 1 {
+    {
       markers = cell("series") == "random" ? cell("num_draws") " random sails" : cell("series")
       printf "| %s | %s mm | %s, %s | %s %% | %s, %s, %s 1/m | %s %% |\n", markers,
         num(cell("marker_error_mm"), 2), num(cell("error_ratio_rms"), 2), num(cell("error_ratio_max"), 2),
@@ -327,7 +327,7 @@ block_surface() {
 # an oscillating curvature.
 block_surface_curvature() {
   table surface_curvature.csv '
-    FNR > 1 && cell("height_m") == "3.935" {
+    cell("height_m") == "3.935" {
       clip = cell("clip")
       if (!(clip in found)) names[++num_clips] = clip
       if (num_clips == 1) {
@@ -350,7 +350,7 @@ block_surface_curvature() {
 # Shows the statement of the thesis on each series (section 4.1) beside the shares at each distance.
 block_marker_design() {
   table marker_design.csv '
-    FNR > 1 {
+    {
       design = cell("series") " " cell("value")
       if (!(design in found)) order[++num_designs] = design
       if (!(cell("distance_m") in seen)) { seen[cell("distance_m")]; distances[++num_distances] = cell("distance_m") }
@@ -377,7 +377,7 @@ block_rolling_shutter() {
   echo "| clip (5 s, 1080p) | shake | flapping | first to last row | found | RMS without | RMS with |"
   echo "|---|---|---|---|---|---|---|"
   table rolling_shutter.csv '
-    FNR > 1 {
+    {
       found = "none"
       if (cell("found_ms") != "") found = sprintf("%.2f ± %.2f ms", cell("found_ms"), cell("sigma_ms"))
       flapping = "-"

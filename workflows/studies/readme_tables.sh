@@ -7,14 +7,19 @@
 # shellcheck disable=SC2154
 problem() { echo "$*" >>"$temporary/problems"; }
 
-# data RESULT: prints the rows of a result without the line that names its command.
+# find_stored RESULT: sets `file` to the path of a result, or records that it is missing.
 # shellcheck disable=SC2154
+find_stored() {
+  file="$(stored "$1")"
+  [[ -f "$file" ]] && return
+  problem "$place: $file is missing; workflows/studies/update_readmes.sh $1 makes it"
+  return 1
+}
+
+# data RESULT: prints the rows of a result without the line that names its command.
 data() {
-  if [[ ! -f "$(stored "$1")" ]]; then
-    problem "$place: $(stored "$1") is missing; workflows/studies/update_readmes.sh $1 makes it"
-    return
-  fi
-  sed 1d "$(stored "$1")"
+  local file
+  if find_stored "$1"; then sed 1d "$file"; fi
 }
 
 # made_by RESULT: prints the command that made a result, formatted as code.
@@ -48,15 +53,18 @@ awk_library='
     if (!(n in least) || x + 0 < least[n]) least[n] = x + 0
     if (!(n in most) || x + 0 > most[n]) most[n] = x + 0
   }
-  FNR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }'
+  FNR == 1 { next }  # names the command
+  FNR == 2 { for (i = 1; i <= NF; i++) column[$i] = i; next }'
 
 # table RESULT AWK_PROGRAM: runs the program on the rows of a result. cell("name") is the value of a
 # column.
 table() {
+  local file
+  find_stored "$1" || return 0
   # shellcheck disable=SC2016
-  data "$1" | awk -F, "$awk_library"' function cell(name) {
+  awk -F, "$awk_library"' function cell(name) {
     if (!(name in column)) { print "no column " name > "/dev/stderr"; exit 3 } return $column[name] }
-    '"$2" || problem "$place: $1 has no such rows or columns"
+    '"$2" "$file" || problem "$place: $1 has no such rows or columns"
 }
 
 # value RESULT COLUMN FORMAT KEY=VALUE...: prints a column of the rows in which the columns KEY have

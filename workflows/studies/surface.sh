@@ -21,9 +21,9 @@ if [[ $quick -eq 1 ]]; then num_draws=3 names=(sail_quick); else num_draws=40 na
 # make_sail NAME: makes one of the sail's clips of accuracy.sh, or a small one.
 make_sail() {
   case "$1" in
-    sail_1080p) make_clip "$1" --scene sail --width 1920 --num_frames 400 ;;
-    sail_4k) make_clip "$1" --scene sail --width 3840 --num_frames 400 --bitrate 60M ;;
-    sail_quick) make_clip "$1" --scene sail --width 1280 --distance 3 --num_frames 60 ;;
+    sail_1080p) make_clip "$1" --camera plain --scene sail --width 1920 --num_frames 400 ;;
+    sail_4k) make_clip "$1" --camera plain --scene sail --width 3840 --num_frames 400 --bitrate 60M ;;
+    sail_quick) make_clip "$1" --camera plain --scene sail --width 1280 --distance 3 --num_frames 60 ;;
   esac
 }
 

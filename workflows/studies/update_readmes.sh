@@ -56,7 +56,9 @@ declare -A folder_of_past=([own_solver.csv]=tests/benchmarks)
 
 # stored RESULT: prints the path of a stored result, which is beside the command that makes it.
 stored() {
-  echo "$repository/${folder_of_past[$1]:-$(dirname "${command_of[$1]%% *}")}/results/$1"
+  local program="${command_of[$1]:-}"
+  program="${program%% *}"
+  echo "$repository/${folder_of_past[$1]:-${program%/*}}/results/$1"
 }
 
 # settings: prints assignments of the variables that change what a command measures.
