@@ -2,7 +2,8 @@
 # Measures the error of the metric result on rendered clips and on photographs of known objects. The
 # thesis's method comes first; then its steps are replaced by those of velamap, one after the other.
 # usage: workflows/studies/accuracy.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# CLIPS and WAYS select a subset, e.g. CLIPS="walls board" WAYS="global_both".
+# CLIPS and WAYS select a subset, e.g. CLIPS="walls board" WAYS="global_both". CAMERA: of the rendered
+# clips (render_clip --camera), plain by default.
 #
 #   way             corners  registration  adjustment
 #   thesis          subpix   thesis        colmap
@@ -15,6 +16,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 begin_study accuracy "$@"
+camera="${CAMERA:-plain}"
 read -ra ways <<<"${WAYS:-thesis edge global global_markers global_both}"
 read -ra clips_of_study <<<"${CLIPS:-walls board sail_1080p sail_4k cube stylus board_video aprilgrid}"
 if [[ $quick -eq 1 ]]; then
@@ -59,10 +61,15 @@ link_cube() {
 
 make_clip_of_study() {
   case "$1" in
-    walls) make_clip walls_1080p --scene walls --width 1920 --num_frames "$num_frames" ;;
-    board) make_clip board_720p --scene board --motion d --num_frames "$num_frames" ;;
-    sail_1080p) make_clip sail_1080p --scene sail --width 1920 --num_frames "$sail_frames" ;;
-    sail_4k) make_clip sail_4k --scene sail --width 3840 --num_frames "$sail_frames" --bitrate 60M ;;
+    walls) make_clip walls_1080p --camera "$camera" --scene walls --width 1920 --num_frames "$num_frames" ;;
+    board) make_clip board_720p --camera "$camera" --scene board --motion d --num_frames "$num_frames" ;;
+    sail_1080p)
+      make_clip sail_1080p --camera "$camera" --scene sail --width 1920 --num_frames "$sail_frames"
+      ;;
+    sail_4k)
+      make_clip sail_4k --camera "$camera" --scene sail --width 3840 --num_frames "$sail_frames" \
+        --bitrate 60M
+      ;;
     cube) link_cube ;;
     stylus) link_real stylus "$repository/sample_project/stylus" "$repository/sample_project/stylus/images" ;;
     board_video)

@@ -64,7 +64,7 @@ stored() {
 # settings: prints assignments of the variables that change what a command measures.
 settings() {
   local name
-  for name in CLIPS WAYS NUM_FRAMES SKIPS NEIGHBORHOODS SIGMAS BETAS INLIER_DISTANCES CENTRAL_FRAMES \
+  for name in CAMERA CLIPS WAYS NUM_FRAMES SKIPS NEIGHBORHOODS SIGMAS BETAS INLIER_DISTANCES CENTRAL_FRAMES \
     DISTANCES BACKEND START WIDTHS MBIT LONG REPEATS; do
     if [[ -n "${!name:-}" ]]; then printf '%s="%s" ' "$name" "${!name}"; fi
   done
