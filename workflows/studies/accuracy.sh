@@ -3,7 +3,7 @@
 # thesis's method comes first; then its steps are replaced by those of velamap, one after the other.
 # usage: workflows/studies/accuracy.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
 # CLIPS and WAYS select a subset, e.g. CLIPS="walls board" WAYS="global_both". CAMERA: of the rendered
-# clips (render_clip --camera), plain by default.
+# clips (render_clip --camera), action by default.
 #
 #   way             corners  registration  adjustment
 #   thesis          subpix   thesis        colmap
@@ -16,7 +16,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 begin_study accuracy "$@"
-camera="${CAMERA:-plain}"
+camera="${CAMERA:-action}"
 read -ra ways <<<"${WAYS:-thesis edge global global_markers global_both}"
 read -ra clips_of_study <<<"${CLIPS:-walls board sail_1080p sail_4k cube stylus board_video aprilgrid}"
 if [[ $quick -eq 1 ]]; then

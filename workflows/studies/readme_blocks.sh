@@ -121,7 +121,7 @@ ROWS
     END {
       title["aprilgrid"] = "20 photographs of an AprilGrid, 19 mm tags"
       title["board_video"] = "57 frames of a hand-held board, 40 mm markers"
-      title["sail_4k"] = "rendered 4K clip of a 3 x 6 m sail"
+      title["sail_4k"] = "rendered 4K clip of a 3 x 6 m sail, action camera"
       title["sail_1080p"] = "the same at 1080p"
       m = split("aprilgrid board_video sail_4k sail_1080p", shown, " ")
       for (i = 1; i <= m; i++)
