@@ -1,7 +1,7 @@
 // The log of all commands. workflows/run/logging.h sends it to the terminal and a file.
 //
-// Messages are formatted inside the fmt library. spdlog's own templates would compile fmt's
-// formatting once more in every file that logs, which took a tenth of the build.
+// Messages are formatted inside the fmt library, because spdlog's own templates would compile fmt's
+// formatting once more in every file that logs.
 
 #pragma once
 

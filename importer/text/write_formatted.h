@@ -1,5 +1,5 @@
-// Formatted text on a stream. fmt::print for streams would compile fmt's formatting once more in
-// every file; this formats inside the fmt library.
+// Formatted text on a stream. It is formatted inside the fmt library, because fmt::print for
+// streams would compile fmt's formatting once more in every file.
 
 #pragma once
 

@@ -182,7 +182,7 @@ class RowFinder {
       for (const std::size_t i : cluster) groups.back().others.push_back(markers_[i].marker_id);
     }
     std::stable_sort(groups.begin(), groups.end(), [](const RowGroup& a, const RowGroup& b) {
-      return a.NumMarkers() > b.NumMarkers();
+      return a.MarkerIds().size() > b.MarkerIds().size();
     });
     return groups;
   }
@@ -279,12 +279,12 @@ class RowFinder {
 
 }  // namespace
 
-int RowGroup::NumMarkers() const {
+std::vector<int> RowGroup::MarkerIds() const {
   std::set<int> ids(others.begin(), others.end());
   for (const auto* rows : {&horizontal, &vertical}) {
     for (const std::vector<int>& row : *rows) ids.insert(row.begin(), row.end());
   }
-  return static_cast<int>(ids.size());
+  return {ids.begin(), ids.end()};
 }
 
 std::vector<RowGroup> FindMarkerRows(const ShapePoints& shape) { return RowFinder(shape).Find(); }

@@ -35,7 +35,7 @@ struct RowGroup {
   // fewer than two rows.
   double left_slant = 0.0, right_slant = 0.0;
 
-  int NumMarkers() const;  // a marker on several rows counts once
+  std::vector<int> MarkerIds() const;  // of all rows and the others, ascending, each once
 };
 
 // `shape` has at least one marker. Each marker is in one group. The largest group comes first.

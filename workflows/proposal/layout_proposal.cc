@@ -95,25 +95,23 @@ LayoutPart PartWithLines(const std::string& name, const RowGroup& rows,
   return part;
 }
 
-LayoutPart FacePart(const std::string& name, const RowGroup& rows, const FacePlane& plane,
-                    std::vector<std::string>* notes) {
+LayoutPart RigidPart(const std::string& name, const RowGroup& rows) {
   LayoutPart part;
   part.name = name;
   part.rigid = true;
-  part.marker_ids = MarkersOf(rows);
+  part.marker_ids = rows.MarkerIds();
+  return part;
+}
+
+void NoteFace(const std::string& name, const FacePlane& plane, std::vector<std::string>* notes) {
   notes->push_back(
       fmt::format("{}: its markers lie in one plane to {:.2g} mm RMS, and others of the same body "
                   "in planes that are tilted against it; it is a rigid part without lines",
                   name, kMmPerM * plane.rms_m));
-  return part;
 }
 
-LayoutPart RigidPart(const std::string& name, const RowGroup& rows, bool is_seen_to_move,
-                     std::vector<std::string>* notes) {
-  LayoutPart part;
-  part.name = name;
-  part.rigid = true;
-  part.marker_ids = MarkersOf(rows);
+void NoteRigidPart(const std::string& name, const RowGroup& rows, bool is_seen_to_move,
+                   std::vector<std::string>* notes) {
   if (LinesCross(rows)) {
     notes->push_back(fmt::format(
         "{}: NOT SURE of its lines: they cross others of the same direction, and none is written",
@@ -125,7 +123,6 @@ LayoutPart RigidPart(const std::string& name, const RowGroup& rows, bool is_seen
           : fmt::format("{}: NOT SURE whether it is a rigid part of its own: it has fewer "
                         "than two clear lines, and did not move against the others in this clip",
                         name));
-  return part;
 }
 
 // The markers of one printed length, where the layout has another one.
@@ -227,13 +224,13 @@ LayoutProposal ProposeLayout(const ClipMap& map, const Layout& known) {
       return number == 1 ? word : fmt::format("{}{}", word, number);
     };
     if (const auto face = faces.find(i); face != faces.end()) {
-      parts.push_back(
-          FacePart(name("face", ++num_faces), group.rows, face->second, &proposal.notes));
+      parts.push_back(RigidPart(name("face", ++num_faces), group.rows));
+      NoteFace(parts.back().name, face->second, &proposal.notes);
     } else if (HasLines(group.rows)) {
       parts.push_back(PartWithLines(name("sail", ++num_with_lines), group.rows, &proposal.notes));
     } else {
-      parts.push_back(
-          RigidPart(name("part", ++num_rigid), group.rows, group.body_idx > 0, &proposal.notes));
+      parts.push_back(RigidPart(name("part", ++num_rigid), group.rows));
+      NoteRigidPart(parts.back().name, group.rows, group.body_idx > 0, &proposal.notes);
     }
   }
   NoteLeftOut(map, {}, &proposal.notes);

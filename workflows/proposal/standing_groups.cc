@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "importer/geometry/principal_axes.h"
@@ -15,7 +14,7 @@ namespace {
 std::optional<FacePlane> PlaneOf(const ClipMap& map, const StandingGroup& group) {
   constexpr double kMaxRms = 0.01;  // of the smaller extent in the plane
   constexpr std::size_t kMinMarkers = 3;
-  const std::vector<int> ids = MarkersOf(group.rows);
+  const std::vector<int> ids = group.rows.MarkerIds();
   if (ids.size() < kMinMarkers) return std::nullopt;
   std::vector<Eigen::Vector3d> corners;
   for (const int marker_id : ids) {
@@ -31,21 +30,13 @@ std::optional<FacePlane> PlaneOf(const ClipMap& map, const StandingGroup& group)
 
 }  // namespace
 
-std::vector<int> MarkersOf(const RowGroup& rows) {
-  std::set<int> ids(rows.others.begin(), rows.others.end());
-  for (const auto* all : {&rows.horizontal, &rows.vertical}) {
-    for (const std::vector<int>& row : *all) ids.insert(row.begin(), row.end());
-  }
-  return {ids.begin(), ids.end()};
-}
-
 std::vector<StandingGroup> FindStandingGroups(const ClipMap& map) {
   std::vector<StandingGroup> groups;
   for (std::size_t i = 0; i < map.bodies.size(); ++i) {
     for (RowGroup& rows : FindMarkerRows(map.bodies[i])) groups.push_back({std::move(rows), i});
   }
   std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
-    return a.rows.NumMarkers() > b.rows.NumMarkers();
+    return a.rows.MarkerIds().size() > b.rows.MarkerIds().size();
   });
   return groups;
 }

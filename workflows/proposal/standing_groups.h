@@ -22,9 +22,6 @@ struct StandingGroup {
 // Most markers first.
 std::vector<StandingGroup> FindStandingGroups(const ClipMap& map);
 
-// The ids of all markers of a group, ascending.
-std::vector<int> MarkersOf(const RowGroup& rows);
-
 struct FacePlane {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // in the frame of the body
   double rms_m = 0.0;                                // of the markers' corners

@@ -73,7 +73,7 @@ TEST(MarkerRows, TheLinesOfASailComeBack) {
   EXPECT_EQ(groups[0].vertical.size(), 6u);
   EXPECT_THAT(groups[0].others, IsEmpty());
   EXPECT_TRUE(groups[0].knows_up);
-  EXPECT_EQ(groups[0].NumMarkers(), 30);
+  EXPECT_EQ(groups[0].MarkerIds().size(), 30u);
 }
 
 TEST(MarkerRows, UnevenPlacesChangeNothing) {
