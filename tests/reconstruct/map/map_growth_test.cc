@@ -1,7 +1,6 @@
 #include "reconstruct/map/map_growth.h"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -12,12 +11,6 @@
 
 namespace velamap {
 namespace {
-
-std::vector<int> AllFrames(const SceneMap& map) {
-  std::vector<int> frame_idxs(map.problem.frames.size());
-  std::iota(frame_idxs.begin(), frame_idxs.end(), 0);
-  return frame_idxs;
-}
 
 // Two frames of the truth, nothing placed: in the world frame, so that errors need no alignment.
 MapSolution TwoTrueFrames(const SceneMap& map, std::size_t a, std::size_t b) {
@@ -38,7 +31,7 @@ class GrowExactMap : public testing::TestWithParam<SceneKind> {};
 TEST_P(GrowExactMap, RegistersAllFramesWhereTheyAre) {
   const SceneMap map(MakeScene(GetParam(), 24, false));
   MapSolution solution = TwoTrueFrames(map, 10, 14);
-  GrowMap(map.problem, AllFrames(map), {2, 0, true, TestSeed()}, &solution);
+  GrowMap(map.problem, AllFrames(map.problem), {2, 0, true, TestSeed()}, &solution);
   EXPECT_EQ(solution.NumRegistered(), 24);
   EXPECT_EQ(NumPlaced(solution), static_cast<int>(map.problem.markers.size()));
   EXPECT_EQ(std::count(solution.fits.begin(), solution.fits.end(), 1),
@@ -59,7 +52,7 @@ TEST(GrowMap, OrderOfFramesChangesNothing) {
   SyntheticScene scene = MakeScene(SceneKind::kSail, 20, false);
   AddNoise({0.3, 0.1, 0.05, 200, TestSeed()}, &scene);
   const SceneMap map(std::move(scene));
-  std::vector<int> frame_idxs = AllFrames(map);
+  std::vector<int> frame_idxs = AllFrames(map.problem);
   const auto grown = [&] {
     MapSolution solution = TwoTrueFrames(map, 6, 12);
     GrowMap(map.problem, frame_idxs, {2, 0, true, TestSeed()}, &solution);
@@ -85,7 +78,7 @@ TEST(GrowMap, StopsAtTheLargestNumberOfFrames) {
   const SceneMap map(MakeScene(SceneKind::kSail, 20, false));
   for (const int max_num_frames : {2, 7, 20}) {
     MapSolution solution = TwoTrueFrames(map, 6, 12);
-    GrowMap(map.problem, AllFrames(map), {2, max_num_frames, true, TestSeed()}, &solution);
+    GrowMap(map.problem, AllFrames(map.problem), {2, max_num_frames, true, TestSeed()}, &solution);
     EXPECT_EQ(solution.NumRegistered(), max_num_frames);
   }
 }
@@ -94,7 +87,7 @@ TEST(GrowMap, RegistersOnlyTheFramesThatAreAskedFor) {
   const SceneMap map(MakeScene(SceneKind::kSail, 12, false));
   MapSolution solution = TwoTrueFrames(map, 3, 8);
   GrowMap(map.problem, {1, 5, 10}, {2, 0, true, TestSeed()}, &solution);
-  for (const int frame_idx : AllFrames(map)) {
+  for (const int frame_idx : AllFrames(map.problem)) {
     const bool is_expected = std::set<int>{1, 3, 5, 8, 10}.count(frame_idx) > 0;
     EXPECT_EQ(solution.cam_from_shape[static_cast<std::size_t>(frame_idx)].has_value(),
               is_expected);
@@ -104,7 +97,7 @@ TEST(GrowMap, RegistersOnlyTheFramesThatAreAskedFor) {
 TEST(GrowMap, WithoutAdjustmentARegisteredFrameStays) {
   const SceneMap map = NoisySail(0.3, TestSeed());
   MapSolution solution = TwoTrueFrames(map, 3, 11);
-  GrowMap(map.problem, AllFrames(map), {2, 0, false, TestSeed()}, &solution);
+  GrowMap(map.problem, AllFrames(map.problem), {2, 0, false, TestSeed()}, &solution);
   EXPECT_EQ(solution.NumRegistered(), 15);
   for (const std::size_t idx : {std::size_t{3}, std::size_t{11}}) {
     EXPECT_EQ(StepBetween(map.scene.cam_from_world[idx], *solution.cam_from_shape[idx]).norm(), 0);
@@ -123,7 +116,7 @@ TEST(GrowMap, FramesThatDoNotBelongStayOut) {
   scene.frames[9].markers.resize(1);
   const SceneMap map(std::move(scene));
   MapSolution solution = TwoTrueFrames(map, 4, 10);
-  GrowMap(map.problem, AllFrames(map), {2, 0, true, TestSeed()}, &solution);
+  GrowMap(map.problem, AllFrames(map.problem), {2, 0, true, TestSeed()}, &solution);
   EXPECT_EQ(solution.NumRegistered(), 9);
   for (const std::size_t idx : {std::size_t{2}, std::size_t{6}, std::size_t{9}}) {
     EXPECT_FALSE(solution.cam_from_shape[idx]) << idx;
@@ -136,7 +129,7 @@ TEST(GrowMap, FrameNeedsAsManyAgreeingMarkersAsTheOptionSays) {
   const SceneMap map(std::move(scene));
   for (const int min_num_inliers : {4, 5}) {
     MapSolution solution = TwoTrueFrames(map, 4, 7);
-    GrowMap(map.problem, AllFrames(map), {min_num_inliers, 0, true, TestSeed()}, &solution);
+    GrowMap(map.problem, AllFrames(map.problem), {min_num_inliers, 0, true, TestSeed()}, &solution);
     EXPECT_EQ(solution.cam_from_shape[9].has_value(), min_num_inliers == 4);
     EXPECT_EQ(solution.NumRegistered(), min_num_inliers == 4 ? 12 : 11);
   }
@@ -145,7 +138,7 @@ TEST(GrowMap, FrameNeedsAsManyAgreeingMarkersAsTheOptionSays) {
 TEST(GrowMap, FromNothingNothingGrows) {
   const SceneMap map(MakeScene(SceneKind::kSail, 5, false));
   MapSolution solution = EmptySolution(map.problem);
-  GrowMap(map.problem, AllFrames(map), {2, 0, true, TestSeed()}, &solution);
+  GrowMap(map.problem, AllFrames(map.problem), {2, 0, true, TestSeed()}, &solution);
   EXPECT_EQ(solution.NumRegistered(), 0);
   EXPECT_EQ(NumPlaced(solution), 0);
 }

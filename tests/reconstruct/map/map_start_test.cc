@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -16,12 +15,6 @@ namespace {
 
 using testing::IsEmpty;
 using FramePair = std::pair<int, int>;
-
-std::vector<int> AllFrames(const SceneMap& map) {
-  std::vector<int> frame_idxs(map.problem.frames.size());
-  std::iota(frame_idxs.begin(), frame_idxs.end(), 0);
-  return frame_idxs;
-}
 
 int NumShared(const SceneMap& map, const FramePair& pair) {
   int count = 0;
@@ -39,7 +32,7 @@ TEST(ChooseStartPairs, FramesStartOnceAndShareEnough) {
   AddNoise({0.2, 0.2, 0.0, 0, TestSeed()}, &scene);
   const SceneMap map(std::move(scene));
   for (const int min_num_shared : {2, 5}) {
-    const auto pairs = ChooseStartPairs(map.problem, AllFrames(map), 6, min_num_shared);
+    const auto pairs = ChooseStartPairs(map.problem, AllFrames(map.problem), 6, min_num_shared);
     EXPECT_EQ(pairs.size(), 6u);
     std::set<int> used;
     for (const FramePair& pair : pairs) {
@@ -78,7 +71,7 @@ TEST(ChooseStartPairs, WithoutCommonMarkersThereIsNoPair) {
     }
   }
   const SceneMap map(std::move(scene));
-  EXPECT_THAT(ChooseStartPairs(map.problem, AllFrames(map), 4, 1), IsEmpty());
+  EXPECT_THAT(ChooseStartPairs(map.problem, AllFrames(map.problem), 4, 1), IsEmpty());
 }
 
 // Truth in the cam frame of `frame_idx`.

@@ -178,6 +178,12 @@ double MaxCornerDistance(const MapProblem& problem, const MapSolution& a, const 
   return max_distance;
 }
 
+std::vector<int> AllFrames(const MapProblem& problem) {
+  std::vector<int> frame_idxs(problem.frames.size());
+  std::iota(frame_idxs.begin(), frame_idxs.end(), 0);
+  return frame_idxs;
+}
+
 Eigen::Matrix<double, 8, 1> Residuals(const MapProblem& problem, const MapObservation& observation,
                                       const Rigid3& cam_from_shape, const Sim3& shape_from_marker) {
   Eigen::Matrix<double, 8, 1> residuals;

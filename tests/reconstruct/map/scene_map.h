@@ -62,6 +62,8 @@ Sim3 ArbitrarySimilarity(double scale);
 // Largest distance between the corners of the markers that both solutions have placed.
 double MaxCornerDistance(const MapProblem& problem, const MapSolution& a, const MapSolution& b);
 
+std::vector<int> AllFrames(const MapProblem& problem);
+
 // Errors of four corners in units of sigma_px: x1 y1 x2 ... Independent of the code under test.
 Eigen::Matrix<double, 8, 1> Residuals(const MapProblem& problem, const MapObservation& observation,
                                       const Rigid3& cam_from_shape, const Sim3& shape_from_marker);
