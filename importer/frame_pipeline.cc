@@ -12,6 +12,7 @@
 
 #include "importer/base/bounded_queue.h"
 #include "importer/base/error.h"
+#include "importer/base/parallel.h"
 
 namespace velamap {
 namespace {
@@ -24,18 +25,6 @@ struct Job {
 struct Done {
   int frame_idx = 0;
   FrameResult result;
-};
-
-// Frames are processed in parallel; threads within a frame would compete with them.
-class SingleThreadedOpenCv {
- public:
-  SingleThreadedOpenCv() : num_threads_(cv::getNumThreads()) { cv::setNumThreads(1); }
-  ~SingleThreadedOpenCv() { cv::setNumThreads(num_threads_); }
-  SingleThreadedOpenCv(const SingleThreadedOpenCv&) = delete;
-  SingleThreadedOpenCv& operator=(const SingleThreadedOpenCv&) = delete;
-
- private:
-  int num_threads_;
 };
 
 // Owns the threads and what they share, and joins them however the work ends.
@@ -155,7 +144,7 @@ void RunFramePipeline(FrameSource* source, int num_threads,
                       const std::function<FrameResult(int, Frame*)>& process,
                       const std::function<void(int, FrameResult)>& consume) {
   VELAMAP_CHECK(num_threads >= 1);
-  const SingleThreadedOpenCv single_threaded;
+  UseOwnThreadsOnly();
   Pipeline pipeline(source, num_threads, process);
   std::map<int, FrameResult> early;  // processed before a frame that precedes them
   int next_idx = 0;

@@ -31,7 +31,8 @@ struct FrameResult {
 // counts from 0) and `consume` with the results in order on the calling thread. If the system
 // refuses a thread, the threads that have started do the work; throws InputError if there are fewer
 // than two. No more than 2 num_threads + 1 frames are in memory. The first exception of reading,
-// `process` or `consume` ends all threads and is rethrown. Meanwhile, OpenCV starts no threads.
+// `process` or `consume` ends all threads and is rethrown. OpenCV starts no threads
+// (UseOwnThreadsOnly()).
 void RunFramePipeline(FrameSource* source, int num_threads,
                       const std::function<FrameResult(int frame_idx, Frame* frame)>& process,
                       const std::function<void(int frame_idx, FrameResult result)>& consume);

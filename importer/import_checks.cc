@@ -84,6 +84,39 @@ void CheckPhotographs(const MarkerImporterOptions& options,
   }
 }
 
+// The markers that were found are all left out.
+[[noreturn]] void ThrowAllRejected(const MarkerImporterOptions& options,
+                                   const ImportReport& report) {
+  const int num_foreign = report.num_not_in_layout, num_doubtful = report.num_doubtful_rotations;
+  const int num_duplicates = report.num_rejected - num_foreign - num_doubtful;
+  if (num_foreign == report.num_rejected) {
+    throw DataError(
+        fmt::format("{}: no marker of the layout found, only other ids: {}; check the "
+                    "layout's dictionary and markers",
+                    options.image_path, fmt::join(report.ids_not_in_layout, " ")));
+  }
+  std::vector<std::string> reasons;
+  if (num_duplicates > 0) {
+    reasons.push_back(fmt::format(
+        "{} because their id occurs more than once in a picture ({})", num_duplicates,
+        options.layout.parts.empty()
+            ? "give a layout, --layout_path, that tells the markers apart"
+            : "show their neighbours in the layout, which tell them apart, in the same picture"));
+  }
+  if (num_doubtful > 0) {
+    reasons.push_back(
+        fmt::format("{} because their code looks the same when turned (show markers beside them "
+                    "whose codes do not, or print others)",
+                    num_doubtful));
+  }
+  if (num_foreign > 0) {
+    reasons.push_back(fmt::format("{} because the layout does not name their ids: {}", num_foreign,
+                                  fmt::join(report.ids_not_in_layout, " ")));
+  }
+  throw DataError(fmt::format("{}: none of the markers that were found can be used: {}",
+                              options.image_path, fmt::join(reasons, ", ")));
+}
+
 }  // namespace
 
 void CheckExisting(const MarkerImporterOptions& options, const std::string& detector,
@@ -183,18 +216,7 @@ void CheckMarkersFound(const MarkerImporterOptions& options, const std::string& 
                                 report.num_frames_read, DescribeHints(hints)));
   }
   if (report.num_markers > 0) return;
-  if (!report.ids_not_in_layout.empty()) {
-    throw DataError(
-        fmt::format("{}: no marker of the layout found, only other ids: {}; check the "
-                    "layout's dictionary and markers",
-                    options.image_path, fmt::join(report.ids_not_in_layout, " ")));
-  }
-  if (report.num_rejected > 0) {
-    throw DataError(
-        fmt::format("{}: every marker id occurs more than once; give a layout (--layout_path) that "
-                    "tells the markers apart",
-                    options.image_path));
-  }
+  if (report.num_rejected > 0) ThrowAllRejected(options, report);
   throw DataError(fmt::format(
       "{}: no marker of {}{} found in {} frames; no predefined dictionary finds any: check focus, "
       "size and border of the markers",

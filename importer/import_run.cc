@@ -11,6 +11,7 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/stage_timer.h"
+#include "importer/detect/rotation_ambiguity.h"
 #include "importer/frame_camera.h"
 #include "importer/import_checks.h"
 #include "importer/import_part.h"
@@ -97,7 +98,10 @@ void ImportRun::Consume(const FrameResult& result) {
       std::count_if(detections.markers.begin(), detections.markers.end(),
                     [](const MarkerDetection& marker) { return marker.is_fallback; }));
   for (const RejectedDetection& rejected : detections.rejected) {
-    if (rejected.reason == kNotInLayout) ids_not_in_layout_.insert(rejected.detection.marker_id);
+    report_.num_doubtful_rotations += rejected.reason == kDoubtfulRotation;
+    if (rejected.reason != kNotInLayout) continue;
+    ++report_.num_not_in_layout;
+    ids_not_in_layout_.insert(rejected.detection.marker_id);
   }
   few_found_ =
       expects_markers_ && report_.num_markers < kFewMarkersPerFrame * report_.num_frames_read;

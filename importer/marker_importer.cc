@@ -1,12 +1,16 @@
 #include "importer/marker_importer.h"
 
+#include <algorithm>
 #include <memory>
+#include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
 #include "importer/base/file_lock.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 #include "importer/base/parallel.h"
 #include "importer/continued_tracking.h"
 #include "importer/database/colmap_database.h"
@@ -40,6 +44,21 @@ FormationEstimate FormationOf(const MarkerImporterOptions& options, const FrameD
       EstimateFormationOfSource(options.image_path, options.video, options.num_threads, detector);
   database->WriteFormation(estimate);
   return estimate;
+}
+
+void WarnOfSeveralCameras(const std::string& path, const ColmapDatabase& database) {
+  std::set<std::tuple<int, int, double>> kinds;
+  for (const auto& [camera_id, camera] : database.ReadCameras()) {
+    // Upright and turned pictures are of one camera.
+    const auto [smaller, larger] = std::minmax(camera.width_px, camera.height_px);
+    kinds.emplace(smaller, larger, MeanFocalLength(camera));
+  }
+  if (kinds.size() < 2) return;
+  LogWarning(
+      "{}: holds images of {} cameras or zooms, and one tone curve is estimated for all of them; "
+      "if "
+      "the cameras are of different kinds, import those of each into a database of its own",
+      path, kinds.size());
 }
 
 // Imports all frames that the database does not hold. Decoder and pictures are freed at the end,
@@ -105,8 +124,9 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
   CheckExisting(options, DescribeDetector(detector), database);
   RecordSources(options, known_names, &database);
   CheckFrameFolder(options, known_names);
-  if (detector.options.corner_refinement == CornerRefinement::kEdge &&
-      detector.options.estimate_formation) {
+  const bool estimates_formation = detector.options.corner_refinement == CornerRefinement::kEdge &&
+                                   detector.options.estimate_formation;
+  if (estimates_formation) {
     detector.formation = ImageFormation(FormationOf(options, detector, &database).parameters);
   }
   RecordPart(options, DescribeDetector(detector), false, &database);
@@ -116,6 +136,7 @@ ImportReport ImportInto(const MarkerImporterOptions& options, FrameDetector dete
     searched.video = *frames;
     report = ImportFrames(searched, detector, known_names, NumThreads(options.num_threads),
                           progress, &database);
+    if (estimates_formation) WarnOfSeveralCameras(options.database_path, database);
   }
   report.num_images_present = static_cast<int>(known_names.size());
   CompleteDatabase(options, detector, &database, &report);

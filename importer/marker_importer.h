@@ -63,6 +63,8 @@ struct ImportReport {
   int num_images_without_markers = 0;
   int num_markers = 0;                 // detections accepted in this run
   int num_rejected = 0;                // detections rejected in this run
+  int num_not_in_layout = 0;           // of them, when they were found, because no part names them
+  int num_doubtful_rotations = 0;      // of them, when they were found (kDoubtfulRotation)
   int num_fallbacks = 0;               // accepted without a corner fit: corners of cv::cornerSubPix
   int num_pairs = 0;                   // image pairs with matches
   PriorShapeAgreement prior_shape;     // of all frames

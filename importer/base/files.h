@@ -40,8 +40,8 @@ std::filesystem::path AbsoluteFolder(const std::filesystem::path& path);
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
 
 // Files in the folder and below, pipes and devices among them, in no particular order. Links are
-// followed, but each folder is entered once, by its own name where it has one here. Files and
-// folders whose name starts with a dot are left out.
+// followed, but each folder is visited once, under its real path if that lies in this tree. Files
+// and folders whose name starts with a dot are left out.
 std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folder);
 
 // Creates the folder and its missing parents; nothing happens if it is there.

@@ -70,7 +70,8 @@ struct Option {
   std::vector<std::string> short_names = {};
   std::vector<std::string> old_names = {};  // still understood, with a warning
   PathUse path_use = PathUse::kNone;
-  // An output that is left out is the file `name_beside` beside the path that `beside` holds.
+  // If the option is not given, the output goes to the file `name_beside` next to the path in
+  // `*beside`.
   const std::string* beside = nullptr;
   std::string name_beside = {};
   bool is_common = false;

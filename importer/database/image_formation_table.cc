@@ -1,5 +1,7 @@
 #include "importer/database/image_formation_table.h"
 
+#include <set>
+#include <string>
 #include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -7,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "importer/database/checked_number.h"
+#include "importer/database/colmap_schema.h"
 
 namespace velamap {
 namespace {
@@ -56,16 +59,14 @@ void WriteImageFormation(const FormationEstimate& estimate, SQLite::Database* da
 
 std::optional<FormationEstimate> ReadImageFormation(const std::string& path,
                                                     SQLite::Database* database) {
-  if (!database->tableExists("image_formation")) return std::nullopt;
   // Columns that an earlier velamap did not have, with what it assumed.
+  const std::set<std::string> columns = ColumnNames(*database, "image_formation");
+  if (columns.empty()) return std::nullopt;
   std::string missing;
   for (const auto& [column, value] : {std::pair("outline_corner_weight", 1),
                                       {"edge_shift_blurs", 0},
                                       {"outline_shift_blurs", 0}}) {
-    SQLite::Statement exists(*database,
-                             "SELECT 1 FROM pragma_table_info('image_formation') WHERE name = ?");
-    exists.bind(1, column);
-    if (!exists.executeStep()) missing += fmt::format(", {} AS {}", value, column);
+    if (columns.count(column) == 0) missing += fmt::format(", {} AS {}", value, column);
   }
   SQLite::Statement query(*database, fmt::format("SELECT *{} FROM image_formation", missing));
   if (!query.executeStep()) return std::nullopt;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "importer/base/files.h"
+#include "importer/database/colmap_schema.h"
 
 namespace velamap {
 namespace {
@@ -24,11 +25,8 @@ CREATE TABLE marker_sources (
 )";
 
 // Whether there is a table with this column, which one of an earlier velamap may lack.
-bool HasColumn(SQLite::Database* database, const char* column) {
-  SQLite::Statement query(
-      *database, "SELECT count(*) FROM pragma_table_info('marker_sources') WHERE name = ?");
-  query.bind(1, column);
-  return query.executeStep() && query.getColumn(0).getInt() > 0;
+bool HasSourceColumn(const SQLite::Database& database, const std::string& column) {
+  return ColumnNames(database, "marker_sources").count(column) > 0;
 }
 
 void Insert(const std::string& image_name, const SourceFile& source, SQLite::Database* database) {
@@ -55,15 +53,15 @@ void MakeTable(SQLite::Database* database) {
 
 void WriteSourceRow(const std::string& image_name, const SourceFile& source,
                     SQLite::Database* database) {
-  if (!HasColumn(database, "path_hash")) MakeTable(database);
+  if (!HasSourceColumn(*database, "path_hash")) MakeTable(database);
   Insert(image_name, source, database);
 }
 
 std::map<std::string, SourceFile> ReadSourceRows(SQLite::Database* database) {
   std::map<std::string, SourceFile> sources;
-  if (!HasColumn(database, "content_hash")) return sources;
+  if (!HasSourceColumn(*database, "content_hash")) return sources;
   // Velamap 0.1 wrote absolute paths and no hash of them.
-  const bool has_hash = HasColumn(database, "path_hash");
+  const bool has_hash = HasSourceColumn(*database, "path_hash");
   SQLite::Statement query(*database,
                           fmt::format("SELECT image_name, path, size, modified_s, changed_ns,"
                                       " content_hash, {} FROM marker_sources",

@@ -10,6 +10,7 @@
 
 #include "importer/base/error.h"
 #include "importer/database/checked_number.h"
+#include "importer/database/colmap_schema.h"
 #include "importer/database/sqlite_blob.h"
 
 namespace velamap {
@@ -146,12 +147,9 @@ void WriteTracking(const TrackingState& state, SQLite::Database* database) {
 }
 
 std::optional<TrackingState> ReadTracking(const std::string& path, SQLite::Database* database) {
-  const bool has_columns = database
-                               ->execAndGet(
-                                   "SELECT COUNT(*) FROM pragma_table_info('marker_tracking')"
-                                   " WHERE name = 'num_damaged'")
-                               .getInt() == 1;
-  if (!has_columns || !database->tableExists("marker_tracks")) return std::nullopt;
+  if (ColumnNames(*database, "marker_tracking").count("num_damaged") == 0 ||
+      !database->tableExists("marker_tracks"))
+    return std::nullopt;
   SQLite::Statement states(*database, kReadState);
   if (!states.executeStep()) return std::nullopt;
   TrackingState state = StateOf({{path, "marker_tracking"}, &states});

@@ -21,11 +21,10 @@ namespace velamap {
 struct Chessboard {
   int num_columns = 0, num_rows = 0;
 
-  // Where both numbers are odd or both are even, or equal, the board looks the same when it is
-  // turned. It is then taken to be held upright, within less than half (a quarter) of a turn.
-  bool LooksTheSameTurned() const {
-    return num_columns == num_rows || (num_columns + num_rows) % 2 == 0;
-  }
+  // Where both numbers are odd or both are even, the board looks the same when it is turned by half
+  // a turn; where they are equal and even, by a quarter. It is then taken to be held upright,
+  // turned by less than 90 (45) degrees.
+  bool LooksTheSameTurned() const { return (num_columns + num_rows) % 2 == 0; }
   // 9 x 6 inner corners make 4 x 3 markers; one column in the middle belongs to no marker.
   int NumMarkers() const { return (num_columns / 2) * (num_rows / 2); }
 };

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "importer/base/ids.h"
+#include "importer/geometry/quad.h"
 
 namespace velamap {
 
@@ -45,8 +46,7 @@ struct FrameDetections {
 
 // Mean of the four corners: good enough to compare places in an image, in px.
 inline Eigen::Vector2d CornerMean(const MarkerDetection& marker) {
-  return 0.25 * (marker.corners_in_image_px[0] + marker.corners_in_image_px[1] +
-                 marker.corners_in_image_px[2] + marker.corners_in_image_px[3]);
+  return QuadCenter(marker.corners_in_image_px);
 }
 
 }  // namespace velamap

@@ -1,4 +1,4 @@
-// Grey values between pixels.
+// Grey values at places of an image, in OpenCV's pixel frame.
 
 #pragma once
 
@@ -10,7 +10,13 @@
 
 namespace velamap {
 
-// Bilinear value of a grey image at a place in OpenCV's pixel frame. Outside of the image, the
+// The value of the pixel at a place; outside of the image, of the nearest one inside.
+inline std::uint8_t NearestGray(const cv::Mat& gray, const cv::Point2f& x_px) {
+  return gray.at<std::uint8_t>(std::clamp(cvRound(x_px.y), 0, gray.rows - 1),
+                               std::clamp(cvRound(x_px.x), 0, gray.cols - 1));
+}
+
+// Bilinear value of a grey image at a place. Outside of the image, the
 // nearest value inside; a coordinate that is not a number counts as 0.
 template <typename Pixel = std::uint8_t>
 double InterpolateGray(const cv::Mat& gray, const Eigen::Vector2d& x_px) {

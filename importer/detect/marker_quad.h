@@ -2,6 +2,10 @@
 
 #pragma once
 
+#include <map>
+#include <set>
+#include <vector>
+
 #include "importer/geometry/quad.h"
 
 namespace velamap {
@@ -10,6 +14,19 @@ struct MarkerQuad {
   int marker_id = 0;
   QuadCorners corners_px;
 };
+
+using QuadById = std::map<int, QuadCorners>;
+
+// Without the ids that are found more than once.
+inline QuadById SingleMarkers(const std::vector<MarkerQuad>& found) {
+  QuadById quads;
+  std::set<int> twice;
+  for (const MarkerQuad& quad : found) {
+    if (!quads.emplace(quad.marker_id, quad.corners_px).second) twice.insert(quad.marker_id);
+  }
+  for (const int id : twice) quads.erase(id);
+  return quads;
+}
 
 // A marker that was not found, at a place where it should be visible.
 struct ExpectedMarker {

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
+#include "importer/detect/interpolate.h"
 
 namespace velamap {
 namespace {
@@ -64,10 +65,6 @@ bool IsDarkInside(const cv::Mat& gray, const std::vector<cv::Point2f>& outline_p
   constexpr int kNumSamples = 8;  // of a side
   constexpr float kOffsetPx = 1.5F;
   const cv::Point2f center = (outline_px[0] + outline_px[1] + outline_px[2] + outline_px[3]) / 4;
-  const auto gray_at = [&](const cv::Point2f& x) {
-    return static_cast<int>(gray.at<std::uint8_t>(std::clamp(cvRound(x.y), 0, gray.rows - 1),
-                                                  std::clamp(cvRound(x.x), 0, gray.cols - 1)));
-  };
   int outside_minus_inside = 0;
   for (int c = 0; c < kNumCorners; ++c) {
     const cv::Point2f side = outline_px[(c + 1) % kNumCorners] - outline_px[c];
@@ -75,7 +72,7 @@ bool IsDarkInside(const cv::Mat& gray, const std::vector<cv::Point2f>& outline_p
       const cv::Point2f on_side = outline_px[c] + (i + 0.5F) / kNumSamples * side;
       const cv::Point2f inwards = center - on_side;
       const cv::Point2f step = inwards * (kOffsetPx / std::max(1.0, cv::norm(inwards)));
-      outside_minus_inside += gray_at(on_side - step) - gray_at(on_side + step);
+      outside_minus_inside += NearestGray(gray, on_side - step) - NearestGray(gray, on_side + step);
     }
   }
   return outside_minus_inside > 0;

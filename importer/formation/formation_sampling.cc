@@ -131,7 +131,8 @@ bool SampleFrames(const FrameDetector& detector, int num_frames, int stride,
 }
 
 // From the beginning of a video; later frames, farther apart, are added while too few markers are
-// found. In a short video the frames are closer together.
+// found, to the end of the video while hardly any are. In a short video the frames are closer
+// together.
 std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_threads,
                                          FrameSource* source) {
   constexpr int kNumFrames = 8, kStride = 5, kMaxStride = 160;
@@ -139,15 +140,17 @@ std::vector<FormationSample> SampleVideo(const FrameDetector& detector, int num_
   const int first_stride =
       num_in_video == 0 ? kStride : std::clamp(num_in_video / kNumFrames, 1, kStride);
   std::vector<FormationSample> samples;
-  for (int stride = first_stride; stride <= kMaxStride; stride *= 2) {
-    const bool has_more = SampleFrames(detector, kNumFrames, stride, QuotaOfFrame(kNumFrames),
-                                       num_threads, source, &samples);
-    if (!has_more || static_cast<int>(samples.size()) >= kQuota.num_large / 2) break;
+  bool has_more = true;
+  for (int stride = first_stride; has_more; stride = std::min(2 * stride, kMaxStride)) {
+    has_more = SampleFrames(detector, kNumFrames, stride, QuotaOfFrame(kNumFrames), num_threads,
+                            source, &samples);
+    const int num_enough = stride == kMaxStride ? kMinSamples : kQuota.num_large / 2;
+    if (static_cast<int>(samples.size()) >= num_enough) break;
   }
   return samples;
 }
 
-// The choice depends on the contents of the photographs only, which may have any names and order.
+// Up to 32 photographs are all used; of more, every k-th in the order of their names.
 std::vector<FormationSample> SamplePhotographs(const FrameDetector& detector, int num_threads,
                                                FrameSource* source) {
   constexpr int kMaxFrames = 32;
@@ -180,6 +183,11 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
     estimate = EstimateFormation(samples, detector.options.inverted, num_threads);
   }
   if (estimate.num_samples < kMinSamples) {
+    LogWarning(
+        "{}: too few markers are large and sharp enough to show what the camera does to edges; "
+        "grey "
+        "values are taken to be proportional to light, which may move each corner by {:.1f} px",
+        image_path, kUnknownInsetPx);
     FormationEstimate unknown;
     unknown.inset_sigma_px = kUnknownInsetPx;
     return unknown;

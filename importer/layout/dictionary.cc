@@ -191,6 +191,10 @@ bool IsOpenCvName(const std::string& name) { return FindPredefined(name) != null
 
 int NumMarkers(const Dictionary& dictionary) { return dictionary.aruco->bytesList.rows; }
 
+int CellsPerSide(const Dictionary& dictionary, int border_bits) {
+  return dictionary.aruco->markerSize + 2 * border_bits;
+}
+
 Dictionary MakeDictionary(const std::string& name, const CodeSet& codes) {
   cv::Mat bytes;
   for (const MarkerCode code : codes.codes) {
@@ -221,8 +225,8 @@ std::string DictionaryText(const Dictionary& dictionary) {
 
 cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits) {
   cv::Mat cells;
-  cv::aruco::drawMarker(dictionary.aruco, marker_id, dictionary.aruco->markerSize + 2 * border_bits,
-                        cells, border_bits);
+  cv::aruco::drawMarker(dictionary.aruco, marker_id, CellsPerSide(dictionary, border_bits), cells,
+                        border_bits);
   return cells;
 }
 

@@ -34,6 +34,9 @@ bool IsOpenCvName(const std::string& name);
 
 int NumMarkers(const Dictionary& dictionary);
 
+// Of a marker with a black border of `border_bits` cells.
+int CellsPerSide(const Dictionary& dictionary, int border_bits);
+
 // The dictionary corrects as many wrong bits as the minimum distance of the codes allows.
 Dictionary MakeDictionary(const std::string& name, const CodeSet& codes);
 

@@ -23,10 +23,11 @@ class PacketDamage {
   void Mark(std::int64_t packet_idx);
 
   // Whether the frame of this packet shows what was recorded. A decoder hides damage, and the
-  // frames up to the next key frame repeat what it has put in the place. Pictures that are shown
-  // before the key frame that they follow are built upon by none that are shown after it, but build
-  // on those before the key frame. All packets up to this one must have been decoded. A stream that
-  // renews its pictures bit by bit, without key frames, is not whole any more after damage.
+  // frames up to the next key frame repeat what it has put in the place. Leading pictures
+  // (stored after a key frame, shown before it) may depend on frames before that key frame; no
+  // frame shown after it depends on them. All packets up to this one must have been decoded. A
+  // stream that renews its pictures bit by bit, without key frames, is not whole any more after
+  // damage.
   bool IsWhole(std::int64_t packet_idx) const;
 
  private:

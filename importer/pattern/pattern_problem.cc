@@ -195,19 +195,21 @@ bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px
                          &minimum->equations) != Convergence::kFailed;
 }
 
-// The pixels that the quiet zone of one cell can reach; nothing where it leaves the image.
-std::optional<cv::Rect> CoveredBox(const UnitSquareMap& map, int num_cells, const cv::Mat& gray) {
+// The pixels of the image that the quiet zone of one cell can reach; nothing where the marker
+// leaves the image.
+std::optional<cv::Rect> CoveredBox(const QuadCorners& corners_px, const UnitSquareMap& map,
+                                   int num_cells, const cv::Mat& gray) {
   const double reach = 1.0 / num_cells;
-  Eigen::Vector2d low = map.ToImage(-reach, -reach), high = low;
-  for (const auto& [u, v] : {std::pair(1 + reach, -reach), std::pair(1 + reach, 1 + reach),
-                             std::pair(-reach, 1 + reach)}) {
-    low = low.cwiseMin(map.ToImage(u, v));
-    high = high.cwiseMax(map.ToImage(u, v));
-  }
-  if (!low.allFinite() || !high.allFinite() || low.minCoeff() < 0 || high.x() > gray.cols - 1 ||
-      high.y() > gray.rows - 1) {
+  const Box marker = BoundingBox(corners_px);
+  const Box covered =
+      BoundingBox({map.ToImage(-reach, -reach), map.ToImage(1 + reach, -reach),
+                   map.ToImage(1 + reach, 1 + reach), map.ToImage(-reach, 1 + reach)});
+  if (!covered.min.allFinite() || !covered.max.allFinite() || marker.min.minCoeff() < 0 ||
+      marker.max.x() > gray.cols - 1 || marker.max.y() > gray.rows - 1) {
     return std::nullopt;
   }
+  const Eigen::Vector2d low = covered.min.cwiseMax(0.0);
+  const Eigen::Vector2d high = covered.max.cwiseMin(Eigen::Vector2d(gray.cols - 1, gray.rows - 1));
   return cv::Rect(cv::Point(static_cast<int>(low.x()), static_cast<int>(low.y())),
                   cv::Point(static_cast<int>(high.x()) + 1, static_cast<int>(high.y()) + 1));
 }
@@ -223,7 +225,7 @@ std::optional<PatternProblem> MakePatternProblem(const cv::Mat& gray, const Quad
   problem.model.num_cells = cells.rows;
   if (problem.model.num_cells + 2 * kRing > kMaxRingedCells) return std::nullopt;
   const UnitSquareMap map(corners_px);
-  const auto box = CoveredBox(map, cells.rows, gray);
+  const auto box = CoveredBox(corners_px, map, cells.rows, gray);
   if (!box) return std::nullopt;
   problem.box = *box;
   // The surroundings are read up to two cells away.

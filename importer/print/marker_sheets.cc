@@ -21,9 +21,7 @@ namespace {
 // Contents of the files by path relative to the folder, such as markers/marker_0012.svg.
 using OutputFiles = std::map<std::string, std::string>;
 
-int NumCells(const PrintedLook& look) {
-  return look.dictionary.aruco->markerSize + 2 * look.border_bits;
-}
+int NumCells(const PrintedLook& look) { return CellsPerSide(look.dictionary, look.border_bits); }
 
 std::vector<Drawing> DrawSheets(const std::vector<Sheet>& sheets, const PrintedLook& look) {
   std::vector<Drawing> pages;

@@ -1,5 +1,8 @@
 #include "importer/print/print_options.h"
 
+#include <initializer_list>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
@@ -16,6 +19,14 @@ const Choices<Arrangement> kArrangements = {
 
 [[noreturn]] void ThrowSuperfluous(const std::string& option, const std::string& reason) {
   throw InputError(fmt::format("{}: {}; leave it out", option, reason));
+}
+
+// Throws for the first option that is set.
+void RefuseAnyOf(std::initializer_list<std::pair<bool, std::string>> options,
+                 const std::string& reason) {
+  for (const auto& [is_set, option] : options) {
+    if (is_set) ThrowSuperfluous(option, reason);
+  }
 }
 
 }  // namespace
@@ -76,13 +87,16 @@ void PrintOptions::Check() const {
   if (codes.bits_per_side > 0 && !dictionary.empty()) {
     ThrowSuperfluous("--dictionary", OptionName(&CodeSearchOptions::bits_per_side) + " makes one");
   }
-  if (codes.bits_per_side == 0 && (codes.num_codes > 0 || codes.allow_symmetric)) {
-    ThrowSuperfluous(
-        OptionName(&CodeSearchOptions::num_codes),
-        OptionName(&CodeSearchOptions::bits_per_side) + " is 0, so no dictionary is made");
+  if (codes.bits_per_side == 0) {
+    RefuseAnyOf({{codes.num_codes > 0, OptionName(&CodeSearchOptions::num_codes)},
+                 {codes.allow_symmetric, OptionName(&CodeSearchOptions::allow_symmetric)}},
+                OptionName(&CodeSearchOptions::bits_per_side) + " is 0, so no dictionary is made");
   }
-  if (arrangement != Arrangement::kSail && (sail.luff_m || sail.foot_m || sail.leech_m)) {
-    ThrowSuperfluous(OptionName(&SailPlacementOptions::luff_m), "it is for --arrangement sail");
+  if (arrangement != Arrangement::kSail) {
+    RefuseAnyOf({{sail.luff_m.has_value(), OptionName(&SailPlacementOptions::luff_m)},
+                 {sail.foot_m.has_value(), OptionName(&SailPlacementOptions::foot_m)},
+                 {sail.leech_m.has_value(), OptionName(&SailPlacementOptions::leech_m)}},
+                "it is for --arrangement sail");
   }
   if (arrangement != Arrangement::kMarkers && num_markers > 0) {
     ThrowSuperfluous("--num_markers", "it is for --arrangement markers");
@@ -91,8 +105,11 @@ void PrintOptions::Check() const {
     ThrowSuperfluous(OptionName(&SailPlacementOptions::hull_markers),
                      "it is for --arrangement sail, grid or hull");
   }
-  if (IsBoard(arrangement) && (!ids.empty() || sheet.write_png || sheet.write_svg)) {
-    ThrowSuperfluous("--ids, --Sheet.svg, --Sheet.png", "a board is printed as a whole");
+  if (IsBoard(arrangement)) {
+    RefuseAnyOf({{!ids.empty(), "--ids"},
+                 {sheet.write_svg, OptionName(&PrintSheetOptions::write_svg)},
+                 {sheet.write_png, OptionName(&PrintSheetOptions::write_png)}},
+                "a board is printed as a whole");
   }
 }
 

@@ -28,9 +28,8 @@ PrintedLook LoadLook(const PrintOptions& options) {
 }
 
 int NumCells(const PrintOptions& options, const PrintedLook& look) {
-  const int bits = options.codes.bits_per_side > 0 ? options.codes.bits_per_side
-                                                   : look.dictionary.aruco->markerSize;
-  return bits + 2 * look.border_bits;
+  const int bits = options.codes.bits_per_side;
+  return bits > 0 ? bits + 2 * look.border_bits : CellsPerSide(look.dictionary, look.border_bits);
 }
 
 double RequireLength(const PrintOptions& options) {
@@ -147,14 +146,19 @@ void MakeCustomDictionary(const PrintOptions& options, int max_id, PrintPlan* pl
 }
 
 // Throws InputError for ids that the dictionary has no code for.
-void CheckIds(int max_id, const PrintPlan& plan) {
+void CheckIds(const PrintOptions& options, int max_id, const PrintPlan& plan) {
   const int num_codes = NumMarkers(plan.look.dictionary);
   if (max_id < num_codes) return;
-  throw InputError(fmt::format(
-      "{}: marker {} is wanted, but {} has {} codes, 0 to {}; give a larger dictionary, such as "
-      "DICT_4X4_1000, or fewer markers",
-      plan.codes ? OptionName(&CodeSearchOptions::num_codes) : "--dictionary", max_id,
-      plan.look.dictionary.name, num_codes, num_codes - 1));
+  std::string option = "--dictionary", remedy = "a larger dictionary, such as DICT_4X4_1000,";
+  if (plan.codes) {
+    option = OptionName(&CodeSearchOptions::num_codes);
+    remedy = "a larger number";
+  } else if (options.layout) {
+    option = fmt::format("--layout_path: key 'dictionary' of {}", options.layout_path);
+  }
+  throw InputError(
+      fmt::format("{}: marker {} is wanted, but {} has {} codes, 0 to {}; give {} or fewer markers",
+                  option, max_id, plan.look.dictionary.name, num_codes, num_codes - 1, remedy));
 }
 
 void KeepOnly(const std::vector<int>& ids, PrintPlan* plan) {
@@ -194,7 +198,7 @@ PrintPlan MakePrintPlan(const PrintOptions& options) {
         fmt::format("--first_id: marker {} is wanted; ids end at {}", max_id, kMaxMarkerId));
   }
   if (options.codes.bits_per_side > 0) MakeCustomDictionary(options, max_id, &plan);
-  CheckIds(max_id, plan);
+  CheckIds(options, max_id, plan);
   KeepOnly(options.ids, &plan);
   plan.layout.border_bits = plan.look.border_bits;
   plan.layout.dictionary =

@@ -43,7 +43,7 @@ Grid MakeGrid(const Paper& paper, bool is_landscape, const Sticker& sticker) {
   throw InputError(fmt::format(
       "{}: {} is too small for marker {}, which takes {:.0f} x {:.0f} mm with its margin and "
       "label, while {:.0f} x {:.0f} mm are free; give larger paper, smaller markers "
-      "(--marker_length) or a smaller {}",
+      "(--marker_length, or marker_length of the layout) or a smaller {}",
       OptionName(&PrintSheetOptions::paper), options.paper.name, sticker.marker.marker_id,
       sticker.Width(), sticker.Height(), std::max(0.0, room_mm.x()), std::max(0.0, room_mm.y()),
       OptionName(&PrintSheetOptions::margin_mm)));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <Eigen/LU>
+#include <opencv2/core.hpp>
 
 #include "importer/base/error.h"
 #include "importer/detect/gray_levels.h"
@@ -16,6 +17,8 @@ namespace velamap {
 namespace {
 
 constexpr double kFirstBlurPx = 1.0;
+// Half width of the band around a side.
+constexpr double kBandInCells = 0.6, kMinBandPx = 1.5, kMaxBandPx = 6.0;
 
 struct Pass {
   double band_px;
@@ -113,19 +116,39 @@ std::optional<Fit> FitSides(const cv::Mat& gray, const QuadCorners& corners_px, 
   return fit;
 }
 
-double MaxAllowedShiftPx(double cell_px, const EdgeFitOptions& options) {
-  return std::max(2.0, options.max_shift_in_cells * cell_px);
+// A fit that moves a corner further has failed.
+double MaxAllowedShiftPx(double cell_px) { return std::max(2.0, 0.8 * cell_px); }
+
+// The part of an image around a marker, with grey values in proportion to light.
+struct LightPart {
+  cv::Mat gray;
+  Eigen::Vector2d origin_px;  // of its first pixel in the image
+};
+
+LightPart CutLight(const cv::Mat& gray, const QuadCorners& corners_px, double cell_px,
+                   const ImageFormation& formation) {
+  const Box box = BoundingBox(corners_px);
+  const double reach_px = cell_px + 2 * kMaxBandPx;
+  const cv::Point low(static_cast<int>(box.min.x() - reach_px),
+                      static_cast<int>(box.min.y() - reach_px));
+  const cv::Point high(static_cast<int>(box.max.x() + reach_px) + 1,
+                       static_cast<int>(box.max.y() + reach_px) + 1);
+  const cv::Rect part = cv::Rect(low, high) & cv::Rect({}, gray.size());
+  cv::Mat light;
+  cv::LUT(gray(part), formation.light_of_gray(), light);
+  // The whole range of eight bits keeps the rounding small in a dark picture.
+  cv::normalize(light, light, 0, 255, cv::NORM_MINMAX, CV_8U);
+  if (formation.parameters().is_inverted) cv::bitwise_not(light, light);
+  return {light, Eigen::Vector2d(part.x, part.y)};
 }
 
 }  // namespace
 
 std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
-                                                   const QuadCorners& corners_px, int num_cells,
-                                                   const EdgeFitOptions& options) {
+                                                   const QuadCorners& corners_px, int num_cells) {
   VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
   const double cell_px = QuadMeanSide(corners_px) / num_cells;
-  const double band_px =
-      std::clamp(options.band_in_cells * cell_px, options.min_band_px, options.max_band_px);
+  const double band_px = std::clamp(kBandInCells * cell_px, kMinBandPx, kMaxBandPx);
   const Pass passes[] = {{std::max(band_px, 2.0), 128, 0.1, false},
                          {band_px, kMaxEdgeSamples, 0.02, true}};
   Fit fit{{corners_px, {}}, kFirstBlurPx};
@@ -136,24 +159,28 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
     if (!next) return std::nullopt;
     fit = *next;
   }
-  if (MaxCornerShift(fit.corners.corners_px, corners_px) > MaxAllowedShiftPx(cell_px, options)) {
+  if (MaxCornerShift(fit.corners.corners_px, corners_px) > MaxAllowedShiftPx(cell_px)) {
     return std::nullopt;
   }
   return fit.corners;
 }
 
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
-                                            const cv::Mat& cells, const ImageFormation& formation,
-                                            const EdgeFitOptions& options) {
+                                            const cv::Mat& cells, const ImageFormation& formation) {
   if (!HasCells(corners_px, cells.total())) return std::nullopt;
   const double cell_px = QuadMeanSide(corners_px) / cells.rows;
-  const QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
+  QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
   const auto fitted = FitPattern(gray, start_px, cells, formation);
-  if (fitted &&
-      MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px, options)) {
+  if (fitted && MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px)) {
     return fitted;
   }
-  return RefineCornersByEdges(gray, start_px, cells.rows, options);
+  if (formation.tone().IsLinear()) return RefineCornersByEdges(gray, start_px, cells.rows);
+  const LightPart part = CutLight(gray, start_px, cell_px, formation);
+  for (Eigen::Vector2d& corner : start_px) corner -= part.origin_px;
+  auto refined = RefineCornersByEdges(part.gray, start_px, cells.rows);
+  if (!refined) return std::nullopt;
+  for (Eigen::Vector2d& corner : refined->corners_px) corner += part.origin_px;
+  return refined;
 }
 
 }  // namespace velamap

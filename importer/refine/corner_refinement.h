@@ -20,28 +20,17 @@
 
 namespace velamap {
 
-struct EdgeFitOptions {
-  // Half width of the band around a side as a fraction of a cell, and its limits in px.
-  double band_in_cells = 0.6;
-  double min_band_px = 1.5;
-  double max_band_px = 6.0;
-  // A corner that the fit moves further than this many cells (but at least 2 px) is a failure.
-  double max_shift_in_cells = 0.8;
-};
-
 // Returns the corners with their uncertainty. `corners_px` and the result are in OpenCV's pixel
 // frame (first pixel's centre at (0,0)), in order around the square; `num_cells` is the number of
 // cells along a side with the border. Nothing if an edge has too little contrast or leaves the
 // image, or if the fit moves a corner too far.
 std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
-                                                   const QuadCorners& corners_px, int num_cells,
-                                                   const EdgeFitOptions& options = {});
+                                                   const QuadCorners& corners_px, int num_cells);
 
 // Fits a marker whose cells are known (as in pattern_fit.h) as a whole, or its sides where that
-// fails.
+// fails. The sides are fitted to light, because a tone curve moves edges.
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorners& corners_px,
                                             const cv::Mat& cells,
-                                            const ImageFormation& formation = ImageFormation(),
-                                            const EdgeFitOptions& options = {});
+                                            const ImageFormation& formation = ImageFormation());
 
 }  // namespace velamap

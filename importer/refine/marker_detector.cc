@@ -50,7 +50,6 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
   } else {
     dark_on_light = gray;
   }
-  const int num_cells = dictionary.aruco->markerSize + 2 * border_bits;
   std::vector<MarkerDetection> detections;
   int num_fallbacks = 0;
   for (const MarkerQuad& quad : quads) {
@@ -58,17 +57,19 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
     std::optional<RefinedCorners> refined;
     MarkerDetection detection;
     detection.marker_id = quad.marker_id;
+    const bool fits_edges = options.corner_refinement == CornerRefinement::kEdge;
+    const cv::Mat cells = MarkerCells(dictionary, quad.marker_id, border_bits);
     if (options.corner_refinement == CornerRefinement::kNone) {
       refined = RefinedCorners{quad.corners_px, {}};
-    } else if (options.corner_refinement == CornerRefinement::kEdge) {
-      refined = RefineCorners(dark_on_light, quad.corners_px,
-                              MarkerCells(dictionary, quad.marker_id, border_bits), formation);
-      detection.is_fallback = !refined;
-      num_fallbacks += !refined;
+    } else if (fits_edges) {
+      refined = RefineCorners(dark_on_light, quad.corners_px, cells, formation);
     }
-    if (!refined) refined = {RefineSubpix(dark_on_light, quad.corners_px, num_cells), {}};
-    if (options.corner_refinement == CornerRefinement::kEdge) {
-      RefineSaddleCorners(dark_on_light, num_cells, &refined->corners_px);
+    const bool is_fitted = refined.has_value();
+    if (!is_fitted) refined = {RefineSubpix(dark_on_light, quad.corners_px, cells.rows), {}};
+    if (fits_edges) {
+      const int num_saddles = RefineSaddleCorners(dark_on_light, cells, &refined->corners_px);
+      detection.is_fallback = !is_fitted && num_saddles < kNumCorners;
+      num_fallbacks += detection.is_fallback;
     }
     detection.corner_sigma_px = refined->sigma_px;
     for (int c = 0; c < kNumCorners; ++c) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
@@ -20,14 +21,34 @@ constexpr double kMinCellPx = 4.0;
 // The touching square is as dark as the marker to within this fraction of the contrast. A quiet
 // zone into which dark squares around it blur stays lighter.
 constexpr double kMaxDarkness = 0.35;
+// Beside the corner it is this light, relative to the light cells of the marker. Where a narrow
+// quiet zone fades into dark ground, it fades twice at the corner, as if a square touched it there.
+constexpr double kMinLightBeside = 0.6;
 
 // Corner i is at (u, v) of the unit square.
 constexpr std::array<std::array<double, 2>, kNumCorners> kCornersInSquare = {
     {{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
-// Grey levels half a cell from the corner along both sides: inside the marker, twice beside it, and
-// opposite.
-bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner, int num_cells) {
+// Grey levels between the dark border and the light cells; 0 without light cells.
+double ContrastOfCells(const cv::Mat& gray, const UnitSquareMap& map, const cv::Mat& cells) {
+  const int n = cells.rows;
+  double sum[2] = {0, 0};
+  int count[2] = {0, 0};
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const int is_light = cells.at<std::uint8_t>(j, i) != 0;
+      sum[is_light] += InterpolateGray(gray, map.ToImage((i + 0.5) / n, (j + 0.5) / n));
+      ++count[is_light];
+    }
+  }
+  if (count[0] == 0 || count[1] == 0) return 0.0;
+  return sum[1] / count[1] - sum[0] / count[0];
+}
+
+// Reads the grey levels half a cell from the corner along both sides: inside the marker, twice
+// beside it, and opposite. `contrast` is that of the marker's cells.
+bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner, int num_cells,
+              double contrast) {
   const double u = kCornersInSquare[corner][0], v = kCornersInSquare[corner][1];
   const double out_u = (u > 0.5 ? 0.5 : -0.5) / num_cells;
   const double out_v = (v > 0.5 ? 0.5 : -0.5) / num_cells;
@@ -37,20 +58,25 @@ bool IsSaddle(const cv::Mat& gray, const UnitSquareMap& map, std::size_t corner,
   const double dark = gray_at(-out_u, -out_v);
   const double light = std::min(gray_at(out_u, -out_v), gray_at(-out_u, out_v));
   const double opposite = gray_at(out_u, out_v);
-  return light - dark > kMinContrast && opposite - dark < kMaxDarkness * (light - dark);
+  return light - dark > kMinLightBeside * contrast &&
+         opposite - dark < kMaxDarkness * (light - dark);
 }
 
 }  // namespace
 
-int RefineSaddleCorners(const cv::Mat& gray, int num_cells, Quad* corners_px) {
-  VELAMAP_CHECK(gray.type() == CV_8UC1 && num_cells > 0);
+int RefineSaddleCorners(const cv::Mat& gray, const cv::Mat& cells, Quad* corners_px) {
+  VELAMAP_CHECK(gray.type() == CV_8UC1 && cells.type() == CV_8UC1 && cells.rows == cells.cols &&
+                cells.rows > 0);
+  const int num_cells = cells.rows;
   const double cell_px = QuadMeanSide(*corners_px) / num_cells;
   if (cell_px < kMinCellPx) return 0;
   const UnitSquareMap map(*corners_px);
+  const double contrast = ContrastOfCells(gray, map, cells);
+  if (contrast < kMinContrast) return 0;
   std::vector<std::size_t> saddles;
   std::vector<cv::Point2f> points;
   for (std::size_t i = 0; i < kNumCorners; ++i) {
-    if (!IsSaddle(gray, map, i, num_cells)) continue;
+    if (!IsSaddle(gray, map, i, num_cells, contrast)) continue;
     saddles.push_back(i);
     points.emplace_back(static_cast<float>((*corners_px)[i].x()),
                         static_cast<float>((*corners_px)[i].y()));

@@ -17,8 +17,8 @@
 namespace velamap {
 
 // Moves the corners of the marker (OpenCV's pixel frame, good to half a cell) that are saddle
-// points onto these, and leaves the others. `num_cells` is the number of cells along a side with
-// the border; cells below 4 px are too small. Returns the number of corners that were moved.
-int RefineSaddleCorners(const cv::Mat& gray, int num_cells, QuadCorners* corners_px);
+// points onto these, and leaves the others. `cells` as in pattern_fit.h; cells below 4 px are too
+// small. Returns the number of corners that were moved.
+int RefineSaddleCorners(const cv::Mat& gray, const cv::Mat& cells, QuadCorners* corners_px);
 
 }  // namespace velamap

@@ -36,7 +36,7 @@ std::string PriorShapeText(const PriorShape& prior_shape) {
 void CheckLayoutIds(const Layout& layout, const Dictionary& dictionary) {
   std::vector<int> ids = MarkerIds(layout);
   for (const auto& [id, length_m] : layout.marker_lengths_m) ids.push_back(id);
-  const int num_markers = dictionary.aruco->bytesList.rows;
+  const int num_markers = NumMarkers(dictionary);
   for (const int id : ids) {
     if (id < num_markers) continue;
     throw InputError(
@@ -87,7 +87,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
   detector.dictionary = LoadDictionary(layout.dictionary);
   detector.border_bits = layout.border_bits;
   detector.graph = BuildAdjacencyGraph(layout);
-  for (int id = 0; id < detector.dictionary.aruco->bytesList.rows; ++id) {
+  for (int id = 0; id < NumMarkers(detector.dictionary); ++id) {
     detector.looks.push_back(
         {MarkerCells(detector.dictionary, id, layout.border_bits), options.inverted});
     detector.sides_mm.push_back(1e3 * MarkerLength(layout, id));
@@ -98,8 +98,7 @@ FrameDetector MakeFrameDetector(const Layout& layout, const ArucoDetectionOption
   if (options.search == SearchMode::kTracked) detector.lines = LinesOfLayout(layout);
   for (const auto& [id, in_shape_m] : prior_shape) {
     const bool is_known = detector.part_of_id.empty() || detector.part_of_id.count(id) > 0;
-    if (is_known && id < detector.dictionary.aruco->bytesList.rows)
-      detector.prior_shape[id] = in_shape_m;
+    if (is_known && id < NumMarkers(detector.dictionary)) detector.prior_shape[id] = in_shape_m;
   }
   WarnOfSymmetries(detector);
   return detector;

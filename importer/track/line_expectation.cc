@@ -1,7 +1,6 @@
 #include "importer/track/line_expectation.h"
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <set>
 
@@ -17,18 +16,6 @@ constexpr double kMinSize = 0.6;
 
 // Spacing and perspective vary.
 constexpr double kReachPerDistance = 0.12, kReachPerSide = 0.3;
-
-using QuadById = std::map<int, QuadCorners>;
-
-QuadById SingleMarkers(const std::vector<MarkerQuad>& found) {
-  QuadById quads;
-  std::set<int> twice;
-  for (const MarkerQuad& quad : found) {
-    if (!quads.emplace(quad.marker_id, quad.corners_px).second) twice.insert(quad.marker_id);
-  }
-  for (const int id : twice) quads.erase(id);
-  return quads;
-}
 
 bool HaveSameOrientation(const QuadCorners& a, const QuadCorners& b) {
   const Eigen::Vector2d side_a = a[1] - a[0], side_b = b[1] - b[0];

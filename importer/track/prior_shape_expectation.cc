@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -24,22 +23,6 @@ std::optional<QuadCorners> RaysOf(const Camera& camera, const QuadCorners& corne
     rays[c] = *ray;
   }
   return rays;
-}
-
-// Markers of the prior shape that are found once, by ascending id.
-std::vector<const MarkerQuad*> FindKnown(const PriorShape& prior_shape,
-                                         const std::vector<MarkerQuad>& found) {
-  std::map<int, const MarkerQuad*> known;
-  std::set<int> ids, twice;
-  for (const MarkerQuad& quad : found) {
-    if (!ids.insert(quad.marker_id).second) twice.insert(quad.marker_id);
-    if (prior_shape.count(quad.marker_id) > 0) known[quad.marker_id] = &quad;
-  }
-  std::vector<const MarkerQuad*> quads;
-  for (const auto& [marker_id, quad] : known) {
-    if (twice.count(marker_id) == 0) quads.push_back(quad);
-  }
-  return quads;
 }
 
 // Nothing unless the whole marker is in front of the camera and within the field of view, outside
@@ -77,13 +60,14 @@ std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, c
                                                 const std::vector<MarkerQuad>& found,
                                                 PriorShapeAgreement* agreement) {
   *agreement = {};
-  std::vector<const MarkerQuad*> known;
+  std::vector<MarkerQuad> known;
   std::vector<MarkerRays> markers;
-  for (const MarkerQuad* quad : FindKnown(prior_shape, found)) {
-    const auto rays = RaysOf(camera, quad->corners_px);
-    if (!rays) continue;
-    known.push_back(quad);
-    markers.push_back({prior_shape.at(quad->marker_id), *rays});
+  for (const auto& [marker_id, corners_px] : SingleMarkers(found)) {
+    const auto in_shape_m = prior_shape.find(marker_id);
+    const auto rays = RaysOf(camera, corners_px);
+    if (in_shape_m == prior_shape.end() || !rays) continue;
+    known.push_back({marker_id, corners_px});
+    markers.push_back({in_shape_m->second, *rays});
   }
   if (markers.size() < kMinConsensus) return std::nullopt;
   agreement->num_known = static_cast<int>(markers.size());
@@ -93,9 +77,9 @@ std::optional<PriorShapeView> PlaceInPriorShape(const PriorShape& prior_shape, c
   PriorShapeView view{pose->cam_from_space, {}};
   for (const std::size_t i : pose->agreeing_idxs) {
     const auto place_px =
-        Reproject(camera, view.cam_from_shape, prior_shape.at(known[i]->marker_id));
+        Reproject(camera, view.cam_from_shape, prior_shape.at(known[i].marker_id));
     if (!place_px) continue;
-    view.departures.push_back({QuadCenter(*place_px), QuadCenter(known[i]->corners_px)});
+    view.departures.push_back({QuadCenter(*place_px), QuadCenter(known[i].corners_px)});
   }
   return view;
 }

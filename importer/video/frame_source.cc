@@ -1,6 +1,7 @@
 #include "importer/video/frame_source.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -61,8 +62,8 @@ std::vector<std::string> ListImages(const fs::path& folder) {
   }
   for (const std::string& name : names) CheckImageName(name, folder.string());
   if (!others.empty()) {
-    LogWarning("{}: left out, because their names are not those of images: {}, such as {}",
-               folder.string(), others.size(), others.front());
+    LogWarning("{}: ignored {} files that have no image extension, such as {}", folder.string(),
+               others.size(), others.front());
   }
   return names;
 }
@@ -172,23 +173,28 @@ class VideoFile : public FrameSource {
     const bool is_combed = IsCombed(is_on_its_side ? cv::Mat(frame.gray.t()) : frame.gray);
     const bool is_marked = is_marked_interlaced_ || frame.picture->IsMarkedInterlaced();
     if (!is_combed && is_marked) {
-      LogOnce(
-          LogLevel::kInfo,
-          path_ + ": stored as interlaced, but the two fields of a picture show the same moment");
+      LogOnce(LogLevel::kInfo, path_ + ": stored as interlaced, but both fields show one moment");
     }
     if (!is_combed) return;
-    const std::string remedy =
+    constexpr char kRemedy[] =
         "make whole pictures of the fields with ffmpeg -i VIDEO -vf bwdif -crf 12 whole.mp4";
     if (is_marked) {
-      throw InputError(
-          fmt::format("{}: the video is interlaced: {} weaves two fields of different moments; {}",
-                      path_, frame.image_name, remedy));
+      const int num_combed = ++num_combed_;
+      if (num_combed < MinCombed()) return;
+      throw InputError(fmt::format(
+          "{}: the video is interlaced: {} pictures, such as {}, weave two fields of different "
+          "moments; {}",
+          path_, num_combed, frame.image_name, kRemedy));
     }
     LogOnce(LogLevel::kWarn,
             fmt::format("{}: pictures seem to weave two fields of different moments, though the "
                         "file does not say that it is interlaced; if they do, {}",
-                        path_, remedy));
+                        path_, kRemedy));
   }
+
+  // Of an interlaced video with motion, most pictures are combed. Blinds and other textures of two
+  // lines look combed only while their distance is right to a few percent.
+  int MinCombed() const { return std::max(3, num_frames_ / 10); }
 
   // In 64 bits, because options may be as large as an int.
   int CountFrames() const {
@@ -235,6 +241,7 @@ class VideoFile : public FrameSource {
   int num_container_frames_;
   int num_frames_;  // to come, at most
   bool is_marked_interlaced_;
+  mutable std::atomic<int> num_combed_{0};
   int num_read_ = 0;  // counted from the video's start, even if decoding began later
   bool ended_ = false;
 };

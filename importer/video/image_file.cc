@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "importer/base/log.h"
 #include "importer/video/ffmpeg_picture.h"
 #include "importer/video/jpeg_codec.h"
 
@@ -33,31 +35,6 @@ std::uint32_t BigEndian32(const std::uint8_t* bytes) {
          std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
-// Walks the segments of a JPEG to its end-of-image marker (ITU T.81, annex B). A search for the two
-// bytes of the marker would also find the end of an embedded preview.
-bool JpegHasEnd(const Bytes& bytes) {
-  constexpr std::uint8_t kEndOfImage = 0xD9, kStartOfScan = 0xDA;
-  std::size_t i = 2;  // behind the start-of-image marker
-  while (i + 1 < bytes.size()) {
-    if (bytes[i] != 0xFF) return false;
-    const std::uint8_t marker = bytes[i + 1];
-    if (marker == 0xFF) {  // fill byte
-      ++i;
-      continue;
-    }
-    if (marker == kEndOfImage) return true;
-    if (i + 3 >= bytes.size()) return false;
-    i += 2 + (static_cast<std::size_t>(bytes[i + 2]) << 8 | bytes[i + 3]);
-    if (marker != kStartOfScan) continue;
-    // Skips compressed data, which include stuffed FF 00 and the restart markers D0 to D7.
-    while (i + 1 < bytes.size() && !(bytes[i] == 0xFF && bytes[i + 1] != 0 &&
-                                     (bytes[i + 1] < 0xD0 || bytes[i + 1] > 0xD7))) {
-      ++i;
-    }
-  }
-  return false;
-}
-
 // Walks the chunks of a PNG to IEND. A chunk is 4 bytes length, 4 bytes type, data, 4 bytes
 // checksum.
 bool PngHasEnd(const Bytes& bytes) {
@@ -79,17 +56,26 @@ std::optional<cv::Size2d> StoredSize(const Bytes& bytes) {
   return std::nullopt;
 }
 
-cv::Mat Decode(const Bytes& bytes, std::size_t max_pixels, std::string* reason) {
+cv::Mat Decode(const std::string& path, const Bytes& bytes, std::size_t max_pixels,
+               std::string* reason) {
   const auto is_small = [&](const cv::Size2d& size) {
     if (size.area() <= static_cast<double>(max_pixels)) return true;
-    *reason = fmt::format("has {} x {} pixels; pictures of at most {} are read", size.width,
+    *reason = fmt::format("has {} x {} pixels, more than the limit of {} pixels", size.width,
                           size.height, max_pixels);
     return false;
   };
   const std::optional<cv::Size2d> stored_size = StoredSize(bytes);
   if (stored_size && !is_small(*stored_size)) return {};
   cv::Mat color;
-  if (IsJpeg(bytes)) color = DecodeJpeg(bytes);
+  std::string damage;
+  if (IsJpeg(bytes)) color = DecodeJpeg(bytes, &damage);
+  if (!damage.empty() && !color.empty()) {
+    LogWarning("{}: used, but may be damaged ({}); compare it with the file in the camera",
+               std::filesystem::path(path).filename().string(), damage);
+  } else if (!damage.empty()) {
+    *reason = fmt::format("the file is damaged ({}); copy it from the camera again", damage);
+    return {};
+  }
   if (color.empty()) color = DecodeWithFfmpeg(bytes);
   if (color.empty()) *reason = "not an image that can be decoded";
   return is_small(color.size()) ? color : cv::Mat();
@@ -101,7 +87,7 @@ cv::Mat DecodeImageFile(const std::string& path, std::string* reason, std::size_
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   const std::int64_t size = stream.tellg();
   if (size > kMaxImageFileSize) {
-    *reason = fmt::format("has {} bytes; pictures of at most {} are read", size, kMaxImageFileSize);
+    *reason = fmt::format("has {} bytes, more than the limit of {} bytes", size, kMaxImageFileSize);
     return {};
   }
   Bytes bytes(static_cast<std::size_t>(std::max(size, std::int64_t{0})));
@@ -110,10 +96,10 @@ cv::Mat DecodeImageFile(const std::string& path, std::string* reason, std::size_
     *reason = "cannot be read";
   } else if (bytes.empty()) {
     *reason = "the file is empty";
-  } else if ((IsJpeg(bytes) && !JpegHasEnd(bytes)) || (IsPng(bytes) && !PngHasEnd(bytes))) {
+  } else if ((IsJpeg(bytes) && !FindJpegEnd(bytes)) || (IsPng(bytes) && !PngHasEnd(bytes))) {
     *reason = "the file is cut off";
   } else {
-    return Decode(bytes, max_pixels, reason);
+    return Decode(path, bytes, max_pixels, reason);
   }
   return {};
 }

@@ -9,7 +9,8 @@ namespace velamap {
 
 // Whether combs show in the picture (8 bit). Lines are compared with their neighbours, which are of
 // the other field, and with the next but one, which are of their own: in a comb, only the former
-// differ; in a progressive picture, whatever its texture, the latter do so at least as often.
+// differ. A progressive picture differs from the next-but-one lines at least as often, except where
+// a texture repeats every two lines: such a picture looks combed.
 // A picture in which hardly anything has moved between its fields is not combed.
 bool IsCombed(const cv::Mat& gray);
 

@@ -1,5 +1,7 @@
 #include "importer/video/jpeg_codec.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <memory>
 
 #include <turbojpeg.h>
@@ -35,7 +37,53 @@ std::string Encode(const Compress& compress) {
   return bytes.Text();
 }
 
+// What libjpeg-turbo says about data that remain before the end-of-image marker. It gives the first
+// warning only, so nothing else was wrong until there. Wrong bits cause it, and so do cameras that
+// write something behind the data.
+struct Remainder {
+  bool exists = false;
+  bool is_padding = false;  // a byte, or zeros and FF: no compressed data end like that
+};
+
+Remainder RemainderOf(const std::string& warning, const std::vector<std::uint8_t>& bytes) {
+  unsigned num_left = 0;
+  int length = 0;
+  std::sscanf(warning.c_str(), "Corrupt JPEG data: %u extraneous bytes before marker 0xd9%n",
+              &num_left, &length);
+  const std::size_t end = FindJpegEnd(bytes).value_or(0);
+  if (length == 0 || num_left > end) return {};
+  const bool is_padding =
+      num_left == 1 || std::all_of(&bytes[end - num_left], &bytes[end],
+                                   [](std::uint8_t byte) { return byte == 0x00 || byte == 0xFF; });
+  return {true, is_padding};
+}
+
 }  // namespace
+
+// Walks the segments (ITU T.81, annex B). A search for the two bytes of the marker would also find
+// the end of an embedded preview.
+std::optional<std::size_t> FindJpegEnd(const std::vector<std::uint8_t>& bytes) {
+  constexpr std::uint8_t kEndOfImage = 0xD9, kStartOfScan = 0xDA;
+  std::size_t i = 2;  // behind the start-of-image marker
+  while (i + 1 < bytes.size()) {
+    if (bytes[i] != 0xFF) return std::nullopt;
+    const std::uint8_t marker = bytes[i + 1];
+    if (marker == 0xFF) {  // fill byte
+      ++i;
+      continue;
+    }
+    if (marker == kEndOfImage) return i;
+    if (i + 3 >= bytes.size()) return std::nullopt;
+    i += 2 + (static_cast<std::size_t>(bytes[i + 2]) << 8 | bytes[i + 3]);
+    if (marker != kStartOfScan) continue;
+    // Skips compressed data, which include stuffed FF 00 and the restart markers D0 to D7.
+    while (i + 1 < bytes.size() && !(bytes[i] == 0xFF && bytes[i + 1] != 0 &&
+                                     (bytes[i + 1] < 0xD0 || bytes[i + 1] > 0xD7))) {
+      ++i;
+    }
+  }
+  return std::nullopt;
+}
 
 std::optional<cv::Size> JpegSize(const std::vector<std::uint8_t>& bytes) {
   const Codec decoder = MakeCodec(tjInitDecompress());
@@ -49,7 +97,7 @@ std::optional<cv::Size> JpegSize(const std::vector<std::uint8_t>& bytes) {
   return size;
 }
 
-cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes) {
+cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes, std::string* damage) {
   const std::optional<cv::Size> size = JpegSize(bytes);
   if (!size) return {};
   const Codec decoder = MakeCodec(tjInitDecompress());
@@ -57,8 +105,12 @@ cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes) {
   const int failed =
       tjDecompress2(decoder.get(), bytes.data(), bytes.size(), image.data, size->width,
                     static_cast<int>(image.step), size->height, TJPF_BGR, TJFLAG_ACCURATEDCT);
-  if (failed != 0 && tjGetErrorCode(decoder.get()) != TJERR_WARNING) return {};
-  return image;
+  if (failed == 0) return image;
+  const std::string message = tjGetErrorStr2(decoder.get());
+  const Remainder remainder = RemainderOf(message, bytes);
+  if (remainder.is_padding || message == "Invalid SOS parameters for sequential JPEG") return image;
+  *damage = message;
+  return remainder.exists ? image : cv::Mat();
 }
 
 std::string EncodeJpeg(const cv::Mat& image, int quality) {

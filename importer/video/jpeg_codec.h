@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,8 +18,14 @@ namespace velamap {
 // four inks.
 std::optional<cv::Size> JpegSize(const std::vector<std::uint8_t>& bytes);
 
-// BGR, 8 bit; damaged data are decoded as far as possible. Empty if nothing can be decoded.
-cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes);
+// The place of the end-of-image marker; nothing if the file is cut off before it.
+std::optional<std::size_t> FindJpegEnd(const std::vector<std::uint8_t>& bytes);
+
+// BGR, 8 bit. Empty where JpegSize() gives nothing, and where the data are damaged: from the damage
+// on, a decoder yields other pixels or the right ones in another place. `*damage` then says what
+// libjpeg-turbo has noticed; with a picture it is only a suspicion. Some wrong bits decode to a
+// plausible picture, and nobody notices them.
+cv::Mat DecodeJpeg(const std::vector<std::uint8_t>& bytes, std::string* damage);
 
 // The bytes of a file with chroma at half the width and height. `image` is BGR, 8 bit; `quality`
 // runs from 1 to 100.

@@ -103,6 +103,4 @@ double VideoDecoder::CountOn(double time_s, double frames_per_second) {
   return *last_time_s_;
 }
 
-int VideoDecoder::NumFramesRead() const { return next_number_; }
-
 }  // namespace velamap

@@ -53,9 +53,6 @@ class VideoDecoder {
   // Returns the next frame, or nothing at the end. Skips frames that cannot be decoded.
   std::optional<VideoFrame> Next();
 
-  // The number of frames of the video, once Next() has returned nothing.
-  int NumFramesRead() const;
-
  private:
   // The time, moved so that it is not before that of the last frame.
   double CountOn(double time_s, double frames_per_second);

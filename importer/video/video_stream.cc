@@ -38,8 +38,8 @@ void CheckHoldsVideo(const std::string& path, const std::string& format) {
   if (format.size() > kPicture.size() &&
       format.compare(format.size() - kPicture.size(), kPicture.size(), kPicture) == 0) {
     throw InputError(
-        fmt::format("{}: is a picture (FFmpeg's format {}), not a video; give the folder that "
-                    "holds it, and the picture the extension of its format, such as .jpg",
+        fmt::format("{}: is a picture (FFmpeg's format {}), not a video; rename it with the "
+                    "extension of its format, such as .jpg, and give the folder that holds it",
                     path, format));
   }
   static constexpr const char* kOthers[] = {"tty", "concat", "hls", "dash", "imf", "sdp"};

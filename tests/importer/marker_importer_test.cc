@@ -124,6 +124,33 @@ TEST_F(MarkerImporterTest, NoMarkerOfTheLayoutIsADataError) {
   ExpectThrows<DataError>([&] { ImportMarkers(options_); }, {"no marker of the layout", "1 7"});
 }
 
+TEST_F(MarkerImporterTest, RejectedMarkersAreAllExplained) {
+  // Marker 1 is of the layout but twice in the picture, with no neighbour; marker 7 is not.
+  WritePicture("1.png", 0, {1, 1, 7});
+  ExpectThrows<DataError>(
+      [&] {
+        MarkerImporterOptions options = options_;
+        LayoutPart part;
+        part.name = "sail";
+        part.marker_ids = {1, 2};
+        options.layout.parts = {part};
+        ImportMarkers(options);
+      },
+      {"2 because their id occurs more than once", "neighbours in the layout",
+       "1 because the layout does not name their ids: 7"});
+  WritePicture("1.png", 0, {1, 1});
+  ExpectThrows<DataError>([&] { ImportMarkers(options_); },
+                          {"2 because their id occurs more than once", "--layout_path"});
+}
+
+TEST_F(MarkerImporterTest, SymmetricMarkersAloneAreNotTakenForDuplicates) {
+  // The last codes of the thesis look the same after half a turn.
+  WritePicture("1.png", 0, {125}, "THESIS_3X3_130");
+  options_.layout = MakeLayout("THESIS_3X3_130", 0.1);
+  ExpectThrows<DataError>([&] { ImportMarkers(options_); },
+                          {"1 because their code looks the same when turned"});
+}
+
 TEST_F(MarkerImporterTest, BrokenImagesAreSkippedUnlessAllAre) {
   WritePicture("1.png", 0, {1, 2});
   std::ofstream(dir_ / "images/2.png") << "no picture";

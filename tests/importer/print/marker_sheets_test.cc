@@ -160,11 +160,25 @@ TEST_F(PrintMarkersTest, BadInputNamesTheOptionAndWritesNothing) {
   options_.sail.luff_m = 6;
   ExpectError({"--Sail.luff", "--arrangement sail"});
   options_.sail.luff_m.reset();
+  options_.sail.foot_m = 3;
+  ExpectError({"--Sail.foot: ", "--arrangement sail"});
+  options_.sail.foot_m.reset();
+  options_.codes.allow_symmetric = true;
+  ExpectError({"--CustomDictionary.allow_symmetric: ", "--CustomDictionary.bits is 0"});
+  options_.codes = {};
   options_.marker_length_m.reset();
   ExpectError({"--marker_length: missing"});
   options_.marker_length_m = 0.05;
   options_.first_id = 8190;
   ExpectError({"--first_id", "8191"});
+}
+
+TEST_F(PrintMarkersTest, TheDictionaryOfALayoutIsBlamedOnTheLayout) {
+  options_ = {};
+  options_.layout = MakeLayout("DICT_4X4_50", 0.05);
+  options_.layout_path = "sail.yml";
+  options_.ids = {50};
+  ExpectError({"--layout_path: key 'dictionary' of sail.yml: marker 50", "has 50 codes"});
 }
 
 TEST_F(PrintMarkersTest, FoldersOfOthersStayAsTheyAre) {

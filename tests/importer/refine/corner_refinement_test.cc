@@ -147,6 +147,71 @@ TEST(RefineCorners, RopesMoveNoCorner) {
   }
 }
 
+// A camera that encodes light, as most do.
+ImageFormationParameters EncodingCamera() {
+  ImageFormationParameters camera;
+  camera.gamma = 2.2;
+  camera.s_amplitude = 0.03;
+  return camera;
+}
+
+// Cuts the picture 3 px beyond two sides of each marker, so that most of its quiet zone is missing.
+TEST(RefineCorners, MarkersAtTheBorderOfThePictureAreAsGoodAsOthers) {
+  MarkerGridOptions options;
+  options.dictionary = "DICT_4X4_50";
+  options.side_px = 45;
+  options.max_tilt_deg = 40;
+  options.rendering.noise_sigma = 1.0;
+  options.rendering.camera = EncodingCamera();
+  const MarkerGrid grid = MakeMarkerGrid(options);
+  const ImageFormation formation(options.rendering.camera);
+  const Quality fitted = Measure(grid,
+                                 [&](const cv::Mat& gray, const QuadPx& start,
+                                     const cv::Mat& cells) -> std::optional<RefinedCorners> {
+                                   constexpr double kReachPx = 3.0;
+                                   const Box box = BoundingBox(start);
+                                   const cv::Point low(static_cast<int>(box.min.x() - kReachPx),
+                                                       static_cast<int>(box.min.y() - kReachPx));
+                                   const cv::Mat cut =
+                                       gray(cv::Rect(low, cv::Point(gray.cols, gray.rows)));
+                                   const Eigen::Vector2d shift_px(low.x, low.y);
+                                   QuadPx cut_start = start;
+                                   for (Eigen::Vector2d& corner : cut_start) corner -= shift_px;
+                                   auto refined = RefineCorners(cut, cut_start, cells, formation);
+                                   if (!refined) return std::nullopt;
+                                   for (Eigen::Vector2d& corner : refined->corners_px)
+                                     corner += shift_px;
+                                   return refined;
+                                 });
+  EXPECT_EQ(fitted.num_failed, 0);
+  EXPECT_LT(std::abs(fitted.bias_px), 0.02);
+  EXPECT_LT(fitted.rms_px, 0.05);
+}
+
+// With the cells of another marker, only the sides can be fitted.
+TEST(RefineCorners, SidesAloneAreFittedToLight) {
+  MarkerGridOptions options;
+  options.side_px = 45;
+  options.max_tilt_deg = 40;
+  options.rendering.quiet_zone_cells = 2.0;
+  options.rendering.noise_sigma = 1.0;
+  options.rendering.blur_sigma_px = 1.0;
+  options.rendering.camera = EncodingCamera();
+  MarkerGrid grid = MakeMarkerGrid(options);
+  std::rotate(grid.cells.begin(), grid.cells.begin() + 1, grid.cells.end());
+  const auto measure = [&](const ImageFormation& formation) {
+    return Measure(grid, [&](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+      EXPECT_FALSE(FitPattern(gray, start, cells, formation));
+      return RefineCorners(gray, start, cells, formation);
+    });
+  };
+  const Quality fitted = measure(ImageFormation(options.rendering.camera));
+  EXPECT_EQ(fitted.num_failed, 0);
+  EXPECT_LT(std::abs(fitted.bias_px), 0.05);
+  EXPECT_LT(fitted.rms_px, 0.08);
+  EXPECT_LT(measure(ImageFormation()).bias_px, -0.5);
+}
+
 TEST(RefineCornersByEdges, SidesBentByTheLensMeetInTheirCorners) {
   MarkerGridOptions options = Chequered(110, 0.7);
   options.camera = {CameraModel::kOpenCV, 960, 720, {600, 600, 480, 360, -0.15, 0.02, 0, 0}};

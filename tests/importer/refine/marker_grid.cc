@@ -7,6 +7,7 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "importer/geometry/quad.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -69,13 +70,7 @@ MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options) {
   return grid;
 }
 
-double MeanSide(const QuadPx& quad) {
-  double perimeter = 0.0;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    perimeter += (quad[(i + 1) % kNumCorners] - quad[i]).norm();
-  }
-  return perimeter / kNumCorners;
-}
+double MeanSide(const QuadPx& quad) { return QuadMeanSide(quad); }
 
 QuadPx SubpixCorners(const cv::Mat& gray, const QuadPx& start, int num_cells) {
   const int half_window =

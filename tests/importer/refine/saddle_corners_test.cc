@@ -13,8 +13,16 @@ using Quad = std::array<Eigen::Vector2d, kNumCorners>;
 
 constexpr int kNumCells = 8;
 
-// A dark square of 64.5 px, turned by 0.2, on light ground, each edge a blurred step; with others
+// A marker whose middle is light.
+cv::Mat CellsWithLightMiddle(int num_cells = kNumCells) {
+  cv::Mat cells(num_cells, num_cells, CV_8UC1, cv::Scalar(0));
+  cells(cv::Rect(num_cells / 2 - 1, num_cells / 2 - 1, 2, 2)) = 255;
+  return cells;
+}
+
+// A marker of 64.5 px, turned by 0.2, on light ground, each edge a blurred step; with others
 // of the same size at all four corners if asked for. `spread_px` makes every dark square larger.
+// `quiet_zone_cells`: dark ground begins this far from the marker.
 struct Picture {
   Eigen::Vector2d center_px{100.3, 99.6};
   double half_px = 32.25;
@@ -22,6 +30,8 @@ struct Picture {
   double blur_px = 0.9;
   double spread_px = 0.0;
   bool touching = true;
+  double quiet_zone_cells = 100.0;
+  double gamma = 1.0;
 
   Quad Corners() const {
     Quad corners;
@@ -44,8 +54,14 @@ struct Picture {
         const Eigen::Vector2d p = Eigen::Rotation2Dd(-angle) * (Eigen::Vector2d(x, y) - center_px);
         const double marker = Inside(std::abs(p.x()) - half_px) * Inside(std::abs(p.y()) - half_px);
         const double others = Inside(half_px - std::abs(p.x())) * Inside(half_px - std::abs(p.y()));
-        const double dark = std::min(1.0, marker + (touching ? others : 0.0));
-        gray.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(std::lround(210 - 180 * dark));
+        const double cell_px = 2 * half_px / kNumCells;
+        const double middle = Inside(std::abs(p.x()) - cell_px) * Inside(std::abs(p.y()) - cell_px);
+        const double paper_px = half_px + quiet_zone_cells * cell_px;
+        const double ground =
+            1 - Inside(std::abs(p.x()) - paper_px) * Inside(std::abs(p.y()) - paper_px);
+        const double dark = std::min(1.0, marker - middle + ground + (touching ? others : 0.0));
+        gray.at<std::uint8_t>(y, x) =
+            static_cast<std::uint8_t>(std::lround(30 + 180 * std::pow(1 - dark, 1 / gamma)));
       }
     }
     return gray;
@@ -56,7 +72,7 @@ TEST(SaddleCornersTest, FindsTheMeetingPointOfTwoSquares) {
   const Picture picture;
   Quad corners = picture.Corners();
   for (Eigen::Vector2d& corner : corners) corner += Eigen::Vector2d(0.8, -0.6);
-  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), kNumCells, &corners), 4);
+  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 4);
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     EXPECT_LT((corners[i] - picture.Corners()[i]).norm(), 0.04) << i;
   }
@@ -66,7 +82,7 @@ TEST(SaddleCornersTest, SpreadInkDoesNotMoveThem) {
   Picture picture;
   picture.spread_px = 0.3;
   Quad corners = picture.Corners();
-  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), kNumCells, &corners), 4);
+  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 4);
   for (std::size_t i = 0; i < kNumCorners; ++i) {
     EXPECT_LT((corners[i] - picture.Corners()[i]).norm(), 0.04) << i;
   }
@@ -78,14 +94,33 @@ TEST(SaddleCornersTest, LeavesTheCornersOfALonelySquare) {
   Quad corners = picture.Corners();
   corners[0].x() += 0.8;
   const Quad before = corners;
-  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), kNumCells, &corners), 0);
+  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 0);
   EXPECT_EQ(corners, before);
+}
+
+// The zone fades beside the sides and fades twice at the corners.
+TEST(SaddleCornersTest, LeavesTheCornersOfANarrowQuietZoneOnDarkGround) {
+  for (const double gamma : {1.0, 2.2}) {
+    for (const double quiet_zone_cells : {0.2, 0.3, 0.4, 0.5}) {
+      for (const double blur_px : {0.6, 1.0, 1.6}) {
+        SCOPED_TRACE(testing::Message() << "gamma " << gamma << ", quiet zone " << quiet_zone_cells
+                                        << ", blur " << blur_px);
+        Picture picture;
+        picture.touching = false;
+        picture.quiet_zone_cells = quiet_zone_cells;
+        picture.blur_px = blur_px;
+        picture.gamma = gamma;
+        Quad corners = picture.Corners();
+        EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(), &corners), 0);
+      }
+    }
+  }
 }
 
 TEST(SaddleCornersTest, LeavesCellsThatAreTooSmallToTell) {
   const Picture picture;
   Quad corners = picture.Corners();
-  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), 20, &corners), 0);
+  EXPECT_EQ(RefineSaddleCorners(picture.Draw(), CellsWithLightMiddle(20), &corners), 0);
 }
 
 }  // namespace

@@ -113,6 +113,67 @@ TEST(DecodeImageFile, AcceptsDataBehindTheEndOfAJpeg) {
   EXPECT_FALSE(DecodeImageFile(path, &reason).empty()) << reason;
 }
 
+void WriteBytes(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
+// A decoder resynchronises with right pixels in the wrong place.
+TEST(DecodeImageFile, AJpegWithADamagedMiddleIsNotUsedWithoutAWord) {
+  const TempDir dir;
+  cv::RNG random(3);
+  for (const std::vector<int>& parameters : {std::vector<int>{},
+                                             {cv::IMWRITE_JPEG_PROGRESSIVE, 1},
+                                             {cv::IMWRITE_JPEG_RST_INTERVAL, 7}}) {
+    std::vector<std::uint8_t> whole;
+    cv::imencode(".jpg", PictureOfNoise(160, 120), whole, parameters);
+    std::size_t begin = whole.size() / 2;
+    while (whole[begin - 1] == 0xFF) ++begin;
+    int num_noticed = 0;
+    for (int i = 0; i < 20; ++i) {
+      std::vector<std::uint8_t> bytes = whole;
+      for (std::size_t at = begin; at < begin + 40; ++at) {
+        bytes[at] = static_cast<std::uint8_t>(random.uniform(0, 0xFF));  // no markers
+      }
+      WriteBytes(dir / "a.jpg", bytes);
+      std::string reason;
+      testing::internal::CaptureStdout();
+      const cv::Mat image = DecodeImageFile(dir / "a.jpg", &reason);
+      const std::string log = testing::internal::GetCapturedStdout();
+      num_noticed += image.empty() || log.find("may be damaged") != std::string::npos;
+      EXPECT_EQ(image.empty(), reason.rfind("the file is damaged (", 0) == 0) << reason;
+    }
+    EXPECT_GE(num_noticed, 18) << parameters.size();
+  }
+}
+
+TEST(DecodeImageFile, PaddingBeforeTheEndOfAJpegIsNoDamage) {
+  const TempDir dir;
+  std::vector<std::uint8_t> whole;
+  cv::imencode(".jpg", PictureOfNoise(80, 60), whole);
+  const auto decode = [&](const std::vector<std::uint8_t>& inserted) {
+    std::vector<std::uint8_t> bytes = whole;
+    bytes.insert(bytes.end() - 2, inserted.begin(), inserted.end());
+    bytes.insert(bytes.end(), {'m', 'o', 'r', 'e'});
+    WriteBytes(dir / "a.jpg", bytes);
+    std::string reason;
+    return DecodeImageFile(dir / "a.jpg", &reason);
+  };
+  const cv::Mat image = decode({});
+  ASSERT_FALSE(image.empty());
+  for (const std::vector<std::uint8_t>& padding :
+       {std::vector<std::uint8_t>(32, 0), {0xFF, 0, 0xFF, 0, 0xFF, 0}}) {
+    const cv::Mat padded = decode(padding);
+    ASSERT_EQ(padded.size(), image.size());
+    EXPECT_EQ(cv::norm(padded, image, cv::NORM_INF), 0.0);
+  }
+  // Compressed data may come from a camera or from damage.
+  testing::internal::CaptureStdout();
+  EXPECT_FALSE(decode({whole.end() - 30, whole.end() - 2}).empty());
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("may be damaged"), std::string::npos);
+}
+
 TEST(DecodeImageFile, IsNotFooledByThePreviewOfACutJpeg) {
   // A preview in an APP1 segment has an end-of-image marker of its own.
   const TempDir dir;
@@ -137,10 +198,10 @@ TEST(DecodeImageFile, RefusesWhatIsTooLarge) {
   cv::imwrite(dir / "a.png", cv::Mat(60, 80, CV_8UC1, cv::Scalar(9)));
   EXPECT_FALSE(DecodeImageFile(dir / "a.png", &reason, 4800).empty());
   EXPECT_TRUE(DecodeImageFile(dir / "a.png", &reason, 4799).empty());
-  EXPECT_EQ(reason, "has 80 x 60 pixels; pictures of at most 4799 are read");
+  EXPECT_EQ(reason, "has 80 x 60 pixels, more than the limit of 4799 pixels");
   std::filesystem::resize_file(dir / "a.png", kMaxImageFileSize + 1);
   EXPECT_TRUE(DecodeImageFile(dir / "a.png", &reason).empty());
-  EXPECT_EQ(reason, "has 1073741825 bytes; pictures of at most 1073741824 are read");
+  EXPECT_EQ(reason, "has 1073741825 bytes, more than the limit of 1073741824 bytes");
 }
 
 TEST(DecodeImageFile, SaysWhyThereIsNoImage) {

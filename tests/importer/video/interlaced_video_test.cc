@@ -65,6 +65,19 @@ TEST(InterlacedVideo, WholePicturesAreReadHoweverTheyAreStored) {
   }
 }
 
+TEST(InterlacedVideo, BlindsInAFewPicturesAreNoFields) {
+  // Every second line of two pictures of 25 is dark, and all pictures are stored as interlaced.
+  constexpr const char* kStored =
+      "setfield=tff -c:v libx264 -crf 12 -flags +ilme+ildct -x264opts tff=1";
+  const std::string blinds =
+      "-frames:v 25 -vf format=yuv420p,geq=lum='if({}\\,if(mod(Y\\,2)\\,40\\,200)\\,lum(X\\,Y))'"
+      ":cb=128:cr=128,";
+  const std::string few = fmt::format(blinds, "between(N\\,7\\,8)") + kStored;
+  const std::string all = fmt::format(blinds, "1") + kStored;
+  EXPECT_EQ(Read({"few.mp4", few.c_str()}), "whole");
+  EXPECT_THAT(Read({"all.mp4", all.c_str()}), HasSubstr("is interlaced"));
+}
+
 // A picture whose odd lines are those of another moment.
 cv::Mat Weave(const cv::Mat& first, const cv::Mat& second) {
   cv::Mat woven = first.clone();

@@ -55,7 +55,6 @@ std::vector<ReadFrame> ReadAll(const std::string& path, int skip_to) {
   while (std::optional<VideoFrame> frame = decoder.Next()) {
     frames.push_back({frame->number, frame->time_s.value_or(-1.0), frame->picture.Gray()});
   }
-  EXPECT_EQ(decoder.NumFramesRead(), frames.empty() ? 0 : frames.back().number + 1);
   return frames;
 }
 
