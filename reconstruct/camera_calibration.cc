@@ -29,7 +29,7 @@ void CheckOneCamera(const std::map<CameraId, Camera>& guesses) {
     }
     throw DataError(fmt::format(
         "the pictures come from more than one camera or zoom: {} x {} and {} x {} px, and focal "
-        "lengths of about {:.0f} and {:.0f} px by EXIF or size; calibrate each alone",
+        "lengths of about {:.0f} and {:.0f} px by EXIF or size; calibrate each one separately",
         first.width_px, first.height_px, camera.width_px, camera.height_px, MeanFocalLength(first),
         MeanFocalLength(camera)));
   }
@@ -56,6 +56,22 @@ void CheckMovement(const std::vector<DatabaseImage>& images, const Camera& guess
       "all {} pictures are alike: nothing moves by more than {:.0f} px; move the board through the "
       "whole picture, near and far, and tilt it by 30 to 45 degrees to all sides",
       images.size(), largest_px));
+}
+
+// The images with the corners in the pixels of the first camera: pictures of the rotated camera are
+// turned back, as UprightCameras() of the camera search does.
+std::vector<DatabaseImage> Upright(std::vector<DatabaseImage> images,
+                                   const std::map<CameraId, Camera>& guesses) {
+  for (DatabaseImage& image : images) {
+    const Camera& camera = guesses.at(image.camera_id);
+    if (camera == guesses.begin()->second) continue;
+    for (MarkerDetection& marker : image.detections.markers) {
+      for (Eigen::Vector2d& corner_px : marker.corners_in_image_px) {
+        corner_px = TurnInImage(camera, -1, corner_px);
+      }
+    }
+  }
+  return images;
 }
 
 std::vector<DatabaseImage> ChosenImages(const std::vector<DatabaseImage>& images,
@@ -143,7 +159,8 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   const Camera& guess = guesses.begin()->second;
   CheckMovement(images, guess);
   const MarkerAdjustmentOptions adjustment = BoardOptions(options.num_threads);
-  const std::vector<BoardView> views = DescribeBoardViews(images, adjustment.corner_sigma_px);
+  const std::vector<BoardView> views =
+      DescribeBoardViews(Upright(images, guesses), adjustment.corner_sigma_px);
   const PictureGrid grid = MakePictureGrid(guess.width_px, guess.height_px, kNumCoverageCells);
   CameraCalibration calibration;
   calibration.num_images = static_cast<int>(views.size());
@@ -159,6 +176,7 @@ CameraCalibration CalibrateCamera(const CameraCalibrationOptions& options,
   const CornerErrors corner_errors = CornerErrorsOf(images, formation);
   RegistrationOptions registration_options;
   registration_options.num_threads = options.num_threads;
+  registration_options.has_calibration = false;
   const std::map<CameraId, Camera> cameras =
       FindCameras(used, guesses, layout, corner_errors, registration_options, adjustment);
   const Registration registration = RegisterFrames(used, cameras, layout, registration_options);

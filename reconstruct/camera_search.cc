@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include "importer/base/error.h"
@@ -196,6 +195,7 @@ class CameraSearch {
         adjustment_(adjustment) {
     constexpr int kMaxNumFrames = 40;
     registration_.method = RegistrationMethod::kGlobal;
+    registration_.has_calibration = false;
     registration_.global.max_num_frames =
         std::min(registration.global.max_num_frames, kMaxNumFrames);
   }
@@ -278,9 +278,7 @@ std::map<CameraId, Camera> FindCameras(const std::vector<DatabaseImage>& images,
     if (best && best->share > kNearlyAll) break;
   }
   if (best) return best->cameras;
-  throw DataError(fmt::format(
-      "the camera cannot be found from these pictures: {}; import them with its calibration",
-      first_failure));
+  throw DataError("the camera cannot be found from these pictures: " + first_failure);
 }
 
 }  // namespace velamap

@@ -63,9 +63,7 @@ RowMajorMatrix DesignMatrix(const Model& model, const MarkerProblem& problem, Ca
 
 RowMajorMatrix AllResiduals(const MarkerProblem& problem) {
   ceres::Problem::EvaluateOptions options;
-  options.residual_blocks = problem.corner_residuals;
-  options.residual_blocks.insert(options.residual_blocks.end(), problem.prior_residuals.begin(),
-                                 problem.prior_residuals.end());
+  options.residual_blocks = problem.ResidualsWithoutBars();
   std::vector<double> residuals;
   VELAMAP_CHECK(problem.ceres->Evaluate(options, nullptr, &residuals, nullptr, nullptr));
   return Eigen::Map<const Eigen::MatrixXd>(residuals.data(),

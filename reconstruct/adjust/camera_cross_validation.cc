@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "reconstruct/adjust/camera_model_choice.h"
 #include "reconstruct/model/reprojection.h"
 #include "reconstruct/problem/corner_velocities.h"
+#include "reconstruct/problem/error_correlation.h"
 
 namespace velamap {
 namespace {
@@ -80,21 +82,26 @@ double RmsOf(const std::vector<ErrorSum>& sums) {
                                : std::numeric_limits<double>::infinity();
 }
 
-// The solution without the images whose index modulo `num_divisions` is `division`.
-MarkerSolution Without(const MarkerSolution& all, std::size_t division, std::size_t num_divisions) {
+// The division of each image: neighbours are in different ones.
+std::vector<int> Divisions(const Model& model) {
+  std::vector<int> divisions(model.images.size());
+  for (std::size_t i = 0; i < divisions.size(); ++i) {
+    divisions[i] = static_cast<int>(i % kNumDivisions);
+  }
+  return divisions;
+}
+
+// The solution without the images of one group; `groups` holds the group of each image.
+MarkerSolution Without(const MarkerSolution& all, const std::vector<int>& groups,
+                       std::size_t group) {
   MarkerSolution some = all;
   std::vector<ModelImage> kept;
   for (std::size_t i = 0; i < all.model.images.size(); ++i) {
     const ModelImage& image = all.model.images[i];
-    if (i % num_divisions != division) {
+    if (groups[i] != static_cast<int>(group)) {
       kept.push_back(image);
-      continue;
-    }
-    for (std::uint32_t idx = 0; idx < image.points2D.size(); ++idx) {
-      const Point3DId point3D_id = image.points2D[idx].point3D_id;
-      if (point3D_id != kInvalidPoint3DId) {
-        RemoveObservation(&some.model, point3D_id, {image.image_id, idx});
-      }
+    } else {
+      RemoveFromTracks(image, &some.model);
     }
   }
   some.model.images = std::move(kept);
@@ -123,12 +130,14 @@ std::vector<ErrorSum> ErrorsOfSeen(const MarkerSolution& trial) {
 void FindErrorsOfUnseen(const MarkerSolution& trial, std::size_t division,
                         std::vector<ErrorSum>* sums) {
   constexpr std::size_t kMinPoints = 4;
-  MarkerSolution fitted = Without(trial, division, kNumDivisions);
+  const std::vector<int> divisions = Divisions(trial.model);
+  MarkerSolution fitted = Without(trial, divisions, division);
   Minimize(1e-9, &fitted);  // weakly determined parameters must forget these images as well
   const Model model = InMiddleRow(trial);
   LeastSquaresOptions options;
   options.min_relative_decrease = 1e-6;
-  for (std::size_t i = division; i < model.images.size(); i += kNumDivisions) {
+  for (std::size_t i = 0; i < model.images.size(); ++i) {
+    if (divisions[i] != static_cast<int>(division)) continue;
     const ModelImage& image = model.images[i];
     const Camera& camera = fitted.model.cameras.at(image.camera_id);
     const std::vector<SeenPoint> points = SeenPointsOf(fitted.model, image);
@@ -223,11 +232,13 @@ MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution) {
 }
 
 std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& solution) {
-  constexpr std::size_t kMaxLeftOut = 20;
-  const std::size_t num_groups = std::min(kMaxLeftOut, solution.model.images.size());
+  constexpr int kMaxNumGroups = 20;
+  const std::vector<int> groups = GroupImages(solution.model, kMaxNumGroups);
+  const auto num_groups =
+      static_cast<std::size_t>(std::set<int>(groups.begin(), groups.end()).size());
   std::vector<std::map<CameraId, Camera>> cameras(num_groups);
   ParallelFor(num_groups, solution.options.num_threads, [&](std::size_t group) {
-    MarkerSolution fitted = Without(solution, group, num_groups);
+    MarkerSolution fitted = Without(solution, groups, group);
     try {
       Minimize(1e-9, &fitted);
       cameras[group] = std::move(fitted.model.cameras);

@@ -40,10 +40,12 @@ CrossValidation CrossValidateCameraModels(const MarkerSolution& solution,
 // may be right, because the simpler model may not describe the lens.
 MarkerSolution WithMostFlexibleModel(const MarkerSolution& solution);
 
-// 1 sigma of the parameters of each camera by the jackknife (Tukey 1958; groups of images are left
-// out in turn, up to twenty): how far the cameras of other pictures of the same kind would differ.
-// Unlike the covariance of the adjustment, it contains errors that images have in common and those
-// of the camera model.
+// 1 sigma of the parameters of each camera by the jackknife (Tukey 1958): up to twenty groups of
+// pictures that follow each other (GroupImages) are left out in turn. It tells how far the cameras
+// of other pictures of the same kind would differ. The covariance of the adjustment accounts for
+// errors that pictures have in common, and for those of the camera model, by one factor for all
+// parameters (error_correlation.h); the jackknife takes them from the scatter of each parameter.
+// Empty where fewer than two groups can be left out.
 std::map<CameraId, std::vector<double>> JackknifeCameras(const MarkerSolution& solution);
 
 }  // namespace velamap

@@ -18,12 +18,12 @@ constexpr std::array<CameraModel, 4> kModelsOfClips = {CameraModel::kSimpleRadia
 
 constexpr double kWideRayLength = 0.7;  // tangent; a fisheye is considered beyond it
 
-}  // namespace
-
 void SetCameraModel(CameraModel model, MarkerSolution* solution) {
   for (auto& [camera_id, camera] : solution->model.cameras) camera = ConvertCamera(camera, model);
   solution->calibration = solution->model.cameras;
 }
+
+}  // namespace
 
 bool SeesWideAngles(const MarkerSolution& solution) {
   const auto& cameras = solution.model.cameras;

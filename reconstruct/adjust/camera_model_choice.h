@@ -19,10 +19,8 @@ namespace velamap {
 // chosen only if all do. Returns `solution` with all cameras converted to the chosen model.
 MarkerSolution WithBestCameraModel(const MarkerSolution& solution);
 
-// The cameras as this model, with the prior of an unknown camera.
-void SetCameraModel(CameraModel model, MarkerSolution* solution);
-
-// The same, refined. Nothing if the refinement fails.
+// The solution with its cameras converted to this model, which get the prior of an unknown camera,
+// and refined. Nothing if the refinement fails.
 std::optional<MarkerSolution> RefinedAs(CameraModel model, MarkerSolution solution);
 
 // Whether any camera sees more than 35 degrees off its axis. With less, a fisheye's many parameters

@@ -47,8 +47,7 @@ void CheckFocalLength(const std::map<CameraId, EstimatedCamera>& cameras,
     if (sigma_px <= kMaxSigma * focal_px) continue;
     throw DataError(fmt::format(
         "these pictures do not determine the focal length of their camera ({:.0f} +- {:.0f} "
-        "px){}{}; film the markers tilted, from near and far and from more sides, or import them "
-        "with a calibration",
+        "px){}{}; film the markers tilted, from near and far and from more sides",
         focal_px, sigma_px, weaknesses.empty() ? "" : ": ", fmt::join(weaknesses, "; ")));
   }
 }

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "importer/base/error.h"
 #include "importer/base/log.h"
@@ -31,13 +30,6 @@
 
 namespace velamap {
 namespace {
-
-void CheckEnough(const Model& model, std::size_t num_images_before) {
-  if (model.images.size() >= 2 && !model.points3D.empty()) return;
-  throw DataError(
-      fmt::format("nothing is left to adjust: {} of {} images share enough corners with others",
-                  model.images.size(), num_images_before));
-}
 
 // 1 sigma of the size of each marker, as a fraction, due to the inset of its corners, which
 // shortens a side by two insets.
@@ -186,10 +178,11 @@ MarkerAdjuster MarkerAdjuster::AdjustedFrom(MarkerAdjuster* begin) {
 }
 
 bool MarkerAdjuster::AddScaleBars() {
-  const std::vector<ScaleBar> bars = FindScaleBars(solution_.state, *solution_.layout);
+  const std::vector<KnownDistance>& distances = solution_.layout->distances;
   ScaleBarVerdict verdict;
-  if (!bars.empty()) {
+  if (!FindScaleBars(MakeMarkerState(solution_.model, *solution_.layout), distances).empty()) {
     const auto linearization = Linearize(solution_);
+    const std::vector<ScaleBar> bars = FindScaleBars(linearization->state, distances);
     const Eigen::MatrixXd covariance_m2 = BarCovariance(
         bars, linearization->state, linearization->problem, linearization->covariance);
     verdict = JudgeScaleBars(bars, linearization->state, covariance_m2,
@@ -237,6 +230,9 @@ void MarkerAdjuster::Finish() {
       std::sqrt(Trace(uncertainty.points) /
                 static_cast<double>(uncertainty.points.point3D_ids.size()));
   summary_.uncertainty = std::move(uncertainty);
+  const std::vector<std::string> lost =
+      LostScaleBars(solution_.weights.scale_bars, linearization->state);
+  solution_.warnings.insert(solution_.warnings.end(), lost.begin(), lost.end());
   WarnOfSlowShutter(summary_.uncertainty, &solution_);
   MoveToMiddleRow(linearization->state.rolling_shutter_s, solution_.corner_errors->velocities_px_s,
                   &solution_.model);
@@ -249,7 +245,8 @@ void MarkerAdjuster::Finish() {
   }
   UpdatePointErrors(&solution_.model);
   summary_.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(solution_.model));
-  CheckMeanError(summary_.error_after_px.mean, solution_.options.max_mean_error_px);
+  CheckMeanError(summary_.error_after_px.mean, solution_.options.max_mean_error_px,
+                 !solution_.options.find_camera);
   const std::vector<std::string> weaknesses =
       FindWeakGeometry(solution_.model, summary_.uncertainty.points);
   if (solution_.options.find_camera) CheckFocalLength(summary_.cameras, weaknesses);
@@ -261,6 +258,7 @@ std::map<CameraId, EstimatedCamera> MarkerAdjuster::EstimateCameras() const {
 }
 
 int MarkerAdjuster::ReviseCorners() {
+  constexpr double kAnyError = std::numeric_limits<double>::infinity();
   using Key = std::pair<Point3DId, ImageId>;
   const auto keys_of = [](const std::vector<RemovedObservation>& observations) {
     std::set<Key> keys;
@@ -273,7 +271,7 @@ int MarkerAdjuster::ReviseCorners() {
   std::vector<RemovedObservation> removed;
   Model candidate = solution_.model;
   for (const RemovedObservation& observation : summary_.removed) {
-    if (!RestoreObservation(observation, &candidate)) removed.push_back(observation);
+    if (!RestoreObservation(observation, kAnyError, &candidate)) removed.push_back(observation);
   }
   RemoveOutliers(EvaluateCorners(candidate, solution_), solution_.options.outlier_sigmas,
                  &candidate, &removed);
@@ -290,7 +288,7 @@ int MarkerAdjuster::ReviseCorners() {
 void MarkerAdjuster::RemoveUnderconstrainedParts() {
   RemoveUnderconstrained(solution_.options.min_track_length, &solution_.model,
                          &summary_.removed_images);
-  CheckEnough(solution_.model, num_images_before_);
+  CheckEnough(solution_.model, num_images_before_, summary_.removed.size());
 }
 
 }  // namespace velamap

@@ -36,7 +36,8 @@ struct MarkerAdjustmentSummary {
 // Adjusts a model of marker corners of any scale. The result is metric, its world frame is the
 // first image's camera, and its point errors are up to date. Throws DataError if nothing can be
 // adjusted, the mean error stays above max_mean_error_px, or the images leave the shape
-// undetermined; the model does not change then.
+// undetermined, and InputError if refine_extra_params is set and the refined distortion folds over
+// inside the image; the model does not change then.
 MarkerAdjustmentSummary AdjustWithMarkers(const MarkerAdjustmentOptions& options,
                                           const Layout& layout, const CornerErrors& corner_errors,
                                           Model* model);

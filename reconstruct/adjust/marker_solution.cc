@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "importer/base/error.h"
+#include "reconstruct/colmap/bundle_adjustment_options.h"
 #include "reconstruct/problem/error_correlation.h"
+#include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
 namespace {
@@ -33,17 +35,18 @@ MarkerState MakeState(const MarkerSolution& solution, const Model& model) {
 }
 
 // Resets the distortion to the calibration and holds it there if the adjustment has made it fold
-// over. Returns whether it has.
+// over. Returns whether it has. Throws InputError if the user has asked for its refinement.
 bool HoldFoldedDistortion(MarkerSolution* solution) {
   const MarkerAdjustmentOptions& options = solution->options;
   if (!options.refine_extra_params || options.find_camera) return false;
   Model& model = solution->model;
-  const bool is_folded =
-      std::any_of(model.cameras.begin(), model.cameras.end(), [&](const auto& entry) {
+  const auto folded =
+      std::find_if(model.cameras.begin(), model.cameras.end(), [&](const auto& entry) {
         return !HasMonotonicDistortion(entry.second) &&
                HasMonotonicDistortion(solution->calibration.at(entry.first));
       });
-  if (!is_folded) return false;
+  if (folded == model.cameras.end()) return false;
+  if (!solution->has_chosen_intrinsics) ThrowFoldedDistortion(folded->first);
   solution->options.refine_extra_params = false;
   for (auto& [camera_id, camera] : model.cameras) {
     const std::vector<double>& params = solution->calibration.at(camera_id).params;
@@ -65,6 +68,7 @@ void SetFreeIntrinsics(const FreeIntrinsics& free, double sigma, MarkerSolution*
   options.refine_principal_point = free.principal_point;
   options.refine_extra_params = free.distortion;
   options.intrinsics_sigma = sigma;
+  solution->has_chosen_intrinsics = true;
   if (!free.distortion) return;
   for (auto& [camera_id, camera] : solution->calibration) {
     camera = WithDistortionParams(camera);
@@ -76,7 +80,7 @@ void SetFreeIntrinsics(const FreeIntrinsics& free, double sigma, MarkerSolution*
 void Minimize(double function_tolerance, MarkerSolution* solution) {
   solution->state = MakeState(*solution, solution->model);
   MarkerWeights weights = solution->weights;
-  weights.holds_print_scale = weights.scale_bars.empty();
+  weights.holds_print_scale = FindScaleBars(solution->state, weights.scale_bars).empty();
   MarkerProblem problem = MakeProblem(*solution, weights, solution->model, &solution->state);
   solution->num_iterations +=
       MinimizeMarkerProblem(solution->options.max_num_iterations, function_tolerance, &problem);
@@ -103,7 +107,7 @@ std::unique_ptr<const MarkerLinearization> Linearize(const MarkerSolution& solut
 double CorrelationFactor(const MarkerSolution& solution, const MarkerLinearization& linearization) {
   return CorrelationFactor(
       linearization.state, linearization.problem, linearization.jacobian, linearization.covariance,
-      GroupImages(solution.model, linearization.state), solution.options.num_threads);
+      GroupImages(solution.model, kNumCorrelationGroups), solution.options.num_threads);
 }
 
 std::vector<CornerResidual> EvaluateCorners(const Model& model, const MarkerSolution& solution) {

@@ -29,6 +29,8 @@ struct MarkerSolution {
   // print scale.
   MarkerState state;
   MarkerWeights weights;
+  // The free intrinsics come from SetFreeIntrinsics and not from the user's options.
+  bool has_chosen_intrinsics = false;
   int num_iterations = 0;  // of all minimizations
   std::vector<std::string> warnings;
 };
@@ -46,8 +48,8 @@ struct MarkerLinearization {
 void SetFreeIntrinsics(const FreeIntrinsics& free, double sigma, MarkerSolution* solution);
 
 // Minimizes until a step changes the cost by less than the fraction `function_tolerance`. A refined
-// distortion that folds over inside the image is held at the calibration, with a warning. Throws
-// DataError where no step can be computed.
+// distortion that folds over inside the image is held at the calibration, with a warning; where the
+// user's options free it, that is an InputError. Throws DataError where no step can be computed.
 void Minimize(double function_tolerance, MarkerSolution* solution);
 
 // Throws DataError where a combination of parameters is undetermined.

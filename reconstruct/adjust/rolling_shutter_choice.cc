@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "importer/base/error.h"
 #include "importer/base/log.h"
 #include "reconstruct/adjust/corner_calibration.h"
 #include "reconstruct/problem/marker_uncertainty.h"
@@ -15,13 +16,9 @@ namespace {
 // time.
 constexpr double kFastest_s = 1e-3;
 
-}  // namespace
-
-bool ShowsRollingShutter(const MarkerSolution& solution) {
-  const MarkerAdjustmentOptions& options = solution.options;
-  if (!options.estimate_rolling_shutter || options.rolling_shutter_s != 0) return false;
-  if (solution.corner_errors->velocities_px_s.empty()) return false;
-  MarkerSolution trial = solution;
+// Whether a trial with that time as a parameter determines it. Throws DataError where the trial
+// fails.
+bool IsDetermined(MarkerSolution trial) {
   trial.weights.frees_rolling_shutter = true;
   Minimize(1e-4, &trial);
   // The sigmas of the corners still contain the motion.
@@ -36,6 +33,20 @@ bool ShowsRollingShutter(const MarkerSolution& solution) {
   LogDebug("rolling shutter {:.2f} +- {:.2f} ms", 1e3 * state.rolling_shutter_s, 1e3 * sigma_s);
   return sigmas * sigmas > InformationCriterion(1, trial) &&
          std::abs(state.rolling_shutter_s) > kFastest_s;
+}
+
+}  // namespace
+
+bool ShowsRollingShutter(const MarkerSolution& solution) {
+  const MarkerAdjustmentOptions& options = solution.options;
+  if (!options.estimate_rolling_shutter || options.rolling_shutter_s != 0) return false;
+  if (solution.corner_errors->velocities_px_s.empty()) return false;
+  try {
+    return IsDetermined(solution);
+  } catch (const DataError& error) {
+    LogDebug("the rolling shutter cannot be tested: {}", error.what());
+    return false;
+  }
 }
 
 void WarnOfSlowShutter(const AdjustmentUncertainty& uncertainty, MarkerSolution* solution) {

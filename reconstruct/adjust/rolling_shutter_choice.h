@@ -11,7 +11,7 @@ namespace velamap {
 // true if the images determine it, if it improves the fit of the corners by more than the Bayesian
 // information criterion (Schwarz 1978) and correlated errors explain, and if it is at least as long
 // as sensors take. Returns false without velocities of the corners, without
-// estimate_rolling_shutter, and where the option gives the time.
+// estimate_rolling_shutter, where the option gives the time, and where the trial fails.
 bool ShowsRollingShutter(const MarkerSolution& solution);
 
 // Adds a warning where the rows take longer to read than any camera needs.

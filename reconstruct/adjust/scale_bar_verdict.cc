@@ -174,7 +174,8 @@ std::string ReasonAgainst(const Consensus& consensus, Eigen::Index num_bars) {
 std::string OverruledText(const CommonScale& common, std::size_t num_bars) {
   return fmt::format(
       "the measured distance{} the markers {:.2f} +- {:.2f} % {} than marker_length: the "
-      "distance{} used; check the printed size (marker_length) or the camera's edges",
+      "distance{} used; check the printed size (marker_length) or whether the camera's processing "
+      "moves edges",
       num_bars > 1 ? "s make" : " makes", 100 * std::abs(std::expm1(common.mean)),
       100 * std::sqrt(common.variance), common.mean > 0 ? "larger" : "smaller",
       num_bars > 1 ? "s are" : " is");
@@ -207,7 +208,7 @@ ScaleBarVerdict JudgeScaleBars(const std::vector<ScaleBar>& bars, const MarkerSt
   const bool has_majority = consensus.is_alone && consensus.set.size() > 1;
   for (Eigen::Index i = 0; i < num_bars; ++i) {
     if (consensus.set.count(i) > 0) {
-      verdict.used.push_back(bars[i]);
+      verdict.used.push_back(bars[i].distance);
       continue;
     }
     verdict.warnings.push_back(
@@ -222,6 +223,18 @@ ScaleBarVerdict JudgeScaleBars(const std::vector<ScaleBar>& bars, const MarkerSt
       std::sqrt(std::max(std::pow(verdict.scale - 1.0, 2) - common.variance, markers.variance));
   verdict.warnings.push_back(OverruledText(common, consensus.set.size()));
   return verdict;
+}
+
+std::vector<std::string> LostScaleBars(const std::vector<KnownDistance>& used,
+                                       const MarkerState& state) {
+  std::vector<std::string> warnings;
+  for (const KnownDistance& distance : used) {
+    if (!FindScaleBars(state, {distance}).empty()) continue;
+    warnings.push_back(NameOf(distance) +
+                       " is not used after all: too few images agree on a corner that it needs; "
+                       "measure between corners that more images show");
+  }
+  return warnings;
 }
 
 }  // namespace velamap

@@ -8,13 +8,14 @@
 
 #include <Eigen/Core>
 
+#include "importer/layout/layout.h"
 #include "reconstruct/problem/marker_state.h"
 #include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
 
 struct ScaleBarVerdict {
-  std::vector<ScaleBar> used;
+  std::vector<KnownDistance> used;
   // Factor by which the bars in use enlarge a model whose scale comes from the markers. 1 if they
   // do not contradict the markers.
   double scale = 1.0;
@@ -33,5 +34,9 @@ struct ScaleBarVerdict {
 // lengths in it for a known scale of the print; `print_scale_sigma` is the prior of that scale.
 ScaleBarVerdict JudgeScaleBars(const std::vector<ScaleBar>& bars, const MarkerState& state,
                                const Eigen::MatrixXd& covariance_m2, double print_scale_sigma);
+
+// A warning for each distance in use whose corners have left the state since.
+std::vector<std::string> LostScaleBars(const std::vector<KnownDistance>& used,
+                                       const MarkerState& state);
 
 }  // namespace velamap

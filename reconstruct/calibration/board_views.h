@@ -35,10 +35,10 @@ struct BoardView {
   std::string image_name;
   // Median over the corners, px: small in sharp pictures of large markers.
   double corner_sigma_px = 0.0;
-  // Between the board and the picture's plane, by how much the markers are foreshortened: within
-  // some degrees, because it needs no camera.
+  // Angle between board and image plane, from the foreshortening of the markers; good to a few
+  // degrees only, because the camera is not known yet.
   double tilt_deg = 0.0;
-  // Along which they are foreshortened in the picture, from its x towards y, 0 to 180.
+  // Direction of the foreshortening in the picture, measured from x towards y, 0 to 180.
   double tilt_direction_deg = 0.0;
   std::vector<Eigen::Vector2d> corners_in_image_px;
 

@@ -72,9 +72,11 @@ bool RefinesCameras(const BundleAdjustmentOptions& options) {
 }
 
 // Checks that images, points, tracks and cameras came back: COLMAP's exit status is 0 even where it
-// failed. `before` is its input.
-void CheckStructure(const Model& before, const Model& after, bool refines_cameras,
+// failed. `before` is its input. Throws InputError where the distortion cannot be refined as the
+// options ask.
+void CheckStructure(const BundleAdjustmentOptions& options, const Model& before, const Model& after,
                     const std::string& log_path) {
+  const bool refines_cameras = RefinesCameras(options);
   if (after.images.size() != before.images.size()) {
     ThrowImplausible(
         fmt::format("{} of {} images came back", after.images.size(), before.images.size()),
@@ -106,6 +108,7 @@ void CheckStructure(const Model& before, const Model& after, bool refines_camera
       ThrowImplausible(fmt::format("camera {} has implausible parameters", camera_id), log_path);
     }
     if (refines_cameras && HasMonotonicDistortion(camera) && !HasMonotonicDistortion(it->second)) {
+      if (options.refine_extra_params) ThrowFoldedDistortion(camera_id);
       ThrowImplausible(
           fmt::format("the refined distortion of camera {} folds over inside the image", camera_id),
           log_path);
@@ -153,7 +156,7 @@ void AdjustOnce(const BundleAdjustmentOptions& options, const std::string& log_p
              OptionName(&BundleAdjustmentOptions::time_limit_min)});
 
   const Model result = ReadResult(scratch.OutputPath(), log_path);
-  CheckStructure(*model, result, RefinesCameras(options), log_path);
+  CheckStructure(options, *model, result, log_path);
   const double rms_before_px = RmsError(*model);
   CopyGeometry(result, model);
   const double rms_after_px = RmsError(*model);
@@ -179,14 +182,6 @@ void CheckRefinableDistortion(const BundleAdjustmentOptions& options, const Mode
   }
 }
 
-void CheckEnough(const Model& model, int num_images_before, std::size_t num_outliers) {
-  if (model.images.size() >= 2 && !model.points3D.empty()) return;
-  throw DataError(fmt::format(
-      "nothing is left to adjust: {} of {} images share enough points with others ({} outliers "
-      "removed)",
-      model.images.size(), num_images_before, num_outliers));
-}
-
 }  // namespace
 
 BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
@@ -194,7 +189,7 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
   options.Check();
   CheckModel(*model);
   CheckRefinableDistortion(options, *model);
-  const int num_images = static_cast<int>(model->images.size());
+  const std::size_t num_images = model->images.size();
   Model adjusted = *model;
   BundleAdjustmentSummary summary;
   summary.error_before_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(adjusted));
@@ -211,7 +206,7 @@ BundleAdjustmentSummary AdjustWithColmap(const BundleAdjustmentOptions& options,
   }
   UpdatePointErrors(&adjusted);
   summary.error_after_px = SummarizeReprojectionErrors(ComputeReprojectionErrors(adjusted));
-  CheckMeanError(summary.error_after_px.mean, options.max_mean_error_px);
+  CheckMeanError(summary.error_after_px.mean, options.max_mean_error_px, true);
   *model = std::move(adjusted);
   return summary;
 }

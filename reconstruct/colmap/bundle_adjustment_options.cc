@@ -47,12 +47,24 @@ void BundleAdjustmentOptions::Check() const {
   CheckRanges(*this);
 }
 
-void CheckMeanError(double mean_error_px, double max_mean_error_px) {
+void CheckMeanError(double mean_error_px, double max_mean_error_px, bool has_calibration) {
   if (mean_error_px <= max_mean_error_px) return;
-  throw DataError(fmt::format(
-      "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px "
-      "of {}; does the calibration belong to these images?",
-      mean_error_px, max_mean_error_px, OptionName(&BundleAdjustmentOptions::max_mean_error_px)));
+  const std::string text = fmt::format(
+      "the mean reprojection error is {:.2f} px after the bundle adjustment, above the {:.2f} px",
+      mean_error_px, max_mean_error_px);
+  throw DataError(has_calibration
+                      ? fmt::format("{} of {}; does the calibration belong to these images?", text,
+                                    OptionName(&BundleAdjustmentOptions::max_mean_error_px))
+                      : text +
+                            " that a right model stays below; give only images of one camera, "
+                            "one zoom and one state of the surface");
+}
+
+void ThrowFoldedDistortion(CameraId camera_id) {
+  throw InputError(fmt::format(
+      "{} 1: the images do not determine the distortion of camera {}, which would fold over inside "
+      "the image; leave the option out, or add images in which markers reach its corners",
+      OptionName(&BundleAdjustmentOptions::refine_extra_params), camera_id));
 }
 
 }  // namespace velamap

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "importer/base/ids.h"
 #include "importer/base/option.h"
 
 namespace velamap {
@@ -33,7 +34,11 @@ Option ColmapPathOption(BundleAdjustmentOptions* options);
 OptionGroup DescribeOptions(BundleAdjustmentOptions* options);
 
 // Throws DataError where an adjusted model's mean reprojection error is above max_mean_error_px or
-// not a number.
-void CheckMeanError(double mean_error_px, double max_mean_error_px);
+// not a number. With `has_calibration`, the cause may be a calibration of another camera.
+void CheckMeanError(double mean_error_px, double max_mean_error_px, bool has_calibration);
+
+// Throws the InputError for refine_extra_params where the refined distortion of a camera folds over
+// inside the image.
+[[noreturn]] void ThrowFoldedDistortion(CameraId camera_id);
 
 }  // namespace velamap

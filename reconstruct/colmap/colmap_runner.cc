@@ -141,20 +141,21 @@ std::string RunInto(const std::string& program, const std::vector<std::string>& 
 
 }  // namespace
 
-ColmapRun RunColmap(const std::string& program, const std::vector<std::string>& arguments,
-                    const std::string& log_path, const ColmapLimit& limit) {
+std::string RunColmap(const std::string& program, const std::vector<std::string>& arguments,
+                      const std::string& log_path, const ColmapLimit& limit) {
   const std::string command_line = CommandLine(program, arguments);
   Log log(log_path);
   log.Write("$ " + command_line + "\n");
   const TemporaryFolder scratch;
-  ColmapRun run;
-  const std::string failure = RunInto(program, arguments, scratch.path(), limit, &log, &run.output);
+  std::string output;
+  const std::string failure = RunInto(program, arguments, scratch.path(), limit, &log, &output);
   if (!failure.empty()) {
     log.Write("(" + failure + ")\n");
-    throw ExternalToolError(fmt::format("COLMAP {}: {}; {}; log: {}", failure, command_line,
-                                        DescribeOutput(run.output), log_path));
+    throw ExternalToolError(fmt::format("COLMAP {}: {}; {}{}", failure, command_line,
+                                        DescribeOutput(output),
+                                        log_path == kNoLog ? "" : "; log: " + log_path));
   }
-  return run;
+  return output;
 }
 
 bool ColmapHasOption(const std::string& program, const std::string& command,
@@ -164,7 +165,7 @@ bool ColmapHasOption(const std::string& program, const std::string& command,
   const std::lock_guard<std::mutex> lock(mutex);
   const auto key = std::make_pair(program, command);
   if (help_texts.count(key) == 0) {
-    help_texts[key] = RunColmap(program, {command, "-h"}, "/dev/null", kColmapHelpLimit).output;
+    help_texts[key] = RunColmap(program, {command, "-h"}, kNoLog);
   }
   std::istringstream words(help_texts.at(key));
   for (std::string word; words >> word;) {

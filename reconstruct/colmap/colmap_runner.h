@@ -9,10 +9,6 @@
 
 namespace velamap {
 
-struct ColmapRun {
-  std::string output;  // stdout and stderr
-};
-
 // A program that runs longer is ended.
 struct ColmapLimit {
   std::chrono::duration<double> time;
@@ -22,14 +18,18 @@ struct ColmapLimit {
 // For questions that COLMAP answers at once.
 inline const ColmapLimit kColmapHelpLimit = {std::chrono::minutes(2), "the limit for its help"};
 
-// Starts `program` (a name on the PATH, or a path) and waits for it. Its output is returned and
-// appended to `log_path`, whose folder is made; the log shows names of files without their folders
-// (importer/text/shown_text.h). No display is needed. Throws ExternalToolError if the program
-// cannot be started, exits with a status other than 0, is killed, or runs beyond the limit; the
-// message holds the command line and the path of the log. Throws InputError if the log cannot be
-// written, or no folder for temporary files can be made.
-ColmapRun RunColmap(const std::string& program, const std::vector<std::string>& arguments,
-                    const std::string& log_path, const ColmapLimit& limit = kColmapHelpLimit);
+// The log path of a run that leaves no log.
+constexpr const char* kNoLog = "/dev/null";
+
+// Starts `program` (a name on the PATH, or a path) and waits for it. Its output (stdout and stderr)
+// is returned and appended to `log_path`, whose folder is made; the log shows names of files
+// without their folders (importer/text/shown_text.h). No display is needed. Throws
+// ExternalToolError if the program cannot be started, exits with a status other than 0, is killed,
+// or runs beyond the limit; the message holds the command line and, unless that is kNoLog, the path
+// of the log. Throws InputError if the log cannot be written, or no folder for temporary files can
+// be made.
+std::string RunColmap(const std::string& program, const std::vector<std::string>& arguments,
+                      const std::string& log_path, const ColmapLimit& limit = kColmapHelpLimit);
 
 // Tells whether `colmap COMMAND -h` lists the option (given without its dashes). Options differ
 // between versions, and an unknown one is fatal. Every command is run once per process. Throws as

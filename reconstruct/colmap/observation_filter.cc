@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "importer/base/error.h"
 #include "reconstruct/model/reprojection.h"
 
@@ -63,45 +65,14 @@ std::vector<ObservationError> FindOutliers(const std::vector<ObservationError>& 
   return is_dragged && std::isfinite(worst->error_px) ? std::vector{*worst} : outliers;
 }
 
-// Restores an observation. Returns false where its point or image has been removed or its error
-// exceeds the threshold.
-bool RestoreIfFits(const RemovedObservation& observation, double threshold_px, Model* model) {
-  const auto point = model->points3D.find(observation.point3D_id);
-  const auto image = std::find_if(model->images.begin(), model->images.end(),
-                                  [&observation](const ModelImage& other) {
-                                    return other.image_id == observation.element.image_id;
-                                  });
-  if (point == model->points3D.end() || image == model->images.end()) return false;
-  Point2D& point2D = image->points2D.at(observation.element.point2D_idx);
-  const auto projection = ImageFromCam(model->cameras.at(image->camera_id),
-                                       image->cam_from_world * point->second.x_in_world);
-  if (!projection || !((*projection - point2D.x_in_image_px).norm() <= threshold_px)) return false;
-  VELAMAP_CHECK(point2D.point3D_id == kInvalidPoint3DId);
-  point2D.point3D_id = observation.point3D_id;
-  point->second.track.push_back(observation.element);
-  return true;
-}
-
 int RestoreFitting(double threshold_px, Model* model, std::vector<RemovedObservation>* removed) {
   const auto restored = std::stable_partition(removed->begin(), removed->end(),
                                               [threshold_px, model](const RemovedObservation& o) {
-                                                return !RestoreIfFits(o, threshold_px, model);
+                                                return !RestoreObservation(o, threshold_px, model);
                                               });
   const auto num_restored = removed->end() - restored;
   removed->erase(restored, removed->end());
   return static_cast<int>(num_restored);
-}
-
-void RemoveImage(const ModelImage& image, Model* model) {
-  for (const Point2D& point2D : image.points2D) {
-    if (point2D.point3D_id == kInvalidPoint3DId) continue;
-    std::vector<TrackElement>& track = model->points3D.at(point2D.point3D_id).track;
-    track.erase(std::remove_if(track.begin(), track.end(),
-                               [&image](const TrackElement& element) {
-                                 return element.image_id == image.image_id;
-                               }),
-                track.end());
-  }
 }
 
 bool HasFewObservations(const ModelImage& image) {
@@ -180,6 +151,23 @@ bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* remove
   return !unproven.empty();
 }
 
+bool RestoreObservation(const RemovedObservation& observation, double max_error_px, Model* model) {
+  const auto point = model->points3D.find(observation.point3D_id);
+  const auto image = std::find_if(model->images.begin(), model->images.end(),
+                                  [&observation](const ModelImage& other) {
+                                    return other.image_id == observation.element.image_id;
+                                  });
+  if (point == model->points3D.end() || image == model->images.end()) return false;
+  Point2D& point2D = image->points2D.at(observation.element.point2D_idx);
+  const auto projection = ImageFromCam(model->cameras.at(image->camera_id),
+                                       image->cam_from_world * point->second.x_in_world);
+  if (!projection || !((*projection - point2D.x_in_image_px).norm() <= max_error_px)) return false;
+  VELAMAP_CHECK(point2D.point3D_id == kInvalidPoint3DId);
+  point2D.point3D_id = observation.point3D_id;
+  point->second.track.push_back(observation.element);
+  return true;
+}
+
 void RemoveUnderconstrained(int min_track_length, Model* model,
                             std::vector<ImageId>* removed_images) {
   while (true) {
@@ -189,11 +177,19 @@ void RemoveUnderconstrained(int min_track_length, Model* model,
                               [](const ModelImage& image) { return !HasFewObservations(image); });
     if (first_removed == model->images.end()) return;
     for (auto image = first_removed; image != model->images.end(); ++image) {
-      RemoveImage(*image, model);
+      RemoveFromTracks(*image, model);
       removed_images->push_back(image->image_id);
     }
     model->images.erase(first_removed, model->images.end());
   }
+}
+
+void CheckEnough(const Model& model, std::size_t num_images_before, std::size_t num_outliers) {
+  if (model.images.size() >= 2 && !model.points3D.empty()) return;
+  throw DataError(fmt::format(
+      "nothing is left to adjust: {} of {} images share enough corners with others ({} outliers "
+      "removed); take more pictures that show the same markers",
+      model.images.size(), num_images_before, num_outliers));
 }
 
 }  // namespace velamap

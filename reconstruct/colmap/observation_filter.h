@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "reconstruct/colmap/bundle_adjustment.h"
@@ -25,10 +26,18 @@ int ReviseObservations(const BundleAdjustmentOptions& options, Model* model,
 // marker make it likely. Appends to `removed`; returns whether any were removed.
 bool RemoveUnprovenCorners(Model* model, std::vector<RemovedObservation>* removed);
 
+// Returns the observation to the model, if its image and its point are still there, the point lies
+// in front of the camera, and the reprojection error is at most `max_error_px`; else returns false.
+bool RestoreObservation(const RemovedObservation& observation, double max_error_px, Model* model);
+
 // Removes points with short tracks and images with fewer than four observations until there are
 // none. Three observations determine a pose but cannot check it; fewer make the normal equations
 // singular.
 void RemoveUnderconstrained(int min_track_length, Model* model,
                             std::vector<ImageId>* removed_images);
+
+// Throws DataError where fewer than two images or no points are left of the model.
+// `num_images_before` and `num_outliers` are what it had and what was removed.
+void CheckEnough(const Model& model, std::size_t num_images_before, std::size_t num_outliers);
 
 }  // namespace velamap

@@ -166,10 +166,11 @@ void DropFarMarkers(const std::set<int>& ids_of_part, const std::map<int, Judgem
           std::min(nearest_m, (other->center_in_shape_m - marker->center_in_shape_m).norm());
     }
     if (nearest_m <= kGross * extent_m + kNumSigmas * marker->sigma_m) continue;
-    evidence->Drop(marker->marker_id, fmt::format("stands {:.2f} m from all other markers of its "
-                                                  "part, which are within {:.2f} m of each other",
-                                                  nearest_m, extent_m) +
-                                          SeenText(*marker));
+    evidence->Drop(marker->marker_id,
+                   fmt::format("stands at least {:.2f} m from every other marker{}, and these are "
+                               "within {:.2f} m of each other",
+                               nearest_m, ids_of_part.empty() ? "" : " of its part", extent_m) +
+                       SeenText(*marker));
   }
 }
 

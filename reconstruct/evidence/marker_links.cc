@@ -175,12 +175,6 @@ MarkerChain Reversed(MarkerChain chain) {
   return chain;
 }
 
-bool ShareMarkers(const MarkerChain& a, const MarkerChain& b) {
-  return std::any_of(a.begin(), a.end(), [&b](std::size_t marker) {
-    return std::find(b.begin(), b.end(), marker) != b.end();
-  });
-}
-
 // The largest angle, rad, by which the row bends if `b` continues the end of `a`, or nothing if `b`
 // does not continue it.
 std::optional<double> BendAtGap(const std::vector<StandingMarker>& markers, const MarkerChain& a,
@@ -243,6 +237,12 @@ std::vector<StandingMarker> StandingMarkers(const ShapePoints& shape) {
     markers.push_back(marker);
   }
   return markers;
+}
+
+bool ShareMarkers(const MarkerChain& a, const MarkerChain& b) {
+  return std::any_of(a.begin(), a.end(), [&b](std::size_t marker) {
+    return std::find(b.begin(), b.end(), marker) != b.end();
+  });
 }
 
 double Distance(const StandingMarker& a, const StandingMarker& b) {

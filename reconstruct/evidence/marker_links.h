@@ -23,6 +23,8 @@ std::vector<StandingMarker> StandingMarkers(const ShapePoints& shape);
 // Indices of consecutive markers, at least one.
 using MarkerChain = std::vector<std::size_t>;
 
+bool ShareMarkers(const MarkerChain& a, const MarkerChain& b);
+
 double Distance(const StandingMarker& a, const StandingMarker& b);
 
 // The median distance between neighbours of the chain, which has at least two markers.

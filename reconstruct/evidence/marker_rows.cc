@@ -61,8 +61,9 @@ class RowFinder {
       row.direction.normalize();
       (chain.size() >= kMinOnRow ? rows_ : short_rows).push_back(std::move(row));
     }
-    Classify(&rows_);
+    knows_up_ = KnowsUp();
     Classify(&short_rows);
+    Classify(&rows_);
     KeepShortRows(std::move(short_rows));
     JoinRows();
     return Groups();
@@ -82,8 +83,7 @@ class RowFinder {
     return num_agreeing >= kShare * num;
   }
 
-  void Classify(std::vector<Row>* rows) {
-    knows_up_ = KnowsUp();
+  void Classify(std::vector<Row>* rows) const {
     if (rows_.empty()) return;
     const Row& longest = *std::max_element(
         rows_.begin(), rows_.end(),
@@ -137,17 +137,11 @@ class RowFinder {
     return nearest <= kMaxStepsBetweenRows * std::max(a.step, b.step);
   }
 
-  bool ShareMarker(const Row& a, const Row& b) const {
-    return std::any_of(a.chain.begin(), a.chain.end(), [&b](std::size_t i) {
-      return std::find(b.chain.begin(), b.chain.end(), i) != b.chain.end();
-    });
-  }
-
   void JoinRows() {
     Sets by_markers(rows_.size());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       for (std::size_t j = i + 1; j < rows_.size(); ++j) {
-        if (ShareMarker(rows_[i], rows_[j])) by_markers.Join(i, j);
+        if (ShareMarkers(rows_[i].chain, rows_[j].chain)) by_markers.Join(i, j);
       }
     }
     Sets all = by_markers;

@@ -112,8 +112,8 @@ bool BelongsRatherThan(const LineVotes& votes, const LineVotes& of_rival) {
 }
 
 // Drops each rival that the layout does not support if it supports the other one of the pair.
-// Disputed markers have no vote, because a whole line may be misread. Returns whether any marker
-// was dropped.
+// Disputed markers have no vote, because a whole line may be misread. A marker that has been
+// dropped has no rivals any more. Returns whether any marker was dropped.
 bool DropRivalsByLayout(const Layout& layout, const std::vector<RivalPair>& pairs,
                         Evidence* evidence) {
   std::set<int> disputed_ids;
@@ -124,6 +124,10 @@ bool DropRivalsByLayout(const Layout& layout, const std::vector<RivalPair>& pair
   }
   bool changed = false;
   for (const auto& [often, seldom] : pairs) {
+    if (evidence->reasons.count(often->marker_id) + evidence->reasons.count(seldom->marker_id) >
+        0) {
+      continue;
+    }
     const LineVotes for_often = VotesFor(lines_of_part, disputed_ids, *often);
     const LineVotes for_seldom = VotesFor(lines_of_part, disputed_ids, *seldom);
     const bool often_belongs = BelongsRatherThan(for_often, for_seldom);

@@ -147,6 +147,13 @@ void RegisterAllFrames(GlobalRegistration* global) {
   MarkFits(problem, 1.0, &global->solution);
 }
 
+// Adjusts until a step changes the cost by less than the fraction `tolerance`, and judges the fits.
+void AdjustFinally(double tolerance, GlobalRegistration* global) {
+  AdjustMap(global->problem, {50, tolerance}, &global->solution);
+  global->noise = EstimateNoise(global->problem, global->solution);
+  MarkFinalFits(global->problem, global->noise, &global->solution);
+}
+
 // Removes outliers at the tolerance of the final noise, and adjusts. Markers that the layout
 // contradicts are removed before the last adjustment, so that they do not affect the result.
 void RemoveOutliers(const Layout& layout, GlobalRegistration* global) {
@@ -156,13 +163,13 @@ void RemoveOutliers(const Layout& layout, GlobalRegistration* global) {
   LeaveOutBlurredFrames(global);
   MarkFinalFits(problem, global->noise, &global->solution);
   DropUnsupported(global);
-  for (const double tolerance : {1e-3, 1e-6}) {
-    AdjustMap(problem, {50, tolerance}, &global->solution);
-    global->noise = EstimateNoise(problem, global->solution);
-    MarkFinalFits(problem, global->noise, &global->solution);
-    DropContradictions(layout, global);
-    DropUnsupported(global);
-  }
+  constexpr double kRough = 1e-3, kFine = 1e-6;
+  AdjustFinally(kRough, global);
+  DropContradictions(layout, global);
+  DropUnsupported(global);
+  AdjustFinally(kFine, global);
+  if (DropContradictions(layout, global)) AdjustFinally(kFine, global);
+  DropUnsupported(global);
 }
 
 int ChooseCentralFrame(const GlobalRegistration& global) {
@@ -182,19 +189,20 @@ int ChooseCentralFrame(const GlobalRegistration& global) {
   return central_idx;
 }
 
-[[noreturn]] void ThrowNoAgreement(const std::vector<DatabaseImage>& images, int min_num_inliers) {
+[[noreturn]] void ThrowNoAgreement(const std::vector<DatabaseImage>& images,
+                                   const RegistrationOptions& options) {
   const std::string doubt = DictionaryDoubt(images);
   throw DataError(fmt::format(
-      "no two images agree on the places of at least {} markers that both see; {}check that the "
-      "camera calibration belongs to these images, that the marker length is right, and that the "
-      "pictures overlap",
-      min_num_inliers,
+      "no two images agree on the places of at least {} markers that both see; {}check that {}the "
+      "marker length is right, and that the pictures overlap",
+      options.min_num_inliers,
       doubt.empty()
           ? ""
           : doubt + ", which happens with a wrong dictionary and in pictures too blurred or dim to "
                     "read: first check the dictionary, its border_bits and whether the prints are "
                     "inverted, and let velamap clip_checker judge the pictures; if these are "
-                    "right, "));
+                    "right, ",
+      options.has_calibration ? "the camera calibration belongs to these images, that " : ""));
 }
 
 }  // namespace
@@ -221,7 +229,7 @@ Registration RegisterFramesGlobally(const std::vector<DatabaseImage>& images,
     RemoveOutliers(layout, &global);
   }
   if (global.solution.NumRegistered() < 2) {
-    ThrowNoAgreement(images, options.min_num_inliers);
+    ThrowNoAgreement(images, options);
   }
   if (IsSuspicious(global.noise)) {
     global.notes.push_back(fmt::format(

@@ -99,8 +99,10 @@ void AddMarkers(const GlobalRegistration& global, Registration* registration) {
           });
       registration->dropped_markers.push_back(
           {marker.marker_id, static_cast<int>(num_seen),
-           fmt::format("seen in {} registered frames, no two of which agree on its place",
-                       num_seen)});
+           num_seen == 0
+               ? "no registered frame shows it"
+               : fmt::format("seen in {} registered frames, no two of which agree on its place",
+                             num_seen)});
     }
   }
 }

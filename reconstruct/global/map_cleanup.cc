@@ -138,7 +138,7 @@ void DropWrongSizes(GlobalRegistration* global) {
   }
 }
 
-void DropContradictions(const Layout& layout, GlobalRegistration* global) {
+bool DropContradictions(const Layout& layout, GlobalRegistration* global) {
   const double m_per_unit = 1 / global->MedianScale();
   std::vector<PlacedMarker> markers;
   std::map<int, int> marker_idx_of;
@@ -154,11 +154,13 @@ void DropContradictions(const Layout& layout, GlobalRegistration* global) {
     marker_idx_of[marker.marker_id] = marker_idx;
     markers.push_back(std::move(marker));
   }
-  for (const Contradiction& contradiction : FindContradictions(layout, markers)) {
+  const std::vector<Contradiction> contradictions = FindContradictions(layout, markers);
+  for (const Contradiction& contradiction : contradictions) {
     const int marker_idx = marker_idx_of.at(contradiction.marker_id);
     global->Drop(marker_idx, contradiction.reason);
     global->dropped_markers.at(marker_idx).is_false = true;
   }
+  return !contradictions.empty();
 }
 
 void LeaveOutBlurredFrames(GlobalRegistration* global) {

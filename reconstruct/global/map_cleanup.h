@@ -12,8 +12,9 @@ void VoteOnIds(GlobalRegistration* global);
 // Drops markers whose side differs from the others by far more than their print explains.
 void DropWrongSizes(GlobalRegistration* global);
 
-// Drops markers that the layout contradicts (layout_evidence.h). Needs `noise`.
-void DropContradictions(const Layout& layout, GlobalRegistration* global);
+// Drops markers that the layout contradicts (layout_evidence.h). Needs `noise`. Returns whether
+// there were any.
+bool DropContradictions(const Layout& layout, GlobalRegistration* global);
 
 // Leaves out frames whose corners scatter far more than in other frames, if other frames see their
 // markers often enough. Needs `noise`.

@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "importer/geometry/pose_step.h"
+
 namespace velamap {
 namespace {
 
@@ -42,10 +44,8 @@ std::vector<CenterView> ViewsOf(const MapProblem& problem, const MapSolution& so
     const MapObservation& observation = problem.Observation(idx);
     const std::size_t marker_idx = static_cast<std::size_t>(observation.marker_idx);
     const Eigen::Vector3d x = pose * solution.shape_from_marker[marker_idx].front().translation;
-    Eigen::Matrix<double, 2, 3> ray_from_x;
-    ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
-    const Eigen::Matrix<double, 2, 3> jacobian =
-        observation.px_from_ray[0] * ray_from_x * rotation / (sigma_factor * observation.sigma_px);
+    const Eigen::Matrix<double, 2, 3> jacobian = observation.px_from_ray[0] * RayByPoint(x) *
+                                                 rotation / (sigma_factor * observation.sigma_px);
     views.push_back({marker_idx, jacobian.transpose() * jacobian});
   }
   return views;

@@ -8,6 +8,7 @@
 #include "importer/geometry/alignment.h"
 #include "importer/geometry/ransac.h"
 #include "reconstruct/map/map_refinement.h"
+#include "reconstruct/map/map_resection.h"
 
 namespace velamap {
 namespace {
@@ -169,8 +170,6 @@ std::vector<PlaceHypothesis> RankPlaces(const MapProblem& problem, const MapSolu
 
 MarkerPlacement PlaceMarker(const MapProblem& problem, const MapSolution& solution, int marker_idx,
                             double tolerance_factor) {
-  // As in IsAmbiguous() of a frame's pose.
-  constexpr double kRatio = 2.0, kNegligible = 1e-3;
   const std::vector<View> views = FindViews(problem, solution, marker_idx);
   MarkerPlacement placement;
   placement.num_seen = static_cast<int>(views.size());
@@ -187,10 +186,7 @@ MarkerPlacement PlaceMarker(const MapProblem& problem, const MapSolution& soluti
   if (ranked.empty() || ranked.front().observation_idxs.size() < 2) return placement;
   const PlaceHypothesis best = ranked.front();
   placement.places.push_back(best);
-  if (ranked.size() > 1 && ranked[1].observation_idxs.size() >= best.observation_idxs.size() &&
-      ranked[1].cost < kRatio * best.cost + kNegligible * static_cast<double>(views.size())) {
-    placement.places.push_back(ranked[1]);
-  }
+  if (IsAmbiguous(ranked)) placement.places.push_back(ranked[1]);
   std::vector<View> elsewhere;
   for (const View& view : views) {
     if (!std::binary_search(best.observation_idxs.begin(), best.observation_idxs.end(),

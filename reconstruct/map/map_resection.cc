@@ -186,15 +186,4 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
   return DistinctHypotheses(std::move(refined), IsSamePose, kMaxHypotheses);
 }
 
-bool IsAmbiguous(const std::vector<PoseHypothesis>& hypotheses) {
-  // A rival explains as many observations at up to twice the cost; the small constant avoids
-  // comparing rounding errors.
-  constexpr double kRatio = 2.0, kNegligible = 1e-3;
-  if (hypotheses.size() < 2) return false;
-  const PoseHypothesis &best = hypotheses[0], &rival = hypotheses[1];
-  const double num_agreeing = static_cast<double>(best.observation_idxs.size());
-  return rival.cost < kRatio * best.cost + kNegligible * num_agreeing &&
-         rival.observation_idxs.size() >= best.observation_idxs.size();
-}
-
 }  // namespace velamap

@@ -23,8 +23,18 @@ std::vector<PoseHypothesis> ResectFrame(const MapProblem& problem, const MapSolu
                                         int frame_idx, double tolerance_factor,
                                         std::uint32_t random_seed);
 
-// Whether the second hypothesis explains the frame nearly as well as the first, so that other
-// frames should join the map first.
-bool IsAmbiguous(const std::vector<PoseHypothesis>& hypotheses);
+// Whether the second hypothesis explains nearly as much as the first: as many observations at up to
+// twice the cost. For the poses of a frame, other frames should then join the map first. Also for
+// the places of a marker (PlaceHypothesis).
+template <typename Hypothesis>
+bool IsAmbiguous(const std::vector<Hypothesis>& hypotheses) {
+  // The small constant avoids comparing rounding errors.
+  constexpr double kRatio = 2.0, kNegligible = 1e-3;
+  if (hypotheses.size() < 2) return false;
+  const Hypothesis &best = hypotheses[0], &rival = hypotheses[1];
+  const double num_agreeing = static_cast<double>(best.observation_idxs.size());
+  return rival.cost < kRatio * best.cost + kNegligible * num_agreeing &&
+         rival.observation_idxs.size() >= best.observation_idxs.size();
+}
 
 }  // namespace velamap

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/pose_step.h"
 #include "importer/geometry/quad.h"
 #include "importer/geometry/symmetric_eigen.h"
 #include "reconstruct/map/map_refinement.h"
@@ -73,10 +74,13 @@ std::optional<double> ShownWidth(const MapFrame& frame, const Rigid3& cam_from_s
   return width_px;
 }
 
-// 1 sigma of the centre in its least certain direction, for fixed frames. Where these look from one
-// side, the distance follows from the marker's size in the image. The error of its print is the
-// same fraction in all frames: one unknown with a prior, which is eliminated. However many frames
-// look from one side, the distance is no more certain than the print.
+// 1 sigma of the centre in its least certain direction, for fixed frames. The errors of the four
+// corners in one view are taken as one error: those of the pose, the lens and the cloth move them
+// together, and sigma_px does not contain them. With independent errors, half of this sigma would
+// be enough. Where the frames look from one side, the distance follows from the marker's size in
+// the image. The error of its print is the same fraction in all frames: one unknown with a prior,
+// which is eliminated. However many frames look from one side, the distance is no more certain than
+// the print.
 double CenterSigma(const MapProblem& problem, const MapSolution& solution, const MapNoise& noise,
                    int marker_idx) {
   const MapMarker& marker = problem.Marker(marker_idx);
@@ -91,11 +95,9 @@ double CenterSigma(const MapProblem& problem, const MapSolution& solution, const
     const Rigid3& pose = *solution.cam_from_shape[static_cast<std::size_t>(observation.frame_idx)];
     const Eigen::Vector3d x = pose * place.translation;
     const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-    Eigen::Matrix<double, 2, 3> ray_from_x;
-    ray_from_x << 1 / x.z(), 0, -x.x() / (x.z() * x.z()), 0, 1 / x.z(), -x.y() / (x.z() * x.z());
     const double sigma_px = factor * observation.sigma_px;
     const Eigen::Matrix<double, 2, 3> jacobian =
-        observation.px_from_ray[0] * ray_from_x * rotation / sigma_px;
+        observation.px_from_ray[0] * RayByPoint(x) * rotation / sigma_px;
     // log(size in the image) = log(side) - log(distance).
     const Eigen::Vector3d log_distance_by_x = rotation.transpose() * x / x.squaredNorm();
     const double size_weight = std::pow(observation.side_px / sigma_px, 2);

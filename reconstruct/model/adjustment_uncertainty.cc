@@ -135,7 +135,7 @@ void CheckShapes(const PointCovariance& points, const UncertaintyReader& reader)
   }
 }
 
-void WriteContent(const AdjustmentUncertainty& uncertainty, const Model* model, std::ostream* out) {
+void WriteContent(const AdjustmentUncertainty& uncertainty, const Model& model, std::ostream* out) {
   Write(kMagic, sizeof(kMagic), out);
   Write(kVersion, out);
   for (const double value : {uncertainty.relative_scale_sigma, uncertainty.variance_factor,
@@ -154,7 +154,7 @@ void WriteContent(const AdjustmentUncertainty& uncertainty, const Model* model, 
   for (const Eigen::MatrixXd& block : points.blocks) WriteMatrix(block, out);
   WriteMatrix(points.factor, out);
   WriteMatrix(points.signs, out);
-  Write(model == nullptr ? std::uint64_t{0} : HashOfPoints(*model), out);
+  Write(HashOfPoints(model), out);
 }
 
 }  // namespace
@@ -169,8 +169,8 @@ std::uint64_t HashOfPoints(const Model& model) {
   return hash == 0 ? 1 : hash;
 }
 
-void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder,
-                      const Model* model) {
+void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const Model& model,
+                      const std::string& folder) {
   WriteFile(FilePath(folder), [&](std::ostream& out) { WriteContent(uncertainty, model, &out); });
 }
 

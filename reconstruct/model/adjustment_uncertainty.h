@@ -48,10 +48,10 @@ struct AdjustmentUncertainty {
 std::uint64_t HashOfPoints(const Model& model);
 
 // The file in `folder`. ReadUncertainty throws InputError that names the file if it is missing (see
-// HasUncertainty), truncated or of another format. `model`, which may be null, is the model in the
-// folder, whose hash the file holds.
-void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const std::string& folder,
-                      const Model* model = nullptr);
+// HasUncertainty), truncated or of another format. `model` is the model in the folder, whose hash
+// the file holds.
+void WriteUncertainty(const AdjustmentUncertainty& uncertainty, const Model& model,
+                      const std::string& folder);
 bool HasUncertainty(const std::string& folder);
 AdjustmentUncertainty ReadUncertainty(const std::string& folder);
 

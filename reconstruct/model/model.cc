@@ -159,6 +159,18 @@ void RemoveObservation(Model* model, Point3DId point3D_id, const TrackElement& e
   track.erase(it);
 }
 
+void RemoveFromTracks(const ModelImage& image, Model* model) {
+  for (const Point2D& point2D : image.points2D) {
+    if (point2D.point3D_id == kInvalidPoint3DId) continue;
+    std::vector<TrackElement>& track = model->points3D.at(point2D.point3D_id).track;
+    track.erase(std::remove_if(track.begin(), track.end(),
+                               [&image](const TrackElement& element) {
+                                 return element.image_id == image.image_id;
+                               }),
+                track.end());
+  }
+}
+
 void RemoveShortTracks(Model* model, int min_track_length) {
   const auto is_short = [min_track_length](const Point3D& point) {
     return static_cast<int>(point.track.size()) < min_track_length;

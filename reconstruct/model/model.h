@@ -64,6 +64,10 @@ void CheckModel(const Model& model);
 // RemoveShortTracks.
 void RemoveObservation(Model* model, Point3DId point3D_id, const TrackElement& element);
 
+// Removes all observations of the image from the tracks. The image itself stays as it is; the
+// caller removes it.
+void RemoveFromTracks(const ModelImage& image, Model* model);
+
 // Removes points with fewer than `min_track_length` observations and the references to them.
 void RemoveShortTracks(Model* model, int min_track_length);
 

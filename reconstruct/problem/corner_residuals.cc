@@ -61,21 +61,7 @@ double RobustVarianceFactor(const std::vector<CornerResidual>& corners, const Mo
   const double num_parameters = 6.0 * static_cast<double>(model.images.size() - 1) +
                                 3.0 * static_cast<double>(model.points3D.size());
   const double redundancy = std::max(0.2 * num_residuals, num_residuals - num_parameters);
-  // The squared length of a residual with two normal coordinates has the median 2 ln 2.
-  return Median(std::move(squares)) / (2.0 * std::log(2.0)) * num_residuals / redundancy;
-}
-
-bool RestoreObservation(const RemovedObservation& observation, Model* model) {
-  const auto point = model->points3D.find(observation.point3D_id);
-  const auto image = std::find_if(model->images.begin(), model->images.end(),
-                                  [&observation](const ModelImage& other) {
-                                    return other.image_id == observation.element.image_id;
-                                  });
-  if (point == model->points3D.end() || image == model->images.end()) return false;
-  if (!((image->cam_from_world * point->second.x_in_world).z() > 0)) return false;
-  image->points2D.at(observation.element.point2D_idx).point3D_id = observation.point3D_id;
-  point->second.track.push_back(observation.element);
-  return true;
+  return Median(std::move(squares)) / kChiSquaredMedian2 * num_residuals / redundancy;
 }
 
 void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,

@@ -23,10 +23,6 @@ std::vector<CornerResidual> EvaluateCorners(const MarkerProblem& problem);
 // parameters for each image but the first and 3 for each point.
 double RobustVarianceFactor(const std::vector<CornerResidual>& corners, const Model& model);
 
-// Returns the observation to the model, if its image and its point are still there and the point
-// lies in front of the camera; else returns false.
-bool RestoreObservation(const RemovedObservation& observation, Model* model);
-
 // Takes the corners beyond `max_sigmas` out of the model and appends them to `removed`.
 void RemoveOutliers(const std::vector<CornerResidual>& corners, double max_sigmas, Model* model,
                     std::vector<RemovedObservation>* removed);

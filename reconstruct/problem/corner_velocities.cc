@@ -76,18 +76,32 @@ struct AffineField {
   }
 };
 
-// Nothing for fewer than three markers. Across a line of markers the field does not change.
+// Mean side of a marker in the image, px.
+double MeanSidePx(const MarkerDetection& marker) {
+  const auto& corners = marker.corners_in_image_px;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kNumCorners; ++i) {
+    sum += (corners[(i + 1) % kNumCorners] - corners[i]).norm();
+  }
+  return sum / kNumCorners;
+}
+
+// Nothing for fewer than three markers. The field does not change along an axis over which the
+// markers spread by less than half a side (RMS): there it would be extrapolated to their corners,
+// which multiplies the noise of the velocities.
 std::optional<AffineField> FitField(const FrameDetections& frame,
                                     const std::vector<std::optional<Eigen::Vector2d>>& velocities) {
   constexpr int kMinNumMarkers = 3;
-  constexpr double kMinFlatness = 1e-12;  // squared width of the markers by their squared length
+  constexpr double kMinSpread = 0.5;  // of a side
   const auto num_known = std::count_if(velocities.begin(), velocities.end(),
                                        [](const auto& velocity) { return velocity.has_value(); });
   if (num_known < kMinNumMarkers) return std::nullopt;
   Eigen::MatrixX2d places(num_known, 2), values(num_known, 2);
   Eigen::Index row = 0;
+  double side_px = 0.0;
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     if (!velocities[i]) continue;
+    side_px += MeanSidePx(frame.markers[i]) / static_cast<double>(num_known);
     places.row(row) = CornerMean(frame.markers[i]).transpose();
     values.row(row++) = velocities[i]->transpose();
   }
@@ -99,11 +113,11 @@ std::optional<AffineField> FitField(const FrameDetections& frame,
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(places.transpose() * places);
   const Eigen::Matrix2d sums = values.transpose() * places;
+  const double least_sum = static_cast<double>(num_known) * std::pow(kMinSpread * side_px, 2);
   for (int i = 0; i < 2; ++i) {
-    const bool is_across_a_line = axes.eigenvalues()[i] <= kMinFlatness * axes.eigenvalues()[1];
+    if (!(axes.eigenvalues()[i] > least_sum)) continue;
     const Eigen::Vector2d axis = axes.eigenvectors().col(i);
-    if (!is_across_a_line)
-      field.gradient_1_s += sums * axis * axis.transpose() / axes.eigenvalues()[i];
+    field.gradient_1_s += sums * axis * axis.transpose() / axes.eigenvalues()[i];
   }
   return field;
 }
@@ -197,8 +211,8 @@ void MoveToMiddleRow(double rolling_shutter_s, const CornerVelocities& velocitie
 void MoveFromMiddleRow(double rolling_shutter_s, const CornerVelocities& velocities_px_s,
                        Model* model) {
   if (rolling_shutter_s == 0) return;
-  // MoveToMiddleRow multiplies the distance from the middle row by this, and with it
-  // ShutterDirection.
+  // MoveToMiddleRow scales a point's distance from the middle row, and so its ShutterDirection, by
+  // this factor; the inverse has to divide by it.
   const auto scale = [&](const Camera& camera, const Eigen::Vector2d& velocity_px_s) {
     return 1.0 - rolling_shutter_s * velocity_px_s.y() / camera.height_px;
   };

@@ -16,8 +16,6 @@
 namespace velamap {
 namespace {
 
-// Few enough that errors that last for a tenth of a video still fall into one group.
-constexpr std::size_t kMaxNumGroups = 5;
 // Simulated errors pass through the adjustment in batches, one draw a column, until their mean is
 // known well enough.
 constexpr int kBatchSize = 8, kMinNumBatches = 2, kMaxNumBatches = 5;
@@ -128,14 +126,14 @@ ExpectedMovement SimulateIndependentErrors(const LinearAdjustment& adjustment, i
 
 }  // namespace
 
-std::vector<int> GroupImages(const Model& model, const MarkerState& state) {
-  const std::size_t count = state.images.size();
+std::vector<int> GroupImages(const Model& model, int max_num_groups) {
+  const std::size_t count = model.images.size();
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&model](std::size_t a, std::size_t b) {
     return NaturalLess(model.images[a].name, model.images[b].name);
   });
-  const std::size_t num_groups = std::min(count, kMaxNumGroups);
+  const std::size_t num_groups = std::min(count, static_cast<std::size_t>(max_num_groups));
   std::vector<int> groups(count);
   for (std::size_t i = 0; i < count; ++i)
     groups[order[i]] = static_cast<int>(i * num_groups / count);

@@ -11,10 +11,13 @@
 
 namespace velamap {
 
-// Divides the images, in the natural order of their names, into up to five groups of about equal
-// size, so that neighbours in time share a group. Returns the group, 0, 1, ..., of each image of
-// the state.
-std::vector<int> GroupImages(const Model& model, const MarkerState& state);
+// Few enough that errors that last for a tenth of a video still fall into one group.
+constexpr int kNumCorrelationGroups = 5;
+
+// Divides the images, in the natural order of their names, into up to `max_num_groups` groups of
+// about equal size, so that neighbours in time share a group. Returns the group, 0, 1, ..., of each
+// image.
+std::vector<int> GroupImages(const Model& model, int max_num_groups);
 
 // The factor, 1 or more, by which the corners' sigmas have to grow to account for common errors. It
 // is the root of the ratio of two squared movements of the shape (after alignment with scale): the

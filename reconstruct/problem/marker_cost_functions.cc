@@ -141,10 +141,8 @@ bool MarkerViewError::Evaluate(double const* const* parameters, double* residual
     residual = RobustResidual((projection.value + view.OffsetPx(corner)) / corner.sigma_px,
                               loss_sigmas_, &by_whitened);
     const Eigen::Matrix2d by_image = by_whitened / corner.sigma_px;
-    Eigen::Matrix<double, 2, 3> ray_by_cam;
-    ray_by_cam << 1, 0, -ray.x(), 0, 1, -ray.y();
     SetDerivatives(view, corner, 2 * i, by_image,
-                   by_image * projection.by_ray * ray_by_cam / x_in_cam.z(), &maps);
+                   by_image * projection.by_ray * RayByPoint(x_in_cam), &maps);
     if (maps[3].rows() > 0) {
       maps[3].middleRows<2>(2 * i) =
           by_image *

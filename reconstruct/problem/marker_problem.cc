@@ -13,6 +13,7 @@
 #include "importer/camera/camera_projection.h"
 #include "reconstruct/geometry/intrinsics_prior.h"
 #include "reconstruct/problem/prior_cost_functions.h"
+#include "reconstruct/problem/scale_bar.h"
 #include "reconstruct/solve/schur_complement.h"
 
 namespace velamap {
@@ -151,11 +152,9 @@ class ProblemBuilder {
   }
 
   void AddScaleBars() {
-    for (const ScaleBar& bar : weights_.scale_bars) {
+    for (const ScaleBar& bar : FindScaleBars(state_, weights_.scale_bars)) {
       std::vector<double*> blocks;
-      for (const int idx : bar.marker_idxs) {
-        blocks.push_back(result_.marker_blocks[static_cast<std::size_t>(idx)]);
-      }
+      for (const int idx : bar.marker_idxs) blocks.push_back(result_.marker_blocks[idx]);
       if (blocks.size() > 1 && result_.kept_markers.count(blocks[0]) == 0) {
         result_.kept_markers.insert(blocks[1]);
       }
@@ -284,7 +283,7 @@ int MinimizeMarkerProblem(int max_num_iterations, double function_tolerance,
   if (!summary.is_usable) {
     throw DataError(
         "the bundle adjustment finds no step: a corner lies behind the camera that sees it, or a "
-        "number is not finite");
+        "number is not finite; take more pictures, from more sides");
   }
   return summary.num_iterations;
 }

@@ -10,11 +10,11 @@
 
 #include <ceres/problem.h>
 
+#include "importer/layout/layout.h"
 #include "reconstruct/problem/corner_errors.h"
 #include "reconstruct/problem/marker_adjustment_options.h"
 #include "reconstruct/problem/marker_cost_functions.h"
 #include "reconstruct/problem/marker_state.h"
-#include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
 
@@ -37,7 +37,8 @@ struct MarkerWeights {
   // covariance.
   bool holds_print_scale = false;
   std::set<int> markers_without_size;
-  std::vector<ScaleBar> scale_bars;
+  // Each state resolves them anew, because corners and markers are removed between minimizations.
+  std::vector<KnownDistance> scale_bars;
 };
 
 // 1 sigma of the scale of the print as a whole, as a fraction.
@@ -56,6 +57,13 @@ struct MarkerProblem {
   // One for every pair of residuals of corner_residuals, in order.
   std::vector<std::pair<Point3DId, TrackElement>> corners;
   std::vector<double> corner_sigmas_px;  // by which the residuals were divided, by `corners`
+
+  // The corners' residuals, then the priors'.
+  std::vector<ceres::ResidualBlockId> ResidualsWithoutBars() const {
+    std::vector<ceres::ResidualBlockId> residuals = corner_residuals;
+    residuals.insert(residuals.end(), prior_residuals.begin(), prior_residuals.end());
+    return residuals;
+  }
 };
 
 // Refers to `state`, which must outlive the problem. `calibration` is the prior of the cameras. The

@@ -6,7 +6,6 @@
 #include <Eigen/Cholesky>
 
 #include "reconstruct/geometry/covariance_update.h"
-#include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
 namespace {
@@ -113,12 +112,11 @@ AdjustmentUncertainty MakeUncertainty(const MarkerState& state, const MarkerWeig
   AdjustmentUncertainty uncertainty;
   PointCovariance& points = uncertainty.points;
   points = PointsOf(state, covariance);
-  const auto num_bars = static_cast<Eigen::Index>(weights.scale_bars.size());
-  const Eigen::MatrixXd bar_gradients =
-      BarGradients(weights.scale_bars, state, points.factor.rows());
-  Eigen::VectorXd bar_sigmas(num_bars);
-  for (Eigen::Index i = 0; i < num_bars; ++i) {
-    bar_sigmas[i] = weights.scale_bars[i].distance.sigma_m;
+  const std::vector<ScaleBar> bars = FindScaleBars(state, weights.scale_bars);
+  const Eigen::MatrixXd bar_gradients = BarGradients(bars, state, points.factor.rows());
+  Eigen::VectorXd bar_sigmas(bar_gradients.cols());
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    bar_sigmas[static_cast<Eigen::Index>(i)] = bars[i].distance.sigma_m;
   }
   const int inset_column = GlobalColumn(problem, &state.inset_px);
   if (inset_column >= 0) {

@@ -9,6 +9,7 @@
 #include "reconstruct/model/adjustment_uncertainty.h"
 #include "reconstruct/problem/marker_problem.h"
 #include "reconstruct/problem/normal_equations.h"
+#include "reconstruct/problem/scale_bar.h"
 
 namespace velamap {
 

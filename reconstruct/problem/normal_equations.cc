@@ -111,9 +111,7 @@ MarkerJacobian EvaluateJacobian(const MarkerProblem& problem) {
   options.parameter_blocks = problem.marker_blocks;
   options.parameter_blocks.insert(options.parameter_blocks.end(), problem.global_blocks.begin(),
                                   problem.global_blocks.end());
-  options.residual_blocks = problem.corner_residuals;
-  options.residual_blocks.insert(options.residual_blocks.end(), problem.prior_residuals.begin(),
-                                 problem.prior_residuals.end());
+  options.residual_blocks = problem.ResidualsWithoutBars();
   ceres::CRSMatrix sparse;
   VELAMAP_CHECK(problem.ceres->Evaluate(options, nullptr, nullptr, nullptr, &sparse));
   jacobian.num_globals = sparse.num_cols - static_cast<int>(marker_of_column.size());

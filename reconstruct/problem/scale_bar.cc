@@ -45,9 +45,10 @@ bool AddEnd(const MarkerState& state, int marker_id, int corner, double sign, Sc
 
 }  // namespace
 
-std::vector<ScaleBar> FindScaleBars(const MarkerState& state, const Layout& layout) {
+std::vector<ScaleBar> FindScaleBars(const MarkerState& state,
+                                    const std::vector<KnownDistance>& distances) {
   std::vector<ScaleBar> bars;
-  for (const KnownDistance& distance : layout.distances) {
+  for (const KnownDistance& distance : distances) {
     if (!distance.is_scale_bar) continue;
     ScaleBar bar;
     bar.distance = distance;

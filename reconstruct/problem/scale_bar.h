@@ -11,15 +11,17 @@
 
 namespace velamap {
 
-// A known distance, with the weights of corners that ScaleBarError takes.
+// A known distance, with the weights of corners that ScaleBarError takes. It belongs to one state:
+// in another one, the indices of markers and corners differ.
 struct ScaleBar {
   KnownDistance distance;
   std::vector<int> marker_idxs;  // one or two
   std::vector<std::vector<double>> corner_weights;
 };
 
-// The scale bars of the layout whose corners are in the state.
-std::vector<ScaleBar> FindScaleBars(const MarkerState& state, const Layout& layout);
+// Those of the distances that are scale bars and whose corners are in the state.
+std::vector<ScaleBar> FindScaleBars(const MarkerState& state,
+                                    const std::vector<KnownDistance>& distances);
 
 // Length of the bar in the state, m.
 double BarLength(const ScaleBar& bar, const MarkerState& state);

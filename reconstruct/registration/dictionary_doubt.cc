@@ -25,12 +25,12 @@ std::string DictionaryDoubt(const std::vector<DatabaseImage>& images) {
       std::count_if(num_images_of.begin(), num_images_of.end(),
                     [](const auto& id_and_count) { return id_and_count.second == 1; }));
   if (2 * num_single > num_images_of.size()) {
-    return fmt::format("{} of {} ids are seen in one of the {} images only", num_single,
+    return fmt::format("{} of {} ids are seen in only one of the {} images", num_single,
                        num_images_of.size(), num_images);
   }
   const double per_image = static_cast<double>(num_detections) / static_cast<double>(num_images);
   if (per_image >= kFewMarkersPerImage) return {};
-  return fmt::format("{} images hold {:.1f} markers each", num_images, per_image);
+  return fmt::format("{} images hold {:.1f} markers each on average", num_images, per_image);
 }
 
 }  // namespace velamap

@@ -17,9 +17,9 @@ int Registration::NumRegistered() const {
 void CheckEnoughImages(std::size_t num_images, std::size_t needed) {
   if (num_images >= needed) return;
   throw DataError(
-      fmt::format("a shape needs at least two images with markers, the database has {}; take "
-                  "pictures from several positions",
-                  num_images));
+      fmt::format("a shape needs at least {} with markers, the database has {}; take pictures from "
+                  "several positions",
+                  needed == 1 ? "one image" : "two images", num_images));
 }
 
 void LeaveOut(int num_shared, int num_markers, int needed, RegisteredFrame* frame) {

@@ -54,6 +54,8 @@ struct RegistrationOptions {
   std::string central_frame;  // image name or frame number; empty: the best one is chosen
   int min_num_inliers = 2;    // fewest shared markers that agree for a frame to be registered
   int min_num_frames = 2;     // fewest frames that see a marker
+  // Whether the cameras are a calibration, which may be the wrong one, or guesses.
+  bool has_calibration = true;
   int random_seed = 0;
   int num_threads = 0;  // 0: one per core; never changes the result
   ThesisRegistrationOptions thesis;

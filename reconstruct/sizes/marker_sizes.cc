@@ -8,7 +8,6 @@
 
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
-#include "reconstruct/problem/marker_adjustment_options.h"
 #include "reconstruct/problem/prior_cost_functions.h"
 #include "reconstruct/sizes/part_sizes.h"
 
@@ -34,7 +33,9 @@ double MedianScale(const MarkerState& state) {
     }
   }
   if (scales.empty()) {
-    throw DataError("no marker of the model has two neighbouring corners, so the scale is unknown");
+    throw DataError(
+        "no marker of the model has two neighbouring corners, so the scale is unknown; take more "
+        "pictures of whole markers");
   }
   return Median(std::move(scales));
 }
@@ -55,10 +56,9 @@ MarkerSizeVerdict JudgeMarkerSizes(const MarkerState& state, const MarkerCovaria
   verdict.print_tolerance = FitTolerance(deviations, sizes, print_tolerance);
   if (verdict.print_tolerance > print_tolerance) {
     verdict.warnings.push_back(fmt::format(
-        "the sides of the markers scatter by {:.2f} % more than the images explain, beyond the "
-        "{:.2f} % of {}; the larger is used",
-        100 * verdict.print_tolerance, 100 * print_tolerance,
-        OptionName(&MarkerAdjustmentOptions::print_tolerance)));
+        "the sides of the markers scatter by {0:.2f} % beyond what the images explain, more than "
+        "the print tolerance of {1:.2f} %; {0:.2f} % is used",
+        100 * verdict.print_tolerance, 100 * print_tolerance));
   }
   const std::vector<double> normalized = Normalize(deviations, sizes, verdict.print_tolerance);
   for (std::size_t i = 0; i < sizes.size(); ++i) {

@@ -71,7 +71,7 @@ std::string DisagreementText(const std::vector<PartSize>& parts, std::size_t idx
                              const PartDifference& difference) {
   const std::string others = parts.size() == 2 ? parts[1 - idx].part : "the other parts";
   return fmt::format(
-      "{} and {} disagree by {:.2f} +- {:.2f} % (against marker_length the markers of {} are the "
+      "{} and {} disagree by {:.2f} +- {:.2f} % (relative to marker_length, the markers of {} are "
       "{})",
       parts[idx].part, others, 100 * std::abs(difference.value), 100 * difference.sigma,
       parts[idx].part, difference.value > 0 ? "larger" : "smaller");

@@ -41,6 +41,21 @@ std::vector<SharedMarker> FindShared(const FrameShape& frame, const ShapePoints&
   return shared;
 }
 
+// Index of the pose solution of a marker that fits its position in the shape best.
+int BestSolution(const FrameMarker& marker, const Rigid3& shape_from_cam,
+                 const MarkerPoints& x_in_shape) {
+  int best = 0;
+  double best_distance = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < marker.x_in_cam.size(); ++i) {
+    const double distance = RmsDistance(Transform(shape_from_cam, marker.x_in_cam[i]), x_in_shape);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = static_cast<int>(i);
+    }
+  }
+  return best;
+}
+
 // The shared markers of a frame and the shape, compared by centres or by all points (ransac.h).
 class AlignmentProblem {
  public:
@@ -162,20 +177,6 @@ class AlignmentProblem {
 
 bool IsOutlier(const FrameAlignment& alignment, int marker_id) {
   return std::binary_search(alignment.outlier_ids.begin(), alignment.outlier_ids.end(), marker_id);
-}
-
-int BestSolution(const FrameMarker& marker, const Rigid3& shape_from_cam,
-                 const MarkerPoints& x_in_shape) {
-  int best = 0;
-  double best_distance = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < marker.x_in_cam.size(); ++i) {
-    const double distance = RmsDistance(Transform(shape_from_cam, marker.x_in_cam[i]), x_in_shape);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = static_cast<int>(i);
-    }
-  }
-  return best;
 }
 
 std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoints& shape,

@@ -40,8 +40,4 @@ std::optional<FrameAlignment> AlignFrame(const FrameShape& frame, const ShapePoi
                                          const Layout& layout,
                                          const FrameAlignmentOptions& options);
 
-// Index of the pose solution of a marker that fits its position in the shape best.
-int BestSolution(const FrameMarker& marker, const Rigid3& shape_from_cam,
-                 const MarkerPoints& x_in_shape);
-
 }  // namespace velamap

@@ -14,6 +14,7 @@
 #include "importer/base/error.h"
 #include "importer/base/statistics.h"
 #include "importer/camera/camera_projection.h"
+#include "importer/camera/turned_camera.h"
 #include "importer/geometry/units.h"
 #include "tests/support/error_matchers.h"
 
@@ -209,6 +210,29 @@ TEST(CameraCalibration, AZoomInTheMiddleIsRefused) {
     }
   }
   ExpectThrows<DataError>([&] { Calibrate(images); }, {"the lens was zoomed"});
+}
+
+// Half of the pictures are taken with the camera turned; they show the same places of the lens.
+TEST(CameraCalibration, TurnedPicturesAreChosenAsUprightOnes) {
+  const std::vector<DatabaseImage> images = TakePictures(MakeBoard({}), kTruth, 8, 24);
+  std::vector<DatabaseImage> turned = images;
+  for (std::size_t i = 1; i < turned.size(); i += 2) {
+    turned[i].camera_id = 2;
+    for (MarkerDetection& marker : turned[i].detections.markers) {
+      for (Eigen::Vector2d& x_px : marker.corners_in_image_px) x_px = TurnInImage(kTruth, 1, x_px);
+    }
+  }
+  CameraCalibrationOptions options;
+  options.max_num_views = 12;
+  const CameraCalibration found = CalibrateCamera(
+      options, turned, {{1, UnknownCamera(1280, 720)}, {2, UnknownCamera(720, 1280)}},
+      MakeLayout("DICT_4X4_50", kLength_m), std::nullopt);
+  const CameraCalibration expected = Calibrate(images, options);
+  ASSERT_EQ(found.views.size(), expected.views.size());
+  for (std::size_t i = 0; i < found.views.size(); ++i) {
+    EXPECT_EQ(found.views[i].view.image_id, expected.views[i].view.image_id);
+    EXPECT_EQ(found.views[i].view.Tilt(), expected.views[i].view.Tilt());
+  }
 }
 
 TEST(CameraCalibration, TwoCamerasAreRefused) {

@@ -223,5 +223,22 @@ TEST(CameraSearch, ABoardSeenHeadOnIsRefused) {
   EXPECT_THROW(Find(scene), DataError);
 }
 
+TEST(CameraSearch, ErrorsNeitherDoubtNorAskForACalibration) {
+  const Camera truth{CameraModel::kSimpleRadial, 1920, 1080, {1500, 964, 537, -0.05}};
+  SyntheticScene scene = MakeScene(SceneKind::kSail, truth, 5);
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    for (MarkerDetection& marker : scene.frames[i].markers) {
+      marker.marker_id += static_cast<int>(100 * i);
+    }
+  }
+  try {
+    Find(scene);
+    ADD_FAILURE() << "no error";
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("no two images agree"));
+    EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("calibration")));
+  }
+}
+
 }  // namespace
 }  // namespace velamap

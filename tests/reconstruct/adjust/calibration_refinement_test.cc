@@ -6,10 +6,12 @@
 
 #include <gmock/gmock.h>
 
+#include "importer/base/error.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "reconstruct/model/gauge.h"
 #include "tests/reconstruct/scene_model.h"
 #include "tests/reconstruct/sheet_model.h"
+#include "tests/support/error_matchers.h"
 
 namespace velamap {
 namespace {
@@ -200,6 +202,42 @@ TEST_F(FiveCoefficients, AWrongFocalLengthIsFoundWithoutUnnamedParameters) {
   const Camera& camera = model.cameras.at(1);
   EXPECT_NEAR(MeanFocalLength(camera) / 1400.0, 1.0, 5e-3);
   for (const std::size_t i : {9, 10, 11}) EXPECT_EQ(camera.params[i], 0.0);
+}
+
+// The lens of these pictures folds over outside of the markers; the calibration does not.
+class FoldedLens : public CalibrationRefinement {
+ protected:
+  FoldedLens()
+      : CalibrationRefinement(
+            {CameraModel::kOpenCV, 1920, 1080, {1400, 1400, 960, 540, -0.27, 0, 0, 0}}) {}
+
+  Model ModelWithMonotonicCalibration() const {
+    Model model = NoisyModel(70);
+    model.cameras.at(1).params[4] = -0.2;
+    return model;
+  }
+};
+
+TEST_F(FoldedLens, ARefinementThatWasAskedForAndFoldsOverIsAnInputError) {
+  Model model = ModelWithMonotonicCalibration();
+  ASSERT_TRUE(HasMonotonicDistortion(model.cameras.at(1)));
+  ASSERT_FALSE(HasMonotonicDistortion(truth_.cameras.at(1)));
+  const std::string before = Bytes(model);
+  MarkerAdjustmentOptions options;
+  options.refine_extra_params = true;
+  options.intrinsics_sigma = 0.1;
+  ExpectThrows<InputError>(
+      [&] { Adjust(&model, options); },
+      {"--BundleAdjustment.refine_extra_params 1", "fold over", "leave the option out"});
+  EXPECT_EQ(Bytes(model), before);
+}
+
+TEST_F(FoldedLens, OneThatTheAdjustmentTriesByItselfIsNotTaken) {
+  Model model = ModelWithMonotonicCalibration();
+  MarkerAdjustmentOptions options;
+  options.intrinsics_sigma = 0.1;
+  Adjust(&model, options);
+  EXPECT_TRUE(HasMonotonicDistortion(model.cameras.at(1)));
 }
 
 }  // namespace

@@ -213,7 +213,8 @@ TEST_F(MarkerAdjustment, MarkersThatScatterMoreThanTheirToleranceAreReported) {
   AddNoise({0.02, 0, 0, 200, 7}, &noisy);
   Model model = MakeSceneModel(noisy);
   const auto summary = Adjust(&model);
-  EXPECT_THAT(summary.warnings, testing::Contains(HasSubstr("print_tolerance")));
+  EXPECT_THAT(summary.warnings,
+              testing::Contains(HasSubstr("more than the print tolerance of 0.10 %")));
   EXPECT_GT(summary.uncertainty.relative_scale_sigma, 0.02 / std::sqrt(48.0) / 2);
 }
 

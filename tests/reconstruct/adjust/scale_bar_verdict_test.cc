@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include <gmock/gmock.h>
 
 #include "importer/geometry/alignment.h"
+#include "reconstruct/adjust/marker_adjuster.h"
 #include "reconstruct/adjust/marker_adjustment.h"
 #include "tests/reconstruct/scene_model.h"
 
@@ -15,6 +17,7 @@ namespace velamap {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::Each;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -100,7 +103,7 @@ TEST_F(MeasuredDistances, ThatAgreeOverruleTheMarkers) {
   EXPECT_THAT(with.summary.warnings[0],
               AllOf(HasSubstr("the measured distances make the markers 0."),
                     HasSubstr("larger than marker_length: the distances are used"),
-                    HasSubstr("check the printed size (marker_length) or the camera's edges")));
+                    HasSubstr("check the printed size (marker_length) or whether the camera's")));
 }
 
 TEST_F(MeasuredDistances, ThatAgreeWithTheMarkersChangeNoPrior) {
@@ -207,6 +210,86 @@ TEST_F(MeasuredDistances, GiveAScaleWithinItsSigmaAsOftenAsItShould) {
   EXPECT_GT(rms, 0.8);
   EXPECT_LT(rms, 1.2);
   EXPECT_GE(num_within_2, 90);
+}
+
+// The bars are added, then the corners of a marker become outliers: their sigmas are made so small
+// that no place of them fits.
+class BarsOfAShrinkingModel : public MeasuredDistances {
+ protected:
+  BarsOfAShrinkingModel() {
+    for (const auto& [id1, id2] : {std::pair{8, 18}, {18, 23}}) {
+      scene_.layout.distances.push_back(
+          {id1, 0, id2, 0, TrueDistance(scene_, id1, id2), kTapeSigma_m, true});
+    }
+  }
+
+  void AdjustWithOutliers(int marker_id, const std::set<int>& corners) {
+    SyntheticScene noisy = scene_;
+    AddNoise({0.03, 0, 0, 200, 1}, &noisy);
+    model_ = MakeSceneModel(noisy);
+    CornerErrors errors;
+    for (const ModelImage& image : model_.images) {
+      errors.sigmas_px[image.image_id].assign(image.points2D.size(), 0.03);
+    }
+    MarkerAdjustmentOptions options;
+    options.corner_sigma_floor_px = 0.0;
+    options.min_track_length = 4;  // some point always fits two images
+    options.loss_sigmas = 1.0;     // so that poses do not follow the outliers
+    MarkerAdjuster adjuster(options, noisy.layout, errors, model_);
+    adjuster.PrepareSeed();
+    adjuster.AdjustToCorners();
+    ASSERT_TRUE(adjuster.AddScaleBars());
+    for (const int corner : corners) {
+      for (const auto& [image_id, idx] : model_.points3D.at(10 * marker_id + corner).track) {
+        errors.sigmas_px.at(image_id)[idx] = 1e-3;
+      }
+    }
+    adjuster.AdjustWithSizes();
+    adjuster.Finish();
+    model_ = adjuster.TakeModel();
+    summary_ = adjuster.TakeSummary();
+  }
+
+  Eigen::Vector3d Center(int marker_id) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int c = 1; c <= kNumCorners; ++c) {
+      sum += model_.points3D.at(10 * marker_id + c).x_in_world;
+    }
+    return sum / kNumCorners;
+  }
+
+  void ExpectMeasured(const KnownDistance& distance) const {
+    const double length_m = (Center(distance.marker_id1) - Center(distance.marker_id2)).norm();
+    EXPECT_NEAR(length_m, distance.length_m, 2 * kTapeSigma_m);
+  }
+
+  Model model_;
+  MarkerAdjustmentSummary summary_;
+};
+
+TEST_F(BarsOfAShrinkingModel, StayAtTheirMarkersWhenOneBeforeThemIsLost) {
+  AdjustWithOutliers(3, {1, 2, 3, 4});
+  ASSERT_EQ(model_.points3D.count(31), 0u);
+  for (const KnownDistance& distance : scene_.layout.distances) ExpectMeasured(distance);
+  EXPECT_LT(summary_.uncertainty.relative_scale_sigma, 1e-3);
+  EXPECT_THAT(summary_.warnings, Each(HasSubstr("the measured distances make")));
+}
+
+TEST_F(BarsOfAShrinkingModel, AreLeftOutWithAWarningWhenTheyLoseACorner) {
+  AdjustWithOutliers(8, {2});
+  ASSERT_EQ(model_.points3D.count(82), 0u);
+  ASSERT_EQ(model_.points3D.count(83), 1u);
+  ExpectMeasured(scene_.layout.distances[1]);
+  EXPECT_THAT(summary_.warnings,
+              Contains(AllOf(HasSubstr("from the centre of marker 8 to the centre of marker 18"),
+                             HasSubstr("is not used after all"))));
+}
+
+TEST_F(BarsOfAShrinkingModel, LeaveTheirScaleAndItsUncertaintyWhenAllAreLost) {
+  AdjustWithOutliers(18, {3});
+  ASSERT_EQ(model_.points3D.count(183), 0u);
+  EXPECT_THAT(summary_.warnings, Contains(HasSubstr("is not used after all")).Times(2));
+  EXPECT_GT(summary_.uncertainty.relative_scale_sigma, 0.005);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "reconstruct/colmap/bundle_adjustment.h"
 #include "reconstruct/model/model_io.h"
 #include "tests/reconstruct/sheet_model.h"
+#include "tests/support/error_matchers.h"
 #include "tests/support/temp_dir.h"
 
 namespace velamap {
@@ -102,6 +103,18 @@ TEST_F(FakeBundleAdjuster, ImplausibleModelsAreExternalToolErrors) {
   EXPECT_THAT(ErrorWithResult(result), HasSubstr("point 12 is not finite"));
 }
 
+TEST_F(FakeBundleAdjuster, ADistortionThatFoldsOverIsAnInputErrorIfItsRefinementWasAskedFor) {
+  Model result = model_;
+  result.cameras.at(1).params[4] = -0.6;
+  options_.refine_focal_length = true;
+  EXPECT_THAT(ErrorWithResult(result), HasSubstr("folds over inside the image"));
+  options_.refine_extra_params = true;
+  const std::string before = Bytes(model_);
+  ExpectThrows<InputError>([&] { AdjustWithColmap(options_, log_path_, &model_); },
+                           {"--BundleAdjustment.refine_extra_params 1", "leave the option out"});
+  EXPECT_EQ(Bytes(model_), before);
+}
+
 TEST_F(FakeBundleAdjuster, OnlyOptionsThatTheProgramKnowsAreGiven) {
   const std::string copy =
       "echo \"$@\" > " + (dir_ / "arguments").string() + "; cp \"$3\"/* \"$5\"";
@@ -130,6 +143,18 @@ TEST(BundleAdjustmentOptions, FaultsNameTheOption) {
   options = {};
   options.function_tolerance = std::nan("");
   EXPECT_THROW(options.Check(), InputError);
+}
+
+TEST(CheckMeanError, DoubtsTheCalibrationWhereThereIsOne) {
+  EXPECT_NO_THROW(CheckMeanError(1.0, 2.0, true));
+  ExpectThrows<DataError>([] { CheckMeanError(3.0, 2.0, true); },
+                          {"3.00 px", "--BundleAdjustment.max_mean_error", "calibration"});
+  ExpectThrows<DataError>([] { CheckMeanError(std::nan(""), 2.0, false); }, {"one camera"});
+  try {
+    CheckMeanError(3.0, 2.0, false);
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), AllOf(Not(HasSubstr("calibration")), Not(HasSubstr("--"))));
+  }
 }
 
 }  // namespace

@@ -255,14 +255,12 @@ class GaugeTrap : public BundleAdjustment {
     fs::remove_all(dir_ / "out");
     fs::create_directory(dir_ / "out");
     WriteModel(model, dir_ / "in", ModelFormat::kBinary);
-    const std::string output =
-        RunColmap("colmap",
-                  {"bundle_adjuster", "--input_path", dir_ / "in", "--output_path", dir_ / "out",
-                   "--BundleAdjustment.function_tolerance", "1e-6",
-                   "--BundleAdjustment.refine_focal_length", "0",
-                   "--BundleAdjustment.refine_extra_params", "0"},
-                  dir_ / "colmap.log")
-            .output;
+    const std::string output = RunColmap(
+        "colmap",
+        {"bundle_adjuster", "--input_path", dir_ / "in", "--output_path", dir_ / "out",
+         "--BundleAdjustment.function_tolerance", "1e-6", "--BundleAdjustment.refine_focal_length",
+         "0", "--BundleAdjustment.refine_extra_params", "0"},
+        dir_ / "colmap.log");
     std::smatch match;
     EXPECT_TRUE(std::regex_search(output, match, std::regex("Iterations : ([0-9]+)"))) << output;
     return {ReadModel(dir_ / "out"), match.empty() ? 0 : std::stoi(match[1])};

@@ -50,14 +50,14 @@ class ColmapRunnerTest : public testing::Test {
 
 TEST_F(ColmapRunnerTest, ArgumentsArriveAsTheyAre) {
   const std::string program = Script("for word in \"$@\"; do echo \"<$word>\"; done");
-  const ColmapRun run =
+  const std::string output =
       RunColmap(program, {"two words", "$HOME; exit 1", "*", "", "'\""}, log_path_);
-  EXPECT_EQ(run.output, "<two words>\n<$HOME; exit 1>\n<*>\n<>\n<'\">\n");
+  EXPECT_EQ(output, "<two words>\n<$HOME; exit 1>\n<*>\n<>\n<'\">\n");
 }
 
 TEST_F(ColmapRunnerTest, BothStreamsReachTheLogWhichIsAppendedTo) {
   const std::string program = Script("echo out; echo err >&2");
-  EXPECT_EQ(RunColmap(program, {"first"}, log_path_).output, "out\nerr\n");
+  EXPECT_EQ(RunColmap(program, {"first"}, log_path_), "out\nerr\n");
   RunColmap(program, {"second"}, log_path_);
   EXPECT_EQ(Log(), "$ fake_colmap first\nout\nerr\n$ fake_colmap second\nout\nerr\n");
 }
@@ -71,7 +71,7 @@ TEST_F(ColmapRunnerTest, TheLogNamesNoFolders) {
 
 TEST_F(ColmapRunnerTest, ItsTemporaryFilesGoWithIt) {
   const std::string program = Script("echo $TMPDIR; touch $TMPDIR/colmap.INFO");
-  std::string folder = RunColmap(program, {}, log_path_).output;
+  std::string folder = RunColmap(program, {}, log_path_);
   folder.pop_back();
   EXPECT_NE(folder, fs::temp_directory_path().string());
   EXPECT_FALSE(fs::exists(folder));
@@ -93,7 +93,7 @@ TEST_F(ColmapRunnerTest, AProgramThatDoesNotEndIsEndedWithAllThatItHasStarted) {
   }
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
   // What has ended is not waited for, though a process that it has left holds its output.
-  EXPECT_EQ(RunColmap(Script("sleep 100 & echo done"), {}, log_path_).output, "done\n");
+  EXPECT_EQ(RunColmap(Script("sleep 100 & echo done"), {}, log_path_), "done\n");
 }
 
 TEST_F(ColmapRunnerTest, EndlessOutputIsEnded) {
@@ -104,13 +104,13 @@ TEST_F(ColmapRunnerTest, LongOutputIsWhole) {
   const std::string program = Script(
       "i=0; while [ $i -lt 20000 ]; do echo 123456789; i=$((i+1)); "
       "done");
-  EXPECT_EQ(RunColmap(program, {}, log_path_).output.size(), 200000u);
+  EXPECT_EQ(RunColmap(program, {}, log_path_).size(), 200000u);
 }
 
 TEST_F(ColmapRunnerTest, RunsWithoutADisplayOrInput) {
   const std::string program = Script("echo $QT_QPA_PLATFORM; cat; echo $HOME");
   const char* home = std::getenv("HOME");
-  EXPECT_EQ(RunColmap(program, {}, log_path_).output,
+  EXPECT_EQ(RunColmap(program, {}, log_path_),
             std::string("offscreen\n") + (home != nullptr ? home : "") + "\n");
 }
 
@@ -119,7 +119,7 @@ TEST_F(ColmapRunnerTest, RunsWhereOurOwnStdinIsClosed) {
   EXPECT_EXIT(
       {
         close(STDIN_FILENO);
-        std::exit(RunColmap(program, {"here"}, log_path_).output == "here\n" ? 0 : 1);
+        std::exit(RunColmap(program, {"here"}, log_path_) == "here\n" ? 0 : 1);
       },
       testing::ExitedWithCode(0), "");
 }
@@ -131,6 +131,12 @@ TEST_F(ColmapRunnerTest, FailureNamesStatusCommandReasonAndLog) {
                     HasSubstr(program + " bundle_adjuster --input_path 'my model'"),
                     HasSubstr("it wrote: ERROR: no such model"), HasSubstr(log_path_)));
   EXPECT_THAT(Log(), HasSubstr("(exited with status 3)"));
+}
+
+TEST_F(ColmapRunnerTest, FailureWithoutALogNamesNone) {
+  log_path_ = kNoLog;
+  EXPECT_THAT(ErrorOf(Script("exit 127")),
+              AllOf(HasSubstr("exited with status 127"), testing::Not(HasSubstr("log"))));
 }
 
 TEST_F(ColmapRunnerTest, FailureWithoutASignQuotesTheLastLine) {

@@ -194,6 +194,22 @@ TEST(LayoutEvidence, MarkerOnNoLineIsNotContradictedByALine) {
   EXPECT_THAT(FalseIds(sail), ElementsAre(36));
 }
 
+// 24 is read where 10 stands and, in other images, where 34 stands. It loses against 10, and what
+// is left of its line would win against 34, which is a little off its own line.
+TEST(LayoutEvidence, AMisreadIdThatIsGoneContradictsNothing) {
+  RandomSail sail = EvenSail();
+  sail.layout.parts[0].vertical.clear();
+  sail.Find(24)->center_in_shape_m = sail.Find(10)->center_in_shape_m;
+  sail.Find(24)->rival_ids = {10, 34};
+  sail.Find(34)->center_in_shape_m.y() += 0.4;
+  const std::set<int> unseen = {20, 21, 23, 25, 26, 27};
+  sail.markers.erase(
+      std::remove_if(sail.markers.begin(), sail.markers.end(),
+                     [&](const PlacedMarker& m) { return unseen.count(m.marker_id) > 0; }),
+      sail.markers.end());
+  EXPECT_THAT(FalseIds(sail), ElementsAre(24));
+}
+
 TEST(LayoutEvidence, RivalsWithoutALineAreBothDoubted) {
   RandomSail sail = EvenSail();
   Layout layout;

@@ -153,6 +153,13 @@ TEST(GlobalRegistration, LargerOfTwoGroupsIsUsed) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_THAT(registration.frames[i].reason, HasSubstr("shares 0 of its"));
   }
+  int num_unseen = 0;
+  for (const DroppedMarker& dropped : registration.dropped_markers) {
+    if (dropped.marker_id < 500) continue;
+    ++num_unseen;
+    EXPECT_EQ(dropped.reason, "no registered frame shows it");
+  }
+  EXPECT_GT(num_unseen, 3);
 }
 
 TEST(GlobalRegistration, OfALongVideoTheBestFramesAreKept) {

@@ -204,8 +204,8 @@ TEST(IsAmbiguous, ComparesCostAndSupportOfTheFirstTwo) {
   const auto with = [&](double cost, std::vector<int> idxs) {
     return std::vector<PoseHypothesis>{{Rigid3{}, 1.0, five}, {Rigid3{}, cost, std::move(idxs)}};
   };
-  EXPECT_FALSE(IsAmbiguous({}));
-  EXPECT_FALSE(IsAmbiguous({{Rigid3{}, 1.0, five}}));
+  EXPECT_FALSE(IsAmbiguous(std::vector<PoseHypothesis>()));
+  EXPECT_FALSE(IsAmbiguous(std::vector<PoseHypothesis>{{Rigid3{}, 1.0, five}}));
   EXPECT_TRUE(IsAmbiguous(with(1.9, five)));
   EXPECT_FALSE(IsAmbiguous(with(2.1, five)));
   EXPECT_FALSE(IsAmbiguous(with(1.9, {0, 1, 2, 3})));

@@ -45,13 +45,22 @@ class UncertaintyFile : public testing::Test {
     std::ofstream(dir_ / kUncertaintyFileName, std::ios::binary) << bytes;
   }
 
+  // Without the hash of the model.
+  void WriteEarlierVersion() const {
+    WriteUncertainty(uncertainty_, {}, Folder());
+    std::string bytes = FileBytes();
+    bytes[8] = '\x04';
+    bytes.resize(bytes.size() - sizeof(std::uint64_t));
+    WriteBytes(bytes);
+  }
+
   TempDir dir_;
   AdjustmentUncertainty uncertainty_;
 };
 
 TEST_F(UncertaintyFile, ComesBackToTheLastBit) {
   EXPECT_FALSE(HasUncertainty(Folder()));
-  WriteUncertainty(uncertainty_, Folder());
+  WriteUncertainty(uncertainty_, {}, Folder());
   EXPECT_TRUE(HasUncertainty(Folder()));
   const AdjustmentUncertainty read = ReadUncertainty(Folder());
   EXPECT_EQ(read.points.point3D_ids, uncertainty_.points.point3D_ids);
@@ -83,7 +92,7 @@ TEST_F(UncertaintyFile, IsTiedToItsModel) {
   for (const Point3DId id : uncertainty_.points.point3D_ids) {
     model.points3D[id].x_in_world = Eigen::Vector3d(1.0, 2.0, static_cast<double>(id));
   }
-  WriteUncertainty(uncertainty_, Folder(), &model);
+  WriteUncertainty(uncertainty_, model, Folder());
   ASSERT_TRUE(ReadUncertaintyOf(model, Folder()));
   EXPECT_EQ(ReadUncertaintyOf(model, Folder())->points.factor, uncertainty_.points.factor);
   Model other = model;
@@ -92,33 +101,29 @@ TEST_F(UncertaintyFile, IsTiedToItsModel) {
   other = model;
   other.points3D[9999].x_in_world.setOnes();
   EXPECT_THROW(ReadUncertaintyOf(other, Folder()), InputError);
-  WriteUncertainty(uncertainty_, Folder());  // does not say of which model
+  WriteEarlierVersion();  // does not say of which model
   EXPECT_TRUE(ReadUncertaintyOf(other, Folder()));
   other.points3D.erase(uncertainty_.points.point3D_ids.front());
   EXPECT_THROW(ReadUncertaintyOf(other, Folder()), InputError);
 }
 
 TEST_F(UncertaintyFile, FilesOfTheEarlierVersionAreRead) {
-  WriteUncertainty(uncertainty_, Folder());
-  std::string bytes = FileBytes();
-  bytes[8] = '\x04';
-  bytes.resize(bytes.size() - sizeof(std::uint64_t));
-  WriteBytes(bytes);
+  WriteEarlierVersion();
   EXPECT_EQ(ReadUncertainty(Folder()).points.signs, uncertainty_.points.signs);
   EXPECT_EQ(ReadUncertainty(Folder()).model_hash, 0u);
 }
 
 TEST_F(UncertaintyFile, NoPointsAndNoFactorAreFine) {
-  WriteUncertainty({}, Folder());
+  WriteUncertainty({}, {}, Folder());
   EXPECT_TRUE(ReadUncertainty(Folder()).points.IsEmpty());
   uncertainty_.points.factor.resize(9, 0);
   uncertainty_.points.signs.resize(0);
-  WriteUncertainty(uncertainty_, Folder());
+  WriteUncertainty(uncertainty_, {}, Folder());
   EXPECT_EQ(ReadUncertainty(Folder()).points.factor.rows(), 9);
 }
 
 TEST_F(UncertaintyFile, EveryTruncationIsAnInputErrorThatNamesTheFile) {
-  WriteUncertainty(uncertainty_, Folder());
+  WriteUncertainty(uncertainty_, {}, Folder());
   const std::string bytes = FileBytes();
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
     WriteBytes(bytes.substr(0, size));
@@ -134,7 +139,7 @@ TEST_F(UncertaintyFile, EveryTruncationIsAnInputErrorThatNamesTheFile) {
 }
 
 TEST_F(UncertaintyFile, ForeignOrBrokenFilesAreInputErrors) {
-  WriteUncertainty(uncertainty_, Folder());
+  WriteUncertainty(uncertainty_, {}, Folder());
   const std::string bytes = FileBytes();
   WriteBytes("no uncertainty at all, but a text that somebody put here");
   EXPECT_THROW(ReadUncertainty(Folder()), InputError);
@@ -146,7 +151,7 @@ TEST_F(UncertaintyFile, ForeignOrBrokenFilesAreInputErrors) {
   }
   std::filesystem::remove(dir_ / kUncertaintyFileName);
   EXPECT_THROW(ReadUncertainty(Folder()), InputError);
-  EXPECT_THROW(WriteUncertainty(uncertainty_, Folder() + "/missing"), InputError);
+  EXPECT_THROW(WriteUncertainty(uncertainty_, {}, Folder() + "/missing"), InputError);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ class ModelInColmap : public testing::TestWithParam<ModelFormat> {
   }
 
   std::string Run(const std::vector<std::string>& arguments) {
-    return RunColmap("colmap", arguments, dir_ / "colmap.log").output;
+    return RunColmap("colmap", arguments, dir_ / "colmap.log");
   }
 
   double AnalyzedValue(const std::string& output, const std::string& key) {

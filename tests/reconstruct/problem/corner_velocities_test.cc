@@ -6,6 +6,8 @@
 
 #include <gmock/gmock.h>
 
+#include "importer/base/statistics.h"
+
 namespace velamap {
 namespace {
 
@@ -102,6 +104,42 @@ TEST(CornerVelocities, MarkersThatAreMissingBesideMoveWithTheirNeighbours) {
   const CornerVelocities velocities = CornerVelocitiesOf(frames);
   ASSERT_THAT(velocities, UnorderedElementsAre(Key(2)));
   ExpectField(photograph, velocities.at(2));
+}
+
+// A row that is not quite straight tells nothing of how the velocity changes across it.
+TEST(CornerVelocities, AcrossANearlyStraightRowNoiseIsNotExtrapolated) {
+  constexpr double kCornerNoisePx = 0.1, kStep_s = 0.03;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> errors_px_s;
+  for (int draw = 0; draw < 50; ++draw) {
+    FrameDetections photograph;
+    for (int k = 0; k < 6; ++k) {
+      photograph.markers.push_back(Photograph(1).markers[0]);
+      photograph.markers.back().marker_id = k;
+      const Eigen::Vector2d shift(150 * k, 2 * normal(random));
+      for (Eigen::Vector2d& x_px : photograph.markers.back().corners_in_image_px) x_px += shift;
+    }
+    std::vector<DatabaseImage> frames;
+    for (const double time_s : {-kStep_s, 0.0, kStep_s}) {
+      frames.push_back({static_cast<ImageId>(frames.size() + 1), 1, photograph});
+      frames.back().detections.time_s = time_s;
+      for (MarkerDetection& marker : frames.back().detections.markers) {
+        for (Eigen::Vector2d& x_px : marker.corners_in_image_px) {
+          x_px += Eigen::Vector2d(40 * time_s + kCornerNoisePx * normal(random),
+                                  -25 * time_s + kCornerNoisePx * normal(random));
+        }
+      }
+    }
+    const CornerVelocities velocities = CornerVelocitiesOf(frames);
+    for (const Eigen::Vector2d& velocity_px_s : velocities.at(2)) {
+      errors_px_s.push_back(velocity_px_s.x() - 40);
+      errors_px_s.push_back(velocity_px_s.y() + 25);
+    }
+  }
+  // Of the mean of four corners in two frames. The gradient along the row adds little.
+  const double sigma_px_s = kCornerNoisePx / 2 * std::sqrt(2.0) / (2 * kStep_s);
+  EXPECT_LT(Rms(errors_px_s), 1.1 * sigma_px_s);
 }
 
 TEST(CornerVelocities, AreUnknownWhereTheFramesBesideTellNothing) {

@@ -75,8 +75,8 @@ TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
   MarkerState state = MakeMarkerState(model, scene.layout);
   MarkerWeights weights = WeightsWithoutLoss();
   weights.frees_rolling_shutter = true;
-  weights.scale_bars = FindScaleBars(state, scene.layout);
-  ASSERT_EQ(weights.scale_bars.size(), 2u);
+  weights.scale_bars = scene.layout.distances;
+  ASSERT_EQ(FindScaleBars(state, weights.scale_bars).size(), 2u);
   const MarkerProblem problem =
       MakeMarkerProblem(options, model, corner_errors, model.cameras, weights, &state);
   const auto covariance = InvertNormalEquations(EvaluateJacobian(problem), 1);
@@ -140,7 +140,7 @@ TEST(GroupImages, NeighboursInTimeShareAGroupWithoutLeadingZeros) {
     image.name = "frame_" + std::to_string(number) + ".png";
     model.images.push_back(image);
   }
-  EXPECT_EQ(GroupImages(model, MakeMarkerState(model, {})),
+  EXPECT_EQ(GroupImages(model, kNumCorrelationGroups),
             (std::vector<int>{4, 4, 3, 3, 2, 2, 1, 1, 0, 0}));
 }
 
@@ -156,7 +156,7 @@ TEST(MarkerCovariance, IsTheSameForAnyNumberOfThreads) {
   MarkerState state = MakeMarkerState(model, scene.layout);
   const MarkerWeights weights = WeightsWithoutLoss();
   const MarkerProblem problem = MakeMarkerProblem({}, model, {}, model.cameras, weights, &state);
-  const std::vector<int> groups = GroupImages(model, state);
+  const std::vector<int> groups = GroupImages(model, kNumCorrelationGroups);
   const MarkerJacobian jacobian = EvaluateJacobian(problem);
   const auto covariance = InvertNormalEquations(jacobian, 1);
   ASSERT_TRUE(covariance.has_value());
@@ -176,7 +176,7 @@ TEST(BarGradient, IsTheDerivativeOfTheLength) {
   SyntheticScene scene = TinyScene();
   scene.layout.distances = {{0, 0, 5, 1, 0.6, 1e-3, true}};
   MarkerState state = MakeMarkerState(MakeSceneModel(scene), scene.layout);
-  const ScaleBar bar = FindScaleBars(state, scene.layout).at(0);
+  const ScaleBar bar = FindScaleBars(state, scene.layout.distances).at(0);
   const Eigen::VectorXd gradient = BarGradient(bar, state);
   const auto length = [&] {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();

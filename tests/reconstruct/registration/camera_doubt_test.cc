@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "importer/base/error.h"
+#include "tests/support/error_matchers.h"
+
 namespace velamap {
 namespace {
 
@@ -41,6 +44,12 @@ TEST(CameraDoubt, FramesThatShareTooFewMarkersContradictNothing) {
   EXPECT_THAT(CameraDoubt(RegistrationOf(50, 3)), IsEmpty());
   EXPECT_THAT(RegistrationOf(1, 3).frames.front().reason,
               HasSubstr("shares 3 of its 12 markers with the registered images, 4 are needed"));
+}
+
+TEST(CheckEnoughImages, NamesTheNumberThatIsNeeded) {
+  EXPECT_NO_THROW(CheckEnoughImages(1, 1));
+  ExpectThrows<DataError>([] { CheckEnoughImages(0, 1); }, {"at least one image with markers"});
+  ExpectThrows<DataError>([] { CheckEnoughImages(1, 2); }, {"at least two images with markers"});
 }
 
 }  // namespace

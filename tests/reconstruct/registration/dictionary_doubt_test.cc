@@ -32,7 +32,7 @@ TEST(DictionaryDoubt, FalseIdsOfALargeDictionaryAreDoubted) {
       for (int& one : ids) one = id(random);
       images.push_back(ImageOf(ids));
     }
-    EXPECT_THAT(DictionaryDoubt(images), HasSubstr("in one of the 18 images only")) << seed;
+    EXPECT_THAT(DictionaryDoubt(images), HasSubstr("in only one of the 18 images")) << seed;
   }
 }
 

@@ -44,7 +44,7 @@ class SchurComplement : public testing::Test {
     weights.loss_sigmas = 3.0;
     weights.print_tolerance = 1e-3;
     weights.frees_rolling_shutter = true;
-    weights.scale_bars = FindScaleBars(*state, layout_);
+    weights.scale_bars = layout_.distances;
     return MakeMarkerProblem(options_, model_, corner_errors_, model_.cameras, weights, state);
   }
 
