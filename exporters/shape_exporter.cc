@@ -182,7 +182,7 @@ void WriteShape(const ShapeExportReport& report, const ShapeExporterOptions& opt
     WriteModel(report.metric_model, folders.model.string(), ModelFormat::kBinaryAndText,
                [&](const std::string& folder) {
                  if (!report.uncertainty) return;
-                 WriteUncertainty(*report.uncertainty, folder, &report.metric_model);
+                 WriteUncertainty(*report.uncertainty, report.metric_model, folder);
                });
   }
   // Committed last, so that an error while writing the model keeps the old shape beside the old

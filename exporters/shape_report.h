@@ -32,8 +32,8 @@ void AddMetrics(const FreeformShape& freeform, MetricsReport* report);
 
 // Adds num_markers, area_error_mm2, area_error_percent, side_error_mm and table markers. Adds
 // num_layout_markers, reconstruction_ratio and missing_marker_ids if the layout names its markers,
-// other_marker_ids if the shape has more than these,
-// and num_sail_markers and sail_reconstruction_ratio if it has lines.
+// other_marker_ids if the shape has others, and num_sail_markers and sail_reconstruction_ratio if
+// the layout has lines.
 void AddMetrics(const ShapeMetrics& metrics, MetricsReport* report);
 
 // Adds central_image_name, central_reprojection_error_px, reprojection_error_px, num_behind_camera,

@@ -12,8 +12,8 @@ house_folder(importer/text PUBLIC
 house_folder(importer/lanes PUBLIC
   float_lanes normal_lanes)
 house_folder(importer/geometry PUBLIC
-  alignment consensus_pose directions least_squares opencv_pose p3p pose_refinement pose_step principal_axes quad
-  ransac rigid3 symmetric_eigen unit_square_map units)
+  alignment consensus_pose directions least_squares look_at opencv_pose p3p pose_refinement pose_step principal_axes
+  quad ransac rigid3 symmetric_eigen unit_square_map units)
 house_folder(importer/camera PUBLIC
   calibration calibration_writer camera camera_jacobian camera_projection storage_reader
   turned_camera)
@@ -77,7 +77,7 @@ house_folder(exporters/shape PUBLIC
   adjacent_distances common_corners joint_covariance known_distances marker_shape part_planes
   sail_lines shape_frame shape_metrics shape_sigma shape_transform)
 house_folder(exporters/formats PUBLIC
-  cad_library cad_writer diverging_color length_unit mesh_triangles mesh_writer metrics_report
+  ascii cad_library cad_writer diverging_color length_unit mesh_triangles mesh_writer metrics_report
   ply_writer shape_csv shape_ply surface_grid surface_spline)
 house_folder(exporters/exchange PUBLIC
   alicevision_scene metashape_markers)

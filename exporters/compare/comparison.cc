@@ -7,15 +7,11 @@
 #include <fmt/format.h>
 
 #include "exporters/compare/comparison_report.h"
+#include "exporters/shape/sail_lines.h"
 #include "importer/base/files.h"
 
 namespace velamap {
 namespace {
-
-bool HasLines(const Layout& layout) {
-  return std::any_of(layout.parts.begin(), layout.parts.end(),
-                     [](const LayoutPart& part) { return !part.horizontal.empty(); });
-}
 
 MetricsReport ReportOf(const Comparison& comparison) {
   MetricsReport report;
@@ -61,7 +57,7 @@ Comparison CompareAligned(const std::string& name, ShapeDeviation deviation,
   const MarkerShape& aligned_shape = comparison.deviation.aligned_shape;
   comparison.surfaces =
       CompareSurfaces(aligned_shape, reference, layout, options.part, options.edge);
-  if (options.with_deflections && HasLines(layout)) {
+  if (options.with_deflections && FirstPartWithLines(layout) != nullptr) {
     comparison.deflections = ComputeDeflections(aligned_shape, reference, layout, options.grid,
                                                 options.part, options.edge);
   }

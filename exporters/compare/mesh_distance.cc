@@ -23,6 +23,7 @@ using Triangle = std::array<int, 3>;
 using Triple = std::array<Eigen::Vector3d, 3>;
 
 constexpr double kWeldTolerance = 1e-8;  // of the diagonal
+constexpr double kMinDirection = 1e-9;   // of the diagonal; rounding turns shorter vectors
 
 // Nearest point of a triangle with its barycentric weights. A weight of exactly 0 means that the
 // foot is on the opposite edge or vertex.
@@ -269,6 +270,10 @@ MeshFoot MeshDistance::Project(const Eigen::Vector3d& x_m) const {
     foot.beside_m = (from_foot - along * foot.normal).norm();
   } else {
     foot.distance_m = along < 0 ? -from_foot.norm() : from_foot.norm();
+    // The mean of the triangles' normals, which gives the sign, misses the foot by up to the
+    // distance times the sine of half the angle between them. A point on the mesh has no direction.
+    const bool is_on_mesh = from_foot.norm() < kMinDirection * index_->diagonal_m;
+    if (feature.size() < 3 && !is_on_mesh) foot.normal = from_foot / foot.distance_m;
   }
   return foot;
 }

@@ -30,8 +30,10 @@ struct EdgeOptions {
 OptionGroup DescribeOptions(EdgeOptions* options);
 
 struct MeshFoot {
-  Eigen::Vector3d x_m = Eigen::Vector3d::Zero();      // nearest point of the mesh
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // at x_m, unit length
+  Eigen::Vector3d x_m = Eigen::Vector3d::Zero();  // nearest point of the mesh
+  // At x_m, unit length. On an edge or vertex between triangles it points along the line to the
+  // point, so that the point less distance_m times the normal is on the mesh.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   // Distance, positive on the side to which the normal points. If the foot is on the border of the
   // mesh, the distance along the normal; beside_m is the distance within the tangent plane.
   double distance_m = 0.0;

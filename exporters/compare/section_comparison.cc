@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -16,17 +17,16 @@ namespace {
 constexpr double kPercent = 100.0;
 
 SectionReport CutInFrame(const Rigid3& frame_from_shape, const ShapeFrame& frame,
-                         const UncertainShape& uncertain, const Layout& layout,
-                         const SectionOptions& options) {
+                         const UncertainShape& uncertain, const Layout& layout) {
   MarkerShape shape = uncertain.shape;
   if (uncertain.covariance.IsEmpty()) {
     MoveShape(frame_from_shape, nullptr, &shape);
-    return ComputeSections(shape, frame, layout, nullptr, options);
+    return ComputeSections(shape, frame, layout, nullptr);
   }
   const PointCovariance covariance =
       RotateCovariance(frame_from_shape.rotation, uncertain.covariance);
   MoveShape(frame_from_shape, &covariance, &shape);
-  return ComputeSections(shape, frame, layout, &covariance, options);
+  return ComputeSections(shape, frame, layout, &covariance);
 }
 
 // `is_exact`: the reference has no noise.
@@ -60,21 +60,14 @@ void AddDifferences(const Section& section, const Section& reference, bool with_
   if (with_twist) add("twist_deg", 1.0, section.twist_deg, reference.twist_deg);
 }
 
-// The reference of the twists of each part, as part and name.
-std::vector<std::string> LowestSections(const SectionReport& report) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < report.sections.size(); ++i) {
-    const Section& section = report.sections[i];
-    if (i == 0 || report.sections[i - 1].part != section.part) {
-      names.push_back(section.part + " " + section.name);
-    }
-  }
-  return names;
-}
-
-bool HaveSameTwistReference(const SectionReport& a, const SectionReport& b) {
-  return a.twist_reference == b.twist_reference &&
-         (a.twist_reference == "boom" || LowestSections(a) == LowestSections(b));
+// The boom, or the name of the lowest section; empty for a part without sections.
+std::string TwistReference(const SectionReport& report, const std::string& part) {
+  const auto is_of_part = [&](const auto& item) { return item.part == part; };
+  const auto rig = std::find_if(report.rigs.begin(), report.rigs.end(), is_of_part);
+  if (rig == report.rigs.end()) return "";
+  if (rig->twist_reference == "boom") return rig->twist_reference;
+  return "section " +
+         std::find_if(report.sections.begin(), report.sections.end(), is_of_part)->name;
 }
 
 void AddNotes(const SectionReport& report, const char* whose, std::vector<std::string>* notes) {
@@ -86,8 +79,7 @@ void AddNotes(const SectionReport& report, const char* whose, std::vector<std::s
 }
 
 SectionComparison Compare(const UncertainShape& shape, const UncertainShape& reference,
-                          bool is_exact, const Alignment& alignment, const Layout& layout,
-                          const SectionOptions& options) {
+                          bool is_exact, const Alignment& alignment, const Layout& layout) {
   const PointCovariance* covariance =
       reference.covariance.IsEmpty() ? nullptr : &reference.covariance;
   const ShapeFrame frame =
@@ -96,21 +88,23 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
   SectionComparison comparison;
   comparison.frame_name = frame.name;
   comparison.frame_from_reference = frame.frame_from_shape;
-  comparison.of_reference = CutInFrame(frame.frame_from_shape, frame, reference, layout, options);
-  comparison.of_shape = CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame,
-                                   shape, layout, options);
+  comparison.of_reference = CutInFrame(frame.frame_from_shape, frame, reference, layout);
+  comparison.of_shape =
+      CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame, shape, layout);
   AddNotes(comparison.of_shape, "shape", &comparison.notes);
   AddNotes(comparison.of_reference, "reference", &comparison.notes);
-  const std::vector<Section>& sections = comparison.of_shape.sections;
-  const bool with_twist = HaveSameTwistReference(comparison.of_shape, comparison.of_reference);
-  if (!with_twist && !sections.empty() && !comparison.of_reference.sections.empty()) {
-    comparison.notes.push_back("twists cannot be compared: they have different references");
-  }
-  for (const Section& section : sections) {
+  std::set<std::string> parts_without_twist;
+  for (const Section& section : comparison.of_shape.sections) {
     const Section* other = FindSection(comparison.of_reference, section.part, section.name);
-    if (other != nullptr) {
-      AddDifferences(section, *other, with_twist, is_exact, &comparison.differences);
-    }
+    if (other == nullptr) continue;
+    const bool with_twist = TwistReference(comparison.of_shape, section.part) ==
+                            TwistReference(comparison.of_reference, section.part);
+    if (!with_twist) parts_without_twist.insert(section.part);
+    AddDifferences(section, *other, with_twist, is_exact, &comparison.differences);
+  }
+  for (const std::string& part : parts_without_twist) {
+    comparison.notes.push_back(
+        fmt::format("twists of {} cannot be compared: they have different references", part));
   }
   return comparison;
 }
@@ -130,30 +124,26 @@ MarkerShape MarkersOnSurface(const MeshDistance& surface, const ShapeDeviation& 
     if (!compared.is_over_surface) continue;
     ShapeMarker marker = *FindWholeMarker(deviation.aligned_shape, compared.marker_id);
     marker.sigma_m = {};
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
       Eigen::Vector3d& x = *marker.x_in_shape_m[corner];
       const MeshFoot foot = surface.Project(x);
       x -= foot.distance_m * foot.normal;
-      sum += x;
     }
-    marker.x_in_shape_m[0] = sum / kNumCorners;
+    marker.x_in_shape_m[0] = MeanOfCorners(marker);
     moved.markers.push_back(marker);
   }
   return moved;
 }
 
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
-                                  const Alignment& alignment, const Layout& layout,
-                                  const SectionOptions& options) {
-  return Compare(shape, reference, false, alignment, layout, options);
+                                  const Alignment& alignment, const Layout& layout) {
+  return Compare(shape, reference, false, alignment, layout);
 }
 
 SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
-                                  const ShapeDeviation& deviation, const Layout& layout,
-                                  const SectionOptions& options) {
+                                  const ShapeDeviation& deviation, const Layout& layout) {
   return Compare(shape, {MarkersOnSurface(reference, deviation), {}}, true, deviation.alignment,
-                 layout, options);
+                 layout);
 }
 
 }  // namespace velamap

@@ -46,8 +46,7 @@ const Section* FindSection(const SectionReport& report, const std::string& part,
 // Cuts both shapes in the frame of the reference after `alignment`, so that a change of height or
 // heading of the whole sail does not change a section.
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
-                                  const Alignment& alignment, const Layout& layout,
-                                  const SectionOptions& options = {});
+                                  const Alignment& alignment, const Layout& layout);
 
 // The whole markers over the surface, moved to their feet on it, without sigmas: where the same
 // markers would be on a sail of exactly this shape. In the frame of the surface.
@@ -57,7 +56,6 @@ MarkerShape MarkersOnSurface(const MeshDistance& surface, const ShapeDeviation& 
 // sail of exactly this shape. `deviation` comes from CompareWithMesh(); markers that are not over
 // the surface are missing.
 SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
-                                  const ShapeDeviation& deviation, const Layout& layout,
-                                  const SectionOptions& options = {});
+                                  const ShapeDeviation& deviation, const Layout& layout);
 
 }  // namespace velamap

@@ -1,7 +1,6 @@
 #include "exporters/compare/shape_alignment.h"
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "exporters/shape/common_corners.h"
 #include "exporters/shape/sail_lines.h"
 #include "importer/base/error.h"
+#include "importer/base/option.h"
 #include "importer/geometry/alignment.h"
 #include "importer/text/id_ranges.h"
 
@@ -21,12 +21,11 @@ constexpr std::size_t kMinCorners = 3;
 // inaccurate at the far end of the sail.
 constexpr int kMinAutomaticMarkers = 3;
 
-constexpr std::array<std::pair<AlignmentMethod, const char*>, 5> kNames = {
-    {{AlignmentMethod::kAuto, "auto"},
-     {AlignmentMethod::kReferencePart, "reference_part"},
-     {AlignmentMethod::kMarkers, "markers"},
-     {AlignmentMethod::kBestFit, "best_fit"},
-     {AlignmentMethod::kNone, "none"}}};
+const Choices<AlignmentMethod> kMethods = {{AlignmentMethod::kAuto, "auto"},
+                                           {AlignmentMethod::kReferencePart, "reference_part"},
+                                           {AlignmentMethod::kMarkers, "markers"},
+                                           {AlignmentMethod::kBestFit, "best_fit"},
+                                           {AlignmentMethod::kNone, "none"}};
 
 struct Choice {
   AlignmentMethod method = AlignmentMethod::kBestFit;
@@ -127,19 +126,12 @@ std::string Describe(const Choice& choice, const Layout& layout, const CommonCor
 
 }  // namespace
 
-const char* AlignmentMethodName(AlignmentMethod method) {
-  const auto it = std::find_if(kNames.begin(), kNames.end(),
-                               [&](const auto& entry) { return entry.first == method; });
-  VELAMAP_CHECK(it != kNames.end());
-  return it->second;
-}
+std::string AlignmentMethodName(AlignmentMethod method) { return ChoiceName(kMethods, method); }
 
 AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::string& what) {
-  for (const auto& [method, known_name] : kNames) {
-    if (name == known_name) return method;
-  }
-  throw InputError(fmt::format(
-      "{}: '{}' is unknown; give auto, reference_part, markers, best_fit or none", what, name));
+  std::vector<std::string> names;
+  for (const auto& [method, known_name] : kMethods) names.push_back(known_name);
+  return kMethods[FindChoice(name, names, what)].first;
 }
 
 std::vector<int> MarkerIdsFromText(const std::string& text, const std::string& what) {

@@ -24,7 +24,7 @@ enum class AlignmentMethod {
 };
 
 // "auto", "reference_part", "markers", "best_fit", "none".
-const char* AlignmentMethodName(AlignmentMethod method);
+std::string AlignmentMethodName(AlignmentMethod method);
 // Throws InputError naming `what` for any other name.
 AlignmentMethod AlignmentMethodFromName(const std::string& name, const std::string& what);
 

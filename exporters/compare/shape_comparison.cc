@@ -21,7 +21,7 @@ namespace {
 MarkerShape Aligned(const Rigid3& reference_from_shape, MarkerShape shape) {
   for (ShapeMarker& marker : shape.markers) {
     for (auto& sigma_m : marker.sigma_m) {
-      if (sigma_m) sigma_m->setConstant(std::sqrt(sigma_m->squaredNorm() / 3));
+      if (sigma_m) sigma_m->setConstant(SigmaOfCoordinate(*sigma_m));
     }
     for (auto& x : marker.x_in_shape_m) {
       if (x) x = reference_from_shape * *x;

@@ -124,22 +124,9 @@ std::vector<SectionDifference> AllNumbers(const std::vector<Comparison>& series)
   return all;
 }
 
-// Whether sections need no part before their names. Items have a member `part`.
-template <typename Items>
-bool HaveOnePart(const Items& items) {
-  return std::all_of(items.begin(), items.end(),
-                     [&](const auto& item) { return item.part == items.front().part; });
-}
-
-std::string SectionName(const std::string& part, const std::string& section, bool has_one_part) {
-  return has_one_part ? section : part + " " + section;
-}
-
 Json NumbersJson(const std::vector<Comparison>& series) {
   Json rows = Json::array();
-  const std::vector<SectionDifference> numbers = AllNumbers(series);
-  const bool has_one_part = HaveOnePart(numbers);
-  for (const SectionDifference& number : numbers) {
+  for (const SectionDifference& number : AllNumbers(series)) {
     Json values = Json::array();
     for (const Comparison& comparison : series) {
       const SectionDifference* d = FindDifference(comparison.sections.differences, number);
@@ -152,7 +139,7 @@ Json NumbersJson(const std::vector<Comparison>& series) {
       value["is_significant"] = d->IsSignificant();
       values.push_back(std::move(value));
     }
-    rows.push_back({{"section", SectionName(number.part, number.section, has_one_part)},
+    rows.push_back({{"section", SectionName(series, number.part, number.section)},
                     {"number", NumberName(number.number)},
                     {"unit", NumberUnit(number.number)},
                     {"reference", Rounded(number.reference)},
@@ -161,31 +148,35 @@ Json NumbersJson(const std::vector<Comparison>& series) {
   return rows;
 }
 
-// The profile along its own chord, and as it lies beside the reference's, mm.
-Json CurveJson(const std::string& name, const Section& section, const Section& reference) {
+// The profile along its own chord, and as it lies beside the reference's, mm. Against a design, the
+// sections of each shape are in a frame of their own.
+Json CurveJson(const std::string& name, const Section& section, const Section& reference,
+               const Rigid3& reference_frame_from_frame) {
   Json own = Json::array(), placed = Json::array();
   for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) {
     const auto add = [](const ProfilePoint& p, Json* points) {
       points->push_back({std::round(1e5 * p.chordwise_m) / 100, std::round(1e5 * p.depth_m) / 100});
     };
     add(point, &own);
-    add(ProfilePointOf(reference, point.x_in_frame_m), &placed);
+    add(ProfilePointOf(reference, reference_frame_from_frame * point.x_in_frame_m), &placed);
   }
   return {{"name", name}, {"own", std::move(own)}, {"placed", std::move(placed)}};
 }
 
 Json ProfilesJson(const ComparisonPageInput& input) {
   Json profiles = Json::array();
-  const auto& sections = input.series.front().sections.of_reference.sections;
-  const bool has_one_part = HaveOnePart(sections);
-  for (const Section& reference : sections) {
-    Json curves = Json::array({CurveJson(input.reference_name, reference, reference)});
+  const SectionComparison& first = input.series.front().sections;
+  for (const Section& reference : first.of_reference.sections) {
+    Json curves = Json::array({CurveJson(input.reference_name, reference, reference, Rigid3())});
     for (const Comparison& comparison : input.series) {
       const Section* section =
           FindSection(comparison.sections.of_shape, reference.part, reference.name);
-      if (section != nullptr) curves.push_back(CurveJson(comparison.name, *section, reference));
+      if (section == nullptr) continue;
+      const Rigid3 first_from_frame =
+          first.frame_from_reference * Inverse(comparison.sections.frame_from_reference);
+      curves.push_back(CurveJson(comparison.name, *section, reference, first_from_frame));
     }
-    profiles.push_back({{"section", SectionName(reference.part, reference.name, has_one_part)},
+    profiles.push_back({{"section", SectionName(input.series, reference.part, reference.name)},
                         {"curves", std::move(curves)}});
   }
   return profiles;

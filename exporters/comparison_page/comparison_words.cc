@@ -44,16 +44,18 @@ const SectionDifference* ForTheFirstLine(const std::vector<const SectionDifferen
   return significant.empty() ? nullptr : significant.front();
 }
 
-std::string Text(const SectionDifference& d) {
+std::string Text(const SectionDifference& d, const std::vector<Comparison>& series) {
   const std::string unit = NumberUnit(d.number);
-  return fmt::format("{} of {} {:+.{}f}{}{}", NumberName(d.number), d.section, d.Difference(),
-                     unit == "%" ? 2 : 1, unit == "°" ? "" : " ", unit);
+  return fmt::format("{} of {} {:+.{}f}{}{}", NumberName(d.number),
+                     SectionName(series, d.part, d.section), d.Difference(), unit == "%" ? 2 : 1,
+                     unit == "°" ? "" : " ", unit);
 }
 
-std::string SectionClause(const Comparison& comparison) {
+std::string SectionClause(const std::vector<Comparison>& series) {
+  const Comparison& comparison = series.front();
   const auto significant = SignificantOf(comparison.sections);
   if (const SectionDifference* first = ForTheFirstLine(significant)) {
-    return "; " + Text(*first) + " (significant)";
+    return "; " + Text(*first, series) + " (significant)";
   }
   if (comparison.deviation.num_with_sigma == 0) return "";
   return comparison.deviation.num_significant == 0 ? "; no difference is significant" : "";
@@ -68,7 +70,7 @@ std::string FirstLine(const ComparisonPageInput& input) {
       return first.IsAgainstDesign() ? "The shape matches the design." : "The shapes are the same.";
     }
     return fmt::format("{} {:.3g} mm RMS{}.", what, kMmPerM * first.deviation.distance_m.rms,
-                       SectionClause(first));
+                       SectionClause(input.series));
   }
   std::vector<std::string> shapes;
   for (const Comparison& comparison : input.series) {
@@ -83,8 +85,10 @@ std::string FirstLine(const ComparisonPageInput& input) {
 // Adds the items of one shape, each after `prefix`.
 class Items {
  public:
-  Items(const Comparison& comparison, std::string prefix, std::vector<std::string>* items)
-      : comparison_(comparison),
+  Items(const std::vector<Comparison>& series, const Comparison& comparison, std::string prefix,
+        std::vector<std::string>* items)
+      : series_(series),
+        comparison_(comparison),
         deviation_(comparison.deviation),
         prefix_(std::move(prefix)),
         items_(items) {}
@@ -117,8 +121,8 @@ class Items {
       return Add(farthest + "; no sigmas are known, so nothing can be called significant");
     }
     Add(
-        fmt::format("{} of {} markers differ significantly, by more than 2 sigmas; by noise alone, "
-                    "about {:.0f} would; {}",
+        fmt::format("{} of {} markers differ significantly, by more than 2 sigmas; about {:.0f} "
+                    "would be expected by chance; {}",
                     deviation_.num_significant, deviation_.num_with_sigma,
                     kByChance * deviation_.num_with_sigma, farthest));
   }
@@ -134,7 +138,7 @@ class Items {
     }
     std::vector<std::string> names;
     for (const SectionDifference* difference : significant) {
-      if (names.size() < kMaxNamed) names.push_back(Text(*difference));
+      if (names.size() < kMaxNamed) names.push_back(Text(*difference, series_));
     }
     Add(fmt::format("{} of {} numbers of the sections differ significantly: {}{}",
                     significant.size(), num_all, fmt::join(names, ", "),
@@ -188,6 +192,7 @@ class Items {
     }
   }
 
+  const std::vector<Comparison>& series_;
   const Comparison& comparison_;
   const ShapeDeviation& deviation_;
   const std::string prefix_;
@@ -208,6 +213,16 @@ std::string NumberName(const std::string& number) {
   return name;
 }
 
+std::string SectionName(const std::vector<Comparison>& series, const std::string& part,
+                        const std::string& section) {
+  for (const Comparison& comparison : series) {
+    for (const Section& other : comparison.sections.of_reference.sections) {
+      if (other.part != part) return part + " " + section;
+    }
+  }
+  return section;
+}
+
 std::string NumberUnit(const std::string& number) {
   const std::string unit = number.substr(number.rfind('_') + 1);
   return unit == "percent" ? "%" : unit == "deg" ? "°" : unit;
@@ -217,7 +232,7 @@ ComparisonVerdict JudgeComparison(const ComparisonPageInput& input) {
   ComparisonVerdict verdict{FirstLine(input), {}};
   for (const Comparison& comparison : input.series) {
     const std::string prefix = input.series.size() == 1 ? "" : comparison.name + ": ";
-    Items(comparison, prefix, &verdict.items).AddAll();
+    Items(input.series, comparison, prefix, &verdict.items).AddAll();
   }
   return verdict;
 }

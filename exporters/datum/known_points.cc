@@ -235,7 +235,8 @@ FrameAttempt FrameOfKnownPoints(const KnownPointFit& fit) {
     }
   }
   frame.description = fmt::format(
-      "the frame in which these points were measured, by {} coordinates of {}; z is taken as up",
+      "the frame in which these points were measured, by {} coordinates of {} points; z is taken "
+      "as up",
       num_coordinates, num_points);
   frame.up_in_frame = Eigen::Vector3d::UnitZ();
   return {frame, ""};

@@ -70,9 +70,20 @@ std::string ShortText(const ComparedPoint& point) {
                      kMmPerM * point.difference_m.norm(), point.sigmas_off);
 }
 
-// Orders points by how bad they are. A failed check is worse than any other point.
-std::pair<bool, double> Badness(const ComparedPoint& point) {
-  return {point.state == PointState::kFailed, point.sigmas_off};
+// The compared point that is farthest off; a failed check is worse than any other point. Null where
+// nothing checks the points: as many coordinates as the frame needs always fit.
+const ComparedPoint* WorstPoint(const KnownPointFit& fit) {
+  const auto badness = [](const ComparedPoint& point) {
+    return std::make_pair(point.state == PointState::kFailed, point.sigmas_off);
+  };
+  const ComparedPoint* worst = nullptr;
+  bool is_checked = fit.residual_in_sigmas.has_value();
+  for (const ComparedPoint& point : fit.points) {
+    if (!IsCompared(point)) continue;
+    is_checked = is_checked || point.state != PointState::kUsed;
+    if (worst == nullptr || badness(*worst) < badness(point)) worst = &point;
+  }
+  return is_checked ? worst : nullptr;
 }
 
 std::string ScaleChangeText(const ScaleChange& change) {
@@ -120,10 +131,7 @@ std::string KnownPointsText(const KnownPointFit& fit) {
     text +=
         fmt::format("; {} of {} checks passed", CountPoints(fit, PointState::kPassed), num_checks);
   }
-  const auto worst = std::max_element(
-      fit.points.begin(), fit.points.end(),
-      [](const ComparedPoint& a, const ComparedPoint& b) { return Badness(a) < Badness(b); });
-  text += ", worst " + ShortText(*worst);
+  if (const ComparedPoint* worst = WorstPoint(fit)) text += ", worst " + ShortText(*worst);
   if (fit.ContradictsScale()) {
     text += "; the points require a change of " + ScaleChangeText(*fit.scale_change) + " in size";
   }

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "exporters/shape/joint_covariance.h"
-#include "exporters/shape/shape_sigma.h"
 
 namespace velamap {
 namespace {
@@ -17,40 +15,19 @@ std::optional<Eigen::Vector3d> PointInShape(const MarkerShape& shape, const Know
                            : marker->x_in_shape_m[static_cast<std::size_t>(known.corner)];
 }
 
-// The covariance of the points in the shape frame, m^2, with zeros for points that `covariance`
-// lacks.
-Eigen::MatrixXd CovarianceOfPoints(const std::vector<KnownPoint>& known,
-                                   const PointCovariance* covariance) {
-  std::vector<PointGradient> gradients;
-  std::vector<Eigen::Index> rows;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      PointGradient gradient;
-      AddPointGradient(known[i].marker_id, known[i].corner, Eigen::Vector3d::Unit(axis), &gradient);
-      if (!HasPointsOf(gradient, covariance)) continue;
-      gradients.push_back(std::move(gradient));
-      rows.push_back(static_cast<Eigen::Index>(3 * i) + axis);
-    }
-  }
-  const auto size = static_cast<Eigen::Index>(3 * known.size());
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(size, size);
-  if (!rows.empty()) all(rows, rows) = JointCovarianceOf(*covariance, gradients);
-  return all;
-}
-
 }  // namespace
 
 PresentPoints CollectPresent(const MarkerShape& shape, const std::vector<KnownPoint>& known,
                              const PointCovariance* covariance) {
   PresentPoints present;
-  std::vector<KnownPoint> found;
+  std::vector<CornerId> found;
   DatumPoints& points = present.points;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const std::optional<Eigen::Vector3d> x = PointInShape(shape, known[i]);
     if (!x) continue;
     if (!known[i].is_check) present.datum.push_back(points.points.size());
     present.idxs.push_back(i);
-    found.push_back(known[i]);
+    found.push_back({known[i].marker_id, known[i].corner});
     points.points.push_back({*x, known[i].x_m, known[i].sigma_m});
     points.center_in_shape_m += *x;
   }
@@ -64,7 +41,7 @@ PresentPoints CollectPresent(const MarkerShape& shape, const std::vector<KnownPo
   }
   constexpr double kMinRadius_m = 1e-4;  // keeps divisions by the radius finite
   points.radius_m = std::max(kMinRadius_m, std::sqrt(squared_m2));
-  points.covariance_m2 = CovarianceOfPoints(found, covariance);
+  points.covariance_m2 = JointCovarianceOfPoints(covariance, found);
   return present;
 }
 

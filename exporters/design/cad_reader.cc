@@ -7,21 +7,13 @@
 #include <new>
 
 #include <fmt/format.h>
-#include <BRepBndLib.hxx>
-#include <BRepGProp.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
-#include <Bnd_Box.hxx>
-#include <GProp_GProps.hxx>
 #include <IGESControl_Reader.hxx>
-#include <IGESData_GlobalSection.hxx>
-#include <IGESData_IGESModel.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <Standard_OutOfMemory.hxx>
-#include <TColStd_SequenceOfAsciiString.hxx>
-#include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
@@ -75,23 +67,18 @@ void CheckWholeIges(const fs::path& path) {
   }
 }
 
-TopoDS_Shape ReadStep(const fs::path& path, std::string* unit) {
+TopoDS_Shape ReadStep(const fs::path& path) {
   CheckWholeStep(path);
   STEPControl_Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, "STEP");
-  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
-  reader.FileUnits(lengths, angles, solid_angles);
-  if (!lengths.IsEmpty()) *unit = lengths.First().ToCString();
   reader.TransferRoots();
   return reader.OneShape();
 }
 
-TopoDS_Shape ReadIges(const fs::path& path, std::string* unit) {
+TopoDS_Shape ReadIges(const fs::path& path) {
   CheckWholeIges(path);
   IGESControl_Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) ThrowUnreadable(path, "IGES");
-  const auto name = reader.IGESModel()->GlobalSection().UnitName();
-  if (!name.IsNull()) *unit = name->ToCString();
   reader.TransferRoots();
   return reader.OneShape();
 }
@@ -113,22 +100,13 @@ void AddTriangles(const TopoDS_Face& face, TriangleMesh* mesh) {
   }
 }
 
-CadShape Describe(const TopoDS_Shape& shape, double chord_deviation_mm) {
-  CadShape result;
-  GProp_GProps properties;
-  BRepGProp::SurfaceProperties(shape, properties, 1e-6);
-  result.area_m2 = kMPerMm * kMPerMm * properties.Mass();
-  Bnd_Box box;
-  BRepBndLib::AddOptimal(shape, box, Standard_False, Standard_False);
-  const gp_Pnt low = box.CornerMin(), high = box.CornerMax();
-  result.min_m = kMPerMm * Eigen::Vector3d(low.X(), low.Y(), low.Z());
-  result.max_m = kMPerMm * Eigen::Vector3d(high.X(), high.Y(), high.Z());
+TriangleMesh MeshFaces(const TopoDS_Shape& shape, double chord_deviation_mm) {
+  TriangleMesh mesh;
   BRepMesh_IncrementalMesh(shape, chord_deviation_mm, Standard_False, kAngularDeflection);
   for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
-    ++result.num_faces;
-    AddTriangles(TopoDS::Face(faces.Current()), &result.mesh);
+    AddTriangles(TopoDS::Face(faces.Current()), &mesh);
   }
-  return result;
+  return mesh;
 }
 
 }  // namespace
@@ -140,7 +118,7 @@ std::string LowerExtension(const fs::path& path) {
   return extension;
 }
 
-CadShape ReadCad(const fs::path& path, double chord_deviation_mm) {
+TriangleMesh ReadCad(const fs::path& path, double chord_deviation_mm) {
   VELAMAP_CHECK(chord_deviation_mm > 0);
   const std::string extension = LowerExtension(path);
   const bool is_step = extension == ".step" || extension == ".stp";
@@ -149,16 +127,13 @@ CadShape ReadCad(const fs::path& path, double chord_deviation_mm) {
         fmt::format("{}: unknown extension; expected .step, .stp, .iges or .igs", path.string()));
   }
   const CadSession session;
-  std::string unit;
   try {
-    const TopoDS_Shape shape = is_step ? ReadStep(path, &unit) : ReadIges(path, &unit);
+    const TopoDS_Shape shape = is_step ? ReadStep(path) : ReadIges(path);
     if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
       throw InputError(fmt::format("{}: has no faces; export the surface, not its curves or mesh",
                                    path.string()));
     }
-    CadShape result = Describe(shape, chord_deviation_mm);
-    result.length_unit = unit;
-    return result;
+    return MeshFaces(shape, chord_deviation_mm);
   } catch (const Standard_OutOfMemory&) {
     throw std::bad_alloc();
   } catch (const Standard_Failure&) {

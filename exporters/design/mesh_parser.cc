@@ -99,7 +99,7 @@ void CheckMeshFile(const fs::path& path) {
 
 TriangleMesh ParseMesh(const fs::path& path, const MeshReadOptions& options) {
   const TriangleMesh mesh =
-      HasOwnUnit(path) ? ReadCad(path, options.chord_deviation_mm).mesh
+      HasOwnUnit(path) ? ReadCad(path, options.chord_deviation_mm)
                        : ReadWithAssimp(path, options.m_per_unit.value_or(DefaultMPerUnit(path)));
   const bool is_finite = std::all_of(mesh.vertices_m.begin(), mesh.vertices_m.end(),
                                      [](const Eigen::Vector3d& x) { return x.allFinite(); });

@@ -97,7 +97,7 @@ void WriteMetashapeReference(const MarkerShape& shape, std::ostream& out) {
       const std::optional<Eigen::Vector3d>& sigma_m = marker.sigma_m[corner];
       csv.WriteRecord(CornerLabel({marker.marker_id, corner}), x_in_shape_m->x(), x_in_shape_m->y(),
                       x_in_shape_m->z(),
-                      sigma_m ? std::optional(sigma_m->norm() / std::sqrt(3.0)) : std::nullopt);
+                      sigma_m ? std::optional(SigmaOfCoordinate(*sigma_m)) : std::nullopt);
     }
   }
 }

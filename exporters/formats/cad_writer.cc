@@ -39,6 +39,7 @@
 #include <TopoDS_Vertex.hxx>
 #include <XSControl_WorkSession.hxx>
 
+#include "exporters/formats/ascii.h"
 #include "exporters/formats/cad_library.h"
 #include "importer/base/error.h"
 #include "importer/geometry/units.h"
@@ -119,13 +120,6 @@ Handle(TCollection_HAsciiString) Text(const std::string& text) {
   return new TCollection_HAsciiString(text.c_str());
 }
 
-// Replaces characters outside ASCII, which neither format allows, by underscores.
-std::string Ascii(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '_');
-  return name.empty() ? "surface" : name;
-}
-
 // Puts the other curves and the points into the set of the first curve, and names all.
 void CompleteCurveSet(const CadExtras& extras, const Handle(StepData_StepModel) & model,
                       const Handle(StepShape_GeometricSet) & set) {
@@ -193,11 +187,12 @@ void DescribeStep(const std::string& name, const Handle(StepData_StepModel) & mo
   }
 }
 
-void DescribeIges(const std::string& name, IGESControl_Writer* writer) {
+void DescribeIges(const std::string& name, const std::string& file_name,
+                  IGESControl_Writer* writer) {
   IGESData_GlobalSection header = writer->Model()->GlobalSection();
   header.SetSendName(Text(name));
   header.SetReceiveName(Text(name));
-  header.SetFileName(Text(name + ".iges"));
+  header.SetFileName(Text(file_name.empty() ? name + ".igs" : file_name));
   header.SetSystemId(Text("velamap"));
   header.SetInterfaceVersion(Text("velamap"));
   header.SetAuthorName(Text("velamap"));
@@ -254,7 +249,7 @@ void WriteIges(const SplineSurface& surface, const std::string& name, std::ostre
              &writer);
   }
   writer.ComputeModel();
-  DescribeIges(Ascii(name), &writer);
+  DescribeIges(Ascii(name), Ascii(extras.iges_file_name), &writer);
   VELAMAP_CHECK(writer.Write(out, Standard_False) || !out);
 }
 

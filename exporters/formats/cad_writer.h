@@ -34,6 +34,7 @@ struct CadPoint {
 struct CadExtras {
   std::vector<CadCurve> curves;
   std::vector<CadPoint> points;
+  std::string iges_file_name{};  // of the header; empty: the name with .igs
 };
 
 // `name`, the name of the part, becomes the name of the product in STEP and of the surface in IGES.

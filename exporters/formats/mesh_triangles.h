@@ -23,7 +23,8 @@ struct TriangleMesh {
 
 struct MeshOptions {
   // Exactly one of the two: the longest edge along the grid lines (diagonals are up to 1.42 times
-  // as long), or the largest distance of the triangles from the surface.
+  // as long where these cross at right angles, and below twice as long elsewhere), or the largest
+  // distance of the triangles from the surface.
   std::optional<double> edge_length_mm;
   std::optional<double> chord_deviation_mm;
 

@@ -64,7 +64,7 @@ Vertex MakeVertex(const ShapeMarker& marker, int corner) {
   if (marker.IsWhole()) vertex.normal += MarkerNormal(marker);  // added, so that no -0 is written
   vertex.marker_id = marker.marker_id;
   vertex.corner = corner;
-  if (marker.sigma_m[corner]) vertex.sigma_m = marker.sigma_m[corner]->norm() / std::sqrt(3.0);
+  if (marker.sigma_m[corner]) vertex.sigma_m = SigmaOfCoordinate(*marker.sigma_m[corner]);
   return vertex;
 }
 

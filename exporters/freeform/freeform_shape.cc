@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "exporters/formats/mesh_writer.h"
+#include "exporters/shape/sail_lines.h"
 #include "exporters/shape/shape_sigma.h"
 #include "exporters/surface/surface_attempt.h"
 #include "importer/base/atomic_output.h"
@@ -25,8 +26,9 @@ struct FreeformPart {
 std::vector<FreeformPart> FreeformParts(const MarkerShape& shape, const Layout& layout) {
   std::vector<FreeformPart> parts;
   for (const LayoutPart& part : layout.parts) {
-    if (!part.horizontal.empty() || !part.vertical.empty()) continue;
-    parts.push_back({part.name, {part.marker_ids.begin(), part.marker_ids.end()}});
+    if (!part.horizontal.empty()) continue;
+    const std::vector<int> ids = MarkersOfPart(layout, part.name);
+    parts.push_back({part.name, {ids.begin(), ids.end()}});
   }
   if (!layout.HasMarkers()) {
     parts.push_back({});
@@ -77,8 +79,8 @@ FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,
     const std::string name = ShownName(part.name);
     const std::size_t number = freeform.surfaces.size() + 1;
     if (number > kMaxSurfaces) {
-      freeform.notes.push_back(fmt::format("{}: no surface: at most {} parts without lines get one",
-                                           name, kMaxSurfaces));
+      freeform.notes.push_back(fmt::format(
+          "{}: no surface: at most {} parts without horizontal lines get one", name, kMaxSurfaces));
       continue;
     }
     const auto fit = [&] {

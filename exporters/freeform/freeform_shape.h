@@ -1,4 +1,4 @@
-// Fits a surface through each part of a shape that has no lines, and writes its files.
+// Fits a surface through each part of a shape that has no horizontal lines, and writes its files.
 
 #pragma once
 
@@ -38,8 +38,8 @@ std::string ShownName(const std::string& part);
 // "0.3139 m2", or "0.3139 m2, closed, 0.0214 m3".
 std::string SizeText(const FreeformSurface& surface);
 
-// Fits the parts that have neither horizontal nor vertical lines and name at least
-// kMinFreeformMarkers markers. A layout without parts counts as one part with all markers. `shape`
+// Fits the parts that have no horizontal lines and name at least kMinFreeformMarkers markers, on
+// vertical lines or elsewhere. A layout without parts counts as one part with all markers. `shape`
 // and `covariance` (may be null) are in the same frame. `mesh` is SailOptions::mesh. The result
 // does not depend on `num_threads` (0: one per core).
 FreeformShape ComputeFreeform(const MarkerShape& shape, const Layout& layout,

@@ -12,6 +12,8 @@
 
 #include <Eigen/Geometry>
 
+#include "importer/geometry/quad.h"
+
 namespace velamap {
 namespace {
 
@@ -43,10 +45,6 @@ double Spacing(const std::vector<FrontMarker>& markers) {
   }
   std::sort(spacings_m.begin(), spacings_m.end());
   return spacings_m[static_cast<std::size_t>(kMost * static_cast<double>(spacings_m.size() - 1))];
-}
-
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 class Front {

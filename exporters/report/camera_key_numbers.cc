@@ -68,11 +68,12 @@ std::optional<KeyNumber> CalibrationNumber(const AdjustmentUncertainty* uncertai
 
 std::optional<KeyNumber> SteadinessNumber(const SteadinessVerdict& steadiness) {
   const auto number = [](std::string value, std::string advice, bool spoils_shape) {
-    return KeyNumber{KeyNumberKind::kSteadiness, std::move(value),
-                     "change of the camera from picture to picture, which the sigmas of the shape "
-                     "do not include; bad from a wandering principal point of 1 % of the focal "
-                     "length or a step of 3 % on",
-                     spoils_shape ? ReportStatus::kBad : ReportStatus::kCheck, std::move(advice)};
+    return KeyNumber{
+        KeyNumberKind::kSteadiness, std::move(value),
+        "change of the camera from picture to picture, which the sigmas of the shape "
+        "do not include; bad if the principal point wanders by 1 % of the focal length "
+        "or more, or the focal length jumps by 3 % or more",
+        spoils_shape ? ReportStatus::kBad : ReportStatus::kCheck, std::move(advice)};
   };
   if (steadiness.wander) {
     const PrincipalPointWander& wander = *steadiness.wander;

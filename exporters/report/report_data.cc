@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -71,23 +72,32 @@ Json ScaleJson(const ScaleEstimate& scale) {
   return json;
 }
 
-// The lines of the audit's text as pairs of key and figures, without the histogram, which the page
-// draws itself.
-Json AuditJson(const ScaleAudit& audit) {
-  MetricsReport report;
-  AddMetrics(audit, &report);
-  const auto is_histogram = [](const MetricTable& table) {
-    return table.name == "scale_histogram";
-  };
-  report.tables.erase(std::remove_if(report.tables.begin(), report.tables.end(), is_histogram),
-                      report.tables.end());
+Json MetricsJson(const MetricsReport& report) {
   std::stringstream text;
-  PrintMetrics(report, text);
-  Json lines = Json::array();
-  for (std::string line; std::getline(text, line);) {
-    const std::size_t colon = line.find(": ");
-    if (colon != std::string::npos) {
-      lines.push_back({line.substr(0, colon), line.substr(colon + 2)});
+  WriteMetricsJson(report, text);
+  return Json::parse(text);
+}
+
+// An object as a list of pairs of key and value.
+Json PairsOf(const Json& object) {
+  Json pairs = Json::array();
+  for (const auto& [key, value] : object.items()) pairs.push_back(Json::array({key, value}));
+  return pairs;
+}
+
+// The figures of the audit as pairs of key and value, then the rows of its tables as pairs of the
+// table's name and a list of such pairs. Without the histogram, which the page draws itself, and
+// the table of all markers, which is long.
+Json AuditJson(const ScaleAudit& audit) {
+  MetricsReport figures;
+  AddMetrics(audit, &figures);
+  const MetricsReport tables{{}, std::exchange(figures.tables, {})};
+  Json lines = PairsOf(MetricsJson(figures));
+  const Json rows_of = MetricsJson(tables);
+  for (const MetricTable& table : tables.tables) {
+    if (!table.in_text || table.name == "scale_histogram") continue;
+    for (const Json& row : rows_of.at(table.name)) {
+      lines.push_back(Json::array({table.name, PairsOf(row)}));
     }
   }
   return lines;
@@ -97,9 +107,7 @@ Json AuditJson(const ScaleAudit& audit) {
 Json JsonOf(const KnownPointFit& fit) {
   MetricsReport report;
   AddMetrics(fit, &report);
-  std::stringstream text;
-  WriteMetricsJson(report, text);
-  return Json::parse(text).at("known_points");
+  return MetricsJson(report).at("known_points");
 }
 
 Json PairsJson(const std::vector<std::pair<std::string, std::string>>& pairs) {
@@ -139,7 +147,7 @@ std::vector<ReportLeftOut> MarkersLeftOut(const ReportInput& input) {
 }
 
 void AddFigure(const std::string& name, const std::string& sigma_name,
-               const std::optional<ReportFigure>& figure, Json* json) {
+               const std::optional<Estimate>& figure, Json* json) {
   if (!figure) return;
   (*json)[name] = figure->value;
   if (figure->sigma) (*json)[sigma_name] = *figure->sigma;

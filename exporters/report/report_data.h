@@ -35,6 +35,7 @@
 #include <Eigen/Core>
 
 #include "exporters/datum/known_points.h"
+#include "exporters/sail/section.h"
 #include "exporters/scale/metric_scale.h"
 #include "exporters/scale/model_metrics.h"
 #include "exporters/scale/scale_audit.h"
@@ -60,17 +61,11 @@ struct ReportFrame {
   Eigen::Vector3d forward;  // viewing direction of the front view, unit length, normal to `up`
 };
 
-// A value with its standard deviation.
-struct ReportFigure {
-  double value = 0.0;
-  std::optional<double> sigma;
-};
-
 struct ReportSection {
   std::string name;
   double height_m = 0.0;
-  std::optional<ReportFigure> chord_m, camber_percent, draft_percent, entry_deg, exit_deg,
-      twist_deg, leech_twist_deg, girth_m;
+  std::optional<Estimate> chord_m, camber_percent, draft_percent, entry_deg, exit_deg, twist_deg,
+      leech_twist_deg, girth_m;
   std::vector<Eigen::Vector2d> profile_m;           // in the section's plane, x along the chord
   std::vector<Eigen::Vector3d> profile_in_shape_m;  // the same curve in 3D; can be empty
   std::vector<Eigen::Vector2d> design_m;            // the design's, in the same plane; can be empty
@@ -85,7 +80,7 @@ struct ReportDesign {
 
 struct ReportRig {
   std::string part;
-  std::optional<ReportFigure> luff_bend_m, luff_sag_m, sheeting_angle_deg;
+  std::optional<Estimate> luff_bend_m, luff_sag_m, sheeting_angle_deg;
 };
 
 struct ReportSurface {

@@ -27,24 +27,15 @@ std::map<int, ErrorSum> ErrorsByMarker(const std::vector<ObservationError>& erro
   return errors_of;
 }
 
-// Joint covariance of the centre, m^2; nothing if a corner's is unknown.
-std::optional<Eigen::Matrix3d> CenterCovariance(const PointCovariance& points, int marker_id) {
-  std::vector<PointGradient> gradients(3);
-  for (int axis = 0; axis < 3; ++axis) {
-    AddPointGradient(marker_id, 0, Eigen::Vector3d::Unit(axis),
-                     &gradients[static_cast<std::size_t>(axis)]);
-  }
-  if (!HasPointsOf(gradients.front(), &points)) return std::nullopt;
-  return Eigen::Matrix3d(JointCovarianceOf(points, gradients));
-}
-
 // Columns are the half axes of the 1 sigma ellipsoid of the centre, m, longest last. Without a
 // joint covariance they are along x, y and z.
 std::optional<Eigen::Matrix3d> CenterEllipsoid(const ReportInput& input,
                                                const ShapeMarker& marker) {
   std::optional<Eigen::Matrix3d> covariance;
-  if (input.uncertainty != nullptr) {
-    covariance = CenterCovariance(input.uncertainty->points, marker.marker_id);
+  const PointCovariance* points =
+      input.uncertainty != nullptr ? &input.uncertainty->points : nullptr;
+  if (PointSigma(points, marker.marker_id, 0)) {
+    covariance = JointCovarianceOfPoints(points, {{marker.marker_id, 0}});
   }
   if (!covariance && marker.sigma_m[0]) {
     covariance = marker.sigma_m[0]->cwiseAbs2().asDiagonal().toDenseMatrix();

@@ -14,30 +14,24 @@ constexpr double kMaxReportTriangles = 1e4;       // of the surface of a sail
 constexpr std::size_t kMaxFreeformDrawn = 20000;  // triangles
 constexpr double kMinHorizontal = 0.1;            // below it, a camera looks straight up or down
 
-ReportFigure Figure(double factor, const Estimate& estimate) {
-  ReportFigure figure{factor * estimate.value, std::nullopt};
-  if (estimate.sigma) figure.sigma = factor * *estimate.sigma;
-  return figure;
-}
-
-std::optional<ReportFigure> Figure(const std::optional<Estimate>& estimate) {
-  if (!estimate) return std::nullopt;
-  return Figure(1.0, *estimate);
+Estimate InPercent(const Estimate& share) {
+  Estimate percent{100 * share.value, std::nullopt};
+  if (share.sigma) percent.sigma = 100 * *share.sigma;
+  return percent;
 }
 
 ReportSection MakeSection(const Section& section, bool has_parts) {
-  constexpr double kPercent = 100.0;
   ReportSection result;
   result.name = has_parts ? section.part + " " + section.name : section.name;
   result.height_m = section.height_m;
-  result.chord_m = Figure(1.0, section.chord_m);
-  result.camber_percent = Figure(kPercent, section.camber);
-  if (section.draft_position) result.draft_percent = Figure(kPercent, *section.draft_position);
-  result.entry_deg = Figure(1.0, section.entry_angle_deg);
-  result.exit_deg = Figure(1.0, section.exit_angle_deg);
-  result.twist_deg = Figure(1.0, section.twist_deg);
-  result.leech_twist_deg = Figure(1.0, section.leech_twist_deg);
-  result.girth_m = Figure(1.0, section.girth_m);
+  result.chord_m = section.chord_m;
+  result.camber_percent = InPercent(section.camber);
+  if (section.draft_position) result.draft_percent = InPercent(*section.draft_position);
+  result.entry_deg = section.entry_angle_deg;
+  result.exit_deg = section.exit_angle_deg;
+  result.twist_deg = section.twist_deg;
+  result.leech_twist_deg = section.leech_twist_deg;
+  result.girth_m = section.girth_m;
   for (const ProfilePoint& point : SampleProfile(section, kNumProfilePoints)) {
     result.profile_m.emplace_back(point.chordwise_m, point.depth_m);
     result.profile_in_shape_m.push_back(point.x_in_frame_m);
@@ -75,8 +69,7 @@ std::vector<ReportRig> MakeReportRigs(const SectionReport& sections) {
   std::vector<ReportRig> result;
   for (const RigNumbers& rig : sections.rigs) {
     if (!rig.luff_bend_m && !rig.sheeting_angle_deg) continue;
-    result.push_back({rig.part, Figure(rig.luff_bend_m), Figure(rig.luff_sag_m),
-                      Figure(rig.sheeting_angle_deg)});
+    result.push_back({rig.part, rig.luff_bend_m, rig.luff_sag_m, rig.sheeting_angle_deg});
   }
   return result;
 }

@@ -17,9 +17,13 @@ namespace {
 constexpr double kGoodScaleSpread_percent = 1, kBadScaleSpread_percent = 3;
 constexpr double kGoodScaleSigma_percent = 0.5, kBadScaleSigma_percent = 3;
 
-// Whether parts differ by more than the scale's sigma says and no distance decides between them.
+// Whether parts differ by more than the scale's sigma says and no distance decides between them. A
+// scale bar that is far from its length in the shape was left out by the adjustment.
 bool PartsLeaveScaleOpen(const ScaleEstimate& scale, const ScaleAudit& audit) {
-  const auto decides = [](const CheckedDistance& checked) { return checked.known.is_scale_bar; };
+  const auto decides = [](const CheckedDistance& checked) {
+    return checked.distance_m && !checked.IsCheck() &&
+           std::abs(checked.DifferenceInSigmas()) <= kMaxCheckSigmas;
+  };
   if (!audit.parts_disagree ||
       std::any_of(audit.distances.begin(), audit.distances.end(), decides)) {
     return false;

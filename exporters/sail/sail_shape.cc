@@ -11,6 +11,7 @@
 #include "exporters/formats/mesh_writer.h"
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
+#include "exporters/shape/sail_lines.h"
 #include "exporters/surface/surface_attempt.h"
 #include "exporters/surface/surface_csv.h"
 #include "exporters/surface/surface_input.h"
@@ -37,7 +38,8 @@ void CheckEdges(const MarkerShape& shape, const SurfaceEdges& edges) {
       if (distance_m <= size_m) continue;
       throw InputError(fmt::format(
           "--Surface.edges_path: the point {:g}, {:g}, {:g} is {:.3g} m from the markers, expected "
-          "at most {:.3g} m, which they cover; give m in the frame of the result",
+          "at most {:.3g} m, the extent of the markers; give coordinates in m, in the frame of the "
+          "result",
           x_m.x(), x_m.y(), x_m.z(), distance_m, size_m));
     }
   }
@@ -47,8 +49,11 @@ SailSurface MakeSailSurface(const MarkerShape& shape, const Layout& layout, cons
                             const SailOptions& options) {
   SailSurface surface;
   surface.part = part.name;
-  CheckEdges(shape, options.surface.edges);
-  surface.fit = FitSurface(CollectSurfaceInput(shape, part), options.surface);
+  SurfaceOptions of_part = options.surface;
+  // The points of a file are on the edges of one sail.
+  if (&part != FirstPartWithLines(layout)) of_part.edges = {};
+  CheckEdges(shape, of_part.edges);
+  surface.fit = FitSurface(CollectSurfaceInput(shape, part), of_part);
   surface.area_m2 = SurfaceArea(surface.fit.surface);
   surface.mesh = MeshSurface(
       surface.fit.surface,
@@ -77,12 +82,13 @@ CadExtras ExtrasOf(const std::string& part, const SectionReport& report, const M
 
 using Writer = std::function<void(std::ostream&)>;
 
-void WriteSurfaceFiles(const SailSurface& surface, const CadExtras& extras,
-                       const std::string& title, const std::string& suffix,
-                       const SailFileOptions& options, const std::filesystem::path& folder) {
+void WriteSurfaceFiles(const SailSurface& surface, CadExtras extras, const std::string& title,
+                       const std::string& suffix, const SailFileOptions& options,
+                       const std::filesystem::path& folder) {
   const SplineSurface& spline = surface.fit.surface;
   const SurfaceGrid grid = MakeGrid(spline, options.grid);
   const std::string stem = "surface" + suffix;
+  extras.iges_file_name = stem + ".igs";
   const std::vector<std::pair<std::string, Writer>> files = {
       {stem + ".step", [&](std::ostream& out) { WriteStep(spline, title, out, extras); }},
       {stem + ".igs", [&](std::ostream& out) { WriteIges(spline, title, out, extras); }},

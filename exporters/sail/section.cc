@@ -44,9 +44,9 @@ MarkerCenters CollectCenters(const MarkerShape& shape, const Layout& layout,
   }
   const auto num_markers = static_cast<Eigen::Index>(centers.marker_ids.size());
   centers.x_m.resize(3, num_markers);
-  centers.covariance_m2 = Eigen::MatrixXd::Zero(3 * num_markers, 3 * num_markers);
-  std::vector<PointGradient> gradients;
-  std::vector<int> rows;
+  std::vector<CornerId> points;
+  for (const int id : centers.marker_ids) points.push_back({id, 0});
+  centers.covariance_m2 = JointCovarianceOfPoints(covariance, points);
   for (Eigen::Index i = 0; i < num_markers; ++i) {
     const ShapeMarker& marker =
         *FindWholeMarker(shape, centers.marker_ids[static_cast<std::size_t>(i)]);
@@ -54,19 +54,9 @@ MarkerCenters CollectCenters(const MarkerShape& shape, const Layout& layout,
     const bool in_covariance = PointSigma(covariance, marker.marker_id, 0).has_value();
     centers.has_sigma.push_back(covariance != nullptr ? in_covariance
                                                       : marker.sigma_m[0].has_value());
-    if (!centers.has_sigma.back()) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int row = static_cast<int>(3 * i) + axis;
-      if (covariance == nullptr) {
-        centers.covariance_m2(row, row) = std::pow((*marker.sigma_m[0])[axis], 2);
-        continue;
-      }
-      rows.push_back(row);
-      gradients.emplace_back();
-      AddPointGradient(marker.marker_id, 0, Eigen::Vector3d::Unit(axis), &gradients.back());
-    }
+    if (covariance != nullptr || !marker.sigma_m[0]) continue;
+    centers.covariance_m2.diagonal().segment<3>(3 * i) = marker.sigma_m[0]->cwiseAbs2();
   }
-  if (!rows.empty()) centers.covariance_m2(rows, rows) = JointCovarianceOf(*covariance, gradients);
   return centers;
 }
 
@@ -134,8 +124,8 @@ Estimate Difference(SectionNumber number, const MarkerCenters& centers,
 }
 
 void AddPartSections(const PartContext& context, const std::optional<MarkerPair>& boom,
-                     const std::optional<MarkerPair>& centerline, const SectionOptions& options,
-                     SectionReport* report) {
+                     const std::optional<MarkerPair>& centerline, const std::string& up_reference,
+                     const SectionOptions& options, SectionReport* report) {
   const std::vector<LineCurve>& lines = context.curves.lines;
   for (const MissingLine& line : context.curves.missing) {
     report->missing.push_back({context.part.name, line.name, line.reason, line.is_by_layout});
@@ -154,7 +144,7 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
   }
   const std::set<double> heights_m(options.heights_m.begin(), options.heights_m.end());
   for (const double height_m : heights_m) {
-    const std::string name = fmt::format("z={}", height_m);
+    const std::string name = fmt::format("height={}", height_m);
     const HeightCut cut = CutAtHeight(SampleLines(lines), context.axes.up, height_m);
     if (!cut.curve) {
       report->missing.push_back({context.part.name, name, cut.reason});
@@ -173,9 +163,31 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
         Difference(kLeechAzimuth, context.centers, numbers[i], numbers.front());
   }
   report->rigs.push_back(ComputeRigNumbers(context, centerline, reference));
+  report->rigs.back().twist_reference = boom ? kBoomPart : "lowest section";
+  report->rigs.back().up_reference = up_reference;
   std::stable_sort(sections.begin(), sections.end(),
                    [](const Section& a, const Section& b) { return a.height_m < b.height_m; });
   for (Section& section : sections) report->sections.push_back(std::move(section));
+}
+
+struct SectionUp {
+  std::optional<Eigen::Vector3d> direction;  // unit
+  std::string reference;                     // RigNumbers::up_reference
+};
+
+// Up of a part: along its luff if two of its markers are whole, otherwise SailUp(), otherwise of
+// the frame. The frame only decides which end is the head.
+SectionUp ChooseSectionUp(const MarkerShape& shape, const ShapeFrame& frame,
+                          const LayoutPart& part) {
+  const std::optional<Eigen::Vector3d> luff = LuffDirection(shape, part);
+  const std::optional<Eigen::Vector3d> sail = SailUp(shape, part);
+  const std::optional<Eigen::Vector3d> along = luff ? luff : sail;
+  if (!along) return {frame.up_in_frame, "z of the frame"};
+  // Some layouts list the lines from head to foot. The up direction of the frame, or otherwise of
+  // the lines, decides which end is the head if it is within 60 degrees of the luff.
+  const std::optional<Eigen::Vector3d>& hint = frame.up_in_frame ? frame.up_in_frame : sail;
+  const bool is_down = hint && along->dot(*hint) < -kMinHint;
+  return {is_down ? Eigen::Vector3d(-*along) : *along, luff ? "luff" : "lines"};
 }
 
 SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& up) {
@@ -223,18 +235,6 @@ void SectionOptions::Check() const {
   }
 }
 
-SectionUp ChooseSectionUp(const MarkerShape& shape, const ShapeFrame& frame, const Layout& layout) {
-  const std::optional<Eigen::Vector3d> luff = LuffDirection(shape, layout);
-  const std::optional<Eigen::Vector3d> sail = SailUp(shape, layout);
-  const std::optional<Eigen::Vector3d> along = luff ? luff : sail;
-  if (!along) return {frame.up_in_frame, "z of the frame"};
-  // Some layouts list the lines from head to foot. The up direction of the frame, or otherwise of
-  // the lines, decides which end is the head if it is within 60 degrees of the luff.
-  const std::optional<Eigen::Vector3d>& hint = frame.up_in_frame ? frame.up_in_frame : sail;
-  const bool is_down = hint && along->dot(*hint) < -kMinHint;
-  return {is_down ? Eigen::Vector3d(-*along) : *along, luff ? "luff" : "lines"};
-}
-
 SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
                               const Layout& layout, const PointCovariance* covariance,
                               const SectionOptions& options) {
@@ -244,33 +244,32 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
     report.notes.push_back("no sections: the layout has no horizontal lines");
     return report;
   }
-  const SectionUp section_up = ChooseSectionUp(shape, frame, layout);
-  report.up_reference = section_up.reference;
-  if (!section_up.direction) {
-    report.notes.push_back(
-        "no sections: the markers of the lines do not determine which way is up");
-    return report;
-  }
-  const Eigen::Vector3d& up = *section_up.direction;
   const MarkerCenters centers = CollectCenters(shape, layout, covariance);
   const bool wants_boom = !MarkersOfPart(layout, kBoomPart).empty();
-  report.twist_reference = "lowest section";
   for (const LayoutPart& part : layout.parts) {
     if (part.horizontal.empty()) continue;
-    PartContext context{part, centers, {up, {}, 1}, {}};
-    context.curves = FitPartLines(part, centers, up, options.min_markers);
+    const SectionUp up = ChooseSectionUp(shape, frame, part);
+    if (!up.direction) {
+      report.notes.push_back(fmt::format(
+          "no sections of {}: the markers of its lines do not determine which way is up",
+          part.name));
+      continue;
+    }
+    PartContext context{part, centers, {*up.direction, {}, 1}, {}};
+    context.curves = FitPartLines(part, centers, *up.direction, options.min_markers);
     std::optional<MarkerPair> boom, centerline;
     if (!context.curves.lines.empty()) {
-      context.axes = AxesOf(context.curves.lines, up);
-      boom = FindPair(kBoomPart, layout, centers, context.axes.reference);
+      context.axes = AxesOf(context.curves.lines, *up.direction);
       centerline = FindPair(kCenterlinePart, layout, centers, context.axes.reference);
+      // A boat has one boom, which carries the first sail of the layout.
+      const bool is_first = &part == FirstPartWithLines(layout);
+      if (is_first) boom = FindPair(kBoomPart, layout, centers, context.axes.reference);
+      if (is_first && wants_boom && !boom) {
+        report.notes.push_back(
+            "twist against the lowest section: fewer than two markers of the boom are whole");
+      }
     }
-    if (boom) report.twist_reference = kBoomPart;
-    AddPartSections(context, boom, centerline, options, &report);
-  }
-  if (wants_boom && report.twist_reference != kBoomPart) {
-    report.notes.push_back(
-        "twist against the lowest section: fewer than two markers of the boom are whole");
+    AddPartSections(context, boom, centerline, up.reference, options, &report);
   }
   return report;
 }

@@ -45,7 +45,7 @@ struct SectionMarker {
 
 struct Section {
   std::string part;
-  std::string name;  // of the line, or "z=2.5" (m) for a height
+  std::string name;  // of the line, or "height=2.5" (m) for a height
   bool is_line = true;
   double height_m = 0.0;  // of the middle of the chord
   Estimate chord_m;
@@ -55,7 +55,8 @@ struct Section {
   std::optional<Estimate> draft_position;
   Estimate entry_angle_deg;  // between chord and curve at the luff, positive to leeward
   Estimate exit_angle_deg;   // the same at the leech, positive if the curve returns from leeward
-  Estimate twist_deg;        // of the chord about up, from `twist_reference`; positive to leeward
+  Estimate
+      twist_deg;  // of the chord about up, from RigNumbers::twist_reference; positive to leeward
   // Turn about up of the direction in which the curve ends at the leech, from the lowest line's;
   // positive to leeward.
   Estimate leech_twist_deg;
@@ -87,7 +88,10 @@ struct RigNumbers {
   // About up from the centre line to the boom or, without one, the chord of the lowest line;
   // positive to leeward.
   std::optional<Estimate> sheeting_angle_deg;
-  std::string aft_reference;  // "centerline" or "lowest section"
+  std::string aft_reference;    // "centerline" or "lowest section"
+  std::string twist_reference;  // "boom", of the first part with lines, or "lowest section"
+  // Of the part's up: "luff"; "lines" without two whole markers of the luff; "z of the frame".
+  std::string up_reference;
 };
 
 // Sections by part in the order of the layout, and from the lowest up within a part.
@@ -97,8 +101,6 @@ struct SectionReport {
   std::vector<RigNumbers> rigs;  // of parts with sections, in the order of the layout
   // Notes on more than one section: why there are none, sections that cross, a missing boom.
   std::vector<std::string> notes;
-  std::string twist_reference;  // "boom" or "lowest section"
-  std::string up_reference;     // "luff", "lines" or "z of the frame"
 };
 
 struct SectionOptions {
@@ -110,14 +112,6 @@ struct SectionOptions {
 };
 
 OptionGroup DescribeOptions(SectionOptions* options);
-
-// Up of the sections (unit): along the luff if two of its markers are whole, otherwise SailUp(),
-// otherwise of the frame. The frame only decides which end is the head.
-struct SectionUp {
-  std::optional<Eigen::Vector3d> direction;
-  std::string reference;
-};
-SectionUp ChooseSectionUp(const MarkerShape& shape, const ShapeFrame& frame, const Layout& layout);
 
 // `shape` and `covariance` (may be null) are in `frame` (MoveShape, RotateCovariance). Throws
 // InputError for bad options; the report lists what cannot be computed.

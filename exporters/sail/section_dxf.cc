@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "exporters/formats/ascii.h"
 #include "exporters/sail/section_drawing.h"
 #include "exporters/sail/section_writer.h"
 #include "importer/geometry/units.h"
@@ -78,7 +79,7 @@ void WriteHeader(const ShapeFrame& frame, const std::vector<std::string>& layers
                  const Eigen::AlignedBox3d& extent_mm, const DxfOutput& out) {
   Write(out, 999,
         fmt::format("velamap sections, unit {}, frame {}", ChoiceName(kLengthUnits, out.unit),
-                    SingleLine(FrameText(frame))));
+                    Ascii(SingleLine(FrameText(frame)))));
   Write(out, 0, "SECTION");
   Write(out, 2, "HEADER");
   Write(out, 9, "$ACADVER");
@@ -144,7 +145,7 @@ void WriteText(const Eigen::Vector3d& x_mm, const std::string& text, const DxfOu
   WritePoint(out, x_mm);
   constexpr double kHeight_mm = 40;
   Write(out, 40, fmt::format("{}", out.UnitsPerMm() * kHeight_mm));
-  Write(out, 1, SingleLine(text));
+  Write(out, 1, Ascii(SingleLine(text)));
 }
 
 Eigen::Vector3d FlatPoint(const ProfilePoint& point, double base_mm) {

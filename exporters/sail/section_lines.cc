@@ -23,7 +23,7 @@ std::string WhyNoCurve(const MarkerCenters& centers, const std::vector<int>& ind
     return centers.marker_ids[static_cast<std::size_t>(indices[static_cast<std::size_t>(i)])];
   };
   if (up.cross(chord).norm() <= kMinSine * chord.norm()) {
-    return "it runs upwards; list it under 'vertical', or choose another frame";
+    return "it runs upwards; list it under 'vertical'";
   }
   for (Eigen::Index i = 1; i < x.cols(); ++i) {
     const Eigen::Vector3d step = x.col(i) - x.col(i - 1);

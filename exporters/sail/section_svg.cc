@@ -141,9 +141,10 @@ std::vector<std::string> FootLines(const SectionReport& report, const ShapeFrame
     for (const std::string& line : Wrapped(text)) lines.push_back(line);
   };
   add("frame " + FrameText(frame));
-  if (!report.twist_reference.empty()) {
-    add("twist against " + report.twist_reference + "; ± is one standard deviation");
+  for (const RigNumbers& rig : report.rigs) {
+    add(fmt::format("twist of {} against {}", rig.part, rig.twist_reference));
   }
+  if (!report.rigs.empty()) add("± is one standard deviation");
   for (const std::string& note : report.notes) add(note);
   for (const MissingSection& missing : report.missing) {
     add(fmt::format("{} {} left out: {}", missing.part, missing.name, missing.reason));

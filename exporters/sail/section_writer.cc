@@ -46,7 +46,10 @@ void AddEstimate(const std::string& key, const std::optional<Estimate>& estimate
 }
 
 Json JsonOf(const RigNumbers& rig) {
-  Json object = {{"part", rig.part}, {"aft_reference", rig.aft_reference}};
+  Json object = {{"part", rig.part},
+                 {"twist_reference", rig.twist_reference},
+                 {"up_reference", rig.up_reference},
+                 {"aft_reference", rig.aft_reference}};
   AddEstimate("luff_bend_m", rig.luff_bend_m, &object);
   AddEstimate("luff_sag_m", rig.luff_sag_m, &object);
   AddEstimate("sheeting_angle_deg", rig.sheeting_angle_deg, &object);
@@ -97,8 +100,6 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
   Json root;
   root["frame"] = {
       {"name", frame.name}, {"description", frame.description}, {"reasons", frame.reasons}};
-  root["twist_reference"] = report.twist_reference;
-  root["up_reference"] = report.up_reference;
   root["notes"] = report.notes;
   root["sections"] = Json::array();
   for (const Section& section : report.sections) {

@@ -16,12 +16,8 @@ int CountImages(const Point3D& point) {
 }
 
 void AddCenter(ShapeMarker* marker) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int corner = 1; corner <= kNumCorners; ++corner) {
-    if (!marker->x_in_shape_m[corner]) return;
-    sum += *marker->x_in_shape_m[corner];
-  }
-  marker->x_in_shape_m[0] = sum / kNumCorners;
+  marker->x_in_shape_m[0] = MeanOfCorners(*marker);
+  if (!marker->IsWhole()) return;
   marker->num_frames[0] =
       *std::min_element(marker->num_frames.begin() + 1, marker->num_frames.end());
 }

@@ -204,7 +204,7 @@ PrintSpread SpreadOf(const std::vector<MarkerScale>& markers) {
 void SummarizeDistances(ScaleAudit* audit) {
   std::vector<double> values, sigmas;
   for (const CheckedDistance& checked : audit->distances) {
-    if (!checked.distance_m || *checked.distance_m == 0 || checked.known.is_scale_bar) continue;
+    if (!checked.distance_m || *checked.distance_m == 0 || !checked.IsCheck()) continue;
     values.push_back(std::log(*checked.distance_m / checked.known.length_m));
     sigmas.push_back(checked.DifferenceSigma() / checked.known.length_m);
   }

@@ -136,14 +136,34 @@ void PrintDistances(const ScaleAudit& audit, std::ostream& out) {
   out << '\n';
 }
 
+std::string NameOf(const KnownDistance& known) {
+  return fmt::format("{}-{}", PointName(known.marker_id1, known.corner1),
+                     PointName(known.marker_id2, known.corner2));
+}
+
+// One warning for all distances that were to give the scale and could not.
+std::vector<std::string> UnusedBarWarnings(const ScaleAudit& audit) {
+  std::vector<std::string> names;
+  for (const CheckedDistance& checked : audit.distances) {
+    if (checked.distance_m && checked.known.is_scale_bar && checked.IsCheck()) {
+      names.push_back(NameOf(checked.known));
+    }
+  }
+  if (names.empty()) return {};
+  return {fmt::format(
+      "the distances with use: scale ({}) are only compared with the shape, because only the "
+      "marker-aware adjustment uses them: adjust the model with "
+      "velamap bundle_adjuster --backend markers or both, or give that option to "
+      "automatic_reconstructor",
+      fmt::join(names, ", "))};
+}
+
 }  // namespace
 
 std::string ShortText(const CheckedDistance& checked) {
-  const KnownDistance& known = checked.known;
-  return fmt::format(
-      "{}-{} {:+.2f} mm ({:+.1f} sigmas)", PointName(known.marker_id1, known.corner1),
-      PointName(known.marker_id2, known.corner2), (*checked.distance_m - known.length_m) * kMmPerM,
-      checked.DifferenceInSigmas());
+  return fmt::format("{} {:+.2f} mm ({:+.1f} sigmas)", NameOf(checked.known),
+                     (*checked.distance_m - checked.known.length_m) * kMmPerM,
+                     checked.DifferenceInSigmas());
 }
 
 std::vector<const CheckedDistance*> FailedChecks(const ScaleAudit& audit) {
@@ -155,10 +175,9 @@ std::vector<const CheckedDistance*> FailedChecks(const ScaleAudit& audit) {
 }
 
 int NumChecks(const ScaleAudit& audit) {
-  return static_cast<int>(std::count_if(audit.distances.begin(), audit.distances.end(),
-                                        [](const CheckedDistance& checked) {
-                                          return checked.distance_m && !checked.known.is_scale_bar;
-                                        }));
+  return static_cast<int>(std::count_if(
+      audit.distances.begin(), audit.distances.end(),
+      [](const CheckedDistance& checked) { return checked.distance_m && checked.IsCheck(); }));
 }
 
 int NumDistancesFound(const ScaleAudit& audit) {
@@ -180,7 +199,7 @@ const CheckedDistance* WorstDistance(const ScaleAudit& audit) {
 }
 
 std::vector<std::string> ScaleWarnings(const ScaleAudit& audit) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = UnusedBarWarnings(audit);
   for (const CheckedDistance* checked : FailedChecks(audit)) {
     const KnownDistance& known = checked->known;
     warnings.push_back(fmt::format(

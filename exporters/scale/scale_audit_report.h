@@ -32,7 +32,8 @@ const CheckedDistance* WorstDistance(const ScaleAudit& audit);
 // `12-45.3 +15.10 mm (+5.2 sigmas)` for a distance that is in the shape.
 std::string ShortText(const CheckedDistance& checked);
 
-// A warning for each distance that the shape fails: its name, its value, how far it is off.
+// A warning that names the scale bars which are only checks (CheckedDistance::IsCheck()), and one
+// for each distance that the shape fails: its name, its value, how far it is off.
 std::vector<std::string> ScaleWarnings(const ScaleAudit& audit);
 
 // Prints at most four lines `key: value` for a summary: the sigma of the scale, the markers that

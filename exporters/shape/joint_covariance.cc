@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "exporters/shape/shape_sigma.h"
+
 namespace velamap {
 namespace {
 
@@ -47,6 +49,26 @@ Eigen::MatrixXd JointCovarianceOf(const PointCovariance& covariance,
     }
   }
   return result;
+}
+
+Eigen::MatrixXd JointCovarianceOfPoints(const PointCovariance* covariance,
+                                        const std::vector<CornerId>& points) {
+  std::vector<PointGradient> gradients;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      PointGradient gradient;
+      AddPointGradient(points[i].marker_id, points[i].corner, Eigen::Vector3d::Unit(axis),
+                       &gradient);
+      if (!HasPointsOf(gradient, covariance)) continue;
+      gradients.push_back(std::move(gradient));
+      rows.push_back(static_cast<Eigen::Index>(3 * i) + axis);
+    }
+  }
+  const auto size = static_cast<Eigen::Index>(3 * points.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(size, size);
+  if (!rows.empty()) all(rows, rows) = JointCovarianceOf(*covariance, gradients);
+  return all;
 }
 
 }  // namespace velamap

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "importer/base/ids.h"
 #include "reconstruct/geometry/point_covariance.h"
 
 namespace velamap {
@@ -14,5 +15,10 @@ namespace velamap {
 // cost. Throws std::logic_error for a point that `covariance` lacks.
 Eigen::MatrixXd JointCovarianceOf(const PointCovariance& covariance,
                                   const std::vector<PointGradient>& gradients);
+
+// Joint covariance of corners (1..4) and centres (0), three rows for each, m^2, with zeros for
+// those that `covariance` (may be null) lacks.
+Eigen::MatrixXd JointCovarianceOfPoints(const PointCovariance* covariance,
+                                        const std::vector<CornerId>& points);
 
 }  // namespace velamap

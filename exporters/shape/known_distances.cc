@@ -15,7 +15,7 @@ double CheckedDistance::DifferenceInSigmas() const {
 }
 
 bool CheckedDistance::FailsAsCheck() const {
-  return distance_m && !known.is_scale_bar && std::abs(DifferenceInSigmas()) > kMaxCheckSigmas;
+  return distance_m && IsCheck() && std::abs(DifferenceInSigmas()) > kMaxCheckSigmas;
 }
 
 std::vector<CheckedDistance> CheckDistances(const MarkerShape& shape, const Layout& layout,

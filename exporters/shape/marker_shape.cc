@@ -1,6 +1,7 @@
 #include "exporters/shape/marker_shape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -43,6 +44,19 @@ Eigen::Matrix3d MarkerAxes(const ShapeMarker& marker) {
 }
 
 }  // namespace
+
+double SigmaOfCoordinate(const Eigen::Vector3d& sigma_m) {
+  return std::sqrt(sigma_m.squaredNorm() / 3);
+}
+
+std::optional<Eigen::Vector3d> MeanOfCorners(const ShapeMarker& marker) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t corner = 1; corner <= kNumCorners; ++corner) {
+    if (!marker.x_in_shape_m[corner]) return std::nullopt;
+    sum += *marker.x_in_shape_m[corner];
+  }
+  return sum / kNumCorners;
+}
 
 const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id) {
   const auto it =

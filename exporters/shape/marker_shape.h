@@ -30,6 +30,12 @@ struct MarkerShape {
   std::vector<ShapeMarker> markers;  // by ascending marker id
 };
 
+// The root mean square of the sigmas along x, y and z.
+double SigmaOfCoordinate(const Eigen::Vector3d& sigma_m);
+
+// The mean of the corners; nothing if one of them is unknown.
+std::optional<Eigen::Vector3d> MeanOfCorners(const ShapeMarker& marker);
+
 // Null without such a marker.
 const ShapeMarker* FindMarker(const MarkerShape& shape, int marker_id);
 // Null also for a marker that is not whole.

@@ -95,18 +95,19 @@ LineEnds EndsOf(const MarkerShape& shape, const MarkerLine& line) {
   return {CenterOf(shape, line.marker_ids.front()), CenterOf(shape, line.marker_ids.back())};
 }
 
-std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout) {
-  const LayoutPart* part = FirstPartWithLines(layout);
-  if (part == nullptr) return std::nullopt;
-  const auto up = UnitOrNothing(SumOfDirections(shape, part->vertical));
-  return up ? up : UnitOrNothing(FromLowestToHighest(shape, part->horizontal));
+std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const LayoutPart& part) {
+  const auto up = UnitOrNothing(SumOfDirections(shape, part.vertical));
+  return up ? up : UnitOrNothing(FromLowestToHighest(shape, part.horizontal));
 }
 
-std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const Layout& layout) {
+std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout) {
   const LayoutPart* part = FirstPartWithLines(layout);
-  if (part == nullptr) return std::nullopt;
+  return part == nullptr ? std::nullopt : SailUp(shape, *part);
+}
+
+std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const LayoutPart& part) {
   std::vector<Eigen::Vector3d> luff;
-  for (const MarkerLine& line : part->horizontal) {
+  for (const MarkerLine& line : part.horizontal) {
     const int id = line.marker_ids.front();
     if (FindWholeMarker(shape, id) != nullptr) luff.push_back(CenterOf(shape, id));
   }

@@ -34,16 +34,18 @@ std::vector<const MarkerLine*> LinesWithEnds(const MarkerShape& shape,
 // Ends of such a line.
 LineEnds EndsOf(const MarkerShape& shape, const MarkerLine& line);
 
-// Unit vector from foot to head of the first part with lines: along its vertical lines or, without
-// any, from its lowest to its highest horizontal line. Markers at the ends may be missing. Nothing
-// if the markers do not determine it.
+// Unit vector from foot to head of the part: along its vertical lines or, without any, from its
+// lowest to its highest horizontal line. Markers at the ends may be missing. Nothing if the markers
+// do not determine it.
+std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const LayoutPart& part);
+// The same of the first part with horizontal lines.
 std::optional<Eigen::Vector3d> SailUp(const MarkerShape& shape, const Layout& layout);
 
 // Unit vector up the luff: the line of least squares through the first markers of the horizontal
-// lines of the same part, those that are whole. Nothing with fewer than two.
-std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const Layout& layout);
+// lines of the part, those that are whole. Nothing with fewer than two.
+std::optional<Eigen::Vector3d> LuffDirection(const MarkerShape& shape, const LayoutPart& part);
 
-// Unit vector from luff to leech, the mean over the horizontal lines of the same part.
+// Unit vector from luff to leech, the mean over the horizontal lines of the first part with lines.
 std::optional<Eigen::Vector3d> SailAft(const MarkerShape& shape, const Layout& layout);
 
 // The side of their chords to which the horizontal lines bulge along the unit vector: 1 or -1, or 0

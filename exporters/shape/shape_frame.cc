@@ -30,8 +30,8 @@ std::string WhichMissing(const MarkerShape& shape, const std::vector<int>& ids) 
     if (FindWholeMarker(shape, id) == nullptr) missing.push_back(id);
   }
   if (missing.empty()) return "";
-  return fmt::format("marker{} {} not reconstructed whole", missing.size() == 1 ? "" : "s",
-                     fmt::join(missing, " "));
+  return fmt::format("marker{} {} {} not reconstructed whole", missing.size() == 1 ? "" : "s",
+                     fmt::join(missing, " "), missing.size() == 1 ? "was" : "were");
 }
 
 ShapeFrame MakeUpright(FrameKind kind, const Rigid3& frame_from_shape, const std::string& name,
@@ -177,8 +177,8 @@ std::string NameOf(FrameKind kind, const FrameChoice& choice) {
 
 [[noreturn]] void ThrowFrameNotPossible(const FrameChoice& choice, const std::string& reason) {
   throw InputError(
-      fmt::format("--frame: {} is not possible: {}; leave the option out, or give "
-                  "another frame",
+      fmt::format("--frame: the frame '{}' is not possible: {}; leave the option out, or "
+                  "give another frame",
                   NameOf(choice.kind, choice), reason));
 }
 

@@ -59,11 +59,11 @@ struct Noise {
   Smoothing smoothing = Smoothing::kCrossValidation;
 };
 
-Noise DescribeNoise(const SortedInput& sorted, const SurfaceOptions& options) {
+Noise DescribeNoise(const SortedInput& sorted) {
   std::vector<double> known;
   bool some_zero = false;
   for (const auto& [id, marker] : sorted.by_id) {
-    const std::optional<double> sigma = marker.sigma_m ? marker.sigma_m : options.default_sigma_m;
+    const std::optional<double>& sigma = marker.sigma_m;
     if (sigma && *sigma > 0) known.push_back(*sigma);
     some_zero = some_zero || (sigma && *sigma <= 0);
   }
@@ -75,9 +75,9 @@ Noise DescribeNoise(const SortedInput& sorted, const SurfaceOptions& options) {
     noise.edge_sigma_m = Median(known);
   }
   for (const auto& [id, marker] : sorted.by_id) {
-    const std::optional<double> sigma = marker.sigma_m ? marker.sigma_m : options.default_sigma_m;
-    noise.sigma_m[id] =
-        noise.smoothing == Smoothing::kInterpolate ? 1.0 : sigma.value_or(noise.edge_sigma_m);
+    noise.sigma_m[id] = noise.smoothing == Smoothing::kInterpolate
+                            ? 1.0
+                            : marker.sigma_m.value_or(noise.edge_sigma_m);
   }
   return noise;
 }
@@ -177,11 +177,6 @@ OptionGroup DescribeOptions(SurfaceOptions* options) {
 
 void SurfaceOptions::Check() const {
   CheckRanges(*this);
-  if (default_sigma_m && !(*default_sigma_m >= 0 && std::isfinite(*default_sigma_m))) {
-    throw InputError(
-        fmt::format("the default sigma of the surface is {} m; it must be 0 (interpolate) or more",
-                    *default_sigma_m));
-  }
   CheckEdge(edges.luff, "luff", luff_extension_mm, OptionName(&SurfaceOptions::luff_extension_mm));
   CheckEdge(edges.leech, "leech", leech_extension_mm,
             OptionName(&SurfaceOptions::leech_extension_mm));
@@ -206,7 +201,7 @@ FittedSurface FitSurface(const SurfaceInput& input, const SurfaceOptions& option
   options.Check();
   SortedInput sorted = SortInput(input);
   const SurfaceOptions ends = WithEdgesOf(input, options, &sorted);
-  const Noise noise = DescribeNoise(sorted, options);
+  const Noise noise = DescribeNoise(sorted);
   SurfaceParameters parameters = AssignParameters(sorted.lines, !sorted.markers.empty(), ends);
   const OpenSides open = OpenSidesOf(parameters, ends.edges);
   SetSides(sorted.by_id, &parameters);

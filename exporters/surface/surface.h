@@ -13,9 +13,10 @@
 // flattens the camber at luff and leech.
 //
 // Generalized cross-validation decides on the weights a and b (Golub, Heath and Wahba, 1979);
-// sigmas weigh the markers against each other. Fewer than 30 markers with sigmas get the weights
-// that minimize the expected error of the distances along the normal (Mallows, "Some comments on
-// Cp", 1973); fewer than 30 without sigmas, or a sigma of 0, are interpolated.
+// sigmas weigh the markers against each other, and markers without one get the median. Fewer than
+// 30 markers with sigmas get the weights that minimize the expected error of the distances along
+// the normal (Mallows, "Some comments on Cp", 1973); fewer than 30 without sigmas, or a sigma of 0,
+// are interpolated.
 
 #pragma once
 
@@ -31,10 +32,6 @@
 namespace velamap {
 
 struct SurfaceOptions {
-  // Sigma of markers that have none of their own; 0 interpolates all markers. By default the median
-  // of the other markers' sigmas. If no marker has a sigma, cross-validation estimates the noise of
-  // 30 markers or more, and fewer are interpolated.
-  std::optional<double> default_sigma_m;
   // How far the surface continues beyond the outer markers, with the curvature it has there: at
   // most the length of the lines (luff, leech) or the distance from the lowest to the highest line
   // (foot, head). Without it, the surface ends where the input says that the cloth does, or else at
@@ -45,7 +42,7 @@ struct SurfaceOptions {
   SurfaceEdges edges;
 
   // Throws InputError that names the option for a value beyond its range and an edge that is both
-  // given and extended; also for a negative sigma and an edge of one point.
+  // given and extended; also for an edge of one point.
   void Check() const;
 };
 

@@ -49,9 +49,10 @@ SurfaceOptions WithEdgesOf(const SurfaceInput& input, const SurfaceOptions& opti
   SurfaceOptions ends = options;
   const auto end_side = [&](const char* name, std::vector<Eigen::Vector3d> SurfaceEdges::*edge,
                             std::optional<double> SurfaceOptions::*extension_mm,
-                            std::optional<double> SurfaceLine::*offset_m) {
+                            std::optional<double> SurfaceLine::*offset_m, const std::string& note) {
     const bool is_given = !(options.edges.*edge).empty() || options.*extension_mm;
     if (!is_given) ends.edges.*edge = input.edges.*edge;
+    if (!is_given && !note.empty()) sorted->notes.push_back(note);
     bool is_within = !is_given;
     for (const SurfaceLine& line : sorted->lines) {
       const double reach_m = (line.*offset_m).value_or(0.0);
@@ -62,9 +63,9 @@ SurfaceOptions WithEdgesOf(const SurfaceInput& input, const SurfaceOptions& opti
     }
   };
   end_side("luff", &SurfaceEdges::luff, &SurfaceOptions::luff_extension_mm,
-           &SurfaceLine::luff_offset_m);
+           &SurfaceLine::luff_offset_m, input.luff_note);
   end_side("leech", &SurfaceEdges::leech, &SurfaceOptions::leech_extension_mm,
-           &SurfaceLine::leech_offset_m);
+           &SurfaceLine::leech_offset_m, input.leech_note);
   const double span_m = (MiddleOf(sorted->lines.back()) - MiddleOf(sorted->lines.front())).norm();
   const auto end_height = [&](const char* name, std::vector<Eigen::Vector3d> SurfaceEdges::*edge,
                               std::optional<double> SurfaceOptions::*extension_mm,

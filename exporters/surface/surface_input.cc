@@ -1,8 +1,9 @@
 #include "exporters/surface/surface_input.h"
 
-#include <cmath>
 #include <map>
 #include <set>
+
+#include <fmt/format.h>
 
 namespace velamap {
 namespace {
@@ -14,8 +15,7 @@ std::optional<SurfaceMarker> Find(const std::map<int, const ShapeMarker*>& whole
   const ShapeMarker& marker = *found->second;
   SurfaceMarker result{marker_id, *marker.x_in_shape_m[0], std::nullopt,
                        MeanSide(MarkerSides(marker))};
-  const std::optional<Eigen::Vector3d>& sigma_m = marker.sigma_m[0];
-  if (sigma_m) result.sigma_m = std::sqrt(sigma_m->squaredNorm() / 3);
+  if (marker.sigma_m[0]) result.sigma_m = SigmaOfCoordinate(*marker.sigma_m[0]);
   return result;
 }
 
@@ -24,9 +24,11 @@ std::optional<double> OffsetOf(const ClothEdge& edge, std::size_t line_idx) {
   return edge.offsets_m[edge.offsets_m.size() == 1 ? 0 : line_idx];
 }
 
-// The whole markers of the vertical line on the edge; fewer than two are no edge.
-std::vector<Eigen::Vector3d> PointsOf(const ClothEdge& edge, const LayoutPart& part,
-                                      const std::map<int, const ShapeMarker*>& whole_markers) {
+// The whole markers of the vertical line on the edge; fewer than two are no edge, which is noted.
+std::vector<Eigen::Vector3d> PointsOf(const char* name, const ClothEdge& edge,
+                                      const LayoutPart& part,
+                                      const std::map<int, const ShapeMarker*>& whole_markers,
+                                      std::string* note) {
   std::vector<Eigen::Vector3d> points;
   for (const MarkerLine& line : part.vertical) {
     if (edge.line.empty() || line.name != edge.line) continue;
@@ -35,8 +37,14 @@ std::vector<Eigen::Vector3d> PointsOf(const ClothEdge& edge, const LayoutPart& p
       if (found != whole_markers.end()) points.push_back(*found->second->x_in_shape_m[0]);
     }
   }
-  if (points.size() < 2) points.clear();
-  return points;
+  if (points.size() >= 2) return points;
+  if (!edge.line.empty()) {
+    *note = fmt::format(
+        "{}: {} of the markers of its line {} are whole, 2 needed; the surface ends at the outer "
+        "markers of the other lines",
+        name, points.size(), edge.line);
+  }
+  return {};
 }
 
 }  // namespace
@@ -60,8 +68,8 @@ SurfaceInput CollectSurfaceInput(const MarkerShape& shape, const LayoutPart& par
   }
   input.foot_offset_m = OffsetOf(part.edges.foot, 0);
   input.head_offset_m = OffsetOf(part.edges.head, 0);
-  input.edges.luff = PointsOf(part.edges.luff, part, whole_markers);
-  input.edges.leech = PointsOf(part.edges.leech, part, whole_markers);
+  input.edges.luff = PointsOf("luff", part.edges.luff, part, whole_markers, &input.luff_note);
+  input.edges.leech = PointsOf("leech", part.edges.leech, part, whole_markers, &input.leech_note);
   for (const MarkerLine& line : part.vertical) {
     others.insert(line.marker_ids.begin(), line.marker_ids.end());
   }

@@ -41,6 +41,8 @@ struct SurfaceInput {
   // From the lowest and the highest line of the layout to the edge of the cloth.
   std::optional<double> foot_offset_m{}, head_offset_m{};
   SurfaceEdges edges{};  // by lines of markers on them
+  // Of luff and leech, why the line on it gives no edge; empty if it does or there is none.
+  std::string luff_note{}, leech_note{};
 };
 
 // Collects the horizontal lines of `part` in the order of the layout, its other markers, and where

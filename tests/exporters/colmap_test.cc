@@ -41,7 +41,7 @@ class ExportToColmap : public testing::Test {
   }
 
   std::string Run(const std::vector<std::string>& arguments) {
-    return RunColmap("colmap", arguments, dir_ / "colmap.log").output;
+    return RunColmap("colmap", arguments, dir_ / "colmap.log");
   }
 
   // The number after "key: " in the output of model_analyzer.

@@ -51,11 +51,11 @@ function roundUp(value) {
   return power * [1, 2, 5, 10].find(factor => factor * power >= value * (1 - 1e-9));
 }
 
-// The content of a canvas on white as a PNG.
+// The content of a canvas as a PNG, on the colour of the page: its text is light on a dark page.
 function pictureOf(canvas) {
   const copy = element('canvas', {width: canvas.width, height: canvas.height});
   const context = copy.getContext('2d');
-  context.fillStyle = '#ffffff';
+  context.fillStyle = pageColour('--paper');
   context.fillRect(0, 0, copy.width, copy.height);
   context.drawImage(canvas, 0, 0);
   return copy.toDataURL('image/png');

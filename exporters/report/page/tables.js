@@ -15,7 +15,7 @@ function fillTable(id, columns, rows) {
     const direction = heads[index].getAttribute('aria-sort') === 'ascending' ? -1 : 1;
     heads.forEach(head => head.removeAttribute('aria-sort'));
     heads[index].setAttribute('aria-sort', direction > 0 ? 'ascending' : 'descending');
-    show(rows.slice().sort((a, b) => direction * compare(column.value(a), column.value(b))));
+    show(rows.slice().sort((a, b) => compare(column.value(a), column.value(b), direction)));
   }, () => heads));
   byId(id).replaceChildren(element('table', {},
       element('thead', {}, element('tr', {}, ...heads)), body));
@@ -32,10 +32,10 @@ function sortingHead(column, sort, heads) {
   return head;
 }
 
-// Unknown values come last.
-function compare(a, b) {
+// `direction` is 1 to ascend, -1 to descend. Unknown values come last in both.
+function compare(a, b, direction) {
   if (a === undefined || b === undefined) return (a === undefined) - (b === undefined);
-  return typeof a === 'string' ? a.localeCompare(b, 'en', {numeric: true}) : a - b;
+  return direction * (typeof a === 'string' ? a.localeCompare(b, 'en', {numeric: true}) : a - b);
 }
 
 function number(name, key, digits) {
@@ -129,15 +129,18 @@ function inWords(key) {
   return (text[0].toUpperCase() + text.slice(1)) + (unit ? `, ${unit}` : '');
 }
 
-// A number with three digits; the row of a table as `name value unit`.
+// A fraction with three digits, or one decimal if it is large; a list of ids; the row of a table, a
+// list of [key, value], as `name value unit`.
 function auditValue(value) {
-  if (/^-?[\d.]+(e-?\d+)?$/.test(value)) return significant(Number(value), 3);
-  if (!/^[a-z]+_[a-z]+ \S+, /.test(value)) return value;
-  return value.split(', ').map(cell => {
-    const [, key, number] = cell.match(/^([a-z_]+) (-?[\d.]+(?:e-?\d+)?)$/) || [];
-    if (!key || !key.includes('_')) return cell;
+  if (typeof value === 'number') {
+    if (Number.isInteger(value)) return String(value);
+    return Math.abs(value) < 100 ? significant(value, 3) : fixed(value, 1);
+  }
+  if (!Array.isArray(value)) return value || 'none';
+  if (!Array.isArray(value[0])) return value.join(' ') || 'none';
+  return value.map(([key, figure]) => {
     const [name, unit] = inWords(key).split(', ');
-    return `${name.toLowerCase()} ${significant(Number(number), 3)}${unit ? ` ${unit}` : ''}`;
+    return `${name.toLowerCase()} ${auditValue(figure)}${unit ? ` ${unit}` : ''}`;
   }).join('; ');
 }
 

@@ -65,6 +65,23 @@ TEST(MeshDistance, ToASphereIsThatToItsCentreLessTheRadius) {
   }
 }
 
+// Most of these feet are on edges and vertices, whose mean normals miss the points.
+TEST(MeshDistance, APointLessItsDistanceAlongTheNormalIsItsFoot) {
+  std::mt19937 random(5);
+  for (const TriangleMesh& triangles : {SphereMesh(2.0, 12), SailMesh()}) {
+    const MeshDistance mesh(triangles);
+    for (int i = 0; i < 300; ++i) {
+      const Eigen::Vector3d x = RandomPoint(&random, 4.0);
+      const MeshFoot foot = mesh.Project(x);
+      EXPECT_NEAR(foot.normal.norm(), 1, 1e-12);
+      if (foot.beside_m > 0) continue;
+      EXPECT_LT((x - foot.distance_m * foot.normal - foot.x_m).norm(), 1e-9);
+    }
+    // On the mesh, there is a normal too.
+    EXPECT_NEAR(mesh.Project(triangles.vertices_m[200]).normal.norm(), 1, 1e-12);
+  }
+}
+
 // At edges and vertices, the normal of one face would give the wrong sign for half of these points.
 TEST(MeshDistance, SignsAreRightAroundASharpVertex) {
   TriangleMesh spike;

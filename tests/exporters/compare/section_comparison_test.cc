@@ -84,9 +84,44 @@ TEST(ComparisonSections, WhatOneLacksIsSaid) {
                 markers.end());
   const SectionComparison comparison = Compare(BoatShape(), reference);
   EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("reference: sail h1")));
-  EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("twists cannot be compared")));
+  EXPECT_THAT(comparison.notes,
+              ::testing::Contains(HasSubstr("twists of sail cannot be compared")));
   EXPECT_EQ(comparison.differences.size(), 4u * 5);
   EXPECT_FALSE(comparison.differences.front().sigma.has_value());
+}
+
+// The sail again as a second part.
+MarkerShape WithJib(MarkerShape shape) {
+  for (ShapeMarker marker : BoatShape().markers) {
+    if (marker.part != "sail") continue;
+    marker.part = "jib";
+    marker.marker_id += 200;
+    shape.markers.push_back(marker);
+  }
+  return shape;
+}
+
+TEST(ComparisonSections, TwistsAreComparedPartByPart) {
+  Layout layout = BoatLayout();
+  LayoutPart jib = layout.parts[0];
+  jib.name = "jib";
+  for (MarkerLine& line : jib.horizontal) {
+    for (int& id : line.marker_ids) id += 200;
+  }
+  layout.parts.push_back(jib);
+  MarkerShape without = WithJib(BoatShape());
+  without.markers.erase(without.markers.begin(), without.markers.begin() + 6);  // h1 of the sail
+  const MarkerShape shape = WithJib(BoatShape());
+  const SectionComparison comparison = CompareSections(
+      Exact(shape), Exact(without), AlignShapes(shape, without, layout, {}), layout);
+  int num_of_sail = 0, num_of_jib = 0;
+  for (const SectionDifference& d : comparison.differences) {
+    if (d.number == "twist_deg") ++(d.part == "jib" ? num_of_jib : num_of_sail);
+  }
+  EXPECT_EQ(num_of_sail, 0);
+  EXPECT_EQ(num_of_jib, 5);
+  EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("twists of sail cannot be")));
+  EXPECT_THAT(comparison.notes, ::testing::Not(::testing::Contains(HasSubstr("twists of jib"))));
 }
 
 TEST(ComparisonSections, ALayoutWithoutLinesHasNone) {

@@ -254,7 +254,7 @@ TEST(ShapeComparison, ShapesThatHaveNothingInCommon) {
 
 TEST(ShapeComparison, NamesOfTheMethods) {
   for (const char* name : {"auto", "reference_part", "markers", "best_fit", "none"}) {
-    EXPECT_STREQ(AlignmentMethodName(AlignmentMethodFromName(name, "--align")), name);
+    EXPECT_EQ(AlignmentMethodName(AlignmentMethodFromName(name, "--align")), name);
   }
   ExpectThrows<InputError>([] { AlignmentMethodFromName("hull", "--align"); },
                            {"--align", "hull", "reference_part"});

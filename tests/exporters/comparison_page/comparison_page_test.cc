@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exporters/compare/comparison_sigma.h"
+#include "exporters/comparison_page/comparison_words.h"
 #include "tests/exporters/compare/example_comparison.h"
 
 namespace velamap {
@@ -161,6 +162,49 @@ TEST(ComparisonPage, ADesignHasSectionsToo) {
     if (row["section"] == "h3" || row["number"] == "twist") continue;
     EXPECT_LT(std::abs(difference), std::max(4 * sigma, 0.02)) << row.dump();
   }
+}
+
+// The frame of a design's sections follows from the markers of each shape: without the luff marker
+// of h1 it is another one, and the profiles of the other lines still lie where they did.
+TEST(ComparisonPage, ProfilesAgainstADesignLieWhereTheyAreInAllShapes) {
+  PageExample example;
+  example.is_design = true;
+  const MeshDistance design(SailMesh());
+  ComparisonOptions options = WithDeflections();
+  options.alignment.method = AlignmentMethod::kNone;
+  const MarkerShape shape = Fuller();
+  MarkerShape without = shape;
+  without.markers.erase(without.markers.begin());
+  for (const MarkerShape& each : {shape, without}) {
+    example.series.push_back(Compare("trim", WithSigmas(each), design, example.layout, options));
+  }
+  const Rigid3 &first = example.series[0].sections.frame_from_reference,
+               &second = example.series[1].sections.frame_from_reference;
+  ASSERT_GT((first.translation - second.translation).norm(), 0.1);
+  for (const Json& profile : example.Data()["profiles"]) {
+    ASSERT_EQ(profile["curves"].size(), 3u);
+    if (profile["section"] == "h1") continue;
+    const Json &a = profile["curves"][1]["placed"], &b = profile["curves"][2]["placed"];
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_NEAR(a[i][0].get<double>(), b[i][0].get<double>(), 0.5) << profile["section"];
+      EXPECT_NEAR(a[i][1].get<double>(), b[i][1].get<double>(), 0.5) << profile["section"];
+    }
+  }
+}
+
+TEST(ComparisonPage, SectionsOfSeveralPartsAreNamedByTheirPart) {
+  PageExample example;
+  example.Add("trim2", Fuller());
+  EXPECT_EQ(SectionName(example.series, "sail", "h3"), "h3");
+  Section of_jib = example.series[0].sections.of_reference.sections.front();
+  of_jib.part = "jib";
+  example.series[0].sections.of_reference.sections.push_back(of_jib);
+  const Json data = example.Data();
+  EXPECT_THAT(data["verdict"]["text"].get<std::string>(), HasSubstr("camber of sail h3 +"));
+  EXPECT_THAT(data["verdict"]["items"].dump(), HasSubstr(" of sail h3 +"));
+  EXPECT_EQ(data["numbers"][0]["section"], "sail h1");
+  EXPECT_EQ(data["profiles"].back()["section"], "jib h1");
 }
 
 TEST(ComparisonPage, WithoutALayoutThereAreMarkers) {

@@ -14,6 +14,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 TEST_F(KnownPoints, TheNameHasWhatTheFrameRestsOn) {
   MakeShape(7);
@@ -24,7 +25,7 @@ TEST_F(KnownPoints, TheNameHasWhatTheFrameRestsOn) {
   *layout_.known_points[1].x_m[2] += 0.1;  // 2 is left out
   const FrameAttempt attempt = FrameOfKnownPoints(Fit());
   EXPECT_EQ(attempt.frame.value().name, "known points 1 3 4 5.3 6:z");
-  EXPECT_THAT(attempt.frame->description, HasSubstr("13 coordinates of 5"));
+  EXPECT_THAT(attempt.frame->description, HasSubstr("by 13 coordinates of 5 points; z"));
   const ShapeFrame frame = ChooseFrame(shape_, layout_, std::nullopt, attempt);
   EXPECT_EQ(frame.kind, FrameKind::kKnownPoints);
   EXPECT_TRUE(frame.reasons.empty());
@@ -36,12 +37,13 @@ TEST_F(KnownPoints, TheNameHasWhatTheFrameRestsOn) {
       [&] {
         ChooseFrame(shape_, layout_, choice, {std::nullopt, "one is on the moon"});
       },
-      {"--frame: known_points is not possible: one is on the moon"});
+      {"--frame: the frame 'known_points' is not possible: one is on the moon"});
   ExpectThrows<InputError>([&] { CheckFrameChoice(choice, MakeLayout("DICT_4X4_50", 0.1)); },
-                           {"--frame: known_points", "the layout has no known_points"});
+                           {"--frame: the frame 'known_points'", "the layout has no known_points"});
   layout_.known_points.resize(2);
-  ExpectThrows<InputError>([&] { CheckFrameChoice(choice, layout_); },
-                           {"--frame: known_points", "2 points are given, three are needed"});
+  ExpectThrows<InputError>(
+      [&] { CheckFrameChoice(choice, layout_); },
+      {"--frame: the frame 'known_points'", "2 points are given, three are needed"});
 }
 
 TEST_F(KnownPoints, WhereTheyGiveNoFrameTheNextOneIsTakenAndSaysWhy) {
@@ -86,6 +88,15 @@ TEST_F(KnownPoints, MetricsHaveARowOfEachPoint) {
   EXPECT_FALSE(rows[7].contains("distance_mm"));
   EXPECT_THAT(KnownPointsText(fit), HasSubstr("5 of 6 used"));
   EXPECT_THAT(KnownPointsText(fit), HasSubstr("0 of 2 checks passed, worst 7.1 "));
+  // Without redundancy and checks nothing can be bad, and what is not in the shape is not compared.
+  KnownPointFit exact = fit;
+  exact.points.erase(exact.points.begin() + 4, exact.points.begin() + 7);
+  exact.points.erase(exact.points.begin());
+  ASSERT_EQ(exact.points.back().state, PointState::kNotInShape);
+  exact.points.back().sigmas_off = 1e9;
+  EXPECT_THAT(KnownPointsText(exact), Not(HasSubstr("worst 99")));
+  exact.residual_in_sigmas.reset();
+  EXPECT_THAT(KnownPointsText(exact), Not(HasSubstr("worst")));
   MetricsReport none;
   AddMetrics(KnownPointFit(), &none);
   EXPECT_THAT(none.metrics, IsEmpty());

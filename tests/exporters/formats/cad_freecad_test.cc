@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "exporters/design/cad_reader.h"
 #include "exporters/formats/cad_writer.h"
 #include "importer/base/atomic_output.h"
+#include "tests/exporters/formats/cad_names.h"
 #include "tests/exporters/sail/example_surface.h"
 #include "tests/support/temp_dir.h"
 
@@ -59,7 +59,7 @@ TEST(CadFreeCad, ImportsSameAreaAndExtents) {
   const int status = std::system(command.c_str());
   std::stringstream log;
   log << std::ifstream(dir / "log.txt").rdbuf();
-  const CadShape expected = ReadCad(dir / "sail.step", 1.0);
+  const CadFaces expected = ReadCadFaces(dir / "sail.step");
   std::ifstream result(dir / "result.txt");
   for (const char* name : {"sail.step", "sail.iges"}) {
     double area_mm2 = 0;

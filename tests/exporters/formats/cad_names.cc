@@ -3,14 +3,20 @@
 #include <stdexcept>
 
 #include <BRepAdaptor_Curve.hxx>
+#include <BRepBndLib.hxx>
+#include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
 #include <IGESControl_Reader.hxx>
+#include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepRepr_RepresentationItem.hxx>
 #include <StepShape_GeometricSet.hxx>
 #include <StepShape_GeometricSetSelect.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -76,11 +82,50 @@ CadNames NamesInIges(const std::filesystem::path& path) {
   return names;
 }
 
+bool IsStep(const std::filesystem::path& path) {
+  return path.extension() == ".step" || path.extension() == ".stp";
+}
+
+TopoDS_Shape FacesInStep(const std::filesystem::path& path, std::string* unit) {
+  STEPControl_Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw std::runtime_error("STEP");
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.FileUnits(lengths, angles, solid_angles);
+  if (!lengths.IsEmpty()) *unit = lengths.First().ToCString();
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
+TopoDS_Shape FacesInIges(const std::filesystem::path& path, std::string* unit) {
+  IGESControl_Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw std::runtime_error("IGES");
+  const auto name = reader.IGESModel()->GlobalSection().UnitName();
+  if (!name.IsNull()) *unit = name->ToCString();
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
 }  // namespace
+
+CadFaces ReadCadFaces(const std::filesystem::path& path) {
+  const CadSession session;
+  CadFaces result;
+  const TopoDS_Shape shape = IsStep(path) ? FacesInStep(path, &result.length_unit)
+                                          : FacesInIges(path, &result.length_unit);
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(shape, properties, 1e-6);
+  result.area_m2 = 1e-6 * properties.Mass();
+  Bnd_Box box;
+  BRepBndLib::AddOptimal(shape, box, Standard_False, Standard_False);
+  result.min_m = PointOf(box.CornerMin());
+  result.max_m = PointOf(box.CornerMax());
+  for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) ++result.num_faces;
+  return result;
+}
 
 CadNames ReadCadNames(const std::filesystem::path& path) {
   const CadSession session;
-  return path.extension() == ".step" ? NamesInStep(path) : NamesInIges(path);
+  return IsStep(path) ? NamesInStep(path) : NamesInIges(path);
 }
 
 }  // namespace velamap

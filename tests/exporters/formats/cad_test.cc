@@ -74,15 +74,16 @@ TEST(Cad, ReadBackWithSameAreaExtentsAndUnit) {
     WriteText(dir / "sail.step", Step(surface));
     WriteText(dir / "sail.igs", Iges(surface));
     for (const char* name : {"sail.step", "sail.igs"}) {
-      const CadShape shape = ReadCad(dir / name, kAnyChordMm);
+      const CadFaces shape = ReadCadFaces(dir / name);
+      const TriangleMesh mesh = ReadCad(dir / name, kAnyChordMm);
       EXPECT_THAT(shape.length_unit, AnyOf("MM", "millimetre")) << name;
       EXPECT_EQ(shape.num_faces, 1);
       EXPECT_NEAR(shape.area_m2, SurfaceArea(surface), 1e-7 * shape.area_m2) << name;
       EXPECT_LT((shape.min_m - min_m).cwiseAbs().maxCoeff(), 1e-4) << name;
       EXPECT_LT((shape.max_m - max_m).cwiseAbs().maxCoeff(), 1e-4) << name;
-      EXPECT_NEAR(Area(shape.mesh), shape.area_m2, 1e-3 * shape.area_m2) << name;
+      EXPECT_NEAR(Area(mesh), shape.area_m2, 1e-3 * shape.area_m2) << name;
       double largest_mm = 0;
-      for (const SurfaceFoot& foot : ProjectOnSurface(surface, shape.mesh.vertices_m)) {
+      for (const SurfaceFoot& foot : ProjectOnSurface(surface, mesh.vertices_m)) {
         largest_mm = std::max(largest_mm, 1000 * std::abs(foot.distance_m));
       }
       EXPECT_LT(largest_mm, 1e-3) << name;
@@ -99,6 +100,12 @@ TEST(Cad, HeadersSayMillimetresAndTheSchema) {
   const std::string iges = Iges(surface);
   EXPECT_THAT(iges, HasSubstr("2HMM"));
   EXPECT_THAT(iges, HasSubstr("4Hsail"));
+  EXPECT_THAT(iges, HasSubstr("8Hsail.igs"));
+  CadExtras extras;
+  extras.iges_file_name = "surface_2.igs";
+  std::ostringstream named;
+  WriteIges(surface, "jib", named, extras);
+  EXPECT_THAT(named.str(), HasSubstr("13Hsurface_2.igs"));
 }
 
 TEST(Cad, DatesAreReal) {
@@ -133,7 +140,7 @@ TEST(Cad, SectionsAndMarkersKeepTheirNamesBesideTheSurface) {
   WriteText(dir / "a.step", step.str());
   WriteText(dir / "a.igs", iges.str());
   for (const char* name : {"a.step", "a.igs"}) {
-    const CadShape shape = ReadCad(dir / name, kAnyChordMm);
+    const CadFaces shape = ReadCadFaces(dir / name);
     EXPECT_EQ(shape.num_faces, 1) << name;
     EXPECT_NEAR(shape.area_m2, SurfaceArea(surface), 1e-6) << name;
     const CadNames read = ReadCadNames(dir / name);
@@ -154,9 +161,11 @@ TEST(Cad, UnitOfTheFileIsObeyed) {
   const std::string millimetre = "SI_UNIT(.MILLI.,.METRE.)";
   step.replace(step.find(millimetre), millimetre.size(), "SI_UNIT($,.METRE.)");
   WriteText(dir / "in_metres.stp", step);
-  // The same numbers in metres, with a coarse mesh because the surface is 6 km high.
-  EXPECT_NEAR(ReadCad(dir / "in_metres.stp", 1e5).area_m2, 1e6 * SurfaceArea(surface),
+  // The same numbers in metres: the surface is 6 km high, and so coarse is the mesh.
+  EXPECT_NEAR(ReadCadFaces(dir / "in_metres.stp").area_m2, 1e6 * SurfaceArea(surface),
               1 * SurfaceArea(surface));
+  const TriangleMesh mesh = ReadCad(dir / "in_metres.stp", 1e5);
+  EXPECT_NEAR(Area(mesh), 1e6 * SurfaceArea(surface), 1e5 * SurfaceArea(surface));
 }
 
 TEST(Cad, SameSurfaceSameBytes) {
@@ -176,7 +185,7 @@ TEST(Cad, NamesThatAreNotAsciiAreWrittenSo) {
   WriteText(dir / "a.step", Step(surface, "gro\xC3\x9Fsegel 'A'"));
   WriteText(dir / "a.iges", Iges(surface, "gro\xC3\x9Fsegel 'A'"));
   for (const char* name : {"a.step", "a.iges"}) {
-    EXPECT_NEAR(ReadCad(dir / name, kAnyChordMm).area_m2, SurfaceArea(surface), 1e-5);
+    EXPECT_NEAR(ReadCadFaces(dir / name).area_m2, SurfaceArea(surface), 1e-5);
   }
 }
 

@@ -232,25 +232,31 @@ std::string TextOf(const std::string& path) {
   return text.str();
 }
 
-TEST(FreeformShape, EachPartWithoutLinesHasItsFiles) {
+TEST(FreeformShape, EachPartWithoutHorizontalLinesHasItsFiles) {
   Layout layout;
   layout.marker_length_m = 0.5;
   MarkerShape shape;
-  for (const auto& [name, first_id] : {std::pair("top", 0), std::pair("few", 50)}) {
+  for (const auto& [name, first_id] :
+       {std::pair("top", 0), std::pair("few", 50), std::pair("columns", 200)}) {
     LayoutPart part;
     part.name = name;
-    const auto markers = Grid(first_id == 0 ? 3 : 1, Eigen::Isometry3d::Identity(), first_id);
-    for (int i = 0; i < 9; ++i) part.marker_ids.push_back(first_id + i);
+    const auto markers = Grid(first_id == 50 ? 1 : 3, Eigen::Isometry3d::Identity(), first_id);
+    for (int i = 0; i < 9; ++i) {
+      if (first_id == 200 && i % 3 == 0) part.vertical.push_back({"v" + std::to_string(i), {}});
+      (first_id == 200 ? part.vertical.back().marker_ids : part.marker_ids).push_back(first_id + i);
+    }
     layout.parts.push_back(part);
     for (const ShapeMarker& marker : ShapeOf(markers, name).markers)
       shape.markers.push_back(marker);
   }
   LayoutPart with_line;
   with_line.name = "sail";
-  with_line.vertical.push_back({"v1", {100, 101, 102, 103, 104}});
+  with_line.horizontal.push_back({"h1", {100, 101, 102, 103, 104}});
   layout.parts.push_back(with_line);
   const FreeformShape freeform = ComputeFreeform(shape, layout, nullptr, std::nullopt);
-  ASSERT_EQ(freeform.surfaces.size(), 1u);
+  ASSERT_EQ(freeform.surfaces.size(), 2u);
+  EXPECT_EQ(freeform.surfaces[1].part, "columns");  // vertical lines alone bear no sail
+  EXPECT_NEAR(freeform.surfaces[1].surface.area_m2, freeform.surfaces[0].surface.area_m2, 1e-9);
   EXPECT_NEAR(freeform.surfaces[0].surface.residuals[0].sigma_m, 1e-3, 1e-9);
   EXPECT_THAT(freeform.notes, ElementsAre(HasSubstr("few: no surface: 1 whole markers")));
   const TempDir dir;
@@ -264,7 +270,7 @@ TEST(FreeformShape, EachPartWithoutLinesHasItsFiles) {
   EXPECT_TRUE(std::filesystem::exists(dir / "freeform.stl"));
   std::istringstream residuals(TextOf(dir / "freeform_residuals.csv"));
   const auto rows = ReadCsv(residuals, "residuals");
-  ASSERT_EQ(rows.size(), 1u + 9 * kNumCorners);
+  ASSERT_EQ(rows.size(), 1u + 2 * 9 * kNumCorners);
   EXPECT_THAT(rows[5].fields[0], "top");
 }
 

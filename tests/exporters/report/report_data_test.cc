@@ -223,7 +223,7 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   ReportSection section;
   section.name = "h1";
   section.height_m = 1.5;
-  section.chord_m = ReportFigure{2.0, 0.001};
+  section.chord_m = Estimate{2.0, 0.001};
   section.profile_m = {{0, 0}, {1, 0.2}, {2, 0}};
   section.design_m = {{0, 0.01}, {2, 0.01}};
   input.sections = {section};
@@ -235,7 +235,7 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
   surface.x_in_shape_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   surface.triangles = {{{0, 1, 2}}};
   input.surfaces = {surface};
-  input.rigs = {{"sail", ReportFigure{0.03, 0.001}, std::nullopt, std::nullopt}};
+  input.rigs = {{"sail", Estimate{0.03, 0.001}, std::nullopt, std::nullopt}};
   input.clip = ReportClip{25, 4.04};
   const json data = json::parse(ReportJson(input));
   EXPECT_EQ(data.at("sections").at(0).at("chord_sigma_m"), 0.001);
@@ -252,22 +252,6 @@ TEST_F(ReportData, SectionsAndSurfaceAreThereOnlyWhereGiven) {
             json::parse(R"([{"part": "sail", "luff_bend_m": 0.03, "luff_bend_sigma_m": 0.001}])"));
   EXPECT_EQ(data.at("origin").at(1), "25 frames/s");
   EXPECT_EQ(data.at("origin").at(2), "4.0 s");
-}
-
-TEST_F(ReportData, TheAuditIsThatOfTheMetrics) {
-  const ScaleAudit audit = AuditScale(example_.shape, example_.layout, &example_.model, nullptr);
-  ReportInput input = example_.Input();
-  EXPECT_FALSE(json::parse(ReportJson(input)).contains("scale_audit"));
-  input.audit = &audit;
-  const json data = json::parse(ReportJson(input));
-  const auto has = [&](const std::string& key) {
-    const json& lines = data.at("scale_audit");
-    return std::any_of(lines.begin(), lines.end(),
-                       [&](const json& line) { return line.at(0) == key; });
-  };
-  EXPECT_TRUE(has("num_disagreeing_markers"));
-  EXPECT_TRUE(has("x_over_y_percent"));
-  EXPECT_FALSE(has("scale_histogram"));
 }
 
 TEST_F(ReportData, KnownPointsAreTheRowsOfTheMetrics) {

@@ -124,8 +124,18 @@ TEST_F(ReportKeyNumbers, PartsThatDisagreeLeaveTheScaleOpen) {
   const auto scale = [&input] { return FindIn(input, KeyNumberKind::kScale).value(); };
   EXPECT_EQ(scale().status, ReportStatus::kCheck);
   EXPECT_THAT(scale().meaning, HasSubstr("parts disagree: measure a distance on one of them"));
-  audit.distances = {{{1, 0, 3, 0, 3.0, 1e-3, true}, 3.001, 1e-3}};
+  const CheckedDistance bar{{1, 0, 3, 0, 3.0, 1e-3, true}, 3.001, 1e-3};
+  audit.distances = {bar};
   EXPECT_EQ(scale().status, ReportStatus::kGood);
+  // A bar that is not in the shape, that no adjustment used, or that it left out decides nothing.
+  audit.distances[0].distance_m.reset();
+  EXPECT_EQ(scale().status, ReportStatus::kCheck);
+  audit.distances = {bar};
+  audit.distances[0].sigma_m.reset();
+  EXPECT_EQ(scale().status, ReportStatus::kCheck);
+  audit.distances = {bar};
+  audit.distances[0].distance_m = 3.1;
+  EXPECT_EQ(scale().status, ReportStatus::kCheck);
 }
 
 TEST_F(ReportKeyNumbers, AScaleThatIsHardlyKnownIsNotGood) {

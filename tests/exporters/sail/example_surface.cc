@@ -44,10 +44,14 @@ SurfaceInput MarkersOn(const SurfaceTruth& truth, int num_lines, int num_markers
   return input;
 }
 
-SurfaceOptions Interpolating() {
-  SurfaceOptions options;
-  options.default_sigma_m = 0.0;
-  return options;
+SurfaceInput AsExact(SurfaceInput input) {
+  for (SurfaceLine& line : input.lines) {
+    for (auto& marker : line.markers) {
+      if (marker) marker->sigma_m = 0.0;
+    }
+  }
+  for (SurfaceMarker& marker : input.markers) marker.sigma_m = 0.0;
+  return input;
 }
 
 void AddNoise(double sigma_m, bool with_sigma, int seed, SurfaceInput* input) {

@@ -26,8 +26,8 @@ Eigen::Vector3d TwistedSail(double u, double v);
 // sigmas.
 SurfaceInput MarkersOn(const SurfaceTruth& truth, int num_lines, int num_markers);
 
-// Options by which the surface goes through all markers without a sigma.
-SurfaceOptions Interpolating();
+// With a sigma of 0 for all markers, so that the surface goes through them.
+SurfaceInput AsExact(SurfaceInput input);
 
 template <typename Function>
 void ForEachMarker(SurfaceInput* input, const Function& function) {

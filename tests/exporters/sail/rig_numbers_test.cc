@@ -141,6 +141,57 @@ TEST(RigNumbers, ALineThatWasLeftOutIsNotBelieved) {
   EXPECT_THAT(SectionsOf(sail).rigs.at(0).luff_marker_ids, ElementsAre(100, 200, 400, 500));
 }
 
+// The sail again as part jib, with other ids, forward of the other one and on a raked stay.
+Sail Jib() {
+  Sail jib = ExampleSail();
+  LayoutPart& part = jib.layout.parts[0];
+  part.name = "jib";
+  for (auto* lines : {&part.horizontal, &part.vertical}) {
+    for (MarkerLine& line : *lines) {
+      for (int& id : line.marker_ids) id += 1000;
+    }
+  }
+  const Rigid3 raked{Eigen::Quaterniond(Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitY())),
+                     {-5, 0.3, 0.2}};
+  jib.shape = Moved(raked, jib.shape);
+  for (ShapeMarker& marker : jib.shape.markers) {
+    marker.marker_id += 1000;
+    marker.part = "jib";
+  }
+  return jib;
+}
+
+TEST(RigNumbers, ASailHasTheSameNumbersBesideAnotherOneAndItsBoom) {
+  const Sail jib = Jib();
+  Sail both = ExampleSail();
+  for (int i = 0; i < 2; ++i) {
+    both.shape.markers.insert(
+        both.shape.markers.begin() + i,
+        UprightMarker(51 + i, "boom", Eigen::Vector3d(0.2 + 2 * i, -0.1 * i, -0.3)));
+  }
+  LayoutPart boom;
+  boom.name = "boom";
+  boom.marker_ids = {51, 52};
+  both.layout.parts.push_back(boom);
+  both.layout.parts.push_back(jib.layout.parts[0]);
+  both.shape.markers.insert(both.shape.markers.end(), jib.shape.markers.begin(),
+                            jib.shape.markers.end());
+  const SectionReport alone = SectionsOf(jib), report = SectionsOf(both);
+  ASSERT_EQ(report.sections.size(), 6u);
+  ASSERT_EQ(report.rigs.size(), 2u);
+  EXPECT_EQ(report.rigs[0].twist_reference, "boom");
+  EXPECT_EQ(report.rigs[1].twist_reference, "lowest section");
+  EXPECT_EQ(report.rigs[1].up_reference, "luff");
+  EXPECT_GT(report.sections[0].twist_deg.value, 2);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(report.sections[3 + i].part, "jib");
+    const auto a = NumbersOf(alone.sections[i]), b = NumbersOf(report.sections[3 + i]);
+    for (std::size_t k = 0; k + 1 < a.size(); ++k) {  // all but the height
+      EXPECT_NEAR(a[k], b[k], 1e-7) << report.sections[3 + i].name << " number " << k;
+    }
+  }
+}
+
 // The numbers of which the test below compares the sigma with the scatter.
 std::vector<Estimate> Estimates(const SectionReport& report) {
   const RigNumbers& rig = report.rigs.at(0);

@@ -7,13 +7,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "exporters/design/cad_reader.h"
 #include "exporters/scale/metric_shape.h"
 #include "exporters/surface/surface_csv.h"
 #include "importer/base/error.h"
 #include "reconstruct/model/gauge.h"
 #include "tests/exporters/example_model.h"
 #include "tests/exporters/exported_files.h"
+#include "tests/exporters/formats/cad_names.h"
 #include "tests/exporters/golden_file.h"
 #include "tests/exporters/sail/sail_shapes.h"
 #include "tests/support/error_matchers.h"
@@ -78,10 +78,11 @@ TEST(SailShape, FilesAreThoseThatItNames) {
                                    "surface_2.igs", "surface_residuals_2.csv", "surface_2.stl",
                                    "surface.vts", "surface_2.msh", "surface_2_ansys.txt"}));
   for (const char* name : {"surface.step", "surface_2.igs"}) {
-    EXPECT_NEAR(ReadCad(dir / name, 0.1).area_m2, sail.surfaces[0].area_m2, 1e-6) << name;
+    EXPECT_NEAR(ReadCadFaces(dir / name).area_m2, sail.surfaces[0].area_m2, 1e-6) << name;
   }
   EXPECT_THAT(ReadBytes(dir / "surface.step"), HasSubstr("frame: lines h1 v1"));
   EXPECT_THAT(ReadBytes(dir / "surface_2.obj"), HasSubstr("jib (frame: lines h1 v1)"));
+  EXPECT_THAT(ReadBytes(dir / "surface_2.igs"), HasSubstr("13Hsurface_2.igs"));
   // The sections and markers of the jib, and none of the main.
   const std::string step = ReadBytes(dir / "surface_2.step");
   EXPECT_THAT(step, HasSubstr("sections and markers"));
@@ -142,7 +143,18 @@ TEST(SailShape, RefusesEdgesInAnotherUnitOrFrame) {
   EXPECT_EQ(refused.sections.sections.size(), 3u);
   ASSERT_TRUE(refused.surface_error);
   ExpectThrows<InputError>([&] { std::rethrow_exception(refused.surface_error); },
-                           {"--Surface.edges_path: the point 0, 0, 5000 is", "m from the markers"});
+                           {"--Surface.edges_path: the point 0, 0, 5000 is", "m from the markers",
+                            "the extent of the markers; give coordinates in m"});
+}
+
+TEST(SailShape, GivenEdgesAreThoseOfTheFirstSail) {
+  SailOptions options;
+  options.surface.edges.luff = {{-0.2, 0, 0}, {-0.2, 0, 4}};
+  const SailShape with_edge = Compute(TwoSails(), options), without = Compute(TwoSails());
+  ASSERT_EQ(with_edge.surfaces.size(), 2u);
+  EXPECT_EQ(with_edge.surfaces[0].area_m2, Compute(ExampleSail(), options).surfaces[0].area_m2);
+  EXPECT_GT(with_edge.surfaces[0].area_m2, without.surfaces[0].area_m2 + 0.5);
+  EXPECT_EQ(with_edge.surfaces[1].area_m2, without.surfaces[1].area_m2);
 }
 
 TEST(SurfaceEdges, AreReadAndRefusedWithLineAndColumn) {

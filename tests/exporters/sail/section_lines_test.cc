@@ -83,7 +83,7 @@ TEST(SectionLines, OnlyTheSectionThatCrossesTheOthersIsLeftOut) {
   Sail sail = ExampleSail();
   for (int j = 0; j < 12; ++j) ShiftMarker(200 + j, {0, 0, 0.9 * (j - 5)}, &sail.shape);
   const SectionReport report = SectionsOf(sail, {{1.0}});
-  EXPECT_THAT(NamesOf(report.sections), testing::ElementsAre("h1", "z=1", "h3"));
+  EXPECT_THAT(NamesOf(report.sections), testing::ElementsAre("h1", "height=1", "h3"));
   ASSERT_EQ(report.notes.size(), 2u);
   EXPECT_THAT(report.notes[0], HasSubstr("h2 left out"));
   EXPECT_THAT(report.notes[1], HasSubstr("h2 left out"));

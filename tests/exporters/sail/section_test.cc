@@ -33,7 +33,7 @@ TEST(Section, CircularArcsGiveTheirCamberAnglesAndTwist) {
   ASSERT_EQ(report.sections.size(), 3u);
   EXPECT_TRUE(report.missing.empty());
   EXPECT_TRUE(report.notes.empty());
-  EXPECT_EQ(report.twist_reference, "lowest section");
+  EXPECT_EQ(report.rigs.at(0).twist_reference, "lowest section");
   const std::vector<double> chords_m = {3.0, 2.4, 1.6}, cambers = {0.08, 0.10, 0.12};
   const std::vector<double> twists_deg = {0, 6, 14};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -151,7 +151,7 @@ TEST(Section, NumbersDoNotDependOnTheFrame) {
   }
   AddHull(hull_centers_m, &sail);
   const SectionReport by_hull = SectionsOf(sail, {}, FrameChoice{FrameKind::kReferencePart});
-  EXPECT_EQ(by_hull.up_reference, "luff");
+  EXPECT_EQ(by_hull.rigs.at(0).up_reference, "luff");
   const ShapeFrame hull_frame = ChooseFrame(sail.shape, sail.layout, std::nullopt);
   const Eigen::Vector3d hull_up =
       hull_frame.frame_from_shape.rotation.conjugate() * *hull_frame.up_in_frame;
@@ -196,7 +196,7 @@ TEST(Section, TwistCountsFromTheBoomWhereTheLayoutHasOne) {
   sail.layout.parts.push_back(boom);
   SetSigma(0.001, &sail.shape);
   SectionReport report = SectionsOf(sail);
-  EXPECT_EQ(report.twist_reference, "boom");
+  EXPECT_EQ(report.rigs.at(0).twist_reference, "boom");
   EXPECT_NEAR(report.sections[0].twist_deg.value, 4, 1e-3);
   EXPECT_NEAR(report.sections[2].twist_deg.value, 18, 1e-3);
   EXPECT_GT(*report.sections[0].twist_deg.sigma, 0);
@@ -204,7 +204,7 @@ TEST(Section, TwistCountsFromTheBoomWhereTheLayoutHasOne) {
   RemoveMarker(51, &sail.shape);
   RemoveMarker(52, &sail.shape);
   report = SectionsOf(sail);
-  EXPECT_EQ(report.twist_reference, "lowest section");
+  EXPECT_EQ(report.rigs.at(0).twist_reference, "lowest section");
   EXPECT_NEAR(report.sections[0].twist_deg.value, 0, 1e-12);
   EXPECT_EQ(*report.sections[0].twist_deg.sigma, 0);
   ASSERT_EQ(report.notes.size(), 1u);
@@ -225,18 +225,18 @@ TEST(Section, HeightsBetweenLinesOfOneShapeGiveThatShape) {
     EXPECT_NEAR(section.chord_m.value, 2, 2e-5);
     EXPECT_NEAR(section.entry_angle_deg.value, 2 * std::atan(0.2) * kDegPerRad, 0.05);
   }
-  EXPECT_EQ(report.sections[1].name, "z=0.5");
+  EXPECT_EQ(report.sections[1].name, "height=0.5");
   EXPECT_FALSE(report.sections[1].is_line);
   ASSERT_EQ(report.missing.size(), 1u);
-  EXPECT_EQ(report.missing[0].name, "z=3.2");
+  EXPECT_EQ(report.missing[0].name, "height=3.2");
   EXPECT_THAT(report.missing[0].reason, HasSubstr("from 0.000 to 3.000 m"));
 }
 
 TEST(Section, NeighbouringHeightsHaveNamesOfTheirOwn) {
   const SectionReport report = SectionsOf(ExampleSail(), {{1.0, 1.0000001}});
   ASSERT_EQ(report.sections.size(), 5u);
-  EXPECT_EQ(report.sections[1].name, "z=1");
-  EXPECT_EQ(report.sections[2].name, "z=1.0000001");
+  EXPECT_EQ(report.sections[1].name, "height=1");
+  EXPECT_EQ(report.sections[2].name, "height=1.0000001");
 }
 
 TEST(Section, HeightOnASlopingSailIsLevel) {

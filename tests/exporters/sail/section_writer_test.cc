@@ -1,5 +1,6 @@
 #include "exporters/sail/section_writer.h"
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -78,7 +79,7 @@ TEST(SectionWriter, CsvHasAHeaderAndARowASection) {
   EXPECT_EQ(rows[0].at("num_markers"), "12");
   EXPECT_EQ(std::stod(rows[0].at("camber")), example.report.sections[0].camber.value);
   EXPECT_EQ(std::stod(rows[3].at("sigma_twist_deg")), *example.report.sections[3].twist_deg.sigma);
-  EXPECT_EQ(rows[1].at("section"), "z=1");
+  EXPECT_EQ(rows[1].at("section"), "height=1");
   EXPECT_EQ(rows[1].at("num_markers"), "");
   EXPECT_EQ(rows[4].at("section"), "h4, \"top\" <5>");
   EXPECT_EQ(rows[4].at("chord_m"), "");
@@ -90,7 +91,7 @@ TEST(SectionWriter, JsonHasTheSameNumbersAsTheCsv) {
   const auto rows = Rows(Written(WriteSectionsCsv, example));
   const auto json = nlohmann::json::parse(Written(WriteSectionsJson, example));
   EXPECT_EQ(json["frame"]["name"], "lines h1 v1");
-  EXPECT_EQ(json["twist_reference"], "lowest section");
+  EXPECT_EQ(json["rigs"][0]["twist_reference"], "lowest section");
   ASSERT_EQ(json["sections"].size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     for (const char* key : {"chord_m", "camber", "draft_position", "entry_angle_deg",
@@ -180,7 +181,7 @@ void ExpectSections(const Example& example, const std::string& dxf, double units
   EXPECT_EQ(units, unit_code);
   ASSERT_EQ(vertices.size(), 4u);
   ASSERT_EQ(vertices.count("SAIL_H3"), 1u);
-  ASSERT_EQ(vertices.count("SAIL_Z_1"), 1u);
+  ASSERT_EQ(vertices.count("SAIL_HEIGHT_1"), 1u);
   for (const Section& section : example.report.sections) {
     if (section.name != "h3") continue;
     const auto profile = SampleProfile(section, kNumProfilePoints);
@@ -200,12 +201,26 @@ TEST(SectionDrawing, DxfHasEverySectionInItsUnitOnALayerOfItsOwn) {
   ExpectSections(example, in_mm, 1e3, "4");
 }
 
+// R12 knows no UTF-8.
+TEST(SectionDrawing, DxfIsAscii) {
+  Example example = MakeExample();
+  example.frame.description = "h\xC3\xB6he";
+  example.report.sections[0].name = "gro\xC3\x9F";
+  for (DxfWriter* write : {WriteSectionsDxf, WriteSectionProfilesDxf}) {
+    const std::string dxf = Dxf(example, LengthUnit::kMetre, write);
+    EXPECT_TRUE(std::all_of(dxf.begin(), dxf.end(), [](unsigned char c) { return c < 128; }));
+    EXPECT_THAT(dxf, HasSubstr("h__he"));
+  }
+  EXPECT_THAT(Dxf(example, LengthUnit::kMetre, WriteSectionProfilesDxf), HasSubstr("sail gro__"));
+}
+
 TEST(SectionDrawing, SvgIsWellFormedToOneScaleAndHasTheNumbers) {
   const Example example = MakeExample();
   const std::string svg = Written(WriteSectionProfilesSvg, example);
   EXPECT_THAT(svg, HasSubstr("&lt;5&gt; left out"));
   EXPECT_THAT(svg, HasSubstr("camber 8.0"));
   EXPECT_THAT(svg, HasSubstr("twist 1"));
+  EXPECT_THAT(svg, HasSubstr("twist of sail against lowest section"));
   EXPECT_THAT(svg, HasSubstr("frame lines h1 v1"));
   // The longest chord fills the width; the others are in proportion, whatever the axis.
   std::vector<double> lengths_px;

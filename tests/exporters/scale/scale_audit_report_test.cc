@@ -113,8 +113,26 @@ TEST(ScaleAuditReport, ACheckBeyondThreeSigmasIsAWarning) {
   audit.distances[0].sigma_m = 0.008;
   EXPECT_TRUE(ScaleWarnings(audit).empty());
   // What took part in the adjustment is no check of it.
-  audit.distances[0].sigma_m.reset();
+  audit.distances[0].sigma_m = 1e-4;
+  EXPECT_EQ(ScaleWarnings(audit).size(), 1u);
   audit.distances[0].known.is_scale_bar = true;
+  EXPECT_TRUE(ScaleWarnings(audit).empty());
+}
+
+// The shape of COLMAP's bundle adjuster has no sigmas, and its scale comes from the markers.
+TEST(ScaleAuditReport, AScaleBarThatNoAdjustmentUsedIsACheckAndAWarning) {
+  ScaleAudit audit = FullAudit();
+  audit.distances[0].known = {4, 0, 9, 2, 2.412, 0.002, true};
+  audit.distances[0].distance_m = 2.65;
+  EXPECT_EQ(NumChecks(audit), 1);
+  EXPECT_EQ(FailedChecks(audit).size(), 1u);
+  const std::vector<std::string> warnings = ScaleWarnings(audit);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_THAT(warnings[0], HasSubstr("use: scale (4-9.2) are only compared"));
+  EXPECT_THAT(warnings[0], HasSubstr("--backend markers or both"));
+  EXPECT_THAT(warnings[1], HasSubstr("off by +238.0 mm"));
+  audit.distances[0].sigma_m = 0.001;  // used, or left out with a warning of its own
+  EXPECT_EQ(NumChecks(audit), 0);
   EXPECT_TRUE(ScaleWarnings(audit).empty());
 }
 

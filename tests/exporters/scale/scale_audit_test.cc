@@ -229,7 +229,7 @@ TEST(ScaleAudit, AnErrorOfAllMarkersShowsInKnownDistancesOnly) {
   Layout layout = RowLayout(10);
   layout.distances = {{0, 0, 29, 0, 0.3 * 29, 1e-3, false},
                       {0, 0, 10, 0, 3.0, 1e-3, false},
-                      {0, 0, 20, 0, 5.0, 1e-3, true}};  // no check
+                      {0, 0, 20, 0, 6.0, 1e-3, true}};
   MarkerShape shape = RowShape(layout, 1e-4);
   for (ShapeMarker& marker : shape.markers) {
     for (auto& x : marker.x_in_shape_m) x->x() += 0.01 * 0.3 * marker.marker_id;
@@ -237,7 +237,8 @@ TEST(ScaleAudit, AnErrorOfAllMarkersShowsInKnownDistancesOnly) {
   const ScaleAudit audit = AuditScale(shape, layout);
   EXPECT_LT(std::abs(audit.deviation), 1e-4);
   EXPECT_NEAR(*audit.distance_deviation, 0.01, 1e-4);
-  EXPECT_NEAR(*audit.distance_deviation_sigma, 1e-3 / std::hypot(8.7, 3.0), 2e-5);
+  // Without an adjustment that uses it, a scale bar is a check as the others.
+  EXPECT_NEAR(*audit.distance_deviation_sigma, 1e-3 / std::hypot(8.7, 3.0, 6.0), 2e-5);
   EXPECT_FALSE(AuditScale(shape, RowLayout(10)).distance_deviation.has_value());
 }
 

@@ -167,7 +167,7 @@ TEST(ShapeFrame, FallsBackInOrderAndSaysWhy) {
   ShapeFrame frame = ChooseFrame(sail.shape, sail.layout);
   EXPECT_EQ(frame.kind, FrameKind::kReferencePart);
   ASSERT_EQ(frame.reasons.size(), 1u);
-  EXPECT_EQ(frame.reasons[0], "not by markers 100 111 305: marker 111 not reconstructed whole");
+  EXPECT_EQ(frame.reasons[0], "not by markers 100 111 305: marker 111 was not reconstructed whole");
 
   for (const int id : {10, 11, 12}) RemoveMarker(id, &sail.shape);
   frame = ChooseFrame(sail.shape, sail.layout);
@@ -202,8 +202,9 @@ TEST(ShapeFrame, ContradictionsAreReasons) {
 TEST(ShapeFrame, AChoiceIsGrantedOrRefused) {
   const Sail sail = ExampleSail();
   const FrameChoice on_one_line{FrameKind::kMarkers, 100, 200, 300};
-  ExpectThrows<InputError>([&] { ChooseFrame(sail.shape, sail.layout, on_one_line); },
-                           {"--frame: markers 100 200 300", "lie on one line"});
+  ExpectThrows<InputError>(
+      [&] { ChooseFrame(sail.shape, sail.layout, on_one_line); },
+      {"--frame: the frame 'markers 100 200 300' is not possible: ", "lie on one line"});
   // Before the work, where the layout forbids it.
   ExpectThrows<InputError>(
       [&] {
@@ -213,7 +214,7 @@ TEST(ShapeFrame, AChoiceIsGrantedOrRefused) {
   for (const FrameKind kind : {FrameKind::kReferencePart, FrameKind::kLines}) {
     ExpectThrows<InputError>(
         [&] { CheckFrameChoice(FrameChoice{kind}, MakeLayout("DICT_4X4_50", 0.1)); },
-        {"--frame: " + FrameKeyword(kind), "the layout"});
+        {"--frame: the frame '" + FrameKeyword(kind) + "'", "the layout"});
   }
   CheckFrameChoice(on_one_line, sail.layout);
   CheckFrameChoice(on_one_line, MakeLayout("DICT_4X4_50", 0.1));

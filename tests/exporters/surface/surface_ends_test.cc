@@ -19,12 +19,12 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 TEST(SurfaceEnds, GoesOnBeyondItsMarkersAsItIsCurved) {
-  SurfaceOptions options = Interpolating();
+  SurfaceOptions options;
   options.luff_extension_mm = 300;
   options.leech_extension_mm = 200;
   options.foot_extension_mm = 250;
   options.head_extension_mm = 150;
-  const auto fitted = FitSurface(MarkersOn(CylinderSail, 6, 8), options);
+  const auto fitted = FitSurface(AsExact(MarkersOn(CylinderSail, 6, 8)), options);
   const double arc_m = 4 * 40 * kRadPerDeg;
   EXPECT_NEAR(SurfaceArea(fitted.surface), (arc_m + 0.5) * 3.4, 0.01);
   EXPECT_NEAR(EvaluatePoint(fitted.surface, 0.5, 0).z(), -0.25, 1e-3);
@@ -58,14 +58,14 @@ TEST(SurfaceEnds, ExtensionsAreLimitedToTheSizeOfThePart) {
 TEST(SurfaceEnds, ReachesTheEdgesThatAreGiven) {
   // Markers inside of 8 % from luff and leech and 10 % from foot and head.
   const auto inner = [](double u, double v) { return TwistedSail(0.08 + 0.84 * u, 0.1 + 0.8 * v); };
-  SurfaceOptions options = Interpolating();
+  SurfaceOptions options;
   for (int k = 0; k <= 10; ++k) {
     options.edges.luff.push_back(TwistedSail(0, k / 10.0));
     options.edges.leech.push_back(TwistedSail(1, k / 10.0));
     options.edges.foot.push_back(TwistedSail(k / 10.0, 0));
     options.edges.head.push_back(TwistedSail(k / 10.0, 1));
   }
-  const auto fitted = FitSurface(MarkersOn(inner, 7, 8), options);
+  const auto fitted = FitSurface(AsExact(MarkersOn(inner, 7, 8)), options);
   const double true_area_m2 = SurfaceArea(FitSurface(MarkersOn(TwistedSail, 16, 16)).surface);
   EXPECT_NEAR(SurfaceArea(fitted.surface), true_area_m2, 0.005 * true_area_m2);
   EXPECT_LT(LargestDistance(fitted.surface, TwistedSail), 0.02);

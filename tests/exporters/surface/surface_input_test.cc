@@ -45,6 +45,15 @@ TEST(SurfaceInput, TakesWholeMarkersByTheirLines) {
   EXPECT_EQ(with_leech.edges.leech[1], Eigen::Vector3d(8, 0, 0));
   ASSERT_EQ(with_leech.markers.size(), 1u);
   EXPECT_EQ(with_leech.markers[0].marker_id, 5);
+  EXPECT_EQ(with_leech.leech_note, "");
+  // One of them is no edge, and that is said.
+  shape.markers.erase(shape.markers.begin() + 4);
+  const SurfaceInput one = CollectSurfaceInput(shape, part);
+  EXPECT_TRUE(one.edges.leech.empty());
+  EXPECT_EQ(one.leech_note,
+            "leech: 1 of the markers of its line v1 are whole, 2 needed; the surface ends at the "
+            "outer markers of the other lines");
+  EXPECT_EQ(one.luff_note, "");
 }
 
 }  // namespace

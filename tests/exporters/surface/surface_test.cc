@@ -44,9 +44,10 @@ std::string ErrorOf(const SurfaceInput& input, const SurfaceOptions& options = {
 }
 
 TEST(Surface, BilinearPatchIsExactFromTwoLinesOn) {
-  for (const SurfaceOptions& options : {SurfaceOptions{}, Interpolating()}) {
+  for (const bool is_exact : {false, true}) {
     for (const int num_lines : {2, 3, 4, 7}) {
-      const auto fitted = FitSurface(MarkersOn(BilinearPatch, num_lines, 5), options);
+      const SurfaceInput input = MarkersOn(BilinearPatch, num_lines, 5);
+      const auto fitted = FitSurface(is_exact ? AsExact(input) : input);
       EXPECT_LT(LargestDistance(fitted.surface, BilinearPatch), 1e-11) << num_lines;
       EXPECT_LT(LargestResidual(fitted), 1e-12) << num_lines;
       EXPECT_EQ(fitted.notes.size(), 0u);
@@ -60,7 +61,7 @@ TEST(Surface, CylinderIsAsExactAsCubicSplinesAllow) {
   const double arc_m = 4 * 40 * kRadPerDeg;
   for (const int n : {6, 8, 12, 16}) {
     const double h = arc_m / (n - 1);
-    const auto fitted = FitSurface(MarkersOn(CylinderSail, 5, n), Interpolating());
+    const auto fitted = FitSurface(AsExact(MarkersOn(CylinderSail, 5, n)));
     EXPECT_LT(LargestDistance(fitted.surface, CylinderSail),
               1.5 * 5.0 / 384 * std::pow(h, 4) / std::pow(4, 3))
         << n;
@@ -71,17 +72,18 @@ TEST(Surface, CylinderIsAsExactAsCubicSplinesAllow) {
 TEST(Surface, SailConvergesWithItsMarkersAndItsResidualsVanish) {
   double coarse_m = 0;
   for (const int n : {6, 12}) {
-    for (const SurfaceOptions& options : {Interpolating(), SurfaceOptions{}}) {
-      const auto fitted = FitSurface(MarkersOn(TwistedSail, n, n), options);
+    for (const bool is_exact : {true, false}) {
+      const SurfaceInput input = MarkersOn(TwistedSail, n, n);
+      const auto fitted = FitSurface(is_exact ? AsExact(input) : input);
       const double distance_m = LargestDistance(fitted.surface, TwistedSail);
       if (n == 6) {
         coarse_m = distance_m;
         // Between markers that are 1.2 m apart, on lines 1.2 m apart.
-        EXPECT_LT(distance_m, options.default_sigma_m ? 2e-3 : 5e-3);
+        EXPECT_LT(distance_m, is_exact ? 2e-3 : 5e-3);
       } else {
         EXPECT_LT(distance_m, coarse_m / 6);
       }
-      EXPECT_LT(LargestResidual(fitted), options.default_sigma_m ? 1e-8 : 2e-3);
+      EXPECT_LT(LargestResidual(fitted), is_exact ? 1e-8 : 2e-3);
     }
   }
 }
@@ -125,11 +127,10 @@ TEST(Surface, SigmasAndCrossValidationBothComeNearerToTheTruthThanInterpolation)
   for (int seed = 1; seed <= 6; ++seed) {
     SurfaceInput input = MarkersOn(TwistedSail, 8, 9);
     AddNoise(0.005, false, seed, &input);
-    interpolated += TruthRms(FitSurface(input, Interpolating()).surface, TwistedSail) / 6;
+    interpolated += TruthRms(FitSurface(AsExact(input)).surface, TwistedSail) / 6;
     validated += TruthRms(FitSurface(input).surface, TwistedSail) / 6;
-    SurfaceOptions options;
-    options.default_sigma_m = 0.005;
-    known += TruthRms(FitSurface(input, options).surface, TwistedSail) / 6;
+    ForEachMarker(&input, [](SurfaceMarker* marker) { marker->sigma_m = 0.005; });
+    known += TruthRms(FitSurface(input).surface, TwistedSail) / 6;
   }
   EXPECT_LT(known, 0.8 * interpolated);
   EXPECT_LT(validated, 0.8 * interpolated);
@@ -198,8 +199,8 @@ TEST(Surface, MarkersThatLieScatteredBearNone) {
       input.markers.push_back({500 + 10 * j + k, x + Eigen::Vector3d(0, 0.5, 0), {}});
     }
   }
-  EXPECT_THROW(FitSurface(input, Interpolating()), DataError);
-  ExpectThrows<DataError>([&] { FitSurface(input, Interpolating()); },
+  EXPECT_THROW(FitSurface(AsExact(input)), DataError);
+  ExpectThrows<DataError>([&] { FitSurface(AsExact(input)); },
                           {"oscillate between the markers", "m2"});
 }
 
@@ -210,13 +211,13 @@ TEST(Surface, MarkersBetweenTheLinesTakePart) {
     return TwistedSail(u, v) + Eigen::Vector3d(0, bulge_m, 0);
   };
   SurfaceInput input = MarkersOn(bulging, 4, 9);
-  const double without_m = TruthRms(FitSurface(input, Interpolating()).surface, bulging);
+  const double without_m = TruthRms(FitSurface(AsExact(input)).surface, bulging);
   for (int j = 0; j < 3; ++j) {
     for (int k = 1; k < 8; ++k) {
       input.markers.push_back({100 + 10 * j + k, bulging(k / 8.0, (j + 0.5) / 3), {}});
     }
   }
-  const auto fitted = FitSurface(input, Interpolating());
+  const auto fitted = FitSurface(AsExact(input));
   EXPECT_GT(without_m, 0.01);
   EXPECT_LT(TruthRms(fitted.surface, bulging), 0.4 * without_m);
   EXPECT_EQ(fitted.distance_m.count, 4 * 9 + 3 * 7);
@@ -243,7 +244,7 @@ TEST(Surface, HolesAreBridgedAndNamed) {
   SurfaceInput input = MarkersOn(TwistedSail, 8, 9);
   for (const int k : {3, 4, 5}) input.lines[3].markers[k].reset();
   for (const int k : {0, 1}) input.lines[5].markers[k].reset();
-  const auto fitted = FitSurface(input, Interpolating());
+  const auto fitted = FitSurface(AsExact(input));
   EXPECT_LT(LargestDistance(fitted.surface, TwistedSail), 0.02);
   EXPECT_LT(TruthRms(fitted.surface, TwistedSail), 0.004);
   EXPECT_THAT(fitted.notes, Contains(HasSubstr("line h4: gap of 1.07 m")));
@@ -319,7 +320,7 @@ TEST(Surface, BadOptionsAreNamed) {
       EXPECT_THAT(error.what(), HasSubstr(text));
     }
   };
-  SurfaceOptions negative, single, both, sigma;
+  SurfaceOptions negative, single, both;
   negative.head_extension_mm = -100;
   check(negative, "--Surface.head_extension: -100 is out of range");
   single.edges.luff = {{0, 0, 0}};
@@ -327,8 +328,6 @@ TEST(Surface, BadOptionsAreNamed) {
   both.edges.foot = {{0, 0, -1}, {3, 0, -1}};
   both.foot_extension_mm = 500;
   check(both, "give one of the two");
-  sigma.default_sigma_m = -1;
-  check(sigma, "default sigma of the surface is -1 m");
 }
 
 }  // namespace
