@@ -23,6 +23,8 @@ fail() {
   say "error: $*" >&2
   exit 2
 }
+# shellcheck source-path=SCRIPTDIR source=find_program.sh
+source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/find_program.sh"
 
 output_path=""
 keep_going=0
@@ -46,9 +48,7 @@ for option in "$@"; do
 done
 
 command -v jq >/dev/null || fail "jq is not installed; run: apt-get install jq"
-velamap="${VELAMAP:-$(dirname "${BASH_SOURCE[0]}")/../build/release/workflows/velamap}"
-[[ -x "$velamap" ]] || velamap="$(command -v velamap)" ||
-  fail "velamap is neither built (workflows/build.sh release) nor on the PATH"
+velamap="$(find_program VELAMAP velamap workflows/velamap)"
 
 # sail.mp4 and sail/ both become the workspace sail, so two inputs of one name would collide.
 workspace_name() {

@@ -9,7 +9,7 @@ set -euo pipefail
 preset="${VELAMAP_PRESET:-release}"
 colmap="${VELAMAP_COLMAP:-}"
 if [[ -n "$colmap" ]]; then
-  [[ -x "$colmap" ]] || { echo "error: VELAMAP_COLMAP: $colmap is no program" >&2; exit 2; }
+  [[ -x "$colmap" ]] || { echo "error: VELAMAP_COLMAP: $colmap is not a program" >&2; exit 2; }
   colmap="$(realpath "$colmap")"
 fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -90,7 +90,7 @@ int Main(int argc, char** argv) {
     return fail(
         kBrokenInvariant,
         std::string(error.what()) +
-            " (a fault of velamap itself; report it with this line, the command and the log)");
+            " (a bug in velamap; please report it with this line, the command and the log)");
   }
 }
 

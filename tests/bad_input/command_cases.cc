@@ -32,6 +32,30 @@ std::vector<BadInput> Prints() {
            "layout.yml: cannot be written"}};
 }
 
+// Options that the choice of markers leaves without effect.
+std::vector<BadInput> PlansWithUnusedOptions() {
+  const std::string lines =
+      "shoot_planner --field_of_view 90 --layout_path @/lines.yml --Sail.luff 6 --Sail.foot 3 "
+      "--Sail.leech 6.2 ";
+  const std::string grid =
+      "shoot_planner --field_of_view 90 --marker_length 0.1 --Plan.surface grid ";
+  const auto write_lines =
+      Write("lines.yml",
+            "dictionary: DICT_4X4_50\nmarker_length: 0.1\nparts:\n  sail:\n    horizontal:\n"
+            "      - {name: h1, markers: [0, 1, 2, 3]}\n      - {name: h2, markers: [4, 5, 6]}\n");
+  std::vector<BadInput> cases;
+  for (const std::string name : {"hull_markers", "Sail.lines", "Sail.markers_per_line"}) {
+    cases.push_back({"APlanOfLinesWithMarkersOfItsOwn" + std::to_string(cases.size()),
+                     lines + "--" + name + " 3", 2, "--" + name + ": it would change nothing",
+                     write_lines});
+  }
+  cases.push_back(
+      {"AGridWithCamber", grid + "--Plan.camber 0.1", 2, "--Plan.camber: it would change nothing"});
+  cases.push_back(
+      {"AGridWithTwist", grid + "--Plan.twist 10", 2, "--Plan.twist: it would change nothing"});
+  return cases;
+}
+
 std::vector<BadInput> Plans() {
   const std::string sail =
       "shoot_planner --marker_length 0.1 --Sail.luff 6 --Sail.foot 3 --Sail.leech 6.2 ";
@@ -41,7 +65,7 @@ std::vector<BadInput> Plans() {
       {"APlanWithTwoCameras", call + "--camera_path @/camera.yml", 2,
        "--field_of_view: the calibration says"},
       {"APlanWithTwoSpeeds", call + "--Plan.speed 1 --Plan.speed_knots 2", 2,
-       "--Plan.speed_knots: the speed is given"},
+       "--Plan.speed_knots: --Plan.speed gives"},
       {"APlanFromFarOff", call + "--Plan.distance 10000", 2, "--Plan.distance: from 10000 m"},
       {"AStraightLensOf170Degrees", sail + "--field_of_view 170", 2, "give --lens wide"},
       {"APlanOfALayoutWithoutLines",
@@ -73,6 +97,8 @@ std::vector<BadInput> BoardsAndClips() {
            "is also the --layout_path"},
           {"AClipThatEndsBeforeItBegins", clip + "--Video.first_frame 3 --Video.last_frame 1", 2,
            "--Video.last_frame: 1 is before"},
+          {"SomeFramesOfPhotographs", "clip_checker --image_path @/images --num_frames 30", 2,
+           "--num_frames: it would change nothing"},
           {"PhotographsAsAVideo", "clip_checker --image_path @/images --Video.first_frame 3", 2,
            "--Video.first_frame: it would change nothing"},
           {"AClipThatBeginsAfterItsEnd", clip + "--Video.first_frame 1000", 2, "none at or after"},
@@ -163,7 +189,7 @@ std::vector<BadInput> Exports() {
       {"ATableWithTheNameOfAFolder", analyzed + "--marker_length 0.1 --csv_path @/new/", 2,
        "is a folder"},
       {"AProjectFileInAProjectFile", analyzed + "--project_path @/p.ini", 2,
-       "p.ini: project_path: a project file names no other",
+       "p.ini: project_path: a project file cannot name another one",
        Write("p.ini", "project_path=q.ini\n")},
       {"AZeroByteInAProjectFile", analyzed + "--project_path @/p.ini", 2, "p.ini: a zero byte",
        Write("p.ini", std::string("marker_length=0.1\0\n", 19))},
@@ -220,25 +246,26 @@ std::vector<BadInput> Designs() {
   const std::string call =
       "automatic_reconstructor --image_path @/images --camera_path @/camera.yml --layout_path "
       "@/lines.yml --backend markers --workspace_path @/new --design_path ";
-  return {{"ADesignThatIsNotThere", call + "@/no.step", 2, "no.step", write("bad.stl")},
-          {"ADesignOfALayoutWithoutLines", kRerun + " --design_path @/layout.yml", 2,
-           "--design_path: it would change nothing"},
-          {"AUnitWithoutADesign", kRerun + " --design_unit mm", 2,
-           "--design_unit: it would change nothing"},
-          {"ADesignThatIsATable", call + "@/bad.csv", 2, "bad.csv is no surface", write("bad.csv")},
-          {"ADesignThatIsNoMesh", call + "@/bad.stl", 2, "bad.stl: ", write("bad.stl")},
-          {"AUnitOfADesignThatNamesItsOwn", call + "@/bad.step --design_unit mm", 2,
-           "names its unit itself", write("bad.step")},
-          {"ADesignInFeet", call + "@/bad.stl --design_unit ft", 2, "--design_unit: 'ft'",
-           write("bad.stl")}};
+  return {
+      {"ADesignThatIsNotThere", call + "@/no.step", 2, "no.step", write("bad.stl")},
+      {"ADesignOfALayoutWithoutLines", kRerun + " --design_path @/layout.yml", 2,
+       "--design_path: it would change nothing"},
+      {"AUnitWithoutADesign", kRerun + " --design_unit mm", 2,
+       "--design_unit: it would change nothing"},
+      {"ADesignThatIsATable", call + "@/bad.csv", 2, "bad.csv is not a surface", write("bad.csv")},
+      {"ADesignThatIsNoMesh", call + "@/bad.stl", 2, "bad.stl: ", write("bad.stl")},
+      {"AUnitOfADesignThatNamesItsOwn", call + "@/bad.step --design_unit mm", 2,
+       "names its unit itself", write("bad.step")},
+      {"ADesignInFeet", call + "@/bad.stl --design_unit ft", 2, "--design_unit: 'ft'",
+       write("bad.stl")}};
 }
 
 }  // namespace
 
 std::vector<BadInput> CommandCases() {
   std::vector<BadInput> cases = Prints();
-  for (const auto& more :
-       {Plans(), BoardsAndClips(), Layouts(), Exports(), Comparisons(), Designs()}) {
+  for (const auto& more : {Plans(), PlansWithUnusedOptions(), BoardsAndClips(), Layouts(),
+                           Exports(), Comparisons(), Designs()}) {
     cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;

@@ -60,11 +60,11 @@ std::vector<BadInput> ProcessCases() {
                      fs::remove(dir / "model/points3D.bin");
                      MakePipe(dir / "model/points3D.bin");
                    }});
-  cases.push_back({"ALogThatIsAPipe",
-                   "bundle_adjuster " + kLayout +
-                       "--input_path @/workspace/sparse/seed --output_path @/new --log_path @/pipe",
-                   2, "pipe is a pipe, whose reader",
-                   [](const fs::path& dir) { MakePipe(dir / "pipe"); }});
+  cases.push_back(
+      {"ALogThatIsAPipe",
+       "bundle_adjuster --input_path @/workspace/sparse/seed --output_path @/new --log_path @/pipe",
+       2, "pipe is a pipe, and velamap would wait for its reader",
+       [](const fs::path& dir) { MakePipe(dir / "pipe"); }});
   cases.push_back(
       {"AnImageNameWithALineBreak", kImport, 2, "holds a line break",
        [](const fs::path& dir) { fs::copy(dir / "images/1.png", dir / "images/five\nsix.png"); }});
@@ -73,8 +73,8 @@ std::vector<BadInput> ProcessCases() {
                    "automatic_reconstructor --image_path @/no\xc2\x9b" + std::string("31mwhere ") +
                        kCamera + kLayout + "--workspace_path @/new",
                    2, "no\xc2?31mwhere"});
-  cases.push_back({"AWorkspaceLogThatIsAPipe", kRerun, 2, "velamap.log is a pipe, whose reader",
-                   [](const fs::path& dir) {
+  cases.push_back({"AWorkspaceLogThatIsAPipe", kRerun, 2,
+                   "velamap.log is a pipe, and velamap would", [](const fs::path& dir) {
                      fs::remove(dir / "workspace/velamap.log");
                      MakePipe(dir / "workspace/velamap.log");
                    }});

@@ -113,9 +113,9 @@ std::vector<BadInput> Parts() {
   return {
       {"APartOfPhotographs", kImport + " --video_part 1/2", 2, "photographs have no parts"},
       {"APartBeyondTheLast", kImportClipAgain + " --video_part 3/2", 2,
-       "--video_part: '3/2' is no part"},
+       "--video_part: '3/2' is not a part"},
       {"APartInWords", kImportClipAgain + " --video_part second", 2,
-       "--video_part: 'second' is no part"},
+       "--video_part: 'second' is not a part"},
       {"AnotherPartInADatabase",
        "marker_importer --image_path @/clip.avi --camera_path @/camera.yml --layout_path "
        "@/layout.yml --video_part 2/2 --database_path @/1.db",
@@ -175,10 +175,10 @@ std::vector<BadInput> Wishes() {
   };
   return {
       {"FrameByMarkersThatAreNotThere", kExport + "--marker_length 0.1 --frame 900,901,902", 2,
-       "--frame: markers 900 901 902 is not possible"},
+       "--frame: the frame 'markers 900 901 902' is not possible"},
       {"FrameByMarkersThatTheLayoutDoesNotName",
        kExport + "--layout_path @/layout.yml --frame 7,8,9", 2,
-       "--frame: markers 7 8 9 is not possible: the layout names no marker 7"},
+       "--frame: the frame 'markers 7 8 9' is not possible: the layout names no marker 7"},
       {"FrameByAReferencePartThatIsNone",
        kExport + "--layout_path @/layout.yml --frame reference_part", 2,
        "the layout names no reference_part"},

@@ -243,7 +243,7 @@ std::vector<Bytes> UncertaintySeeds() {
   uncertainty.points.factor = Eigen::MatrixXd::Ones(num_rows, 2);
   uncertainty.points.signs = Eigen::VectorXd::Ones(2);
   const TempDir dir;
-  WriteUncertainty(uncertainty, dir.path().string());
+  WriteUncertainty(uncertainty, {}, dir.path().string());
   return {BytesOf(dir / kUncertaintyFileName)};
 }
 

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "importer/geometry/look_at.h"
 #include "importer/geometry/units.h"
 #include "reconstruct/geometry/marker_pose.h"
 
@@ -22,22 +23,6 @@ struct PlacedMarker {
   int marker_id;
   Rigid3 world_from_marker;
 };
-
-// Camera at `position` that looks at `target` with its y axis as far down (-z of world) as it goes.
-Rigid3 LookAt(const Eigen::Vector3d& position, const Eigen::Vector3d& target, double roll_rad) {
-  const Eigen::Vector3d z = (target - position).normalized();
-  const bool looks_along_z = std::abs(z.z()) > 0.95;
-  const Eigen::Vector3d down = looks_along_z ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(0, 0, -1);
-  const Eigen::Vector3d x = down.cross(z).normalized();
-  Eigen::Matrix3d cam_from_world;
-  cam_from_world.row(0) = x;
-  cam_from_world.row(1) = z.cross(x);
-  cam_from_world.row(2) = z;
-  const Eigen::Quaterniond rotation =
-      Eigen::Quaterniond(Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ())) *
-      Eigen::Quaterniond(cam_from_world);
-  return {rotation.normalized(), -(rotation.normalized() * position)};
-}
 
 // The marker frame on a surface with the given normal, its y axis as far up as it goes.
 Eigen::Quaterniond MarkerRotation(const Eigen::Vector3d& normal) {
@@ -141,7 +126,10 @@ std::vector<Rigid3> PlaceCameras(const SyntheticSceneOptions& options, std::mt19
     const Eigen::Vector3d target = options.kind == SceneKind::kCube
                                        ? Eigen::Vector3d(Eigen::Vector3d::Zero())
                                        : Eigen::Vector3d(0.05 * extent * wobble.reverse());
-    cam_from_world.push_back(LookAt(position + 0.05 * extent * wobble, target, 0.1 * wobble.x()));
+    const Eigen::Vector3d moved = position + 0.05 * extent * wobble;
+    const bool looks_along_z = std::abs((target - moved).normalized().z()) > 0.95;
+    const Eigen::Vector3d up = looks_along_z ? Eigen::Vector3d(0, -1, 0) : Eigen::Vector3d::UnitZ();
+    cam_from_world.push_back(LookAt(moved, target, 0.1 * wobble.x(), up));
   }
   return cam_from_world;
 }

@@ -7,6 +7,7 @@
 #include <boost/program_options.hpp>
 
 #include "tests/support/study/corner_study.h"
+#include "tests/support/tool_options.h"
 
 namespace velamap {
 namespace {
@@ -70,9 +71,14 @@ void Print(const std::vector<CornerCase>& cases) {
   }
 }
 
-int Run(int argc, char** argv) {
+void Run(int argc, char** argv) {
   CornerCase base;
-  po::options_description description("corner_accuracy [options]", 100, 60);
+  po::options_description description(
+      "corner_accuracy [options]\n\nMarkers of DICT_4X4_50, black 40 and white 200, with one cell "
+      "of "
+      "white around them on grey 120; bent\nones on a cylinder. A table in Markdown: each size and "
+      "blur, then noise, compression, curvature, tilt",
+      100, 60);
   const auto value = [](auto* target) { return po::value(target)->default_value(*target); };
   auto add = description.add_options();
   add("help", "this text");
@@ -80,29 +86,14 @@ int Run(int argc, char** argv) {
   add("markers", value(&base.min_markers), "fewest markers of a line of the table");
   add("max_tilt", value(&base.max_tilt_deg), "largest tilt of the first lines, degrees");
   add("seed", value(&base.seed), "of the markers' poses and the noise");
-  try {
-    po::variables_map values;
-    po::store(po::parse_command_line(argc, argv, description), values);
-    if (values.count("help") > 0) {
-      std::cout
-          << description
-          << "\nMarkers of DICT_4X4_50, black 40 and white 200, with one cell of white around "
-             "them on grey 120; bent\nones on a cylinder. A table in Markdown: each size and "
-             "blur, then noise, compression, curvature, tilt.\n";
-      return 0;
-    }
-    po::notify(values);
-  } catch (const po::error& error) {
-    std::cerr << "corner_accuracy: " << error.what() << '\n';
-    return 2;
-  }
+  po::variables_map values;
+  if (!ReadToolOptions(description, "corner_accuracy", argc, argv, &values)) return;
   Print(SizesAndBlurs(base));
   std::cout << '\n';
   Print(Hardships(base));
-  return 0;
 }
 
 }  // namespace
 }  // namespace velamap
 
-int main(int argc, char** argv) { return velamap::Run(argc, argv); }
+int main(int argc, char** argv) { return velamap::RunTool(velamap::Run, argc, argv); }

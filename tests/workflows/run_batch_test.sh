@@ -60,4 +60,11 @@ batch 2 empty first.mp4
 [[ "$(rows summary.csv)" == "empty empty 2 True  False False
 first.mp4 first 0 False 7 True True" ]] || fail "summary: $(cat "two words/summary.csv")"
 [[ "$(rows summary.1.csv)" == "$expected" ]] || fail "the earlier summary is not summary.1.csv"
+
+# A program that was named and is not there is not replaced by another one.
+code=0
+VELAMAP="$folder/no_such_velamap" "$repository/workflows/run_batch.sh" --output_path "$folder/new" \
+  first.mp4 2>log.txt || code=$?
+[[ $code -eq 2 && ! -e "$folder/new" ]] || fail "exit $code without the program that VELAMAP names"
+grep -q '^error: VELAMAP: .*no_such_velamap is not a program' log.txt || fail "$(cat log.txt)"
 exit "$status"

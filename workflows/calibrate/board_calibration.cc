@@ -39,7 +39,8 @@ Layout FindLayout(const BoardCalibrationOptions& options, ArucoDetectionOptions*
   if (hints.empty()) {
     throw DataError(fmt::format(
         "{}: no marker of any of OpenCV's dictionaries is seen in {} pictures: show a board of "
-        "markers, larger and in better light, or name its dictionary file with --dictionary",
+        "markers, larger and in better light, or name its dictionary file with --dictionary and "
+        "the side of its markers with --marker_length",
         options.image_path, clip.frames.size()));
   }
   LogInfo("markers of {}", DictionaryName(hints[0]));

@@ -39,7 +39,8 @@ class Judge {
     if (facts_.num_markers_found && facts_.num_markers_of_second &&
         2 * *facts_.num_markers_of_second > *facts_.num_markers_found) {
       reasons_.Bad(
-          fmt::format("{} and {} find about as many markers: name the dictionary of the print",
+          fmt::format("{} and {} find about as many markers: name the dictionary of the "
+                      "print with --dictionary, and the side of its markers with --marker_length",
                       facts_.dictionary, facts_.second_dictionary));
     }
   }
@@ -79,12 +80,12 @@ class Judge {
   void JudgeLight() {
     if (!facts_.white) return;
     if (*facts_.white > kMaxWhite) {
-      reasons_.Check("the paper is overexposed, which moves edges: expose less");
+      reasons_.Check("the paper is overexposed, which moves edges: reduce the exposure");
     }
     if (*facts_.white - *facts_.black < kMinContrast) {
       reasons_.Check(
-          fmt::format("black and white differ by {:.0f} of 255 grey levels: expose more, avoid "
-                      "glare",
+          fmt::format("black and white differ by {:.0f} of 255 grey levels: increase the "
+                      "exposure, avoid glare",
                       *facts_.white - *facts_.black));
     }
     if (*facts_.motion_px > kMaxMotionPx) {

@@ -28,7 +28,7 @@ struct BundleAdjusterCommandOptions : CommandOptions {
 CommandSyntax Declare(BundleAdjusterCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {"bundle_adjuster",
-          "refines cameras and points of a model",
+          "fits all cameras and points to the pictures at once",
           "--input_path sparse/seed --output_path sparse/0",
           {{"Input and output",
             {ModelInputOption(paths),
@@ -55,6 +55,9 @@ void Validate(BundleAdjusterCommandOptions* options) {
         options->typed, {"database_path"},
         "--backend colmap adjusts without the corners' sigmas (--backend both or "
         "markers would use it)");
+    WarnOfOptionsWithoutEffect(options->typed, {"layout_path", "marker_length"},
+                               "--backend colmap does not know the markers (--backend both or "
+                               "markers would use it)");
   }
   options->adjustment.Complete(options->general.num_threads);
 }

@@ -37,7 +37,7 @@ CommandSyntax Declare(CentralFrameSweeperCommandOptions* options) {
   PathOptions* paths = &options->paths;
   CentralFrameSweepOptions* sweep = &options->sweep;
   return {"central_frame_sweeper",
-          "registers, adjusts and judges a clip around many central frames, one row each",
+          "repeats the thesis's method around many central frames, one row each",
           "--database_path database.db --layout_path layout.yml \\\n"
           "    --central_frames every:10 --output_path sweep.csv",
           {{"Input and output",

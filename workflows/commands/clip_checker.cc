@@ -35,7 +35,9 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
       {{"Input and output",
         {ImagePathOption(paths),
          Common(PathOption("camera_path", PathUse::kReadsFile, &paths->camera_path,
-                           "calibration of the camera; left out: the precision is not predicted")),
+                           "calibration of the camera, for the precision or with "
+                           "--proposed_layout_path; the precision needs the markers' sizes, too: "
+                           "--layout_path, or --marker_length and --dictionary")),
          Common(PathOption("output_path", PathUse::kWritesFile, &paths->output_path,
                            "PNG of the frame with most markers, with their outlines and ids; left "
                            "out: none")),
@@ -51,9 +53,22 @@ CommandSyntax Declare(ClipCheckerCommandOptions* options) {
        DescribeOptions(&options->general)}};
 }
 
+void RefuseUnusedOptions(const ClipCheckerCommandOptions& options) {
+  RefuseVideoOptions(options);
+  if (IsFolder(options.paths.image_path)) {
+    RefuseOptionsWithoutEffect(options.typed, {"num_frames"}, "all photographs are looked at");
+  }
+  if (!HasMarkerOptions(options.markers) && options.proposed_layout_path.empty()) {
+    WarnOfOptionsWithoutEffect(
+        options.typed, {"camera_path"},
+        "the precision cannot be predicted without the markers' sizes (--layout_path, or "
+        "--marker_length and --dictionary)");
+  }
+}
+
 void Validate(ClipCheckerCommandOptions* options) {
   ClipCheckOptions& check = options->check;
-  RefuseVideoOptions(*options);
+  RefuseUnusedOptions(*options);
   check.detection.Check();
   check.video.Check();
   check.image_path = options->paths.image_path;

@@ -48,8 +48,8 @@ UncertainShape ReadUncertainShape(const std::string& path, const std::string& un
   }
   if (!uncertainty_path.empty() && !HasUncertainty(folder.string())) {
     throw InputError(
-        fmt::format("{}: {} holds no {}; give the folder of a model that velamap bundle_adjuster "
-                    "--backend markers has adjusted",
+        fmt::format("{}: {} holds no {}; give the metric model of the shape: sparse/0 of its "
+                    "workspace, or what --output_path of shape_exporter has named",
                     option, uncertainty_path, kUncertaintyFileName));
   }
   if (!folder.empty() && HasUncertainty(folder.string())) {

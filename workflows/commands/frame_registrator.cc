@@ -23,7 +23,7 @@ struct FrameRegistratorCommandOptions : CommandOptions {
 CommandSyntax Declare(FrameRegistratorCommandOptions* options) {
   PathOptions* paths = &options->paths;
   return {"frame_registrator",
-          "registers the images of a database and writes the seed model of the bundle adjustment",
+          "finds where the camera was for each image; makes the start of the adjustment",
           "--database_path database.db --layout_path layout.yml --output_path sparse/seed",
           {{"Input and output",
             {DatabasePathOption(PathUse::kReadsFile, paths,

@@ -33,8 +33,9 @@ VideoPart ParsePart(const std::string& text, const std::string& option) {
   if (is_part && part.number >= 1 && part.number <= part.count && part.count <= kMaxNumParts) {
     return part;
   }
-  throw InputError(fmt::format("{}: '{}' is no part; give 2/5 for the second of five, up to {}/{}",
-                               option, text, kMaxNumParts, kMaxNumParts));
+  throw InputError(
+      fmt::format("{}: '{}' is not a part; give 2/5 for the second of five, up to {}/{}", option,
+                  text, kMaxNumParts, kMaxNumParts));
 }
 
 Option PartOption(std::optional<VideoPart>* part) {

@@ -67,8 +67,9 @@ void CheckDesign(const DesignOptions& options, const TypedNames& typed) {
   if (options.path.empty()) {
     RefuseOptionsWithoutEffect(typed, {"design_unit"}, "there is no --design_path");
   } else if (!IsMeshPath(options.path)) {
-    throw InputError(fmt::format(
-        "--design_path: {} is no surface; give a .step, .iges, .ply, .stl or .obj", options.path));
+    throw InputError(
+        fmt::format("--design_path: {} is not a surface; give a .step, .iges, .ply, .stl or .obj",
+                    options.path));
   } else if (HasOwnUnit(options.path)) {
     RefuseOptionsWithoutEffect(typed, {"design_unit"},
                                "the --design_path " + options.path + " names its unit itself");

@@ -150,11 +150,12 @@ void CheckSeries(const ShapeComparerCommandOptions& options) {
 
 void RefuseUnusedOptions(const ShapeComparerCommandOptions& options) {
   const std::string& reference = options.paths.reference_path;
+  const AlignmentMethod align = options.comparison.alignment.method;
   const std::string what = "the --reference_path " + reference;
   if (!IsMeshPath(reference)) {
-    RefuseOptionsWithoutEffect(options.typed,
-                               {"reference_unit", "chord_deviation", "edge_tolerance"},
-                               what + " is a shape in m, not a surface");
+    RefuseOptionsWithoutEffect(
+        options.typed, {"reference_unit", "chord_deviation", "edge_tolerance", "align_start"},
+        what + " is a shape in m, not a surface");
   } else {
     RefuseOptionsWithoutEffect(options.typed, {"reference_uncertainty_path"},
                                what + " is a surface, which has no uncertainty");
@@ -165,6 +166,9 @@ void RefuseUnusedOptions(const ShapeComparerCommandOptions& options) {
       RefuseOptionsWithoutEffect(options.typed, {"chord_deviation"},
                                  what + " consists of triangles already");
     }
+  }
+  if (align != AlignmentMethod::kAuto && align != AlignmentMethod::kBestFit) {
+    RefuseOptionsWithoutEffect(options.typed, {"align_start"}, "--align is not best_fit");
   }
   if (options.comparison_path.empty() || options.layout_path.empty()) {
     RefuseOptionsWithoutEffect(options.typed, {"Surface."},

@@ -71,8 +71,16 @@ void RefuseUnusedOptions(const ShootPlannerCommandOptions& options) {
   } else if (options.arrangement == Arrangement::kSail) {
     RefuseOptionsWithoutEffect(options.typed, {"Grid."}, "--Plan.surface is sail");
   } else {
-    RefuseOptionsWithoutEffect(options.typed, {"Sail."}, "--Plan.surface is grid");
+    RefuseOptionsWithoutEffect(options.typed, {"Sail.", "Plan.camber", "Plan.twist"},
+                               "--Plan.surface is grid");
   }
+}
+
+// Called once the layout is read.
+void RefuseOptionsOfPlacement(const ShootPlannerCommandOptions& options) {
+  if (!options.paths.shape_path.empty() || !options.layout.HasMarkers()) return;
+  RefuseOptionsWithoutEffect(options.typed, {"hull_markers", "Sail.lines", "Sail.markers_per_line"},
+                             "the layout says which markers there are");
 }
 
 void CheckCamera(const ShootPlannerCommandOptions& options) {
@@ -93,6 +101,7 @@ void Validate(ShootPlannerCommandOptions* options) {
     options->markers.dictionary = kDefaultDictionary;
   }
   options->layout = LoadLayout(options->markers, true);
+  RefuseOptionsOfPlacement(*options);
 }
 
 // Places the markers of the options as marker_generator does, or those of the layout's lines.

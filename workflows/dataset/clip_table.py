@@ -18,6 +18,8 @@ OWN_OPTIONS = {"image_path", "camera_path", "layout_path", "workspace_path", "da
                "frame_output_path", "output_path", "models_path", "log_path", "central_frames",
                "database_paths", "video_part", "import_anew", "num_threads", "summary", "help",
                "help_all"}
+# Those of them that a project file may give where the cell is empty.
+OPTIONS_OF_CELLS = {"camera_path", "layout_path"}
 MAX_NAME_BYTES = 200
 MAX_NUM_PARTS = 100  # as velamap has it
 
@@ -34,6 +36,7 @@ class Clip:
     camera: Path | None = None
     layout: Path | None = None
     options: list[tuple[str, str]] = field(default_factory=list)
+    project: list[tuple[str, str]] = field(default_factory=list)  # of the file of --project_path
     central_frames: str = ""  # as written; empty: no sweep
     num_parts: int = 1  # into how many jobs the import is split
     tags: dict[str, str] = field(default_factory=dict)
@@ -153,9 +156,38 @@ def read_options(cell: str, folder: Path, known: set[str]) -> list[tuple[str, st
             if not words or words[0].startswith("--"):
                 raise RowError(f"options: --{name} has no value; write --{name} value")
             value = words.pop(0)
-        if (name.endswith("_path") or name == "dictionary") and os.path.isfile(folder / value):
+        if (name.endswith("_path") or name == "dictionary") and os.path.exists(folder / value):
             value = str(folder / value)
         options.append((name, value))
+    return options
+
+
+def is_relative_path(name: str, value: str) -> bool:
+    if name in ("dictionary", "colmap_path"):  # which may be a name
+        return "/" in value and not os.path.isabs(value)
+    return name.endswith("_path") and value != "" and not os.path.isabs(value)
+
+
+def read_project(path: str, known: set[str]) -> list[tuple[str, str]]:
+    """The options of a project file that the jobs know, as velamap reads it."""
+    try:
+        lines = read_start(Path(path)).decode("utf-8", "replace").splitlines()
+    except OSError as error:
+        raise RowError(f"options: project_path {path}: {error.strerror}; give a file") from None
+    options, section = [], ""
+    for line in lines:
+        line = line.partition("#")[0].strip()
+        name, equals, value = line.partition("=")
+        if line.startswith("[") and line.endswith("]"):
+            section = line[1:-1].rstrip(".") + "."
+        elif equals:
+            options.append((section + name.strip(), value.strip()))
+    options = [(name, value) for name, value in options
+               if name in known and name not in OWN_OPTIONS - OPTIONS_OF_CELLS]
+    for name, value in options:
+        if is_relative_path(name, value):
+            raise RowError(f"options: project_path {path}: {name} {value} would count from the "
+                           "folder of the results; write the whole path")
     return options
 
 
@@ -185,7 +217,7 @@ def read_num_parts(cell: str, path: Path) -> int:
     if path.is_dir():
         raise RowError("parts: photographs have no parts; leave it empty")
     if not re.fullmatch(r"[0-9]{1,3}", cell) or not 1 <= int(cell) <= MAX_NUM_PARTS:
-        raise RowError(f"parts {cell}: is no number of parts from 1 to {MAX_NUM_PARTS}")
+        raise RowError(f"parts {cell}: is not a number of parts from 1 to {MAX_NUM_PARTS}")
     return int(cell)
 
 
@@ -199,13 +231,18 @@ def read_row(row: dict[str, str], folder: Path, known: set[str]) -> list[Clip]:
         clip.camera = find_file("camera", row.get("camera", ""), folder)
         clip.layout = find_file("layout", row.get("layout", ""), folder)
         clip.options = read_options(row.get("options", ""), folder, known)
+        for name, value in clip.options:
+            clip.project += read_project(value, known) if name == "project_path" else []
         clip.central_frames = read_central_frames(row.get("central_frames", ""))
         clip.num_parts = read_num_parts(row.get("parts", ""), path)
         clip.tags = {name: value for name, value in row.items() if name not in COLUMNS}
         clips.append(clip)
-    names = [name for name, _ in clips[0].options]
-    if not clips[0].layout and "marker_length" not in names and "project_path" not in names:
+    names = {name for name, _ in clips[0].options + clips[0].project}
+    if not clips[0].layout and not names & {"marker_length", "layout_path"}:
         raise RowError("layout: is empty; give a layout file, or --marker_length in options")
+    if clips[0].central_frames and not clips[0].camera and "camera_path" not in names:
+        raise RowError("camera: is empty, and a sweep over central frames needs a calibration; give "
+                       "one, such as the camera.yml that a run without central_frames finds")
     return clips
 
 

@@ -18,7 +18,9 @@ from typing import Any
 from clip_table import Clip, read_table
 from job_needs import needs_of
 from records import (MARK, PLAN, RESULT_FILES, as_json, fail, files_below, hash_of, job_file, key_of,
-                     read_json, read_start, result_file, write_whole)
+                     project_file, read_json, read_start, result_file, write_whole)
+
+Options = list[tuple[str, str]]
 
 COMMANDS = {"import": "marker_importer", "merge": "database_merger",
             "reconstruct": "automatic_reconstructor", "sweep": "central_frame_sweeper"}
@@ -52,7 +54,7 @@ def dictionary_files(layout: Path) -> list[Path]:
     return [layout.parent / name for name in names if name]
 
 
-def files_read(clip: Clip, options: list[tuple[str, str]]) -> dict[str, list[int]]:
+def files_read(clip: Clip, options: Options) -> dict[str, list[int]]:
     """Everything that a job reads."""
     paths = [clip.path, clip.camera, clip.layout]
     paths += [Path(value) for name, value in options if os.path.isabs(value)]
@@ -60,7 +62,36 @@ def files_read(clip: Clip, options: list[tuple[str, str]]) -> dict[str, list[int
     return {file: state for path in paths if path for file, state in states_below(path).items()}
 
 
-def command_of(clip: Clip, stage: str, options: list[tuple[str, str]]) -> list[str]:
+def options_of_job(clip: Clip, stage: str, known: dict[str, set[str]]) -> tuple[Options, Options]:
+    """The options for the command line of a job and for its project file, where one without effect
+    is ignored. The reconstruction and the sweep have other defaults of method and backend, so an
+    option of both may have an effect in one of them only. It then has to be accepted in the other."""
+    known_here = known[command_key(stage, clip)]
+    typed = [(name, value) for name, value in clip.options if name in known_here]
+    if not clip.central_frames or stage not in ("reconstruct", "sweep"):
+        return typed, []
+    given = {name for name, _ in clip.options + clip.project}
+    chooses_method = bool(given & {"Registration.method", "preset"})
+
+    def may_be_unused(option: tuple[str, str]) -> bool:
+        name, value = option
+        if name == "project_path" or "#" in value:  # which begins a comment in the file
+            return False
+        if stage == "sweep":  # the reconstruction refuses what is without effect in both
+            return name in known["reconstruct"]
+        return (name in known["sweep"] and name.startswith("Registration.") and
+                not chooses_method)
+
+    in_file = [option for option in typed if may_be_unused(option)]
+    if not in_file:
+        return typed, []
+    # A command reads one project file, so that of the row goes into the job's.
+    typed = [option for option in typed if option not in in_file and option[0] != "project_path"]
+    names = {name for name, _ in in_file}
+    return typed, in_file + [option for option in clip.project if option[0] not in names]
+
+
+def command_of(clip: Clip, stage: str, options: Options) -> list[str]:
     """The command without the program and the number of threads; run in the folder OUTPUT."""
     workspace = f"clips/{clip.name}"
     jobs = f"jobs/{key_of(clip.name)}"
@@ -101,7 +132,7 @@ def check_output(output: Path) -> None:
         fail(f"{output}: is a file; give a folder for the results")
     entries = sorted(entry.name for entry in output.iterdir()) if output.exists() else []
     if entries and MARK not in entries:
-        fail(f"{output}: holds {entries[0]} and is no data set of this workflow; give a new or "
+        fail(f"{output}: holds {entries[0]} and is not a data set of this workflow; give a new or "
              "empty folder")
     hashes = read_json(output / MARK) if entries else {}
     for name in RESULT_FILES:
@@ -148,12 +179,17 @@ def write_jobs(output: Path, tags: list[str], clips: list[Clip], cores: int,
         key = key_of(clip.name)
         parts = clip.part_stages()
         for stage in parts + clip.stages():
-            known_here = known[command_key(stage, clip)]
-            options = [option for option in clip.options if option[0] in known_here]
+            typed, in_file = options_of_job(clip, stage, known)
             job = {"stage": stage, "version": version,
-                   "command": command_of(clip, stage, options),
+                   "command": command_of(clip, stage, typed),
                    "after": parts if stage == "import" else [] if stage in parts else ["import"],
-                   "files": files_read(clip, options)}
+                   "files": files_read(clip, typed + in_file + clip.project)}
+            if in_file:
+                project = project_file(key, stage)
+                text = "".join(f"{name}={value}\n" for name, value in in_file)
+                write_whole(output / project, text)
+                job["command"] += ["--project_path", str(project)]
+                job["project"] = text
             write_whole(output / job_file(key, stage), as_json(job))
         forget_lost_results(output, clip, parts, retry_failed)
         rows.append({"name": clip.name, "key": key, "clip": clip.path.name, "tags": clip.tags,

@@ -11,12 +11,15 @@
 # VELAMAP: the program; the default is that of build/release, else that on the PATH.
 set -euo pipefail
 
+fail() {
+  echo "error: $*" >&2
+  exit 2
+}
 here="$(dirname "$(realpath "${BASH_SOURCE[0]}")")"
+# shellcheck source-path=SCRIPTDIR source=../find_program.sh
+source "$here/../find_program.sh"
 sail="$here/../../sample_project/sail"
-velamap="${VELAMAP:-$here/../../build/release/workflows/velamap}"
-[[ -x "$velamap" ]] || velamap="$(command -v velamap)" ||
-  { echo "error: velamap is neither built (workflows/build.sh release) nor on the PATH" >&2; exit 2; }
-REAL_VELAMAP="$(realpath "$velamap")"
+REAL_VELAMAP="$(find_program VELAMAP velamap workflows/velamap)"
 export REAL_VELAMAP
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
@@ -76,5 +79,5 @@ BASH
     awk -v one="$one" -v two="$two" 'BEGIN { printf "times_as_fast: %.2f\n", one / two }'
     ;;
   --help | -h) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}" ;;
-  *) echo "error: give overhead or workers; see --help" >&2; exit 2 ;;
+  *) fail "give overhead or workers; see --help" ;;
 esac

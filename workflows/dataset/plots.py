@@ -5,6 +5,7 @@ from html import escape
 
 WIDTH, HEIGHT = 460, 300
 LEFT, RIGHT, TOP, BOTTOM = 58, 12, 30, 66
+LEGEND_COLUMNS, LEGEND_ROW, LEGEND_ROWS = 4, 14, 2  # for which there is room in HEIGHT
 COLORS = ("#1f6fb4", "#d1571f", "#2b8a3e", "#8a4fb0", "#b3862b", "#3a9aa8", "#c23b6a", "#5c6670")
 
 Point = tuple[float, float, str]  # x, y, what the mouse shows
@@ -29,12 +30,14 @@ def plot(title: str, x_label: str, y_label: str, series: dict[str, list[Point]],
     margin = 0.5 if categories else 0.0
     x_low, x_high = x_ticks[0] - margin, x_ticks[-1] + margin
     bottom, right = HEIGHT - BOTTOM, WIDTH - RIGHT
+    num_rows = math.ceil(len(series) / LEGEND_COLUMNS)
+    height = HEIGHT + LEGEND_ROW * max(0, num_rows - LEGEND_ROWS)
 
     def at(x: float, y: float) -> tuple[str, str]:
         return (f"{LEFT + (x - x_low) / (x_high - x_low) * (right - LEFT):.1f}",
                 f"{bottom - (y - y_ticks[0]) / (y_ticks[-1] - y_ticks[0]) * (bottom - TOP):.1f}")
 
-    out = [f'<svg class="plot" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
+    out = [f'<svg class="plot" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" '
            'xmlns="http://www.w3.org/2000/svg" role="img">',
            f'<text x="{LEFT}" y="18" class="title">{escape(title)}</text>']
     for y in y_ticks:
@@ -52,15 +55,21 @@ def plot(title: str, x_label: str, y_label: str, series: dict[str, list[Point]],
                f'transform="rotate(-90 14 {(TOP + bottom) / 2})">{escape(y_label)}</text>')
     for index, (name, line) in enumerate(series.items()):
         color = COLORS[index % len(COLORS)]
+        # From the second round of colours on, lines are dashed and points are hollow.
+        is_again = index >= len(COLORS)
+        dashes = ' stroke-dasharray="6 3"' if is_again else ""
+        fill = f'fill="white" stroke="{color}"' if is_again else f'fill="{color}"'
         places = [at(x, y) for x, y, _ in line]
         if join and len(line) > 1:
             way = "L".join(f"{px} {py}" for px, py in places)
-            out.append(f'<path d="M{way}" fill="none" stroke="{color}" stroke-width="1.5"/>')
+            out.append(f'<path d="M{way}" fill="none" stroke="{color}" stroke-width="1.5"'
+                       f'{dashes}/>')
         for (px, py), (_, _, text) in zip(places, line):
-            out.append(f'<circle cx="{px}" cy="{py}" r="3.5" fill="{color}">'
+            out.append(f'<circle cx="{px}" cy="{py}" r="3.5" {fill}>'
                        f'<title>{escape(text)}</title></circle>')
         if len(series) > 1:
-            key_x, key_y = LEFT + index % 4 * 100, bottom + 48 + index // 4 * 14
-            out.append(f'<circle cx="{key_x}" cy="{key_y}" r="3.5" fill="{color}"/>'
+            row, place = divmod(index, LEGEND_COLUMNS)
+            key_x, key_y = LEFT + place * 100, bottom + 48 + row * LEGEND_ROW
+            out.append(f'<circle cx="{key_x}" cy="{key_y}" r="3.5" {fill}/>'
                        f'<text x="{key_x + 7}" y="{key_y + 4}">{escape(name)}</text>')
     return "".join(out) + "</svg>"

@@ -2,6 +2,7 @@
 
     OUTPUT/clips/NAME/           a workspace of velamap automatic_reconstructor
     OUTPUT/jobs/KEY/STAGE.job    JSON: the job, the files that it reads, the command
+    OUTPUT/jobs/KEY/STAGE.ini    options of the job, where it has any that may be without effect in it
     OUTPUT/jobs/KEY/STAGE.json   its result: exit code, reason, figures
     OUTPUT/jobs/KEY/STAGE.log    the line to copy, and what the program said
     OUTPUT/jobs/KEY/part_K.db    what job part_K has imported, which `import` merges with the others
@@ -58,6 +59,10 @@ def key_of(name: str) -> str:
 
 def job_file(key: str, stage: str) -> Path:
     return Path("jobs", key, f"{stage}.job")
+
+
+def project_file(key: str, stage: str) -> Path:
+    return Path("jobs", key, f"{stage}.ini")
 
 
 def result_file(key: str, stage: str) -> Path:

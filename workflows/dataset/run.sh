@@ -19,6 +19,8 @@ fail() {
 }
 
 here="$(dirname "$(realpath "${BASH_SOURCE[0]}")")"
+# shellcheck source-path=SCRIPTDIR source=../find_program.sh
+source "$here/../find_program.sh"
 table=""
 output=""
 cores="$(nproc)"
@@ -43,19 +45,16 @@ while [[ $# -gt 0 ]]; do
     -*) options+=("$@"); break ;;
     *)
       if [[ -z "$table" ]]; then table="$1"; elif [[ -z "$output" ]]; then output="$1"
-      else fail "$1: there are TABLE and OUTPUT already; put options of Snakemake last"; fi
+      else fail "$1: unexpected argument after TABLE and OUTPUT; put options of Snakemake last"; fi
       shift
       ;;
   esac
 done
 [[ -n "$table" && -n "$output" ]] || fail "TABLE or OUTPUT is missing; usage: run.sh TABLE OUTPUT"
-[[ "$cores" =~ ^[1-9][0-9]{0,5}$ ]] || fail "--cores $cores: is no number of cores from 1 on"
+[[ "$cores" =~ ^[1-9][0-9]{0,5}$ ]] || fail "--cores $cores: is not a number of cores; give 1 or more"
 command -v snakemake >/dev/null ||
   fail "snakemake is not installed; run: apt-get install snakemake, or use workflows/run_batch.sh"
-velamap="${VELAMAP:-$here/../../build/release/workflows/velamap}"
-[[ -x "$velamap" ]] || velamap="$(command -v "${VELAMAP:-velamap}")" ||
-  fail "velamap is neither built (workflows/build.sh release) nor on the PATH"
-VELAMAP="$(realpath "$velamap")"
+VELAMAP="$(find_program VELAMAP velamap workflows/velamap)"
 export VELAMAP RETRY_FAILED="$retry_failed" PYTHONDONTWRITEBYTECODE=1
 
 # A job has cores / clips threads, one at least; on a cluster, where many run, one.

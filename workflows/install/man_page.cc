@@ -73,11 +73,11 @@ void WriteProgramManPage(const std::vector<CommandGroup>& groups, std::ostream& 
     }
   }
   out << ".SH EXIT STATUS\n"
-         ".TP\n0\nThe result is there and is whole.\n"
+         ".TP\n0\nThe result is there and is complete.\n"
          ".TP\n1\nThe data do not support a result; standard error says why.\n"
          ".TP\n2\nBad input or option.\n"
          ".TP\n3\nCOLMAP is absent, failed, or its result is implausible.\n"
-         ".TP\n4\nA fault of velamap's own.\n";
+         ".TP\n4\nA bug in velamap.\n";
   WriteExample(
       "velamap automatic_reconstructor --image_path clip.mp4 --camera_path camera.yml \\\n"
       "    --layout_path layout.yml --workspace_path result",

@@ -1,11 +1,13 @@
 #include "workflows/options/option_effects.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "importer/base/error.h"
 #include "importer/base/files.h"
+#include "importer/base/log.h"
 
 namespace velamap {
 namespace {
@@ -13,6 +15,18 @@ namespace {
 bool MatchesNameOrSection(const std::string& name_or_section, const std::string& name) {
   return name_or_section.back() == '.' ? name.rfind(name_or_section, 0) == 0
                                        : name == name_or_section;
+}
+
+// The first typed option that one of `names` stands for.
+std::optional<std::string> FindTyped(const TypedNames& typed,
+                                     const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const auto found = std::find_if(typed.begin(), typed.end(), [&](const std::string& one) {
+      return MatchesNameOrSection(name, one);
+    });
+    if (found != typed.end()) return *found;
+  }
+  return std::nullopt;
 }
 
 std::vector<std::string> NamesIn(const OptionGroup& group) {
@@ -25,14 +39,16 @@ std::vector<std::string> NamesIn(const OptionGroup& group) {
 
 void RefuseOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
                                 const std::string& reason) {
-  for (const std::string& name : names) {
-    const auto found = std::find_if(typed.begin(), typed.end(), [&](const std::string& one) {
-      return MatchesNameOrSection(name, one);
-    });
-    if (found == typed.end()) continue;
-    throw InputError(
-        fmt::format("--{}: it would change nothing, because {}; leave it out", *found, reason));
-  }
+  const std::optional<std::string> found = FindTyped(typed, names);
+  if (!found) return;
+  throw InputError(
+      fmt::format("--{}: it would change nothing, because {}; leave it out", *found, reason));
+}
+
+void WarnOfOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
+                                const std::string& reason) {
+  const std::optional<std::string> found = FindTyped(typed, names);
+  if (found) LogWarning("--{}: it changes nothing, because {}", *found, reason);
 }
 
 void RefuseVideoOptions(const CommandOptions& options) {

@@ -19,6 +19,10 @@ namespace velamap {
 void RefuseOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
                                 const std::string& reason);
 
+// The same as a warning: for what a call with other options may need, such as a layout.
+void WarnOfOptionsWithoutEffect(const TypedNames& typed, const std::vector<std::string>& names,
+                                const std::string& reason);
+
 // Options of videos, where --image_path is a folder of photographs.
 void RefuseVideoOptions(const CommandOptions& options);
 

@@ -178,8 +178,8 @@ GivenValues ReadProjectFile(const CommandSyntax& syntax, const OptionsByName& op
       const std::string& name = given.string_key;
       if (given.unregistered && known_names.count(name) > 0) continue;
       if (name == kProjectPath) {
-        throw InputError(
-            fmt::format("{}: {}: a project file names no other; remove it", path, name));
+        throw InputError(fmt::format(
+            "{}: {}: a project file cannot name another one; remove this key", path, name));
       }
       if (given.unregistered) {
         throw InputError(fmt::format(
@@ -202,16 +202,14 @@ struct Setter {
   void SetNumber(const char* kind, Number* value) const {
     if (!ParseNumber(given.text, value) || !std::isfinite(static_cast<double>(*value))) {
       throw InputError(
-          fmt::format("{}: '{}' is not a {}; give one", given.given_as, given.text, kind));
+          fmt::format("{}: '{}' is not a {}, or is too large", given.given_as, given.text, kind));
     }
   }
 
   void operator()(std::string* value) const { *value = given.text; }
-  void operator()(int* value) const { SetNumber("whole number in range", value); }
-  void operator()(double* value) const { SetNumber("number in range", value); }
-  void operator()(std::optional<double>* value) const {
-    SetNumber("number in range", &value->emplace());
-  }
+  void operator()(int* value) const { SetNumber("whole number", value); }
+  void operator()(double* value) const { SetNumber("number", value); }
+  void operator()(std::optional<double>* value) const { SetNumber("number", &value->emplace()); }
   void operator()(bool* value) const {
     if (given.text != "0" && given.text != "1") {
       throw InputError(fmt::format("{}: '{}' is neither 0 nor 1; give 0 (no) or 1 (yes)",

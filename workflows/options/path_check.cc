@@ -90,7 +90,7 @@ void CheckKinds(const UsedPaths& paths) {
   for (const UsedPath& output : paths.outputs) {
     if (IsPipe(output.path)) {
       throw InputError(
-          fmt::format("{}: {} is a pipe, whose reader would be waited for; give a file",
+          fmt::format("{}: {} is a pipe, and velamap would wait for its reader; give a file",
                       output.used_by, output.path.string()));
     }
     if (!output.is_replaced_folder && (!output.path.has_filename() || IsFolder(output.path))) {

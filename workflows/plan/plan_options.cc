@@ -57,7 +57,8 @@ OptionGroup DescribeOptions(ShootPlanOptions* options) {
 void ShootPlanOptions::Check() const {
   CheckRanges(*this);
   if (speed_m_s && speed_knots) {
-    throw InputError("--Plan.speed_knots: the speed is given in m/s; leave one of them out");
+    throw InputError(
+        "--Plan.speed_knots: --Plan.speed gives the speed already; leave one of the two out");
   }
 }
 

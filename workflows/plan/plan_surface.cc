@@ -154,7 +154,9 @@ PlannedSurface SurfaceOfShape(const MarkerShape& shape, const Layout& layout,
         "--shape_path: {}: it holds no whole marker of the layout; give a shape of these markers",
         path));
   }
-  return Finish(std::move(known), layout);
+  PlannedSurface surface = Finish(std::move(known), layout);
+  surface.is_of_shape = true;
+  return surface;
 }
 
 }  // namespace velamap

@@ -18,7 +18,8 @@ struct PlannedSurface {
   MarkerShape shape;  // plan frame, whole markers
   Layout layout;
   int num_cells = 6;                  // of a marker's side, border included
-  std::vector<int> markers_left_out;  // of the layout: it does not say where they are
+  bool is_of_shape = false;           // else of a placement
+  std::vector<int> markers_left_out;  // of the layout: shape or placement do not have them
 };
 
 // A sail's placement bent by camber (depth / chord) and twist; a grid stays flat. Markers are flat

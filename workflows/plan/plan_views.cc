@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "importer/base/statistics.h"
+#include "importer/geometry/look_at.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -18,15 +19,6 @@ constexpr double kToleratedMotionCells = 0.5;
 
 double FoundShare(double narrow_px, int num_cells) {
   return 1 / (1 + std::exp((kPxPerCellForHalf - narrow_px / num_cells) / kPxPerCellWidth));
-}
-
-// Its y axis as far down as it goes.
-Rigid3 LookAtOrigin(const Eigen::Vector3d& position) {
-  const Eigen::Vector3d forward = -position.normalized();
-  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-  Eigen::Matrix3d rotation;
-  rotation << right.transpose(), forward.cross(right).transpose(), forward.transpose();
-  return {Eigen::Quaterniond(rotation), -(rotation * position)};
 }
 
 std::optional<MarkerView> SeeMarker(const ShapeMarker& marker, int num_cells, const Camera& camera,
@@ -70,8 +62,9 @@ double LowestDepth(const PlannedSurface& surface) {
 
 Rigid3 CameraAt(const PlannedSurface& surface, const PlannedPath& path, double angle_deg) {
   const double angle = kRadPerDeg * angle_deg;
-  return LookAtOrigin({path.distance_m * std::sin(angle), -path.distance_m * std::cos(angle),
-                       path.height_m - LowestDepth(surface)});
+  return LookAt({path.distance_m * std::sin(angle), -path.distance_m * std::cos(angle),
+                 path.height_m - LowestDepth(surface)},
+                Eigen::Vector3d::Zero());
 }
 
 std::vector<double> AnglesOf(const PlannedPath& path) {

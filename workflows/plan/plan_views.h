@@ -13,7 +13,7 @@
 
 namespace velamap {
 
-// An arc around the middle of the markers at equal height, from its one end to the other.
+// An arc around the middle of the markers at constant height, from one end to the other.
 struct PlannedPath {
   double distance_m = 0.0;  // horizontally, from the middle of the markers
   double arc_deg = 0.0;

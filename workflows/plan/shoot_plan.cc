@@ -181,11 +181,12 @@ Verdict JudgePlan(const ShootPlan& plan) {
   const PlannedVariant& planned = plan.plan();
   if (!planned.precision) reasons.Bad("these views give no shape: " + planned.failure);
   const std::string closer = "go closer, film with more pixels, or print larger markers";
+  const std::string to_find_more =
+      plan.along_path.in_picture < kGoodShare ? "go farther away, or film in parts" : closer;
   judge(plan.along_path.found, kGoodShare, kBadShare,
         fmt::format("a view finds {} of the markers, {} are in the picture: {}",
                     Percent(plan.along_path.found), Percent(plan.along_path.in_picture),
-                    plan.along_path.in_picture < kGoodShare ? "go farther away, or film in parts"
-                                                            : closer));
+                    to_find_more));
   judge(plan.along_path.median_side_px, kGoodSidePx, kBadSidePx,
         fmt::format("half of the markers are smaller than {:.0f} px: {}",
                     plan.along_path.median_side_px, closer));
@@ -197,10 +198,11 @@ Verdict JudgePlan(const ShootPlan& plan) {
     reasons.Check("few cameras have such a short exposure: go slower, or hold the camera steadier");
   }
   if (!plan.surface.markers_left_out.empty()) {
-    reasons.Check(
-        fmt::format("not planned, because the layout does not say where they are: {}: give "
-                    "--shape_path",
-                    IdRanges(plan.surface.markers_left_out)));
+    reasons.Check(fmt::format(
+        plan.surface.is_of_shape
+            ? "not planned, because the shape does not hold them: {}: give a shape with all markers"
+            : "not planned, because the layout does not say where they are: {}: give --shape_path",
+        IdRanges(plan.surface.markers_left_out)));
   }
   if (planned.precision) {
     std::vector<int> missing;
@@ -211,7 +213,7 @@ Verdict JudgePlan(const ShootPlan& plan) {
     }
     if (!missing.empty()) {
       reasons.Check(
-          fmt::format("found in fewer than two views: {}: {}", IdRanges(missing), closer));
+          fmt::format("found in fewer than two views: {}: {}", IdRanges(missing), to_find_more));
     }
     for (const std::string& warning : planned.precision->warnings) reasons.Check(warning);
   }

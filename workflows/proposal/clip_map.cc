@@ -84,7 +84,7 @@ std::vector<std::string> DescribeDoubled(const FrameCounts& counts) {
     const int num_frames = counts.num_frames.at(marker_id);
     if (num_twice < std::max<double>(kMinTwice, kOften * num_frames)) continue;
     lines.push_back(
-        fmt::format("marker {} is there twice: {} of its {} frames show it at two places; give one "
+        fmt::format("marker {} occurs twice: {} of its {} frames show it in two places; give one "
                     "of them another id",
                     marker_id, num_twice, num_frames));
   }
@@ -136,7 +136,8 @@ class Mapper {
     layout_.known_points.clear();
     layout_.reference_part.reset();
     registration_.num_threads = adjustment_.num_threads = num_threads;
-    adjustment_.find_camera = !database.HasCalibration();
+    registration_.has_calibration = database.HasCalibration();
+    adjustment_.find_camera = !registration_.has_calibration;
     images_ = WithAllIds(database.ReadImages());
     counts_ = CountFrames(images_);
     map_.doubled = DescribeDoubled(counts_);

@@ -179,6 +179,11 @@ class Corrector {
         "line {}: NOT SURE of its place among the lines and of its direction: it is new", name));
   }
 
+  static bool HaveSameNames(const std::vector<MarkerLine>& a, const std::vector<MarkerLine>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const MarkerLine& x, const MarkerLine& y) { return x.name == y.name; });
+  }
+
   // Edges with a distance for each line do not survive a change of the lines.
   void RemoveEmptyLines() {
     for (std::size_t i = 0; i < given_.parts.size(); ++i) {
@@ -188,7 +193,7 @@ class Corrector {
                                     [](const MarkerLine& line) { return line.marker_ids.empty(); }),
                      lines->end());
       }
-      if (part.horizontal.size() == given_.parts[i].horizontal.size()) continue;
+      if (HaveSameNames(part.horizontal, given_.parts[i].horizontal)) continue;
       for (ClothEdge* edge : {&part.edges.luff, &part.edges.leech}) {
         if (edge->offsets_m.size() < 2) continue;
         *edge = {};

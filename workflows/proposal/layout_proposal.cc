@@ -131,13 +131,19 @@ struct OtherLength {
   double length_m = 0.0, sigma_m = 0.0;
 };
 
-// Rounded to millimetres if the measurement allows it, otherwise to tenths.
+// Rounded to millimetres, tenths or hundredths, whichever first agrees with the measurement,
+// because the length of a print is a round number only if the printer keeps to it.
 double RoundedLength(const OtherLength& other) {
-  constexpr double kNumSigmas = 3.0, kPrint = 5e-3;
-  const double whole_m = std::round(other.length_m * kMmPerM) / kMmPerM;
-  const bool is_whole = std::abs(whole_m - other.length_m) <=
-                        std::max(kNumSigmas * other.sigma_m, kPrint * other.length_m);
-  return is_whole && whole_m > 0 ? whole_m : std::round(other.length_m * 1e4) / 1e4;
+  constexpr double kNumSigmas = 2.0;
+  const auto rounded_m = [&](double steps_per_m) {
+    return std::round(other.length_m * steps_per_m) / steps_per_m;
+  };
+  for (const double steps_per_m : {1e3, 1e4, 1e5}) {
+    const double length_m = rounded_m(steps_per_m);
+    const bool agrees = std::abs(length_m - other.length_m) <= kNumSigmas * other.sigma_m;
+    if (agrees && length_m > 0) return length_m;
+  }
+  return rounded_m(1e6);
 }
 
 std::vector<OtherLength> FindOtherLengths(const ClipMap& map, const Layout& layout) {

@@ -123,11 +123,11 @@ bool RunsAgainstOthers(const std::vector<ComparedLine>& lines, const ComparedLin
 std::string Between(const Ids& row, int id) {
   const std::size_t place = PlaceOf(row, id);
   if (place == 0) return fmt::format("before marker {}", row[1]);
-  if (place + 1 == row.size()) return fmt::format("behind marker {}", row[place - 1]);
+  if (place + 1 == row.size()) return fmt::format("after marker {}", row[place - 1]);
   return fmt::format("between markers {} and {}", row[place - 1], row[place + 1]);
 }
 
-// The marker beside `id` in `common` that stands beside it the other way round; -1 for none.
+// The marker beside `id` in `common` that stands beside it in the opposite order; -1 for none.
 int SwappedNeighbor(const Ids& common, const Ids& row, int id) {
   const std::size_t place = PlaceOf(common, id), in_row = PlaceOf(row, id);
   if (place > 0 && PlaceOf(row, common[place - 1]) == in_row + 1) return common[place - 1];
@@ -144,7 +144,7 @@ std::vector<std::string> DescribeOrder(const ComparedLine& line) {
     if (Contains(in_order, id)) continue;
     const int swapped = SwappedNeighbor(common, line.row, id);
     texts.push_back(swapped >= 0
-                        ? fmt::format("line {}: markers {} and {} stand the other way round",
+                        ? fmt::format("line {}: markers {} and {} are in the opposite order",
                                       line.line->name, std::min(id, swapped), std::max(id, swapped))
                         : fmt::format("line {}: marker {} stands {}", line.line->name, id,
                                       Between(line.row, id)));

@@ -57,7 +57,13 @@ AdjustmentResult RunMarkersBackend(const MarkerAdjustmentOptions& options, const
                                    const CornerErrors& corner_errors, Model* model) {
   LogInfo("marker-aware bundle adjustment of {} images and {} points", model->images.size(),
           model->points3D.size());
-  MarkerAdjustmentSummary summary = AdjustWithMarkers(options, layout, corner_errors, model);
+  MarkerAdjustmentSummary summary;
+  try {
+    summary = AdjustWithMarkers(options, layout, corner_errors, model);
+  } catch (const DataError& error) {
+    if (!options.find_camera) throw;
+    throw DataError(error.what() + std::string(kOrWithCalibration));
+  }
   const AdjustmentUncertainty& uncertainty = summary.uncertainty;
   LogInfo(
       "{} iterations, {} outliers removed, mean reprojection error {:.3f} -> {:.3f} px, scale "
@@ -182,7 +188,7 @@ AdjustmentResult AdjustModel(const AdjustmentOptions& options, const Layout& lay
 void WriteAdjustedModel(const Model& model, const AdjustmentResult& result,
                         const std::string& path) {
   WriteModel(model, path, ModelFormat::kBinaryAndText, [&](const std::string& folder) {
-    if (result.uncertainty) WriteUncertainty(*result.uncertainty, folder, &model);
+    if (result.uncertainty) WriteUncertainty(*result.uncertainty, model, folder);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "importer/base/error.h"
 #include "importer/base/log.h"
@@ -42,8 +43,12 @@ std::map<CameraId, Camera> FindUnknownCameras(const std::vector<DatabaseImage>& 
                                               const RegistrationOptions& registration,
                                               const MarkerAdjustmentOptions& adjustment) {
   LogInfo("no calibration: estimating the camera from the pictures");
-  const std::map<CameraId, Camera> found =
-      FindCameras(images, guesses, layout, corner_errors, registration, adjustment);
+  std::map<CameraId, Camera> found;
+  try {
+    found = FindCameras(images, guesses, layout, corner_errors, registration, adjustment);
+  } catch (const DataError& error) {
+    throw DataError(error.what() + std::string(kOrWithCalibration));
+  }
   for (const auto& [camera_id, camera] : found) {
     CompareWithMetadata(guesses.at(camera_id), camera);
   }

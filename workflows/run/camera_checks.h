@@ -16,6 +16,9 @@
 
 namespace velamap {
 
+// Ends an error about images whose cameras are not known.
+constexpr const char* kOrWithCalibration = "; or import the images with the camera's calibration";
+
 // FindCameras() of reconstruct/camera_search.h. `guesses` are the cameras of a database without a
 // calibration; a focal length that EXIF claims is compared with what the images show. Throws
 // DataError where the images do not tell.

@@ -155,7 +155,9 @@ SeedResult RegisterDatabase(const std::string& database_path, const Layout& layo
     seed.image_names.push_back(name);
   }
   LogInfo("registering {} images", images.size());
-  seed.registration = RegisterFrames(images, cameras, layout, options);
+  RegistrationOptions registration = options;
+  registration.has_calibration = database.HasCalibration();
+  seed.registration = RegisterFrames(images, cameras, layout, registration);
   seed.model = MakeSeedModel(seed.registration, images, cameras);
   seed.left_out = FindLeftOut(seed);
   std::set<int> ids;

@@ -10,7 +10,7 @@ namespace {
 // First line of COLMAP's help, such as `COLMAP 3.8 -- Structure-from-Motion and ...`.
 std::string ColmapVersion(const std::string& colmap_path) {
   try {
-    const std::string output = RunColmap(colmap_path, {"help"}, "/dev/null").output;
+    const std::string output = RunColmap(colmap_path, {"help"}, kNoLog);
     std::string version = output.substr(0, output.find_first_of("-\n("));
     version.erase(version.find_last_not_of(' ') + 1);
     return version;

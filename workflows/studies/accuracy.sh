@@ -2,8 +2,9 @@
 # Measures the error of the metric result on rendered clips and on photographs of known objects. The
 # thesis's method comes first; then its steps are replaced by those of velamap, one after the other.
 # usage: workflows/studies/accuracy.sh [--quick] [WORK_FOLDER]   (default: workspace/studies)
-# CLIPS and WAYS select a subset, e.g. CLIPS="walls board" WAYS="global_both". CAMERA: of the rendered
-# clips (render_clip --camera), action by default.
+# CLIPS and WAYS select a subset, e.g. CLIPS="walls board" WAYS="global_both". CAMERA: films the
+# rendered clips with another camera than render_clip's default (render_clip --camera), as clips of
+# other names.
 #
 #   way             corners  registration  adjustment
 #   thesis          subpix   thesis        colmap
@@ -16,7 +17,8 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 begin_study accuracy "$@"
-camera="${CAMERA:-action}"
+camera=() suffix=""
+if [[ -n "${CAMERA:-}" ]]; then camera=(--camera "$CAMERA") suffix="_$CAMERA"; fi
 read -ra ways <<<"${WAYS:-thesis edge global global_markers global_both}"
 read -ra clips_of_study <<<"${CLIPS:-walls board sail_1080p sail_4k cube stylus board_video aprilgrid}"
 if [[ $quick -eq 1 ]]; then
@@ -60,14 +62,16 @@ link_cube() {
 }
 
 make_clip_of_study() {
+  local folder
+  folder="$(folder_of "$1")"
   case "$1" in
-    walls) make_clip walls_1080p --camera "$camera" --scene walls --width 1920 --num_frames "$num_frames" ;;
-    board) make_clip board_720p --camera "$camera" --scene board --motion d --num_frames "$num_frames" ;;
+    walls) make_clip "$folder" "${camera[@]}" --scene walls --width 1920 --num_frames "$num_frames" ;;
+    board) make_clip "$folder" "${camera[@]}" --scene board --motion d --num_frames "$num_frames" ;;
     sail_1080p)
-      make_clip sail_1080p --camera "$camera" --scene sail --width 1920 --num_frames "$sail_frames"
+      make_clip "$folder" "${camera[@]}" --scene sail --width 1920 --num_frames "$sail_frames"
       ;;
     sail_4k)
-      make_clip sail_4k --camera "$camera" --scene sail --width 3840 --num_frames "$sail_frames" \
+      make_clip "$folder" "${camera[@]}" --scene sail --width 3840 --num_frames "$sail_frames" \
         --bitrate 60M
       ;;
     cube) link_cube ;;
@@ -87,17 +91,23 @@ make_clip_of_study() {
 # folder_of CLIP: the name of the folder that make_clip_of_study makes.
 folder_of() {
   case "$1" in
-    walls) echo walls_1080p ;;
-    board) echo board_720p ;;
+    walls) echo "walls_1080p$suffix" ;;
+    board) echo "board_720p$suffix" ;;
+    sail_*) echo "$1$suffix" ;;
     *) echo "$1" ;;
   esac
 }
 
 # detections CLIP CORNERS: makes the database of a clip unless it is current, and prints its path.
+# make_clip has found the edges of a rendered clip already, the default.
 detections() {
   local folder database images more=()
   folder="$clips/$(folder_of "$1")"
   database="$folder/$2.db"
+  if [[ "$2" == edge && -f "$folder/import.txt" ]]; then
+    echo "$folder/database.db"
+    return
+  fi
   images="$folder/clip.mp4"
   if [[ -f "$folder/images.txt" ]]; then images="$(cat "$folder/images.txt")"; fi
   if [[ "$1" == board_video ]]; then more=(--ArucoDetection.inverted 1); fi

@@ -16,16 +16,8 @@ fail() {
   exit 2
 }
 
-# find_program VARIABLE NAME PATH_IN_THE_BUILD: prints the path of a program, which is the value of
-# $VARIABLE if that is set, else the program in the release build, else the one on the PATH.
-find_program() {
-  local repository program
-  repository="$(dirname "${BASH_SOURCE[0]}")/../.."
-  program="${!1:-$repository/build/release/$3}"
-  [[ -x "$program" ]] || program="$(command -v "$2")" ||
-    fail "$2 is not built; run workflows/build.sh release, or set $1 to the program"
-  realpath "$program"
-}
+# shellcheck source-path=SCRIPTDIR source=../find_program.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../find_program.sh"
 
 # begin_study NAME "$@": parses the common arguments [--quick] [WORK_FOLDER]; sets study, quick,
 # work, clips, runs, sail, velamap and render_clip; and empties the folder of the study's runs.
@@ -138,8 +130,10 @@ reconstruct_steps() {
   local database=(--database_path "${DATABASE:-$clip/database.db}")
   local adjustment=(--log_level warn)
   if [[ -n "${BACKEND:-}" ]]; then
-    adjustment=(--backend "$BACKEND" "${layout[@]}")
-    if [[ "$BACKEND" != colmap ]]; then adjustment+=("${database[@]}"); fi
+    adjustment=(--backend "$BACKEND" --log_level warn)
+    if [[ "$BACKEND" != colmap ]]; then
+      adjustment+=(--layout_path "$clip/layout.yml" "${database[@]}")
+    fi
     if [[ "$BACKEND" != colmap && "${EXACT_PRINT:-0}" -eq 1 ]]; then
       adjustment+=(--MarkerAdjustment.common_print_tolerance 0)
     fi

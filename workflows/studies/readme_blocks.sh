@@ -119,7 +119,7 @@ ROWS
         " %, " of(clip, way, "num_markers", "d") " markers"
     }
     END {
-      title["aprilgrid"] = "20 photographs of an AprilGrid, 19 mm tags"
+      title["aprilgrid"] = "10 photographs of an AprilGrid, 19 mm tags"
       title["board_video"] = "57 frames of a hand-held board, 40 mm markers"
       title["sail_4k"] = "rendered 4K clip of a 3 x 6 m sail, action camera"
       title["sail_1080p"] = "the same at 1080p"

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "importer/geometry/look_at.h"
 #include "importer/geometry/units.h"
 
 namespace velamap {
@@ -48,18 +49,6 @@ class Shake {
   double amplitude_rad_;
   double phases_[3];
 };
-
-Rigid3 LookAt(const Eigen::Vector3d& position_m, const Eigen::Vector3d& target_m, double roll_rad) {
-  const Eigen::Vector3d forward = (target_m - position_m).normalized();
-  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-  Eigen::Matrix3d rotation;
-  rotation << right.transpose(), forward.cross(right).transpose(), forward.transpose();
-  Rigid3 cam_from_world;
-  cam_from_world.rotation =
-      Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ()) * Eigen::Quaterniond(rotation);
-  cam_from_world.translation = -(cam_from_world.rotation * position_m);
-  return cam_from_world;
-}
 
 }  // namespace
 

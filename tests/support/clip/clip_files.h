@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <iosfwd>
 
 #include "tests/support/clip/clip_scene.h"
 
@@ -12,7 +11,5 @@ namespace velamap {
 // Writes camera.yml (OpenCV FileStorage), layout.yml, its dictionary file if it has one, truth.csv
 // (the mean shape), truth_after.csv if the trim changes, and poses.csv (frame, cam_from_world).
 void WriteClipFiles(const ClipScene& scene, const std::filesystem::path& folder);
-
-void WriteLayout(const Layout& layout, std::ostream& out);
 
 }  // namespace velamap

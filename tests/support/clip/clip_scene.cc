@@ -207,7 +207,7 @@ void CheckOptions(const ClipOptions& options) {
   CheckOptionRange("width", options.width_px, 320, 7680);
   if (options.width_px % 32 != 0) {
     throw InputError(
-        fmt::format("--width: {} is no multiple of 32, which 16:9 and the video need; "
+        fmt::format("--width: {} is not a multiple of 32, which 16:9 and the video need; "
                     "give 1280, 1920 or 3840",
                     options.width_px));
   }

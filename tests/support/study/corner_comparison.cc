@@ -81,7 +81,7 @@ std::vector<CornerComparison> CompareCorners(const std::filesystem::path& clip_f
     const std::optional<int> frame_number = image.detections.frame_number;
     if (!frame_number || *frame_number >= static_cast<int>(poses.size())) {
       throw InputError(
-          fmt::format("{}: is no frame of the clip in {}; give the database of its video",
+          fmt::format("{}: is not a frame of the clip in {}; give the database of its video",
                       image.detections.image_name, clip_folder.string()));
     }
     const Rigid3& cam_from_world = poses[static_cast<std::size_t>(*frame_number)];

@@ -199,13 +199,13 @@ TEST_F(ShapeComparerTest, JointUncertaintyIsUsedWhereItBelongs) {
   AdjustmentUncertainty uncertainty;
   uncertainty.points = CovarianceFromSigmas(BoatShape(0.001));
   fs::create_directories(dir_ / "b/sparse/0");
-  WriteUncertainty(uncertainty, path("b/sparse/0"));
+  WriteUncertainty(uncertainty, {}, path("b/sparse/0"));
   const ProgramRun beside = Compare("b/shape");
   EXPECT_THAT(beside.err, HasSubstr("joint uncertainty from"));
   const ProgramRun named = Compare("b/shape", {"--uncertainty_path", path("b/sparse/0")});
   EXPECT_EQ(named.exit_code, 0) << named.err;
   uncertainty.points = CovarianceFromSigmas(BoatShape(0.005));
-  WriteUncertainty(uncertainty, path("b/sparse/0"));
+  WriteUncertainty(uncertainty, {}, path("b/sparse/0"));
   EXPECT_THAT(Compare("b/shape").err, Not(HasSubstr("joint uncertainty")));
   ExpectError(Compare("b/shape", {"--reference_uncertainty_path", path("b/sparse/0")}), 2,
               "the sigmas differ");
@@ -226,6 +226,10 @@ TEST_F(ShapeComparerTest, BadInput) {
   ExpectError(Compare("b/shape", {"--color_limit", "0"}), 2, "--color_limit");
   ExpectError(Compare("b/shape", {"--chord_deviation", "-1"}), 2, "--chord_deviation");
   ExpectError(Compare("b/shape", {"--align_start", "here"}), 2, "--align_start");
+  ExpectError(Compare("b/shape", {"--align_start", "as_is"}), 2, "--align_start: it would change");
+  WriteMesh("design.ply", 1);
+  ExpectError(Compare("design.ply", {"--align_start", "as_is", "--align", "none"}), 2,
+              "--align_start: it would change");
 }
 
 TEST_F(ShapeComparerTest, OutputThatCannotBeWritten) {

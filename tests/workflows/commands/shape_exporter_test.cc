@@ -80,7 +80,7 @@ TEST_F(ShapeExporterCommandTest, WritesSectionsAndSurfaceInTheFrameOfTheLines) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out,
               AllOf(HasSubstr("frame: lines h1 h3\n"), HasSubstr("sections: 4; camber "),
-                    HasSubstr("section_missing: sail z=50: "), HasSubstr("surface: sail; ")));
+                    HasSubstr("section_missing: sail height=50: "), HasSubstr("surface: sail; ")));
   EXPECT_THAT(
       ListFolder(path("shape")),
       IsSupersetOf({"sections.csv", "sections.dxf", "sections.json", "section_profiles.csv",

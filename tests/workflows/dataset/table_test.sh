@@ -52,6 +52,8 @@ run_dataset() {
 mkdir "two words"
 cp "$samples"/stylus/images/*{71,77,79,83,88,92}.jpg "two words"
 cp "$samples/stylus/camera.yml" "$samples/stylus/layout.yml" .
+mkdir prior
+cp "$samples/sail/truth.csv" prior/shape.csv
 mkdir empty
 cp "$samples/guide/far.jpg" empty/photo.jpg
 name='odd "one" {x} <b>'
@@ -61,8 +63,10 @@ quick="--ArucoDetection.estimate_formation 0"
   printf '\xef\xbb\xbfName;Clip;camera;layout;options;Central frames;Parts;sailing;wind\r\n'
   printf '"%s";two words;camera.yml;layout.yml;%s;;;x;4,5\r\n' "${name//\"/\"\"}" "$quick"
   printf 'no markers;empty;;layout.yml;%s;;;;6\r\n;;;;;;;;\r\n' "$quick"
+  # An option of the method of the reconstruction, one of that of the sweep, and a folder.
+  methods="--Registration.num_starts 3 --Registration.skip 8 --prior_shape_path prior"
   printf 'sail;%s;%s;%s;%s --Video.last_frame 60 --Video.frame_step 3;0:60:30;2;x;7\r\n' \
-    "$samples"/sail/{clip.mp4,camera.yml,layout.yml} "$quick"
+    "$samples"/sail/{clip.mp4,camera.yml,layout.yml} "$quick $methods"
 } >table.csv
 mkdir out
 
@@ -163,13 +167,18 @@ refused "${head}a,empty,layout.yml,,10:0:1\n" "central_frames 10:0:1: is none of
 refused "${head}a,empty,layout.yml,--Video.frame_stp 2,\n" "velamap has no --Video.frame_stp"
 refused "${head}a,empty,layout.yml,--workspace_path x,\n" "gives --workspace_path itself"
 refused "${head}a,empty,,,\n" "layout: is empty"
+refused "${head}a,empty,layout.yml,,all\n" "camera: is empty, and a sweep"
+printf 'marker_length=0.1\n[Registration]\nskip=8 # frames\n' >project.ini
+refused "${head}a,empty,,--project_path project.ini,all\n" "camera: is empty, and a sweep"
+printf 'camera_path=camera.yml\nmarker_length=0.1\n' >relative.ini
+refused "${head}a,empty,,--project_path relative.ini,all\n" "camera_path camera.yml would count from"
 refused "name,clip,layout,parts\na,empty,layout.yml,2\n" "photographs have no parts"
 for parts in 0 101 2.5 two; do
-  refused "name,clip,layout,parts\na,$samples/sail/clip.mp4,layout.yml,$parts\n" "parts $parts: is no number"
+  refused "name,clip,layout,parts\na,$samples/sail/clip.mp4,layout.yml,$parts\n" "parts $parts: is not a number"
 done
 refused "${head}\"a,empty,layout.yml,,\n" "line 2: .*quotes"
 refused "name,layout\n" "has no column clip"
-refused "${head}a,empty,layout.yml,,\n" "is no data set of this workflow" empty
+refused "${head}a,empty,layout.yml,,\n" "is not a data set of this workflow" empty
 refused "${head}a,$(printf 'x%.0s' {1..5000}),layout.yml,,\n" "line 2: clip xxx"
 refused "${head}a,no\x1b[31m\xc2\x9b,layout.yml,,\n" 'clip no?\[31m?: there'
 mkfifo pipe.csv
@@ -186,6 +195,18 @@ for program in bash dirname realpath nproc; do ln -s "$(command -v "$program")" 
 code=0
 PATH="$folder/bin" "$run" table.csv bad_out >refused.txt 2>&1 || code=$?
 expect_refusal refused.txt 'apt-get install snakemake'
+
+# The legend of a plot with many clips lies within the picture, and no two of them look the same.
+PYTHONPATH="$repository/workflows/dataset" PYTHONDONTWRITEBYTECODE=1 python3 - <<'PYTHON' || fail "plots.py"
+import re
+from plots import plot
+for count in (1, 2, 8, 9, 16):
+    picture = plot("t", "x", "y", {f"clip {i}": [(0, i, ""), (1, i, "")] for i in range(count)}, join=True)
+    height = float(re.search(r'height="([^"]*)"', picture)[1])
+    assert all(float(y) + 3.5 <= height for y in re.findall(r'cy="([^"]*)"', picture)), count
+    looks = re.findall(r'fill="none" (stroke="[^"]*") stroke-width="1.5"([^/]*)/', picture)
+    assert len(set(looks)) == count == len(looks), count
+PYTHON
 
 # What the workflow did not make stays: an edited result, and a folder in the place of a new clip.
 echo note >>out/dataset.csv

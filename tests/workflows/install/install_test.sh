@@ -36,6 +36,13 @@ for file in doc/velamap/copyright doc/velamap/CHANGELOG.md velamap/LICENSE velam
   [[ -s "$share/$file" ]] || fail "share/$file is missing"
 done
 
+# Every link between the pages holds.
+while read -r page; do
+  while read -r target; do
+    [[ -e "$(dirname "$page")/$target" ]] || fail "${page#"$share/"}: there is no $target"
+  done < <(grep -o '](\([^)#]*\)' "$page" | sed 's/^](//' | grep -v -e '^http' -e '^$')
+done < <(find "$share/velamap" -name '*.md')
+
 # Pages: one for the program and each command, no fault of roff, every option of --help_all.
 mapfile -t commands < <(velamap help | sed -n 's/^  \([a-z_]*\)  *[a-z].*/\1/p' | grep -v -E '^(velamap|help)$')
 [[ ${#commands[@]} -ge 13 ]] || fail "help lists ${#commands[@]} commands"

@@ -29,7 +29,7 @@ void ColmapTest::SetUp() {
 }
 
 std::string ColmapTest::RunCommand(const std::vector<std::string>& arguments) const {
-  return RunColmap("colmap", arguments, path("colmap.log")).output;
+  return RunColmap("colmap", arguments, path("colmap.log"));
 }
 
 void ColmapTest::AddOption(const std::vector<std::string>& names, const std::string& value,

@@ -56,7 +56,7 @@ class ReportBrowser : public testing::Test {
     input.images_left_out = {{"frame_000200.jpg", "too blurred for two markers"}};
     ReportSection section;
     section.name = "line h3";
-    section.chord_m = ReportFigure{2.345, 0.0012};
+    section.chord_m = Estimate{2.345, 0.0012};
     section.profile_m = {{0, 0}, {1, 0.2}, {2.345, 0}};
     for (int i = 0; i < 13; ++i) {
       section.profile_in_shape_m.push_back(*example.shape.markers[39 + i].x_in_shape_m[0]);

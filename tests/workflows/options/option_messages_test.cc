@@ -1,4 +1,5 @@
-// No message may advise an option that the command at hand does not have.
+// No message may advise an option that the command at hand does not have, and the example of a
+// layout in a README has to be one.
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "importer/layout/layout.h"
+#include "tests/support/temp_dir.h"
 #include "tests/workflows/run_velamap.h"
 #include "workflows/commands/commands.h"
 
@@ -166,6 +169,23 @@ TEST(OptionMessages, NameNoOptionThatTheCommandDoesNotHave) {
     }
   }
   EXPECT_GT(num_names, 100);  // the search finds what it is for
+}
+
+TEST(OptionMessages, TheLayoutInTheReadmeIsALayout) {
+  const std::string readme =
+      ReadFileBytes(fs::path(VELAMAP_SOURCE_DIR) / "importer/layout/README.md");
+  const std::string fence = "```", opening = fence + "yaml\n";
+  const std::size_t begin = readme.find(opening) + opening.size();
+  const std::size_t end = readme.find(fence, begin);
+  ASSERT_LT(begin, end);
+  ASSERT_NE(end, std::string::npos);
+  const TempDir dir;
+  const std::string path = (dir / "layout.yml").string();
+  WriteTextFile(path, readme.substr(begin, end - begin));
+  const Layout layout = ReadLayout(path);
+  EXPECT_EQ(layout.parts.size(), 2u);
+  EXPECT_EQ(layout.distances.size(), 2u);
+  EXPECT_EQ(layout.known_points.size(), 4u);
 }
 
 }  // namespace

@@ -14,7 +14,9 @@
 namespace velamap {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 PlannedSurface FlatSquare() {
   const Placement placement = PlaceOnGrid({1, 1, {}}, 100, 150, 0);
@@ -121,6 +123,25 @@ TEST(JudgePlanTest, NarrowArcsAndSmallMarkersAreNamed) {
   const Verdict verdict = JudgePlan(plan);
   EXPECT_EQ(verdict.level, ReportStatus::kBad);
   EXPECT_EQ(verdict.reasons.size(), 4u);
+}
+
+TEST(JudgePlanTest, RemediesFitTheirCauses) {
+  ShootPlan plan;
+  plan.path = {5, 80, 1, 10};
+  plan.shutters = {{1, 100, 0.01}};
+  plan.variants = {{"plan", plan.path, PlanPrecision(), ""}};
+  plan.surface.shape.markers.resize(1);
+  plan.surface.markers_left_out = {7};
+  const auto text = [&](double in_picture, bool is_of_shape) {
+    plan.along_path = {in_picture, in_picture, 40, 40};
+    plan.surface.is_of_shape = is_of_shape;
+    std::string texts;
+    for (const VerdictReason& reason : JudgePlan(plan).reasons) texts += reason.text + "\n";
+    return texts;
+  };
+  EXPECT_THAT(text(0.9, false), AllOf(HasSubstr("give --shape_path"), HasSubstr("0: go closer")));
+  EXPECT_THAT(text(0.5, true), AllOf(HasSubstr("the shape does not hold them: 7"),
+                                     HasSubstr("0: go farther away"), Not(HasSubstr("closer"))));
 }
 
 }  // namespace

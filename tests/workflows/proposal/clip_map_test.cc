@@ -114,7 +114,7 @@ TEST(ClipMap, AnIdThatIsThereTwiceIsNamed) {
     }
   }
   EXPECT_THAT(MapOf(scene, Plain()).doubled,
-              testing::ElementsAre(HasSubstr("marker 7 is there twice")));
+              testing::ElementsAre(HasSubstr("marker 7 occurs twice")));
 }
 
 TEST(ClipMap, WhatMovesAgainstTheRestIsABodyOfItsOwn) {

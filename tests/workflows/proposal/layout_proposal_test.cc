@@ -88,6 +88,25 @@ TEST(LayoutProposal, MarkersOfAnotherLengthGetIt) {
   EXPECT_THAT(proposal.notes, Contains(AllOf(HasSubstr("94-97"), HasSubstr("50.03"))));
 }
 
+// A length that was measured well is not rounded to one that it contradicts.
+TEST(LayoutProposal, ALengthIsRoundedOnlyAsFarAsItsSigmaAllows) {
+  const auto proposed_m = [](double length_m, double sigma_m) {
+    ClipMap map = SampleSail();
+    map.sides[94] = {length_m, sigma_m};
+    return ProposeLayout(map, MakeLayout("DICT_4X4_250", 0.1)).layout.marker_lengths_m.at(94);
+  };
+  EXPECT_EQ(proposed_m(0.0964, 3e-5), 0.0964);
+  EXPECT_EQ(proposed_m(0.09638, 3e-5), 0.0964);
+  EXPECT_EQ(proposed_m(0.09638, 3e-4), 0.096);
+  EXPECT_EQ(proposed_m(0.096384, 3e-6), 0.09638);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> length_m(0.02, 0.09), log_sigma(-6, -3);
+  for (int i = 0; i < 100; ++i) {
+    const double measured_m = length_m(random), sigma_m = std::pow(10, log_sigma(random));
+    EXPECT_LE(std::abs(proposed_m(measured_m, sigma_m) - measured_m), 2 * sigma_m + 1e-9);
+  }
+}
+
 TEST(LayoutProposal, ARectangleDoesNotSayWhereItsLuffIs) {
   const SyntheticScene scene = MakeSyntheticScene({});
   ClipMap map;
@@ -181,6 +200,22 @@ TEST(LayoutCorrection, ALineThatItForgotIsAdded) {
   EXPECT_EQ(correction.layout.parts[0].horizontal.back().marker_ids, line);
 }
 
+// The distances of an edge belong to the lines in their order.
+TEST(LayoutCorrection, DistancesOfAnEdgeGoWhenOneLineIsAddedAndAnotherRemoved) {
+  Layout given = SampleLayout();
+  LayoutPart& sail = given.parts[0];
+  sail.edges.luff.offsets_m = {0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07};
+  sail.edges.foot.offsets_m = {0.1};
+  EXPECT_EQ(CorrectLayout(SampleSail(), given).layout.parts[0].edges.luff.offsets_m.size(), 7u);
+  sail.horizontal[2] = {"x", {20, 50}};  // in place of a line, two markers of others
+  const LayoutProposal correction = CorrectLayout(SampleSail(), given);
+  const LayoutPart& corrected = correction.layout.parts[0];
+  EXPECT_EQ(corrected.horizontal.size(), 7u);
+  EXPECT_TRUE(corrected.edges.luff.offsets_m.empty());
+  EXPECT_EQ(corrected.edges.foot.offsets_m.size(), 1u);
+  EXPECT_THAT(correction.notes, Contains(HasSubstr("the edge with a distance for each line")));
+}
+
 TEST(LayoutCorrection, AMarkerOnTwoLinesIsNamedAndTakenOffTheWrongOne) {
   Layout given = SampleLayout();
   std::vector<int>& line = given.parts[0].horizontal[0].marker_ids;
@@ -197,7 +232,7 @@ TEST(LayoutCorrection, AWrongCrossingIsNamedAndPutRight) {
   given.parts[0].vertical[0].marker_ids[0] = 8;
   const LayoutProposal correction = CorrectLayout(SampleSail(), given);
   EXPECT_THAT(correction.contradictions,
-              ElementsAre(HasSubstr("line h1: markers 7 and 8 stand the other way round"),
+              ElementsAre(HasSubstr("line h1: markers 7 and 8 are in the opposite order"),
                           HasSubstr("line v1: marker 7 stands before marker 76")));
   ExpectSameLines(correction.layout, SampleLayout());
 }
