@@ -181,7 +181,8 @@ TEST(ComparisonPage, ProfilesAgainstADesignLieWhereTheyAreInAllShapes) {
   const Rigid3 &first = example.series[0].sections.frame_from_reference,
                &second = example.series[1].sections.frame_from_reference;
   ASSERT_GT((first.translation - second.translation).norm(), 0.1);
-  for (const Json& profile : example.Data()["profiles"]) {
+  const Json data = example.Data();
+  for (const Json& profile : data["profiles"]) {
     ASSERT_EQ(profile["curves"].size(), 3u);
     if (profile["section"] == "h1") continue;
     const Json &a = profile["curves"][1]["placed"], &b = profile["curves"][2]["placed"];
