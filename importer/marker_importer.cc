@@ -56,8 +56,7 @@ void WarnOfSeveralCameras(const std::string& path, const ColmapDatabase& databas
   if (kinds.size() < 2) return;
   LogWarning(
       "{}: holds images of {} cameras or zooms, and one tone curve is estimated for all of them; "
-      "if "
-      "the cameras are of different kinds, import those of each into a database of its own",
+      "if the cameras are of different kinds, import those of each into a database of its own",
       path, kinds.size());
 }
 

@@ -55,8 +55,8 @@ struct Section {
   std::optional<Estimate> draft_position;
   Estimate entry_angle_deg;  // between chord and curve at the luff, positive to leeward
   Estimate exit_angle_deg;   // the same at the leech, positive if the curve returns from leeward
-  Estimate
-      twist_deg;  // of the chord about up, from RigNumbers::twist_reference; positive to leeward
+  // Of the chord about up, from RigNumbers::twist_reference; positive to leeward.
+  Estimate twist_deg;
   // Turn about up of the direction in which the curve ends at the leech, from the lowest line's;
   // positive to leeward.
   Estimate leech_twist_deg;

@@ -16,8 +16,8 @@ inline std::uint8_t NearestGray(const cv::Mat& gray, const cv::Point2f& x_px) {
                                std::clamp(cvRound(x_px.x), 0, gray.cols - 1));
 }
 
-// Bilinear value of a grey image at a place. Outside of the image, the
-// nearest value inside; a coordinate that is not a number counts as 0.
+// Bilinear value of a grey image at a place. Outside of the image, the nearest value inside; a
+// coordinate that is not a number counts as 0.
 template <typename Pixel = std::uint8_t>
 double InterpolateGray(const cv::Mat& gray, const Eigen::Vector2d& x_px) {
   // In this order of arguments std::max turns NaN into 0.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "importer/base/error.h"
+#include "importer/detect/cell_means.h"
 #include "importer/detect/gray_levels.h"
 #include "importer/geometry/unit_square_map.h"
 
@@ -132,24 +133,18 @@ bool ShowsCells(const cv::Mat& gray, const QuadCorners& quad, const MarkerLook& 
   const UnitSquareMap map(quad);
   const int n = look.cells.rows;
   std::vector<double> values;
-  double sum[2] = {0, 0};
-  int count[2] = {0, 0};
-  for (int row = 0; row < n; ++row) {
-    for (int column = 0; column < n; ++column) {
-      double value = 0.0;
-      for (const double y : {0.3, 0.7}) {
-        for (const double x : {0.3, 0.7}) {
-          value += 0.25 * GrayAt(gray, map.ToImage((column + x) / n, (row + y) / n), look);
-        }
+  const CellMeans means = MeansOfCells(look.cells, [&](int column, int row) {
+    double value = 0.0;
+    for (const double y : {0.3, 0.7}) {
+      for (const double x : {0.3, 0.7}) {
+        value += 0.25 * GrayAt(gray, map.ToImage((column + x) / n, (row + y) / n), look);
       }
-      const int is_light = look.cells.at<std::uint8_t>(row, column) != 0;
-      sum[is_light] += value;
-      ++count[is_light];
-      values.push_back(value);
     }
-  }
-  if (count[1] == 0) return false;
-  const double dark = sum[0] / count[0], light = sum[1] / count[1];
+    values.push_back(value);
+    return value;
+  });
+  if (!means.light) return false;
+  const double dark = means.dark, light = *means.light;
   if (light - dark < kMinContrast) return false;
   for (int i = 0; i < n * n; ++i) {
     const double relative =

@@ -184,9 +184,9 @@ FormationEstimate EstimateFormationOfSource(const std::string& image_path,
   }
   if (estimate.num_samples < kMinSamples) {
     LogWarning(
-        "{}: too few markers are large and sharp enough to show what the camera does to edges; "
-        "grey "
-        "values are taken to be proportional to light, which may move each corner by {:.1f} px",
+        "{}: too few markers are large and sharp enough to show what the camera does to edges; its "
+        "grey values are taken to be proportional to light, which may move each corner by {:.1f} "
+        "px",
         image_path, kUnknownInsetPx);
     FormationEstimate unknown;
     unknown.inset_sigma_px = kUnknownInsetPx;

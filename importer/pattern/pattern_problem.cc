@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "importer/detect/cell_means.h"
 #include "importer/detect/gray_levels.h"
 #include "importer/geometry/least_squares.h"
 #include "importer/geometry/unit_square_map.h"
@@ -89,22 +90,19 @@ struct CellLights {
 CellLights ReadCellLights(const PatternProblem& problem, const UnitSquareMap& map) {
   constexpr double kBesideMarker = 0.5;  // cells
   const int n = problem.model.num_cells;
-  double sum[2] = {0, 0}, beside = 0;
-  int count[2] = {0, 0};
+  const CellMeans means = MeansOfCells(problem.cells, [&](int column, int row) {
+    return LightAt(problem, map, (column + 0.5) / n, (row + 0.5) / n);
+  });
+  double beside = 0;
   for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const int is_light = problem.cells.at<std::uint8_t>(j, i) != 0;
-      sum[is_light] += LightAt(problem, map, (i + 0.5) / n, (j + 0.5) / n);
-      ++count[is_light];
-    }
     const double along = (j + 0.5) / n, out = kBesideMarker / n;
     beside += LightAt(problem, map, along, -out) + LightAt(problem, map, along, 1 + out) +
               LightAt(problem, map, -out, along) + LightAt(problem, map, 1 + out, along);
   }
   beside /= 4 * n;
-  const double light = count[1] > 0 ? sum[1] / count[1] : beside;
+  const double light = means.light.value_or(beside);
   const ToneCurve& tone = *problem.model.tone;
-  return {sum[0] / count[0], tone.Encode(beside) > tone.Encode(light) ? beside : light};
+  return {means.dark, tone.Encode(beside) > tone.Encode(light) ? beside : light};
 }
 
 // Sets the initial parameters and the priors. False for too little contrast.

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
 
 #include "importer/base/error.h"
+#include "importer/detect/cell_means.h"
 #include "importer/detect/gray_levels.h"
 #include "importer/detect/interpolate.h"
 #include "importer/geometry/unit_square_map.h"
@@ -32,17 +32,10 @@ constexpr std::array<std::array<double, 2>, kNumCorners> kCornersInSquare = {
 // Grey levels between the dark border and the light cells; 0 without light cells.
 double ContrastOfCells(const cv::Mat& gray, const UnitSquareMap& map, const cv::Mat& cells) {
   const int n = cells.rows;
-  double sum[2] = {0, 0};
-  int count[2] = {0, 0};
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const int is_light = cells.at<std::uint8_t>(j, i) != 0;
-      sum[is_light] += InterpolateGray(gray, map.ToImage((i + 0.5) / n, (j + 0.5) / n));
-      ++count[is_light];
-    }
-  }
-  if (count[0] == 0 || count[1] == 0) return 0.0;
-  return sum[1] / count[1] - sum[0] / count[0];
+  const CellMeans means = MeansOfCells(cells, [&](int column, int row) {
+    return InterpolateGray(gray, map.ToImage((column + 0.5) / n, (row + 0.5) / n));
+  });
+  return means.light ? *means.light - means.dark : 0.0;
 }
 
 // Reads the grey levels half a cell from the corner along both sides: inside the marker, twice

@@ -87,6 +87,9 @@ class ImageFolder : public FrameSource {
       LogWarning("{}: skipped: {}", path.string(), *reason);
       return false;
     }
+    if (!reason->empty()) {
+      LogWarning("{}: used, but {}", path.string(), std::exchange(*reason, ""));
+    }
     frame->source = IdentifySource(path.string());
     cv::cvtColor(frame->color, frame->gray, cv::COLOR_BGR2GRAY);
     return true;

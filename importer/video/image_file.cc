@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "importer/base/log.h"
 #include "importer/video/ffmpeg_picture.h"
 #include "importer/video/jpeg_codec.h"
 
@@ -56,8 +54,7 @@ std::optional<cv::Size2d> StoredSize(const Bytes& bytes) {
   return std::nullopt;
 }
 
-cv::Mat Decode(const std::string& path, const Bytes& bytes, std::size_t max_pixels,
-               std::string* reason) {
+cv::Mat Decode(const Bytes& bytes, std::size_t max_pixels, std::string* reason) {
   const auto is_small = [&](const cv::Size2d& size) {
     if (size.area() <= static_cast<double>(max_pixels)) return true;
     *reason = fmt::format("has {} x {} pixels, more than the limit of {} pixels", size.width,
@@ -69,12 +66,12 @@ cv::Mat Decode(const std::string& path, const Bytes& bytes, std::size_t max_pixe
   cv::Mat color;
   std::string damage;
   if (IsJpeg(bytes)) color = DecodeJpeg(bytes, &damage);
-  if (!damage.empty() && !color.empty()) {
-    LogWarning("{}: used, but may be damaged ({}); compare it with the file in the camera",
-               std::filesystem::path(path).filename().string(), damage);
-  } else if (!damage.empty()) {
+  if (!damage.empty() && color.empty()) {
     *reason = fmt::format("the file is damaged ({}); copy it from the camera again", damage);
     return {};
+  }
+  if (!damage.empty()) {
+    *reason = fmt::format("may be damaged ({}); compare it with the file in the camera", damage);
   }
   if (color.empty()) color = DecodeWithFfmpeg(bytes);
   if (color.empty()) *reason = "not an image that can be decoded";
@@ -99,7 +96,7 @@ cv::Mat DecodeImageFile(const std::string& path, std::string* reason, std::size_
   } else if ((IsJpeg(bytes) && !FindJpegEnd(bytes)) || (IsPng(bytes) && !PngHasEnd(bytes))) {
     *reason = "the file is cut off";
   } else {
-    return Decode(path, bytes, max_pixels, reason);
+    return Decode(bytes, max_pixels, reason);
   }
   return {};
 }

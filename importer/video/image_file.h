@@ -17,7 +17,8 @@ inline constexpr std::size_t kMaxImagePixels = 250'000'000;
 // Decodes the file to BGR, 8 bit, without the rotation of its metadata, which COLMAP also ignores.
 // Returns an empty image and a reason if the file is missing, empty, cut off, too large or not an
 // image, or is a JPEG in which libjpeg-turbo notices damage. JPEG and PNG files are checked for
-// their end first, because decoders fill missing pixels with grey.
+// their end first, because decoders fill missing pixels with grey. A reason beside an image says
+// what may be wrong with it.
 cv::Mat DecodeImageFile(const std::string& path, std::string* reason,
                         std::size_t max_pixels = kMaxImagePixels);
 

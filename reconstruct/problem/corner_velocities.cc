@@ -76,16 +76,6 @@ struct AffineField {
   }
 };
 
-// Mean side of a marker in the image, px.
-double MeanSidePx(const MarkerDetection& marker) {
-  const auto& corners = marker.corners_in_image_px;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < kNumCorners; ++i) {
-    sum += (corners[(i + 1) % kNumCorners] - corners[i]).norm();
-  }
-  return sum / kNumCorners;
-}
-
 // Nothing for fewer than three markers. The field does not change along an axis over which the
 // markers spread by less than half a side (RMS): there it would be extrapolated to their corners,
 // which multiplies the noise of the velocities.
@@ -101,7 +91,7 @@ std::optional<AffineField> FitField(const FrameDetections& frame,
   double side_px = 0.0;
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     if (!velocities[i]) continue;
-    side_px += MeanSidePx(frame.markers[i]) / static_cast<double>(num_known);
+    side_px += QuadMeanSide(frame.markers[i].corners_in_image_px) / static_cast<double>(num_known);
     places.row(row) = CornerMean(frame.markers[i]).transpose();
     values.row(row++) = velocities[i]->transpose();
   }

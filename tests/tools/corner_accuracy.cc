@@ -75,9 +75,8 @@ void Run(int argc, char** argv) {
   CornerCase base;
   po::options_description description(
       "corner_accuracy [options]\n\nMarkers of DICT_4X4_50, black 40 and white 200, with one cell "
-      "of "
-      "white around them on grey 120; bent\nones on a cylinder. A table in Markdown: each size and "
-      "blur, then noise, compression, curvature, tilt",
+      "of white around them on grey 120; bent\nones on a cylinder. A table in Markdown: each size "
+      "and blur, then noise, compression, curvature, tilt",
       100, 60);
   const auto value = [](auto* target) { return po::value(target)->default_value(*target); };
   auto add = description.add_options();

@@ -108,8 +108,7 @@ void Validate(ShootPlannerCommandOptions* options) {
 PlannedSurface PlaceMarkers(const ShootPlannerCommandOptions& options) {
   Layout layout = options.layout;
   const double length_mm = kMmPerM * layout.marker_length_m;
-  const int num_cells =
-      LoadDictionary(layout.dictionary).aruco->markerSize + 2 * layout.border_bits;
+  const int num_cells = CellsPerSide(LoadDictionary(layout.dictionary), layout.border_bits);
   const double sticker_mm = MakeSticker({0, length_mm, ""}, num_cells, {}).Height();
   Placement placement;
   if (layout.HasMarkers()) {

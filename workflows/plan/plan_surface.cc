@@ -110,7 +110,7 @@ void IntoPlanFrame(MarkerShape* shape) {
 PlannedSurface Finish(MarkerShape shape, const Layout& layout) {
   PlannedSurface surface;
   surface.layout = layout;
-  surface.num_cells = LoadDictionary(layout.dictionary).aruco->markerSize + 2 * layout.border_bits;
+  surface.num_cells = CellsPerSide(LoadDictionary(layout.dictionary), layout.border_bits);
   std::sort(shape.markers.begin(), shape.markers.end(),
             [](const ShapeMarker& a, const ShapeMarker& b) { return a.marker_id < b.marker_id; });
   for (const int id : MarkerIds(layout)) {

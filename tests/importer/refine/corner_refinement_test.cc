@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 #include "importer/geometry/unit_square_map.h"
-#include "importer/lanes/float_lanes.h"
 #include "importer/pattern/pattern_fit.h"
-#include "importer/pattern/pattern_picture.h"
-#include "importer/refine/edge_fit.h"
 #include "tests/importer/refine/marker_grid.h"
 
 namespace velamap {
@@ -61,16 +57,6 @@ Quality MeasureSubpix(const MarkerGrid& grid) {
     refined.corners_px = SubpixCorners(gray, start, cells.rows);
     return std::make_optional(refined);
   });
-}
-
-// A chequered board: one cell of quiet zone, then black.
-MarkerGridOptions Chequered(double side_px, double blur_px) {
-  MarkerGridOptions options;
-  options.side_px = side_px;
-  options.rendering.surround_cells = 1.5;
-  options.rendering.blur_sigma_px = blur_px;
-  options.rendering.noise_sigma = 2.0;
-  return options;
 }
 
 TEST(RefineCorners, SidesAreUnbiasedAndCornersBetterThanSubpix) {
@@ -244,116 +230,6 @@ TEST(RefineCorners, FailsWhereThereIsNothingToFit) {
     EXPECT_FALSE(RefineCorners(grid->image, elsewhere, cells));
     EXPECT_FALSE(RefineCorners(grid->image, outside, cells));
   }
-}
-
-// Whether `jacobian`, a group of observations, agrees with what `value` changes by.
-template <typename Vector, typename Jacobian, typename Value>
-void ExpectDerivatives(const Vector& parameters, const Vector& steps, const Jacobian& jacobian,
-                       const Value& value, double relative_tolerance, double tolerance) {
-  for (int i = 0; i < parameters.size(); ++i) {
-    Vector above = parameters, below = parameters;
-    above[i] += steps[i];
-    below[i] -= steps[i];
-    const Floats difference = (value(above) - value(below)) / static_cast<float>(2 * steps[i]);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      EXPECT_NEAR(jacobian[static_cast<std::size_t>(i)][lane], difference[lane],
-                  relative_tolerance * std::abs(difference[lane]) + tolerance)
-          << "parameter " << i << ", lane " << lane;
-    }
-  }
-}
-
-TEST(EvaluateEdge, DerivativesAgreeWithDifferences) {
-  EdgeParameters parameters;
-  parameters.values << 0.2, -0.1, 0.15, 0.9, 40, 180, 5, -7, 0.8, 1.1;
-  const EdgeSampleGroup samples{
-      AllLanes(0.4), Floats{-2.1f, -0.4f, 0.3f, 1.7f, -1.2f, 0.0f, 0.8f, 2.3f},
-      AllLanes(100), AllLanes(0.9),
-      AllLanes(120), AllLanes(-110),
-      AllLanes(2.2), AllLanes(2.4)};
-  EdgeEquations::Jacobian jacobian;
-  EvaluateEdge(parameters, samples, &jacobian);
-  const auto value = [&](const EdgeParameters::Vector& values) {
-    EdgeEquations::Jacobian unused;
-    return EvaluateEdge(EdgeParameters{values}, samples, &unused);
-  };
-  ExpectDerivatives<EdgeParameters::Vector>(
-      parameters.values, EdgeParameters::Vector::Constant(0.01), jacobian, value, 0.002, 0.05);
-}
-
-// The share of a single corner is an approximation; all four together move the picture as it is.
-TEST(PatternPicture, DerivativesAgreeWithDifferences) {
-  using P = PatternParameters;
-  const MarkerGrid grid = MakeMarkerGrid(Chequered(20, 0.7));
-  PatternModel model;
-  model.num_cells = grid.cells[0].rows;
-  model.center_px = {300, 200};
-  model.diagonal_px = 20 * std::sqrt(2.0);
-  P::Vector parameters = P::Vector::Zero();
-  parameters.head<8>() << 290, 190, 310, 190, 310, 210, 290, 210;
-  parameters.segment<8>(P::kBlurU) << 0.8, 0.9, 40, 200, 0.05, -0.03, 0.9, 0.95;
-  parameters.segment<4>(P::kMargin) << 0.7, 0.9, 1.1, 0.8;
-  const ImageFormation formation({2.2, 0.03, 0.0, 1.0});
-  model.tone = &formation.tone();
-  FillLightness(CutPatch(grid.image, cv::Rect({}, grid.image.size()), formation), grid.cells[0],
-                parameters, &model);
-  const Floats x = {-10.6f, -3.2f, 4.7f, 10.3f, 9.8f, -9.1f, 0.3f, 2.6f};
-  const Floats y = {0.4f, -9.8f, 5.1f, 10.9f, -10.7f, 9.7f, -0.2f, 7.4f};
-  ASSERT_EQ(Sum(__builtin_convertvector(PatternPicture(model, parameters).Covers(x, y), Floats)),
-            -kLanes);
-  PatternPixels pixels;
-  PatternPicture(model, parameters).At(x, y, &pixels);
-  // Place of the whole marker, then all parameters but the corners.
-  using Changes = Eigen::Matrix<double, P::kCount - 6, 1>;
-  FloatsArray<P::kCount - 6> jacobian{};
-  for (std::size_t i = 0; i < P::kCount; ++i) {
-    jacobian[i < P::kBlurU ? i % 2 : i - 6] += pixels.jacobian[i];
-  }
-  const auto value = [&](const Changes& changes) {
-    P::Vector changed = parameters;
-    for (int i = 0; i < P::kBlurU; ++i) changed[i] += changes[i % 2];
-    changed.tail<P::kCount - P::kBlurU>() += changes.tail<P::kCount - P::kBlurU>();
-    PatternPixels modelled;
-    PatternPicture(model, changed).At(x, y, &modelled);
-    return modelled.gray;
-  };
-  ExpectDerivatives<Changes>(Changes::Zero(), Changes::Constant(0.01), jacobian, value, 0.02, 0.3);
-}
-
-TEST(ComputeShares, StayInsideThePatternAndAddUpToOne) {
-  constexpr int kNumCells = 6;
-  const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
-  Shares shares;
-  for (const double blur : {0.1, 0.5, 3.0, 100.0}) {
-    ComputeShares(Floats{-0.7f, 1.3f, 6.6f, 1e9f, -1e9f, 0.0f, 3.5f, 6.0f}, AllLanes(blur),
-                  kNumCells, {0.4f, 1.2f, AllLanes(0.2)}, &shares);
-    Floats sum{};
-    for (int i = 0; i < shares.count; ++i) sum += shares.value[static_cast<std::size_t>(i)];
-    for (int lane = 0; lane < kLanes; ++lane) EXPECT_NEAR(sum[lane], 1.0f, 1e-5f);
-  }
-  for (const float blur : {0.5f, infinity, nan}) {
-    ComputeShares(Floats{nan, infinity, -infinity, 0.0f, 2.0f, nan, nan, infinity},
-                  Floats{0.3f, blur, blur, 0.3f, blur, blur, 0.3f, 0.3f}, kNumCells, {}, &shares);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      EXPECT_GE(shares.first[lane], 0);
-      EXPECT_LE(shares.first[lane] + shares.count, kNumCells + 2 * kRing);
-    }
-  }
-}
-
-TEST(PatternPicture, CoversTheMarkerAndMostOfTheQuietZone) {
-  PatternModel model;
-  model.num_cells = 6;
-  model.center_px = {300, 200};
-  model.diagonal_px = 12 * std::sqrt(2.0);
-  PatternParameters::Vector parameters = PatternParameters::Vector::Zero();
-  parameters.head<8>() << 294, 194, 306, 194, 306, 206, 294, 206;
-  const PatternPicture picture(model, parameters);
-  const Ints covered = picture.Covers(Floats{0, -7.4f, -7.6f, 7.4f}, Floats{0, 7.4f, 0, 7.6f});
-  EXPECT_TRUE(covered[0]);
-  EXPECT_TRUE(covered[1]);
-  EXPECT_FALSE(covered[2]);
-  EXPECT_FALSE(covered[3]);
 }
 
 }  // namespace

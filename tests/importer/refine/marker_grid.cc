@@ -39,6 +39,15 @@ PlacedMarkerInCam PlaceMarker(const MarkerGridOptions& options, int marker_id,
 
 }  // namespace
 
+MarkerGridOptions Chequered(double side_px, double blur_px) {
+  MarkerGridOptions options;
+  options.side_px = side_px;
+  options.rendering.surround_cells = 1.5;
+  options.rendering.blur_sigma_px = blur_px;
+  options.rendering.noise_sigma = 2.0;
+  return options;
+}
+
 MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options) {
   constexpr int kNumIds = 50;
   std::mt19937 random(options.rendering.seed);

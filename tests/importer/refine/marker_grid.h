@@ -31,6 +31,9 @@ struct MarkerGrid {
   std::vector<QuadPx> truth, starts;
 };
 
+// A chequered board: one cell of quiet zone, then black.
+MarkerGridOptions Chequered(double side_px, double blur_px);
+
 // Markers in random attitudes on a grid, apart from each other.
 MarkerGrid MakeMarkerGrid(const MarkerGridOptions& options);
 

@@ -135,7 +135,7 @@ int ClipSceneBuilder::AddMarker(const Ground& ground, const std::string& part,
   marker.marker_id = static_cast<int>(scene_.markers.size());
   marker.part = part;
   marker.ground_gray = GroundGray(ground);
-  const int num_cells = scene_.dictionary.aruco->markerSize + 2 * scene_.layout.border_bits;
+  const int num_cells = CellsPerSide(scene_.dictionary, scene_.layout.border_bits);
   cv::aruco::drawMarker(scene_.dictionary.aruco, marker.marker_id, num_cells, marker.cells,
                         scene_.layout.border_bits);
   marker.cells /= 255;

@@ -57,7 +57,7 @@ Eigen::Vector3d ChessboardCorner(const Chessboard& board, double square_m, int c
 
 PrintedBoard PrintCharuco(int num_columns, int num_rows, const Dictionary& dictionary,
                           double marker_m) {
-  const int marker = dictionary.aruco->markerSize + 2 * kBorderBits;
+  const int marker = CellsPerSide(dictionary, kBorderBits);
   const int square = marker + 2 * kWhiteCells;
   PrintedBoard print{
       cv::Mat((num_rows + 1) * square, (num_columns + 1) * square, CV_8U, cv::Scalar(255)),
@@ -80,7 +80,7 @@ PrintedBoard PrintCharuco(int num_columns, int num_rows, const Dictionary& dicti
 
 PrintedBoard PrintMarkerGrid(int num_columns, int num_rows, const Dictionary& dictionary,
                              double marker_m) {
-  const int marker = dictionary.aruco->markerSize + 2 * kBorderBits;
+  const int marker = CellsPerSide(dictionary, kBorderBits);
   const int gap = marker / 2, step = marker + gap;
   PrintedBoard print{
       cv::Mat(num_rows * step + gap, num_columns * step + gap, CV_8U, cv::Scalar(255)),

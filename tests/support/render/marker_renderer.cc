@@ -24,7 +24,7 @@ constexpr int kRayPitchPx = 2;
 class Print {
  public:
   Print(const Dictionary& dictionary, int border_bits, int marker_id, const RenderOptions& options)
-      : num_cells_(dictionary.aruco->markerSize + 2 * border_bits),
+      : num_cells_(CellsPerSide(dictionary, border_bits)),
         ring_(options.quiet_zone_cells),
         surround_(options.surround_cells) {
     cv::Mat cells;
