@@ -6,6 +6,7 @@
 
 #include "tests/bad_input/sandbox.h"
 #include "tests/support/temp_dir.h"
+#include "workflows/commands/program.h"
 
 namespace velamap {
 namespace {
@@ -40,7 +41,7 @@ TEST_P(BadInputTest, IsRefusedInOneLineAndChangesNothing) {
   fs::copy(sandbox_->path(), dir.path(), fs::copy_options::recursive);
   if (bad.spoil) bad.spoil(dir.path());
   auto before = ContentOf(dir.path());
-  const ProgramRun run = RunVelamap(ArgumentsIn(dir.path(), bad.command));
+  const ProgramRun run = RunInChild("velamap", ArgumentsIn(dir.path(), bad.command), {}, Main);
   auto after = ContentOf(dir.path());
   EXPECT_EQ(run.exit_code, bad.exit_code) << run.err;
   EXPECT_EQ(NumErrorLines(run.err), 1) << run.err;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -17,10 +18,11 @@
 namespace velamap {
 namespace {
 
-// Runs in the forked child: no return.
-[[noreturn]] void Execute(const std::string& program, const std::vector<std::string>& arguments,
-                          const ProgramLimits& limits, const std::string& out_path,
-                          const std::string& err_path) {
+constexpr int kNotStarted = 127;  // the exit code of a shell that cannot start a program
+
+// Prepares a child for what it runs: its streams go to the files.
+void Prepare(const ProgramLimits& limits, const std::string& out_path,
+             const std::string& err_path) {
   dup2(open(out_path.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
   dup2(open(err_path.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
   if (limits.max_file_size) {
@@ -31,31 +33,43 @@ namespace {
     constexpr unsigned kUnusedId = 54321;
     const rlimit limit{1, 1};
     setrlimit(RLIMIT_NPROC, &limit);
-    if (geteuid() == 0 && (setgid(kUnusedId) != 0 || setuid(kUnusedId) != 0)) _exit(127);
+    if (geteuid() == 0 && (setgid(kUnusedId) != 0 || setuid(kUnusedId) != 0)) _exit(kNotStarted);
   }
-  std::vector<char*> argv = {const_cast<char*>(program.c_str())};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  execv(program.c_str(), argv.data());
-  _exit(127);
 }
 
 }  // namespace
 
-ProgramRun RunProgram(const std::string& program, const std::vector<std::string>& arguments,
-                      const ProgramLimits& limits) {
+ProgramRun RunInChild(const std::string& program, const std::vector<std::string>& arguments,
+                      const ProgramLimits& limits, const MainFunction& main) {
   const TempDir temp_dir;
   const std::string out_path = (temp_dir / "out").string(), err_path = (temp_dir / "err").string();
+  std::vector<char*> argv = {const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  std::fflush(nullptr);  // or the child writes what waits in the buffers, too
   const pid_t pid = fork();
   if (pid < 0) throw std::runtime_error("fork failed");
-  if (pid == 0) Execute(program, arguments, limits, out_path, err_path);
+  if (pid == 0) {
+    Prepare(limits, out_path, err_path);
+    const int exit_code = main(static_cast<int>(argv.size()) - 1, argv.data());
+    std::fflush(nullptr);
+    _exit(exit_code);
+  }
   int status = 0;
   waitpid(pid, &status, 0);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted) {
     throw std::runtime_error("cannot start " + program);
   }
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFileBytes(out_path),
           ReadFileBytes(err_path)};
+}
+
+ProgramRun RunProgram(const std::string& program, const std::vector<std::string>& arguments,
+                      const ProgramLimits& limits) {
+  return RunInChild(program, arguments, limits, [](int, char** argv) {
+    execv(argv[0], argv);
+    return kNotStarted;
+  });
 }
 
 ProgramRun RunVelamap(const std::vector<std::string>& arguments, const ProgramLimits& limits) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,13 @@ struct ProgramLimits {
   // limit, runs it as a user without privileges.
   bool has_no_threads = false;
 };
+
+using MainFunction = std::function<int(int argc, char** argv)>;
+
+// Runs `main` in a child of this process, with `program` as argv[0]. It need not load its libraries
+// again, which takes the program longer than to refuse an input.
+ProgramRun RunInChild(const std::string& program, const std::vector<std::string>& arguments,
+                      const ProgramLimits& limits, const MainFunction& main);
 
 // `program` is a path. Throws std::runtime_error if it cannot be started.
 ProgramRun RunProgram(const std::string& program, const std::vector<std::string>& arguments,
