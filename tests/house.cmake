@@ -117,6 +117,6 @@ house_folder(workflows/calibrate PUBLIC
 house_folder(workflows/options PUBLIC
   help_text nearest_name option_effects option_parser path_check sail_options shared_options)
 house_folder(workflows/commands PUBLIC
-  commands)
+  commands program)
 house_folder(workflows/install)
 house_folder(workflows)
