@@ -148,6 +148,7 @@ void RefitSample(const ImageFormation& formation, const ToneCurve& before, Fitte
           ? RefineBeyondClipping(sample->gray, formation, kMaxPixels, kTolerancePx, &problem,
                                  &sample->minimum)
           : RefinePatternFit(kMaxPixels, kTolerancePx, &problem, &sample->minimum);
+  sample->minimum.equations = {};  // large, and samples are copied
   sample->residuals.clear();
   if (is_fitted && !HasRunAway(*sample)) sample->residuals = ResidualsOf(*sample, formation);
   if (!(RmsOf(sample->residuals) < kDiverged * rms_before)) sample->residuals.clear();

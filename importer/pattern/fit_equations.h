@@ -29,6 +29,12 @@ class FitEquations {
   using Matrix = Eigen::Matrix<double, kCount, kCount>;
   using Jacobian = FloatsArray<kCount>;
 
+  // Makes room for so many groups of observations.
+  void Reserve(std::size_t num_groups) {
+    jacobians_.reserve(num_groups);
+    residuals_.reserve(num_groups);
+  }
+
   // Resets the sums. Without `with_hessian` the Hessian and the Jacobians stay.
   void Clear(bool with_hessian) {
     with_hessian_ = with_hessian;

@@ -64,6 +64,9 @@ ToneCurve::ToneCurve(const ImageFormationParameters& parameters)
                                           static_cast<float>(i)) -
                          gray_of_root_.begin());
   }
+  for (std::size_t i = 0; i < light_of_gray_.size(); ++i) {
+    light_of_gray_[i] = static_cast<float>(Decode(static_cast<double>(i)));
+  }
 }
 
 double ToneCurve::Encode(double light) const {
@@ -103,18 +106,18 @@ VELAMAP_CLONE_FOR_AVX2 void ToneCurve::Encode(cv::Mat* values) const {
 
 void ToneCurve::Decode(cv::Mat* values) const {
   if (is_linear_) return;
-  for (float& value : cv::Mat_<float>(*values)) value = static_cast<float>(Decode(value));
+  for (float& value : cv::Mat_<float>(*values)) {
+    // Most values are as the camera recorded them.
+    const int gray = static_cast<int>(std::min(std::max(0.0f, value), 255.0f));
+    value = value == static_cast<float>(gray) ? light_of_gray_[static_cast<std::size_t>(gray)]
+                                              : static_cast<float>(Decode(value));
+  }
 }
 
 ImageFormation::ImageFormation(const ImageFormationParameters& parameters)
     : parameters_(parameters),
       tone_(parameters),
-      light_of_gray_(1, 256, CV_32F),
-      unsharpening_(MakeUnsharpeningKernel(parameters)) {
-  for (int gray = 0; gray < 256; ++gray) {
-    light_of_gray_.at<float>(gray) = static_cast<float>(tone_.Decode(gray));
-  }
-}
+      unsharpening_(MakeUnsharpeningKernel(parameters)) {}
 
 GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormation& formation) {
   const cv::Rect image(0, 0, gray.cols, gray.rows);
@@ -130,7 +133,7 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
   const bool of_light = formation.parameters().sharpens_light;
   cv::Mat values, filtered;
   if (of_light && gray.depth() == CV_8U) {
-    cv::LUT(gray(wide), formation.light_of_gray(), values);
+    cv::LUT(gray(wide), formation.tone().light_of_gray(), values);
   } else {
     gray(wide).convertTo(values, CV_32F);
     if (of_light) formation.tone().Decode(&values);

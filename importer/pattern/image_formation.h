@@ -44,6 +44,8 @@ class ToneCurve {
 
   double Encode(double light) const;
   double Decode(double gray) const;  // the inverse
+  // Light of the grey values 0 to 255.
+  const std::array<float, 256>& light_of_gray() const { return light_of_gray_; }
 
   // The same of every value of a matrix of CV_32F.
   void Encode(cv::Mat* values) const;
@@ -58,6 +60,7 @@ class ToneCurve {
   float sign_, offset_;                         // of inverted images -1 and 255, else 1 and 0
   std::array<float, kSteps + 1> gray_of_root_;  // as recorded
   std::array<int, 256> first_above_gray_;       // idx in `gray_of_root_`, where Decode() begins
+  std::array<float, 256> light_of_gray_;
 };
 
 // The parameters, ready for many markers.
@@ -67,15 +70,13 @@ class ImageFormation {
 
   const ImageFormationParameters& parameters() const { return parameters_; }
   const ToneCurve& tone() const { return tone_; }
-  // Light of the 256 grey values, CV_32F.
-  const cv::Mat& light_of_gray() const { return light_of_gray_; }
   // Kernel that undoes the sharpening; empty for none.
   const cv::Mat& unsharpening() const { return unsharpening_; }
 
  private:
   ImageFormationParameters parameters_;
   ToneCurve tone_;
-  cv::Mat light_of_gray_, unsharpening_;
+  cv::Mat unsharpening_;
 };
 
 // How far the kernel that undoes the sharpening reaches.

@@ -29,6 +29,7 @@ VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const ChosenPix
                                   const P::Vector& parameters, bool with_hessian,
                                   PatternEquations* equations) {
   const PatternPicture picture(problem.model, parameters);
+  equations->Reserve(pixels.groups.size());
   equations->Clear(with_hessian);
   PatternPixels modelled;
   const bool is_weighted = problem.model.outline_corner_weight < 1;
