@@ -10,7 +10,7 @@
 namespace velamap {
 
 struct CellMeans {
-  double dark = 0.0;
+  double dark = 0.0;            // every marker has a dark border
   std::optional<double> light;  // nothing without light cells
 };
 

@@ -132,12 +132,8 @@ GrayPatch CutPatch(const cv::Mat& gray, const cv::Rect& box, const ImageFormatio
   const cv::Rect wide = cv::Rect(inside.tl() - reach, inside.br() + reach) & image;
   const bool of_light = formation.parameters().sharpens_light;
   cv::Mat values, filtered;
-  if (of_light && gray.depth() == CV_8U) {
-    cv::LUT(gray(wide), formation.tone().light_of_gray(), values);
-  } else {
-    gray(wide).convertTo(values, CV_32F);
-    if (of_light) formation.tone().Decode(&values);
-  }
+  gray(wide).convertTo(values, CV_32F);
+  if (of_light) formation.tone().Decode(&values);
   cv::filter2D(values, filtered, CV_32F, formation.unsharpening(), {-1, -1}, 0,
                cv::BORDER_REPLICATE);
   patch.values = filtered(inside - wide.tl()).clone();

@@ -44,8 +44,6 @@ class ToneCurve {
 
   double Encode(double light) const;
   double Decode(double gray) const;  // the inverse
-  // Light of the grey values 0 to 255.
-  const std::array<float, 256>& light_of_gray() const { return light_of_gray_; }
 
   // The same of every value of a matrix of CV_32F.
   void Encode(cv::Mat* values) const;

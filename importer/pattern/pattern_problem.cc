@@ -29,7 +29,6 @@ VELAMAP_CLONE_FOR_AVX2 void SumUp(const PatternProblem& problem, const ChosenPix
                                   const P::Vector& parameters, bool with_hessian,
                                   PatternEquations* equations) {
   const PatternPicture picture(problem.model, parameters);
-  equations->Reserve(pixels.groups.size());
   equations->Clear(with_hessian);
   PatternPixels modelled;
   const bool is_weighted = problem.model.outline_corner_weight < 1;
@@ -185,6 +184,7 @@ bool Minimize(const PatternProblem& problem, int max_pixels, double tolerance_px
               PatternMinimum* minimum) {
   const ChosenPixels pixels = ChoosePixels(problem, minimum->parameters, max_pixels);
   if (pixels.count <= P::kCount) return false;
+  minimum->equations.Reserve(pixels.groups.size());
   LeastSquaresOptions options;
   options.max_iterations = 20;
   options.initial_damping = 1e-3;

@@ -135,7 +135,8 @@ LightPart CutLight(const cv::Mat& gray, const QuadCorners& corners_px, double ce
                        static_cast<int>(box.max.y() + reach_px) + 1);
   const cv::Rect part = cv::Rect(low, high) & cv::Rect({}, gray.size());
   cv::Mat light;
-  cv::LUT(gray(part), formation.tone().light_of_gray(), light);
+  gray(part).convertTo(light, CV_32F);
+  formation.tone().Decode(&light);
   // The whole range of eight bits keeps the rounding small in a dark picture.
   cv::normalize(light, light, 0, 255, cv::NORM_MINMAX, CV_8U);
   if (formation.parameters().is_inverted) cv::bitwise_not(light, light);
