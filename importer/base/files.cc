@@ -171,12 +171,11 @@ std::vector<fs::path> FilesBelow(const fs::path& folder) {
     next.pop_front();
     if (!entered.insert(CanonicalPath(current)).second) continue;
     for (const fs::path& entry : FolderEntries(current)) {
-      std::error_code ignored;  // a link that leads nowhere, or to itself, is no file
       if (entry.filename().string().front() == '.') continue;
-      const fs::file_status status = fs::status(entry, ignored);
-      if (fs::is_directory(status)) {
+      std::error_code ignored;  // of a link to nothing
+      if (fs::is_directory(entry, ignored)) {
         (IsLink(entry) ? linked_folders : folders).push_back(entry);
-      } else if (fs::status_known(status) && fs::exists(status)) {
+      } else {
         files.push_back(entry);
       }
     }

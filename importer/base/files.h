@@ -39,9 +39,10 @@ std::filesystem::path AbsoluteFolder(const std::filesystem::path& path);
 // Everything in the folder, sorted by name.
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
 
-// Files in the folder and below, pipes and devices among them, in no particular order. Links are
-// followed, but each folder is visited once, under its real path if that lies in this tree. Files
-// and folders whose name starts with a dot are left out.
+// Files in the folder and below, in no particular order; among them pipes, devices and links to
+// nothing, so that the reader can name what it cannot read. Links are followed, but each folder is
+// visited once, under its real path if that lies in this tree. Files and folders whose name starts
+// with a dot are left out.
 std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folder);
 
 // Creates the folder and its missing parents; nothing happens if it is there.

@@ -154,14 +154,19 @@ TEST_F(MarkerImporterTest, SymmetricMarkersAloneAreNotTakenForDuplicates) {
 TEST_F(MarkerImporterTest, BrokenImagesAreSkippedUnlessAllAre) {
   WritePicture("1.png", 0, {1, 2});
   std::ofstream(dir_ / "images/2.png") << "no picture";
+  fs::create_symlink("deleted.png", dir_ / "images/3.png");
+  fs::create_symlink("4.png", dir_ / "images/4.png");
   const ImportReport report = ImportMarkers(options_);
   EXPECT_EQ(report.num_images_added, 1);
-  ASSERT_EQ(report.skipped.size(), 1u);
+  ASSERT_EQ(report.skipped.size(), 3u);
   EXPECT_EQ(report.skipped[0].image_name, "2.png");
   EXPECT_EQ(report.skipped[0].reason, "not an image that can be decoded");
+  EXPECT_EQ(report.skipped[1].image_name, "3.png");
+  EXPECT_EQ(report.skipped[1].reason, "cannot be read");
+  EXPECT_EQ(report.skipped[2].image_name, "4.png");
   fs::remove(dir_ / "images/1.png");
   fs::remove(options_.database_path);
-  ExpectThrows<InputError>([&] { ImportMarkers(options_); }, {"none of 1 images", "2.png"});
+  ExpectThrows<InputError>([&] { ImportMarkers(options_); }, {"none of 3 images", "2.png"});
   EXPECT_FALSE(fs::exists(options_.database_path));
 }
 

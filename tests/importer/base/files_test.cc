@@ -169,7 +169,7 @@ TEST(Files, ListingsFollowLinksAndLeaveHiddenFilesOut) {
   fs::create_symlink(dir / "elsewhere", dir / "photos/a");
   fs::create_symlink(dir / "nowhere", dir / "photos/dangling");
   EXPECT_THAT(FilesBelow(dir / "photos"),
-              UnorderedElementsAre(dir / "photos/a/c", dir / "photos/b"));
+              UnorderedElementsAre(dir / "photos/a/c", dir / "photos/b", dir / "photos/dangling"));
   EXPECT_THAT(FolderEntries(dir / "photos"),
               ElementsAre(dir / "photos/.hidden", dir / "photos/.thumbnails", dir / "photos/a",
                           dir / "photos/b", dir / "photos/dangling"));
@@ -205,7 +205,8 @@ TEST(Files, LinksInCirclesAreFollowedOnce) {
   fs::create_symlink(dir / "photos", dir / "photos/day1/up");
   fs::create_symlink("day1", dir / "photos/again");
   fs::create_symlink("itself", dir / "photos/itself");
-  EXPECT_THAT(FilesBelow(dir / "photos"), ElementsAre(dir / "photos/day1/a"));
+  EXPECT_THAT(FilesBelow(dir / "photos"),
+              UnorderedElementsAre(dir / "photos/day1/a", dir / "photos/itself"));
 }
 
 TEST(Files, AnEditOfACloneLeavesTheOriginal) {

@@ -55,12 +55,13 @@ code=0
 [[ $code -eq 1 ]] || fail "exit $code of the local run: $(tail here.txt)"
 
 start_slurm "$folder/slurm" >slurm.txt 2>&1 || { cat slurm.txt; exit 1; }
-# The program, which cancels its own job in the first reconstruction.
+# The program, which cancels its own job in the first reconstruction. The signal may reach sleep before
+# this script, which must not pass for a job that went on.
 cat >cancelled_once <<BASH
 #!/usr/bin/env bash
 if [[ "\$1" == automatic_reconstructor && "\$2" != --help_all ]] && mkdir '$folder/cancelled' 2>/dev/null; then
   scancel "\$SLURM_JOB_ID"
-  sleep 60
+  sleep 60 || exit 1
   touch '$folder/survived'
 fi
 exec '$VELAMAP' "\$@"
