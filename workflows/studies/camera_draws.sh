@@ -7,7 +7,8 @@
 # Writes camera_draws.csv, one row per draw with its conditions, the errors of the corners
 # (clip_corners) and the errors of the shape, and camera_draws_summary.csv, one row per class. Rows
 # that camera_draws.csv already holds are kept, so that an interrupted study can continue; remove
-# the file to measure another version of velamap. Clips are removed after their draw.
+# the file to measure another version of velamap. Clips are removed after their draw. VELAMAP_JOBS
+# (default: one for each processor) draws run at once.
 # KEEP="12 31" runs these draws again and keeps their clips and results in runs/camera_draws.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -90,26 +91,38 @@ result_row() {
   printf '\n'
 }
 
+# measure_draw NAME CONDITIONS OPTION...: runs a draw and appends its row.
+measure_draw() {
+  local start=$SECONDS
+  run_draw "$1" "${@:3}"
+  echo "$2,$(result_row "$1" $((SECONDS - start)))" >>"$csv"
+  if [[ " ${KEEP:-} " != *" ${1#draw_} "* ]]; then rm -rf "${runs:?}/$1"; fi
+}
+
 header="${draws[0]},$(IFS=,; echo "${results[*]}")"
 known="$work/camera_draws.known"
 : >"$known"
 if [[ -f "$csv" && "$(head -n 1 "$csv")" == "$header" ]]; then cp "$csv" "$known"; fi
 echo "$header" >"$csv"
+# Each draw has one thread, so that its result does not depend on how many run at once.
+num_running=0
 for conditions in "${draws[@]:1}"; do
   IFS=, read -ra values <<<"$conditions"
-  name="draw_${values[0]}"
-  keep=0
-  if [[ " ${KEEP:-} " == *" ${values[0]} "* ]]; then keep=1; fi
-  if [[ $keep -eq 0 ]] && grep -F -m 1 -- "$conditions," "$known" >>"$csv"; then continue; fi
+  if [[ " ${KEEP:-} " != *" ${values[0]} "* ]] && grep -F -m 1 -- "$conditions," "$known" >>"$csv"; then continue; fi
   options=()
   for ((i = 3; i < ${#names[@]}; i++)); do
     if [[ -n "${values[i]:-}" ]]; then options+=("--${names[i]}" "${values[i]}"); fi
   done
-  start=$SECONDS
-  run_draw "$name" "${options[@]}"
-  echo "$conditions,$(result_row "$name" $((SECONDS - start)))" >>"$csv"
-  if [[ $keep -eq 0 ]]; then rm -rf "${runs:?}/$name"; fi
+  if [[ $num_running -eq ${VELAMAP_JOBS:-$(nproc)} ]]; then
+    wait -n
+    num_running=$((num_running - 1))
+  fi
+  measure_draw "draw_${values[0]}" "$conditions" "${options[@]}" &
+  num_running=$((num_running + 1))
 done
+for ((i = 0; i < num_running; i++)); do wait -n; done
 rm "$known"
+{ echo "$header"; sed 1d "$csv" | sort -t, -k1,1n; } >"$csv.sorted"
+mv "$csv.sorted" "$csv"
 awk -f "$folder/summarize_draws.awk" "$csv" >"$work/camera_draws_summary.csv"
 finish "$work/camera_draws_summary.csv"
