@@ -54,6 +54,7 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
 
 BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads) {
   constexpr double kProbeBlurs = -0.1, kMaxShiftBlurs = 0.5, kMinSlopePx = 0.05;
+  constexpr double kSigmaOfShift = 1.25;  // what moves outlines moves inner edges as well, a little
   const EdgeShift edges = InnerEdgeShift(state);
   const FormationState probe = WithOutlineShift(kProbeBlurs, state, num_threads);
   const double slope_px =
@@ -73,7 +74,7 @@ BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads)
       "+- {:.3f} blur sigmas, corners {:+.4f} px outwards",
       edges.corners_outwards_px, edges.corners_sigma_px, shift, sigma, inset_px * shift);
   return {WithOutlineShift(shift, state, num_threads),
-          std::abs(inset_px) * std::hypot(shift != 0 ? 0.5 * sigma : 0.0, shift)};
+          std::abs(inset_px) * std::hypot(shift != 0 ? 0.5 * sigma : 0.0, kSigmaOfShift * shift)};
 }
 
 }  // namespace velamap

@@ -22,7 +22,8 @@ struct CornerErrors {
   double common_inset_px = 0.0;
 };
 
-// `formation` comes from the database; nothing where that has none.
+// `formation` comes from the database; nothing where that has none, which leaves corners of unknown
+// kind.
 CornerErrors CornerErrorsOf(const std::vector<DatabaseImage>& images,
                             const std::optional<FormationEstimate>& formation = std::nullopt);
 

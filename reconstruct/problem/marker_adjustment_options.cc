@@ -32,8 +32,8 @@ OptionGroup DescribeOptions(MarkerAdjustmentOptions* options) {
            {"MarkerAdjustment.rigid_flatness", &options->rigid_flatness, "fraction",
             "the same on parts that the layout calls rigid", FromTo(0, 1)},
            {"MarkerAdjustment.inset_sigma", &options->inset_sigma_px, "px",
-            "1 sigma of an inset that all corners share (seen too far inside their marker); widens "
-            "the scale's sigma",
+            "1 sigma of an inset that all corners share (seen too far inside their marker), beyond "
+            "what the importer leaves open; widens the scale's sigma",
             FromTo(0, 10)},
            {"MarkerAdjustment.estimate_inset", &options->estimate_inset, "0|1",
             "estimate the inset from the images"},

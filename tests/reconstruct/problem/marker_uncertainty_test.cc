@@ -72,6 +72,7 @@ TEST(MakeUncertainty, IsThatOfTheDenseInverse) {
   options.refine_focal_length = true;
   options.common_print_tolerance = 0.003;
   options.estimate_inset = true;
+  options.inset_sigma_px = 0.01;
   MarkerState state = MakeMarkerState(model, scene.layout);
   MarkerWeights weights = WeightsWithoutLoss();
   weights.frees_rolling_shutter = true;
