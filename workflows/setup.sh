@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that velamap is built with. As root, or through sudo.
-# usage: workflows/setup.sh [--with-tests]
+# usage: workflows/setup.sh [--with-clang | --with-tests]
+# --with-clang: also what the preset sanitize is built with. --with-tests: also all that tests run.
 set -euo pipefail
 
 packages=(
@@ -14,19 +15,22 @@ packages=(
   libocct-data-exchange-dev libassimp-dev libjs-three libjs-chart.js
   libgtest-dev libgmock-dev libbenchmark-dev
 )
+clang_packages=(
+  clang libclang-rt-dev llvm clang-format-14  # llvm: names functions in the sanitizers' reports
+  lld  # links the tests five times as fast
+)
 test_packages=(
   xvfb xauth imagemagick ffmpeg xdotool gnuplot-nox chromium poppler-utils librsvg2-bin
   python3-vtk9 gmsh  # readers of what others mesh
-  clang libclang-rt-dev llvm clang-format-14  # llvm: names functions in the sanitizers' reports
-  lld  # links the tests five times as fast
   man-db zsh mmdebstrap  # pages and completions that are installed; package.sh --try
   snakemake  # workflows/dataset; its test on Slurm wants slurmctld slurmd slurm-client munge, too
 )
 
 case "${1:-}" in
   "") ;;
-  --with-tests) packages+=("${test_packages[@]}") ;;
-  *) echo "usage: $0 [--with-tests]" >&2; exit 2 ;;
+  --with-clang) packages+=("${clang_packages[@]}") ;;
+  --with-tests) packages+=("${clang_packages[@]}" "${test_packages[@]}") ;;
+  *) echo "usage: $0 [--with-clang | --with-tests]" >&2; exit 2 ;;
 esac
 
 is_installed() {
