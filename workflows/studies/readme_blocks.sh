@@ -389,6 +389,24 @@ block_rolling_shutter() {
   printf '\nRMS distances from the truth after a similarity. From %s.\n' "$(made_by rolling_shutter.csv)"
 }
 
+block_camera_draws() {
+  echo "| clips | draws | scale error: mean, RMS, largest | its stated sigma | error / sigma: RMS, within 2 | RMS | after scaling | bias of the sides: mean, RMS |"
+  echo "|---|---|---|---|---|---|---|---|"
+  table camera_draws_summary.csv '
+    cell("class") == "all" || cell("curve") == "all" {
+      group = cell("curve") != "all" ? "curve" : cell("class") != "all" ? "class" : "all"
+      rows[group] = rows[group] sprintf("| %s | %d | %s, %s, %s %% | %s %% | %s, %.0f %% | %s mm | %s mm | %s, %s px |\n",
+        group == "all" ? "all of them" : cell(group), cell("num_draws"),
+        num(cell("scale_error_percent_mean"), "+2"), num(cell("scale_error_percent_rms"), 2),
+        num(cell("scale_error_percent_max"), "+2"), num(cell("scale_sigma_percent_mean"), 2),
+        num(cell("error_over_sigma_rms"), 2), cell("within_2_sigma_percent"),
+        num(cell("distance_mm_rms"), 2), num(cell("distance_after_scaling_mm_rms"), 2),
+        num(cell("side_bias_px_mean"), "+2"), num(cell("side_bias_px_rms"), 2))
+    }
+    END { printf "%s", rows["class"] rows["curve"] rows["all"] }'
+  printf '\nFrom %s.\n' "$(made_by camera_draws_summary.csv)"
+}
+
 block_board_motions() {
   echo "| motion | distance, mm | plane, mm | normal, degrees | tangent, degrees | scale, % | RMS to the truth, mm |"
   echo "|---|---|---|---|---|---|---|"
