@@ -10,11 +10,11 @@ CornerErrors CornerErrorsOf(const std::vector<DatabaseImage>& images,
                             const std::optional<FormationEstimate>& formation) {
   // Corners of the fallback estimator have about this many times the default sigma.
   constexpr double kFallbackFactor = 5.0;
-  constexpr double kUnknownInset_px = 0.01;
+  constexpr double kInsetWithoutEstimate_px = 0.01;
   const double fallback_px = kFallbackFactor * MarkerAdjustmentOptions{}.corner_sigma_px;
   CornerErrors errors;
   errors.velocities_px_s = CornerVelocitiesOf(images);
-  errors.common_inset_px = formation ? formation->inset_sigma_px : kUnknownInset_px;
+  errors.common_inset_px = formation ? formation->inset_sigma_px : kInsetWithoutEstimate_px;
   for (const DatabaseImage& image : images) {
     std::vector<double>& sigmas_px = errors.sigmas_px[image.image_id];
     for (const MarkerDetection& marker : image.detections.markers) {

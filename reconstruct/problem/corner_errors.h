@@ -18,12 +18,11 @@ struct CornerErrors {
   // They determine how far a rolling shutter displaces the corners.
   CornerVelocities velocities_px_s;
   // 1 sigma of the distance by which all corners are seen too far inside their markers, px:
-  // FormationEstimate::inset_sigma_px.
+  // FormationEstimate::inset_sigma_px, or 0.01 where nothing was estimated.
   double common_inset_px = 0.0;
 };
 
-// `formation` comes from the database; nothing where that has none, which leaves corners of unknown
-// kind.
+// `formation` comes from the database; nothing where that has none.
 CornerErrors CornerErrorsOf(const std::vector<DatabaseImage>& images,
                             const std::optional<FormationEstimate>& formation = std::nullopt);
 

@@ -91,12 +91,15 @@ result_row() {
   printf '\n'
 }
 
-# measure_draw NAME CONDITIONS OPTION...: runs a draw and appends its row.
+# is_kept DRAW: whether KEEP names a draw.
+is_kept() { [[ " ${KEEP:-} " == *" $1 "* ]]; }
+
+# measure_draw DRAW CONDITIONS OPTION...: runs a draw and appends its row.
 measure_draw() {
-  local start=$SECONDS
-  run_draw "$1" "${@:3}"
-  echo "$2,$(result_row "$1" $((SECONDS - start)))" >>"$csv"
-  if [[ " ${KEEP:-} " != *" ${1#draw_} "* ]]; then rm -rf "${runs:?}/$1"; fi
+  local start=$SECONDS name="draw_$1"
+  run_draw "$name" "${@:3}"
+  echo "$2,$(result_row "$name" $((SECONDS - start)))" >>"$csv"
+  is_kept "$1" || rm -rf "${runs:?}/$name"
 }
 
 header="${draws[0]},$(IFS=,; echo "${results[*]}")"
@@ -108,7 +111,7 @@ echo "$header" >"$csv"
 num_running=0
 for conditions in "${draws[@]:1}"; do
   IFS=, read -ra values <<<"$conditions"
-  if [[ " ${KEEP:-} " != *" ${values[0]} "* ]] && grep -F -m 1 -- "$conditions," "$known" >>"$csv"; then continue; fi
+  if ! is_kept "${values[0]}" && grep -F -m 1 -- "$conditions," "$known" >>"$csv"; then continue; fi
   options=()
   for ((i = 3; i < ${#names[@]}; i++)); do
     if [[ -n "${values[i]:-}" ]]; then options+=("--${names[i]}" "${values[i]}"); fi
@@ -117,7 +120,7 @@ for conditions in "${draws[@]:1}"; do
     wait -n
     num_running=$((num_running - 1))
   fi
-  measure_draw "draw_${values[0]}" "$conditions" "${options[@]}" &
+  measure_draw "${values[0]}" "$conditions" "${options[@]}" &
   num_running=$((num_running + 1))
 done
 for ((i = 0; i < num_running; i++)); do wait -n; done

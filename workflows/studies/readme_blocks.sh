@@ -389,6 +389,8 @@ block_rolling_shutter() {
   printf '\nRMS distances from the truth after a similarity. From %s.\n' "$(made_by rolling_shutter.csv)"
 }
 
+# --- camera_draws.sh ---
+
 block_camera_draws() {
   echo "| clips | draws | scale error: mean, RMS, largest | its stated sigma | error / sigma: RMS, within 2 | RMS | after scaling | bias of the sides: mean, RMS |"
   echo "|---|---|---|---|---|---|---|---|"
@@ -406,6 +408,8 @@ block_camera_draws() {
     END { printf "%s", rows["class"] rows["curve"] rows["all"] }'
   printf '\nFrom %s.\n' "$(made_by camera_draws_summary.csv)"
 }
+
+# --- board_motions.sh ---
 
 block_board_motions() {
   echo "| motion | distance, mm | plane, mm | normal, degrees | tangent, degrees | scale, % | RMS to the truth, mm |"
