@@ -116,8 +116,13 @@ std::optional<Fit> FitSides(const cv::Mat& gray, const QuadCorners& corners_px, 
   return fit;
 }
 
-// A fit that moves a corner further has failed.
-double MaxAllowedShiftPx(double cell_px) { return std::max(2.0, 0.8 * cell_px); }
+// A fit that moves a corner further has failed. Where cells are small, blur and a narrow quiet zone
+// before a dark ground draw the outline that the search found inwards by up to two pixels a side.
+// The fit of the whole marker finds its way from there, because it knows all cells; sides do not.
+double MaxAllowedShiftPx(double cell_px, double of_small_cells_px) {
+  return std::max(of_small_cells_px, 0.8 * cell_px);
+}
+constexpr double kMaxSideShiftPx = 2.0, kMaxPatternShiftPx = 4.0;
 
 // The part of an image around a marker, with grey values in proportion to light.
 struct LightPart {
@@ -160,7 +165,8 @@ std::optional<RefinedCorners> RefineCornersByEdges(const cv::Mat& gray,
     if (!next) return std::nullopt;
     fit = *next;
   }
-  if (MaxCornerShift(fit.corners.corners_px, corners_px) > MaxAllowedShiftPx(cell_px)) {
+  if (MaxCornerShift(fit.corners.corners_px, corners_px) >
+      MaxAllowedShiftPx(cell_px, kMaxSideShiftPx)) {
     return std::nullopt;
   }
   return fit.corners;
@@ -172,7 +178,8 @@ std::optional<RefinedCorners> RefineCorners(const cv::Mat& gray, const QuadCorne
   const double cell_px = QuadMeanSide(corners_px) / cells.rows;
   QuadCorners start_px = AlignSides(gray, corners_px, {cells}).value_or(corners_px);
   const auto fitted = FitPattern(gray, start_px, cells, formation);
-  if (fitted && MaxCornerShift(fitted->corners_px, corners_px) <= MaxAllowedShiftPx(cell_px)) {
+  if (fitted && MaxCornerShift(fitted->corners_px, corners_px) <=
+                    MaxAllowedShiftPx(cell_px, kMaxPatternShiftPx)) {
     return fitted;
   }
   if (formation.tone().IsLinear()) return RefineCornersByEdges(gray, start_px, cells.rows);

@@ -98,6 +98,43 @@ TEST(RefineCorners, ManyCellsWideQuietZoneContrastAndLight) {
   }
 }
 
+// Of cells of 2 px with a narrow quiet zone before dark cloth, the search finds an outline that
+// lies this far inside.
+TEST(RefineCorners, OutlinesFoundFarInsideSmallMarkersGrow) {
+  for (const double quiet_zone_cells : {0.4, 0.6}) {
+    for (const double found_scale : {0.88, 0.82}) {
+      SCOPED_TRACE(testing::Message() << quiet_zone_cells << " cells, " << found_scale);
+      MarkerGridOptions options;
+      options.dictionary = "DICT_4X4_50";
+      options.side_px = 14;
+      options.max_tilt_deg = 35;
+      options.rendering.blur_sigma_px = 0.9;
+      options.rendering.quiet_zone_cells = quiet_zone_cells;
+      options.rendering.background = 50;
+      options.rendering.noise_sigma = 1.0;
+      MarkerGrid grid = MakeMarkerGrid(options);
+      for (std::size_t k = 0; k < grid.truth.size(); ++k) {
+        const Eigen::Vector2d center_px = UnitSquareMap(grid.truth[k]).ToImage(0.5, 0.5);
+        for (std::size_t i = 0; i < kNumCorners; ++i) {
+          grid.starts[k][i] =
+              (center_px + found_scale * (grid.truth[k][i] - center_px)).array().round();
+        }
+      }
+      ImageFormationParameters parameters;
+      parameters.quiet_zone_cells = quiet_zone_cells;
+      parameters.quiet_zone_sigma_cells = 0.1;
+      const ImageFormation formation(parameters);
+      const Quality fitted =
+          Measure(grid, [&](const cv::Mat& gray, const QuadPx& start, const cv::Mat& cells) {
+            return RefineCorners(gray, start, cells, formation);
+          });
+      EXPECT_LE(fitted.num_failed, fitted.num_fitted / 50);
+      EXPECT_LT(std::abs(fitted.bias_px), 0.05);
+      EXPECT_LT(fitted.rms_px, 0.15);
+    }
+  }
+}
+
 // From the left to the right side of the truth, at these heights (0 top, 1 bottom).
 void DrawRope(const QuadPx& truth, double left, double right, double gray, cv::Mat* image) {
   constexpr double kBeyond = 0.4;  // sides
