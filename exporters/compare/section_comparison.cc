@@ -78,6 +78,35 @@ void AddNotes(const SectionReport& report, const char* whose, std::vector<std::s
   for (const std::string& note : report.notes) notes->push_back(fmt::format("{}: {}", whose, note));
 }
 
+// The markers of the lines beyond the outermost ones that are whole in both shapes. With them,
+// chords of different lengths would be compared.
+std::set<int> MarkersBeyondCommonEnds(const MarkerShape& shape, const MarkerShape& reference,
+                                      const Layout& layout) {
+  const auto is_common = [&](int id) {
+    return FindWholeMarker(shape, id) != nullptr && FindWholeMarker(reference, id) != nullptr;
+  };
+  std::set<int> beyond;
+  for (const LayoutPart& part : layout.parts) {
+    for (const MarkerLine& line : part.horizontal) {
+      const std::vector<int>& ids = line.marker_ids;
+      if (std::count_if(ids.begin(), ids.end(), is_common) < SectionOptions().min_markers) continue;
+      beyond.insert(ids.begin(), std::find_if(ids.begin(), ids.end(), is_common));
+      beyond.insert(ids.rbegin(), std::find_if(ids.rbegin(), ids.rend(), is_common));
+    }
+  }
+  return beyond;
+}
+
+UncertainShape Without(const std::set<int>& marker_ids, UncertainShape uncertain) {
+  std::vector<ShapeMarker>& markers = uncertain.shape.markers;
+  markers.erase(std::remove_if(markers.begin(), markers.end(),
+                               [&](const ShapeMarker& marker) {
+                                 return marker_ids.count(marker.marker_id) > 0;
+                               }),
+                markers.end());
+  return uncertain;
+}
+
 SectionComparison Compare(const UncertainShape& shape, const UncertainShape& reference,
                           bool is_exact, const Alignment& alignment, const Layout& layout) {
   const PointCovariance* covariance =
@@ -88,9 +117,17 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
   SectionComparison comparison;
   comparison.frame_name = frame.name;
   comparison.frame_from_reference = frame.frame_from_shape;
-  comparison.of_reference = CutInFrame(frame.frame_from_shape, frame, reference, layout);
-  comparison.of_shape =
-      CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame, shape, layout);
+  const std::set<int> beyond = MarkersBeyondCommonEnds(shape.shape, reference.shape, layout);
+  comparison.of_reference =
+      CutInFrame(frame.frame_from_shape, frame, Without(beyond, reference), layout);
+  comparison.of_shape = CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame,
+                                   Without(beyond, shape), layout);
+  for (const Section& section : comparison.of_shape.sections) {
+    const std::string missing = MissingEndsText(section);
+    if (missing.empty()) continue;
+    comparison.notes.push_back(fmt::format("{} {}: compared over the markers of both, {}",
+                                           section.part, section.name, missing));
+  }
   AddNotes(comparison.of_shape, "shape", &comparison.notes);
   AddNotes(comparison.of_reference, "reference", &comparison.notes);
   std::set<std::string> parts_without_twist;

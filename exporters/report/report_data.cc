@@ -161,6 +161,7 @@ Json ProfileJson(const std::vector<Eigen::Vector2d>& profile_m) {
 
 Json JsonOf(const ReportSection& section) {
   Json json = {{"name", section.name}, {"height_m", section.height_m}};
+  if (!section.note.empty()) json["note"] = section.note;
   AddFigure("chord_m", "chord_sigma_m", section.chord_m, &json);
   AddFigure("camber_percent", "camber_sigma_percent", section.camber_percent, &json);
   AddFigure("draft_percent", "draft_sigma_percent", section.draft_percent, &json);

@@ -63,6 +63,7 @@ struct ReportFrame {
 
 struct ReportSection {
   std::string name;
+  std::string note;  // what the line lacks; can be empty
   double height_m = 0.0;
   std::optional<Estimate> chord_m, camber_percent, draft_percent, entry_deg, exit_deg, twist_deg,
       leech_twist_deg, girth_m;

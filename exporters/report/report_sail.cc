@@ -23,6 +23,7 @@ Estimate InPercent(const Estimate& share) {
 ReportSection MakeSection(const Section& section, bool has_parts) {
   ReportSection result;
   result.name = has_parts ? section.part + " " + section.name : section.name;
+  result.note = MissingEndsText(section);
   result.height_m = section.height_m;
   result.chord_m = section.chord_m;
   result.camber_percent = InPercent(section.camber);

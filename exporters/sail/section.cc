@@ -114,6 +114,12 @@ void AddMarkers(const PartContext& context, const LineCurve& line, Section* sect
         EvaluateCurve(line.fit.curve, line.fit.parameters[static_cast<Eigen::Index>(i)]));
     section->markers.push_back(marker);
   }
+  const std::vector<int>& of_line =
+      context.part.horizontal[static_cast<std::size_t>(line.place_in_layout)].marker_ids;
+  const auto first = std::find(of_line.begin(), of_line.end(), section->markers.front().marker_id);
+  const auto last = std::find(of_line.rbegin(), of_line.rend(), section->markers.back().marker_id);
+  section->num_missing_at_luff = static_cast<int>(first - of_line.begin());
+  section->num_missing_at_leech = static_cast<int>(last - of_line.rbegin());
 }
 
 // A number of a section minus the reference's.
@@ -202,6 +208,16 @@ SectionAxes AxesOf(const std::vector<LineCurve>& lines, const Eigen::Vector3d& u
 }
 
 }  // namespace
+
+std::string MissingEndsText(const Section& section) {
+  const int luff = section.num_missing_at_luff, leech = section.num_missing_at_leech;
+  if (luff + leech == 0) return "";
+  std::string text = fmt::format("{} marker{} missing at the ", luff > 0 ? luff : leech,
+                                 (luff > 0 ? luff : leech) == 1 ? "" : "s");
+  text += luff > 0 ? "luff" : "leech";
+  if (luff > 0 && leech > 0) text += fmt::format(" and {} at the leech", leech);
+  return text;
+}
 
 OptionGroup DescribeOptions(SectionOptions* options) {
   const auto set_heights = [options](const std::string& text, const std::string& option) {

@@ -67,7 +67,13 @@ struct Section {
   // Empty and 0 for a height.
   std::vector<SectionMarker> markers;
   double num_effective_parameters = 0.0;
+  // Markers of the layout's line before the first and after the last whole one. Without them, all
+  // numbers are those of a shorter chord.
+  int num_missing_at_luff = 0, num_missing_at_leech = 0;
 };
+
+// "3 markers missing at the luff", or nothing for a section of the whole line.
+std::string MissingEndsText(const Section& section);
 
 struct MissingSection {
   std::string part;

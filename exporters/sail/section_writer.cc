@@ -67,12 +67,14 @@ void WriteSectionRecord(const Section& section, CsvWriter* csv) {
     csv->AddField(estimate ? estimate->sigma : std::nullopt);
   }
   csv->AddField(section.is_line ? std::optional(ResidualRmsMm(section)) : std::nullopt);
+  csv->AddField(section.is_line ? std::optional(section.num_missing_at_luff) : std::nullopt);
+  csv->AddField(section.is_line ? std::optional(section.num_missing_at_leech) : std::nullopt);
   csv->AddField("");  // reason
   csv->EndRecord();
 }
 
 void WriteMissingRecord(const MissingSection& missing, CsvWriter* csv) {
-  constexpr std::size_t kNumEmpty = 2 + 2 * std::tuple_size_v<KeyedEstimates> + 1;
+  constexpr std::size_t kNumEmpty = 2 + 2 * std::tuple_size_v<KeyedEstimates> + 3;
   csv->AddField(missing.part);
   csv->AddField(missing.name);
   for (std::size_t i = 0; i < kNumEmpty; ++i) csv->AddField("");
@@ -89,8 +91,10 @@ void WriteSectionsCsv(const SectionReport& report, std::ostream& out) {
     csv.AddField(key);
     csv.AddField(fmt::format("sigma_{}", key));
   }
-  csv.AddField("residual_rms_mm");
-  csv.AddField("reason");
+  for (const char* key :
+       {"residual_rms_mm", "num_missing_at_luff", "num_missing_at_leech", "reason"}) {
+    csv.AddField(key);
+  }
   csv.EndRecord();
   for (const Section& section : report.sections) WriteSectionRecord(section, &csv);
   for (const MissingSection& missing : report.missing) WriteMissingRecord(missing, &csv);
@@ -109,6 +113,8 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
     if (section.is_line) {
       object["num_effective_parameters"] = section.num_effective_parameters;
       object["residual_rms_mm"] = ResidualRmsMm(section);
+      object["num_missing_at_luff"] = section.num_missing_at_luff;
+      object["num_missing_at_leech"] = section.num_missing_at_leech;
       object["markers"] = Json::array();
       for (const SectionMarker& marker : section.markers) {
         object["markers"].push_back(

@@ -79,7 +79,10 @@ void PrintSections(const SectionReport& report, std::ostream& out) {
                    section.height_m, 100.0 * section.camber.value);
     if (section.draft_position)
       WriteFormatted(out, " at {:.0f} %", 100.0 * section.draft_position->value);
-    WriteFormatted(out, ", twist {:.1f} deg\n", section.twist_deg.value);
+    WriteFormatted(out, ", twist {:.1f} deg", section.twist_deg.value);
+    const std::string missing = MissingEndsText(section);
+    if (!missing.empty()) WriteFormatted(out, "; of a part of the line: {}", missing);
+    out << '\n';
   }
   for (const RigNumbers& rig : report.rigs) {
     const std::string text = RigText(rig);
@@ -146,6 +149,8 @@ MetricTable SectionTable(const std::vector<Section>& sections) {
     add("twist", "deg", 1.0, section.twist_deg);
     add("leech_twist", "deg", 1.0, section.leech_twist_deg);
     add("girth", "m", 1.0, section.girth_m);
+    row.push_back({"num_missing_at_luff", section.num_missing_at_luff});
+    row.push_back({"num_missing_at_leech", section.num_missing_at_leech});
     table.rows.push_back(std::move(row));
   }
   return table;

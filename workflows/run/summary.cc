@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "exporters/datum/known_points_report.h"
 #include "exporters/scale/scale_audit_report.h"
@@ -175,6 +176,16 @@ void WarnOfMissingSections(const SectionReport& sections) {
     LogMessage(missing.is_by_layout ? LogLevel::kInfo : LogLevel::kWarn, "no section {} of {}: {}",
                missing.name, missing.part, missing.reason);
   }
+  std::vector<std::string> of_a_part;
+  for (const Section& section : sections.sections) {
+    const std::string missing = MissingEndsText(section);
+    if (!missing.empty()) {
+      of_a_part.push_back(fmt::format("{} of {} ({})", section.name, section.part, missing));
+    }
+  }
+  if (of_a_part.empty()) return;
+  LogWarning("sections of a part of their line, with another camber and twist than the whole: {}",
+             fmt::join(of_a_part, ", "));
 }
 
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {

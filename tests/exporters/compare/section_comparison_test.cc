@@ -68,6 +68,20 @@ TEST(ComparisonSections, MoreCamberInOneLineShowsThereAndOnlyThere) {
   EXPECT_FALSE(Find(comparison, "h2", "camber_percent").IsSignificant());
 }
 
+TEST(ComparisonSections, EndsThatOneLacksAreLeftOutOfBoth) {
+  const MarkerShape whole = BoatShape(0.001);
+  MarkerShape part = whole;
+  part.markers.erase(std::remove_if(part.markers.begin(), part.markers.end(),
+                                    [](const ShapeMarker& m) { return m.marker_id == 31; }),
+                     part.markers.end());
+  const SectionComparison comparison = Compare(part, whole);
+  EXPECT_NEAR(Find(comparison, "h3", "camber_percent").Difference(), 0, 1e-6);
+  EXPECT_NEAR(Find(comparison, "h3", "chord_mm").Difference(), 0, 1e-6);
+  EXPECT_THAT(comparison.notes, testing::Contains(HasSubstr(
+                                    "h3: compared over the markers of both, 1 marker missing at "
+                                    "the luff")));
+}
+
 TEST(ComparisonSections, SigmaIsOfBothTogether) {
   const MarkerShape a = BoatShape(0.001), b = BoatShape(0.003);
   const double both = *Find(Compare(a, b), "h2", "camber_percent").sigma;

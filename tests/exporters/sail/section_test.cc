@@ -55,6 +55,18 @@ TEST(Section, CircularArcsGiveTheirCamberAnglesAndTwist) {
   }
 }
 
+TEST(Section, SaysWhichEndsOfItsLineAreMissing) {
+  Sail sail = ExampleSail();
+  for (const int id : {100, 111, 200, 201, 302, 311}) RemoveMarker(id, &sail.shape);
+  const SectionReport report = SectionsOf(sail);
+  ASSERT_EQ(report.sections.size(), 3u);
+  EXPECT_EQ(MissingEndsText(report.sections[0]), "1 marker missing at the luff and 1 at the leech");
+  EXPECT_EQ(MissingEndsText(report.sections[1]), "2 markers missing at the luff");
+  EXPECT_EQ(MissingEndsText(report.sections[2]), "1 marker missing at the leech");
+  EXPECT_LT(report.sections[1].camber.value, 0.095);  // of the whole line: 0.10
+  EXPECT_EQ(MissingEndsText(SectionsOf(ExampleSail()).sections[0]), "");
+}
+
 TEST(Section, NacaCamberLineGivesDraftPositionAndUnequalAngles) {
   const double camber = 0.12, position = 0.4;
   const SectionReport report = SectionsOf(MakeSailOfLines(
