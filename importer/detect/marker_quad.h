@@ -13,6 +13,7 @@ namespace velamap {
 struct MarkerQuad {
   int marker_id = 0;
   QuadCorners corners_px;
+  bool is_second_look = false;  // whether its code was read only in an enlarged picture
 };
 
 using QuadById = std::map<int, QuadCorners>;

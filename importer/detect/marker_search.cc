@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <opencv2/aruco.hpp>
@@ -9,6 +10,7 @@
 
 #include "importer/base/error.h"
 #include "importer/detect/interpolate.h"
+#include "importer/detect/second_look.h"
 
 namespace velamap {
 namespace {
@@ -57,6 +59,11 @@ cv::Rect Surroundings(const QuadCorners& corners, int reach_px) {
   return {top_left, bottom_right};
 }
 
+cv::Rect Grown(const cv::Rect& rect, int by_px) {
+  const cv::Point by(by_px, by_px);
+  return {rect.tl() - by, rect.br() + by};
+}
+
 bool Contains(const cv::Rect& outer, const cv::Rect& inner) { return (outer & inner) == inner; }
 
 // Whether the outline is darker on its inside, as that of a marker is. The edge of its paper on a
@@ -78,28 +85,122 @@ bool IsDarkInside(const cv::Mat& gray, const std::vector<cv::Point2f>& outline_p
   return outside_minus_inside > 0;
 }
 
-void SearchRegion(const cv::Mat& gray, const cv::Rect& region, const Dictionary& dictionary,
-                  int border_bits, const ArucoDetectionOptions& options,
-                  std::vector<MarkerQuad>* quads) {
-  cv::Mat dark_on_light = gray(region);
-  if (options.inverted) {
-    cv::Mat inverted;  // a new one, so that the image of the caller does not change
-    cv::bitwise_not(dark_on_light, inverted);
-    dark_on_light = inverted;
-  }
-  std::vector<std::vector<cv::Point2f>> corners;
+// What cv::aruco finds in a picture of dark markers on light paper.
+struct Found {
   std::vector<int> ids;
-  cv::aruco::detectMarkers(dark_on_light, dictionary.aruco, corners, ids,
-                           MakeParameters(border_bits, options, std::max(gray.cols, gray.rows),
-                                          std::max(region.width, region.height)));
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    if (!IsDarkInside(dark_on_light, corners[i])) continue;
+  std::vector<Outline> read, rejected;
+};
+
+Found Detect(const cv::Mat& dark_on_light, const Dictionary& dictionary,
+             const cv::Ptr<cv::aruco::DetectorParameters>& parameters) {
+  Found found;
+  cv::aruco::detectMarkers(dark_on_light, dictionary.aruco, found.read, found.ids, parameters,
+                           found.rejected);
+  return found;
+}
+
+// An image with dark markers on light paper, and what to search in it.
+struct Search {
+  cv::Mat dark_on_light;
+  const Dictionary& dictionary;
+  int border_bits;
+  const ArucoDetectionOptions& options;
+
+  cv::Rect Image() const { return {{}, dark_on_light.size()}; }
+};
+
+void AddQuads(const Search& search, const Found& found, bool is_second_look,
+              std::vector<MarkerQuad>* quads) {
+  for (std::size_t i = 0; i < found.ids.size(); ++i) {
+    if (!IsDarkInside(search.dark_on_light, found.read[i])) continue;
     MarkerQuad quad;
-    quad.marker_id = ids[i];
+    quad.marker_id = found.ids[i];
+    quad.is_second_look = is_second_look;
     for (int c = 0; c < kNumCorners; ++c)
-      quad.corners_px[c] = {corners[i][c].x + region.x, corners[i][c].y + region.y};
+      quad.corners_px[c] = {found.read[i][c].x, found.read[i][c].y};
     quads->push_back(quad);
   }
+}
+
+// Searches around an outline whose code could not be read.
+void LookAgain(const Search& search, const cv::Rect& part, std::vector<MarkerQuad>* quads) {
+  const int image_size_px = std::max(search.dark_on_light.cols, search.dark_on_light.rows);
+  Found found =
+      Detect(EnlargedAndSharpened(search.dark_on_light(part)), search.dictionary,
+             MakeParameters(search.border_bits, search.options, kEnlargement * image_size_px,
+                            kEnlargement * std::max(part.width, part.height)));
+  for (Outline& outline_px : found.read) {
+    for (cv::Point2f& corner : outline_px) {
+      corner = InOriginal(corner) + cv::Point2f(part.tl());
+    }
+  }
+  AddQuads(search, found, true, quads);
+}
+
+// Leaves the places of markers to those whose code was read at the first look. Small letters and
+// ornaments, too, look like markers once they are enlarged.
+void RemoveSecondLooksOfRead(std::vector<MarkerQuad>* quads) {
+  std::set<int> read;
+  for (const MarkerQuad& quad : *quads) {
+    if (!quad.is_second_look) read.insert(quad.marker_id);
+  }
+  quads->erase(std::remove_if(quads->begin(), quads->end(),
+                              [&](const MarkerQuad& quad) {
+                                return quad.is_second_look && read.count(quad.marker_id) > 0;
+                              }),
+               quads->end());
+}
+
+void SearchRegion(const Search& search, const cv::Rect& region, bool looks_again,
+                  std::vector<MarkerQuad>* quads) {
+  const int image_size_px = std::max(search.dark_on_light.cols, search.dark_on_light.rows);
+  Found found = Detect(search.dark_on_light(region), search.dictionary,
+                       MakeParameters(search.border_bits, search.options, image_size_px,
+                                      std::max(region.width, region.height)));
+  for (std::vector<Outline>* outlines : {&found.read, &found.rejected}) {
+    for (Outline& outline_px : *outlines) {
+      for (cv::Point2f& corner : outline_px) corner += cv::Point2f(region.tl());
+    }
+  }
+  AddQuads(search, found, false, quads);
+  if (!looks_again) return;
+  const int num_cells = search.dictionary.aruco->markerSize + 2 * search.border_bits;
+  for (const Outline& outline_px : UnreadOutlines(found.read, found.rejected, num_cells)) {
+    const cv::Rect around = Grown(cv::boundingRect(outline_px), kSearchReachPx) & search.Image();
+    // What the border of the region cuts belongs to another region.
+    if (Contains(region, around)) LookAgain(search, around, quads);
+  }
+}
+
+// Searches the regions and, where they cut into the pixels that a marker depends on, around it.
+std::vector<MarkerQuad> SearchRegions(const Search& search, const std::vector<cv::Rect>& regions,
+                                      bool looks_again) {
+  std::vector<MarkerQuad> quads;
+  for (const cv::Rect& region : regions) {
+    std::vector<MarkerQuad> found;
+    SearchRegion(search, region, looks_again, &found);
+    for (const MarkerQuad& quad : found) {
+      if (Contains(region, Surroundings(quad.corners_px, kSearchReachPx) & search.Image())) {
+        quads.push_back(quad);
+      } else {
+        SearchRegion(search, Surroundings(quad.corners_px, 2 * kSearchReachPx) & search.Image(),
+                     looks_again, &quads);
+      }
+    }
+  }
+  RemoveSecondLooksOfRead(&quads);
+  return RemoveNested(std::move(quads));
+}
+
+Search MakeSearch(const cv::Mat& gray, const Dictionary& dictionary, int border_bits,
+                  const ArucoDetectionOptions& options) {
+  VELAMAP_CHECK(gray.type() == CV_8UC1);
+  Search search{gray, dictionary, border_bits, options};
+  if (options.inverted) {
+    search.dark_on_light = cv::Mat();  // a new one, so that the image of the caller does not change
+    cv::bitwise_not(gray, search.dark_on_light);
+  }
+  return search;
 }
 
 }  // namespace
@@ -145,7 +246,8 @@ std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Diction
                                               const ArucoDetectionOptions& options) {
   cv::Mat half;
   cv::resize(gray, half, {}, 0.5, 0.5, cv::INTER_AREA);
-  std::vector<MarkerQuad> quads = SearchMarkers(half, dictionary, border_bits, options);
+  const Search search = MakeSearch(half, dictionary, border_bits, options);
+  std::vector<MarkerQuad> quads = SearchRegions(search, {search.Image()}, false);
   for (MarkerQuad& quad : quads) {
     for (Eigen::Vector2d& corner : quad.corners_px) {
       corner = 2.0 * corner + Eigen::Vector2d(0.5, 0.5);  // of pixel centres
@@ -157,23 +259,7 @@ std::vector<MarkerQuad> SearchMarkersCoarsely(const cv::Mat& gray, const Diction
 std::vector<MarkerQuad> SearchMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                       int border_bits, const ArucoDetectionOptions& options,
                                       const std::vector<cv::Rect>& regions) {
-  VELAMAP_CHECK(gray.type() == CV_8UC1);
-  const cv::Rect image(0, 0, gray.cols, gray.rows);
-  std::vector<MarkerQuad> quads;
-  for (const cv::Rect& region : regions) {
-    std::vector<MarkerQuad> found;
-    SearchRegion(gray, region, dictionary, border_bits, options, &found);
-    for (const MarkerQuad& quad : found) {
-      if (Contains(region, Surroundings(quad.corners_px, kSearchReachPx) & image)) {
-        quads.push_back(quad);
-      } else {
-        // The border cuts into the pixels that the search depends on.
-        SearchRegion(gray, Surroundings(quad.corners_px, 2 * kSearchReachPx) & image, dictionary,
-                     border_bits, options, &quads);
-      }
-    }
-  }
-  return RemoveNested(std::move(quads));
+  return SearchRegions(MakeSearch(gray, dictionary, border_bits, options), regions, true);
 }
 
 }  // namespace velamap

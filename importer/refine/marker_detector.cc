@@ -65,6 +65,8 @@ std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
       refined = RefineCorners(dark_on_light, quad.corners_px, cells, formation);
     }
     const bool is_fitted = refined.has_value();
+    // What only an enlarged picture shows has to look like the whole marker.
+    if (fits_edges && !is_fitted && quad.is_second_look) continue;
     if (!is_fitted) refined = {RefineSubpix(dark_on_light, quad.corners_px, cells.rows), {}};
     if (fits_edges) {
       const int num_saddles = RefineSaddleCorners(dark_on_light, cells, &refined->corners_px);

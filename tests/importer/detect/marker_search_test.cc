@@ -145,5 +145,70 @@ TEST(SearchMarkers, CodesOfSmallCellsAreRead) {
   EXPECT_GE(num_found, 0.9 * kNumDraws);
 }
 
+// Cells of 1.9 to 2.6 px, blurred by a third of a cell and more, whose codes only a second look reads.
+class BlurredSmallMarkers : public testing::Test {
+ protected:
+  PlacedMarkerInCam Draw(int marker_id) {
+    return TurnedAndSlanted(marker_id, kNumCells * Between(1.9, 2.6), Between(0, 2 * CV_PI),
+                            Between(0, 30) * kRadPerDeg);
+  }
+  cv::Mat Render(const PlacedMarkerInCam& marker) {
+    RenderOptions options;
+    options.seed = static_cast<std::uint32_t>(marker.marker_id);
+    options.background = Between(50, 120);
+    options.quiet_zone_cells = Between(0.6, 1.0);
+    options.blur_sigma_px = Between(0.8, 1.0);
+    options.noise_sigma = Between(0, 2);
+    return RenderMarkers(kTurnedCamera, {marker}, dictionary_, 1, options);
+  }
+  double Between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+
+  static constexpr int kNumCells = 6;
+  Dictionary dictionary_ = LoadDictionary("DICT_4X4_250");
+  std::mt19937 random_{TestSeed()};
+};
+
+TEST_F(BlurredSmallMarkers, AreFoundByASecondLook) {
+  constexpr int kNumDraws = 200;
+  int num_found = 0;
+  for (int draw = 0; draw < kNumDraws; ++draw) {
+    const PlacedMarkerInCam marker = Draw(draw);
+    const std::vector<MarkerQuad> found = SearchMarkers(Render(marker), dictionary_, 1, {});
+    if (found.empty()) continue;
+    ++num_found;
+    ASSERT_EQ(found.size(), 1u) << draw;
+    EXPECT_EQ(found[0].marker_id, draw);
+    for (int c = 0; c < kNumCorners; ++c) {
+      const Eigen::Vector2d corner_px =
+          kFocalLengthPx * marker.corners_in_cam[c].hnormalized() + Eigen::Vector2d(59.5, 59.5);
+      EXPECT_LT((found[0].corners_px[c] - corner_px).norm(), 3.0) << draw;
+    }
+  }
+  EXPECT_GE(num_found, 0.85 * kNumDraws);
+}
+
+// As a letter may look like a marker, once it is enlarged.
+TEST_F(BlurredSmallMarkers, TakeNoIdFromAMarkerThatIsReadAtOnce) {
+  int num_second_looks = 0;
+  for (int draw = 0; draw < 20; ++draw) {
+    const cv::Mat small = Render(Draw(draw));
+    const std::vector<MarkerQuad> alone = SearchMarkers(small, dictionary_, 1, {});
+    num_second_looks += !alone.empty() && alone[0].is_second_look;
+    RenderOptions sharp;
+    sharp.background = 200;
+    const cv::Mat large =
+        RenderMarkers(kTurnedCamera, {TurnedAndSlanted(draw, 50, 0.3, 0)}, dictionary_, 1, sharp);
+    cv::Mat both;
+    cv::hconcat(small, large, both);
+    const std::vector<MarkerQuad> found = SearchMarkers(both, dictionary_, 1, {});
+    if (!alone.empty() && !alone[0].is_second_look) continue;
+    ASSERT_EQ(found.size(), 1u) << draw;
+    EXPECT_GT(QuadMeanSide(found[0].corners_px), 40) << draw;
+  }
+  EXPECT_GT(num_second_looks, 5);
+}
+
 }  // namespace
 }  // namespace velamap

@@ -1,0 +1,27 @@
+// Blur hides the code of small cells, but not the outline of the marker. Outlines without a code
+// are therefore searched again in an enlarged and sharpened picture of their surroundings.
+
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+namespace velamap {
+
+using Outline = std::vector<cv::Point2f>;  // four corners in OpenCV's pixel frame
+
+// The outlines to look at again: small ones (of cells up to 4 px, which is enough for a blur of
+// 1.5 px), and of several that lie over each other the largest, unless one of `read` lies there.
+// `num_cells`: along a side of a marker, with its border.
+std::vector<Outline> UnreadOutlines(const std::vector<Outline>& read, std::vector<Outline> rejected,
+                                    int num_cells);
+
+// The picture at kEnlargement times its size, sharpened.
+constexpr int kEnlargement = 3;
+cv::Mat EnlargedAndSharpened(const cv::Mat& gray);
+
+// A place in the enlarged picture, in the frame of the picture itself.
+cv::Point2f InOriginal(const cv::Point2f& enlarged_px);
+
+}  // namespace velamap
