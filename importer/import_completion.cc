@@ -7,7 +7,7 @@
 
 #include "importer/base/natural_order.h"
 #include "importer/database/correspondence.h"
-#include "importer/detect/rotation_evidence.h"
+#include "importer/rotation/rotation_evidence.h"
 
 namespace velamap {
 

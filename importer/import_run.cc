@@ -11,10 +11,10 @@
 #include "importer/base/error.h"
 #include "importer/base/files.h"
 #include "importer/base/stage_timer.h"
-#include "importer/detect/rotation_ambiguity.h"
 #include "importer/frame_camera.h"
 #include "importer/import_checks.h"
 #include "importer/import_part.h"
+#include "importer/rotation/rotation_ambiguity.h"
 #include "importer/video/source_file.h"
 #include "importer/video/written_frame.h"
 

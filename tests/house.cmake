@@ -27,7 +27,9 @@ house_folder(importer/video PUBLIC
   frame_source image_file jpeg_codec picture_metadata source_file video_options written_frame)
 house_folder(importer/detect PUBLIC
   cell_means chessboard corner_colors detection detection_options duplicates gray_levels interpolate marker_alignment
-  marker_location marker_quad marker_search rotation_ambiguity rotation_evidence search_regions)
+  marker_location marker_quad marker_search search_regions)
+house_folder(importer/rotation PUBLIC
+  rotation_ambiguity rotation_evidence)
 house_folder(importer/pattern PUBLIC
   clipped_pixels fit_equations formation_estimate image_formation pattern_fit pattern_picture
   pattern_problem refined_corners)

@@ -15,11 +15,11 @@
 #include "importer/detect/detection_options.h"
 #include "importer/detect/marker_location.h"
 #include "importer/detect/marker_quad.h"
-#include "importer/detect/rotation_ambiguity.h"
 #include "importer/layout/dictionary.h"
 #include "importer/layout/layout.h"
 #include "importer/layout/prior_shape.h"
 #include "importer/pattern/image_formation.h"
+#include "importer/rotation/rotation_ambiguity.h"
 #include "importer/video/frame_source.h"
 
 namespace velamap {

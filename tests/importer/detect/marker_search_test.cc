@@ -145,7 +145,8 @@ TEST(SearchMarkers, CodesOfSmallCellsAreRead) {
   EXPECT_GE(num_found, 0.9 * kNumDraws);
 }
 
-// Cells of 1.9 to 2.6 px, blurred by a third of a cell and more, whose codes only a second look reads.
+// Cells of 1.9 to 2.6 px, blurred by a third of a cell and more, which often only a second look
+// reads.
 class BlurredSmallMarkers : public testing::Test {
  protected:
   PlacedMarkerInCam Draw(int marker_id) {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "importer/detect/detection.h"
-#include "importer/detect/rotation_ambiguity.h"
 #include "importer/layout/layout.h"
+#include "importer/rotation/rotation_ambiguity.h"
 
 namespace velamap {
 

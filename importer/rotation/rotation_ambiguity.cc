@@ -1,4 +1,4 @@
-#include "importer/detect/rotation_ambiguity.h"
+#include "importer/rotation/rotation_ambiguity.h"
 
 #include <algorithm>
 #include <utility>

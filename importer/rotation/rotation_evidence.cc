@@ -1,4 +1,4 @@
-#include "importer/detect/rotation_evidence.h"
+#include "importer/rotation/rotation_evidence.h"
 #include "importer/base/statistics.h"
 
 #include <algorithm>
