@@ -4,7 +4,8 @@
 # PRESET: release, debug, ci (release, warnings are errors), sanitize (clang with the address and
 # undefined-behaviour sanitizers) or tsan (clang with the thread sanitizer).
 # TARGET: such as velamap; default all, with sanitizers the unit tests and the fuzz targets.
-# VELAMAP_JOBS: parallel compilers, default one per core (each takes up to 1 GB of memory).
+# VELAMAP_JOBS: parallel compilers, default one per core (each takes up to 1.5 GB of memory, with ci and
+# sanitize 3 GB, because they compile more files at once).
 set -euo pipefail
 
 preset="${1:?usage: $0 PRESET [TARGET]}"

@@ -22,10 +22,10 @@ if [[ -n "${CAMERA:-}" ]]; then camera=(--camera "$CAMERA") suffix="_$CAMERA"; f
 read -ra ways <<<"${WAYS:-thesis edge global global_markers global_both}"
 read -ra clips_of_study <<<"${CLIPS:-walls board sail_1080p sail_4k cube stylus board_video aprilgrid}"
 if [[ $quick -eq 1 ]]; then
-  num_frames=40 sail_frames=90
+  num_frames=40
   read -ra clips_of_study <<<"${CLIPS:-walls board board_video aprilgrid}"
 else
-  num_frames=120 sail_frames=400
+  num_frames=120
 fi
 repository="$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")"
 
@@ -67,13 +67,7 @@ make_clip_of_study() {
   case "$1" in
     walls) make_clip "$folder" "${camera[@]}" --scene walls --width 1920 --num_frames "$num_frames" ;;
     board) make_clip "$folder" "${camera[@]}" --scene board --motion d --num_frames "$num_frames" ;;
-    sail_1080p)
-      make_clip "$folder" "${camera[@]}" --scene sail --width 1920 --num_frames "$sail_frames"
-      ;;
-    sail_4k)
-      make_clip "$folder" "${camera[@]}" --scene sail --width 3840 --num_frames "$sail_frames" \
-        --bitrate 60M
-      ;;
+    sail_*) make_sail "$1" "$folder" "${camera[@]}" ;;
     cube) link_cube ;;
     stylus) link_real stylus "$repository/sample_project/stylus" "$repository/sample_project/stylus/images" ;;
     board_video)

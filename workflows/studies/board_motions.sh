@@ -41,7 +41,7 @@ row() {
 }
 
 for motion in a b c d e f g h; do
-  make_clip "board_$motion" --camera plain --scene board --motion "$motion" --num_frames "$num_frames"
+  make_clip "board_$motion" --scene board --motion "$motion" --num_frames "$num_frames"
   names=()
   for ((frame = 0; frame < num_frames; frame += step)); do
     mapfile -t options < <(search 0 1 0 "$frame")

@@ -69,8 +69,8 @@ read_draw_arguments() {
 
 # The options of render_clip for the sail of the studies, which has 122 markers of 100 mm as in
 # section 4.3 of the thesis. With --quick, the sail has half the size.
-full_sail=(--camera plain --scene sail --width 1920)
-quick_sail=(--camera plain --scene sail --width 1280 --sail_scale 0.5 --distance 3)
+full_sail=(--scene sail --width 1920)
+quick_sail=(--scene sail --width 1280 --sail_scale 0.5 --distance 3)
 
 # The numbers of frames of the sail's clips. The longest search must fit into the near clip.
 short_clip_frames() { if [[ $quick -eq 1 ]]; then echo 90; else echo 220; fi; }
@@ -99,6 +99,17 @@ make_clip() {
     echo "== $study: clip $1 gives no detections" >&2
   fi
   mv "$folder/import.part" "$folder/import.txt"
+}
+
+# make_sail NAME FOLDER [RENDER_CLIP_OPTION...]: makes a clip of the sail in clips/FOLDER.
+make_sail() {
+  local options=("${@:3}" --scene sail)
+  case "$1" in
+    sail_1080p) make_clip "$2" "${options[@]}" --width 1920 --num_frames 400 ;;
+    sail_4k) make_clip "$2" "${options[@]}" --width 3840 --num_frames 400 --bitrate 60M ;;
+    sail_quick) make_clip "$2" "${options[@]}" --width 1280 --distance 3 --num_frames 60 ;;
+    *) fail "$1: no such clip of the sail; expected sail_1080p, sail_4k or sail_quick" ;;
+  esac
 }
 
 make_near_clip() { make_clip near "${sail[@]}" --num_frames "$(near_clip_frames)"; }

@@ -15,7 +15,7 @@ begin_study conditions "$@"
 num_frames="$(short_clip_frames)"
 central_frame=$((num_frames / 2))
 if [[ $quick -eq 1 ]]; then
-  long=(5 5 2) short=(3 2 0) far=(--camera plain --scene sail --width 1280 --sail_scale 0.5 --distance 6)
+  long=(5 5 2) short=(3 2 0) far=(--scene sail --width 1280 --sail_scale 0.5 --distance 6)
 else
   long=(20 5 2) short=(5 2 0) far=("${full_sail[@]}" --distance 12)
 fi

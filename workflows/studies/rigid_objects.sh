@@ -67,7 +67,7 @@ study_object() {
 
 # study_glass NAME DISTANCE LENS: studies a clip of the board behind glass.
 study_glass() {
-  make_clip "$1" --camera plain --scene board --lens "$3" --width "$width" --distance "$2" --motion d \
+  make_clip "$1" --scene board --lens "$3" --width "$width" --distance "$2" --motion d \
     --num_frames "$num_frames"
   study_object "$1"
 }
@@ -76,7 +76,7 @@ for distance in "${distances[@]}"; do study_glass "glass_${distance}m" "$distanc
 for distance in "${distances[@]:1}"; do
   study_glass "glass_${distance}m_narrow" "$distance" webcam
 done
-make_clip walls --camera plain --scene walls --width "$width" --num_frames "$num_frames"
+make_clip walls --scene walls --width "$width" --num_frames "$num_frames"
 study_object walls
 
 plot rigid_objects.png 1200,500 <<GNUPLOT

@@ -18,25 +18,14 @@ surface_accuracy="$(find_program SURFACE_ACCURACY surface_accuracy tests/tools/s
 csv="$work/surface.csv" curvature="$work/surface_curvature.csv"
 if [[ $quick -eq 1 ]]; then num_draws=3 names=(sail_quick); else num_draws=40 names=(sail_1080p sail_4k); fi
 
-# make_sail NAME CLIP: makes a clip of the sail. accuracy.sh films the same sails with another camera.
-make_sail() {
-  local plain=(--camera plain --scene sail)
-  case "$1" in
-    sail_1080p) make_clip "$2" "${plain[@]}" --width 1920 --num_frames 400 ;;
-    sail_4k) make_clip "$2" "${plain[@]}" --width 3840 --num_frames 400 --bitrate 60M ;;
-    sail_quick) make_clip "$2" "${plain[@]}" --width 1280 --distance 3 --num_frames 60 ;;
-  esac
-}
-
 "$surface_accuracy" --num_draws "$num_draws" --sigmas 0.1,0.3,1,3 >"$csv"
 echo "clip,height_m,along,curvature,found_curvature,error_mm" >"$curvature"
 for name in "${names[@]}"; do
-  film="${name}_plain"
-  make_sail "$name" "$film"
-  METHOD=global BACKEND=both EXACT_PRINT=1 reconstruct "$film" "$name"
+  make_sail "$name" "$name"
+  METHOD=global BACKEND=both EXACT_PRINT=1 reconstruct "$name" "$name"
   if [[ ! -f "$runs/$name/analysis.csv" ]]; then continue; fi
   clip=(--name "$name" --shape_path "$runs/$name/shape/shape.csv"
-    --layout_path "$clips/$film/layout.yml" --reference_path "$clips/$film/truth.csv")
+    --layout_path "$clips/$name/layout.yml" --reference_path "$clips/$name/truth.csv")
   "$surface_accuracy" "${clip[@]}" | sed 1d >>"$csv"
   "$surface_accuracy" "${clip[@]}" --profiles | sed "1d;s/^/$name,/" >>"$curvature"
 done
