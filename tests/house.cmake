@@ -34,7 +34,7 @@ house_folder(importer/pattern PUBLIC
   clipped_pixels fit_equations formation_estimate image_formation pattern_fit pattern_picture
   pattern_problem refined_corners)
 house_folder(importer/refine PUBLIC
-  marker_detector)
+  marker_detector read_again)
 house_folder(importer/track PUBLIC
   frame_detector marker_tracking)
 house_folder(importer/formation PUBLIC

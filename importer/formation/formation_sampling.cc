@@ -12,6 +12,7 @@
 #include "importer/base/log.h"
 #include "importer/base/parallel.h"
 #include "importer/detect/marker_alignment.h"
+#include "importer/refine/read_again.h"
 #include "importer/video/frame_source.h"
 
 namespace velamap {
@@ -71,25 +72,29 @@ std::vector<MarkerQuad> ChooseMarkers(const FrameDetector& detector, const Sampl
   return chosen;
 }
 
-// The marker with its surroundings; nothing where its sides cannot be seen.
+// The marker with its surroundings; nothing where its sides cannot be seen. A misread code would
+// show edges where there are none.
 std::optional<FormationSample> CutSample(const FrameDetector& detector, const cv::Mat& gray,
-                                         const MarkerQuad& quad) {
-  const int reach_px = SampleReachPx(QuadMeanSide(quad.corners_px));
-  const Box box = BoundingBox(quad.corners_px);
+                                         const MarkerQuad& found) {
+  const int reach_px = SampleReachPx(QuadMeanSide(found.corners_px));
+  const Box box = BoundingBox(found.corners_px);
   const cv::Rect cut =
       cv::Rect(static_cast<int>(box.min.x()) - reach_px, static_cast<int>(box.min.y()) - reach_px,
                static_cast<int>(box.max.x() - box.min.x()) + 2 * reach_px,
                static_cast<int>(box.max.y() - box.min.y()) + 2 * reach_px) &
       cv::Rect({}, gray.size());
   FormationSample sample;
+  sample.gray = gray(cut).clone();
+  if (detector.options.inverted) cv::bitwise_not(sample.gray, sample.gray);
+  MarkerQuad quad = found;
+  for (Eigen::Vector2d& corner : quad.corners_px) corner -= Eigen::Vector2d(cut.x, cut.y);
+  quad = RefineAndReadAgain(sample.gray, quad, detector.dictionary, detector.border_bits,
+                            ImageFormation())
+             .quad;
   const auto id = static_cast<std::size_t>(quad.marker_id);
   sample.cells = detector.looks[id].cells;
   if (detector.sides_mm[id] > 0) sample.side_mm = detector.sides_mm[id];
-  sample.gray = gray(cut).clone();
-  if (detector.options.inverted) cv::bitwise_not(sample.gray, sample.gray);
-  QuadCorners corners_px = quad.corners_px;
-  for (Eigen::Vector2d& corner : corners_px) corner -= Eigen::Vector2d(cut.x, cut.y);
-  const auto aligned = AlignSides(sample.gray, corners_px, {sample.cells});
+  const auto aligned = AlignSides(sample.gray, quad.corners_px, {sample.cells});
   if (!aligned) return std::nullopt;
   sample.corners_px = *aligned;
   return sample;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -228,6 +227,21 @@ cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits
   cv::aruco::drawMarker(dictionary.aruco, marker_id, CellsPerSide(dictionary, border_bits), cells,
                         border_bits);
   return cells;
+}
+
+std::optional<ReadCode> ReadCells(const Dictionary& dictionary, const cv::Mat& cells,
+                                  int border_bits) {
+  const int size = dictionary.aruco->markerSize;
+  VELAMAP_CHECK(cells.size() == cv::Size(size + 2 * border_bits, size + 2 * border_bits));
+  const cv::Rect inner(border_bits, border_bits, size, size);
+  if (cv::countNonZero(cells) != cv::countNonZero(cells(inner))) return std::nullopt;
+  ReadCode code;
+  int num_turns = 0;
+  if (!dictionary.aruco->identify(cells(inner) / 255, code.marker_id, num_turns, 0.0)) {
+    return std::nullopt;
+  }
+  code.first_corner = (kNumCorners - num_turns) % kNumCorners;
+  return code;
 }
 
 }  // namespace velamap

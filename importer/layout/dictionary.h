@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,5 +48,17 @@ std::string DictionaryText(const Dictionary& dictionary);
 // the side between the first and the second corner, column 0 the side between the first and the
 // fourth.
 cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits);
+
+// A marker whose cells have been read, turned by some quarter turns: its first corner is the one
+// that follows `first_corner` others in the order in which the cells were read.
+struct ReadCode {
+  int marker_id = 0;
+  int first_corner = 0;
+};
+
+// The marker that has exactly these cells (as MarkerCells() draws them, and turned); nothing
+// without one, or if the border is not black.
+std::optional<ReadCode> ReadCells(const Dictionary& dictionary, const cv::Mat& cells,
+                                  int border_bits);
 
 }  // namespace velamap

@@ -9,6 +9,7 @@
 #include "importer/pattern/foreign_pixels.h"
 #include "importer/pattern/pattern_picture.h"
 #include "importer/pattern/pattern_problem.h"
+#include "importer/pattern/unlike_cells.h"
 
 namespace velamap {
 namespace {
@@ -33,7 +34,8 @@ std::optional<RefinedCorners> WithUncertainty(const PatternProblem& problem,
   // The diagonal of inverse * (hessian - weight) * inverse.
   const P::Vector variances = inverse.diagonal() - inverse.cwiseAbs2().lazyProduct(problem.weight);
   const ResidualNoise noise = NoiseOf(minimum.equations, inverse);
-  RefinedCorners refined{CornersOf(minimum.parameters), {}};
+  RefinedCorners refined;
+  refined.corners_px = CornersOf(minimum.parameters);
   for (int i = 0; i < kNumCorners; ++i) {
     refined.sigma_px[static_cast<std::size_t>(i)] =
         std::sqrt(0.5 * variances.segment<2>(2 * i).sum() * noise.VarianceGray());
@@ -49,14 +51,23 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners&
   PatternMinimum minimum;
   std::optional<PatternProblem> problem =
       MakePatternProblem(gray, corners_px, cells, formation, &minimum);
-  if (!problem || !FitPatternInPasses(&*problem, &minimum) ||
-      (HasClippedPixels(gray, problem->box) &&
+  if (!problem || !FitPatternInPasses(&*problem, &minimum)) return std::nullopt;
+  const double rms_gray = minimum.equations.Rms();
+  if ((HasClippedPixels(gray, problem->box) &&
        !RefineBeyondClipping(gray, formation, kMaxPatternPixels, kPatternTolerancePx, &*problem,
                              &minimum)) ||
       !RefitWithoutForeignPixels(&*problem, &minimum)) {
     return std::nullopt;
   }
-  return WithUncertainty(*problem, minimum);
+  auto refined = WithUncertainty(*problem, minimum);
+  if (!refined) return std::nullopt;
+  refined->rms_gray = rms_gray;
+  // A cell of the other colour alone gives more.
+  constexpr double kLargeRms = 0.05;  // of the contrast
+  if (rms_gray > kLargeRms * ContrastOf(*problem, minimum)) {
+    refined->unlike_cells = UnlikeCells(*problem, minimum.parameters);
+  }
+  return refined;
 }
 
 }  // namespace velamap

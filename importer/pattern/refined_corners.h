@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 #include "importer/geometry/quad.h"
 
@@ -16,6 +18,10 @@ struct RefinedCorners {
   QuadCorners corners_px;  // OpenCV's pixel frame
   // 1 sigma of a coordinate from the noise of the image: root mean square over x and y.
   std::array<double, kNumCorners> sigma_px{};
+  // Of a fit of the whole marker: RMS of the residuals of all pixels, grey levels, and the cells
+  // (column, row) that look as if they were of the other colour.
+  double rms_gray = 0.0;
+  std::vector<cv::Point> unlike_cells{};
 };
 
 // The noise of pixels from the residuals of a least-squares fit. Each pixel is weighted by the

@@ -22,8 +22,9 @@ namespace velamap {
 std::vector<MarkerDetection> DetectMarkers(const cv::Mat& gray, const Dictionary& dictionary,
                                            int border_bits, const ArucoDetectionOptions& options);
 
-// The second half of DetectMarkers(): refines the corners of markers that have been found. One
-// detection for each of `quads`, in their order.
+// The second half of DetectMarkers(): refines the corners of markers that have been found, in their
+// order, and reads the codes of fitted ones again (read_again.h). Without those that only a second
+// look has found and that cannot be fitted.
 std::vector<MarkerDetection> RefineMarkers(const cv::Mat& gray,
                                            const std::vector<MarkerQuad>& quads,
                                            const Dictionary& dictionary, int border_bits,

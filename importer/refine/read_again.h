@@ -1,0 +1,31 @@
+// A second reading of a marker's code, from the fit of the whole marker. Blur and an outline that
+// is a pixel off make the search take one code for another where codes differ in few cells, as
+// those of 3x3 cells do.
+
+#pragma once
+
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+#include "importer/detect/marker_quad.h"
+#include "importer/layout/dictionary.h"
+#include "importer/pattern/image_formation.h"
+#include "importer/pattern/refined_corners.h"
+
+namespace velamap {
+
+// A marker with its id after the second reading, and its corners found and refined in the order of
+// that id; nothing for the latter where no fit succeeds.
+struct ReadMarker {
+  MarkerQuad quad;
+  std::optional<RefinedCorners> refined;
+};
+
+// `gray`: 8-bit, with dark markers on light paper. The id changes where the cells that the image
+// shows are the code of another marker of the dictionary, and this one fits clearly better.
+ReadMarker RefineAndReadAgain(const cv::Mat& gray, const MarkerQuad& quad,
+                              const Dictionary& dictionary, int border_bits,
+                              const ImageFormation& formation);
+
+}  // namespace velamap
