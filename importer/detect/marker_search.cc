@@ -125,10 +125,12 @@ void AddQuads(const Search& search, const Found& found, bool is_second_look,
 // Searches around an outline whose code could not be read.
 void LookAgain(const Search& search, const cv::Rect& part, std::vector<MarkerQuad>* quads) {
   const int image_size_px = std::max(search.dark_on_light.cols, search.dark_on_light.rows);
+  const auto parameters =
+      MakeParameters(search.border_bits, search.options, kEnlargement * image_size_px,
+                     kEnlargement * std::max(part.width, part.height));
+  parameters->minDistanceToBorder = kEnlargement * kMinBorderDistancePx;
   Found found =
-      Detect(EnlargedAndSharpened(search.dark_on_light(part)), search.dictionary,
-             MakeParameters(search.border_bits, search.options, kEnlargement * image_size_px,
-                            kEnlargement * std::max(part.width, part.height)));
+      Detect(EnlargedAndSharpened(search.dark_on_light(part)), search.dictionary, parameters);
   for (Outline& outline_px : found.read) {
     for (cv::Point2f& corner : outline_px) {
       corner = InOriginal(corner) + cv::Point2f(part.tl());
