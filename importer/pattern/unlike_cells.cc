@@ -6,10 +6,14 @@
 #include "importer/pattern/pattern_picture.h"
 
 namespace velamap {
+namespace {
 
-VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> UnlikeCells(
-    const PatternProblem& problem, const PatternParameters::Vector& parameters) {
-  using P = PatternParameters;
+using P = PatternParameters;
+
+}  // namespace
+
+VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> UnlikeCells(const PatternProblem& problem,
+                                                          const P::Vector& parameters) {
   constexpr double kUnlike = 0.25;  // of the contrast
   const ToneCurve& tone = *problem.model.tone;
   const double limit_gray =
