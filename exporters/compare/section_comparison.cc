@@ -16,9 +16,14 @@ namespace {
 
 constexpr double kPercent = 100.0;
 
+// The sections of a shape without some of its markers.
 SectionReport CutInFrame(const Rigid3& frame_from_shape, const ShapeFrame& frame,
-                         const UncertainShape& uncertain, const Layout& layout) {
-  MarkerShape shape = uncertain.shape;
+                         const UncertainShape& uncertain, const std::set<int>& left_out_ids,
+                         const Layout& layout) {
+  MarkerShape shape;
+  for (const ShapeMarker& marker : uncertain.shape.markers) {
+    if (left_out_ids.count(marker.marker_id) == 0) shape.markers.push_back(marker);
+  }
   if (uncertain.covariance.IsEmpty()) {
     MoveShape(frame_from_shape, nullptr, &shape);
     return ComputeSections(shape, frame, layout, nullptr);
@@ -97,16 +102,6 @@ std::set<int> MarkersBeyondCommonEnds(const MarkerShape& shape, const MarkerShap
   return beyond;
 }
 
-UncertainShape Without(const std::set<int>& marker_ids, UncertainShape uncertain) {
-  std::vector<ShapeMarker>& markers = uncertain.shape.markers;
-  markers.erase(std::remove_if(markers.begin(), markers.end(),
-                               [&](const ShapeMarker& marker) {
-                                 return marker_ids.count(marker.marker_id) > 0;
-                               }),
-                markers.end());
-  return uncertain;
-}
-
 SectionComparison Compare(const UncertainShape& shape, const UncertainShape& reference,
                           bool is_exact, const Alignment& alignment, const Layout& layout) {
   const PointCovariance* covariance =
@@ -118,10 +113,9 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
   comparison.frame_name = frame.name;
   comparison.frame_from_reference = frame.frame_from_shape;
   const std::set<int> beyond = MarkersBeyondCommonEnds(shape.shape, reference.shape, layout);
-  comparison.of_reference =
-      CutInFrame(frame.frame_from_shape, frame, Without(beyond, reference), layout);
+  comparison.of_reference = CutInFrame(frame.frame_from_shape, frame, reference, beyond, layout);
   comparison.of_shape = CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame,
-                                   Without(beyond, shape), layout);
+                                   shape, beyond, layout);
   for (const Section& section : comparison.of_shape.sections) {
     const std::string missing = MissingEndsText(section);
     if (missing.empty()) continue;

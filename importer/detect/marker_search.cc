@@ -139,8 +139,8 @@ void LookAgain(const Search& search, const cv::Rect& part, std::vector<MarkerQua
   AddQuads(search, found, true, quads);
 }
 
-// Leaves the places of markers to those whose code was read at the first look. Small letters and
-// ornaments, too, look like markers once they are enlarged.
+// Drops second looks at ids that were read at the first look, because small letters and ornaments
+// may look like markers once they are enlarged.
 void RemoveSecondLooksOfRead(std::vector<MarkerQuad>* quads) {
   std::set<int> read;
   for (const MarkerQuad& quad : *quads) {
@@ -166,7 +166,7 @@ void SearchRegion(const Search& search, const cv::Rect& region, bool looks_again
   }
   AddQuads(search, found, false, quads);
   if (!looks_again) return;
-  const int num_cells = search.dictionary.aruco->markerSize + 2 * search.border_bits;
+  const int num_cells = CellsPerSide(search.dictionary, search.border_bits);
   for (const Outline& outline_px : UnreadOutlines(found.read, found.rejected, num_cells)) {
     const cv::Rect around = Grown(cv::boundingRect(outline_px), kSearchReachPx) & search.Image();
     // What the border of the region cuts belongs to another region.

@@ -1,7 +1,8 @@
 // Finds the markers of a grey image to a pixel. Only this file and dictionary.h use cv::aruco. A
 // marker is found with the same corners in the whole image and in any region that extends
 // kSearchReachPx around it, because threshold, contour, quadrilateral and code of a marker do not
-// depend on pixels farther away.
+// depend on pixels farther away. A second look (second_look.h) needs as much around the outline
+// that was found, which may be that of the marker's paper.
 
 #pragma once
 

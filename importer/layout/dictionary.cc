@@ -232,7 +232,7 @@ cv::Mat MarkerCells(const Dictionary& dictionary, int marker_id, int border_bits
 std::optional<ReadCode> ReadCells(const Dictionary& dictionary, const cv::Mat& cells,
                                   int border_bits) {
   const int size = dictionary.aruco->markerSize;
-  VELAMAP_CHECK(cells.size() == cv::Size(size + 2 * border_bits, size + 2 * border_bits));
+  VELAMAP_CHECK(cells.rows == cells.cols && cells.rows == CellsPerSide(dictionary, border_bits));
   const cv::Rect inner(border_bits, border_bits, size, size);
   if (cv::countNonZero(cells) != cv::countNonZero(cells(inner))) return std::nullopt;
   ReadCode code;

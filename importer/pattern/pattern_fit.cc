@@ -65,7 +65,7 @@ std::optional<RefinedCorners> FitPattern(const cv::Mat& gray, const QuadCorners&
   // A cell of the other colour alone gives more.
   constexpr double kLargeRms = 0.05;  // of the contrast
   if (rms_gray > kLargeRms * ContrastOf(*problem, minimum)) {
-    refined->unlike_cells = UnlikeCells(*problem, minimum.parameters);
+    refined->unlike_cells = UnlikeCells(*problem, minimum);
   }
   return refined;
 }

@@ -6,18 +6,12 @@
 #include "importer/pattern/pattern_picture.h"
 
 namespace velamap {
-namespace {
-
-using P = PatternParameters;
-
-}  // namespace
 
 VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> UnlikeCells(const PatternProblem& problem,
-                                                          const P::Vector& parameters) {
+                                                          const PatternMinimum& minimum) {
   constexpr double kUnlike = 0.25;  // of the contrast
-  const ToneCurve& tone = *problem.model.tone;
-  const double limit_gray =
-      kUnlike * (tone.Encode(parameters[P::kLight]) - tone.Encode(parameters[P::kDark]));
+  const double limit_gray = kUnlike * ContrastOf(problem, minimum);
+  const PatternParameters::Vector& parameters = minimum.parameters;
   const PatternPicture picture(problem.model, parameters);
   const UnitSquareMap map(CornersOf(parameters));
   const int n = problem.model.num_cells;
@@ -26,9 +20,9 @@ VELAMAP_CLONE_FOR_AVX2 std::vector<cv::Point> UnlikeCells(const PatternProblem& 
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column < n; ++column) {
       const double u = (column + 0.5) / n, v = (row + 0.5) / n;
-      const Eigen::Vector2d x_px = map.ToImage(u, v) +
-                                   4 * u * (1 - u) * parameters.segment<2>(P::kBendU) +
-                                   4 * v * (1 - v) * parameters.segment<2>(P::kBendV);
+      const Eigen::Vector2d x_px =
+          map.ToImage(u, v) + 4 * u * (1 - u) * parameters.segment<2>(PatternParameters::kBendU) +
+          4 * v * (1 - v) * parameters.segment<2>(PatternParameters::kBendV);
       const Eigen::Vector2d place = x_px - problem.model.center_px;
       picture.At(AllLanes(place.x()), AllLanes(place.y()), &modelled);
       const double excess_gray = InterpolatePatch(problem.patch, x_px) - modelled.gray[0];

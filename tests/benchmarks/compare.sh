@@ -72,7 +72,7 @@ clip() {
   local folder="$work/clips/$1_$2_${num_frames}_$bitrate"
   if [[ $1 == busy ]]; then busy=1; fi
   if [[ ! -f "$folder/whole" ]]; then
-    "$render_clip" --output_path "$folder" --width "$2" --num_frames "$num_frames" --busy "$busy" \
+    "$render_clip" --camera plain --output_path "$folder" --width "$2" --num_frames "$num_frames" --busy "$busy" \
       --bitrate "$bitrate" --seed 1 >"$work/render.log" 2>&1 || fail "render_clip: $(tail -n 1 "$work/render.log")"
     touch "$folder/whole"
   fi

@@ -184,8 +184,10 @@ void WarnOfMissingSections(const SectionReport& sections) {
     }
   }
   if (of_a_part.empty()) return;
-  LogWarning("sections of a part of their line, with another camber and twist than the whole: {}",
-             fmt::join(of_a_part, ", "));
+  LogWarning(
+      "these sections cover only a part of their line, so their camber and twist are not those of "
+      "the whole: {}",
+      fmt::join(of_a_part, ", "));
 }
 
 void PrintShapeSummary(const ShapeExportReport& report, std::ostream& out) {

@@ -201,6 +201,6 @@ function fillSections({sections, design}) {
     figure('Twist, °', 'twist_deg', 'twist_sigma_deg', 2, 1),
     figure('Leech twist, °', 'leech_twist_deg', 'leech_twist_sigma_deg', 1, 1),
     figure('Girth, mm', 'girth_m', 'girth_sigma_m', 1, 1000),
-    text('Of a part of the line', 'note'),
+    text('Incomplete', 'note'),
   ].filter(column => sections.some(row => column.value(row) !== undefined)), sections);
 }

@@ -1,5 +1,6 @@
 #include "tests/exporters/compare/example_comparison.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -133,6 +134,14 @@ MarkerShape Shifted(const std::set<int>& ids, const Eigen::Vector3d& shift_m, Ma
       if (x) *x += shift_m;
     }
   }
+  return shape;
+}
+
+MarkerShape Without(const std::set<int>& ids, MarkerShape shape) {
+  auto& markers = shape.markers;
+  markers.erase(std::remove_if(markers.begin(), markers.end(),
+                               [&](const auto& m) { return ids.count(m.marker_id) > 0; }),
+                markers.end());
   return shape;
 }
 

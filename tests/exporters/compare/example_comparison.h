@@ -31,6 +31,7 @@ UncertainShape WithSigmas(const MarkerShape& shape);
 MarkerShape Moved(const Rigid3& b_from_a, MarkerShape shape);
 // Moves the markers with these ids by `shift_m`.
 MarkerShape Shifted(const std::set<int>& ids, const Eigen::Vector3d& shift_m, MarkerShape shape);
+MarkerShape Without(const std::set<int>& ids, MarkerShape shape);
 // Ids of a part of BoatLayout().
 std::set<int> IdsOf(const std::string& part);
 

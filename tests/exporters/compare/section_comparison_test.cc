@@ -70,11 +70,7 @@ TEST(ComparisonSections, MoreCamberInOneLineShowsThereAndOnlyThere) {
 
 TEST(ComparisonSections, EndsThatOneLacksAreLeftOutOfBoth) {
   const MarkerShape whole = BoatShape(0.001);
-  MarkerShape part = whole;
-  part.markers.erase(std::remove_if(part.markers.begin(), part.markers.end(),
-                                    [](const ShapeMarker& m) { return m.marker_id == 31; }),
-                     part.markers.end());
-  const SectionComparison comparison = Compare(part, whole);
+  const SectionComparison comparison = Compare(Without({31}, whole), whole);
   EXPECT_NEAR(Find(comparison, "h3", "camber_percent").Difference(), 0, 1e-6);
   EXPECT_NEAR(Find(comparison, "h3", "chord_mm").Difference(), 0, 1e-6);
   EXPECT_THAT(comparison.notes, testing::Contains(HasSubstr(
@@ -91,12 +87,7 @@ TEST(ComparisonSections, SigmaIsOfBothTogether) {
 }
 
 TEST(ComparisonSections, WhatOneLacksIsSaid) {
-  MarkerShape reference = BoatShape();
-  auto& markers = reference.markers;
-  markers.erase(std::remove_if(markers.begin(), markers.end(),
-                               [](const auto& m) { return m.marker_id >= 11 && m.marker_id < 15; }),
-                markers.end());
-  const SectionComparison comparison = Compare(BoatShape(), reference);
+  const SectionComparison comparison = Compare(BoatShape(), Without({11, 12, 13, 14}, BoatShape()));
   EXPECT_THAT(comparison.notes, ::testing::Contains(HasSubstr("reference: sail h1")));
   EXPECT_THAT(comparison.notes,
               ::testing::Contains(HasSubstr("twists of sail cannot be compared")));

@@ -33,14 +33,6 @@ const MarkerDeviation& Find(const ShapeDeviation& deviation, int marker_id) {
   return *it;
 }
 
-MarkerShape Without(const std::set<int>& ids, MarkerShape shape) {
-  auto& markers = shape.markers;
-  markers.erase(std::remove_if(markers.begin(), markers.end(),
-                               [&](const auto& m) { return ids.count(m.marker_id) > 0; }),
-                markers.end());
-  return shape;
-}
-
 TEST(ShapeComparison, AShapeMovedRigidlyDoesNotDiffer) {
   const MarkerShape moved = Moved(FarPose(), BoatShape());
   for (const AlignmentOptions& options :

@@ -85,6 +85,16 @@ PlacedMarkerInCam TurnedAndSlanted(int marker_id, double side_px, double turn_ra
   return {marker_id, {at(-1, -1), at(1, -1), at(1, 1), at(-1, 1)}};
 }
 
+// The largest distance of a corner from its true place, px.
+double MaxCornerErrorPx(const MarkerQuad& found, const PlacedMarkerInCam& marker) {
+  QuadCorners true_px;
+  for (int c = 0; c < kNumCorners; ++c) {
+    true_px[c] =
+        kFocalLengthPx * marker.corners_in_cam[c].hnormalized() + Eigen::Vector2d(59.5, 59.5);
+  }
+  return MaxCornerShift(found.corners_px, true_px);
+}
+
 // OpenCV keeps the largest of close outlines before it reads the codes, which is that of the paper.
 TEST(SearchMarkers, TheEdgeOfNarrowPaperOnADarkGroundHidesNoMarker) {
   std::mt19937 random(TestSeed());
@@ -110,12 +120,8 @@ TEST(SearchMarkers, TheEdgeOfNarrowPaperOnADarkGroundHidesNoMarker) {
     ++num_found;
     ASSERT_EQ(found.size(), 1u) << draw;
     EXPECT_EQ(found[0].marker_id, marker.marker_id) << draw;
-    for (int c = 0; c < kNumCorners; ++c) {
-      const Eigen::Vector2d corner_px =
-          kFocalLengthPx * marker.corners_in_cam[c].hnormalized() + Eigen::Vector2d(59.5, 59.5);
-      // The paper's corner is 3 px and more away.
-      EXPECT_LT((found[0].corners_px[c] - corner_px).norm(), 2.3) << draw;
-    }
+    // The paper's corner is 3 px and more away.
+    EXPECT_LT(MaxCornerErrorPx(found[0], marker), 2.3) << draw;
   }
   EXPECT_GE(num_found, 0.97 * kNumDraws);
 }
@@ -181,11 +187,7 @@ TEST_F(BlurredSmallMarkers, AreFoundByASecondLook) {
     ++num_found;
     ASSERT_EQ(found.size(), 1u) << draw;
     EXPECT_EQ(found[0].marker_id, draw);
-    for (int c = 0; c < kNumCorners; ++c) {
-      const Eigen::Vector2d corner_px =
-          kFocalLengthPx * marker.corners_in_cam[c].hnormalized() + Eigen::Vector2d(59.5, 59.5);
-      EXPECT_LT((found[0].corners_px[c] - corner_px).norm(), 3.0) << draw;
-    }
+    EXPECT_LT(MaxCornerErrorPx(found[0], marker), 3.0) << draw;
   }
   EXPECT_GE(num_found, 0.85 * kNumDraws);
 }
