@@ -23,5 +23,5 @@ if [[ -n "$colmap" ]]; then
   export PATH="$programs:$PATH"
 fi
 echo "== test: build/$preset"
-# Two more than cores, because browsers, Slurm and other programs keep tests waiting.
-ctest --preset "$preset" --parallel "$((${VELAMAP_JOBS:-$(nproc)} + 2))" "$@"
+# Three more than cores, because browsers, Slurm and other programs keep tests waiting.
+ctest --preset "$preset" --parallel "$((${VELAMAP_JOBS:-$(nproc)} + 3))" "$@"

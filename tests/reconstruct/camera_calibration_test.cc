@@ -171,7 +171,7 @@ TEST(CameraCalibration, TheSizeOfThePrintDoesNotMatter) {
 TEST(CameraCalibration, AFisheyeIsNoPinhole) {
   const Camera fisheye{
       CameraModel::kOpenCVFisheye, 1280, 720, {520, 520, 644, 357, 0.03, -0.01, 0.002, 0}};
-  const std::vector<DatabaseImage> images = TakePictures(MakeBoard({}), fisheye, 3, 24);
+  const std::vector<DatabaseImage> images = TakePictures(MakeBoard({}), fisheye, 3, 16);
   const CameraCalibration found = Calibrate(images);
   EXPECT_EQ(found.camera.camera.model, CameraModel::kOpenCVFisheye);
   for (const double error : ErrorsInSigmas(found.camera, fisheye)) EXPECT_LT(std::abs(error), 4.0);

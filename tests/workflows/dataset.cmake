@@ -9,8 +9,6 @@ if(BASH_PROGRAM)
   endforeach()
   add_test(NAME workflows.run_batch
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/run_batch_test.sh ${PROJECT_SOURCE_DIR})
-  # It limits the seconds of a second run, and uses all cores itself.
-  set_tests_properties(dataset.table PROPERTIES RUN_SERIAL TRUE)
   set_tests_properties(dataset.table dataset.slurm workflows.run_batch PROPERTIES
     LABELS colmap SKIP_RETURN_CODE 77 TIMEOUT 300 ENVIRONMENT "VELAMAP=$<TARGET_FILE:velamap>")
 endif()

@@ -5,5 +5,5 @@ if(BASH_PROGRAM)
   add_test(NAME install.tree
            COMMAND ${BASH_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/install/install_test.sh
                    ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(install.tree PROPERTIES LABELS cli TIMEOUT 120 RUN_SERIAL ON)
+  set_tests_properties(install.tree PROPERTIES LABELS cli TIMEOUT 120)
 endif()
