@@ -122,6 +122,21 @@ void AddMarkers(const PartContext& context, const LineCurve& line, Section* sect
   section->num_missing_at_leech = static_cast<int>(last - of_line.rbegin());
 }
 
+// Copies the missing ends of the lines next below and above a height, from the lowest up; of both
+// the larger number.
+void AddMissingEndsOfNeighbours(const std::vector<Section>& lines, Section* section) {
+  const auto above = std::find_if(lines.begin(), lines.end(), [section](const Section& line) {
+    return line.height_m > section->height_m;
+  });
+  const auto add = [section](const Section& line) {
+    section->num_missing_at_luff = std::max(section->num_missing_at_luff, line.num_missing_at_luff);
+    section->num_missing_at_leech =
+        std::max(section->num_missing_at_leech, line.num_missing_at_leech);
+  };
+  if (above != lines.end()) add(*above);
+  if (above != lines.begin()) add(*std::prev(above));
+}
+
 // A number of a section minus the reference's.
 Estimate Difference(SectionNumber number, const MarkerCenters& centers,
                     const NumbersWithGradient& own, const NumbersWithGradient& reference) {
@@ -148,6 +163,7 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
     sections.back().name = line.name;
     AddMarkers(context, line, &sections.back());
   }
+  const std::vector<Section> of_lines = sections;
   const std::set<double> heights_m(options.heights_m.begin(), options.heights_m.end());
   for (const double height_m : heights_m) {
     const std::string name = fmt::format("height={}", height_m);
@@ -160,6 +176,7 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
     sections.push_back(DescribeSection(context, *cut.curve, numbers.back()));
     sections.back().name = name;
     sections.back().is_line = false;
+    AddMissingEndsOfNeighbours(of_lines, &sections.back());
   }
   // The first section is the lowest line.
   const NumbersWithGradient reference = boom ? NumbersOfPair(context, *boom) : numbers.front();

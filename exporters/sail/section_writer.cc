@@ -67,8 +67,8 @@ void WriteSectionRecord(const Section& section, CsvWriter* csv) {
     csv->AddField(estimate ? estimate->sigma : std::nullopt);
   }
   csv->AddField(section.is_line ? std::optional(ResidualRmsMm(section)) : std::nullopt);
-  csv->AddField(section.is_line ? std::optional(section.num_missing_at_luff) : std::nullopt);
-  csv->AddField(section.is_line ? std::optional(section.num_missing_at_leech) : std::nullopt);
+  csv->AddField(section.num_missing_at_luff);
+  csv->AddField(section.num_missing_at_leech);
   csv->AddField("");  // reason
   csv->EndRecord();
 }
@@ -110,11 +110,11 @@ void WriteSectionsJson(const SectionReport& report, const ShapeFrame& frame, std
     Json object = {
         {"part", section.part}, {"section", section.name}, {"height_m", section.height_m}};
     for (const auto& [key, estimate] : EstimatesOf(section)) AddEstimate(key, estimate, &object);
+    object["num_missing_at_luff"] = section.num_missing_at_luff;
+    object["num_missing_at_leech"] = section.num_missing_at_leech;
     if (section.is_line) {
       object["num_effective_parameters"] = section.num_effective_parameters;
       object["residual_rms_mm"] = ResidualRmsMm(section);
-      object["num_missing_at_luff"] = section.num_missing_at_luff;
-      object["num_missing_at_leech"] = section.num_missing_at_leech;
       object["markers"] = Json::array();
       for (const SectionMarker& marker : section.markers) {
         object["markers"].push_back(

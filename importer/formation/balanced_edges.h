@@ -21,7 +21,8 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads);
 // Inner edges and outlines both determine the size of the markers. They disagree if only one of
 // them is moved: by the surroundings of a narrow quiet zone, by a noise filter that takes the zone
 // for noise, or by a printer. If they disagree by more than the scatter of the samples, either may
-// be right, and the corners are moved by half of the difference. Their 1 sigma is a little larger.
+// be right, and the corners are moved by a part of the difference: by about half of it where a
+// change of the outlines is seen well, by less where the blur mixes small cells.
 BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads);
 
 }  // namespace velamap

@@ -81,7 +81,7 @@ void PrintSections(const SectionReport& report, std::ostream& out) {
       WriteFormatted(out, " at {:.0f} %", 100.0 * section.draft_position->value);
     WriteFormatted(out, ", twist {:.1f} deg", section.twist_deg.value);
     const std::string missing = MissingEndsText(section);
-    if (!missing.empty()) WriteFormatted(out, "; only a part of the line: {}", missing);
+    if (!missing.empty()) WriteFormatted(out, "; only a part of the chord: {}", missing);
     out << '\n';
   }
   for (const RigNumbers& rig : report.rigs) {

@@ -185,7 +185,7 @@ void WarnOfMissingSections(const SectionReport& sections) {
   }
   if (of_a_part.empty()) return;
   LogWarning(
-      "these sections cover only a part of their line, so their camber and twist are not those of "
+      "these sections cover only a part of the chord, so their camber and twist are not those of "
       "the whole: {}",
       fmt::join(of_a_part, ", "));
 }

@@ -67,6 +67,20 @@ TEST(Section, SaysWhichEndsOfItsLineAreMissing) {
   EXPECT_EQ(MissingEndsText(SectionsOf(ExampleSail()).sections[0]), "");
 }
 
+TEST(Section, HeightsSayWhichEndsOfTheLinesNextToThemAreMissing) {
+  Sail sail = ExampleSail();
+  for (const int id : {200, 201, 311}) RemoveMarker(id, &sail.shape);
+  SectionOptions options;
+  options.heights_m = {1.0, 3.0};
+  const SectionReport report = SectionsOf(sail, options);
+  ASSERT_EQ(report.sections.size(), 5u);
+  EXPECT_EQ(report.sections[1].name, "height=1");
+  EXPECT_EQ(MissingEndsText(report.sections[0]), "");
+  EXPECT_EQ(MissingEndsText(report.sections[1]), "2 markers missing at the luff");
+  EXPECT_EQ(MissingEndsText(report.sections[3]),
+            "2 markers missing at the luff and 1 at the leech");
+}
+
 TEST(Section, NacaCamberLineGivesDraftPositionAndUnequalAngles) {
   const double camber = 0.12, position = 0.4;
   const SectionReport report = SectionsOf(MakeSailOfLines(
