@@ -14,6 +14,15 @@ double ShareBeyondNoise(double shift, double sigma) {
   return std::max(0.0, 1 - sigma * sigma / (shift * shift));
 }
 
+// The share of a disagreement between inner edges and outlines that is due to outlines, by how far
+// it would move the corners if all of it were, px per px (1 to 6). The more the blur mixes small
+// cells, the farther, and the less certain are the places of inner edges. From camera_draws.sh and
+// from compressed pictures of small markers.
+double ShareOfOutlines(double leverage) {
+  constexpr double kLargestShare = 0.7, kTurningLeverage = 3.0;
+  return kLargestShare / (1 + std::pow(leverage / kTurningLeverage, 4));
+}
+
 FormationState WithOutlineShift(double shift_blurs, const FormationState& state, int num_threads) {
   ImageFormationParameters formation = state.formation->parameters();
   formation.outline_shift_blurs = shift_blurs;
@@ -54,9 +63,7 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads) {
 
 BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads) {
   constexpr double kProbeBlurs = -0.1, kMaxShiftBlurs = 0.5, kMinSlopePx = 0.05;
-  // Errors of inner edges relative to those of outlines, and of the 1 sigma: what moves outlines
-  // moves inner edges as well, a little. From 64 draws of workflows/studies/camera_draws.sh.
-  constexpr double kErrorOfInnerEdges = 0.4, kSigmaFactor = 1.25;
+  constexpr double kSigmaFactor = 1.25;  // what moves outlines moves inner edges as well, a little
   const EdgeShift edges = InnerEdgeShift(state);
   const FormationState probe = WithOutlineShift(kProbeBlurs, state, num_threads);
   const double slope_px =
@@ -70,9 +77,7 @@ BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads)
   shift = stepped(shift, InnerEdgeShift(WithOutlineShift(shift, state, num_threads)));
   const double sigma = edges.corners_sigma_px / slope_px;
   const double inset_px = MeanInset(state, probe) / kProbeBlurs;  // by one blur sigma
-  // How far the corners move for a disagreement of 1 px. Where blurred cells are small, it is much.
-  const double leverage = inset_px / slope_px;
-  const double share = 1 / (1 + std::pow(kErrorOfInnerEdges * leverage, 2));
+  const double share = ShareOfOutlines(inset_px / slope_px);
   const double unexplained = shift * ShareBeyondNoise(shift, sigma);
   shift = share * unexplained;
   LogDebug(

@@ -20,9 +20,9 @@ BalancedEdges WithBalancedEdges(const FormationState& state, int num_threads);
 
 // Inner edges and outlines both determine the size of the markers. They disagree if only one of
 // them is moved: by the surroundings of a narrow quiet zone, by a noise filter that takes the zone
-// for noise, or by a printer. If they disagree by more than the scatter of the samples, either may
-// be right, and the corners are moved by a part of the difference: by about half of it where a
-// change of the outlines is seen well, by less where the blur mixes small cells.
+// for noise, or by a printer. If they disagree by more than the scatter of the samples, the corners
+// are moved by a part of the difference: by two thirds of it where inner edges are clear, by little
+// where the blur mixes small cells. Their 1 sigma follows from the part that is left.
 BalancedEdges WithBalancedOutlines(const FormationState& state, int num_threads);
 
 }  // namespace velamap
