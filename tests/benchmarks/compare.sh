@@ -14,7 +14,7 @@
 #   dataset     the two jobs of a clip of workflows/dataset, on one thread: time, memory, sizes of files
 # Times are CPU seconds, user and system, of all threads and children, because other programs on the
 # machine change wall times more. Decoding is measured before and after what it is compared with. Clips
-# are rendered with fixed seeds and kept in WORK_FOLDER/clips.
+# are rendered with a usual action camera and fixed seeds, and kept in WORK_FOLDER/clips.
 # BUILD: folder of the build (build/release). WIDTHS, NUM_FRAMES, MBIT, LONG, REPEATS,
 # CENTRAL_FRAMES: sizes.
 set -euo pipefail
@@ -69,10 +69,10 @@ work="$(realpath "$work")"
 # camera does it: 4K to MBIT Mbit/s, other sizes to as many bits per pixel.
 clip() {
   local bitrate="$((mbit * 1000 * $2 / 3840 * $2 / 3840))k" busy=0
-  local folder="$work/clips/$1_$2_${num_frames}_$bitrate"
+  local folder="$work/clips/action_$1_$2_${num_frames}_$bitrate"
   if [[ $1 == busy ]]; then busy=1; fi
   if [[ ! -f "$folder/whole" ]]; then
-    "$render_clip" --camera plain --output_path "$folder" --width "$2" --num_frames "$num_frames" --busy "$busy" \
+    "$render_clip" --camera action --output_path "$folder" --width "$2" --num_frames "$num_frames" --busy "$busy" \
       --bitrate "$bitrate" --seed 1 >"$work/render.log" 2>&1 || fail "render_clip: $(tail -n 1 "$work/render.log")"
     touch "$folder/whole"
   fi
