@@ -122,19 +122,20 @@ void AddMarkers(const PartContext& context, const LineCurve& line, Section* sect
   section->num_missing_at_leech = static_cast<int>(last - of_line.rbegin());
 }
 
-// Copies the missing ends of the lines next below and above a height, from the lowest up; of both
-// the larger number.
-void AddMissingEndsOfNeighbours(const std::vector<Section>& lines, Section* section) {
-  const auto above = std::find_if(lines.begin(), lines.end(), [section](const Section& line) {
-    return line.height_m > section->height_m;
-  });
-  const auto add = [section](const Section& line) {
-    section->num_missing_at_luff = std::max(section->num_missing_at_luff, line.num_missing_at_luff);
-    section->num_missing_at_leech =
-        std::max(section->num_missing_at_leech, line.num_missing_at_leech);
-  };
-  if (above != lines.end()) add(*above);
-  if (above != lines.begin()) add(*std::prev(above));
+// A height takes from the lines next to it, below and above, the larger number of missing markers.
+// The first `num_lines` sections are lines, from the lowest up; the others are heights.
+void AddMissingEndsOfHeights(std::size_t num_lines, std::vector<Section>* sections) {
+  for (std::size_t i = num_lines; i < sections->size(); ++i) {
+    Section& height = (*sections)[i];
+    std::size_t above = 0;
+    while (above < num_lines && (*sections)[above].height_m <= height.height_m) ++above;
+    for (std::size_t j = above > 0 ? above - 1 : 0; j < std::min(above + 1, num_lines); ++j) {
+      const Section& line = (*sections)[j];
+      height.num_missing_at_luff = std::max(height.num_missing_at_luff, line.num_missing_at_luff);
+      height.num_missing_at_leech =
+          std::max(height.num_missing_at_leech, line.num_missing_at_leech);
+    }
+  }
 }
 
 // A number of a section minus the reference's.
@@ -163,7 +164,6 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
     sections.back().name = line.name;
     AddMarkers(context, line, &sections.back());
   }
-  const std::vector<Section> of_lines = sections;
   const std::set<double> heights_m(options.heights_m.begin(), options.heights_m.end());
   for (const double height_m : heights_m) {
     const std::string name = fmt::format("height={}", height_m);
@@ -176,8 +176,8 @@ void AddPartSections(const PartContext& context, const std::optional<MarkerPair>
     sections.push_back(DescribeSection(context, *cut.curve, numbers.back()));
     sections.back().name = name;
     sections.back().is_line = false;
-    AddMissingEndsOfNeighbours(of_lines, &sections.back());
   }
+  AddMissingEndsOfHeights(lines.size(), &sections);
   // The first section is the lowest line.
   const NumbersWithGradient reference = boom ? NumbersOfPair(context, *boom) : numbers.front();
   for (std::size_t i = 0; i < sections.size(); ++i) {

@@ -64,8 +64,9 @@ struct Section {
   SpaceCurve curve;
   Eigen::Vector3d chord_direction = Eigen::Vector3d::UnitX();  // unit
   Eigen::Vector3d depth_direction = Eigen::Vector3d::UnitY();  // unit, across up, to leeward
-  std::vector<SectionMarker> markers;                          // empty for a height
-  double num_effective_parameters = 0.0;                       // 0 for a height
+  // Empty and 0 for a height.
+  std::vector<SectionMarker> markers;
+  double num_effective_parameters = 0.0;
   // Markers of the layout's line before the first and after the last whole one; for a height, of
   // the lines next to it. Without them, all numbers are those of a shorter chord.
   int num_missing_at_luff = 0, num_missing_at_leech = 0;

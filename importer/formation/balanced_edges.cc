@@ -14,10 +14,10 @@ double ShareBeyondNoise(double shift, double sigma) {
   return std::max(0.0, 1 - sigma * sigma / (shift * shift));
 }
 
-// The share of a disagreement between inner edges and outlines that is due to outlines, by how far
-// it would move the corners if all of it were, px per px (1 to 6). The more the blur mixes small
-// cells, the farther, and the less certain are the places of inner edges. From camera_draws.sh and
-// from compressed pictures of small markers.
+// The share of a disagreement between inner edges and outlines that outlines cause. `leverage`: by
+// how many px the corners would move for each px of it if outlines caused it all, 1 to 6. It grows
+// where the blur mixes small cells, and inner edges are less certain there. The numbers come from
+// draws of workflows/studies/camera_draws.sh and from compressed pictures of small markers.
 double ShareOfOutlines(double leverage) {
   constexpr double kLargestShare = 0.7, kTurningLeverage = 3.0;
   return kLargestShare / (1 + std::pow(leverage / kTurningLeverage, 4));

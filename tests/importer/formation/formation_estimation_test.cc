@@ -272,8 +272,8 @@ TEST(FormationEstimation, NarrowQuietZonesInNoiseFiltersDoNotMoveCorners) {
   EXPECT_LT(sum_px, 0.92 * unshifted_sum_px);
 }
 
-// Compression moves the inner edges of small blurred cells. To follow them by half would move the
-// corners by 0.04 px.
+// Compression moves the inner edges of small blurred cells. Outlines that follow them by half make
+// the sides 0.07 px too long.
 TEST(FormationEstimation, CompressedSmallCellsDoNotDrawOutCorners) {
   std::mt19937 random(TestSeed());
   double sum_px = 0.0;
