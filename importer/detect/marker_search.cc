@@ -16,6 +16,9 @@ namespace velamap {
 namespace {
 
 constexpr int kMinBorderDistancePx = 3;  // of a corner
+// Of a second look around an outline, which may lie two pixels inside its marker. All else reaches
+// as many pixels of the enlarged picture as of the image at the first look.
+constexpr int kSecondReachPx = 2 + (kSearchReachPx + kEnlargement - 1) / kEnlargement;
 
 // For a region of an image; the smallest perimeter is relative to the size of the image.
 cv::Ptr<cv::aruco::DetectorParameters> MakeParameters(int border_bits,
@@ -168,9 +171,11 @@ void SearchRegion(const Search& search, const cv::Rect& region, bool looks_again
   if (!looks_again) return;
   const int num_cells = CellsPerSide(search.dictionary, search.border_bits);
   for (const Outline& outline_px : UnreadOutlines(found.read, found.rejected, num_cells)) {
-    const cv::Rect around = Grown(cv::boundingRect(outline_px), kSearchReachPx) & search.Image();
+    const cv::Rect around = cv::boundingRect(outline_px);
     // What the border of the region cuts belongs to another region.
-    if (Contains(region, around)) LookAgain(search, around, quads);
+    if (Contains(region, Grown(around, kSearchReachPx) & search.Image())) {
+      LookAgain(search, Grown(around, kSecondReachPx) & search.Image(), quads);
+    }
   }
 }
 

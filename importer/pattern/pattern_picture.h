@@ -77,21 +77,21 @@ class PatternPicture {
                          float reach_cells = 0.4f) const {
     const Place place = ToSquare(x, y);
     const auto n = static_cast<float>(model_.num_cells);
-    Ints is_near{};
+    const Floats u = n * place.u, v = n * place.v;
+    const Floats corner_u = __builtin_convertvector(Floor(u + 0.5f), Floats);
+    const Floats corner_v = __builtin_convertvector(Floor(v + 0.5f), Floats);
+    // Cells by px, inverted to px by cells.
+    const Floats u_by_x = n * place.u_by_x, u_by_y = n * place.u_by_y;
+    const Floats v_by_x = n * place.v_by_x, v_by_y = n * place.v_by_y;
+    const Floats px2_by_cells2 = 1.0f / (u_by_x * v_by_y - u_by_y * v_by_x);
+    const Floats du = corner_u - u, dv = corner_v - v;
+    const Floats dx = px2_by_cells2 * (v_by_y * du - u_by_y * dv);
+    const Floats dy = px2_by_cells2 * (u_by_x * dv - v_by_x * du);
+    const Floats reach2 =
+        Min(AllLanes(reach_px * reach_px), reach_cells * reach_cells * Abs(px2_by_cells2));
+    Ints is_near = dx * dx + dy * dy < reach2;
     for (int lane = 0; lane < kLanes; ++lane) {
-      const float u = n * place.u[lane], v = n * place.v[lane];
-      const float corner_u = std::round(u), corner_v = std::round(v);
-      if (!IsOutlineCorner(corner_u, corner_v)) continue;
-      // Cells by px, inverted to px by cells.
-      const float u_by_x = n * place.u_by_x[lane], u_by_y = n * place.u_by_y[lane];
-      const float v_by_x = n * place.v_by_x[lane], v_by_y = n * place.v_by_y[lane];
-      const float du = corner_u - u, dv = corner_v - v;
-      const float px2_by_cells2 = 1.0f / (u_by_x * v_by_y - u_by_y * v_by_x);
-      const float dx = px2_by_cells2 * (v_by_y * du - u_by_y * dv);
-      const float dy = px2_by_cells2 * (u_by_x * dv - v_by_x * du);
-      const float reach2 =
-          std::min(reach_px * reach_px, reach_cells * reach_cells * std::abs(px2_by_cells2));
-      is_near[lane] = -static_cast<int>(dx * dx + dy * dy < reach2);
+      if (is_near[lane] && !IsOutlineCorner(corner_u[lane], corner_v[lane])) is_near[lane] = 0;
     }
     return is_near;
   }
