@@ -74,7 +74,8 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
   Comparison comparison =
       CompareAligned(name, std::move(deviation), reference.shape, layout, options);
   if (comparison.has_layout) {
-    comparison.sections = CompareSections(shape, reference, comparison.deviation.alignment, layout);
+    comparison.sections =
+        CompareSections(shape, reference, comparison.deviation.alignment, layout, options.part);
   }
   return comparison;
 }
@@ -86,7 +87,8 @@ Comparison Compare(const std::string& name, const UncertainShape& shape,
       CompareWithMesh(shape, reference, layout, options.alignment, options.part, options.edge);
   Comparison comparison = CompareAligned(name, std::move(deviation), reference, layout, options);
   if (comparison.has_layout) {
-    comparison.sections = CompareSections(shape, reference, comparison.deviation, layout);
+    comparison.sections =
+        CompareSections(shape, reference, comparison.deviation, layout, options.part);
   }
   return comparison;
 }

@@ -19,19 +19,21 @@ constexpr double kPercent = 100.0;
 // The sections of a shape without some of its markers.
 SectionReport CutInFrame(const Rigid3& frame_from_shape, const ShapeFrame& frame,
                          const UncertainShape& uncertain, const std::set<int>& left_out_ids,
-                         const Layout& layout) {
+                         const Layout& layout, const std::string& part) {
+  SectionOptions options;
+  options.part = part;
   MarkerShape shape;
   for (const ShapeMarker& marker : uncertain.shape.markers) {
     if (left_out_ids.count(marker.marker_id) == 0) shape.markers.push_back(marker);
   }
   if (uncertain.covariance.IsEmpty()) {
     MoveShape(frame_from_shape, nullptr, &shape);
-    return ComputeSections(shape, frame, layout, nullptr);
+    return ComputeSections(shape, frame, layout, nullptr, options);
   }
   const PointCovariance covariance =
       RotateCovariance(frame_from_shape.rotation, uncertain.covariance);
   MoveShape(frame_from_shape, &covariance, &shape);
-  return ComputeSections(shape, frame, layout, &covariance);
+  return ComputeSections(shape, frame, layout, &covariance, options);
 }
 
 // `is_exact`: the reference has no noise.
@@ -103,7 +105,8 @@ std::set<int> MarkersBeyondCommonEnds(const MarkerShape& shape, const MarkerShap
 }
 
 SectionComparison Compare(const UncertainShape& shape, const UncertainShape& reference,
-                          bool is_exact, const Alignment& alignment, const Layout& layout) {
+                          bool is_exact, const Alignment& alignment, const Layout& layout,
+                          const std::string& wanted_part) {
   const PointCovariance* covariance =
       reference.covariance.IsEmpty() ? nullptr : &reference.covariance;
   const ShapeFrame frame =
@@ -113,9 +116,10 @@ SectionComparison Compare(const UncertainShape& shape, const UncertainShape& ref
   comparison.frame_name = frame.name;
   comparison.frame_from_reference = frame.frame_from_shape;
   const std::set<int> beyond = MarkersBeyondCommonEnds(shape.shape, reference.shape, layout);
-  comparison.of_reference = CutInFrame(frame.frame_from_shape, frame, reference, beyond, layout);
+  comparison.of_reference =
+      CutInFrame(frame.frame_from_shape, frame, reference, beyond, layout, wanted_part);
   comparison.of_shape = CutInFrame(frame.frame_from_shape * alignment.reference_from_shape, frame,
-                                   shape, beyond, layout);
+                                   shape, beyond, layout, wanted_part);
   for (const Section& section : comparison.of_shape.sections) {
     const std::string missing = MissingEndsText(section);
     if (missing.empty()) continue;
@@ -167,14 +171,16 @@ MarkerShape MarkersOnSurface(const MeshDistance& surface, const ShapeDeviation& 
 }
 
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
-                                  const Alignment& alignment, const Layout& layout) {
-  return Compare(shape, reference, false, alignment, layout);
+                                  const Alignment& alignment, const Layout& layout,
+                                  const std::string& part) {
+  return Compare(shape, reference, false, alignment, layout, part);
 }
 
 SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
-                                  const ShapeDeviation& deviation, const Layout& layout) {
+                                  const ShapeDeviation& deviation, const Layout& layout,
+                                  const std::string& part) {
   return Compare(shape, {MarkersOnSurface(reference, deviation), {}}, true, deviation.alignment,
-                 layout);
+                 layout, part);
 }
 
 }  // namespace velamap

@@ -44,9 +44,10 @@ const Section* FindSection(const SectionReport& report, const std::string& part,
                            const std::string& name);
 
 // Cuts both shapes in the frame of the reference after `alignment`, so that a change of height or
-// heading of the whole sail does not change a section.
+// heading of the whole sail does not change a section. An empty `part` means all parts.
 SectionComparison CompareSections(const UncertainShape& shape, const UncertainShape& reference,
-                                  const Alignment& alignment, const Layout& layout);
+                                  const Alignment& alignment, const Layout& layout,
+                                  const std::string& part);
 
 // The whole markers over the surface, moved to their feet on it, without sigmas: where the same
 // markers would be on a sail of exactly this shape. In the frame of the surface.
@@ -56,6 +57,7 @@ MarkerShape MarkersOnSurface(const MeshDistance& surface, const ShapeDeviation& 
 // sail of exactly this shape. `deviation` comes from CompareWithMesh(); markers that are not over
 // the surface are missing.
 SectionComparison CompareSections(const UncertainShape& shape, const MeshDistance& reference,
-                                  const ShapeDeviation& deviation, const Layout& layout);
+                                  const ShapeDeviation& deviation, const Layout& layout,
+                                  const std::string& part);
 
 }  // namespace velamap

@@ -280,7 +280,8 @@ SectionReport ComputeSections(const MarkerShape& shape, const ShapeFrame& frame,
   const MarkerCenters centers = CollectCenters(shape, layout, covariance);
   const bool wants_boom = !MarkersOfPart(layout, kBoomPart).empty();
   for (const LayoutPart& part : layout.parts) {
-    if (part.horizontal.empty()) continue;
+    const bool is_wanted = options.part.empty() || part.name == options.part;
+    if (part.horizontal.empty() || !is_wanted) continue;
     const SectionUp up = ChooseSectionUp(shape, frame, part);
     if (!up.direction) {
       report.notes.push_back(fmt::format(

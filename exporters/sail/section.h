@@ -111,8 +111,9 @@ struct SectionReport {
 
 struct SectionOptions {
   std::vector<double>
-      heights_m;        // of additional sections, along up from the frame's origin; finite
-  int min_markers = 4;  // whole markers that a line needs
+      heights_m;          // of additional sections, along up from the frame's origin; finite
+  int min_markers = 4;    // whole markers that a line needs
+  std::string part = {};  // of the layout, the only one that is cut; empty for all
 
   void Check() const;  // throws InputError that names the option
 };

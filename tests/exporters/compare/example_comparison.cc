@@ -12,6 +12,7 @@ namespace velamap {
 namespace {
 
 constexpr int kNumLines = 5, kNumOnLine = 6;
+constexpr int kJibMinusSailId = 200;
 constexpr double kFootM = 3.0, kHeightM = 4.0, kMarkerM = 0.1;
 
 // Chord fraction u in 0..1 from luff to leech, height fraction v in 0..1.
@@ -151,6 +152,28 @@ std::set<int> IdsOf(const std::string& part) {
     if (marker.part == part) ids.insert(marker.marker_id);
   }
   return ids;
+}
+
+Layout WithJib(Layout layout) {
+  LayoutPart jib = layout.parts.front();
+  jib.name = "jib";
+  for (MarkerLine& line : jib.horizontal) {
+    for (int& id : line.marker_ids) id += kJibMinusSailId;
+  }
+  layout.parts.push_back(jib);
+  return layout;
+}
+
+MarkerShape WithJib(MarkerShape shape) {
+  const std::set<int> sail = IdsOf("sail");
+  const std::vector<ShapeMarker> markers = shape.markers;
+  for (ShapeMarker marker : markers) {
+    if (sail.count(marker.marker_id) == 0) continue;
+    marker.part = "jib";
+    marker.marker_id += kJibMinusSailId;
+    shape.markers.push_back(marker);
+  }
+  return shape;
 }
 
 Rigid3 FarPose() {

@@ -35,6 +35,10 @@ MarkerShape Without(const std::set<int>& ids, MarkerShape shape);
 // Ids of a part of BoatLayout().
 std::set<int> IdsOf(const std::string& part);
 
+// The sail again as a second part "jib", in the same place, with ids that are larger by 200.
+Layout WithJib(Layout layout);
+MarkerShape WithJib(MarkerShape shape);
+
 // A rotation by 70 degrees and a translation by metres.
 Rigid3 FarPose();
 

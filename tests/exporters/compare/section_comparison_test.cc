@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exporters/compare/comparison.h"
 #include "exporters/compare/comparison_sigma.h"
 #include "tests/exporters/compare/example_comparison.h"
 #include "tests/exporters/example_covariance.h"
@@ -17,7 +18,7 @@ using ::testing::HasSubstr;
 
 SectionComparison Compare(const MarkerShape& shape, const MarkerShape& reference) {
   const Alignment alignment = AlignShapes(shape, reference, BoatLayout(), {});
-  return CompareSections(WithSigmas(shape), WithSigmas(reference), alignment, BoatLayout());
+  return CompareSections(WithSigmas(shape), WithSigmas(reference), alignment, BoatLayout(), "");
 }
 
 const SectionDifference& Find(const SectionComparison& comparison, const std::string& section,
@@ -95,30 +96,13 @@ TEST(ComparisonSections, WhatOneLacksIsSaid) {
   EXPECT_FALSE(comparison.differences.front().sigma.has_value());
 }
 
-// The sail again as a second part.
-MarkerShape WithJib(MarkerShape shape) {
-  for (ShapeMarker marker : BoatShape().markers) {
-    if (marker.part != "sail") continue;
-    marker.part = "jib";
-    marker.marker_id += 200;
-    shape.markers.push_back(marker);
-  }
-  return shape;
-}
-
 TEST(ComparisonSections, TwistsAreComparedPartByPart) {
-  Layout layout = BoatLayout();
-  LayoutPart jib = layout.parts[0];
-  jib.name = "jib";
-  for (MarkerLine& line : jib.horizontal) {
-    for (int& id : line.marker_ids) id += 200;
-  }
-  layout.parts.push_back(jib);
+  const Layout layout = WithJib(BoatLayout());
   MarkerShape without = WithJib(BoatShape());
   without.markers.erase(without.markers.begin(), without.markers.begin() + 6);  // h1 of the sail
   const MarkerShape shape = WithJib(BoatShape());
   const SectionComparison comparison = CompareSections(
-      Exact(shape), Exact(without), AlignShapes(shape, without, layout, {}), layout);
+      Exact(shape), Exact(without), AlignShapes(shape, without, layout, {}), layout, "");
   int num_of_sail = 0, num_of_jib = 0;
   for (const SectionDifference& d : comparison.differences) {
     if (d.number == "twist_deg") ++(d.part == "jib" ? num_of_jib : num_of_sail);
@@ -129,10 +113,32 @@ TEST(ComparisonSections, TwistsAreComparedPartByPart) {
   EXPECT_THAT(comparison.notes, ::testing::Not(::testing::Contains(HasSubstr("twists of jib"))));
 }
 
+// The lowest line of the jib is missing, which is noted only where the jib is compared.
+TEST(ComparisonSections, OnlyThePartThatIsAskedForIsCompared) {
+  const Layout layout = WithJib(BoatLayout());
+  const UncertainShape reference = Exact(WithJib(BoatShape()));
+  const UncertainShape shape = Exact(Without({211, 212, 213, 214, 215, 216}, WithJib(BoatShape())));
+  const MeshDistance design(SailMesh());
+  ComparisonOptions options;
+  options.alignment.method = AlignmentMethod::kNone;
+  EXPECT_THAT(velamap::Compare("trim", shape, reference, layout, options).sections.notes,
+              ::testing::Contains(HasSubstr("jib h1")));
+  options.part = "sail";
+  for (const Comparison& comparison : {velamap::Compare("trim", shape, reference, layout, options),
+                                       velamap::Compare("trim", shape, design, layout, options)}) {
+    const SectionComparison& sections = comparison.sections;
+    EXPECT_EQ(sections.of_shape.sections.size(), 5u);
+    EXPECT_EQ(sections.of_reference.sections.size(), 5u);
+    EXPECT_FALSE(sections.differences.empty());
+    for (const SectionDifference& d : sections.differences) EXPECT_EQ(d.part, "sail");
+    EXPECT_THAT(sections.notes, ::testing::Not(::testing::Contains(HasSubstr("jib"))));
+  }
+}
+
 TEST(ComparisonSections, ALayoutWithoutLinesHasNone) {
   const MarkerShape boat = BoatShape();
   const SectionComparison comparison =
-      CompareSections(WithSigmas(boat), WithSigmas(boat), Alignment(), Layout());
+      CompareSections(WithSigmas(boat), WithSigmas(boat), Alignment(), Layout(), "");
   EXPECT_TRUE(comparison.differences.empty());
   EXPECT_FALSE(comparison.notes.empty());
 }
